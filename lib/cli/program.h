@@ -1,0 +1,99 @@
+// A program is described once, as data: options with types, units, ranges, defaults, conflicts; what it reads and writes; exit
+// codes; references. --help, the man page's OPTIONS / EXIT STATUS / FILES, bash, zsh and fish completions, --describe (JSON)
+// and --check (validate everything, run nothing) all come from this description.
+//
+// A tool is one file, tools/<name>.cpp, that defines `const gonio::cli::Program& gonio_program()` inside
+// `namespace gonio::tools::<name with _ for ->`; the build makes the executable and the registry of programs from the
+// file's name (cmake/registry.cmake).
+//
+// Common to every program, added here and meaning the same everywhere: -i/--input, -o/--output, --out DIR, --depfile FILE,
+// --seed N, --threads N, --progress WHEN, --log-level LEVEL, --force, --resume, --allow-outside, --check, --describe, --help,
+// --version. A program lists in `common` those of --out, --seed, --resume, --force that it takes.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/quantity.h"
+#include "manifest/document.h"
+
+namespace gonio::cli {
+
+enum class Type { flag, integer, number, quantity, text, choice, input_file, output_file, folder };
+
+struct Option {
+  std::string name;      // long name without dashes; for an operand its metavar
+  Type type = Type::flag;
+  std::string help;      // one sentence; what, unit, when to use it
+  std::string metavar;   // "N", "FILE", ... (empty: from the type)
+  std::string preset;    // default as the user would type it; empty: none
+  Dimension dimension = Dimension::none;  // quantity
+  std::optional<double> lower, upper;     // in SI
+  std::vector<std::string> choices;       // choice
+  bool repeat = false;                    // may be given several times; operands: takes the rest
+  bool required = false;
+  std::vector<std::string> conflicts;     // long names it cannot stand with
+  std::vector<std::string> needs;         // long names that must stand beside it
+};
+
+// How the manifest enters. none: the program takes no manifest; optional: read where -i is given, or where stdin is not a
+// terminal and no operands are given; required: from -i, an operand that ends in .json, or stdin.
+enum class Reads { none, optional, required };
+
+class Invocation;
+
+struct Program {
+  std::string name;      // as typed: "calib-charuco"
+  std::string sentence;  // NAME line
+  std::vector<std::string> synopsis;  // after the program's name, one form a line
+  std::vector<Option> options;
+  std::vector<Option> operands;
+  Reads reads = Reads::optional;
+  bool writes_manifest = true;
+  bool takes_out = false, takes_seed = false, takes_resume = false;
+  std::vector<std::string> sections_read, sections_written;  // of the manifest
+  std::vector<std::pair<std::string, std::string>> files;    // written below --out: pattern, meaning
+  std::vector<std::pair<Exit, std::string>> exits;           // what this program means by 1 and 2
+  std::vector<std::string> references;                       // papers
+  std::vector<std::string> see_also;
+  // Validates what can be validated without doing the work; called by --check, and always before run.
+  std::function<void(Invocation&)> check;
+  std::function<Exit(Invocation&)> run;
+};
+
+// One call of a program: options parsed, typed and range-checked; the manifest read.
+class Invocation {
+ public:
+  bool given(const std::string& option) const;          // typed by the user
+  bool flag(const std::string& option) const;
+  std::int64_t integer(const std::string& option) const;
+  double number(const std::string& option) const;       // number or quantity, SI
+  const std::string& text(const std::string& option) const;
+  const std::vector<std::string>& texts(const std::string& option) const;  // repeated option, or operands by their metavar
+
+  manifest::Document document;       // read; what run leaves here is written
+  bool has_document = false;
+  std::uint64_t seed = 0;
+  std::filesystem::path out;         // --out (created before run), empty where not given
+  bool force = false, resume = false;
+  // Path below --out for a new file. Error(cannot_create) where it exists and --force was not given (unless it is this
+  // program's own unchanged output under --resume).
+  std::filesystem::path output_path(const std::string& name) const;
+  // Files read besides the manifest (for --depfile and provenance).
+  void note_input(const std::filesystem::path& path);
+
+  struct State;
+  State* state = nullptr;  // owned by main()
+};
+
+int main(const Program& program, int argc, char** argv);
+
+std::span<const Program* const> all_programs();  // generated; sorted by name
+
+}  // namespace gonio::cli

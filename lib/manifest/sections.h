@@ -1,0 +1,152 @@
+// The sections of the manifest as C++ structs. Their field tables (sections.cpp, one line a field: JSON name, member, unit,
+// range, sentence) yield reading, validation, writing, schemas/*.schema.json and gonio-manifest(5).
+//
+// Frames: `world_from_camera` takes camera coordinates to world coordinates; camera axes x right, y down, z forward. Units
+// stand in the names. Pixel centres lie at integers. gonio-conventions(7) has it in full.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geom/rigid.h"
+#include "manifest/value.h"
+
+namespace gonio::manifest {
+
+// A number or a short list of numbers which a fit may be allowed to move: `0.5`, `[0.5, 0.3, 0.2]` or
+// `{"value": 0.5, "free": true, "min": 0, "max": 1, "sigma": 0.1, "share": "name"}`. `sigma` is a prior's width. Free
+// parameters that bear the same `share` are one parameter.
+struct Parameter {
+  std::vector<double> value;
+  bool free = false;
+  std::optional<double> min, max, sigma;
+  std::string share;
+
+  Parameter() = default;
+  Parameter(double v) : value{v} {}
+  Parameter(std::vector<double> v) : value(std::move(v)) {}
+  bool given() const { return !value.empty(); }
+  double scalar() const { return value.at(0); }
+  Rgb rgb() const { return value.size() == 3 ? Rgb{value[0], value[1], value[2]} : Rgb{value.at(0), value.at(0), value.at(0)}; }
+  Vec3 vector() const { return {value.at(0), value.at(1), value.at(2)}; }
+  bool operator==(const Parameter&) const = default;
+};
+using Parameters = std::map<std::string, Parameter>;
+using Sigmas = std::map<std::string, std::vector<double>>;  // one standard deviation beside a fitted value, same key
+
+struct PoseSigma {
+  std::vector<double> rotation_rad;   // 1 or 3 (x, y, z of a rotation vector applied on the left, in the `to` frame)
+  std::vector<double> translation_m;  // 1 or 3
+  bool operator==(const PoseSigma&) const = default;
+};
+// `{"rotation": [w,x,y,z], "translation_m": [x,y,z], "sigma": {...}}`; on input also `{"matrix": 4x4 row-major}`.
+template <class To, class From>
+struct Pose : Rigid<To, From> {
+  std::optional<PoseSigma> sigma;
+  bool operator==(const Pose&) const = default;
+};
+
+struct File {  // "files"
+  std::string path;  // relative to the manifest's folder
+  std::optional<std::uint64_t> bytes;
+  std::string sha256;
+};
+struct Link {  // "frames": a rigid motion between two named frames
+  std::string to, from;
+  Quaternion rotation;
+  Vec3 translation_m;
+  std::optional<PoseSigma> sigma;
+};
+struct Board {  // "boards"
+  std::string kind;               // "checkerboard" | "charuco"
+  std::vector<int> inner_corners; // checkerboard: [columns, rows]
+  std::vector<int> squares;       // charuco: [columns, rows]
+  double square_m = 0;
+  std::optional<double> marker_m; // charuco
+  std::string dictionary;         // charuco: "4X4_50", "5X5_1000", ...
+  std::optional<bool> legacy_layout;  // charuco: the layout of OpenCV before 4.6; absent: found from the pictures
+  Parameters warp;                // board.warp: {"x_m", "y_m"} sag in metres (0: flat)
+  Sigmas sigma;
+};
+struct Camera {  // "cameras"
+  std::string model = "pinhole";  // pinhole | radial-tangential | thin-prism | orthographic
+  int width_px = 0, height_px = 0;
+  Parameter fx_px, fy_px, cx_px, cy_px;  // orthographic: fx, fy are pixels per metre (px_per_m_x ...) instead
+  Parameter px_per_m;                    // orthographic only
+  Parameters distortion;                 // k1 k2 p1 p2 k3 s1 s2 s3 s4; left out: zero
+  Sigmas sigma;
+  std::optional<double> rms_px;
+  Value covariance;  // {"order": [...], "values": [[...]]} or null
+};
+struct Noise {  // of a linear value v: variance v / gain + read^2
+  double gain = 0, read = 0;
+};
+struct ImageEntry {  // "images"
+  std::string id, file, camera;
+  std::optional<Pose<frame::World, frame::Camera>> world_from_camera;  // absent: the camera sits at the world's origin
+  std::vector<std::string> light;  // one name or a list; empty: every light of the scene is on
+  std::optional<double> exposure_s;
+  Value response;  // "linear" (default for EXR), "srgb", or a table [[code, linear], ...]
+  std::string mask;  // file id: pixels > 0.5 count
+  std::string board;
+  std::optional<Pose<frame::Camera, frame::Board>> camera_from_board;
+  std::optional<double> rms_px;
+  std::optional<double> weight;  // 0: dropped
+  std::optional<Noise> noise;
+  std::optional<Parameter> gain;  // factor on the simulated radiance, per image (free: unknown exposure)
+  std::string group;              // recordings that belong together; held out together
+};
+struct Mesh {  // "meshes": a PLY file or an analytic shape
+  std::string file;
+  std::optional<double> sphere_radius_m;             // {"sphere": {"radius_m": r}}, centred at the object's origin
+  std::optional<std::vector<double>> plane_size_m;   // {"plane": {"size_m": [x, y]}}, in its own xy plane, normal +z
+  std::string normals;  // "smooth" (default: the file's, else averaged by area and angle) | "flat"
+};
+// "surfaces" and "lights": a registered model and its parameters, validated against the registry (manifest/model.h).
+struct Surface {
+  std::string model = "diffuse";
+  Parameters parameters;
+  std::map<std::string, std::string> textures;  // parameter -> file id
+  Sigmas sigma;
+};
+struct Light {
+  std::string model = "point";
+  Parameters parameters;
+  std::string file;  // lat-long environment: file id
+  Sigmas sigma;
+};
+struct Object {  // "objects"
+  std::string id, mesh, surface;
+  std::optional<Pose<frame::World, frame::Object>> world_from_object;
+};
+struct Table {  // "tables": one row per observation, in a CSV file or inline
+  std::string file;
+  Value rows;         // inline rows [[...], ...] in the order of `columns`
+  std::string model;  // forward model that predicts it: "camera", "surface", ...
+  std::vector<std::pair<std::string, std::string>> columns;  // name -> unit, in the file's order
+  std::vector<std::string> observed, sigma;
+  std::string camera, board;  // model "camera": whose corners these are
+};
+// "mechanisms": optional physics that is switched on, by canonical id. `on` names the surfaces or lights it applies to (empty:
+// all it can apply to); a parameter is one number, or one per name in `on`.
+struct MechanismUse {
+  std::vector<std::string> on;
+  Parameters parameters;
+  Sigmas sigma;
+};
+struct Rendering {  // "renderings"
+  std::string image, file;
+  std::optional<int> spp;
+  std::optional<std::uint64_t> seed;
+};
+struct Comparison {  // "comparisons"
+  std::string image;
+  std::optional<double> exposure_scale, rmse, relative_rmse, ssim, log10_error, z_rms;
+  std::optional<std::int64_t> pixels;
+  Sigmas sigma;
+  Value files;  // {"report": file id, ...}
+};
+
+}  // namespace gonio::manifest
