@@ -62,8 +62,6 @@ function(gonio_tools)
   set(declarations "")
   set(entries "")
   set(names "")
-  add_library(gonio_tool_objects OBJECT ${tool_files})
-  target_include_directories(gonio_tool_objects PRIVATE ${CMAKE_SOURCE_DIR}/lib)
   foreach(file IN LISTS tool_files)
     get_filename_component(name ${file} NAME_WE)
     string(REPLACE "-" "_" symbol ${name})
@@ -76,8 +74,8 @@ function(gonio_tools)
 namespace gonio::tools::${symbol} { const gonio::cli::Program& gonio_program(); }
 int main(int argc, char** argv) { return gonio::cli::main(gonio::tools::${symbol}::gonio_program(), argc, argv); }
 ")
-    add_executable(${name} ${GONIO_GENERATED}/main_${name}.cpp ${file})
-    target_link_libraries(${name} PRIVATE gonio)
+    add_executable(${name} ${GONIO_GENERATED}/main_${name}.cpp)
+    target_link_libraries(${name} PRIVATE gonio_programs gonio)
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
   endforeach()
   list(LENGTH names count)
@@ -92,7 +90,7 @@ ${entries}  };
   return all;
 }
 ")
-  add_library(gonio_programs STATIC ${GONIO_GENERATED}/programs.cpp $<TARGET_OBJECTS:gonio_tool_objects>)
+  add_library(gonio_programs STATIC ${GONIO_GENERATED}/programs.cpp ${tool_files})
   target_link_libraries(gonio_programs PUBLIC gonio)
   set(GONIO_TOOL_NAMES ${names} CACHE INTERNAL "")
 endfunction()
