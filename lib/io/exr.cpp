@@ -1,0 +1,141 @@
+// OpenEXR pictures from and to memory, so that reading is bounded by the file's own length and writing is one atomic step.
+// What it does not do: deep pixels, subsampled channels, parts beyond the first, windows other than the whole picture.
+#include "io/exr.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+
+#include "base/error.h"
+#include "io/raster_header.h"
+
+namespace gonio::io {
+namespace {
+
+constexpr int longest_side_px = 1 << 17;
+
+class MemoryInput : public Imf::IStream {
+ public:
+  explicit MemoryInput(const std::string& bytes) : Imf::IStream("memory"), bytes_(bytes) {}
+  bool read(char buffer[], int count) override {
+    const auto wanted = static_cast<std::uint64_t>(std::max(count, 0));
+    if (position_ > bytes_.size() || wanted > bytes_.size() - position_)
+      throw std::runtime_error("the file ends too early");
+    std::memcpy(buffer, bytes_.data() + position_, wanted);
+    position_ += wanted;
+    return position_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return position_; }
+  void seekg(std::uint64_t position) override { position_ = position; }
+
+ private:
+  const std::string& bytes_;
+  std::uint64_t position_ = 0;
+};
+
+class MemoryOutput : public Imf::OStream {
+ public:
+  MemoryOutput() : Imf::OStream("memory") {}
+  void write(const char buffer[], int count) override {
+    const auto length = static_cast<std::size_t>(count);
+    if (position_ + length > bytes.size()) bytes.resize(position_ + length);
+    std::memcpy(bytes.data() + position_, buffer, length);
+    position_ += length;
+  }
+  std::uint64_t tellp() override { return position_; }
+  void seekp(std::uint64_t position) override { position_ = position; }
+  std::string bytes;
+
+ private:
+  std::size_t position_ = 0;
+};
+
+// Alphabetical as in the file, with a plain R, G, B first in this order.
+std::vector<std::string> ordered_channels(const Imf::ChannelList& list) {
+  std::vector<std::string> names;
+  for (auto c = list.begin(); c != list.end(); ++c) names.emplace_back(c.name());
+  const auto has = [&](const char* name) { return list.findChannel(name) != nullptr; };
+  if (!has("R") || !has("G") || !has("B")) return names;
+  const auto rank = [](const std::string& name) { return name == "R" ? 0 : name == "G" ? 1 : name == "B" ? 2 : 3; };
+  std::stable_sort(names.begin(), names.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  return names;
+}
+
+void check_header(const Imf::Header& header, std::uint64_t file_bytes, const std::string& place) {
+  const auto& window = header.dataWindow();
+  if (window != header.displayWindow())
+    throw Error(Exit::data, place, "the data window is not the display window", "export the whole picture without a crop");
+  std::uint64_t pixel_bytes = 0;
+  for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+    pixel_bytes += sizeof(float);
+    if (c.channel().xSampling != 1 || c.channel().ySampling != 1)
+      throw Error(Exit::data, place, "channel " + std::string(c.name()) + " is subsampled", "export R, G, B instead");
+  }
+  if (pixel_bytes == 0) throw Error(Exit::data, place, "the picture has no channels");
+  const auto side = [](int first, int last) { return static_cast<std::uint64_t>(std::int64_t{last} - first + 1); };
+  check_decoded_size(side(window.min.x, window.max.x), side(window.min.y, window.max.y), pixel_bytes, file_bytes, place);
+}
+
+Image decode(const std::string& bytes, const std::string& place) {
+  Imf::Header::setMaxImageSize(longest_side_px, longest_side_px);
+  MemoryInput stream(bytes);
+  Imf::InputFile file(stream, 0);
+  check_header(file.header(), bytes.size(), place);
+  if (!file.isComplete()) throw Error(Exit::data, place, "the file is cut off: rows are missing", "copy it again");
+  const auto window = file.header().dataWindow();
+  Image image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1, ordered_channels(file.header().channels()));
+  const std::size_t x_stride = image.channels.size() * sizeof(float);
+  Imf::FrameBuffer frame;
+  for (std::size_t c = 0; c < image.channels.size(); ++c)
+    frame.insert(image.channels[c], Imf::Slice::Make(Imf::FLOAT, image.data.data() + c, window, x_stride,
+                                                     x_stride * static_cast<std::size_t>(image.width)));
+  file.setFrameBuffer(frame);
+  file.readPixels(window.min.y, window.max.y);
+  return image;
+}
+
+}  // namespace
+
+Image decode_exr(const std::string& bytes, const std::string& place) {
+  try {
+    return decode(bytes, place);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& failure) {
+    std::string what = failure.what();
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    throw Error(Exit::data, place, "is not a whole OpenEXR file (" + what + ")", "export or copy it again");
+  }
+}
+
+std::string encode_exr(const Image& image) {
+  Imf::Header header(image.width, image.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  const std::size_t x_stride = image.channels.size() * sizeof(float);
+  const std::size_t y_stride = x_stride * static_cast<std::size_t>(image.width);
+  Imf::FrameBuffer frame;
+  for (std::size_t c = 0; c < image.channels.size(); ++c) {
+    header.channels().insert(image.channels[c], Imf::Channel(Imf::FLOAT));
+    // The frame buffer's pointer is not const, yet OutputFile only reads through it.
+    auto* first = reinterpret_cast<char*>(const_cast<float*>(image.data.data() + c));
+    frame.insert(image.channels[c], Imf::Slice(Imf::FLOAT, first, x_stride, y_stride));
+  }
+  MemoryOutput stream;
+  {
+    Imf::OutputFile file(stream, header, 0);
+    file.setFrameBuffer(frame);
+    file.writePixels(image.height);
+  }
+  return std::move(stream.bytes);
+}
+
+}  // namespace gonio::io

@@ -1,0 +1,60 @@
+// Which file format, by extension; and the transfer curve of IEC 61966-2-1.
+#include "io/picture.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "io/exr.h"
+#include "io/raster.h"
+
+namespace gonio::io {
+namespace {
+
+constexpr const char* readable = "use .exr, .png, .jpg, .jpeg, .tif or .tiff";
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+}  // namespace
+
+Image read_picture(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  const bool exr = extension == ".exr";
+  const bool raster = extension == ".png" || extension == ".jpg" || extension == ".jpeg" || extension == ".tif" ||
+                      extension == ".tiff";
+  if (!exr && !raster)
+    throw Error(Exit::data, path.string(), "'" + extension + "' is not a picture that can be read", readable);
+  const std::string bytes = read_file(path);
+  return exr ? decode_exr(bytes, path.string()) : decode_raster(bytes, path.string());
+}
+
+void write_picture(const std::filesystem::path& path, const Image& image) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".exr") return write_file(path, encode_exr(image));
+  if (extension == ".png") return write_file(path, encode_png(image));
+  throw Error(Exit::cannot_create, path.string(), "'" + extension + "' is not a picture that can be written",
+              "use .exr or .png");
+}
+
+std::string encode_png(const Image& image) {
+  return encode_raster_png(image);
+}
+
+float srgb_from_linear(float v) {
+  const float a = std::abs(v);
+  return std::copysign(a <= 0.0031308f ? 12.92f * a : 1.055f * std::pow(a, 1 / 2.4f) - 0.055f, v);
+}
+
+float linear_from_srgb(float v) {
+  const float a = std::abs(v);
+  return std::copysign(a <= 0.04045f ? a / 12.92f : std::pow((a + 0.055f) / 1.055f, 2.4f), v);
+}
+
+}  // namespace gonio::io

@@ -1,0 +1,79 @@
+// 8 and 16-bit pictures by OpenCV's codecs. IMREAD_UNCHANGED: neither the camera's orientation tag nor a colour profile is
+// applied, so that a pixel keeps the place and the code that the sensor gave it.
+#include "io/raster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "base/error.h"
+#include "io/raster_header.h"
+
+namespace gonio::io {
+namespace {
+
+cv::Mat decode(const std::string& bytes, const std::string& place) {
+  const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+  cv::Mat picture;
+  try {
+    picture = cv::imdecode(buffer, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception& failure) {
+    throw Error(Exit::data, place, "cannot be decoded (" + failure.err + ")", "export or copy it again");
+  }
+  if (picture.empty()) throw Error(Exit::data, place, "the pixels cannot be decoded", "export or copy it again");
+  return picture;
+}
+
+template <class Code>
+Image scaled(const cv::Mat& picture) {
+  constexpr float full_scale = std::numeric_limits<Code>::max();
+  const int stored = picture.channels(), kept = stored >= 3 ? 3 : 1;
+  Image image(picture.cols, picture.rows, kept == 3 ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"});
+  for (int y = 0; y < picture.rows; ++y) {
+    const Code* row = picture.ptr<Code>(y);
+    for (int x = 0; x < picture.cols; ++x)
+      for (int c = 0; c < kept; ++c) {
+        const int opencv_channel = kept == 3 ? 2 - c : 0;  // OpenCV stores B, G, R
+        image.at(x, y, c) = static_cast<float>(row[x * stored + opencv_channel]) / full_scale;
+      }
+  }
+  return image;
+}
+
+std::uint8_t code(float value) {
+  const float clipped = std::clamp(std::isnan(value) ? 0.0f : value, 0.0f, 1.0f);
+  return static_cast<std::uint8_t>(std::lround(clipped * 255.0f));
+}
+
+}  // namespace
+
+Image decode_raster(const std::string& bytes, const std::string& place) {
+  const RasterHeader header = read_raster_header(bytes, place);
+  check_decoded_size(header.width, header.height, 3 * sizeof(float), bytes.size(), place);
+  const cv::Mat picture = decode(bytes, place);
+  if (picture.depth() == CV_8U) return scaled<std::uint8_t>(picture);
+  if (picture.depth() == CV_16U) return scaled<std::uint16_t>(picture);
+  throw Error(Exit::data, place, "holds neither 8 nor 16-bit codes", "export floats as OpenEXR");
+}
+
+std::string encode_raster_png(const Image& image) {
+  const bool colour = image.channel("R") >= 0 && image.channel("G") >= 0 && image.channel("B") >= 0;
+  const std::vector<int> sources =  // in OpenCV's order
+      colour ? std::vector<int>{image.channel("B"), image.channel("G"), image.channel("R")} : std::vector<int>{0};
+  const int count = static_cast<int>(sources.size());
+  cv::Mat picture(image.height, image.width, CV_8UC(count));
+  for (int y = 0; y < image.height; ++y) {
+    auto* row = picture.ptr<std::uint8_t>(y);
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < count; ++c) row[x * count + c] = code(image.at(x, y, sources[static_cast<std::size_t>(c)]));
+  }
+  std::vector<std::uint8_t> bytes;
+  if (picture.empty() || !cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6}))
+    throw Error(Exit::internal, "PNG", "a picture of " + std::to_string(image.width) + " x " +
+                                           std::to_string(image.height) + " pixels cannot be encoded");
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace gonio::io
