@@ -50,9 +50,9 @@ class ScratchFolder {
 }  // namespace gonio::tests
 
 // First line of a test that reads recorded data.
-#define GONIO_NEEDS_DATA(set)                                                          \
-  do {                                                                                 \
-    if (std::filesystem::exists(gonio::tests::data(set))) break;                       \
+#define GONIO_NEEDS_DATA(set)                                                                 \
+  do {                                                                                        \
+    if (std::filesystem::exists(gonio::tests::data(set))) break;                              \
     if (gonio::tests::data_is_required()) FAIL() << gonio::tests::data(set) << " is missing"; \
-    GTEST_SKIP() << gonio::tests::data(set) << " is missing";                          \
+    GTEST_SKIP() << gonio::tests::data(set) << " is missing";                                 \
   } while (false)

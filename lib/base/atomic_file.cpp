@@ -1,8 +1,9 @@
 // Files that appear whole or not at all, on POSIX calls.
 //
 // write_file() fills a nameless file (O_TMPFILE), which vanishes by itself however the program ends; it receives a name
-// beside the target only when it is complete and on the disk, and rename() puts it in the target's place. Where the file
-// system has no nameless files, a named temporary does the same, and the signal handlers remove it.
+// beside the target only when it is complete and on the disk, and rename() puts it in the target's place. Where the
+// file system has no nameless files, a named temporary does the same, and the signal handlers remove it.
+//
 // Invariant: between `open` and `rename` every named temporary stands in `temporaries`, a fixed table that a signal
 // handler may read (no allocation, no lock).
 #include "base/atomic_file.h"
@@ -46,7 +47,8 @@ extern "C" void on_signal(int) {
 class Registered {
  public:
   explicit Registered(const std::string& path) {
-    if (path.size() >= longest_path) throw Error(Exit::cannot_create, path, "the path is too long", "use a shorter one");
+    if (path.size() >= longest_path)
+      throw Error(Exit::cannot_create, path, "the path is too long", "use a shorter one");
     for (auto& t : temporaries) {
       int expected = Temporary::vacant;
       if (!t.state.compare_exchange_strong(expected, Temporary::being_filled)) continue;
@@ -90,8 +92,9 @@ bool full(int error) {
 
 [[noreturn]] void throw_write_error(const std::filesystem::path& path, int error) {
   throw_if_interrupted();
-  if (full(error)) throw Error(Exit::io, path.string(), "writing failed: " + std::string(std::strerror(error)),
-                               "free some space or choose another folder; nothing was left behind");
+  if (full(error))
+    throw Error(Exit::io, path.string(), "writing failed: " + std::string(std::strerror(error)),
+                "free some space or choose another folder; nothing was left behind");
   throw Error(Exit::io, path.string(), "writing failed: " + std::string(std::strerror(error)));
 }
 
@@ -140,10 +143,11 @@ std::filesystem::path resolved(const std::filesystem::path& path) {
   return target.empty() ? path : target;
 }
 
-enum class Kind { file, folder, device };  // a device is anything one can only write into: a pipe, a terminal, /dev/null
+// A device is anything that one can only write into: a pipe, a terminal, /dev/null.
+enum class Kind { file, folder, device };
 
 Kind kind_of(const std::filesystem::path& path) {
-  struct stat status{};
+  struct stat status {};
   if (::stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode)) return Kind::file;
   return S_ISDIR(status.st_mode) ? Kind::folder : Kind::device;
 }
@@ -229,7 +233,7 @@ void write_file_through(const std::filesystem::path& path,
 
 std::string read_file(const std::filesystem::path& path, std::uint64_t limit) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  struct stat status{};
+  struct stat status {};
   if (!file.valid() || ::fstat(file.get(), &status) != 0)
     throw Error(Exit::no_input, path.string(), std::strerror(errno), "check the path and its permissions");
   if (S_ISDIR(status.st_mode)) throw Error(Exit::no_input, path.string(), "is a folder", "name a file");
@@ -266,11 +270,11 @@ void make_folder(const std::filesystem::path& path) {
 }
 
 void install_signal_handlers() {
-  struct sigaction action{};
+  struct sigaction action {};
   action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction before{};
+    struct sigaction before {};
     ::sigaction(signal, nullptr, &before);
     if (before.sa_handler != SIG_IGN) ::sigaction(signal, &action, nullptr);  // under nohup, SIGHUP stays ignored
   }
@@ -283,7 +287,8 @@ bool interrupted() {
 }
 
 void throw_if_interrupted() {
-  if (interrupted()) throw Error(Exit::try_again, "", "interrupted by a signal", "nothing is half-written; run it again");
+  if (interrupted())
+    throw Error(Exit::try_again, "", "interrupted by a signal", "nothing is half-written; run it again");
 }
 
 }  // namespace gonio

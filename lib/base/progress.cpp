@@ -1,5 +1,5 @@
-// Messages and the progress bar on stderr. A message that appears while a bar is drawn takes the bar's line, and the bar
-// is drawn again below it. The time to go is the time so far times the share that is missing over the share done.
+// Messages and the progress bar on stderr. A message that appears while a bar is drawn takes the bar's line, and the
+// bar is drawn again below it. The time to go is the time so far times the share that is missing over the share done.
 #include "base/progress.h"
 
 #include <unistd.h>
@@ -44,8 +44,8 @@ bool bars_wanted() {
 std::string clock_time(double seconds) {
   const auto total = static_cast<long>(seconds + 0.5);
   const auto two = [](long v) { return (v < 10 ? "0" : "") + std::to_string(v); };
-  const std::string minutes = total >= 3600 ? std::to_string(total / 3600) + ":" + two(total / 60 % 60)
-                                            : std::to_string(total / 60);
+  const std::string minutes =
+      total >= 3600 ? std::to_string(total / 3600) + ":" + two(total / 60 % 60) : std::to_string(total / 60);
   return minutes + ":" + two(total % 60);
 }
 

@@ -19,13 +19,13 @@ struct Unit {
   double in_si;
 };
 constexpr std::array units = {
-    Unit{Dimension::length, "nm", 1e-9},        Unit{Dimension::length, "um", 1e-6},
-    Unit{Dimension::length, "mm", 1e-3},        Unit{Dimension::length, "cm", 1e-2},
-    Unit{Dimension::length, "m", 1.0},          Unit{Dimension::angle, "rad", 1.0},
-    Unit{Dimension::angle, "mrad", 1e-3},       Unit{Dimension::angle, "deg", degree_rad},
-    Unit{Dimension::time, "us", 1e-6},          Unit{Dimension::time, "ms", 1e-3},
-    Unit{Dimension::time, "s", 1.0},            Unit{Dimension::time, "min", 60.0},
-    Unit{Dimension::time, "h", 3600.0},         Unit{Dimension::pixel, "px", 1.0},
+    Unit{Dimension::length, "nm", 1e-9},  Unit{Dimension::length, "um", 1e-6},
+    Unit{Dimension::length, "mm", 1e-3},  Unit{Dimension::length, "cm", 1e-2},
+    Unit{Dimension::length, "m", 1.0},    Unit{Dimension::angle, "rad", 1.0},
+    Unit{Dimension::angle, "mrad", 1e-3}, Unit{Dimension::angle, "deg", degree_rad},
+    Unit{Dimension::time, "us", 1e-6},    Unit{Dimension::time, "ms", 1e-3},
+    Unit{Dimension::time, "s", 1.0},      Unit{Dimension::time, "min", 60.0},
+    Unit{Dimension::time, "h", 3600.0},   Unit{Dimension::pixel, "px", 1.0},
     Unit{Dimension::ratio, "%", 1e-2},
 };
 
@@ -34,7 +34,7 @@ struct DimensionName {
   std::string_view name, si;
 };
 constexpr std::array dimensions = {
-    DimensionName{Dimension::none, "number", ""},  DimensionName{Dimension::length, "length", "m"},
+    DimensionName{Dimension::none, "number", ""},    DimensionName{Dimension::length, "length", "m"},
     DimensionName{Dimension::angle, "angle", "rad"}, DimensionName{Dimension::time, "time", "s"},
     DimensionName{Dimension::pixel, "pixels", "px"}, DimensionName{Dimension::ratio, "ratio", ""},
 };

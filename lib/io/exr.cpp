@@ -1,5 +1,6 @@
-// OpenEXR pictures from and to memory, so that reading is bounded by the file's own length and writing is one atomic step.
-// What it does not do: deep pixels, subsampled channels, parts beyond the first, windows other than the whole picture.
+// OpenEXR pictures from and to memory, so that reading is bounded by the file's own length and writing is one atomic
+// step. What it does not do: deep pixels, subsampled channels, parts beyond the first, windows other than the whole
+// picture.
 #include "io/exr.h"
 
 #include <ImfChannelList.h>
@@ -71,7 +72,8 @@ std::vector<std::string> ordered_channels(const Imf::ChannelList& list) {
 void check_header(const Imf::Header& header, std::uint64_t file_bytes, const std::string& place) {
   const auto& window = header.dataWindow();
   if (window != header.displayWindow())
-    throw Error(Exit::data, place, "the data window is not the display window", "export the whole picture without a crop");
+    throw Error(Exit::data, place, "the data window is not the display window",
+                "export the whole picture without a crop");
   std::uint64_t pixel_bytes = 0;
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
     pixel_bytes += sizeof(float);
@@ -80,7 +82,8 @@ void check_header(const Imf::Header& header, std::uint64_t file_bytes, const std
   }
   if (pixel_bytes == 0) throw Error(Exit::data, place, "the picture has no channels");
   const auto side = [](int first, int last) { return static_cast<std::uint64_t>(std::int64_t{last} - first + 1); };
-  check_decoded_size(side(window.min.x, window.max.x), side(window.min.y, window.max.y), pixel_bytes, file_bytes, place);
+  check_decoded_size(side(window.min.x, window.max.x), side(window.min.y, window.max.y), pixel_bytes, file_bytes,
+                     place);
 }
 
 Image decode(const std::string& bytes, const std::string& place) {
@@ -90,7 +93,8 @@ Image decode(const std::string& bytes, const std::string& place) {
   check_header(file.header(), bytes.size(), place);
   if (!file.isComplete()) throw Error(Exit::data, place, "the file is cut off: rows are missing", "copy it again");
   const auto window = file.header().dataWindow();
-  Image image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1, ordered_channels(file.header().channels()));
+  Image image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1,
+              ordered_channels(file.header().channels()));
   const std::size_t x_stride = image.channels.size() * sizeof(float);
   Imf::FrameBuffer frame;
   for (std::size_t c = 0; c < image.channels.size(); ++c)

@@ -27,8 +27,8 @@ std::string lower_extension(const std::filesystem::path& path) {
 Image read_picture(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
   const bool exr = extension == ".exr";
-  const bool raster = extension == ".png" || extension == ".jpg" || extension == ".jpeg" || extension == ".tif" ||
-                      extension == ".tiff";
+  const bool raster =
+      extension == ".png" || extension == ".jpg" || extension == ".jpeg" || extension == ".tif" || extension == ".tiff";
   if (!exr && !raster)
     throw Error(Exit::data, path.string(), "'" + extension + "' is not a picture that can be read", readable);
   const std::string bytes = read_file(path);

@@ -1,5 +1,6 @@
-// PLY meshes (Turk 1994, "The PLY Polygon File Format"). Own code, because coordinates must keep their double precision.
-// What it does not do: colours, triangle strips, edges; elements and properties that it does not know are skipped.
+// PLY meshes (Turk 1994, "The PLY Polygon File Format"). Own code, because coordinates must keep their double
+// precision. What it does not do: colours, triangle strips, edges; elements and properties that it does not know are
+// skipped.
 #include "io/ply.h"
 
 #include <algorithm>
@@ -36,8 +37,10 @@ class Values {
   }
 
   [[noreturn]] void refuse(const std::string& problem) const {
-    throw Error(Exit::data, place_, "element " + element_->name + " " + std::to_string(row_) + " of " +
-                                        std::to_string(element_->count) + " " + problem, "export or copy it again");
+    throw Error(Exit::data, place_,
+                "element " + element_->name + " " + std::to_string(row_) + " of " + std::to_string(element_->count) +
+                    " " + problem,
+                "export or copy it again");
   }
 
   static std::string shown(double value) {
@@ -103,8 +106,18 @@ void skip(const PlyProperty& property, Values& values) {
 
 // What a vertex property means to a mesh: its place among x y z, nx ny nz, s t; -1 for what is not kept.
 int vertex_slot(const std::string& name) {
-  constexpr std::array<std::pair<std::string_view, int>, 12> slots = {{{"x", 0}, {"y", 1}, {"z", 2}, {"nx", 3},
-      {"ny", 4}, {"nz", 5}, {"s", 6}, {"t", 7}, {"u", 6}, {"v", 7}, {"texture_u", 6}, {"texture_v", 7}}};
+  constexpr std::array<std::pair<std::string_view, int>, 12> slots = {{{"x", 0},
+                                                                       {"y", 1},
+                                                                       {"z", 2},
+                                                                       {"nx", 3},
+                                                                       {"ny", 4},
+                                                                       {"nz", 5},
+                                                                       {"s", 6},
+                                                                       {"t", 7},
+                                                                       {"u", 6},
+                                                                       {"v", 7},
+                                                                       {"texture_u", 6},
+                                                                       {"texture_v", 7}}};
   for (const auto& [known, slot] : slots)
     if (name == known) return slot;
   return -1;
@@ -166,8 +179,10 @@ void read_faces(const PlyElement& element, std::uint64_t vertices, Values& value
   for (std::uint64_t row = 0; row < element.count; ++row) {
     values.enter_row(row);
     for (const auto& p : element.properties) {
-      if (is_polygon(p)) read_polygon(p, vertices, values, mesh);
-      else skip(p, values);
+      if (is_polygon(p))
+        read_polygon(p, vertices, values, mesh);
+      else
+        skip(p, values);
     }
   }
 }

@@ -17,9 +17,9 @@ struct ScalarName {
   std::size_t bytes;
 };
 constexpr std::array scalars = {
-    ScalarName{"char", "int8", PlyScalar::int8, 1},       ScalarName{"uchar", "uint8", PlyScalar::uint8, 1},
-    ScalarName{"short", "int16", PlyScalar::int16, 2},    ScalarName{"ushort", "uint16", PlyScalar::uint16, 2},
-    ScalarName{"int", "int32", PlyScalar::int32, 4},      ScalarName{"uint", "uint32", PlyScalar::uint32, 4},
+    ScalarName{"char", "int8", PlyScalar::int8, 1},        ScalarName{"uchar", "uint8", PlyScalar::uint8, 1},
+    ScalarName{"short", "int16", PlyScalar::int16, 2},     ScalarName{"ushort", "uint16", PlyScalar::uint16, 2},
+    ScalarName{"int", "int32", PlyScalar::int32, 4},       ScalarName{"uint", "uint32", PlyScalar::uint32, 4},
     ScalarName{"float", "float32", PlyScalar::float32, 4}, ScalarName{"double", "float64", PlyScalar::float64, 8},
 };
 

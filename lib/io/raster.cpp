@@ -1,5 +1,5 @@
-// 8 and 16-bit pictures by OpenCV's codecs. IMREAD_UNCHANGED: neither the camera's orientation tag nor a colour profile is
-// applied, so that a pixel keeps the place and the code that the sensor gave it.
+// 8 and 16-bit pictures by OpenCV's codecs. IMREAD_UNCHANGED: neither the camera's orientation tag nor a colour profile
+// is applied, so that a pixel keeps the place and the code that the sensor gave it.
 #include "io/raster.h"
 
 #include <algorithm>
@@ -30,7 +30,8 @@ template <class Code>
 Image scaled(const cv::Mat& picture) {
   constexpr float full_scale = std::numeric_limits<Code>::max();
   const int stored = picture.channels(), kept = stored >= 3 ? 3 : 1;
-  Image image(picture.cols, picture.rows, kept == 3 ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"});
+  Image image(picture.cols, picture.rows,
+              kept == 3 ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"});
   for (int y = 0; y < picture.rows; ++y) {
     const Code* row = picture.ptr<Code>(y);
     for (int x = 0; x < picture.cols; ++x)
@@ -71,8 +72,9 @@ std::string encode_raster_png(const Image& image) {
   }
   std::vector<std::uint8_t> bytes;
   if (picture.empty() || !cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6}))
-    throw Error(Exit::internal, "PNG", "a picture of " + std::to_string(image.width) + " x " +
-                                           std::to_string(image.height) + " pixels cannot be encoded");
+    throw Error(Exit::internal, "PNG",
+                "a picture of " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                    " pixels cannot be encoded");
   return {bytes.begin(), bytes.end()};
 }
 

@@ -1,5 +1,6 @@
 // PNG (ISO 15948), JPEG (ITU-T T.81) and TIFF 6.0, as far as is needed to know the size and that the file is whole. The
-// libraries that decode them allocate what the header claims and paint what is missing grey; hence this look beforehand.
+// libraries that decode them allocate what the header claims and paint what is missing grey; hence this look
+// beforehand.
 #include "io/raster_header.h"
 
 #include <array>
@@ -66,7 +67,8 @@ RasterHeader png(std::string_view bytes, const std::string& place) {
     const std::uint64_t length = read.big(at, 4);
     if (length > bytes.size() || at + length + 12 > bytes.size()) refuse(place, "the PNG file is cut off");
     const std::string_view body = bytes.substr(at + 4, length + 4);
-    if (read.big(at + 8 + length, 4) != crc32(body)) refuse(place, "the PNG file is damaged at byte " + std::to_string(at));
+    if (read.big(at + 8 + length, 4) != crc32(body))
+      refuse(place, "the PNG file is damaged at byte " + std::to_string(at));
     if (body.starts_with("IEND")) break;
     at += length + 12;
   }
@@ -93,7 +95,8 @@ RasterHeader jpeg(std::string_view bytes, const std::string& place) {
     at += 2 + read.big(at + 2, 2);
     if (marker == 0xda) break;
   }
-  if (at > bytes.size() || bytes.find("\xff\xd9", at) == std::string_view::npos) refuse(place, "the JPEG file is cut off");
+  if (at > bytes.size() || bytes.find("\xff\xd9", at) == std::string_view::npos)
+    refuse(place, "the JPEG file is cut off");
   return header;
 }
 

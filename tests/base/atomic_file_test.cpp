@@ -22,7 +22,8 @@ namespace {
 
 std::vector<std::string> names_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.push_back(entry.path().filename().string());
   return names;
 }
 
@@ -52,7 +53,7 @@ TEST(AtomicFile, WritesAndReplacesAndReads) {
   write_file(path, "second");
   EXPECT_EQ(read_file(path), "second");
   EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("a.txt"));
-  struct stat status{};
+  struct stat status {};
   ASSERT_EQ(::stat(path.c_str(), &status), 0);
   const mode_t mask = ::umask(0);
   ::umask(mask);

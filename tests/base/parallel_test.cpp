@@ -18,7 +18,8 @@ TEST(Parallel, EveryIndexOnceWhateverTheGrainAndTheThreads) {
     EXPECT_EQ(threads(), count);
     for (const std::size_t grain : {0, 1, 7, 1000, 100000}) {
       std::vector<std::atomic<int>> visits(1003);
-      parallel_for(3, 1003, [&](std::size_t i) { ++visits[i]; }, grain);
+      parallel_for(
+          3, 1003, [&](std::size_t i) { ++visits[i]; }, grain);
       for (std::size_t i = 0; i < visits.size(); ++i) EXPECT_EQ(visits[i], i < 3 ? 0 : 1);
     }
   }
@@ -35,10 +36,13 @@ TEST(Parallel, SameNumbersWhateverTheThreads) {
   const auto draw = [](int count) {
     set_threads(count);
     std::vector<double> result(500);
-    parallel_for(0, result.size(), [&](std::size_t i) {
-      Random random(42, i);
-      for (int k = 0; k < 100; ++k) result[i] += random.normal();
-    }, 16);
+    parallel_for(
+        0, result.size(),
+        [&](std::size_t i) {
+          Random random(42, i);
+          for (int k = 0; k < 100; ++k) result[i] += random.normal();
+        },
+        16);
     return result;
   };
   const auto one = draw(1);
@@ -51,9 +55,12 @@ TEST(Parallel, TheLowestFailingIndexIsTheOneReported) {
     for (int repetition = 0; repetition < 50; ++repetition) {
       set_threads(count);
       try {
-        parallel_for(0, 1000, [](std::size_t i) {
-          if (i % 100 == 37) throw Error(Exit::data, std::to_string(i), "fails");
-        }, 10);
+        parallel_for(
+            0, 1000,
+            [](std::size_t i) {
+              if (i % 100 == 37) throw Error(Exit::data, std::to_string(i), "fails");
+            },
+            10);
         ADD_FAILURE() << "no exception";
       } catch (const Error& error) {
         EXPECT_EQ(error.place(), "37");

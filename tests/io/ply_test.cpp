@@ -58,7 +58,8 @@ TEST(Ply, TruncationIsRefusedEverywhere) {
   const tests::ScratchFolder folder;
   write_ply(folder / "a.ply", random_mesh(100, 150, true, false));
   const std::string bytes = read_file(folder / "a.ply");
-  for (std::size_t tenth = 0; tenth < 10; ++tenth) refusal(folder / "b.ply", bytes.substr(0, bytes.size() * tenth / 10));
+  for (std::size_t tenth = 0; tenth < 10; ++tenth)
+    refusal(folder / "b.ply", bytes.substr(0, bytes.size() * tenth / 10));
   refusal(folder / "b.ply", bytes.substr(0, bytes.size() - 1));
 }
 
@@ -98,8 +99,9 @@ TEST(Ply, AsciiWithUnknownElementsAndAPolygon) {
 
 TEST(Ply, BigEndian) {
   const tests::ScratchFolder folder;
-  std::string bytes = "ply\r\nformat binary_big_endian 1.0\r\nelement vertex 3\r\nproperty short x\r\nproperty float y\r\n"
-                      "property double z\r\nelement face 1\r\nproperty list ushort uint vertex_index\r\nend_header\r\n";
+  std::string bytes =
+      "ply\r\nformat binary_big_endian 1.0\r\nelement vertex 3\r\nproperty short x\r\nproperty float y\r\n"
+      "property double z\r\nelement face 1\r\nproperty list ushort uint vertex_index\r\nend_header\r\n";
   const auto append = [&](auto value) {
     const auto raw = std::bit_cast<std::array<char, sizeof(value)>>(value);
     bytes.append(raw.rbegin(), raw.rend());

@@ -1,0 +1,83 @@
+// Sizes, names and heads of files: what keeps the house readable.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "meta/source_tree.h"
+
+namespace gonio::tests {
+namespace {
+
+constexpr std::size_t longest_source = 600, longest_header = 250, longest_tool = 150, longest_line = 140;
+
+std::vector<SourceFile> all_sources() {
+  std::vector<SourceFile> files;
+  for (const char* folder : {"lib", "tools", "tests"})
+    for (auto& file : source_files(folder, {".h", ".cpp"})) files.push_back(std::move(file));
+  return files;
+}
+
+TEST(Files, NoneIsTooLong) {
+  for (const auto& file : all_sources()) {
+    const bool tool = file.path.starts_with("tools/");
+    const std::size_t limit = tool ? longest_tool : file.path.ends_with(".h") ? longest_header : longest_source;
+    EXPECT_LE(file.lines.size(), limit) << place(file, static_cast<int>(limit)) << ": " << file.lines.size()
+                                        << " lines";
+  }
+}
+
+// Characters, not bytes: UTF-8 continuation bytes do not count.
+TEST(Files, LinesFitTheColumnLimit) {
+  for (const auto& file : all_sources())
+    for (std::size_t i = 0; i < file.lines.size(); ++i) {
+      const auto width = std::count_if(file.lines[i].begin(), file.lines[i].end(),
+                                       [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; });
+      EXPECT_LE(width, static_cast<std::ptrdiff_t>(longest_line)) << place(file, static_cast<int>(i) + 1);
+    }
+}
+
+TEST(Files, FoldersAndFilesAreNamedAfterTheirSubject) {
+  const std::regex nameless("^(utils?|common|helpers?|misc|tools?_?lib|shared|stuff)([._].*)?$");
+  for (const char* folder : {"lib", "tools", "tests", "scripts"}) {
+    const auto root = std::filesystem::path(GONIO_SOURCE) / folder;
+    if (!std::filesystem::exists(root)) continue;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root))
+      EXPECT_FALSE(std::regex_match(entry.path().filename().string(), nameless)) << entry.path();
+  }
+}
+
+TEST(Files, SourcesAreSnakeCaseAndProgramsKebabCase) {
+  const std::regex snake("^[a-z0-9_]+\\.(h|cpp)$"), kebab("^[a-z0-9-]+\\.(h|cpp)$");
+  for (const auto& file : all_sources()) {
+    const auto name = std::filesystem::path(file.path).filename().string();
+    const bool program = file.path.starts_with("tools/") || file.path.find("/mechanisms/") != std::string::npos;
+    EXPECT_TRUE(std::regex_match(name, snake) || (program && std::regex_match(name, kebab))) << file.path;
+  }
+}
+
+TEST(Files, EveryHeaderOfLibIsIncludedOnceAndSaysWhatItIsFor) {
+  for (const auto& file : source_files("lib", {".h"})) {
+    ASSERT_FALSE(file.lines.empty()) << file.path;
+    EXPECT_TRUE(file.lines[0].starts_with("// ")) << place(file, 1) << ": no word about the file's purpose";
+    EXPECT_THAT(file.lines, testing::Contains("#pragma once")) << place(file, 1);
+  }
+}
+
+TEST(Files, EverySourceOfLibAndToolsBeginsWithItsPurpose) {
+  for (const char* folder : {"lib", "tools"})
+    for (const auto& file : source_files(folder, {".cpp"})) {
+      ASSERT_FALSE(file.lines.empty()) << file.path;
+      EXPECT_TRUE(file.lines[0].starts_with("// ")) << place(file, 1) << ": no word about the file's purpose";
+    }
+}
+
+TEST(Files, NothingIsLeftForLater) {
+  const std::regex leftover(std::string("\\b(TO") + "DO|FIX" + "ME|XX" + "X|HA" + "CK)\\b");
+  for (const auto& file : all_sources())
+    for (std::size_t i = 0; i < file.lines.size(); ++i)
+      EXPECT_FALSE(std::regex_search(file.lines[i], leftover)) << place(file, static_cast<int>(i) + 1);
+}
+
+}  // namespace
+}  // namespace gonio::tests

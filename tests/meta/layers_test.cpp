@@ -1,0 +1,111 @@
+// lib/LAYERS is the law: a folder of lib/ includes only itself and folders on lines above its own in that file.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <set>
+
+#include "meta/source_tree.h"
+
+namespace gonio::tests {
+namespace {
+
+std::map<std::string, int> level_of_folder() {
+  std::map<std::string, int> level;
+  const auto lines = layers();
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    for (const auto& folder : lines[i]) level[folder] = static_cast<int>(i);
+  return level;
+}
+
+// "camera" of "lib/camera/camera_model.h" or of "camera/camera_model.h".
+std::string folder_of(std::string path) {
+  if (path.starts_with("lib/")) path.erase(0, 4);
+  return path.substr(0, path.find('/'));
+}
+
+TEST(Layers, EveryFolderOfLibHasItsLine) {
+  const auto level = level_of_folder();
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(GONIO_SOURCE) / "lib"))
+    EXPECT_TRUE(!entry.is_directory() || level.contains(entry.path().filename().string()))
+        << entry.path() << " is not in lib/LAYERS";
+}
+
+TEST(Layers, FoldersIncludeOnlyWhatLiesBelowThem) {
+  const auto level = level_of_folder();
+  for (const auto& file : source_files("lib", {".h", ".cpp"})) {
+    const std::string own = folder_of(file.path);
+    for (const auto& include : includes_of(file)) {
+      if (!include.quoted) continue;
+      const std::string other = folder_of(include.name);
+      if (other == own) continue;
+      if (!level.contains(other)) {
+        ADD_FAILURE() << place(file, include.line) << ": \"" << include.name << "\" is no folder of lib/";
+        continue;
+      }
+      EXPECT_LT(level.at(other), level.at(own))
+          << place(file, include.line) << ": " << own << " may not include " << include.name << " (lib/LAYERS)";
+    }
+  }
+}
+
+bool third_party(const Include& include) {  // standard headers have neither a folder nor an extension
+  return !include.quoted && include.name.find_first_of("./") != std::string::npos;
+}
+
+// Headers that name a library, or include one that does: path and the reason.
+std::map<std::string, std::string> headers_that_name_a_library() {
+  const auto headers = source_files("lib", {".h"});
+  std::map<std::string, std::string> tainted;
+  for (std::size_t before = 1; before != tainted.size();) {
+    before = tainted.size();
+    for (const auto& header : headers)
+      for (const auto& include : includes_of(header))
+        if (third_party(include) || tainted.contains("lib/" + include.name))
+          tainted.emplace(header.path, place(header, include.line) + " includes " + include.name);
+    if (tainted.empty()) break;
+  }
+  return tainted;
+}
+
+// A header shows what a folder offers; the libraries behind it stay in the folder, so that they can be exchanged and
+// the folders above compile quickly. A header for the folder's own sources may name them.
+TEST(Layers, LibrariesStayInTheFolderThatUsesThem) {
+  const auto tainted = headers_that_name_a_library();
+  for (const char* tree : {"lib", "tools"})
+    for (const auto& file : source_files(tree, {".h", ".cpp"}))
+      for (const auto& include : includes_of(file)) {
+        const auto reason = tainted.find("lib/" + include.name);
+        EXPECT_TRUE(reason == tainted.end() ||
+                    (std::string(tree) == "lib" && folder_of(include.name) == folder_of(file.path)))
+            << place(file, include.line) << ": " << include.name << " brings in a library: " << reason->second;
+      }
+}
+
+TEST(Layers, HeadersDoNotIncludeSources) {
+  for (const auto& folder : {"lib", "tools", "tests"})
+    for (const auto& file : source_files(folder, {".h", ".cpp"}))
+      for (const auto& include : includes_of(file))
+        EXPECT_FALSE(include.name.ends_with(".cpp")) << place(file, include.line);
+}
+
+TEST(Layers, NoIncludeCycleAmongHeaders) {
+  std::map<std::string, std::vector<std::string>> next;
+  for (const auto& file : source_files("lib", {".h"}))
+    for (const auto& include : includes_of(file))
+      if (include.quoted) next[file.path].push_back("lib/" + include.name);
+  std::set<std::string> finished, open;
+  const std::function<void(const std::string&)> visit = [&](const std::string& path) {
+    if (finished.contains(path)) return;
+    EXPECT_TRUE(open.insert(path).second) << path << ":1: includes itself by way of others";
+    if (testing::Test::HasFailure()) return;
+    for (const auto& other : next[path]) visit(other);
+    open.erase(path);
+    finished.insert(path);
+  };
+  for (const auto& file : source_files("lib", {".h"})) visit(file.path);
+}
+
+}  // namespace
+}  // namespace gonio::tests
