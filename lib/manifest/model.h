@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "manifest/sections.h"
+
 namespace gonio::manifest {
 
 struct ParameterInfo {
@@ -31,5 +33,9 @@ struct ModelInfo {
 
 std::span<const ModelInfo* const> models(Family family);           // sorted by id
 const ModelInfo* find_model(Family family, const std::string& id);  // null pointer where there is none
+
+// Values in the order of model.parameters, presets filled in, a single number spread over all three components.
+// Error(data) at `place` for unknown names, missing ones, wrong counts, and values outside the bounds.
+std::vector<Vec3> values_of(const ModelInfo& model, const Parameters& parameters, const std::string& place);
 
 }  // namespace gonio::manifest

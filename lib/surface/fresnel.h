@@ -1,0 +1,46 @@
+// Fresnel reflectance of unpolarised light at a smooth interface to a dielectric or a metal, seen from air (index 1).
+// `cosine` is that of the angle between the direction and the interface's normal, in [0, 1].
+// Born & Wolf 1999, section 1.5 (dielectric) and 14.2 (metal); Schlick 1994, equation 15.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "geom/vector.h"
+
+namespace gonio::surface {
+
+// Relative index with the given reflectance at normal incidence, f0 = ((eta - 1) / (eta + 1))^2; f0 < 1.
+inline double eta_of_f0(double f0) {
+  const double r = std::sqrt(f0);
+  return (1 + r) / (1 - r);
+}
+
+// eta >= 1: from the thinner medium, so that there is no total reflection. Exactly zero for eta = 1.
+inline double fresnel_dielectric(double cosine, double eta) {
+  if (eta == 1) return 0;
+  const double c = std::clamp(cosine, 0.0, 1.0);
+  const double t = std::sqrt(1 - (1 - c * c) / (eta * eta));  // cosine inside, > 0 for eta > 1
+  const double s = (c - eta * t) / (c + eta * t), p = (eta * c - t) / (eta * c + t);
+  return (s * s + p * p) / 2;
+}
+
+// Complex index eta + i k.
+inline double fresnel_metal(double cosine, double eta, double k) {
+  const double c = std::clamp(cosine, 0.0, 1.0), c2 = c * c, s2 = 1 - c2;
+  const double d = eta * eta - k * k - s2;
+  const double ab = std::sqrt(d * d + 4 * eta * eta * k * k);  // a^2 + b^2, (a + i b)^2 = (eta + i k)^2 - sin^2
+  const double a = std::sqrt(std::max(0.0, (ab + d) / 2));
+  const double s = (ab + c2 - 2 * a * c) / (ab + c2 + 2 * a * c);
+  const double p = s * (c2 * ab + s2 * s2 - 2 * a * c * s2) / (c2 * ab + s2 * s2 + 2 * a * c * s2);
+  return std::clamp((s + p) / 2, 0.0, 1.0);
+}
+
+inline double schlick_rise(double cosine) {
+  const double m = std::clamp(1 - cosine, 0.0, 1.0), m2 = m * m;
+  return m2 * m2 * m;
+}
+inline Rgb fresnel_schlick(double cosine, Rgb f0) {
+  return f0 + (Rgb{1, 1, 1} - f0) * schlick_rise(cosine);
+}
+
+}  // namespace gonio::surface

@@ -1,0 +1,148 @@
+// Tables behind interface_albedo.h. Each entry is the mean of F G2 / G1 over visible normals (Heitz 2018), taken on a
+// fixed midpoint grid of the two random numbers: deterministic, without noise.
+#include "surface/interface_albedo.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "surface/fresnel.h"
+#include "surface/microfacet.h"
+
+namespace gonio::surface {
+namespace {
+
+constexpr std::size_t cosines = 49, alphas = 20, indices = 9;
+constexpr std::size_t mirror = indices, rise = indices + 1, layers = indices + 2;
+constexpr int grid_radius = 12, grid_angle = 24;
+
+double cosine_at(std::size_t i) {
+  const double t = static_cast<double>(i) / (cosines - 1);
+  return t * t;
+}
+double alpha_at(std::size_t i) {
+  const double lower = std::sqrt(min_alpha), upper = std::sqrt(max_alpha);
+  const double t = lower + (upper - lower) * static_cast<double>(i) / (alphas - 1);
+  return t * t;
+}
+double f0_at(std::size_t i) {
+  const double t = static_cast<double>(i) / (indices - 1);
+  return max_dielectric_f0 * t * t;
+}
+
+struct Cell {  // a position between two nodes
+  std::size_t low = 0;
+  double share = 0;  // of the upper node
+};
+Cell cell(double position, std::size_t nodes) {  // position 0 ... nodes - 1
+  const double p = std::clamp(position, 0.0, static_cast<double>(nodes - 1));
+  const std::size_t low = std::min(static_cast<std::size_t>(p), nodes - 2);
+  return {low, p - static_cast<double>(low)};
+}
+Cell cosine_cell(double cosine) {
+  return cell(std::sqrt(std::max(0.0, cosine)) * (cosines - 1), cosines);
+}
+Cell alpha_cell(double alpha) {
+  const double lower = std::sqrt(min_alpha), upper = std::sqrt(max_alpha);
+  return cell((std::sqrt(std::max(0.0, alpha)) - lower) / (upper - lower) * (alphas - 1), alphas);
+}
+Cell f0_cell(double f0) {
+  Cell c = cell(std::sqrt(std::max(0.0, f0) / max_dielectric_f0) * (indices - 1), indices);
+  const double low = f0_at(c.low), high = f0_at(c.low + 1);
+  c.share = std::clamp((f0 - low) / (high - low), 0.0, 1.0);
+  return c;
+}
+double between(double low, double high, double share) {
+  return low + (high - low) * share;
+}
+
+class Table {
+ public:
+  Table() : values_(layers * alphas * cosines), means_(layers * alphas) {
+    for (std::size_t a = 0; a < alphas; ++a) {
+      for (std::size_t c = 0; c < cosines; ++c) fill(a, c);
+      for (std::size_t layer = 0; layer < layers; ++layer) means_[layer * alphas + a] = integral(layer, a);
+    }
+  }
+  double value(std::size_t layer, Cell a, Cell c) const {
+    return between(row(layer, a.low, c), row(layer, a.low + 1, c), a.share);
+  }
+  double mean(std::size_t layer, Cell a) const {
+    return between(means_[layer * alphas + a.low], means_[layer * alphas + a.low + 1], a.share);
+  }
+
+ private:
+  double& at(std::size_t layer, std::size_t a, std::size_t c) { return values_[(layer * alphas + a) * cosines + c]; }
+  double at(std::size_t layer, std::size_t a, std::size_t c) const {
+    return values_[(layer * alphas + a) * cosines + c];
+  }
+  double row(std::size_t layer, std::size_t a, Cell c) const {
+    return between(at(layer, a, c.low), at(layer, a, c.low + 1), c.share);
+  }
+
+  void fill(std::size_t a, std::size_t c) {
+    const Ggx ggx(alpha_at(a));
+    const double z = std::max(1e-6, cosine_at(c));  // the limit at the horizon
+    const Vec3 wo{std::sqrt(1 - z * z), 0, z};
+    std::array<double, indices> eta{};
+    for (std::size_t i = 0; i < indices; ++i) eta[i] = eta_of_f0(f0_at(i));
+    std::array<double, layers> sum{};
+    for (int i = 0; i < grid_radius; ++i) {
+      for (int j = 0; j < grid_angle; ++j) {
+        const Vec3 h = ggx.visible_normal(wo, {(i + 0.5) / grid_radius, (j + 0.5) / grid_angle});
+        const Vec3 wi = mirrored(wo, h);
+        if (wi.z <= 0) continue;
+        const double weight = ggx.weight(wo, wi), cosine = dot(wo, h);
+        for (std::size_t k = 0; k < indices; ++k) sum[k] += weight * fresnel_dielectric(cosine, eta[k]);
+        sum[mirror] += weight;
+        sum[rise] += weight * schlick_rise(cosine);
+      }
+    }
+    for (std::size_t layer = 0; layer < layers; ++layer) at(layer, a, c) = sum[layer] / (grid_radius * grid_angle);
+  }
+
+  // 2 E cosine d(cosine) = 4 E t^3 dt, t = sqrt(cosine): in each cell a polynomial of degree 4, exact with three Gauss
+  // points.
+  double integral(std::size_t layer, std::size_t a) const {
+    constexpr std::array<double, 3> node = {0.1127016653792583, 0.5, 0.8872983346207417};
+    constexpr std::array<double, 3> weight = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+    double sum = 0;
+    for (std::size_t c = 0; c + 1 < cosines; ++c) {
+      for (std::size_t q = 0; q < node.size(); ++q) {
+        const double t = (static_cast<double>(c) + node[q]) / (cosines - 1);
+        sum += weight[q] / (cosines - 1) * 4 * t * t * t * row(layer, a, {c, node[q]});
+      }
+    }
+    return sum;
+  }
+
+  std::vector<double> values_, means_;
+};
+
+const Table& table() {
+  static const Table t;
+  return t;
+}
+
+}  // namespace
+
+double dielectric_albedo(double cosine, double alpha, double f0) {
+  const Cell a = alpha_cell(alpha), c = cosine_cell(cosine), f = f0_cell(f0);
+  return between(table().value(f.low, a, c), table().value(f.low + 1, a, c), f.share);
+}
+double dielectric_albedo_mean(double alpha, double f0) {
+  const Cell a = alpha_cell(alpha), f = f0_cell(f0);
+  return between(table().mean(f.low, a), table().mean(f.low + 1, a), f.share);
+}
+double mirror_albedo(double cosine, double alpha) {
+  return table().value(mirror, alpha_cell(alpha), cosine_cell(cosine));
+}
+double mirror_albedo_mean(double alpha) {
+  return table().mean(mirror, alpha_cell(alpha));
+}
+double rise_albedo(double cosine, double alpha) {
+  return table().value(rise, alpha_cell(alpha), cosine_cell(cosine));
+}
+
+}  // namespace gonio::surface

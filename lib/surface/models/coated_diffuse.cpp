@@ -1,0 +1,135 @@
+// Diffuse base under a rough dielectric interface (varnish, glaze, plastic).
+//   f = F(wi.h) D(h) G2 / (4 wiz woz)  +  f_base(wi, wo) (1 - E(wi)) (1 - E(wo)) / (1 - E_mean)
+// The interface is GGX (surface/microfacet.h) with exact Fresnel factor of the index that f0 implies; E is its
+// directional reflectance (surface/interface_albedo.h). Kelemen & Szirmay-Kalos 2001: reciprocal, and a white
+// Lambertian base reflects all light. `albedo` is the base as seen through the interface, internal reflections
+// included: what a photograph with crossed polarizers shows. At f0 = 0 the interface vanishes, and evaluate, sample and
+// pdf are those of `diffuse` to the last bit. albedo() is exact for sigma_rad = 0 up to the tables' error; for a rough
+// base the base's part is scaled by its reflectance.
+#include "surface/fresnel.h"
+#include "surface/hemisphere.h"
+#include "surface/interface_albedo.h"
+#include "surface/microfacet.h"
+#include "surface/oren_nayar.h"
+#include "surface/surface.h"
+
+namespace gonio::surface {
+namespace {
+
+enum : std::size_t { albedo_index, sigma_index, f0_index, alpha_index };
+
+// What depends on the parameters and wo alone.
+struct Coat {
+  double f0, eta, alpha, passes_out;  // passes_out: 1 - E(wo)
+  Coat(const Values& values, Vec3 wo)
+      : f0(values.scalar(f0_index)),
+        eta(eta_of_f0(f0)),
+        alpha(values.scalar(alpha_index)),
+        passes_out(1 - dielectric_albedo(wo.z, alpha, f0)) {}
+  double passes(Vec3 wi) const {
+    return passes_out * (1 - dielectric_albedo(wi.z, alpha, f0)) / (1 - dielectric_albedo_mean(alpha, f0));
+  }
+  // Share of samples for the interface: by reflected power.
+  double share(Rgb base) const {
+    const double interface = 1 - passes_out, below = passes_out * mean(base);
+    return interface + below > 0 ? interface / (interface + below) : 0;
+  }
+};
+
+class CoatedDiffuse final : public Model {
+ public:
+  const manifest::ModelInfo& info() const override {
+    static const manifest::ModelInfo info{
+        .family = manifest::Family::surface,
+        .id = "coated-diffuse",
+        .sentence = "A matte base under a clear rough interface, such as varnish, glaze or plastic.",
+        .source = "Walter et al. 2007; Heitz 2014, 2018; Kelemen & Szirmay-Kalos 2001",
+        .parameters =
+            {{.name = "albedo",
+              .unit = "1",
+              .components = 3,
+              .rgb = true,
+              .preset = {},
+              .lower = 0,
+              .upper = 1,
+              .meaning = "albedo of the base as seen through the interface, of linear red, green and blue"},
+             {.name = "sigma_rad",
+              .unit = "rad",
+              .preset = 0,
+              .lower = 0,
+              .upper = pi / 2,
+              .meaning = "standard deviation of the base's facet slope angle; 0 is Lambert's law"},
+             {.name = "f0",
+              .unit = "1",
+              .preset = 0,
+              .lower = 0,
+              .upper = max_dielectric_f0,
+              .meaning =
+                  "reflectance of the interface at normal incidence (0.04 for an index of 1.5); 0: no interface"},
+             {.name = "alpha",
+              .unit = "1",
+              .preset = 0.1,
+              .lower = min_alpha,
+              .upper = max_alpha,
+              .meaning = "GGX roughness of the interface"}},
+    };
+    return info;
+  }
+
+  Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
+    if (wo.z <= 0 || wi.z <= 0) return {};
+    const Rgb base = values.rgb(albedo_index) * (OrenNayar(values.scalar(sigma_index)).shape(wo, wi) / pi);
+    if (values.scalar(f0_index) <= 0) return base;
+    return together(Coat(values, wo), base, wo, wi);
+  }
+
+  Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
+    if (wo.z <= 0) return {};
+    const OrenNayar rough(values.scalar(sigma_index));
+    const Rgb albedo = values.rgb(albedo_index);
+    if (values.scalar(f0_index) <= 0) {
+      const Vec3 wi = cosine_direction(u);
+      return wi.z > 0 ? Sample{wi, albedo * rough.shape(wo, wi), cosine_density(wi)} : Sample{};
+    }
+    const Coat coat(values, wo);
+    const Ggx ggx(coat.alpha);
+    const double share = coat.share(albedo);
+    const Vec3 wi = u_lobe < share ? mirrored(wo, ggx.visible_normal(wo, u)) : cosine_direction(u);
+    if (wi.z <= 0) return {};
+    const double density = share * ggx.pdf(wo, half_vector(wo, wi)) + (1 - share) * cosine_density(wi);
+    if (!(density > 0)) return {};
+    return {wi, together(coat, albedo * (rough.shape(wo, wi) / pi), wo, wi) * (wi.z / density), density};
+  }
+
+  double pdf(const Values& values, Vec3 wo, Vec3 wi) const override {
+    if (wo.z <= 0 || wi.z <= 0) return 0;
+    if (values.scalar(f0_index) <= 0) return cosine_density(wi);
+    const Coat coat(values, wo);
+    const double share = coat.share(values.rgb(albedo_index));
+    return share * Ggx(coat.alpha).pdf(wo, half_vector(wo, wi)) + (1 - share) * cosine_density(wi);
+  }
+
+  Rgb albedo(const Values& values, Vec3 wo) const override {
+    if (wo.z <= 0) return {};
+    const Rgb base = values.rgb(albedo_index) * OrenNayar(values.scalar(sigma_index)).reflectance(wo.z);
+    if (values.scalar(f0_index) <= 0) return base;
+    const double passes = Coat(values, wo).passes_out, reflects = 1 - passes;
+    return Rgb{reflects, reflects, reflects} + base * passes;
+  }
+
+ private:
+  static Rgb together(const Coat& coat, Rgb base, Vec3 wo, Vec3 wi) {
+    const Vec3 h = half_vector(wo, wi);
+    const double gloss = fresnel_dielectric(dot(wo, h), coat.eta) * Ggx(coat.alpha).lobe(wo, wi, h);
+    return Rgb{gloss, gloss, gloss} + base * coat.passes(wi);
+  }
+};
+
+}  // namespace
+
+const Model& coated_diffuse() {
+  static const CoatedDiffuse model;
+  return model;
+}
+
+}  // namespace gonio::surface

@@ -1,0 +1,61 @@
+// Diffuse surface: Lambert's law, or Oren & Nayar 1994 (surface/oren_nayar.h) where sigma_rad > 0.
+// Sampling is cosine-weighted. albedo() is exact.
+#include "surface/hemisphere.h"
+#include "surface/oren_nayar.h"
+#include "surface/surface.h"
+
+namespace gonio::surface {
+namespace {
+
+enum : std::size_t { albedo_index, sigma_index };
+
+class Diffuse final : public Model {
+ public:
+  const manifest::ModelInfo& info() const override {
+    static const manifest::ModelInfo info{
+        .family = manifest::Family::surface,
+        .id = "diffuse",
+        .sentence =
+            "A matte surface: the same radiance in all directions, or brighter towards the light where it is rough.",
+        .source = "Lambert 1760; Oren & Nayar 1994, equation 30 (scaled where its albedo would exceed 1)",
+        .parameters = {{.name = "albedo",
+                        .unit = "1",
+                        .components = 3,
+                        .rgb = true,
+                        .preset = {},
+                        .lower = 0,
+                        .upper = 1,
+                        .meaning = "share of the light that is reflected, of linear red, green and blue"},
+                       {.name = "sigma_rad",
+                        .unit = "rad",
+                        .preset = 0,
+                        .lower = 0,
+                        .upper = pi / 2,
+                        .meaning = "standard deviation of the facets' slope angle; 0 is Lambert's law"}},
+    };
+    return info;
+  }
+  Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
+    if (wo.z <= 0 || wi.z <= 0) return {};
+    return values.rgb(albedo_index) * (OrenNayar(values.scalar(sigma_index)).shape(wo, wi) / pi);
+  }
+  Sample sample(const Values& values, Vec3 wo, Vec2 u, double) const override {
+    const Vec3 wi = cosine_direction(u);
+    if (wo.z <= 0 || wi.z <= 0) return {};
+    return {wi, values.rgb(albedo_index) * OrenNayar(values.scalar(sigma_index)).shape(wo, wi), cosine_density(wi)};
+  }
+  double pdf(const Values&, Vec3 wo, Vec3 wi) const override { return wo.z > 0 ? cosine_density(wi) : 0; }
+  Rgb albedo(const Values& values, Vec3 wo) const override {
+    if (wo.z <= 0) return {};
+    return values.rgb(albedo_index) * OrenNayar(values.scalar(sigma_index)).reflectance(wo.z);
+  }
+};
+
+}  // namespace
+
+const Model& diffuse() {
+  static const Diffuse model;
+  return model;
+}
+
+}  // namespace gonio::surface

@@ -1,0 +1,70 @@
+// Rough metal whose colour is stated as its reflectance at normal incidence.
+// GGX with Schlick's Fresnel factor, F = f0 + (1 - f0) (1 - wi.h)^5, and multiple scattering between facets
+// (surface/metal_lobe.h). F_mean = f0 + (1 - f0) / 21 exactly. albedo() is exact up to the tables' error.
+// For measured indices, and the dip before grazing incidence that Schlick's formula lacks, see `conductor`.
+#include "surface/fresnel.h"
+#include "surface/metal_lobe.h"
+
+namespace gonio::surface {
+namespace {
+
+enum : std::size_t { f0_index, alpha_index };
+
+MetalLobe lobe(const Values& values, Vec3 wo) {
+  const Rgb f0 = values.rgb(f0_index);
+  return {values.scalar(alpha_index), f0 + (Rgb{1, 1, 1} - f0) / 21, wo};
+}
+
+auto fresnel(const Values& values) {
+  return [f0 = values.rgb(f0_index)](double cosine) { return fresnel_schlick(cosine, f0); };
+}
+
+class Metal final : public Model {
+ public:
+  const manifest::ModelInfo& info() const override {
+    static const manifest::ModelInfo info{
+        .family = manifest::Family::surface,
+        .id = "metal",
+        .sentence = "A rough metal, by its colour at normal incidence.",
+        .source = "Walter et al. 2007; Schlick 1994, equation 15; Kulla & Conty 2017",
+        .parameters = {{.name = "f0",
+                        .unit = "1",
+                        .components = 3,
+                        .rgb = true,
+                        .preset = {},
+                        .lower = 0,
+                        .upper = 1,
+                        .meaning = "reflectance at normal incidence, of linear red, green and blue"},
+                       {.name = "alpha",
+                        .unit = "1",
+                        .preset = 0.1,
+                        .lower = min_alpha,
+                        .upper = max_alpha,
+                        .meaning = "GGX roughness"}},
+    };
+    return info;
+  }
+  Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
+    return wo.z > 0 && wi.z > 0 ? lobe(values, wo).evaluate(fresnel(values), wi) : Rgb{};
+  }
+  Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
+    return wo.z > 0 ? lobe(values, wo).sample(fresnel(values), u, u_lobe) : Sample{};
+  }
+  double pdf(const Values& values, Vec3 wo, Vec3 wi) const override {
+    return wo.z > 0 && wi.z > 0 ? lobe(values, wo).pdf(wi) : 0;
+  }
+  Rgb albedo(const Values& values, Vec3 wo) const override {
+    if (wo.z <= 0) return {};
+    const double alpha = values.scalar(alpha_index), all = mirror_albedo(wo.z, alpha), rise = rise_albedo(wo.z, alpha);
+    return values.rgb(f0_index) * (all - rise) + Rgb{rise, rise, rise} + lobe(values, wo).albedo_more();
+  }
+};
+
+}  // namespace
+
+const Model& metal() {
+  static const Metal model;
+  return model;
+}
+
+}  // namespace gonio::surface
