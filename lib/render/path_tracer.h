@@ -1,0 +1,32 @@
+// Unidirectional path tracing. Kajiya 1986, "The rendering equation"; Veach 1997, chapters 8-10.
+//
+// At every vertex each light that is on is sampled once; where a light has an extent the direction drawn from the surface may meet it
+// too, and the two are joined by the power heuristic (Veach 1997, section 9.2.4, beta = 2). Paths end by Russian roulette on their
+// throughput, or after `max_bounces` scattering events. Pixel filter: the pixel's square. Lamps are seen by the camera and by
+// glossy surfaces; they occlude nothing.
+//
+// The same seed gives the same bytes whatever the number of threads: every replicate of every pixel has its own random numbers.
+#pragma once
+#include <cstdint>
+
+#include "io/image.h"
+#include "render/film.h"
+#include "render/ray_caster.h"
+#include "scene/scene.h"
+
+namespace gonio::render {
+
+enum class Estimator { combined, lights_only };  // lights_only: no use of directions that happen to meet a light (for tests)
+
+struct Options {
+  int spp = 256;
+  int max_bounces = 128;
+  std::uint64_t seed = 1;
+  bool geometry = true;  // write the geometry channels too
+  Estimator estimator = Estimator::combined;
+};
+
+// The simulated image of scene.views[view]; channels as in film.h: develop().
+io::Image render(const scene::Scene& scene, std::size_t view, const RayCaster& caster, const Options& options);
+
+}  // namespace gonio::render

@@ -1,0 +1,34 @@
+// Mechanisms as edits of a scene's parameters. `render` applies what the manifest's `mechanisms` section says; `explain` applies
+// its hypotheses by the same function. At the neutral values the edit leaves every simulated number as it was, to the last bit.
+//
+// Mechanisms of surfaces and lights set the parameters of the same names. Where the target's model does not have them, the
+// smallest registered model takes its place that has all parameters of the present one and the mechanism's: diffuse becomes
+// coated-diffuse, point becomes sphere. No list says so; a new model is found by its parameters. A target to whose model the
+// parameters are not optional (the f0 of a metal) is one that the mechanism cannot apply to.
+// Mechanisms of boards do not change scenes; those of cameras replace terms of the distortion.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "manifest/sections.h"
+#include "mechanism/mechanism.h"
+#include "scene/scene.h"
+
+namespace gonio::scene {
+
+// Names of the surfaces or lights that `mechanism` can apply to; empty for scene, camera and board mechanisms.
+std::vector<std::string> mechanism_targets(const Appearance& appearance, const mechanism::Mechanism& mechanism);
+
+// Does this room know how to apply it to a scene's appearance (targets scene, surface, light)?
+bool applies_to_scenes(const mechanism::Mechanism& mechanism);
+
+// Edits `appearance`. `use.on` empty: all that it can apply to; a parameter is one number, or one per name in `on`; parameters
+// left out are neutral. `centre_m`: Scene::centre_m. Error(data) at `place` for unknown names and wrong counts.
+void apply_mechanism(Appearance& appearance, const mechanism::Mechanism& mechanism, const manifest::MechanismUse& use,
+                     Vec3 centre_m, const std::string& place);
+
+// The camera's part: lens.* replace the distortion terms of the same names; others leave the camera as it is.
+void apply_mechanism(manifest::Camera& camera, const std::string& name, const mechanism::Mechanism& mechanism,
+                     const manifest::MechanismUse& use, const std::string& place);
+
+}  // namespace gonio::scene
