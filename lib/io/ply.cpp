@@ -206,7 +206,10 @@ std::string header_of(const TriangleMesh& mesh) {
 }  // namespace
 
 TriangleMesh read_ply(const std::filesystem::path& path) {
-  const std::string file = read_file(path), place = path.string();
+  return parse_ply(read_file(path), path.string());
+}
+
+TriangleMesh parse_ply(std::string_view file, const std::string& place) {
   const PlyHeader header = read_ply_header(file, place);
   std::uint64_t vertices = 0;
   for (const auto& element : header.elements)

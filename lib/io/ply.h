@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "geom/vector.h"
@@ -19,6 +21,8 @@ struct TriangleMesh {
 // Polygons are fanned into triangles. The header's counts are checked against the file's length before anything is
 // allocated; indices, NaN and truncation are Error(data) naming the element and its number.
 TriangleMesh read_ply(const std::filesystem::path& path);
-void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh);  // binary little endian, double coordinates
+TriangleMesh parse_ply(std::string_view file, const std::string& place);  // a whole file; `place` names it in errors
+void write_ply(const std::filesystem::path& path,
+               const TriangleMesh& mesh);  // binary little endian, double coordinates
 
 }  // namespace gonio::io
