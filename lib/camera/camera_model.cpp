@@ -1,0 +1,118 @@
+// Projection and its inverse. The inverse is found by damped Newton steps on the two-dimensional map of lens_terms.h,
+// from the distorted point or, where the radial part alone has moved it far, from the radial solution.
+#include "camera/camera_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace gonio::camera {
+namespace {
+
+void read_orthographic(const manifest::Camera& camera, const std::string& place, Intrinsics& lens) {
+  if (!camera.px_per_m.given()) {
+    throw Error(Exit::data, place + "/px_per_m", "missing", "give the pixels per metre of an orthographic camera");
+  }
+  for (const double v : camera.px_per_m.value) {
+    if (!(v > 0) || !std::isfinite(v)) throw Error(Exit::data, place + "/px_per_m", "not above 0");
+  }
+  for (const auto& [name, parameter] : camera.distortion) {
+    if (std::ranges::any_of(parameter.value, [](double v) { return v != 0; })) {
+      throw Error(Exit::data, place + "/distortion/" + name, "an orthographic camera has no lens", "leave it out");
+    }
+  }
+  lens.fx_px = camera.px_per_m.value.front();
+  lens.fy_px = camera.px_per_m.value.back();
+  lens.cx_px = camera.cx_px.given() ? camera.cx_px.scalar() : 0.5 * (camera.width_px - 1);
+  lens.cy_px = camera.cy_px.given() ? camera.cy_px.scalar() : 0.5 * (camera.height_px - 1);
+}
+
+// r with r R(r) = target on the growing branch below `limit`, by bisection; nothing where the branch ends earlier.
+std::optional<double> radial_inverse(const Intrinsics& lens, double target, double limit) {
+  const auto& c = lens.distortion;
+  const auto radius = [&](double r) {
+    const double r2 = r * r;
+    return r * (1 + r2 * (c[0] + r2 * (c[1] + r2 * c[4])));
+  };
+  double low = 0, high = std::min(limit, std::max(1.0, target));
+  while (radius(high) < target) {
+    if (high >= limit || high > 1e6) return std::nullopt;
+    high = std::min(limit, 2 * high);
+  }
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (radius(middle) < target ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+CameraModel::CameraModel(const manifest::Camera& camera, const std::string& place)
+    : width_px_(camera.width_px), height_px_(camera.height_px) {
+  if (width_px_ <= 0 || height_px_ <= 0) {
+    throw Error(Exit::data, place + (width_px_ <= 0 ? "/width_px" : "/height_px"), "the image has no pixels",
+                "give the size of the image in pixels");
+  }
+  orthographic_ = !camera_model_info(camera.model, place).perspective;
+  if (orthographic_) {
+    read_orthographic(camera, place, lens_);
+    return;
+  }
+  lens_ = intrinsics_of(camera, place);
+  distorted_ = std::ranges::any_of(lens_.distortion, [](double v) { return v != 0; });
+  radius_limit_ = one_to_one_radius(lens_.distortion[0], lens_.distortion[1], lens_.distortion[4]);
+}
+
+std::optional<Vec2> CameraModel::project(Vec3 p) const {
+  if (orthographic_) return Vec2{lens_.fx_px * p.x + lens_.cx_px, lens_.fy_px * p.y + lens_.cy_px};
+  if (!(p.z > 0)) return std::nullopt;
+  double x = p.x / p.z, y = p.y / p.z;
+  if (distorted_) {
+    if (std::hypot(x, y) > radius_limit_) return std::nullopt;
+    const double x0 = x, y0 = y;
+    distort(lens_.distortion.data(), x0, y0, &x, &y);
+  }
+  return Vec2{lens_.fx_px * x + lens_.cx_px, lens_.fy_px * y + lens_.cy_px};
+}
+
+Ray CameraModel::ray(Vec2 pixel) const {
+  const Vec2 at{(pixel.x - lens_.cx_px) / lens_.fx_px, (pixel.y - lens_.cy_px) / lens_.fy_px};
+  if (orthographic_) return {{at.x, at.y, 0}, {0, 0, 1}};
+  const Vec2 p = distorted_ ? undistort(at) : at;
+  return {{0, 0, 0}, normalized(Vec3{p.x, p.y, 1})};
+}
+
+Vec2 CameraModel::undistort(Vec2 target) const {
+  const double* c = lens_.distortion.data();
+  const auto error = [&](Vec2 p) {
+    Vec2 d;
+    distort(c, p.x, p.y, &d.x, &d.y);
+    return target - d;
+  };
+  const double radius = norm(target);
+  Vec2 p = target;
+  if (const auto r = radial_inverse(lens_, radius, radius_limit_); r && radius > 0) p = target * (*r / radius);
+  Vec2 e = error(p);
+  const double tolerance = 1e-12 * std::max(1.0, radius);
+  for (int step = 0; step < 30 && norm(e) > 1e-3 * tolerance; ++step) {
+    const auto j = distortion_jacobian(c, p.x, p.y);
+    const double det = j[0] * j[3] - j[1] * j[2];
+    const Vec2 move{(j[3] * e.x - j[1] * e.y) / det, (j[0] * e.y - j[2] * e.x) / det};
+    if (!(std::isfinite(move.x) && std::isfinite(move.y))) break;
+    double share = 1;
+    Vec2 next = p + move, next_error = error(next);
+    while (norm(next_error) >= norm(e) && share > 1e-3) {
+      share *= 0.5;
+      next = p + move * share;
+      next_error = error(next);
+    }
+    if (norm(next_error) >= norm(e)) break;
+    p = next;
+    e = next_error;
+  }
+  return norm(e) <= tolerance && norm(p) <= radius_limit_ ? p : target;
+}
+
+}  // namespace gonio::camera

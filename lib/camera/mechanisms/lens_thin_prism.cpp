@@ -1,0 +1,30 @@
+// lens.thin-prism: a tilted sensor or lens element. Equation: camera/lens_terms.h.
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+
+const Mechanism& lens_thin_prism() {
+  static const Mechanism declaration{
+      .id = "lens.thin-prism",
+      .sentence =
+          "A slightly tilted lens element or sensor acts like a thin prism and shifts the image with the square of the "
+          "radius.",
+      .equation = "x' += s1 r^2 + s2 r^4, y' += s3 r^2 + s4 r^4",
+      .source = "Weng, Cohen & Herniou 1992, equation 13, with the r^4 terms of OpenCV",
+      .stage = "lens",
+      .target = Target::camera,
+      .domains = {"boards"},
+      .parameters = {{.name = "s1", .unit = "1", .lower = -0.05, .upper = 0.05, .meaning = "shift of x with r^2"},
+                     {.name = "s2", .unit = "1", .lower = -0.5, .upper = 0.5, .meaning = "shift of x with r^4"},
+                     {.name = "s3", .unit = "1", .lower = -0.05, .upper = 0.05, .meaning = "shift of y with r^2"},
+                     {.name = "s4", .unit = "1", .lower = -0.5, .upper = 0.5, .meaning = "shift of y with r^4"}},
+      .conditions = {"camera.image-azimuth", "camera.image-radius"},
+      .mistaken_for = {{.with = "lens.tangential",
+                        .told_apart = "fill the corners of the image; the prism has no r^2 + 2 x^2"},
+                       {.with = "board.warp",
+                        .told_apart = "turn the board by 90 degrees, photograph it at two ranges"}},
+  };
+  return declaration;
+}
+
+}  // namespace gonio::mechanism
