@@ -1,0 +1,217 @@
+// See engine.h: the order of the steps, and the last judgement.
+#include "explain/engine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.h"
+#include "explain/noise.h"
+#include "explain/race.h"
+#include "explain/sentence.h"
+
+namespace gonio::explain {
+namespace {
+
+constexpr std::size_t groups_for_a_test_set = 8;
+
+// A quarter of the groups, drawn by the seed, is opened once at the end; with few groups every one takes turns instead.
+std::vector<std::size_t> draw_test_groups(std::size_t groups, std::uint64_t seed) {
+  if (groups < groups_for_a_test_set) return {};
+  std::vector<std::size_t> order(groups);
+  for (std::size_t g = 0; g < groups; ++g) order[g] = g;
+  Random random(seed, 0x74657374u);
+  for (std::size_t g = groups - 1; g > 0; --g)
+    std::swap(order[g], order[random.below(static_cast<std::uint32_t>(g + 1))]);
+  order.resize(std::max<std::size_t>(2, groups / 4));
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
+std::vector<double> starting_values(const Problem& problem) {
+  std::vector<double> values;
+  for (const Parameter& p : problem.parameters()) values.push_back(p.neutral);
+  for (const std::size_t p : problem.base()) values[p] = problem.parameters()[p].start;
+  return values;
+}
+
+double in_sample_score(const System& system, const std::vector<double>& residual) {
+  const Observations& o = system.observations();
+  double sum = 0, norm = 0;
+  for (std::size_t i = 0; i < o.rows(); ++i) {
+    if (!(system.weight(i) > 0)) continue;
+    sum += residual[i] * residual[i];
+    norm += o.norm[i];
+  }
+  return norm > 0 ? std::sqrt(sum / norm) : 0;
+}
+
+void locate_groups(const System& system, Explanation& e) {
+  const Observations& o = system.observations();
+  double total = 0;
+  for (std::size_t g = 0; g < o.groups(); ++g) {
+    LocatedGroup located{o.group[g], 0, 0, 0};
+    double norm = 0;
+    for (std::size_t i = o.first[g]; i < o.first[g + 1]; ++i) {
+      if (!(system.weight(i) > 0)) continue;
+      const double z = e.residual_before[i] * system.weight(i);
+      located.share += z * z - 1;
+      located.before += e.residual_before[i] * e.residual_before[i];
+      located.after += e.residual_after[i] * e.residual_after[i];
+      norm += o.norm[i];
+    }
+    located.share = std::max(0.0, located.share);
+    located.before = norm > 0 ? std::sqrt(located.before / norm) : 0;
+    located.after = norm > 0 ? std::sqrt(located.after / norm) : 0;
+    total += located.share;
+    e.groups.push_back(located);
+  }
+  for (LocatedGroup& g : e.groups) g.share = total > 0 ? g.share / total : 0;
+  std::stable_sort(e.groups.begin(), e.groups.end(),
+                   [](const LocatedGroup& a, const LocatedGroup& b) { return a.share > b.share; });
+}
+
+void final_fit(const System& system, const Race& race, const Selection& selection, Explanation& e) {
+  const Model base = race.base(selection.base.fit.values);
+  Model model = base;
+  if (!selection.model.candidates.empty()) {
+    Model from = selection.model;
+    from.fit.values = selection.model.fit.values;
+    model = race.changed(from, selection.model.candidates);
+  }
+  e.base_values = base.fit.values;
+  e.values = model.fit.values;
+  e.residual_before = system.raw_residual(e.base_values);
+  e.residual_after = system.raw_residual(e.values);
+  e.fitted_before = in_sample_score(system, e.residual_before);
+  e.fitted_after = in_sample_score(system, e.residual_after);
+  const Uncertainty u = uncertainty(system, model.fit);
+  e.active = u.parameters;
+  e.sigma.assign(e.values.size(), 0.0);
+  for (Eigen::Index c = 0; c < u.covariance.rows(); ++c) {
+    e.sigma[u.parameters[static_cast<std::size_t>(c)]] = std::sqrt(std::max(0.0, u.covariance(c, c)));
+    for (Eigen::Index d = 0; d < u.covariance.cols(); ++d) e.covariance.push_back(u.covariance(c, d));
+  }
+  for (const std::size_t c : selection.model.candidates) {
+    const std::vector<Estimate> own = estimates(system, model.fit, u, system.problem().candidates()[c].parameters);
+    e.estimates.insert(e.estimates.end(), own.begin(), own.end());
+  }
+  for (const std::size_t p : race.free()) {
+    if (model.candidates.empty() || !(e.sigma[p] > 0)) continue;
+    if (system.problem().parameters()[p].groups.size() == 1) continue;
+    e.compensation.push_back({p, e.base_values[p], e.values[p], e.sigma[p]});
+  }
+  const auto shift = [](const Compensation& c) { return std::abs(c.after - c.before) / c.sigma; };
+  std::stable_sort(e.compensation.begin(), e.compensation.end(),
+                   [&](const Compensation& a, const Compensation& b) { return shift(a) > shift(b); });
+}
+
+// The scores on groups that no choice has seen; with few groups, the cross-validation that the choice was made with, by full refits.
+void final_scores(const System& all, const System& chosen_on, const Selection& s, Explanation& e) {
+  const auto score = [&](const Model& m) {
+    return (e.test_groups.empty() ? held_out_by_refit(all, m.fit) : unseen_groups(chosen_on, m.fit, e.test_groups)).score();
+  };
+  e.held_out_before = score(s.base);
+  e.held_out_after = s.model.candidates.empty() ? e.held_out_before : score(s.model);
+}
+
+// The condition whose free curve still repairs unseen groups by more than matters, or nothing.
+const Hypothesis* structure_left(const Remainder& r, const Options& options) {
+  if (r.global_p > options.level) return nullptr;
+  for (const Hypothesis& h : r.curves)
+    if (h.gain > 2 * h.gain_sigma && h.effect >= options.matters) return &h;
+  return nullptr;
+}
+
+void judge(const Selection& s, const Options& options, Explanation& e) {
+  e.significant = s.before.global_p <= options.level;
+  const Hypothesis* left = structure_left(s.after, options);
+  if (left != nullptr) e.outside = left->name;
+  if (s.model.candidates.empty()) {
+    e.verdict = left != nullptr ? Verdict::unknown : Verdict::null;
+    e.important = left != nullptr;
+    return;
+  }
+  e.important = true;
+  const Gain repaired = gain(s.base.held_out, s.model.held_out);
+  const bool minor_part = left != nullptr && left->gain > repaired.mean;
+  const bool failed_test = !(e.held_out_after < e.held_out_before);
+  if (minor_part || failed_test) {
+    e.verdict = Verdict::unknown;
+    return;
+  }
+  e.named = s.model.candidates;
+  e.not_told_apart = s.not_told_apart;
+  e.verdict = s.not_told_apart.empty() ? Verdict::named : Verdict::ambiguous;
+}
+
+void fill_scoreboard(const Selection& s, Explanation& e) {
+  e.scoreboard = s.scoreboard;
+  const auto append = [&](const std::vector<Hypothesis>& list, std::size_t most, const char* prefix) {
+    for (std::size_t k = 0; k < std::min(most, list.size()); ++k) {
+      e.scoreboard.push_back(list[k]);
+      e.scoreboard.back().name = prefix + list[k].name;
+    }
+  };
+  append(s.before.curves, 2, "a free curve over ");
+  append(s.before.dummies, 1, "best ");
+  std::stable_sort(e.scoreboard.begin(), e.scoreboard.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.held_out < b.held_out; });
+}
+
+}  // namespace
+
+std::string verdict_name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::null: return "null";
+    case Verdict::named: return "named";
+    case Verdict::ambiguous: return "ambiguous";
+    case Verdict::unknown: return "unknown";
+  }
+  return "null";
+}
+
+Explanation explain(const Problem& problem, const Options& options) {
+  Explanation e;
+  e.matters = options.matters;
+  System all(problem, options.seed);
+  const std::vector<double> start = starting_values(problem);
+  const NoiseFindings noise = settle_noise(all, start);
+  e.noise_factor = noise.factor;
+  e.outlier_blocks = noise.outlier_blocks;
+
+  e.test_groups = draw_test_groups(all.groups.size(), options.seed);
+  System chosen_on = all;
+  std::erase_if(chosen_on.groups, [&](std::size_t g) {
+    return std::binary_search(e.test_groups.begin(), e.test_groups.end(), g);
+  });
+  const Race race(chosen_on, options);
+  const Selection selection = select(race, options, start);
+
+  e.global_p = selection.before.global_p;
+  e.isolability = selection.before.isolability;
+  e.conditions = selection.before.conditions;
+  e.false_alarm = selection.after.false_alarm;
+  e.dummies = selection.after.dummies.size();
+  final_scores(all, chosen_on, selection, e);
+  judge(selection, options, e);
+  Selection kept = selection;
+  if (e.named.empty()) kept.model = kept.base;
+  final_fit(all, Race(all, options), kept, e);
+  if (e.named.empty()) e.held_out_after = e.held_out_before;
+  locate_groups(all, e);
+  for (LocatedCondition& located : e.conditions) {
+    const auto& conditions = problem.observations().conditions;
+    const auto found = std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return c.name == located.name; });
+    located.curve = residual_curve(all, static_cast<std::size_t>(found - conditions.begin()), e.residual_before,
+                                   e.residual_after, 12);
+  }
+  if (!e.named.empty())
+    e.stage = problem.candidates()[e.named[0]].mechanism->stage;
+  else if (e.verdict == Verdict::unknown && !e.conditions.empty())
+    e.stage = e.conditions[0].stage;
+  fill_scoreboard(selection, e);
+  write_sentence(problem, e);
+  return e;
+}
+
+}  // namespace gonio::explain

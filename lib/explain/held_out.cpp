@@ -1,0 +1,204 @@
+// See fit.h: scores on groups that a fit has not seen.
+//
+// A held-out group's shared parameters come from the other groups alone. Its nuisance (a board's pose) cannot: it is fitted on one
+// half of the group's blocks and judged on the other half, and the reverse, so that every row is judged once.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/parallel.h"
+#include "explain/fit.h"
+
+namespace gonio::explain {
+namespace {
+
+struct GroupScore {
+  double whitened = 0, raw = 0, norm = 0, rows = 0;
+};
+
+// Adds the rows of `group` that belong to `half` (-1: both) under `values`.
+void judge(const System& system, const std::vector<double>& values, std::size_t group, int half, GroupScore& score) {
+  const Observations& o = system.observations();
+  const Eigen::VectorXd r = system.residual(values, group);
+  for (std::size_t i = o.first[group]; i < o.first[group + 1]; ++i) {
+    const double w = system.weight(i);
+    if (!(w > 0) || (half >= 0 && system.half(i) != half)) continue;
+    const double z = r[static_cast<Eigen::Index>(i - o.first[group])];
+    score.whitened += z * z;
+    score.raw += z * z / (w * w);
+    score.norm += o.norm[i];
+    score.rows += 1;
+  }
+}
+
+HeldOut gathered(const std::vector<GroupScore>& scores) {
+  HeldOut result;
+  for (const GroupScore& s : scores) {
+    result.whitened.push_back(s.whitened);
+    result.raw.push_back(s.raw);
+    result.norm.push_back(s.norm);
+    result.rows.push_back(s.rows);
+  }
+  return result;
+}
+
+// Step of the group's own columns on one half of its Gram matrix, the shared ones having moved by `shared`.
+struct LocalStep {
+  std::vector<Eigen::Index> places;  // in the gram
+  std::vector<std::size_t> columns;  // in the linearisation
+  Eigen::VectorXd step;
+};
+LocalStep local_step(const Linearisation& l, const GroupGram& gram, const std::vector<char>& in_play,
+                     const Eigen::VectorXd& shared, int half) {
+  LocalStep result;
+  for (std::size_t k = 0; k < gram.columns.size(); ++k) {
+    const std::size_t c = gram.columns[k];
+    if (!in_play[c] || l.columns[c].local != gram.group) continue;
+    result.places.push_back(static_cast<Eigen::Index>(k));
+    result.columns.push_back(c);
+  }
+  if (result.places.empty()) return result;
+  const Eigen::MatrixXd& h = gram.half[static_cast<std::size_t>(half)];
+  const Eigen::Index last = h.rows() - 1;
+  Eigen::MatrixXd own = h(result.places, result.places);
+  Eigen::VectorXd rhs = h(result.places, last) - h(result.places, Eigen::seq(0, last - 1)) * shared;
+  for (std::size_t k = 0; k < result.places.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    own(i, i) += l.columns[result.columns[k]].prior_precision;
+    rhs[i] += l.columns[result.columns[k]].prior_pull;
+  }
+  const Eigen::VectorXd scale = own.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  Eigen::MatrixXd scaled = scale.asDiagonal() * own * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-9;
+  result.step = scale.asDiagonal() * scaled.ldlt().solve(Eigen::VectorXd(scale.asDiagonal() * rhs));
+  return result;
+}
+
+// What one fold found: the steps of the shared columns, by column, and by place in the held-out group's gram.
+struct Fold {
+  std::vector<char> in_play;
+  Eigen::VectorXd step, in_gram;
+};
+Fold fold_step(const Linearisation& l, const std::vector<std::size_t>& columns, const GroupGram& gram) {
+  const NormalEquations equations(l, columns, gram.group);
+  const Eigen::MatrixXd solution = equations.solve(equations.gradient());
+  Fold fold{std::vector<char>(l.columns.size(), 0), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(l.columns.size())),
+            Eigen::VectorXd::Zero(static_cast<Eigen::Index>(gram.columns.size()))};
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    fold.in_play[columns[c]] = 1;
+    fold.step[static_cast<Eigen::Index>(columns[c])] = solution(static_cast<Eigen::Index>(c), 0);
+  }
+  for (std::size_t k = 0; k < gram.columns.size(); ++k) {
+    const std::size_t c = gram.columns[k];
+    if (fold.in_play[c] && l.columns[c].local != gram.group)
+      fold.in_gram[static_cast<Eigen::Index>(k)] = fold.step[static_cast<Eigen::Index>(c)];
+  }
+  return fold;
+}
+
+GroupScore unseen_group(const System& system, const Fit& fit, std::size_t group) {
+  std::vector<std::size_t> own;
+  for (const std::size_t p : fit.active) {
+    const auto seen = [&](std::size_t g) { return g != group && system.touches(p, g); };
+    if (system.touches(p, group) && std::none_of(system.groups.begin(), system.groups.end(), seen)) own.push_back(p);
+  }
+  GroupScore score;
+  if (own.empty()) {
+    judge(system, fit.values, group, -1, score);
+    return score;
+  }
+  for (const int half : {0, 1}) {
+    const Fit local = explain::fit(system.restricted(group, half), fit.values, own);
+    judge(system, local.values, group, 1 - half, score);
+  }
+  return score;
+}
+
+}  // namespace
+
+double HeldOut::score() const {
+  double sum = 0, total = 0;
+  for (std::size_t k = 0; k < raw.size(); ++k) sum += raw[k], total += norm[k];
+  return total > 0 ? std::sqrt(sum / total) : 0;
+}
+
+HeldOut held_out_by_step(const System& system, const Fit& fit) {
+  const Linearisation l = linearise(system, fit.values, fit.inner);
+  std::vector<std::size_t> columns(l.columns.size());
+  for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = c;
+  std::vector<GroupScore> scores(l.grams.size());
+  parallel_for(0, l.grams.size(), [&](std::size_t g) {
+    const GroupGram& gram = l.grams[g];
+    const Fold fold = fold_step(l, columns, gram);
+    std::vector<double> values = fit.values;
+    const auto move = [&](std::size_t c, double step) {
+      const std::size_t p = l.columns[c].parameter;
+      values[p] = system.clamped(p, fit.values[p] + step);
+    };
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      if (l.columns[c].local == LinearColumn::everywhere) move(c, fold.step[static_cast<Eigen::Index>(c)]);
+    for (const int half : {0, 1}) {
+      const LocalStep own = local_step(l, gram, fold.in_play, fold.in_gram, half);
+      for (std::size_t k = 0; k < own.columns.size(); ++k) move(own.columns[k], own.step[static_cast<Eigen::Index>(k)]);
+      judge(system, values, gram.group, own.columns.empty() ? -1 : 1 - half, scores[g]);
+      if (own.columns.empty()) break;
+    }
+  });
+  return gathered(scores);
+}
+
+HeldOut held_out_linear(const System& system, const Linearisation& l, const std::vector<std::size_t>& columns) {
+  std::vector<GroupScore> scores(l.grams.size());
+  parallel_for(0, l.grams.size(), [&](std::size_t g) {
+    const GroupGram& gram = l.grams[g];
+    const Fold fold = fold_step(l, columns, gram);
+    for (const int half : {0, 1}) {
+      const LocalStep own = local_step(l, gram, fold.in_play, fold.in_gram, half);
+      Eigen::VectorXd step(fold.in_gram.size() + 1);
+      step << -fold.in_gram, 1;  // residual after the step: r - J step
+      for (std::size_t k = 0; k < own.places.size(); ++k) step[own.places[k]] = -own.step[static_cast<Eigen::Index>(k)];
+      const Eigen::MatrixXd judged = own.places.empty() ? gram.whole() : gram.half[static_cast<std::size_t>(1 - half)];
+      scores[g].whitened += std::max(0.0, step.dot(judged * step));
+      if (own.places.empty()) break;
+    }
+    scores[g].rows = static_cast<double>(system.used_rows(gram.group));
+  });
+  return gathered(scores);
+}
+
+HeldOut held_out_by_refit(const System& system, const Fit& fit) {
+  std::vector<GroupScore> scores;
+  for (const std::size_t group : system.groups) {
+    System others = system;
+    std::erase(others.groups, group);
+    const Fit fold = explain::fit(others, fit.values, fit.active);
+    scores.push_back(unseen_group(others, fold, group));
+  }
+  return gathered(scores);
+}
+
+HeldOut unseen_groups(const System& system, const Fit& fit, const std::vector<std::size_t>& unseen) {
+  std::vector<GroupScore> scores;
+  for (const std::size_t group : unseen) scores.push_back(unseen_group(system, fit, group));
+  return gathered(scores);
+}
+
+Gain gain(const HeldOut& before, const HeldOut& after) {
+  const std::size_t n = before.whitened.size();
+  double rows = 0;
+  for (const double r : before.rows) rows += r;
+  Gain g;
+  if (n == 0 || !(rows > 0)) return g;
+  const double scale = static_cast<double>(n) / rows;
+  std::vector<double> fall(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    fall[k] = (before.whitened[k] - after.whitened[k]) * scale;
+    g.mean += fall[k] / static_cast<double>(n);
+  }
+  double sum = 0;
+  for (const double f : fall) sum += (f - g.mean) * (f - g.mean);
+  g.sigma = n > 1 ? std::sqrt(sum / static_cast<double>(n * (n - 1))) : std::abs(g.mean);
+  return g;
+}
+
+}  // namespace gonio::explain

@@ -1,0 +1,122 @@
+// Where the mismatch is, in the conditions: how much of the excess over noise a smooth curve over each one explains, and over which
+// range.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "explain/signature.h"
+#include "stats/intervals.h"
+
+namespace gonio::explain {
+namespace {
+
+struct Explained {
+  double squares = 0, rank = 0;
+  Eigen::VectorXd coefficients;
+};
+// Fall of the sum of squares when the curve is added to the free parameters: b' G^-1 b on the range of G.
+Explained explained_by(const Projection& p, const std::vector<Eigen::Index>& places) {
+  const Eigen::MatrixXd g = p.surviving(places, places);
+  const Eigen::VectorXd b = p.score(places);
+  const Eigen::VectorXd length = p.full.diagonal()(places);
+  const Eigen::VectorXd scale = length.unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * g * scale.asDiagonal());
+  Explained e;
+  Eigen::VectorXd z = eigen.eigenvectors().transpose() * (scale.asDiagonal() * b);
+  for (Eigen::Index k = 0; k < z.size(); ++k) {
+    if (eigen.eigenvalues()[k] < 1e-6) {
+      z[k] = 0;
+      continue;
+    }
+    e.squares += z[k] * z[k] / eigen.eigenvalues()[k];
+    e.rank += 1;
+    z[k] /= eigen.eigenvalues()[k];
+  }
+  e.coefficients = scale.asDiagonal() * (eigen.eigenvectors() * z);
+  return e;
+}
+
+// The shortest run of bins that holds 80 % of the curve's power.
+void find_range(const Curve& curve, LocatedCondition& located) {
+  const std::size_t n = curve.centre.size();
+  if (n == 0) return;
+  std::vector<double> power(n);
+  for (std::size_t k = 0; k < n; ++k)
+    power[k] = std::max(0.0, curve.before[k] * curve.before[k] - curve.sigma[k] * curve.sigma[k]);
+  const double wanted = 0.8 * std::accumulate(power.begin(), power.end(), 0.0);
+  std::size_t best_first = 0, best_last = n - 1;
+  for (std::size_t first = 0; first < n; ++first) {
+    double sum = 0;
+    for (std::size_t last = first; last < n; ++last) {
+      sum += power[last];
+      if (sum < wanted) continue;
+      if (last - first < best_last - best_first) best_first = first, best_last = last;
+      break;
+    }
+  }
+  located.lower = best_first == 0 ? curve.centre.front() : 0.5 * (curve.centre[best_first - 1] + curve.centre[best_first]);
+  located.upper = best_last + 1 == n ? curve.centre.back() : 0.5 * (curve.centre[best_last] + curve.centre[best_last + 1]);
+}
+
+}  // namespace
+
+Curve residual_curve(const System& system, std::size_t condition, const std::vector<double>& before,
+                     const std::vector<double>& after, std::size_t bins) {
+  const Observations& o = system.observations();
+  const Condition& c = o.conditions[condition];
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < o.rows(); ++i)
+    if (system.weight(i) > 0 && std::isfinite(c.values[i]) && (c.direction.empty() || c.direction[i] != 0)) rows.push_back(i);
+  std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return c.values[a] < c.values[b]; });
+  Curve curve{c.name, c.unit, {}, {}, {}, {}};
+  for (std::size_t b = 0; b < bins; ++b) {
+    const std::size_t first = b * rows.size() / bins, last = (b + 1) * rows.size() / bins;
+    if (first == last) continue;
+    double weight = 0, sum_before = 0, sum_after = 0, x = 0;
+    std::map<std::uint32_t, double> blocks;
+    for (std::size_t k = first; k < last; ++k) {
+      const std::size_t i = rows[k];
+      const double d = c.direction.empty() ? 1 : c.direction[i], w = system.weight(i) * system.weight(i);
+      weight += d * d * w;
+      sum_before += d * w * before[i];
+      sum_after += d * w * after[i];
+      x += c.values[i] / static_cast<double>(last - first);
+    }
+    if (!(weight > 0)) continue;
+    for (std::size_t k = first; k < last; ++k) {
+      const std::size_t i = rows[k];
+      const double d = c.direction.empty() ? 1 : c.direction[i], w = system.weight(i) * system.weight(i);
+      blocks[o.block[i]] += d * w * (after[i] - d * sum_after / weight);
+    }
+    double variance = 0;
+    for (const auto& [block, sum] : blocks) variance += sum * sum;
+    curve.centre.push_back(x);
+    curve.before.push_back(sum_before / weight);
+    curve.after.push_back(sum_after / weight);
+    curve.sigma.push_back(std::sqrt(variance) / weight);
+  }
+  return curve;
+}
+
+std::vector<LocatedCondition> locate(const System& system, const Projection& p, const Structures& structures) {
+  const double degrees = p.rows - static_cast<double>(p.own.size());
+  const double excess = std::max(p.squares - degrees, 1e-9 * p.squares);
+  std::vector<LocatedCondition> result;
+  const std::vector<double> residual = system.raw_residual(p.linearisation.values);
+  for (std::size_t s = 0; s < structures.list.size(); ++s) {
+    if (structures.list[s].kind != Structure::Kind::curve) continue;
+    const Condition& condition = system.observations().conditions[structures.list[s].index];
+    LocatedCondition located{condition.name, condition.unit, condition.stage, 0, 0, 0, {}};
+    const Explained e = explained_by(p, p.foreign(structures, s));
+    located.share = std::clamp((e.squares - e.rank) / excess, 0.0, 1.0);
+    located.curve = residual_curve(system, structures.list[s].index, residual, residual, 12);
+    find_range(located.curve, located);
+    result.push_back(std::move(located));
+  }
+  std::stable_sort(result.begin(), result.end(),
+                   [](const LocatedCondition& a, const LocatedCondition& b) { return a.share > b.share; });
+  return result;
+}
+
+}  // namespace gonio::explain

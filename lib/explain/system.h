@@ -1,0 +1,136 @@
+// A problem made ready for linear algebra: whitened residuals (y - f) / sigma, their derivatives, and the small Gram matrices of
+// single groups from which every fit, fold, projection and score test of the engine is computed.
+//
+// Besides parameters there are extra columns: curves over conditions that no simulator knows (free curves, dummies). They enter
+// linearly and only through their Gram matrices.
+//
+// Each group's blocks are dealt into two halves. A held-out group's nuisance parameters are fitted on one half and judged on the
+// other, and the reverse.
+//
+// Eigen stays within lib/explain: this header is private to it.
+#pragma once
+#include <Eigen/Dense>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "explain/problem.h"
+
+namespace gonio::explain {
+
+// Piecewise linear hats over the quantiles of one condition: a partition of one over the rows to which it applies.
+struct CurveBasis {
+  std::size_t condition = 0;
+  std::vector<double> knots;  // strictly increasing, at least two
+  std::size_t size() const { return knots.size(); }
+};
+CurveBasis curve_basis(const Observations& observations, std::size_t condition, std::size_t knots);
+
+// column_i = sum over parts of direction_i * sum_k coefficient_k hat_k(x_i), on the rows of `groups` (empty: all).
+struct ExtraColumn {
+  struct Part {
+    const CurveBasis* basis = nullptr;
+    std::vector<double> coefficients;
+  };
+  std::vector<Part> parts;
+  std::vector<std::size_t> groups;
+};
+
+class System {
+ public:
+  System(const Problem& problem, std::uint64_t seed);
+
+  const Problem& problem() const { return problem_; }
+  const Observations& observations() const { return problem_.observations(); }
+  std::vector<std::size_t> groups;  // in play, ascending; the others do not exist for a fit
+
+  void set_noise_factor(double factor);
+  void set_aside(std::size_t block);
+  // Splits blocks into halves anew; the outcome depends on the seed and the block's number only.
+  int half(std::size_t row) const { return half_[row]; }
+  double weight(std::size_t row) const { return weight_[row]; }  // 1 / sigma, zero where set aside
+  std::size_t used_rows(std::size_t group) const;
+  bool touches(std::size_t parameter, std::size_t group) const;
+  // The only group in play on which it acts, or LinearColumn::everywhere. `on` empty: all.
+  std::size_t only_group(const std::vector<std::size_t>& on) const;
+  // The same system with nothing but one half of one group in play.
+  System restricted(std::size_t group, int half) const;
+  double clamped(std::size_t parameter, double value) const;
+
+  // Whitened residuals of one group.
+  Eigen::VectorXd residual(std::span<const double> values, std::size_t group) const;
+  // Whitened derivatives of f, one column per entry of `columns`.
+  Eigen::MatrixXd jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns) const;
+  Eigen::MatrixXd extra(std::span<const ExtraColumn* const> columns, std::size_t group) const;
+  // y - f for every row of every group, in play or not.
+  std::vector<double> raw_residual(std::span<const double> values) const;
+
+ private:
+  const Problem& problem_;
+  double factor_ = 1;
+  std::vector<double> weight_;
+  std::vector<char> half_, aside_;
+};
+
+// Sums over one group: for each half the Gram matrix of [columns, residual], whitened.
+struct GroupGram {
+  std::size_t group = 0;
+  std::vector<std::size_t> columns;  // places in Linearisation::columns which touch this group
+  std::array<Eigen::MatrixXd, 2> half;
+  Eigen::MatrixXd whole() const { return half[0] + half[1]; }
+};
+struct LinearColumn {
+  static constexpr std::size_t everywhere = static_cast<std::size_t>(-1);
+  std::size_t parameter = everywhere;  // place in Problem::parameters, or
+  std::size_t signature = everywhere;  // differentiated at the point of this signature
+  std::size_t extra = everywhere;      // place among the extra columns
+  std::size_t local = everywhere;      // the only group it acts on
+  double prior_precision = 0, prior_pull = 0;  // 1 / sigma^2 and (start - value) / sigma^2
+};
+struct Linearisation {
+  std::vector<double> values;
+  std::size_t own = 0;                // so many columns are parameters differentiated at `values`
+  std::vector<LinearColumn> columns;  // the parameters in the order given, then the extra columns
+  std::vector<GroupGram> grams;       // one per group in play
+};
+// Derivatives taken at another point than the residuals: a mechanism whose slope vanishes at its neutral value shows its
+// signature where its search starts.
+struct Signature {
+  std::vector<double> values;
+  std::vector<std::size_t> parameters;
+};
+// Columns: `parameters`, then the parameters of `signatures`, then `extras`.
+Linearisation linearise(const System& system, std::span<const double> values, std::span<const std::size_t> parameters,
+                        std::span<const ExtraColumn> extras = {}, std::span<const Signature> signatures = {});
+
+// The whitened columns of one group themselves, [columns, residual]; `columns` receives their places in the linearisation.
+Eigen::MatrixXd group_columns(const System& system, const Linearisation& l, std::span<const ExtraColumn> extras,
+                              std::span<const Signature> signatures, std::size_t group, std::vector<std::size_t>& columns);
+
+// (J'J + priors) x = rhs over a subset of columns, without one group, damped. Nuisance of single groups is eliminated group by
+// group (Schur complement); columns are scaled to unit length, so that units do not matter; directions without information
+// (gauge freedoms such as albedo times intensity, a held-out group's nuisance) get no step.
+class NormalEquations {
+ public:
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  NormalEquations(const Linearisation& linearisation, std::vector<std::size_t> columns, std::size_t without = none,
+                  double damping = 0);
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& rhs) const;  // rows in the order of `columns`
+  const Eigen::VectorXd& gradient() const { return gradient_; }  // J'r + prior pull
+  const Eigen::VectorXd& diagonal() const { return diagonal_; }
+
+ private:
+  struct Local {
+    std::vector<Eigen::Index> places;  // in `columns`
+    Eigen::LDLT<Eigen::MatrixXd> factor;
+    Eigen::MatrixXd coupling;          // local x shared, scaled
+  };
+  std::vector<Eigen::Index> shared_;
+  std::vector<Local> locals_;
+  Eigen::LDLT<Eigen::MatrixXd> factor_;
+  Eigen::VectorXd gradient_, diagonal_, scale_;
+};
+
+}  // namespace gonio::explain
