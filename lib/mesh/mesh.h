@@ -1,8 +1,9 @@
-// A triangle mesh ready to be rendered: finite, indexed properly, no triangle without area, unit normals at the vertices.
+// A triangle mesh ready to be rendered: finite, indexed properly, no triangle without area, unit normals at the
+// vertices.
 //
-// Object frame, metres. Vertex normals are the file's where it has them, else the mean of the adjoining triangles' normals,
-// each weighted by the triangle's area and by its angle at the vertex; or none at all ("flat"), which shades every triangle
-// by its own normal. Orientation is the file's: counter-clockwise seen from outside.
+// Object frame, metres. Vertex normals are the file's where it has them, else the mean of the adjoining triangles'
+// normals, each weighted by the triangle's area and by its angle at the vertex; or none at all ("flat"), which shades
+// every triangle by its own normal. Orientation is the file's: counter-clockwise seen from outside.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -23,8 +24,8 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-// Error(data) at `place` where nothing with an area is left, or where a coordinate is not finite. Triangles without area are
-// dropped; `dropped` (may be null) receives their number.
+// Error(data) at `place` where nothing with an area is left, or where a coordinate is not finite. Triangles without
+// area are dropped; `dropped` (may be null) receives their number.
 Mesh prepare(io::TriangleMesh raw, Shading shading, const std::string& place, std::size_t* dropped = nullptr);
 
 // Normals averaged by area and angle. A vertex that no triangle uses, or whose triangles cancel, gets +z.

@@ -1,8 +1,8 @@
 // The film: per pixel the mean of its samples and the variance of that mean, and the geometry that the pixel sees.
 //
-// Samples come in replicates: each is a full set of side * side strata over the pixel (and over each light), drawn independently of
-// the others. The mean of a pixel is the mean of its replicates; the variance of the mean is their sample variance over their
-// number, which is unbiased although samples within a replicate are not independent.
+// Samples come in replicates: each is a full set of side * side strata over the pixel (and over each light), drawn
+// independently of the others. The mean of a pixel is the mean of its replicates; the variance of the mean is their
+// sample variance over their number, which is unbiased although samples within a replicate are not independent.
 #pragma once
 #include <string>
 #include <vector>
@@ -20,11 +20,11 @@ struct SamplePlan {
 // At least `spp` samples: 16 replicates or more where spp allows, strata up to 8 x 8.
 SamplePlan sample_plan(int spp);
 
-struct PixelGeometry {  // of the ray through the pixel's centre, but visibility: share of all samples' shadow rays
-  Vec3 position_m, normal;      // world frame; zero where nothing is met
-  int id = 0;                   // instance + 1; 0: nothing
-  std::vector<double> distance_m;   // to each light that is on; 0 where it is infinitely far
-  std::vector<double> visibility;   // of each light that is on, 0 .. 1
+struct PixelGeometry {      // of the ray through the pixel's centre, but visibility: share of all samples' shadow rays
+  Vec3 position_m, normal;  // world frame; zero where nothing is met
+  int id = 0;               // instance + 1; 0: nothing
+  std::vector<double> distance_m;  // to each light that is on; 0 where it is infinitely far
+  std::vector<double> visibility;  // of each light that is on, 0 .. 1
 };
 
 struct Pixel {

@@ -1,11 +1,12 @@
-// What explain keeps of a view so that a prediction costs no ray: where the pixels' rays meet surfaces, whether points see lights, and
-// how much light comes by way of other surfaces, as a polynomial in their albedos.
+// What explain keeps of a view so that a prediction costs no ray: where the pixels' rays meet surfaces, whether points
+// see lights, and how much light comes by way of other surfaces, as a polynomial in their albedos.
 //
 // Interreflection between Lambertian surfaces: the irradiance at x is a sum over paths x, y1, y2, ..., yk, light:
 //   E(x) = sum over paths of  albedo(y1) albedo(y2) ... albedo(yk)  G(path)
-// (Goral et al. 1984; Kajiya 1986, equation 1 with constant BRDFs). G depends on geometry and lights alone. Collected by how often
-// each surface was visited, it is a polynomial in the surfaces' albedos with known coefficients, one set per light. With an albedo
-// per colour, evaluate once per colour. Surfaces that are not Lambertian enter with their albedo only.
+// (Goral et al. 1984; Kajiya 1986, equation 1 with constant BRDFs). G depends on geometry and lights alone. Collected
+// by how often each surface was visited, it is a polynomial in the surfaces' albedos with known coefficients, one set
+// per light. With an albedo per colour, evaluate once per colour. Surfaces that are not Lambertian enter with their
+// albedo only.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -17,10 +18,10 @@
 
 namespace gonio::render {
 
-struct ViewPoint {  // one sub-sample of one pixel
+struct ViewPoint {     // one sub-sample of one pixel
   bool found = false;  // false: the ray leaves the scene
   SurfacePoint point;
-  Vec3 to_eye;         // unit
+  Vec3 to_eye;  // unit
 };
 
 // side * side sub-samples per pixel at the centres of equal squares, rows first: sample (i, j) of pixel (x, y) is at
@@ -56,13 +57,14 @@ class Monomials {
 };
 
 struct IndirectOptions {
-  int bounces = 6;    // visits to other surfaces, at most
-  int paths = 64;     // per point, stratified in the first direction
+  int bounces = 6;  // visits to other surfaces, at most
+  int paths = 64;   // per point, stratified in the first direction
   std::uint64_t seed = 1;
 };
-// coefficients[(point * sources + source) * monomials.size() + monomial]: irradiance in W/m^2 from `source`, mean of the three
-// colours of its emission. Monomial 0 (no surface visited) is zero for emitters that are not infinite: direct light from lamps is not
-// part of this; for infinite emitters (environments) it is what comes straight from the unoccluded part of the environment.
+// coefficients[(point * sources + source) * monomials.size() + monomial]: irradiance in W/m^2 from `source`, mean of
+// the three colours of its emission. Monomial 0 (no surface visited) is zero for emitters that are not infinite: direct
+// light from lamps is not part of this; for infinite emitters (environments) it is what comes straight from the
+// unoccluded part of the environment.
 struct IndirectIrradiance {
   Monomials monomials;
   std::size_t sources = 0;
@@ -71,9 +73,11 @@ struct IndirectIrradiance {
     return {coefficients.data() + (point * sources + source) * monomials.size(), monomials.size()};
   }
 };
-// One path tree per point serves all emitters. Points: any selection of view points (say, one per pixel, or every fourth).
-// Ambient of unit radiance: pass a uniform environment among the emitters.
-IndirectIrradiance indirect_irradiance(const RayCaster& caster, std::size_t surfaces, std::span<const SurfacePoint> points,
-                                       std::span<const light::Emitter* const> emitters, const IndirectOptions& options = {});
+// One path tree per point serves all emitters. Points: any selection of view points (say, one per pixel, or every
+// fourth). Ambient of unit radiance: pass a uniform environment among the emitters.
+IndirectIrradiance indirect_irradiance(const RayCaster& caster, std::size_t surfaces,
+                                       std::span<const SurfacePoint> points,
+                                       std::span<const light::Emitter* const> emitters,
+                                       const IndirectOptions& options = {});
 
 }  // namespace gonio::render

@@ -1,11 +1,12 @@
 // Unidirectional path tracing. Kajiya 1986, "The rendering equation"; Veach 1997, chapters 8-10.
 //
-// At every vertex each light that is on is sampled once; where a light has an extent the direction drawn from the surface may meet it
-// too, and the two are joined by the power heuristic (Veach 1997, section 9.2.4, beta = 2). Paths end by Russian roulette on their
-// throughput, or after `max_bounces` scattering events. Pixel filter: the pixel's square. Lamps are seen by the camera and by
-// glossy surfaces; they occlude nothing.
+// At every vertex each light that is on is sampled once; where a light has an extent the direction drawn from the
+// surface may meet it too, and the two are joined by the power heuristic (Veach 1997, section 9.2.4, beta = 2). Paths
+// end by Russian roulette on their throughput, or after `max_bounces` scattering events. Pixel filter: the pixel's
+// square. Lamps are seen by the camera and by glossy surfaces; they occlude nothing.
 //
-// The same seed gives the same bytes whatever the number of threads: every replicate of every pixel has its own random numbers.
+// The same seed gives the same bytes whatever the number of threads: every replicate of every pixel has its own random
+// numbers.
 #pragma once
 #include <cstdint>
 
@@ -16,7 +17,10 @@
 
 namespace gonio::render {
 
-enum class Estimator { combined, lights_only };  // lights_only: no use of directions that happen to meet a light (for tests)
+enum class Estimator {
+  combined,
+  lights_only
+};  // lights_only: no use of directions that happen to meet a light (for tests)
 
 struct Options {
   int spp = 256;

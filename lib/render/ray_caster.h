@@ -1,9 +1,10 @@
-// Where rays meet the instances of a scene. World frame, metres. Immutable after construction and safe from many threads.
+// Where rays meet the instances of a scene. World frame, metres. Immutable after construction and safe from many
+// threads.
 //
-// Triangles are found by Embree in single precision (in coordinates about the scene's centre) and then intersected once more in
-// double precision; spheres and planes are intersected in double precision throughout. Rays that leave a surface do not meet it
-// again at their origin: analytic shapes know that they were left (SurfacePoint::instance), points on triangles are moved along the
-// geometric normal by about a millionth of the scene's size.
+// Triangles are found by Embree in single precision (in coordinates about the scene's centre) and then intersected once
+// more in double precision; spheres and planes are intersected in double precision throughout. Rays that leave a
+// surface do not meet it again at their origin: analytic shapes know that they were left (SurfacePoint::instance),
+// points on triangles are moved along the geometric normal by about a millionth of the scene's size.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -24,8 +25,8 @@ struct SurfacePoint {
   double distance_m = 0;       // along the ray that found it
   Vec3 position_m;
   Vec3 geometric_normal;  // unit, on the side that the ray came from
-  Vec3 normal;            // for shading: interpolated on smooth meshes, same side; its angle to the ray is below 90 degrees
-  Vec2 uv;                // sphere: (azimuth / 2 pi, polar angle from -z / pi); plane: [0, 1]^2; mesh: the file's, else (0, 0)
+  Vec3 normal;  // for shading: interpolated on smooth meshes, same side; its angle to the ray is below 90 degrees
+  Vec2 uv;      // sphere: (azimuth / 2 pi, polar angle from -z / pi); plane: [0, 1]^2; mesh: the file's, else (0, 0)
 };
 
 class RayCaster {
@@ -38,8 +39,8 @@ class RayCaster {
   // First meeting of a ray that starts in free space, or on the surface `from`.
   std::optional<SurfacePoint> closest(Vec3 origin_m, Vec3 direction) const;
   std::optional<SurfacePoint> closest(const SurfacePoint& from, Vec3 direction) const;
-  // Is there anything on the way from `from` along the unit `direction`, nearer than `distance_m`? Directions below the geometric
-  // horizon are occluded by the surface itself.
+  // Is there anything on the way from `from` along the unit `direction`, nearer than `distance_m`? Directions below the
+  // geometric horizon are occluded by the surface itself.
   bool occluded(const SurfacePoint& from, Vec3 direction, double distance_m = far_away) const;
 
  private:

@@ -1,11 +1,12 @@
-// Mechanisms as edits of a scene's parameters. `render` applies what the manifest's `mechanisms` section says; `explain` applies
-// its hypotheses by the same function. At the neutral values the edit leaves every simulated number as it was, to the last bit.
+// Mechanisms as edits of a scene's parameters. `render` applies what the manifest's `mechanisms` section says;
+// `explain` applies its hypotheses by the same function. At the neutral values the edit leaves every simulated number
+// as it was, to the last bit.
 //
-// Mechanisms of surfaces and lights set the parameters of the same names. Where the target's model does not have them, the
-// smallest registered model takes its place that has all parameters of the present one and the mechanism's: diffuse becomes
-// coated-diffuse, point becomes sphere. No list says so; a new model is found by its parameters. A target to whose model the
-// parameters are not optional (the f0 of a metal) is one that the mechanism cannot apply to.
-// Mechanisms of boards do not change scenes; those of cameras replace terms of the distortion.
+// Mechanisms of surfaces and lights set the parameters of the same names. Where the target's model does not have them,
+// the smallest registered model takes its place that has all parameters of the present one and the mechanism's: diffuse
+// becomes coated-diffuse, point becomes sphere. No list says so; a new model is found by its parameters. A target to
+// whose model the parameters are not optional (the f0 of a metal) is one that the mechanism cannot apply to. Mechanisms
+// of boards do not change scenes; those of cameras replace terms of the distortion.
 #pragma once
 #include <string>
 #include <vector>
@@ -22,8 +23,9 @@ std::vector<std::string> mechanism_targets(const Appearance& appearance, const m
 // Does this room know how to apply it to a scene's appearance (targets scene, surface, light)?
 bool applies_to_scenes(const mechanism::Mechanism& mechanism);
 
-// Edits `appearance`. `use.on` empty: all that it can apply to; a parameter is one number, or one per name in `on`; parameters
-// left out are neutral. `centre_m`: Scene::centre_m. Error(data) at `place` for unknown names and wrong counts.
+// Edits `appearance`. `use.on` empty: all that it can apply to; a parameter is one number, or one per name in `on`;
+// parameters left out are neutral. `centre_m`: Scene::centre_m. Error(data) at `place` for unknown names and wrong
+// counts.
 void apply_mechanism(Appearance& appearance, const mechanism::Mechanism& mechanism, const manifest::MechanismUse& use,
                      Vec3 centre_m, const std::string& place);
 

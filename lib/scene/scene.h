@@ -1,10 +1,11 @@
 // A scene: what a manifest describes, checked and ready to be simulated. World frame, metres.
 //
-// Geometry (instances) is heavy and never edited. Appearance (surfaces, lights, settings) is small: simulations of "what if" copy
-// it and edit the copy, see apply_mechanism() in scene/mechanisms.h.
+// Geometry (instances) is heavy and never edited. Appearance (surfaces, lights, settings) is small: simulations of
+// "what if" copy it and edit the copy, see apply_mechanism() in scene/mechanisms.h.
 //
-// Radiometry: the value of a pixel is the mean, over the pixel's square, of the radiance that arrives along the camera's rays
-// (W / (m^2 sr) in the scene's unit), times the image's `gain`, times vignetting. Exposure times do not enter.
+// Radiometry: the value of a pixel is the mean, over the pixel's square, of the radiance that arrives along the
+// camera's rays (W / (m^2 sr) in the scene's unit), times the image's `gain`, times vignetting. Exposure times do not
+// enter.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -39,8 +40,9 @@ struct Instance {  // an object of the manifest; number i in `instances` is id i
 };
 
 struct Texture {
-  std::size_t parameter = 0;  // place in the model's parameters
+  std::string name;  // of the parameter that it replaces
   std::shared_ptr<const io::Image> picture;
+  std::size_t parameter = 0;  // derived: place in the model's parameters
   Rgb at(Vec2 uv) const;      // bilinear, repeating; v grows upwards
 };
 
@@ -62,8 +64,8 @@ struct Light {
 };
 
 struct Appearance {
-  std::vector<Surface> surfaces;  // in the order of their names
-  std::vector<Light> lights;      // in the order of their names
+  std::vector<Surface> surfaces;                  // in the order of their names
+  std::vector<Light> lights;                      // in the order of their names
   std::shared_ptr<const light::Emitter> ambient;  // light.ambient: on in every image; null where there is none
   double indirect_strength = 1;   // transport.indirect: factor on light that was scattered more than once
   double vignetting_falloff = 0;  // optics.vignetting: pixel value *= 1 - falloff r^2
@@ -84,8 +86,8 @@ struct Scene {
   Vec3 centre_m;            // of the box around meshes and spheres (around planes, where there is nothing else)
 };
 
-// Reads meshes and textures, checks everything, applies the `mechanisms` section. `on_file` hears of every file that is read.
-// Error(data | no_input) at the place in the manifest. Without objects: Error(data).
+// Reads meshes and textures, checks everything, applies the `mechanisms` section. `on_file` hears of every file that is
+// read. Error(data | no_input) at the place in the manifest. Without objects: Error(data).
 Scene build_scene(const manifest::Document& document,
                   const std::function<void(const std::filesystem::path&)>& on_file = {});
 
@@ -93,8 +95,8 @@ Scene build_scene(const manifest::Document& document,
 void refresh(Surface& surface, const std::string& place);
 void refresh(Light& light, const std::string& place);
 
-// Factor by which optics.vignetting darkens `pixel`: 1 - falloff r^2, r the distance from the picture's centre over half its
-// width. Exactly 1 at falloff 0; never below 0.
+// Factor by which optics.vignetting darkens `pixel`: 1 - falloff r^2, r the distance from the picture's centre over
+// half its width. Exactly 1 at falloff 0; never below 0.
 double vignetting(double falloff, int width_px, int height_px, Vec2 pixel);
 
 }  // namespace gonio::scene

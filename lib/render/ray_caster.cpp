@@ -1,0 +1,259 @@
+// Ray casting on Embree 3 (Wald et al. 2014), with a second, double-precision intersection; see ray_caster.h.
+//
+// Embree sees coordinates relative to the centre of the meshes' box, so that its single precision is spent on their
+// extent, and the rays' own double-precision values through the query context. Triangles are hit again in double
+// precision by the plane that they span: t = n.(v0 - o) / n.d, barycentric coordinates from the areas at o + t d.
+#include "render/ray_caster.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/error.h"
+#include "render/analytic_shape.h"
+
+namespace gonio::render {
+namespace {
+
+constexpr double lift = 1e-6;          // of a triangle's point along its normal, over half the meshes' extent
+constexpr double least_cosine = 1e-4;  // between shading normal and viewing ray
+
+struct WorldMesh {  // of one instance, in world coordinates; empty for analytic shapes
+  std::vector<Vec3> positions_m, normals;
+  std::vector<Vec2> texture;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+struct Query {  // travels through Embree as its context
+  RTCIntersectContext context;
+  AnalyticRay ray;
+  AnalyticHit hit;
+  std::uint32_t from = none;
+  static constexpr std::uint32_t none = RTC_INVALID_GEOMETRY_ID;
+};
+
+struct Release {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, Release>;
+using Scene = std::unique_ptr<RTCSceneTy, Release>;
+
+Query* query_of(RTCIntersectContext* context) {
+  return reinterpret_cast<Query*>(context);
+}
+
+void analytic_bounds(const RTCBoundsFunctionArguments* args) {
+  const auto* shape = static_cast<const AnalyticShape*>(args->geometryUserPtr);
+  // Rounded outwards by more than an ulp: bounds are single precision, shapes are not.
+  const auto down = [](double v) { return static_cast<float>(v - 1e-6 * std::abs(v) - 1e-7); };
+  const auto up = [](double v) { return static_cast<float>(v + 1e-6 * std::abs(v) + 1e-7); };
+  *args->bounds_o = {down(shape->low.x), down(shape->low.y), down(shape->low.z), 0,
+                     up(shape->high.x),  up(shape->high.y),  up(shape->high.z),  0};
+}
+
+std::optional<AnalyticHit> meet(const void* shape, const Query& query, unsigned geometry, float limit) {
+  const auto hit = intersect(*static_cast<const AnalyticShape*>(shape), query.ray, query.from == geometry);
+  if (!hit || !(static_cast<float>(hit->distance_m) < limit)) return {};
+  return hit;
+}
+
+void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
+  if (args->valid[0] == 0) return;
+  auto* ray_hit = reinterpret_cast<RTCRayHit*>(args->rayhit);
+  Query* query = query_of(args->context);
+  const auto hit = meet(args->geometryUserPtr, *query, args->geomID, ray_hit->ray.tfar);
+  if (!hit) return;
+  query->hit = *hit;
+  ray_hit->ray.tfar = static_cast<float>(hit->distance_m);
+  ray_hit->hit.geomID = args->geomID;
+  ray_hit->hit.primID = 0;
+}
+
+void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
+  if (args->valid[0] == 0) return;
+  auto* ray = reinterpret_cast<RTCRay*>(args->ray);
+  if (meet(args->geometryUserPtr, *query_of(args->context), args->geomID, ray->tfar))
+    ray->tfar = -std::numeric_limits<float>::infinity();
+}
+
+WorldMesh in_world(const scene::Instance& instance) {
+  const auto* shape = std::get_if<std::shared_ptr<const mesh::Mesh>>(&instance.shape);
+  if (!shape) return {};
+  const Mat3 rotation = matrix_of(instance.world_from_object.rotation);
+  const mesh::Mesh& mesh = **shape;
+  WorldMesh world{mesh.positions_m, mesh.normals, mesh.texture, mesh.triangles};
+  for (Vec3& p : world.positions_m) p = rotation * p + instance.world_from_object.translation_m;
+  for (Vec3& n : world.normals) n = rotation * n;
+  return world;
+}
+
+}  // namespace
+
+struct RayCaster::Impl {
+  Device device{rtcNewDevice(nullptr)};
+  Scene scene;
+  Vec3 centre_m;
+  double lift_m = 0;
+  std::vector<WorldMesh> meshes;
+  std::vector<AnalyticShape> shapes;
+  std::vector<std::uint32_t> surfaces;
+
+  explicit Impl(std::span<const scene::Instance> instances);
+
+  void place_centre();
+  void attach_mesh(std::uint32_t instance);
+  void attach_shape(std::uint32_t instance);
+  RTCRay float_ray(Vec3 origin_m, Vec3 direction, double distance_m) const;
+  Vec3 start(const SurfacePoint& from) const;
+  bool is_mesh(std::uint32_t instance) const { return !meshes[instance].triangles.empty(); }
+  std::optional<SurfacePoint> closest(Query& query, Vec3 origin_m, Vec3 direction) const;
+  SurfacePoint on_triangle(const RTCHit& hit, Vec3 origin_m, Vec3 direction) const;
+};
+
+RayCaster::Impl::Impl(std::span<const scene::Instance> instances) {
+  if (!device)
+    throw Error(Exit::internal, "Embree", "no device (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
+  scene.reset(rtcNewScene(device.get()));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  for (const scene::Instance& instance : instances) {
+    surfaces.push_back(static_cast<std::uint32_t>(instance.surface));
+    meshes.push_back(in_world(instance));
+  }
+  place_centre();
+  for (const scene::Instance& instance : instances) shapes.push_back(analytic_shape(instance, centre_m));
+  for (std::uint32_t i = 0; i < instances.size(); ++i) is_mesh(i) ? attach_mesh(i) : attach_shape(i);
+  rtcCommitScene(scene.get());
+  if (const RTCError error = rtcGetDeviceError(device.get()); error != RTC_ERROR_NONE)
+    throw Error(Exit::internal, "Embree", "scene cannot be built (error " + std::to_string(error) + ")");
+}
+
+void RayCaster::Impl::place_centre() {
+  Vec3 low{far_away, far_away, far_away}, high = -low;
+  for (const WorldMesh& mesh : meshes)
+    for (const Vec3 p : mesh.positions_m) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+  if (!(low.x <= high.x)) return;
+  centre_m = (low + high) * 0.5;
+  lift_m = lift * max_component((high - low) * 0.5);
+}
+
+void RayCaster::Impl::attach_mesh(std::uint32_t instance) {
+  const WorldMesh& mesh = meshes[instance];
+  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                               3 * sizeof(float), mesh.positions_m.size()));
+  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
+  if (!vertices || !indices) throw Error(Exit::internal, "Embree", "no memory for a mesh");
+  for (const Vec3 p : mesh.positions_m)
+    for (int axis = 0; axis < 3; ++axis) *vertices++ = static_cast<float>((p - centre_m)[axis]);
+  for (const auto& triangle : mesh.triangles) indices = std::copy(triangle.begin(), triangle.end(), indices);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene.get(), geometry, instance);
+  rtcReleaseGeometry(geometry);
+}
+
+void RayCaster::Impl::attach_shape(std::uint32_t instance) {
+  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, 1);
+  rtcSetGeometryUserData(geometry, &shapes[instance]);
+  rtcSetGeometryBoundsFunction(geometry, analytic_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, analytic_intersect);
+  rtcSetGeometryOccludedFunction(geometry, analytic_occluded);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene.get(), geometry, instance);
+  rtcReleaseGeometry(geometry);
+}
+
+RTCRay RayCaster::Impl::float_ray(Vec3 origin_m, Vec3 direction, double distance_m) const {
+  const auto f = [](double v) { return static_cast<float>(v); };
+  const Vec3 o = origin_m - centre_m;
+  return {f(o.x), f(o.y), f(o.z), 0, f(direction.x), f(direction.y), f(direction.z), 0, f(distance_m), ~0u, 0, 0};
+}
+
+Vec3 RayCaster::Impl::start(const SurfacePoint& from) const {
+  return is_mesh(from.instance) ? from.position_m + from.geometric_normal * lift_m : from.position_m;
+}
+
+SurfacePoint RayCaster::Impl::on_triangle(const RTCHit& hit, Vec3 origin_m, Vec3 direction) const {
+  const WorldMesh& mesh = meshes[hit.geomID];
+  const auto& triangle = mesh.triangles[hit.primID];
+  const Vec3 a = mesh.positions_m[triangle[0]], ab = mesh.positions_m[triangle[1]] - a,
+             ac = mesh.positions_m[triangle[2]] - a;
+  const Vec3 area = cross(ab, ac);
+  SurfacePoint point;
+  point.distance_m = dot(area, a - origin_m) / dot(area, direction);
+  point.position_m = origin_m + direction * point.distance_m;
+  const Vec3 arm = point.position_m - a;
+  const double scale = 1 / dot(area, area);
+  const double v = std::clamp(dot(cross(arm, ac), area) * scale, 0.0, 1.0);
+  const double w = std::clamp(dot(cross(ab, arm), area) * scale, 0.0, 1.0 - v), u = 1 - v - w;
+  point.geometric_normal = area / norm(area);
+  point.normal = mesh.normals.empty()
+                     ? point.geometric_normal
+                     : mesh.normals[triangle[0]] * u + mesh.normals[triangle[1]] * v + mesh.normals[triangle[2]] * w;
+  const double length = norm(point.normal);
+  point.normal = length > 0 ? point.normal / length : point.geometric_normal;
+  if (!mesh.texture.empty())
+    point.uv = mesh.texture[triangle[0]] * u + mesh.texture[triangle[1]] * v + mesh.texture[triangle[2]] * w;
+  return point;
+}
+
+std::optional<SurfacePoint> RayCaster::Impl::closest(Query& query, Vec3 origin_m, Vec3 direction) const {
+  RTCRayHit ray_hit{float_ray(origin_m, direction, far_away), {}};
+  ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcInitIntersectContext(&query.context);
+  rtcIntersect1(scene.get(), &query.context, &ray_hit);
+  const std::uint32_t instance = ray_hit.hit.geomID;
+  if (instance == RTC_INVALID_GEOMETRY_ID) return {};
+  SurfacePoint point;
+  if (is_mesh(instance)) {
+    point = on_triangle(ray_hit.hit, origin_m, direction);
+  } else {
+    point.distance_m = query.hit.distance_m;
+    point.position_m = query.hit.position_m;
+    point.geometric_normal = point.normal = query.hit.normal;
+    point.uv = query.hit.uv;
+  }
+  point.instance = instance;
+  point.surface = surfaces[instance];
+  if (dot(point.geometric_normal, direction) > 0) point.geometric_normal = -point.geometric_normal;
+  if (dot(point.normal, point.geometric_normal) < 0) point.normal = -point.normal;
+  const double cosine = -dot(point.normal, direction);
+  if (cosine < least_cosine) point.normal = normalized(point.normal - direction * (least_cosine - cosine));
+  return point;
+}
+
+RayCaster::RayCaster(std::span<const scene::Instance> instances) : impl_(std::make_unique<Impl>(instances)) {}
+RayCaster::~RayCaster() = default;
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+
+std::optional<SurfacePoint> RayCaster::closest(Vec3 origin_m, Vec3 direction) const {
+  Query query{.context = {}, .ray = {origin_m, direction, {}}, .hit = {}};
+  return impl_->closest(query, origin_m, direction);
+}
+
+std::optional<SurfacePoint> RayCaster::closest(const SurfacePoint& from, Vec3 direction) const {
+  const Vec3 origin_m = impl_->start(from);
+  Query query{.context = {}, .ray = {origin_m, direction, from.geometric_normal}, .hit = {}, .from = from.instance};
+  return impl_->closest(query, origin_m, direction);
+}
+
+bool RayCaster::occluded(const SurfacePoint& from, Vec3 direction, double distance_m) const {
+  if (!(dot(from.geometric_normal, direction) > 0)) return true;
+  const Vec3 origin_m = impl_->start(from);
+  Query query{.context = {}, .ray = {origin_m, direction, from.geometric_normal}, .hit = {}, .from = from.instance};
+  rtcInitIntersectContext(&query.context);
+  RTCRay ray = impl_->float_ray(origin_m, direction, distance_m);
+  rtcOccluded1(impl_->scene.get(), &query.context, &ray);
+  return ray.tfar < 0;
+}
+
+}  // namespace gonio::render

@@ -1,0 +1,231 @@
+// From the manifest to a scene: references followed, files read, impossible values refused in words.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "io/picture.h"
+#include "io/ply.h"
+#include "scene/mechanisms.h"
+#include "scene/scene.h"
+
+namespace gonio::scene {
+namespace {
+
+class Builder {
+ public:
+  Builder(const manifest::Document& document, const std::function<void(const std::filesystem::path&)>& on_file)
+      : document_(document), on_file_(on_file) {}
+
+  Scene build() {
+    Scene scene;
+    add_surfaces(scene.appearance);
+    add_lights(scene.appearance);
+    add_instances(scene);
+    scene.centre_m = centre(scene.instances);
+    std::map<std::string, manifest::Camera> cameras = document_.cameras;
+    apply_mechanisms(scene, cameras);
+    add_views(scene, cameras);
+    return scene;
+  }
+
+ private:
+  std::string at(const std::string& pointer) const { return manifest::place(document_, pointer); }
+
+  std::filesystem::path file(const std::string& id, const std::string& pointer) const {
+    const auto path = manifest::resolve(document_, id, pointer);
+    if (on_file_) on_file_(path);
+    return path;
+  }
+
+  // Linear values: codes of 8/16-bit pictures are taken as sRGB where they stand for a colour.
+  std::shared_ptr<const io::Image> picture(const std::string& id, const std::string& pointer, bool colour) const {
+    const auto path = file(id, pointer);
+    io::Image image = io::read_picture(path);
+    if (image.pixels() == 0) throw Error(Exit::data, path.string(), "picture is empty");
+    if (colour && path.extension() != ".exr")
+      for (float& v : image.data) v = io::linear_from_srgb(v);
+    return std::make_shared<const io::Image>(std::move(image));
+  }
+
+  void add_surfaces(Appearance& appearance) const {
+    for (const auto& [id, entry] : document_.surfaces) {
+      const std::string pointer = "/surfaces/" + id;
+      Surface surface{
+          .id = id, .model = surface::find(entry.model), .parameters = entry.parameters, .values = {}, .textures = {}};
+      if (!surface.model) throw Error(Exit::data, at(pointer + "/model"), "no surface model \"" + entry.model + "\"");
+      for (const auto& [parameter, file_id] : entry.textures) {
+        const auto& known = surface.model->info().parameters;
+        const auto found =
+            std::find_if(known.begin(), known.end(), [&, key = &parameter](const auto& p) { return p.name == *key; });
+        const bool colour = found != known.end() && found->rgb;
+        surface.textures.push_back({parameter, picture(file_id, pointer + "/textures/" + parameter, colour)});
+      }
+      refresh(surface, at(pointer));
+      appearance.surfaces.push_back(std::move(surface));
+    }
+  }
+
+  void add_lights(Appearance& appearance) const {
+    for (const auto& [id, entry] : document_.lights) {
+      const std::string pointer = "/lights/" + id;
+      Light light{
+          .id = id, .model = light::find(entry.model), .parameters = entry.parameters, .picture = {}, .emitter = {}};
+      if (!light.model) throw Error(Exit::data, at(pointer + "/model"), "no light model \"" + entry.model + "\"");
+      if (!entry.file.empty()) light.picture = picture(entry.file, pointer + "/file", true);
+      refresh(light, at(pointer));
+      appearance.lights.push_back(std::move(light));
+    }
+  }
+
+  static double positive(double v, const char* what, const std::string& place) {
+    if (!(v > 0) || !std::isfinite(v))
+      throw Error(Exit::data, place, std::string(what) + " " + std::to_string(v) + " m is not a positive length",
+                  "give metres");
+    return v;
+  }
+
+  Shape shape(const std::string& id) {
+    const std::string pointer = "/meshes/" + id;
+    const auto entry = document_.meshes.find(id);
+    if (entry == document_.meshes.end()) throw Error(Exit::data, at(pointer), "no such mesh", "name one of `meshes`");
+    const manifest::Mesh& mesh = entry->second;
+    if (mesh.sphere_radius_m)
+      return Sphere{positive(*mesh.sphere_radius_m, "radius", at(pointer + "/sphere/radius_m"))};
+    if (mesh.plane_size_m) {
+      const std::string place = at(pointer + "/plane/size_m");
+      if (mesh.plane_size_m->size() != 2)
+        throw Error(Exit::data, place, "a plane has two sizes", "give [x, y] in metres");
+      return Plane{positive((*mesh.plane_size_m)[0], "size", place), positive((*mesh.plane_size_m)[1], "size", place)};
+    }
+    if (mesh.file.empty()) throw Error(Exit::data, at(pointer), "neither file nor sphere nor plane", "name a PLY file");
+    auto& known = meshes_[id];
+    if (!known) known = read_mesh(mesh, pointer);
+    return known;
+  }
+
+  std::shared_ptr<const mesh::Mesh> read_mesh(const manifest::Mesh& entry, const std::string& pointer) const {
+    const auto path = file(entry.file, pointer + "/file");
+    const auto shading = entry.normals == "flat" ? mesh::Shading::flat : mesh::Shading::smooth;
+    std::size_t dropped = 0;
+    auto mesh = std::make_shared<const mesh::Mesh>(mesh::prepare(io::read_ply(path), shading, path.string(), &dropped));
+    if (dropped > 0)
+      log(LogLevel::warning, path.string() + ": " + std::to_string(dropped) + " triangles without area left out");
+    return mesh;
+  }
+
+  std::size_t surface_index(const Scene& scene, const std::string& id, const std::string& pointer) const {
+    const auto& all = scene.appearance.surfaces;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Surface& s) { return s.id == id; });
+    if (found == all.end()) throw Error(Exit::data, at(pointer), "no surface \"" + id + "\"", "name one of `surfaces`");
+    return static_cast<std::size_t>(found - all.begin());
+  }
+
+  template <class To, class From>
+  Rigid<To, From> pose(const std::optional<manifest::Pose<To, From>>& given, const std::string& pointer) const {
+    if (!given) return {};
+    const Quaternion& q = given->rotation;
+    const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    if (!is_finite(given->translation_m) || !(std::abs(length - 1) < 1e-5))
+      throw Error(Exit::data, at(pointer), "pose is not finite or its rotation has no unit length (limit 1e-5)",
+                  "check the pose's numbers");
+    return {normalized(q), given->translation_m};
+  }
+
+  void add_instances(Scene& scene) {
+    if (document_.objects.empty())
+      throw Error(Exit::data, at("/objects"), "nothing to be seen", "add an object to the scene");
+    for (std::size_t i = 0; i < document_.objects.size(); ++i) {
+      const manifest::Object& object = document_.objects[i];
+      const std::string pointer = "/objects/" + std::to_string(i);
+      scene.instances.push_back({object.id, shape(object.mesh),
+                                 pose(object.world_from_object, pointer + "/world_from_object"),
+                                 surface_index(scene, object.surface, pointer + "/surface")});
+    }
+  }
+
+  // Centre of the box around everything but planes: how far a table reaches says nothing about where the scene is.
+  static Vec3 centre(const std::vector<Instance>& instances) {
+    for (const bool planes : {false, true}) {
+      Vec3 low{1e300, 1e300, 1e300}, high = -low;
+      for (const Instance& instance : instances) grow(instance, planes, low, high);
+      if (low.x <= high.x) return (low + high) * 0.5;
+    }
+    return {};
+  }
+
+  static void grow(const Instance& instance, bool planes, Vec3& low, Vec3& high) {
+    const auto include = [&](Vec3 p) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    };
+    const auto& world_from_object = instance.world_from_object;
+    if (const auto* sphere = std::get_if<Sphere>(&instance.shape)) {
+      const Vec3 r{sphere->radius_m, sphere->radius_m, sphere->radius_m};
+      include(world_from_object.translation_m - r);
+      include(world_from_object.translation_m + r);
+    } else if (const auto* plane = std::get_if<Plane>(&instance.shape)) {
+      if (!planes) return;
+      for (const double sx : {-0.5, 0.5})
+        for (const double sy : {-0.5, 0.5})
+          include(world_from_object * Vec3{sx * plane->size_x_m, sy * plane->size_y_m, 0});
+    } else {
+      const Mat3 rotation = matrix_of(world_from_object.rotation);
+      for (const Vec3 p : std::get<std::shared_ptr<const mesh::Mesh>>(instance.shape)->positions_m)
+        include(rotation * p + world_from_object.translation_m);
+    }
+  }
+
+  void apply_mechanisms(Scene& scene, std::map<std::string, manifest::Camera>& cameras) const {
+    for (const auto& [id, use] : document_.mechanisms) {
+      const mechanism::Mechanism* mechanism = mechanism::find_mechanism(id);
+      const std::string place = at("/mechanisms/" + id);
+      if (!mechanism) throw Error(Exit::data, place, "no such mechanism", "gonio-manifest(5) lists them");
+      apply_mechanism(scene.appearance, *mechanism, use, scene.centre_m, place);
+      for (auto& [name, camera] : cameras) apply_mechanism(camera, name, *mechanism, use, place);
+    }
+  }
+
+  std::vector<std::size_t> lights_of(const Scene& scene, const manifest::ImageEntry& image,
+                                     const std::string& pointer) const {
+    const auto& all = scene.appearance.lights;
+    std::vector<std::size_t> lights;
+    for (const std::string& name : image.light) {
+      const auto found = std::find_if(all.begin(), all.end(), [&](const Light& l) { return l.id == name; });
+      if (found == all.end())
+        throw Error(Exit::data, at(pointer + "/light"), "no light \"" + name + "\"", "name one of `lights`");
+      lights.push_back(static_cast<std::size_t>(found - all.begin()));
+    }
+    if (image.light.empty())
+      for (std::size_t i = 0; i < all.size(); ++i) lights.push_back(i);
+    return lights;
+  }
+
+  void add_views(Scene& scene, const std::map<std::string, manifest::Camera>& cameras) const {
+    for (std::size_t i = 0; i < document_.images.size(); ++i) {
+      const manifest::ImageEntry& image = document_.images[i];
+      const std::string pointer = "/images/" + std::to_string(i);
+      const auto camera = cameras.find(image.camera);
+      if (camera == cameras.end())
+        throw Error(Exit::data, at(pointer + "/camera"), "no camera \"" + image.camera + "\"", "name one of `cameras`");
+      scene.views.push_back({image.id, camera::CameraModel(camera->second, at("/cameras/" + image.camera)),
+                             pose(image.world_from_camera, pointer + "/world_from_camera"),
+                             lights_of(scene, image, pointer),
+                             image.gain && image.gain->given() ? image.gain->rgb() : Rgb{1, 1, 1}});
+    }
+  }
+
+  const manifest::Document& document_;
+  const std::function<void(const std::filesystem::path&)>& on_file_;
+  std::map<std::string, std::shared_ptr<const mesh::Mesh>> meshes_;
+};
+
+}  // namespace
+
+Scene build_scene(const manifest::Document& document,
+                  const std::function<void(const std::filesystem::path&)>& on_file) {
+  return Builder(document, on_file).build();
+}
+
+}  // namespace gonio::scene

@@ -1,0 +1,239 @@
+// Mechanisms as edits of a scene's parameters (scene/mechanisms.h).
+#include "scene/mechanisms.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+#include "base/error.h"
+#include "light/turn.h"
+
+namespace gonio::scene {
+namespace {
+
+using mechanism::Mechanism;
+using mechanism::Target;
+using Amounts = std::vector<double>;  // one per parameter of the mechanism, in its order
+
+std::string place_of(const std::string& place, const std::string& name) {
+  return place + "/" + name;
+}
+
+// One target's amounts: number `index` of `count` names; what is left out is neutral.
+Amounts amounts_of(const Mechanism& mechanism, const manifest::MechanismUse& use, std::size_t index, std::size_t count,
+                   const std::string& place) {
+  for (const auto& [name, parameter] : use.parameters)
+    if (std::none_of(mechanism.parameters.begin(), mechanism.parameters.end(),
+                     [&, key = &name](const mechanism::Parameter& p) { return p.name == *key; }))
+      throw Error(Exit::data, place_of(place, name), mechanism.id + " has no such parameter", "see gonio-manifest(5)");
+  Amounts amounts;
+  for (const mechanism::Parameter& p : mechanism.parameters) {
+    const auto found = use.parameters.find(p.name);
+    if (found == use.parameters.end() || !found->second.given()) {
+      amounts.push_back(p.neutral);
+      continue;
+    }
+    const std::vector<double>& value = found->second.value;
+    if (value.size() != 1 && value.size() != count)
+      throw Error(Exit::data, place_of(place, p.name),
+                  std::to_string(value.size()) + " numbers for " + std::to_string(count) + " targets",
+                  "give one number, or one per name in \"on\"");
+    amounts.push_back(value[value.size() == 1 ? 0 : index]);
+  }
+  return amounts;
+}
+
+bool neutral(const Mechanism& mechanism, const Amounts& amounts) {
+  for (std::size_t i = 0; i < amounts.size(); ++i)
+    if (amounts[i] != mechanism.parameters[i].neutral) return false;
+  return true;
+}
+
+// What has no parameter of a model to set.
+using SceneEdit = void (*)(Appearance&, const Amounts&, const std::string& place);
+using LightEdit = void (*)(Light&, const Amounts&, Vec3 centre_m);
+
+void set_ambient(Appearance& appearance, const Amounts& amounts, const std::string& place) {
+  if (amounts == Amounts{0, 0, 0}) {
+    appearance.ambient = nullptr;
+    return;
+  }
+  appearance.ambient = light::find("uniform")->prepare({{"radiance", manifest::Parameter(amounts)}}, nullptr, place);
+}
+void set_indirect(Appearance& appearance, const Amounts& amounts, const std::string&) {
+  appearance.indirect_strength = amounts[0];
+}
+void set_vignetting(Appearance& appearance, const Amounts& amounts, const std::string&) {
+  appearance.vignetting_falloff = amounts[0];
+}
+void turn(Light& light, const Amounts& amounts, Vec3 centre_m) {
+  const auto components = [](Vec3 v) { return std::vector<double>{v.x, v.y, v.z}; };
+  if (const auto towards = light.parameters.find("towards"); towards != light.parameters.end()) {
+    const Vec3 given = towards->second.vector();
+    towards->second.value = components(light::turned(normalized(given), amounts[0], amounts[1]) * norm(given));
+  } else if (const auto position = light.parameters.find("position_m"); position != light.parameters.end()) {
+    position->second.value =
+        components(light::turned_about(position->second.vector(), amounts[0], amounts[1], centre_m));
+  }
+}
+
+const std::map<std::string, SceneEdit>& scene_edits() {
+  static const std::map<std::string, SceneEdit> edits = {
+      {"light.ambient", set_ambient}, {"optics.vignetting", set_vignetting}, {"transport.indirect", set_indirect}};
+  return edits;
+}
+const std::map<std::string, LightEdit>& light_edits() {
+  static const std::map<std::string, LightEdit> edits = {{"light.direction", turn}};
+  return edits;
+}
+
+const manifest::ParameterInfo* find_parameter(const manifest::ModelInfo& info, const std::string& name) {
+  for (const manifest::ParameterInfo& p : info.parameters)
+    if (p.name == name) return &p;
+  return nullptr;
+}
+
+// All parameters of the mechanism are there, single numbers that may be left out.
+bool can_express(const manifest::ModelInfo& info, const Mechanism& mechanism) {
+  return std::all_of(mechanism.parameters.begin(), mechanism.parameters.end(), [&](const mechanism::Parameter& p) {
+    const manifest::ParameterInfo* found = find_parameter(info, p.name);
+    return found && found->components == 1 && found->preset;
+  });
+}
+
+bool includes(const manifest::ModelInfo& large, const manifest::ModelInfo& small) {
+  return std::all_of(small.parameters.begin(), small.parameters.end(), [&](const manifest::ParameterInfo& p) {
+    const manifest::ParameterInfo* found = find_parameter(large, p.name);
+    return found && found->components == p.components;
+  });
+}
+
+// The present model where it can express the mechanism, else the smallest registered one that has all the present one
+// has and can; null where none does.
+template <class Model>
+const Model* model_for(const Model* present, std::span<const Model* const> all, const Mechanism& mechanism) {
+  if (can_express(present->info(), mechanism)) return present;
+  const bool clash = std::any_of(mechanism.parameters.begin(), mechanism.parameters.end(),
+                                 [&](const auto& p) { return find_parameter(present->info(), p.name) != nullptr; });
+  if (clash) return nullptr;
+  const Model* best = nullptr;
+  for (const Model* candidate : all) {
+    const manifest::ModelInfo& info = candidate->info();
+    if (!can_express(info, mechanism) || !includes(info, present->info())) continue;
+    if (!best || info.parameters.size() < best->info().parameters.size()) best = candidate;
+  }
+  return best;
+}
+
+const surface::Model* model_for(const Surface& s, const Mechanism& m) {
+  return model_for(s.model, surface::all_models(), m);
+}
+const light::Model* model_for(const Light& l, const Mechanism& m) {
+  return model_for(l.model, light::all_models(), m);
+}
+
+bool can_turn(const Light& light) {
+  return find_parameter(light.model->info(), "towards") || find_parameter(light.model->info(), "position_m");
+}
+
+bool can_apply(const Surface& surface, const Mechanism& mechanism) {
+  return model_for(surface, mechanism) != nullptr;
+}
+bool can_apply(const Light& light, const Mechanism& mechanism) {
+  return light_edits().contains(mechanism.id) ? can_turn(light) : model_for(light, mechanism) != nullptr;
+}
+
+template <class Thing>
+void set_parameters(Thing& thing, const Mechanism& mechanism, const Amounts& amounts, const std::string& place) {
+  thing.model = model_for(thing, mechanism);
+  for (std::size_t i = 0; i < amounts.size(); ++i)
+    thing.parameters[mechanism.parameters[i].name] = manifest::Parameter(amounts[i]);
+  refresh(thing, place);
+}
+
+void edit(Surface& surface, const Mechanism& mechanism, const Amounts& amounts, Vec3, const std::string& place) {
+  set_parameters(surface, mechanism, amounts, place);
+}
+void edit(Light& light, const Mechanism& mechanism, const Amounts& amounts, Vec3 centre_m, const std::string& place) {
+  const auto special = light_edits().find(mechanism.id);
+  if (special == light_edits().end()) return set_parameters(light, mechanism, amounts, place);
+  special->second(light, amounts, centre_m);
+  refresh(light, place);
+}
+
+template <class Thing>
+void edit_each(std::vector<Thing>& things, const Mechanism& mechanism, const manifest::MechanismUse& use,
+               const std::vector<std::string>& on, Vec3 centre_m, const std::string& place) {
+  for (std::size_t i = 0; i < on.size(); ++i) {
+    const auto thing = std::find_if(things.begin(), things.end(), [&](const Thing& t) { return t.id == on[i]; });
+    if (thing == things.end())
+      throw Error(Exit::data, place_of(place, "on"), "nothing here is called \"" + on[i] + "\"",
+                  "name a surface or light");
+    if (!can_apply(*thing, mechanism))
+      throw Error(Exit::data, place_of(place, "on"),
+                  mechanism.id + " does not apply to \"" + on[i] + "\", whose model is " + thing->model->info().id,
+                  "leave this name out");
+    const Amounts amounts = amounts_of(mechanism, use, i, on.size(), place);
+    if (!neutral(mechanism, amounts)) edit(*thing, mechanism, amounts, centre_m, place);
+  }
+}
+
+template <class Thing>
+std::vector<std::string> names_that_take(const std::vector<Thing>& things, const Mechanism& mechanism) {
+  std::vector<std::string> names;
+  for (const Thing& thing : things)
+    if (can_apply(thing, mechanism)) names.push_back(thing.id);
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> mechanism_targets(const Appearance& appearance, const Mechanism& mechanism) {
+  if (mechanism.target == Target::surface) return names_that_take(appearance.surfaces, mechanism);
+  if (mechanism.target == Target::light) return names_that_take(appearance.lights, mechanism);
+  return {};
+}
+
+bool applies_to_scenes(const Mechanism& mechanism) {
+  const auto expressed = [&](const auto& all) {
+    return std::any_of(all.begin(), all.end(), [&](const auto* m) { return can_express(m->info(), mechanism); });
+  };
+  switch (mechanism.target) {
+    case Target::scene: return scene_edits().contains(mechanism.id);
+    case Target::surface: return expressed(surface::all_models());
+    case Target::light: return light_edits().contains(mechanism.id) || expressed(light::all_models());
+    default: return false;
+  }
+}
+
+void apply_mechanism(Appearance& appearance, const Mechanism& mechanism, const manifest::MechanismUse& use,
+                     Vec3 centre_m, const std::string& place) {
+  const std::vector<std::string> on = use.on.empty() ? mechanism_targets(appearance, mechanism) : use.on;
+  if (mechanism.target == Target::surface) return edit_each(appearance.surfaces, mechanism, use, on, centre_m, place);
+  if (mechanism.target == Target::light) return edit_each(appearance.lights, mechanism, use, on, centre_m, place);
+  const auto found = scene_edits().find(mechanism.id);
+  if (found != scene_edits().end()) found->second(appearance, amounts_of(mechanism, use, 0, 1, place), place);
+}
+
+void apply_mechanism(manifest::Camera& camera, const std::string& name, const Mechanism& mechanism,
+                     const manifest::MechanismUse& use, const std::string& place) {
+  if (mechanism.target != Target::camera) return;
+  const auto found = std::find(use.on.begin(), use.on.end(), name);
+  if (!use.on.empty() && found == use.on.end()) return;
+  const std::size_t count = std::max<std::size_t>(1, use.on.size());
+  const Amounts amounts =
+      amounts_of(mechanism, use, use.on.empty() ? 0 : static_cast<std::size_t>(found - use.on.begin()), count, place);
+  if (neutral(mechanism, amounts)) return;
+  if (camera.model == "orthographic")
+    throw Error(Exit::data, place, mechanism.id + " does not apply to the orthographic camera \"" + name + "\"",
+                "name perspective cameras in \"on\"");
+  bool prism = camera.model == "thin-prism";
+  for (std::size_t i = 0; i < amounts.size(); ++i) {
+    const std::string& term = mechanism.parameters[i].name;
+    camera.distortion[term] = manifest::Parameter(amounts[i]);
+    prism = prism || term.starts_with("s");
+  }
+  camera.model = prism ? "thin-prism" : "radial-tangential";
+}
+
+}  // namespace gonio::scene
