@@ -110,8 +110,8 @@ double Race::effect(const Model& before, const Model& after) const {
   return total > 0 ? std::sqrt(sum / total) : 0;
 }
 
-Hypothesis Race::judged(const Model& before, const Model& after, const std::vector<std::size_t>& added, double dummy_gain,
-                        std::size_t looks) const {
+Hypothesis Race::judged(const Model& before, const Model& after, const std::vector<std::size_t>& added,
+                        const std::vector<Hypothesis>& dummies, std::size_t looks) const {
   Hypothesis h;
   h.kind = Hypothesis::Kind::mechanisms;
   h.candidates = added;
@@ -132,11 +132,13 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
   h.wald_p = 0;
   for (const std::size_t c : added)
     h.wald_p = std::max(h.wald_p, neutral_p(system_, after.fit, u, system_.problem().candidates()[c].parameters));
+  const auto rivals =
+      std::count_if(dummies.begin(), dummies.end(), [&](const Hypothesis& dummy) { return dummy.gain >= h.gain; });
   const auto at_bound = std::find_if(h.parameters.begin(), h.parameters.end(), [](const Estimate& e) { return e.at_bound; });
   if (!(h.gain > h.gain_sigma))
     h.refused = "does not lower the held-out score beyond its standard error";
-  else if (h.gain <= dummy_gain)
-    h.refused = "a dummy without physics does as well";
+  else if (10 * rivals > static_cast<std::ptrdiff_t>(dummies.size()))
+    h.refused = "dummies without physics do as well";
   else if (stats::sidak(h.wald_p, static_cast<double>(looks)) > options_.level)
     h.refused = "its parameters cannot be told from neutral";
   else if (at_bound != h.parameters.end())

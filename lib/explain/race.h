@@ -32,9 +32,10 @@ class Race {
   std::vector<std::size_t> open_to(const Model& model) const;
 
   // The step from `before` to `after` as one line of the scoreboard; `refused` says which condition of a name it fails.
-  // `dummy_gain`: what the best dummy achieved on the same model. `looks`: hypotheses tried beside it.
-  Hypothesis judged(const Model& before, const Model& after, const std::vector<std::size_t>& added, double dummy_gain,
-                    std::size_t looks) const;
+  // `dummies`: what those achieved on the same model; more than a tenth of them as good, and it is no better than chance.
+  // `looks`: hypotheses tried beside it.
+  Hypothesis judged(const Model& before, const Model& after, const std::vector<std::size_t>& added,
+                    const std::vector<Hypothesis>& dummies, std::size_t looks) const;
   double effect(const Model& before, const Model& after) const;
   std::string name_of(const std::vector<std::size_t>& candidates) const;
 

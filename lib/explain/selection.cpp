@@ -37,7 +37,7 @@ void sort_runners(std::vector<Runner>& runners) {
 }
 
 // Where no single mechanism can be named, two together might.
-void add_pairs(const Race& race, const Model& model, double dummy_gain, std::size_t looks, std::vector<Runner>& runners) {
+void add_pairs(const Race& race, const Model& model, const Remainder& left, std::size_t looks, std::vector<Runner>& runners) {
   const std::size_t singles = std::min(runners.size(), pair_partners);
   std::vector<std::vector<std::size_t>> pairs;
   for (std::size_t a = 0; a < singles; ++a)
@@ -47,7 +47,7 @@ void add_pairs(const Race& race, const Model& model, double dummy_gain, std::siz
     std::vector<std::size_t> candidates = model.candidates;
     candidates.insert(candidates.end(), pair.begin(), pair.end());
     Model extended = race.changed(model, candidates);
-    Hypothesis h = race.judged(model, extended, pair, dummy_gain, looks + pairs.size());
+    Hypothesis h = race.judged(model, extended, pair, left.dummies, looks + pairs.size());
     runners.push_back({std::move(extended), std::move(h)});
   }
 }
@@ -55,16 +55,15 @@ void add_pairs(const Race& race, const Model& model, double dummy_gain, std::siz
 // One round: everything that may join `model`, best first.
 std::vector<Runner> run_round(const Race& race, const Model& model, const Remainder& left) {
   const std::vector<std::size_t> starters = visible_candidates(left);
-  const double dummy_gain = left.dummies.empty() ? 0 : left.dummies[0].gain;
   std::vector<Runner> runners;
   for (const std::size_t c : starters) {
     Model extended = race.changed(model, with(model.candidates, c));
-    Hypothesis h = race.judged(model, extended, {c}, dummy_gain, starters.size());
+    Hypothesis h = race.judged(model, extended, {c}, left.dummies, starters.size());
     runners.push_back({std::move(extended), std::move(h)});
   }
   sort_runners(runners);
   const auto passes = [](const Runner& r) { return r.hypothesis.refused.empty(); };
-  if (std::none_of(runners.begin(), runners.end(), passes)) add_pairs(race, model, dummy_gain, starters.size(), runners);
+  if (std::none_of(runners.begin(), runners.end(), passes)) add_pairs(race, model, left, starters.size(), runners);
   sort_runners(runners);
   return runners;
 }
@@ -104,7 +103,7 @@ void find_equals(const Race& race, Selection& s) {
       if (std::find(candidates.begin(), candidates.end(), other) != candidates.end()) continue;
       candidates[place] = other;
       const Model exchanged = race.changed(rest, candidates);
-      const Hypothesis h = race.judged(rest, exchanged, {other}, 0, 1);
+      const Hypothesis h = race.judged(rest, exchanged, {other}, {}, 1);
       if (h.refused.empty() && as_good(rest, s.model, exchanged)) equals.push_back(other);
     }
     if (equals.empty()) continue;

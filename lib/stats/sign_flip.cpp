@@ -15,6 +15,7 @@ namespace {
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 Eigen::MatrixXd whitened(const ScoreFamily& family, std::size_t blocks) {
+  if (family.directions == 0) return Eigen::MatrixXd(static_cast<Eigen::Index>(blocks), 0);
   const Eigen::Map<const RowMatrix> u(family.contributions.data(), static_cast<Eigen::Index>(blocks),
                                       static_cast<Eigen::Index>(family.directions));
   const Eigen::VectorXd length = u.colwise().norm().transpose();

@@ -15,7 +15,7 @@ namespace {
 Options quick(std::uint64_t seed) {
   Options o;
   o.draws = 499;
-  o.dummies = 8;
+  o.dummies = 24;
   o.seed = seed;
   return o;
 }
@@ -46,16 +46,70 @@ TEST(Engine, NamesNothingWhereNothingIsLeftOut) {
 TEST(Engine, NamesWhatIsThereAndItsIntervalCovers) {
   int found = 0, covered = 0;
   const int runs = 150;
-  const double truth = 0.06;
+  const double truth = 0.19;
   for (int run = 0; run < runs; ++run) {
     const ToyProblem problem(three_effects(), {{truth, 0, 0}, {}, 0.1, 0.05}, 5000 + run);
     const Explanation e = explain(problem, quick(run));
-    if (names(problem, e) != std::vector<std::string>{"toy.square"}) continue;
+    if (names(problem, e) != std::vector<std::string>{"toy.square"}) {
+      std::cout << e.sentence << " held " << e.held_out_before << " " << e.held_out_after << "\n";
+      for (auto& h : e.scoreboard) std::cout << "   " << h.name << " " << h.gain << " +- " << h.gain_sigma << " " << h.refused << "\n";
+      continue;
+    }
     ++found;
     covered += e.estimates[0].lower_95 <= truth && truth <= e.estimates[0].upper_95;
   }
   std::cout << "found " << found << " covered " << covered << "\n";
   EXPECT_GE(found, 0.9 * runs);
+}
+
+TEST(Engine, TwoAtOnceAreBothNamed) {
+  int both = 0;
+  const int runs = 60;
+  for (int run = 0; run < runs; ++run) {
+    const ToyProblem problem(three_effects(), {{0.2, 0, 0.12}, {}, 0.1, 0.05}, 9000 + run);
+    std::vector<std::string> found = names(problem, explain(problem, quick(run)));
+    std::sort(found.begin(), found.end());
+    both += found == std::vector<std::string>{"toy.square", "toy.wave"};
+  }
+  std::cout << "both " << both << "\n";
+  EXPECT_GE(both, 0.8 * runs);
+}
+
+TEST(Engine, IdenticalSignaturesAreNotToldApart) {
+  std::vector<ToyEffect> effects = three_effects();
+  effects.push_back({"toy.twin", [](double x, double) { return 2 * x * x; }});
+  for (int run = 0; run < 20; ++run) {
+    const ToyProblem problem(effects, {{0.25}, {}, 0.1, 0.0}, 300 + run);
+    const Explanation e = explain(problem, quick(run));
+    EXPECT_EQ(e.verdict, Verdict::ambiguous) << e.sentence;
+    ASSERT_EQ(e.not_told_apart.size(), 1u);
+    std::vector<std::size_t> set = e.not_told_apart[0];
+    std::sort(set.begin(), set.end());
+    EXPECT_EQ(set, (std::vector<std::size_t>{0, 3}));
+  }
+}
+
+TEST(Engine, WhatTheLibraryLacksIsUnknownAndLocated) {
+  int unknown = 0, located = 0;
+  const int runs = 40;
+  for (int run = 0; run < runs; ++run) {
+    ToyProblem::Truth truth{{}, [](double, double z) { return 0.2 * std::cos(5 * z); }, 0.1, 0.02};
+    const ToyProblem problem(three_effects(), truth, 700 + run);
+    const Explanation e = explain(problem, quick(run));
+    unknown += e.verdict == Verdict::unknown;
+    located += !e.conditions.empty() && e.conditions[0].name == "z";
+  }
+  std::cout << "unknown " << unknown << " located " << located << "\n";
+  EXPECT_GE(unknown, 0.95 * runs);
+  EXPECT_GE(located, 0.95 * runs);
+}
+
+TEST(Engine, SignificantIsNotImportant) {
+  const ToyProblem problem(three_effects(), {{0.02, 0, 0}, {}, 0.1, 0.0}, 42, 10, 4000, 1);
+  const Explanation e = explain(problem, quick(1));
+  EXPECT_TRUE(e.significant);
+  EXPECT_FALSE(e.important);
+  EXPECT_EQ(e.verdict, Verdict::null) << e.sentence;
 }
 
 }  // namespace
