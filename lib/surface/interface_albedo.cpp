@@ -13,22 +13,20 @@
 namespace gonio::surface {
 namespace {
 
-constexpr std::size_t cosines = 49, alphas = 20, indices = 9;
+constexpr std::size_t cosines = 49, alphas = 32, indices = 17;
 constexpr std::size_t mirror = indices, rise = indices + 1, layers = indices + 2;
-constexpr int grid_radius = 12, grid_angle = 24;
+constexpr int grid_radius = 40, grid_angle = 16;
 
 double cosine_at(std::size_t i) {
   const double t = static_cast<double>(i) / (cosines - 1);
   return t * t;
 }
 double alpha_at(std::size_t i) {
-  const double lower = std::sqrt(min_alpha), upper = std::sqrt(max_alpha);
-  const double t = lower + (upper - lower) * static_cast<double>(i) / (alphas - 1);
-  return t * t;
+  return min_alpha * std::pow(max_alpha / min_alpha, static_cast<double>(i) / (alphas - 1));
 }
 double f0_at(std::size_t i) {
   const double t = static_cast<double>(i) / (indices - 1);
-  return max_dielectric_f0 * t * t;
+  return max_dielectric_f0 * t * t * t * t;
 }
 
 struct Cell {  // a position between two nodes
@@ -44,14 +42,11 @@ Cell cosine_cell(double cosine) {
   return cell(std::sqrt(std::max(0.0, cosine)) * (cosines - 1), cosines);
 }
 Cell alpha_cell(double alpha) {
-  const double lower = std::sqrt(min_alpha), upper = std::sqrt(max_alpha);
-  return cell((std::sqrt(std::max(0.0, alpha)) - lower) / (upper - lower) * (alphas - 1), alphas);
+  static const double steps = (alphas - 1) / std::log(max_alpha / min_alpha);
+  return cell(std::log(std::max(alpha, min_alpha) / min_alpha) * steps, alphas);
 }
 Cell f0_cell(double f0) {
-  Cell c = cell(std::sqrt(std::max(0.0, f0) / max_dielectric_f0) * (indices - 1), indices);
-  const double low = f0_at(c.low), high = f0_at(c.low + 1);
-  c.share = std::clamp((f0 - low) / (high - low), 0.0, 1.0);
-  return c;
+  return cell(std::sqrt(std::sqrt(std::max(0.0, f0) / max_dielectric_f0)) * (indices - 1), indices);
 }
 double between(double low, double high, double share) {
   return low + (high - low) * share;
@@ -89,17 +84,19 @@ class Table {
     for (std::size_t i = 0; i < indices; ++i) eta[i] = eta_of_f0(f0_at(i));
     std::array<double, layers> sum{};
     for (int i = 0; i < grid_radius; ++i) {
-      for (int j = 0; j < grid_angle; ++j) {
-        const Vec3 h = ggx.visible_normal(wo, {(i + 0.5) / grid_radius, (j + 0.5) / grid_angle});
+      // The far slopes, drawn for u.x near one, lose most: u.x = 1 - v^3 resolves them.
+      const double v = (i + 0.5) / grid_radius, share = 3 * v * v / (grid_radius * grid_angle);
+      for (int j = 0; j < grid_angle; ++j) {  // one half of the circle: the other is its mirror image
+        const Vec3 h = ggx.visible_normal(wo, {1 - v * v * v, 0.5 * (j + 0.5) / grid_angle - 0.25});
         const Vec3 wi = mirrored(wo, h);
         if (wi.z <= 0) continue;
-        const double weight = ggx.weight(wo, wi), cosine = dot(wo, h);
+        const double weight = share * ggx.weight(wo, wi), cosine = dot(wo, h);
         for (std::size_t k = 0; k < indices; ++k) sum[k] += weight * fresnel_dielectric(cosine, eta[k]);
         sum[mirror] += weight;
         sum[rise] += weight * schlick_rise(cosine);
       }
     }
-    for (std::size_t layer = 0; layer < layers; ++layer) at(layer, a, c) = sum[layer] / (grid_radius * grid_angle);
+    for (std::size_t layer = 0; layer < layers; ++layer) at(layer, a, c) = sum[layer];
   }
 
   // 2 E cosine d(cosine) = 4 E t^3 dt, t = sqrt(cosine): in each cell a polynomial of degree 4, exact with three Gauss

@@ -40,6 +40,21 @@ class MetalLobe {
     if (!(density > 0)) return {};
     return {wi, evaluate(fresnel, wi) * (wi.z / density), density};
   }
+  // Reflectance of the part that scatters once: a midpoint rule over visible normals, finer towards the far slopes.
+  template <class Fresnel>
+  Rgb albedo_once(const Fresnel& fresnel) const {
+    constexpr int radii = 24, angles = 8;
+    Rgb sum;
+    for (int i = 0; i < radii; ++i) {
+      const double v = (i + 0.5) / radii, share = 3 * v * v / (radii * angles);
+      for (int j = 0; j < angles; ++j) {  // half of the circle: the other is its mirror image
+        const Vec3 h = ggx_.visible_normal(wo_, {1 - v * v * v, 0.5 * (j + 0.5) / angles - 0.25});
+        const Vec3 wi = mirrored(wo_, h);
+        if (wi.z > 0) sum += fresnel(dot(wo_, h)) * (share * ggx_.weight(wo_, wi));
+      }
+    }
+    return sum;
+  }
   // Reflectance of the part that scatters more than once.
   Rgb albedo_more() const { return more_ * (1 - mirror_albedo_mean(alpha_)); }
 

@@ -1,6 +1,6 @@
 // Rough metal of measured optical constants: GGX with the exact Fresnel factor of the complex index eta + i k per
 // colour, and multiple scattering between facets (surface/metal_lobe.h). F_mean is a five-point Gauss quadrature.
-// albedo() is an approximation: it takes Schlick's curve through the reflectance at normal incidence (within 0.05).
+// albedo() is a quadrature over visible normals (some ten microseconds), exact to 2e-3.
 #include <array>
 
 #include "surface/fresnel.h"
@@ -78,9 +78,8 @@ class Conductor final : public Model {
   }
   Rgb albedo(const Values& values, Vec3 wo) const override {
     if (wo.z <= 0) return {};
-    const double alpha = values.scalar(alpha_index), all = mirror_albedo(wo.z, alpha), rise = rise_albedo(wo.z, alpha);
-    const Rgb f0 = fresnel_rgb(1, values.rgb(eta_index), values.rgb(k_index));
-    return f0 * (all - rise) + Rgb{rise, rise, rise} + lobe(values, wo).albedo_more();
+    const MetalLobe once_and_more = lobe(values, wo);
+    return once_and_more.albedo_once(fresnel(values)) + once_and_more.albedo_more();
   }
 };
 

@@ -1,0 +1,135 @@
+// Pearson's chi-square test of a sampler of directions against the density it states.
+//
+// The sphere is cut into bins of equal (cos theta, phi); the density is integrated over each by adaptive Gauss
+// quadrature; samples that failed form one more bin, whose expectation is what the density leaves out. Bins that expect
+// fewer than five are pooled. With m tests in one family, Sidak's correction makes the family's false-alarm rate what
+// `family_rate` says: each test rejects below 1 - (1 - family_rate)^(1/m).
+#pragma once
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/random.h"
+#include "geom/vector.h"
+
+namespace gonio::tests {
+
+// Probability that chi-square with `degrees` of freedom exceeds `value`: the regularised incomplete gamma function
+// Q(degrees / 2, value / 2), by its series or continued fraction (Press et al. 2007, section 6.2).
+inline double chi_square_tail(double value, double degrees) {
+  const double a = degrees / 2, x = value / 2;
+  if (x <= 0) return 1;
+  const double front = std::exp(-x + a * std::log(x) - std::lgamma(a));
+  if (x < a + 1) {
+    double term = 1 / a, sum = term;
+    for (double n = a + 1; std::abs(term) > 1e-15 * sum; ++n) sum += term *= x / n;
+    return 1 - front * sum;
+  }
+  double b = x + 1 - a, c = 1e300, d = 1 / b, h = d;
+  for (int i = 1; i < 100000; ++i) {
+    const double an = -i * (i - a);
+    b += 2;
+    d = 1 / (an * d + b);
+    c = b + an / c;
+    h *= d * c;
+    if (std::abs(d * c - 1) < 1e-14) break;
+  }
+  return front * h;
+}
+
+// Integral of f(cos theta, phi) over a rectangle: four by four Gauss points, split until the parts agree with the
+// whole.
+inline double integrate_patch(const std::function<double(double, double)>& f, double z0, double z1, double p0,
+                              double p1, double tolerance, int depth = 0) {
+  constexpr std::array<double, 4> node = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
+                                          0.8611363115940526};
+  constexpr std::array<double, 4> weight = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
+                                            0.3478548451374538};
+  const auto rule = [&](double za, double zb, double pa, double pb) {
+    double sum = 0;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        sum +=
+            weight[i] * weight[j] * f((za + zb) / 2 + node[i] * (zb - za) / 2, (pa + pb) / 2 + node[j] * (pb - pa) / 2);
+    return sum * (zb - za) * (pb - pa) / 4;
+  };
+  const double zm = (z0 + z1) / 2, pm = (p0 + p1) / 2;
+  const double parts = rule(z0, zm, p0, pm) + rule(zm, z1, p0, pm) + rule(z0, zm, pm, p1) + rule(zm, z1, pm, p1);
+  if (depth >= 2 && (std::abs(parts - rule(z0, z1, p0, p1)) < tolerance || depth > 10)) return parts;
+  return integrate_patch(f, z0, zm, p0, pm, tolerance / 2, depth + 1) +
+         integrate_patch(f, zm, z1, p0, pm, tolerance / 2, depth + 1) +
+         integrate_patch(f, z0, zm, pm, p1, tolerance / 2, depth + 1) +
+         integrate_patch(f, zm, z1, pm, p1, tolerance / 2, depth + 1);
+}
+
+struct Sampler {
+  std::string name;
+  std::function<std::optional<Vec3>(Random&)> draw;  // nothing: the sample failed
+  std::function<double(Vec3)> density;               // per steradian
+};
+
+inline constexpr std::size_t chi_rows = 20, chi_columns = 24;
+inline constexpr double chi_samples = 60000;
+
+// The p-value of one sampler.
+inline double chi_square_p(const Sampler& sampler, std::uint64_t seed) {
+  std::vector<double> seen(chi_rows * chi_columns + 1), expected(seen.size());
+  Random random(seed);
+  for (int i = 0; i < chi_samples; ++i) {
+    const auto w = sampler.draw(random);
+    if (!w) {
+      ++seen.back();
+      continue;
+    }
+    const double turn = std::atan2(w->y, w->x) / (2 * pi) + 0.5;
+    const auto row = std::min(chi_rows - 1, static_cast<std::size_t>((w->z + 1) / 2 * chi_rows));
+    const auto column = std::min(chi_columns - 1, static_cast<std::size_t>(turn * chi_columns));
+    ++seen[row * chi_columns + column];
+  }
+  const auto f = [&](double z, double phi) {
+    const double r = std::sqrt(1 - z * z);
+    return sampler.density({r * std::cos(phi), r * std::sin(phi), z});
+  };
+  double mass = 0;
+  for (std::size_t row = 0; row < chi_rows; ++row)
+    for (std::size_t column = 0; column < chi_columns; ++column) {
+      const double z = -1 + 2.0 * row / chi_rows, phi = -pi + 2 * pi * column / chi_columns;
+      const double part = integrate_patch(f, z, z + 2.0 / chi_rows, phi, phi + 2 * pi / chi_columns, 1e-6);
+      expected[row * chi_columns + column] = part * chi_samples;
+      mass += part;
+    }
+  EXPECT_LE(mass, 1 + 1e-4) << sampler.name << ": the density integrates to more than one";
+  expected.back() = std::max(0.0, 1 - mass) * chi_samples;
+  double chi2 = 0, pooled_seen = 0, pooled_expected = 0, bins = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (expected[i] < 5) {
+      pooled_seen += seen[i];
+      pooled_expected += expected[i];
+      continue;
+    }
+    chi2 += (seen[i] - expected[i]) * (seen[i] - expected[i]) / expected[i];
+    ++bins;
+  }
+  if (pooled_expected >= 5) {
+    chi2 += (pooled_seen - pooled_expected) * (pooled_seen - pooled_expected) / pooled_expected;
+    ++bins;
+  } else {  // Poisson: far more than expected where next to nothing should be
+    EXPECT_LE(pooled_seen, pooled_expected + 6 * std::sqrt(pooled_expected + 1) + 6) << sampler.name;
+  }
+  return bins > 1 ? chi_square_tail(chi2, bins - 1) : 1;
+}
+
+inline void expect_samplers_match(const std::vector<Sampler>& family, double family_rate, std::uint64_t seed) {
+  ASSERT_FALSE(family.empty());
+  const double limit = 1 - std::pow(1 - family_rate, 1.0 / static_cast<double>(family.size()));
+  for (std::size_t i = 0; i < family.size(); ++i)
+    EXPECT_GT(chi_square_p(family[i], seed + i), limit)
+        << family[i].name << ", Sidak limit for " << family.size() << " tests";
+}
+
+}  // namespace gonio::tests
