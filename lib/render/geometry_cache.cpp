@@ -82,25 +82,23 @@ class IndirectTracer {
 }  // namespace
 
 std::vector<ViewPoint> view_points(const RayCaster& caster, const scene::View& view, int side) {
-  const auto width = static_cast<std::size_t>(view.camera.width_px()),
-             height = static_cast<std::size_t>(view.camera.height_px());
-  const auto per_axis = static_cast<std::size_t>(side);
+  const int width = view.camera.width_px(), height = view.camera.height_px();
   const Mat3 rotation = matrix_of(view.world_from_camera.rotation);
-  std::vector<ViewPoint> points(width * height * per_axis * per_axis);
-  const auto cast = [&](std::size_t pixel, std::size_t cell) {
-    const Vec2 within = Vec2{cell % per_axis + 0.5, cell / per_axis + 0.5} * (1.0 / side);
-    const camera::Ray ray = view.camera.ray(Vec2{pixel % width - 0.5, pixel / width - 0.5} + within);
+  const auto cast = [&](Vec2 pixel) {
+    const camera::Ray ray = view.camera.ray(pixel);
     const Vec3 direction = rotation * ray.direction;
     const auto met = caster.closest(rotation * ray.origin_m + view.world_from_camera.translation_m, direction);
     return ViewPoint{met.has_value(), met.value_or(SurfacePoint{}), -direction};
   };
-  parallel_for(
-      0, width * height,
-      [&](std::size_t pixel) {
-        for (std::size_t cell = 0; cell < per_axis * per_axis; ++cell)
-          points[pixel * per_axis * per_axis + cell] = cast(pixel, cell);
-      },
-      grain);
+  const std::size_t per_row = static_cast<std::size_t>(width) * static_cast<std::size_t>(side * side);
+  std::vector<ViewPoint> points(per_row * static_cast<std::size_t>(height));
+  parallel_for(0, static_cast<std::size_t>(height), [&](std::size_t row) {
+    ViewPoint* out = points.data() + row * per_row;
+    for (int x = 0; x < width; ++x)
+      for (int j = 0; j < side; ++j)
+        for (int i = 0; i < side; ++i)
+          *out++ = cast({x - 0.5 + (i + 0.5) / side, static_cast<double>(row) - 0.5 + (j + 0.5) / side});
+  });
   return points;
 }
 
