@@ -4,7 +4,6 @@
 #include "cases.h"
 #include "data.h"
 #include "io/picture.h"
-#include "light/edits.h"
 #include "light/irradiance.h"
 #include "light/turn.h"
 
@@ -14,10 +13,11 @@ namespace {
 std::unique_ptr<light::Emitter> prepared(const manifest::Light& light) {
   return light::find(light.model)->prepare(light.parameters, nullptr, "p");
 }
-manifest::Light lamp(Vec3 position_m, Rgb watt_per_sr) {
+manifest::Light lamp(Vec3 position_m, Rgb watt_per_sr, std::optional<double> radius_m = {}) {
   manifest::Light light;
   light.parameters["position_m"] = std::vector<double>{position_m.x, position_m.y, position_m.z};
   light.parameters["watt_per_sr"] = std::vector<double>{watt_per_sr.x, watt_per_sr.y, watt_per_sr.z};
+  if (radius_m) light.parameters["radius_m"] = *radius_m;
   return light;
 }
 std::unique_ptr<light::Emitter> surround(std::shared_ptr<const io::Image> picture, double rotation_rad = 0) {
@@ -42,7 +42,7 @@ TEST(SphereLight, IrradianceAboveAcrossAndBelowTheHorizon) {
   const Rgb intensity{2, 1, 0.5};
   for (const double radius : {0.01, 0.1, 0.3, 0.49})
     for (const double tilt : {0.0, 40.0, 75.0, 85.0, 90.0, 95.0, 110.0, 140.0, 179.0}) {
-      const auto emitter = prepared(light::with_radius(lamp(centre, intensity), radius, "p"));
+      const auto emitter = prepared(lamp(centre, intensity, radius));
       const Rgb sampled = irradiance_by_sampling(*emitter, point, tilted(tilt));
       const Rgb closed = light::sphere_irradiance(intensity, centre, radius, point, tilted(tilt));
       EXPECT_NEAR(sampled.x, closed.x, 2e-4 * intensity.x / (0.5 * 0.5)) << radius << " " << tilt;
@@ -59,8 +59,8 @@ TEST(SphereLight, ClosedFormIsContinuousAtTheHorizon) {
 
 TEST(SphereLight, OfVanishingRadiusIsThePointLight) {
   const manifest::Light point = lamp({0.2, -0.3, 0.4}, {1, 2, 3});
-  const auto bare = prepared(point), neutral = prepared(light::with_radius(point, 0, "p"));
-  const auto tiny = prepared(light::with_radius(point, 1e-9, "p"));
+  const auto bare = prepared(point), neutral = prepared(lamp({0.2, -0.3, 0.4}, {1, 2, 3}, 0));
+  const auto tiny = prepared(lamp({0.2, -0.3, 0.4}, {1, 2, 3}, 1e-9));
   Random random(3);
   for (int k = 0; k < 100; ++k) {
     const Vec3 at{random.uniform(-1, 1), random.uniform(-1, 1), -random.uniform()};
@@ -76,7 +76,7 @@ TEST(SphereLight, OfVanishingRadiusIsThePointLight) {
 }
 
 TEST(SphereLight, ShinesOutwardsOnly) {
-  const auto emitter = prepared(light::with_radius(lamp({0, 0, 0}, {1, 1, 1}), 0.5, "p"));
+  const auto emitter = prepared(lamp({0, 0, 0}, {1, 1, 1}, 0.5));
   EXPECT_FALSE(emitter->sample({0.1, 0, 0}, {0.5, 0.5}).valid);
   EXPECT_EQ(emitter->hit({0.1, 0, 0}, {0, 0, 1}).radiance, Rgb{});
   EXPECT_EQ(emitter->hit({0, 0, 2}, {0, 0, 1}).radiance, Rgb{});
@@ -97,7 +97,8 @@ TEST(DirectionalLight, IrradianceOnAFacingPlane) {
 }
 
 TEST(UniformLight, IrradianceIsPiTimesRadiance) {
-  const auto emitter = prepared(light::ambient({0.1, 0.2, 0.3}));
+  const auto emitter =
+      light::find("uniform")->prepare({{"radiance", std::vector<double>{0.1, 0.2, 0.3}}}, nullptr, "p");
   EXPECT_NEAR(irradiance_by_sampling(*emitter, {1, 2, 3}, tilted(33)).y, 0.2 * pi, 1e-4);
   EXPECT_TRUE(emitter->infinite());
 }
@@ -159,24 +160,14 @@ TEST(LightDirection, TurnsAtRightAnglesByTheAngleGiven) {
   EXPECT_NEAR(light::turned({0, 0, 1}, 0, 0.1).x, std::sin(0.1), 1e-12);
 }
 
-TEST(LightEdits, NeutralValuesChangeNothing) {
-  const manifest::Light point = lamp({0.2, -0.3, 0.4}, {1, 2, 3});
-  const auto edited = light::with_direction(point, 0, 0, {0.1, 0, 0}, "p");
-  EXPECT_EQ(edited.parameters, point.parameters);
-  EXPECT_EQ(light::with_direction(point, 0.1, 0.1, {0.2, -0.3, 0.4}, "p").parameters,
-            point.parameters);  // at the centre
-  manifest::Light sky = light::ambient({1, 1, 1});
-  EXPECT_THROW(light::with_direction(sky, 0.1, 0, {}, "p"), std::runtime_error);
-  EXPECT_THROW(light::with_radius(sky, 0.1, "p"), std::runtime_error);
-}
-
-TEST(LightEdits, DirectionKeepsDistanceFromTheCentre) {
+TEST(LightDirection, PositionsKeepTheirDistanceFromTheCentre) {
   const Vec3 centre{0.1, 0.2, 0.3}, position{0.2, -0.3, 0.9};
-  const auto edited = light::with_direction(lamp(position, {1, 1, 1}), 0.03, -0.04, centre, "p");
-  const Vec3 moved = edited.parameters.at("position_m").vector();
+  const Vec3 moved = light::turned_about(position, 0.03, -0.04, centre);
   EXPECT_NEAR(norm(moved - centre), norm(position - centre), 1e-12);
   EXPECT_NEAR(std::acos(dot(moved - centre, position - centre) / dot(position - centre, position - centre)), 0.05,
               1e-9);
+  EXPECT_EQ(light::turned_about(position, 0, 0, centre), position);
+  EXPECT_EQ(light::turned_about(centre, 0.1, 0.1, centre), centre);
 }
 
 }  // namespace

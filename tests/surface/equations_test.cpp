@@ -3,7 +3,6 @@
 
 #include "cases.h"
 #include "chi_square.h"
-#include "surface/edits.h"
 #include "surface/fresnel.h"
 #include "surface/interface_albedo.h"
 #include "surface/microfacet.h"
@@ -196,23 +195,6 @@ TEST(Metal, AlbedoIsItsReflectance) {
       EXPECT_NEAR(reflected.x, stated.x, 2e-3 + 6 * error.x) << alpha << " " << zenith;
       EXPECT_NEAR(reflected.z, stated.z, 2e-3 + 6 * error.z) << alpha << " " << zenith;
     }
-}
-
-TEST(SurfaceEdits, NeutralValuesChangeNothing) {
-  manifest::Surface matte;
-  matte.parameters["albedo"] = std::vector<double>{0.5, 0.3, 0.2};
-  const auto edited = surface::with_interface(surface::with_diffuse_roughness(matte, 0, "p"), 0, 0.2, "p");
-  const surface::Model &before = *surface::find(matte.model), &after = *surface::find(edited.model);
-  const auto a = surface::values_of(before, matte.parameters, "p"),
-             b = surface::values_of(after, edited.parameters, "p");
-  Random random(9);
-  for (int k = 0; k < 500; ++k) {
-    const Vec3 wo = draw_direction(random), wi = draw_direction(random);
-    EXPECT_EQ(before.evaluate(a, wo, wi), after.evaluate(b, wo, wi));
-  }
-  manifest::Surface mirror;
-  mirror.model = "metal";
-  EXPECT_THROW(surface::with_interface(mirror, 0.04, 0.1, "p"), std::runtime_error);
 }
 
 }  // namespace
