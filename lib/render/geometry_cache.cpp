@@ -46,7 +46,7 @@ class IndirectTracer {
     for (std::size_t visited = 0;;) {
       const Vec3 direction = cosine_direction(at.normal, u);
       if (!(dot(at.geometric_normal, direction) > 0)) return;
-      const auto next = caster_.closest(at, direction);
+      const auto next = caster_.closest_from(at, direction);
       if (!next) return add_environments(at.position_m, direction, visited, coefficients);
       visited = monomials_.times(visited, next->surface);
       if (visited == monomials_.size()) return;

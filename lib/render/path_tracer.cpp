@@ -144,7 +144,7 @@ class Tracer {
       direction = vertex.basis.to_world(next.wi);
       if (!(dot(point->geometric_normal, direction) > 0)) break;
       throughput *= next.weight;
-      const auto beyond = caster_.closest(*point, direction);
+      const auto beyond = caster_.closest_from(*point, direction);
       if (options_.estimator == Estimator::combined)
         sum += throughput * met_lights(point->position_m, direction, next.pdf, beyond);
       if (first && scene_.appearance.indirect_strength == 0) break;

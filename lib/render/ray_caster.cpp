@@ -240,7 +240,7 @@ std::optional<SurfacePoint> RayCaster::closest(Vec3 origin_m, Vec3 direction) co
   return impl_->closest(query, origin_m, direction);
 }
 
-std::optional<SurfacePoint> RayCaster::closest(const SurfacePoint& from, Vec3 direction) const {
+std::optional<SurfacePoint> RayCaster::closest_from(const SurfacePoint& from, Vec3 direction) const {
   const Vec3 origin_m = impl_->start(from);
   Query query{.context = {}, .ray = {origin_m, direction, from.geometric_normal}, .hit = {}, .from = from.instance};
   return impl_->closest(query, origin_m, direction);

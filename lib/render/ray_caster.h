@@ -38,7 +38,7 @@ class RayCaster {
 
   // First meeting of a ray that starts in free space, or on the surface `from`.
   std::optional<SurfacePoint> closest(Vec3 origin_m, Vec3 direction) const;
-  std::optional<SurfacePoint> closest(const SurfacePoint& from, Vec3 direction) const;
+  std::optional<SurfacePoint> closest_from(const SurfacePoint& from, Vec3 direction) const;
   // Is there anything on the way from `from` along the unit `direction`, nearer than `distance_m`? Directions below the
   // geometric horizon are occluded by the surface itself.
   bool occluded(const SurfacePoint& from, Vec3 direction, double distance_m = far_away) const;
