@@ -11,6 +11,8 @@
 namespace gonio::explain {
 namespace {
 
+constexpr double least_survivor = 1e-4;  // of a direction's squared length, after projection
+
 struct Explained {
   double squares = 0, rank = 0;
   Eigen::VectorXd coefficients;
@@ -25,7 +27,7 @@ Explained explained_by(const Projection& p, const std::vector<Eigen::Index>& pla
   Explained e;
   Eigen::VectorXd z = eigen.eigenvectors().transpose() * (scale.asDiagonal() * b);
   for (Eigen::Index k = 0; k < z.size(); ++k) {
-    if (eigen.eigenvalues()[k] < 1e-6) {
+    if (eigen.eigenvalues()[k] < least_survivor) {
       z[k] = 0;
       continue;
     }

@@ -10,7 +10,7 @@ namespace gonio::explain {
 namespace {
 
 // Relative to the unit diagonal of the scaled matrix: below this a direction carries no information.
-constexpr double ridge = 1e-11;
+constexpr double ridge = 1e-13;
 
 struct Places {
   std::vector<Eigen::Index> in_gram, in_subset;

@@ -31,6 +31,7 @@ struct Condition {
   std::string stage;               // of the simulator: lens, light, surface, transport, board, ...
   std::vector<double> values;      // one per row; NaN: does not apply to this row
   std::vector<double> direction;   // one per row, or empty
+  std::string curve_unit = "";     // of the curve: residual's unit over direction's: "px", "mm", "1"
 };
 
 struct Observations {

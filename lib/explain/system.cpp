@@ -182,6 +182,10 @@ Eigen::MatrixXd group_columns(const System& system, const Linearisation& l, std:
 
 namespace {
 
+// Curves that free parameters imitate to better than a hundredth of their length get no say: a weak pull to zero on extra
+// columns, this share of their squared length.
+constexpr double least_survivor = 1e-4;
+
 GroupGram group_gram(const System& system, const Linearisation& l, std::span<const ExtraColumn> extras,
                      std::span<const Signature> signatures, std::size_t group) {
   GroupGram gram;
@@ -233,6 +237,13 @@ Linearisation linearise(const System& system, std::span<const double> values, st
   l.grams.resize(system.groups.size());
   parallel_for(0, system.groups.size(),
                [&](std::size_t k) { l.grams[k] = group_gram(system, l, extras, signatures, system.groups[k]); });
+  for (const GroupGram& gram : l.grams)
+    for (std::size_t k = 0; k < gram.columns.size(); ++k) {
+      const auto place = static_cast<Eigen::Index>(k);
+      LinearColumn& column = l.columns[gram.columns[k]];
+      if (column.extra != LinearColumn::everywhere)
+        column.prior_precision += least_survivor * (gram.half[0](place, place) + gram.half[1](place, place));
+    }
   return l;
 }
 

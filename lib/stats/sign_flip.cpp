@@ -26,7 +26,7 @@ Eigen::MatrixXd whitened(const ScoreFamily& family, std::size_t blocks) {
   const Eigen::VectorXd& values = eigen.eigenvalues();
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < values.size(); ++k)
-    if (values[k] > 1e-8) kept.push_back(k);
+    if (values[k] > 1e-6) kept.push_back(k);
   Eigen::MatrixXd result(v.rows(), static_cast<Eigen::Index>(kept.size()));
   for (std::size_t k = 0; k < kept.size(); ++k)
     result.col(static_cast<Eigen::Index>(k)) = v * eigen.eigenvectors().col(kept[k]) / std::sqrt(values[kept[k]]);

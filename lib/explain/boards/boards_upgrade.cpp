@@ -1,0 +1,110 @@
+// The upgraded sections of the boards domain: a camera whose model has the named lens terms, a board with its warp, refitted poses;
+// every fitted number with its uncertainty.
+#include <algorithm>
+#include <cmath>
+
+#include "explain/boards/boards_outcome.h"
+
+namespace gonio::explain {
+namespace {
+
+using camera::BoardColumn;
+constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+bool is_named(const Problem& problem, const Explanation& e, const std::string& id) {
+  return std::any_of(e.named.begin(), e.named.end(), [&](std::size_t c) { return problem.candidates()[c].id() == id; });
+}
+
+// RMS over the corners of the views for which `counts` holds.
+template <class Counts>
+double rms(const BoardsInput& input, const Observations& o, const Explanation& e, Counts counts) {
+  double sum = 0;
+  std::size_t corners = 0;
+  for (std::size_t v = 0; v < input.views.size(); ++v) {
+    if (!counts(v)) continue;
+    for (std::size_t i = o.first[v]; i < o.first[v + 1]; ++i) sum += e.residual_after[i] * e.residual_after[i];
+    corners += input.views[v].corners.size();
+  }
+  return corners > 0 ? std::sqrt(sum / static_cast<double>(corners)) : 0;
+}
+
+void upgrade_camera(const Problem& problem, const BoardsInput& input, std::size_t c, const std::vector<BoardRole>& roles,
+                    const Explanation& e, manifest::Camera& section) {
+  if (is_named(problem, e, "lens.thin-prism"))
+    section.model = "thin-prism";
+  else if (section.model == "pinhole" && (is_named(problem, e, "lens.radial") || is_named(problem, e, "lens.tangential")))
+    section.model = "radial-tangential";
+  camera::Intrinsics k = input.cameras[c].intrinsics;
+  std::array<double, 4> pinhole = {k.fx_px, k.fy_px, k.cx_px, k.cy_px};
+  std::vector<std::string> order;
+  std::vector<std::size_t> places;
+  section.sigma.clear();
+  for (std::size_t p = 0; p < roles.size(); ++p) {
+    if (roles[p].camera != c) continue;
+    const std::size_t column = roles[p].column;
+    const bool lens = column >= BoardColumn::distortion;
+    (lens ? k.distortion[column - BoardColumn::distortion] : pinhole[column]) = e.values[p];
+    const std::string& full = problem.parameters()[p].name;
+    const std::string name = full.substr(full.find_last_of(lens && full.find('/') == std::string::npos ? '.' : '/') + 1);
+    const auto active = std::find(e.active.begin(), e.active.end(), p);
+    if (active == e.active.end()) continue;
+    section.sigma[name] = {e.sigma[p]};
+    order.push_back(name);
+    places.push_back(static_cast<std::size_t>(active - e.active.begin()));
+  }
+  k.fx_px = pinhole[0], k.fy_px = pinhole[1], k.cx_px = pinhole[2], k.cy_px = pinhole[3];
+  camera::store(k, section);
+  manifest::Value values = manifest::Value::array();
+  for (const std::size_t a : places) {
+    std::vector<double> row;
+    for (const std::size_t b : places) row.push_back(e.covariance[a * e.active.size() + b]);
+    values.push_back(row);
+  }
+  section.covariance = manifest::Value::object({{"order", order}, {"values", values}});
+}
+
+void upgrade_image(const BoardsInput& input, std::size_t v, const std::vector<BoardRole>& roles, const Explanation& e,
+                   manifest::ImageEntry& image) {
+  std::array<double, 6> change{};
+  manifest::PoseSigma sigma{std::vector<double>(3, 0.0), std::vector<double>(3, 0.0)};
+  for (std::size_t p = 0; p < roles.size(); ++p) {
+    if (roles[p].view != v) continue;
+    const std::size_t i = roles[p].column - BoardColumn::rotation;
+    change[i] = e.values[p];
+    (i < 3 ? sigma.rotation_rad : sigma.translation_m)[i % 3] = e.sigma[p];
+  }
+  const camera::BoardPose pose = camera::moved(input.views[v].camera_from_board, change);
+  manifest::Pose<frame::Camera, frame::Board> written;
+  written.rotation = pose.rotation;
+  written.translation_m = pose.translation_m;
+  written.sigma = sigma;
+  image.camera_from_board = written;
+}
+
+}  // namespace
+
+void upgrade_boards(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
+                    const Explanation& e, manifest::Document& document) {
+  const Observations& o = problem.observations();
+  for (std::size_t c = 0; c < input.cameras.size(); ++c) {
+    manifest::Camera& section = document.cameras.at(input.cameras[c].name);
+    upgrade_camera(problem, input, c, roles, e, section);
+    section.rms_px = rms(input, o, e, [&](std::size_t v) { return input.views[v].camera == c; });
+  }
+  for (std::size_t p = 0; p < roles.size(); ++p) {
+    if (roles[p].board == none || !(input.boards[roles[p].board].warped || is_named(problem, e, "board.warp"))) continue;
+    manifest::Board& section = document.boards.at(input.boards[roles[p].board].name);
+    const std::string axis = roles[p].column == BoardColumn::warp ? "x_m" : "y_m";
+    section.warp[axis] = manifest::Parameter(e.values[p]);
+    section.sigma[axis] = {e.sigma[p]};
+  }
+  for (std::size_t v = 0; v < input.views.size(); ++v) {
+    const auto image = std::find_if(document.images.begin(), document.images.end(),
+                                    [&](const manifest::ImageEntry& i) { return i.id == input.views[v].image; });
+    if (image == document.images.end()) continue;
+    upgrade_image(input, v, roles, e, *image);
+    image->rms_px = rms(input, o, e, [&](std::size_t other) { return other == v; });
+  }
+}
+
+}  // namespace gonio::explain
