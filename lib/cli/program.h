@@ -28,43 +28,45 @@ namespace gonio::cli {
 enum class Type { flag, integer, number, quantity, text, choice, input_file, output_file, folder };
 
 struct Option {
-  std::string name;      // long name without dashes; for an operand its metavar
+  std::string name{};      // long name without dashes; for an operand its metavar
   Type type = Type::flag;
-  std::string help;      // one sentence; what, unit, when to use it
-  std::string metavar;   // "N", "FILE", ... (empty: from the type)
-  std::string preset;    // default as the user would type it; empty: none
+  std::string help{};      // one sentence; what, unit, when to use it
+  std::string metavar{};   // "N", "FILE", ... (empty: from the type)
+  std::string preset{};    // default as the user would type it; empty: none
   Dimension dimension = Dimension::none;  // quantity
-  std::optional<double> lower, upper;     // in SI
-  std::vector<std::string> choices;       // choice
+  std::optional<double> lower{}, upper{};     // in SI
+  std::vector<std::string> choices{};       // choice
   bool repeat = false;                    // may be given several times; operands: takes the rest
   bool required = false;
-  std::vector<std::string> conflicts;     // long names it cannot stand with
-  std::vector<std::string> needs;         // long names that must stand beside it
+  std::vector<std::string> conflicts{};     // long names it cannot stand with
+  std::vector<std::string> needs{};         // long names that must stand beside it
+  char letter = 0;                        // short form, 'i' for -i; 0: none
 };
 
-// How the manifest enters. none: the program takes no manifest; optional: read where -i is given, or where stdin is not a
-// terminal and no operands are given; required: from -i, an operand that ends in .json, or stdin.
+// How the manifest enters: from -i FILE, else from an operand that ends in .json, else from standard input where that is not a
+// terminal and neither operands nor a `standalone` option are given. none: never; required: its absence is an error.
 enum class Reads { none, optional, required };
 
 class Invocation;
 
 struct Program {
-  std::string name;      // as typed: "calib-charuco"
-  std::string sentence;  // NAME line
-  std::vector<std::string> synopsis;  // after the program's name, one form a line
-  std::vector<Option> options;
-  std::vector<Option> operands;
+  std::string name{};      // as typed: "calib-charuco"
+  std::string sentence{};  // NAME line
+  std::vector<std::string> synopsis{};  // after the program's name, one form a line
+  std::vector<Option> options{};
+  std::vector<Option> operands{};
   Reads reads = Reads::optional;
   bool writes_manifest = true;
+  std::vector<std::string> standalone{};  // options with which standard input is not read: the quick forms
   bool takes_out = false, takes_seed = false, takes_resume = false;
-  std::vector<std::string> sections_read, sections_written;  // of the manifest
-  std::vector<std::pair<std::string, std::string>> files;    // written below --out: pattern, meaning
-  std::vector<std::pair<Exit, std::string>> exits;           // what this program means by 1 and 2
-  std::vector<std::string> references;                       // papers
-  std::vector<std::string> see_also;
+  std::vector<std::string> sections_read{}, sections_written{};  // of the manifest
+  std::vector<std::pair<std::string, std::string>> files{};    // written below --out: pattern, meaning
+  std::vector<std::pair<Exit, std::string>> exits{};           // what this program means by 1 and 2
+  std::vector<std::string> references{};                       // papers
+  std::vector<std::string> see_also{};
   // Validates what can be validated without doing the work; called by --check, and always before run.
-  std::function<void(Invocation&)> check;
-  std::function<Exit(Invocation&)> run;
+  std::function<void(Invocation&)> check{};
+  std::function<Exit(Invocation&)> run{};
 };
 
 // One call of a program: options parsed, typed and range-checked; the manifest read.
@@ -79,6 +81,7 @@ class Invocation {
 
   manifest::Document document;       // read; what run leaves here is written
   bool has_document = false;
+  bool writes_document = true;   // run may turn it off (a drawing on stdout, a list)
   std::uint64_t seed = 0;
   std::filesystem::path out;         // --out (created before run), empty where not given
   bool force = false, resume = false;

@@ -1,0 +1,297 @@
+// Reading and printing of the whole document. A section that a program did not change is written as it was read: what to_value()
+// prints for an entry is compared with what it would print for the entry as read, and where the two agree the original stands.
+#include "manifest/document.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <iostream>
+#include <iterator>
+#include <set>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "manifest/section_tables.h"
+
+namespace gonio::manifest {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Calls visit(key, section) for every typed section, in the order in which they are printed.
+template <class D, class Visit>
+void for_each_section(D& d, const Visit& visit) {
+  visit("files", d.files);
+  visit("frames", d.frames);
+  visit("boards", d.boards);
+  visit("cameras", d.cameras);
+  visit("images", d.images);
+  visit("meshes", d.meshes);
+  visit("surfaces", d.surfaces);
+  visit("lights", d.lights);
+  visit("objects", d.objects);
+  visit("tables", d.tables);
+  visit("mechanisms", d.mechanisms);
+  visit("renderings", d.renderings);
+  visit("comparisons", d.comparisons);
+  visit("explanations", d.explanations);
+}
+
+template <class T>
+void read_section(std::map<std::string, T>& section, const Value& v, const std::string& place) {
+  section = Codec<std::map<std::string, T>>::read(v, place);
+}
+template <class T>
+void read_section(std::vector<T>& section, const Value& v, const std::string& place) {
+  section = Codec<std::vector<T>>::read(v, place);
+}
+
+template <class T>
+Value write_entry(const T& entry, const Value* original) {
+  Value written = Codec<T>::write(entry);
+  if (original == nullptr) return written;
+  if (written == Codec<T>::write(Codec<T>::read(*original, ""))) return *original;
+  if (original->is_object() && written.is_object())
+    for (const auto& [key, member] : original->as_object())
+      if (key.starts_with("x-")) written[key] = member;
+  return written;
+}
+
+template <class T>
+Value write_section(const std::map<std::string, T>& section, const Value* original) {
+  Value out;
+  if (original != nullptr && original->is_object()) {
+    out = Value::object();
+    for (const auto& [key, member] : original->as_object()) {  // what was there keeps its place
+      if (key.starts_with("x-")) out[key] = member;
+      else if (const auto found = section.find(key); found != section.end()) out[key] = write_entry(found->second, &member);
+    }
+  }
+  for (const auto& [key, entry] : section)
+    if (out.find(key) == nullptr) out[key] = write_entry(entry, nullptr);
+  return out;
+}
+
+template <class T>
+Value write_section(const std::vector<T>& section, const Value* original) {
+  if (section.empty() && original == nullptr) return {};
+  const auto id_of = [](const Value& v) -> const Value* { return v.find("id") != nullptr ? v.find("id") : v.find("image"); };
+  Value out = Value::array();
+  for (std::size_t i = 0; i < section.size(); ++i) {
+    const Value written = Codec<T>::write(section[i]);
+    const Value* before = nullptr;
+    if (original != nullptr && original->is_array()) {
+      const auto& entries = original->as_array();
+      if (i < entries.size() && (id_of(written) == nullptr || (id_of(entries[i]) != nullptr && *id_of(entries[i]) == *id_of(written))))
+        before = &entries[i];
+      for (std::size_t k = 0; before == nullptr && id_of(written) != nullptr && k < entries.size(); ++k)
+        if (id_of(entries[k]) != nullptr && *id_of(entries[k]) == *id_of(written)) before = &entries[k];
+    }
+    out.push_back(write_entry(section[i], before));
+  }
+  return out;
+}
+
+// --- references between sections ---
+
+template <class T>
+void must_exist(const std::map<std::string, T>& section, const std::string& section_name, const std::string& key,
+                const std::string& where) {
+  if (key.empty() || section.contains(key)) return;
+  std::string names;
+  for (const auto& [name, entry] : section) names += (names.empty() ? "" : ", ") + name;
+  throw Error(Exit::data, where, "names \"" + key + "\", which is not in " + section_name,
+              names.empty() ? "that section is empty" : "there is " + (names.size() > 80 ? names.substr(0, 77) + "..." : names));
+}
+
+template <class T>
+void unique_ids(const std::vector<T>& section, const std::string& place) {
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < section.size(); ++i)
+    if (!seen.insert(section[i].id).second)
+      throw Error(Exit::data, item(place, i) + "/id", "\"" + section[i].id + "\" stands twice", "give every entry its own id");
+}
+
+void check_images(const Document& d) {
+  unique_ids(d.images, place(d, "/images"));
+  for (std::size_t i = 0; i < d.images.size(); ++i) {
+    const ImageEntry& image = d.images[i];
+    const std::string at = place(d, "/images/" + std::to_string(i));
+    must_exist(d.files, "files", image.file, at + "/file");
+    must_exist(d.files, "files", image.mask, at + "/mask");
+    must_exist(d.cameras, "cameras", image.camera, at + "/camera");
+    must_exist(d.boards, "boards", image.board, at + "/board");
+    for (const auto& light : image.light) must_exist(d.lights, "lights", light, at + "/light");
+  }
+}
+
+void check_references(const Document& d) {
+  check_images(d);
+  unique_ids(d.objects, place(d, "/objects"));
+  for (std::size_t i = 0; i < d.objects.size(); ++i) {
+    const std::string at = place(d, "/objects/" + std::to_string(i));
+    must_exist(d.meshes, "meshes", d.objects[i].mesh, at + "/mesh");
+    must_exist(d.surfaces, "surfaces", d.objects[i].surface, at + "/surface");
+  }
+  for (const auto& [name, mesh] : d.meshes) {
+    const std::string at = place(d, "/meshes/" + name);
+    must_exist(d.files, "files", mesh.file, at + "/file");
+    if (!mesh.file.empty() + mesh.sphere_radius_m.has_value() + mesh.plane_size_m.has_value() != 1)
+      throw Error(Exit::data, at, "needs exactly one of \"file\", \"sphere\", \"plane\"");
+  }
+  for (const auto& [name, surface] : d.surfaces)
+    for (const auto& [parameter, file] : surface.textures)
+      must_exist(d.files, "files", file, place(d, "/surfaces/" + name + "/textures/" + parameter));
+  for (const auto& [name, light] : d.lights) must_exist(d.files, "files", light.file, place(d, "/lights/" + name + "/file"));
+  for (const auto& [name, table] : d.tables) {
+    const std::string at = place(d, "/tables/" + name);
+    must_exist(d.files, "files", table.file, at + "/file");
+    must_exist(d.cameras, "cameras", table.camera, at + "/camera");
+    must_exist(d.boards, "boards", table.board, at + "/board");
+  }
+  for (std::size_t i = 0; i < d.renderings.size(); ++i)
+    must_exist(d.files, "files", d.renderings[i].file, place(d, "/renderings/" + std::to_string(i) + "/file"));
+}
+
+const std::vector<std::string>& section_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> out{"gonio", "provenance"};
+    Document d;
+    for_each_section(d, [&out](const char* key, auto&) { out.emplace_back(key); });
+    return out;
+  }();
+  return names;
+}
+
+}  // namespace
+
+std::string place(const Document& document, const std::string& pointer) { return document.name + "#" + pointer; }
+
+Document parse_document(std::string_view text, const std::string& name, const fs::path& folder, const ReadOptions& options) {
+  Document d;
+  d.name = name;
+  d.folder = folder.empty() ? fs::path(".") : folder;
+  d.allow_outside = options.allow_outside;
+  d.original = parse_json(text, name);
+  expect_object(d.original, name);
+  const Value* version = d.original.find("gonio");
+  if (version == nullptr)
+    throw Error(Exit::data, name + "#", "is not a gonio manifest: the key \"gonio\" is missing", "a manifest starts with {\"gonio\": 1");
+  if (!version->is_integer() || version->as_integer() != 1)
+    throw Error(Exit::data, name + "#/gonio", "is " + print_json(*version, -1) + ", this program reads version 1");
+  for (const auto& [key, member] : d.original.as_object())
+    if (!key.starts_with("x-") && std::ranges::find(section_names(), key) == section_names().end())
+      unknown_key(key, section_names(), name + "#");
+  for_each_section(d, [&d](const char* key, auto& section) {
+    if (const Value* v = d.original.find(key)) read_section(section, *v, place(d, std::string("/") + key));
+  });
+  if (const Value* v = d.original.find("provenance")) {
+    expect_object(*v, place(d, "/provenance"));
+    d.provenance = *v;
+  }
+  check_references(d);
+  return d;
+}
+
+Document read_document(const fs::path& path, const ReadOptions& options) {
+  if (path == "-") {
+    const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
+    if (text.empty()) throw Error(Exit::no_input, "standard input", "is empty", "pipe a manifest in, or name one with -i");
+    return parse_document(text, "standard input", ".", options);
+  }
+  return parse_document(read_file(path), path.string(), path.parent_path(), options);
+}
+
+Value to_value(const Document& d, const fs::path& folder) {
+  Value out = Value::object({{"gonio", 1}});
+  Document copy = d;
+  const fs::path target = fs::absolute(folder.empty() ? fs::path(".") : folder).lexically_normal();
+  const fs::path source = fs::absolute(d.folder).lexically_normal();
+  if (target != source)
+    for (auto& [id, file] : copy.files) file.path = (source / file.path).lexically_normal().lexically_relative(target).generic_string();
+  for_each_section(copy, [&](const char* key, auto& section) {
+    const Value* original = d.original.find(key);
+    Value v = write_section(section, original);
+    if (!v.is_null()) out[key] = std::move(v);
+  });
+  if (!d.provenance.as_object().empty() || d.original.find("provenance") != nullptr) out["provenance"] = d.provenance;
+  if (d.original.is_object())
+    for (const auto& [key, member] : d.original.as_object())
+      if (key.starts_with("x-")) out[key] = member;
+  return out;
+}
+
+std::string print_document(const Document& d, const fs::path& folder) { return print_json(to_value(d, folder)) + "\n"; }
+
+std::string content_id(const Document& d) {
+  Value v = to_value(d, d.folder);
+  if (v.find("provenance") != nullptr)
+    if (Value& provenance = v["provenance"]; provenance.find("steps") != nullptr)
+      for (auto& [key, step] : provenance["steps"].as_object())
+        std::erase_if(step.as_object(), [](const Value::Member& m) { return m.first == "time" || m.first == "host"; });
+  return sha256(canonical_json(v));
+}
+
+void record_step(Document& d, const Step& step) {
+  Value node = Value::object({{"program", step.program}, {"version", step.version}, {"options", step.options}});
+  Value inputs = Value::array();
+  for (const auto& hash : std::set<std::string>(step.input_hashes.begin(), step.input_hashes.end())) inputs.push_back(hash);
+  node["inputs"] = std::move(inputs);
+  if (!step.input_id.empty()) node["manifest"] = step.input_id;
+  const Value* last = d.provenance.find("last");
+  if (last != nullptr) node["after"] = *last;
+  const std::string id = sha256(canonical_json(node)).substr(0, 16);
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
+  char text[32] = "";
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  node["time"] = text;
+  node["host"] = static_cast<const char*>(host);
+  d.provenance["steps"][id] = std::move(node);
+  d.provenance["last"] = id;
+}
+
+fs::path resolve(const Document& d, const std::string& file_id, const std::string& user) {
+  const auto found = d.files.find(file_id);
+  const std::string where = place(d, user);
+  if (found == d.files.end()) throw Error(Exit::data, where, "names file \"" + file_id + "\", which is not in files");
+  const File& file = found->second;
+  const std::string at = place(d, "/files/" + file_id);
+  const fs::path path = (d.folder / file.path).lexically_normal();
+  if (!d.allow_outside) {
+    std::error_code ignored;
+    const fs::path root = fs::weakly_canonical(d.folder.empty() ? "." : d.folder, ignored);
+    const fs::path inside = fs::weakly_canonical(path, ignored).lexically_relative(root);
+    if (inside.empty() || *inside.begin() == "..")
+      throw Error(Exit::data, at + "/path", "\"" + file.path + "\" leaves the manifest's folder", "move the file, or allow it with --allow-outside");
+  }
+  std::error_code error;
+  const auto bytes = fs::file_size(path, error);
+  if (error) throw Error(Exit::no_input, at + "/path", "\"" + file.path + "\" cannot be read: " + error.message());
+  if (file.bytes && *file.bytes != bytes)
+    throw Error(Exit::data, at, "\"" + file.path + "\" has " + std::to_string(bytes) + " bytes, the manifest says " + std::to_string(*file.bytes),
+                "restore the file, or make the manifest anew");
+  if (!file.sha256.empty() && sha256_of_file(path) != file.sha256)
+    throw Error(Exit::data, at, "\"" + file.path + "\" has another SHA-256 than the manifest says", "restore the file, or make the manifest anew");
+  return path;
+}
+
+std::string add_file(Document& d, const fs::path& path, const std::string& id) {
+  File file;
+  file.path = fs::absolute(path).lexically_normal().lexically_relative(fs::absolute(d.folder).lexically_normal()).generic_string();
+  file.bytes = fs::file_size(path);
+  file.sha256 = sha256_of_file(path);
+  std::string name = id;
+  for (int n = 2; d.files.contains(name) && d.files[name].path != file.path; ++n) name = id + "-" + std::to_string(n);
+  d.files[name] = file;
+  return name;
+}
+
+}  // namespace gonio::manifest

@@ -1,0 +1,53 @@
+// The field tables of the manifest's sections, and the codecs that follow from them. Defined in sections.cpp.
+#pragma once
+#include <vector>
+
+#include "manifest/fields.h"
+#include "manifest/sections.h"
+
+namespace gonio::manifest {
+
+const std::vector<Field<File>>& file_fields();
+const std::vector<Field<Link>>& link_fields();
+const std::vector<Field<Board>>& board_fields();
+const std::vector<Field<Camera>>& camera_fields();
+const std::vector<Field<ImageEntry>>& image_fields();
+const std::vector<Field<Mesh>>& mesh_fields();
+const std::vector<Field<Object>>& object_fields();
+const std::vector<Field<Table>>& table_fields();
+const std::vector<Field<Rendering>>& rendering_fields();
+const std::vector<Field<Comparison>>& comparison_fields();
+
+#define GONIO_RECORD(TYPE, TABLE)                                                                                    \
+  template <>                                                                                                        \
+  struct Codec<TYPE> {                                                                                               \
+    static TYPE read(const Value& value, const std::string& place) { return read_record(value, TABLE(), place); }    \
+    static Value write(const TYPE& member) { return write_record(member, TABLE()); }                                 \
+    static Value schema() { return record_schema(TABLE()); }                                                         \
+  }
+GONIO_RECORD(File, file_fields);
+GONIO_RECORD(Link, link_fields);
+GONIO_RECORD(Board, board_fields);
+GONIO_RECORD(Camera, camera_fields);
+GONIO_RECORD(ImageEntry, image_fields);
+GONIO_RECORD(Mesh, mesh_fields);
+GONIO_RECORD(Object, object_fields);
+GONIO_RECORD(Table, table_fields);
+GONIO_RECORD(Rendering, rendering_fields);
+GONIO_RECORD(Comparison, comparison_fields);
+#undef GONIO_RECORD
+
+// Surfaces, lights and mechanisms are read against the registries instead of a table.
+#define GONIO_REGISTERED(TYPE)                                     \
+  template <>                                                      \
+  struct Codec<TYPE> {                                             \
+    static TYPE read(const Value& value, const std::string& place); \
+    static Value write(const TYPE& member);                        \
+    static Value schema();                                         \
+  }
+GONIO_REGISTERED(Surface);
+GONIO_REGISTERED(Light);
+GONIO_REGISTERED(MechanismUse);
+#undef GONIO_REGISTERED
+
+}  // namespace gonio::manifest

@@ -1,0 +1,357 @@
+#include "manifest/section_tables.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "manifest/model.h"
+
+namespace gonio::manifest {
+namespace {
+
+template <class Record>
+Field<Record> custom(std::string name, std::string unit, std::string sentence, Value schema,
+                     std::function<void(Record&, const Value&, const std::string&)> read,
+                     std::function<Value(const Record&)> write) {
+  Field<Record> f;
+  f.name = std::move(name);
+  f.unit = std::move(unit);
+  f.sentence = std::move(sentence);
+  f.schema = std::move(schema);
+  f.read = std::move(read);
+  f.write = std::move(write);
+  return f;
+}
+
+// A number stands for a list of one in "sigma": {"fx_px": 0.6}.
+template <class Record>
+Field<Record> sigma_field(Sigmas Record::*member) {
+  return custom<Record>(
+      "sigma", "", "one standard deviation beside each fitted value, under the same key", Codec<Value>::schema(),
+      [member](Record& r, const Value& v, const std::string& place) {
+        expect_object(v, place);
+        for (const auto& [key, value] : v.as_object()) {
+          const std::string at = place + "/" + key;
+          const auto numbers = value.is_number() ? std::vector<double>{Codec<double>::read(value, at)}
+                                                 : Codec<std::vector<double>>::read(value, at);
+          for (const double s : numbers)
+            if (s < 0) throw Error(Exit::data, at, "is negative", "a standard deviation is 0 or more");
+          (r.*member)[key] = numbers;
+        }
+      },
+      [member](const Record& r) {
+        if ((r.*member).empty()) return Value();
+        Value out = Value::object();
+        for (const auto& [key, numbers] : r.*member) out[key] = numbers.size() == 1 ? Value(numbers[0]) : Value(numbers);
+        return out;
+      });
+}
+
+Value shape_schema(const char* key, Value schema) {
+  return Value::object({{"type", "object"}, {"properties", Value::object({{key, std::move(schema)}})},
+                        {"required", Value(Value::Array{key})}, {"additionalProperties", false}});
+}
+
+}  // namespace
+
+const std::vector<Field<File>>& file_fields() {
+  static const std::vector<Field<File>> table{
+      field("path", &File::path, "", "where it lies, relative to the manifest's folder, with forward slashes").needed(),
+      field("bytes", &File::bytes, "B", "its size; checked before it is read"),
+      field("sha256", &File::sha256, "", "its SHA-256, 64 hexadecimal digits; checked before it is used")};
+  return table;
+}
+
+const std::vector<Field<Link>>& link_fields() {
+  static const std::vector<Field<Link>> table{
+      field("to", &Link::to, "", "frame in which the result is expressed").needed(),
+      field("from", &Link::from, "", "frame in which the argument is expressed").needed(),
+      field("rotation", &Link::rotation, "", "unit quaternion [w, x, y, z]"),
+      field("translation_m", &Link::translation_m, "m", "origin of `from`, in `to`"),
+      field("sigma", &Link::sigma, "", "one standard deviation of the motion")};
+  return table;
+}
+
+const std::vector<Field<Board>>& board_fields() {
+  static const std::vector<Field<Board>> table{
+      field("kind", &Board::kind, "", "checkerboard or charuco").one_of({"checkerboard", "charuco"}).needed(),
+      field("inner_corners", &Board::inner_corners, "", "checkerboard: columns and rows of inner corners").range(2, 1000),
+      field("squares", &Board::squares, "", "charuco: columns and rows of squares").range(2, 1000),
+      field("square_m", &Board::square_m, "m", "side of a square").positive().needed(),
+      field("marker_m", &Board::marker_m, "m", "charuco: side of a marker").positive(),
+      field("dictionary", &Board::dictionary, "", "charuco: 4X4_50, 5X5_1000, ..."),
+      field("legacy_layout", &Board::legacy_layout, "", "charuco: the layout of OpenCV before 4.6; left out: found from the pictures"),
+      field("warp", &Board::warp, "m", "board.warp: sag_x_m and sag_y_m of the middle against the edges"),
+      sigma_field(&Board::sigma)};
+  return table;
+}
+
+const std::vector<Field<Camera>>& camera_fields() {
+  static const std::vector<Field<Camera>> table{
+      field("model", &Camera::model, "", "how rays map to pixels").one_of({"pinhole", "radial-tangential", "thin-prism", "orthographic"}),
+      field("width_px", &Camera::width_px, "px", "columns").range(1, 1 << 20),
+      field("height_px", &Camera::height_px, "px", "rows").range(1, 1 << 20),
+      field("fx_px", &Camera::fx_px, "px", "focal length along x").positive(),
+      field("fy_px", &Camera::fy_px, "px", "focal length along y").positive(),
+      field("cx_px", &Camera::cx_px, "px", "principal point; pixel centres lie at integers"),
+      field("cy_px", &Camera::cy_px, "px", "principal point; pixel centres lie at integers"),
+      field("px_per_m", &Camera::px_per_m, "px/m", "orthographic: pixels per metre").positive(),
+      field("distortion", &Camera::distortion, "", "k1 k2 p1 p2 k3 s1 s2 s3 s4, left out: 0"),
+      sigma_field(&Camera::sigma),
+      field("rms_px", &Camera::rms_px, "px", "root mean square of the reprojection error of the fit").range(0, infinite),
+      field("covariance", &Camera::covariance, "", "of the fit: {\"order\": [names], \"values\": [[...]]}")};
+  return table;
+}
+
+const std::vector<Field<ImageEntry>>& image_fields() {
+  static const std::vector<Field<ImageEntry>> table{
+      field("id", &ImageEntry::id, "", "name, unique among images").needed(),
+      field("file", &ImageEntry::file, "", "file id of the recording"),
+      field("camera", &ImageEntry::camera, "", "name of its camera"),
+      field("world_from_camera", &ImageEntry::world_from_camera, "", "takes camera to world coordinates; left out: identity"),
+      custom<ImageEntry>(
+          "light", "", "name or names of the lights that are on; left out: all of the scene", Codec<Value>::schema(),
+          [](ImageEntry& r, const Value& v, const std::string& place) {
+            r.light = v.is_string() ? std::vector<std::string>{v.as_string()} : Codec<std::vector<std::string>>::read(v, place);
+          },
+          [](const ImageEntry& r) {
+            return r.light.empty() ? Value() : r.light.size() == 1 ? Value(r.light[0]) : Value(r.light);
+          }),
+      field("exposure_s", &ImageEntry::exposure_s, "s", "exposure time").positive(),
+      field("response", &ImageEntry::response, "", "linear, srgb, or a table [[code, linear], ...]"),
+      field("mask", &ImageEntry::mask, "", "file id; pixels above 0.5 count"),
+      field("board", &ImageEntry::board, "", "name of the board it shows"),
+      field("camera_from_board", &ImageEntry::camera_from_board, "", "takes board to camera coordinates"),
+      field("rms_px", &ImageEntry::rms_px, "px", "root mean square of the reprojection error in this image").range(0, infinite),
+      field("weight", &ImageEntry::weight, "", "in fits; 0: dropped").range(0, 1),
+      field("noise", &ImageEntry::noise, "", "of a linear value v: variance v / gain + read^2"),
+      field("gain", &ImageEntry::gain, "", "factor on the simulated radiance; free: unknown exposure"),
+      field("group", &ImageEntry::group, "", "recordings that belong together are held out together")};
+  return table;
+}
+
+const std::vector<Field<Mesh>>& mesh_fields() {
+  const auto nested = [](const Value& v, const char* key, const std::string& place) -> const Value& {
+    expect_object(v, place);
+    for (const auto& [name, member] : v.as_object())
+      if (name != key && !name.starts_with("x-")) unknown_key(name, {key}, place);
+    if (v.find(key) == nullptr) missing_key(key, "the shape's size", place);
+    return *v.find(key);
+  };
+  static const std::vector<Field<Mesh>> table{
+      field("file", &Mesh::file, "", "file id of a PLY mesh"),
+      custom<Mesh>("sphere", "", "{\"radius_m\": r}: a sphere about the object's origin",
+                   shape_schema("radius_m", Value::object({{"type", "number"}, {"exclusiveMinimum", 0}})),
+                   [nested](Mesh& m, const Value& v, const std::string& place) {
+                     const Value& r = nested(v, "radius_m", place);
+                     m.sphere_radius_m = Codec<double>::read(r, place + "/radius_m");
+                     check_range(r, tiny, infinite, "m", place + "/radius_m");
+                   },
+                   [](const Mesh& m) {
+                     return m.sphere_radius_m ? Value::object({{"radius_m", *m.sphere_radius_m}}) : Value();
+                   }),
+      custom<Mesh>("plane", "", "{\"size_m\": [x, y]}: a rectangle in its own xy plane about its origin, normal +z",
+                   shape_schema("size_m", Codec<std::vector<double>>::schema()),
+                   [nested](Mesh& m, const Value& v, const std::string& place) {
+                     const Value& s = nested(v, "size_m", place);
+                     m.plane_size_m = Codec<std::vector<double>>::read(s, place + "/size_m");
+                     check_range(s, tiny, infinite, "m", place + "/size_m");
+                     if (m.plane_size_m->size() != 2) wrong_type(s, "two lengths [x, y]", place + "/size_m");
+                   },
+                   [](const Mesh& m) { return m.plane_size_m ? Value::object({{"size_m", *m.plane_size_m}}) : Value(); }),
+      field("normals", &Mesh::normals, "", "smooth (the file's, else averaged by area and angle) or flat").one_of({"smooth", "flat"})};
+  return table;
+}
+
+const std::vector<Field<Object>>& object_fields() {
+  static const std::vector<Field<Object>> table{
+      field("id", &Object::id, "", "name, unique among objects").needed(),
+      field("mesh", &Object::mesh, "", "name of its mesh").needed(),
+      field("surface", &Object::surface, "", "name of its surface").needed(),
+      field("world_from_object", &Object::world_from_object, "", "takes object to world coordinates; left out: identity")};
+  return table;
+}
+
+const std::vector<Field<Table>>& table_fields() {
+  static const std::vector<Field<Table>> table{
+      field("file", &Table::file, "", "file id of a CSV file with a header line"),
+      field("rows", &Table::rows, "", "the rows themselves, [[...], ...], in the order of `columns`"),
+      field("model", &Table::model, "", "forward model that predicts it: camera"),
+      custom<Table>(
+          "columns", "", "name to unit, in the file's order", Codec<std::map<std::string, std::string>>::schema(),
+          [](Table& t, const Value& v, const std::string& place) {
+            expect_object(v, place);
+            for (const auto& [name, unit] : v.as_object())
+              t.columns.emplace_back(name, Codec<std::string>::read(unit, place + "/" + name));
+          },
+          [](const Table& t) {
+            Value out;
+            for (const auto& [name, unit] : t.columns) out[name] = unit;
+            return out;
+          }),
+      field("observed", &Table::observed, "", "columns that were measured"),
+      field("sigma", &Table::sigma, "", "columns with one standard deviation of them"),
+      field("camera", &Table::camera, "", "model camera: name of the camera"),
+      field("board", &Table::board, "", "model camera: name of the board")};
+  return table;
+}
+
+const std::vector<Field<Rendering>>& rendering_fields() {
+  static const std::vector<Field<Rendering>> table{
+      field("image", &Rendering::image, "", "id of the image that was simulated").needed(),
+      field("file", &Rendering::file, "", "file id of the EXR").needed(),
+      field("spp", &Rendering::spp, "", "samples per pixel").range(1, 1e9),
+      field("seed", &Rendering::seed, "", "of the random numbers")};
+  return table;
+}
+
+const std::vector<Field<Comparison>>& comparison_fields() {
+  static const std::vector<Field<Comparison>> table{
+      field("image", &Comparison::image, "", "id of the image").needed(),
+      field("exposure_scale", &Comparison::exposure_scale, "", "factor on the rendering that was fitted"),
+      field("rmse", &Comparison::rmse, "", "root mean square difference, in the recording's unit"),
+      field("relative_rmse", &Comparison::relative_rmse, "", "rmse over the root mean square of the recording"),
+      field("ssim", &Comparison::ssim, "", "mean structural similarity (Wang et al. 2004)"),
+      field("log10_error", &Comparison::log10_error, "", "see compare(1)"),
+      field("z_rms", &Comparison::z_rms, "", "root mean square of difference over its standard deviation"),
+      field("pixels", &Comparison::pixels, "", "pixels that counted"),
+      sigma_field(&Comparison::sigma),
+      field("files", &Comparison::files, "", "file ids of what was written beside it")};
+  return table;
+}
+
+namespace {
+
+// Values of `parameters` against what the model declares. Scalars stand for three equal colours where a colour is wanted.
+void check_parameter(const ParameterInfo& info, const Value& raw, const Parameter& p, const std::string& place) {
+  const auto n = static_cast<int>(p.value.size());
+  if (n != info.components && !(info.rgb && n == 1))
+    throw Error(Exit::data, place, "has " + std::to_string(n) + " numbers, " + std::to_string(info.components) + " are needed");
+  check_range(raw, info.lower, info.upper, info.unit, place);
+}
+
+}  // namespace
+
+template <class Record>
+Record read_modelled(Family family, const Value& v, const std::string& place) {
+  expect_object(v, place);
+  Record out;
+  if (const Value* model = v.find("model")) out.model = Codec<std::string>::read(*model, place + "/model");
+  const ModelInfo* info = find_model(family, out.model);
+  if (info == nullptr) {
+    std::vector<std::string> known;
+    for (const ModelInfo* m : models(family)) known.push_back(m->id);
+    check_choice(Value(out.model), known, place + "/model");
+    throw Error(Exit::data, place + "/model", "is \"" + out.model + "\", which no model of this build is called");
+  }
+  for (const auto& [key, member] : v.as_object()) {
+    const std::string at = place + "/" + key;
+    if (key == "model" || key.starts_with("x-")) continue;
+    if (key == "sigma") {
+      expect_object(member, at);
+      for (const auto& [name, value] : member.as_object())
+        out.sigma[name] = value.is_number() ? std::vector<double>{value.as_number()} : Codec<std::vector<double>>::read(value, at + "/" + name);
+      continue;
+    }
+    if constexpr (requires { out.textures; }) {
+      if (key == "textures") {
+        out.textures = Codec<std::map<std::string, std::string>>::read(member, at);
+        continue;
+      }
+    }
+    if constexpr (requires { out.file; }) {
+      if (key == "file" && info->takes_file) {
+        out.file = Codec<std::string>::read(member, at);
+        continue;
+      }
+    }
+    const auto found = std::ranges::find(info->parameters, key, &ParameterInfo::name);
+    if (found == info->parameters.end()) {
+      std::vector<std::string> known{"model", "sigma"};
+      for (const auto& p : info->parameters) known.push_back(p.name);
+      unknown_key(key, known, place);
+    }
+    out.parameters[key] = Codec<Parameter>::read(member, at);
+    check_parameter(*found, member, out.parameters[key], at);
+  }
+  for (const auto& p : info->parameters) {
+    bool textured = false;
+    if constexpr (requires { out.textures; }) textured = out.textures.contains(p.name);
+    if (!p.preset && !out.parameters.contains(p.name) && !textured) missing_key(p.name, p.meaning, place);
+  }
+  return out;
+}
+
+Surface Codec<Surface>::read(const Value& v, const std::string& place) { return read_modelled<Surface>(Family::surface, v, place); }
+Light Codec<Light>::read(const Value& v, const std::string& place) { return read_modelled<Light>(Family::light, v, place); }
+
+namespace {
+void write_parameters(const Parameters& parameters, const Sigmas& sigma, Value& out) {
+  for (const auto& [name, p] : parameters)
+    if (p.given()) out[name] = Codec<Parameter>::write(p);
+  for (const auto& [name, numbers] : sigma) out["sigma"][name] = numbers.size() == 1 ? Value(numbers[0]) : Value(numbers);
+}
+}  // namespace
+
+Value Codec<Surface>::write(const Surface& m) {
+  Value out = Value::object({{"model", m.model}});
+  write_parameters(m.parameters, m.sigma, out);
+  for (const auto& [parameter, file] : m.textures) out["textures"][parameter] = file;
+  return out;
+}
+Value Codec<Light>::write(const Light& m) {
+  Value out = Value::object({{"model", m.model}});
+  if (!m.file.empty()) out["file"] = m.file;
+  write_parameters(m.parameters, m.sigma, out);
+  return out;
+}
+
+namespace {
+Value modelled_schema(Family family) {
+  Value alternatives = Value::array();
+  for (const ModelInfo* model : models(family)) {
+    Value properties = Value::object({{"model", Value::object({{"const", model->id}})}});
+    Value required = Value(Value::Array{"model"});
+    for (const auto& p : model->parameters) {
+      Value s = Codec<Parameter>::schema();
+      s["description"] = p.meaning + (p.unit.empty() || p.unit == "1" ? "" : " [" + p.unit + "]");
+      properties[p.name] = std::move(s);
+    }
+    properties["sigma"] = Value::object();
+    if (family == Family::surface) properties["textures"] = Codec<std::map<std::string, std::string>>::schema();
+    if (model->takes_file) properties["file"] = Codec<std::string>::schema();
+    alternatives.push_back(Value::object({{"title", model->id}, {"description", model->sentence}, {"type", "object"},
+                                          {"properties", std::move(properties)},
+                                          {"patternProperties", Value::object({{"^x-", Value::object()}})},
+                                          {"required", std::move(required)}, {"additionalProperties", false}}));
+  }
+  return Value::object({{"oneOf", std::move(alternatives)}});
+}
+}  // namespace
+Value Codec<Surface>::schema() { return modelled_schema(Family::surface); }
+Value Codec<Light>::schema() { return modelled_schema(Family::light); }
+
+MechanismUse Codec<MechanismUse>::read(const Value& v, const std::string& place) {
+  expect_object(v, place);
+  MechanismUse out;
+  for (const auto& [key, member] : v.as_object()) {
+    const std::string at = place + "/" + key;
+    if (key == "on") out.on = member.is_string() ? std::vector<std::string>{member.as_string()} : Codec<std::vector<std::string>>::read(member, at);
+    else if (key == "sigma") {
+      expect_object(member, at);
+      for (const auto& [name, value] : member.as_object())
+        out.sigma[name] = value.is_number() ? std::vector<double>{value.as_number()} : Codec<std::vector<double>>::read(value, at + "/" + name);
+    } else if (!key.starts_with("x-")) {
+      out.parameters[key] = Codec<Parameter>::read(member, at);
+    }
+  }
+  return out;
+}
+Value Codec<MechanismUse>::write(const MechanismUse& m) {
+  Value out = Value::object();
+  if (!m.on.empty()) out["on"] = m.on;
+  write_parameters(m.parameters, m.sigma, out);
+  return out;
+}
+Value Codec<MechanismUse>::schema() { return Value::object({{"type", "object"}}); }
+
+}  // namespace gonio::manifest

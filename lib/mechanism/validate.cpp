@@ -1,0 +1,47 @@
+#include "mechanism/validate.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+namespace {
+
+bool exists(const manifest::Document& d, Target target, const std::string& name) {
+  switch (target) {
+    case Target::surface: return d.surfaces.contains(name);
+    case Target::light: return d.lights.contains(name);
+    case Target::camera: return d.cameras.contains(name);
+    case Target::board: return d.boards.contains(name);
+    case Target::scene: return false;
+  }
+  return false;
+}
+
+std::string known_parameters(const Mechanism& m) {
+  std::string out;
+  for (const auto& p : m.parameters) out += (out.empty() ? "" : ", ") + p.name;
+  return out;
+}
+
+}  // namespace
+
+void validate_uses(const manifest::Document& d) {
+  for (const auto& [id, use] : d.mechanisms) {
+    const std::string at = manifest::place(d, "/mechanisms/" + id);
+    const Mechanism* m = find_mechanism(id);
+    if (m == nullptr) throw Error(Exit::data, at, "is no mechanism that gonio knows", "explain --list prints them");
+    for (const auto& name : use.on)
+      if (!exists(d, m->target, name)) throw Error(Exit::data, at + "/on", "names \"" + name + "\", which the manifest does not have");
+    for (const auto& [name, parameter] : use.parameters) {
+      if (std::ranges::find(m->parameters, name, &Parameter::name) == m->parameters.end())
+        throw Error(Exit::data, at + "/" + name, "is no parameter of " + id, "there is " + known_parameters(*m));
+      if (parameter.value.size() != 1 && parameter.value.size() != use.on.size())
+        throw Error(Exit::data, at + "/" + name, "has " + std::to_string(parameter.value.size()) + " numbers",
+                    "give one, or one for each name in \"on\"");
+    }
+  }
+}
+
+}  // namespace gonio::mechanism
