@@ -101,10 +101,12 @@ class Tracer {
   Rgb replicate_mean(int x, int y, int replicate, Scratch& scratch) const {
     const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(view_.camera.width_px()) +
                        static_cast<std::uint64_t>(x);
-    Random random(seed_, (pixel << 24) + static_cast<std::uint64_t>(replicate));
-    scratch.strata.shuffle(random);
+    const std::uint64_t stream = ((pixel << 24) + static_cast<std::uint64_t>(replicate)) << 7;
+    Random order(seed_, stream + scratch.strata.cells());
+    scratch.strata.shuffle(order);
     Rgb sum;
     for (std::size_t sample = 0; sample < scratch.strata.cells(); ++sample) {
+      Random random(seed_, stream + sample);  // of its own, so that the length of one path does not disturb the next
       const Vec2 at = Vec2{x - 0.5, y - 0.5} + scratch.strata.draw(0, sample, random);
       const Split light = trace(at, sample, random, scratch);
       const double factor = scene::vignetting(scene_.appearance.vignetting_falloff, view_.camera.width_px(),
@@ -122,11 +124,7 @@ class Tracer {
   Split trace(Vec2 pixel, std::size_t sample, Random& random, Scratch& scratch) const {
     auto [origin_m, direction] = world_ray(pixel);
     auto point = caster_.closest(origin_m, direction);
-    Split light;
-    for (const light::Emitter* emitter : emitters_) {
-      const light::Hit hit = emitter->hit(origin_m, direction);
-      if (reaches(*emitter, hit, point)) light.direct += hit.radiance;
-    }
+    Split light{.direct = seen_lights(origin_m, direction, point), .indirect = {}};
     if (point) ++scratch.met;
     Rgb throughput{1, 1, 1};
     for (int event = 1; point && event <= options_.max_bounces; ++event) {
@@ -152,6 +150,23 @@ class Tracer {
       point = beyond;
     }
     return light;
+  }
+
+  // What the eye sees of the lights themselves. A lamp in front of a surface hides it: `point` is emptied.
+  Rgb seen_lights(Vec3 origin_m, Vec3 direction, std::optional<SurfacePoint>& point) const {
+    Rgb surroundings;
+    light::Hit nearest;
+    for (const light::Emitter* emitter : emitters_) {
+      const light::Hit hit = emitter->hit(origin_m, direction);
+      if (!reaches(*emitter, hit, point)) continue;
+      if (emitter->infinite())
+        surroundings += hit.radiance;
+      else if (hit.distance_m < nearest.distance_m)
+        nearest = hit;
+    }
+    if (!std::isfinite(nearest.distance_m)) return surroundings;
+    point.reset();
+    return nearest.radiance;
   }
 
   // Arvo & Kirk 1990: a path goes on with probability q and counts 1 / q.

@@ -3,7 +3,8 @@
 // At every vertex each light that is on is sampled once; where a light has an extent the direction drawn from the
 // surface may meet it too, and the two are joined by the power heuristic (Veach 1997, section 9.2.4, beta = 2). Paths
 // end by Russian roulette on their throughput, or after `max_bounces` scattering events. Pixel filter: the pixel's
-// square. Lamps are seen by the camera and by glossy surfaces; they occlude nothing.
+// square. Lamps of finite size are seen, and hide what lies behind them from the camera; they cast no shadows and lie
+// in no other ray's way.
 //
 // The same seed gives the same bytes whatever the number of threads: every replicate of every pixel has its own random
 // numbers.
@@ -17,10 +18,8 @@
 
 namespace gonio::render {
 
-enum class Estimator {
-  combined,
-  lights_only
-};  // lights_only: no use of directions that happen to meet a light (for tests)
+// lights_only makes no use of directions that happen to meet a light; tests hold the two against each other.
+enum class Estimator { combined, lights_only };
 
 struct Options {
   int spp = 256;

@@ -1,0 +1,170 @@
+// Mechanisms edit scenes: neutral values leave every number as it was; models change only where they must.
+#include "scene/mechanisms.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+
+namespace gonio::scene {
+namespace {
+
+using manifest::MechanismUse;
+using manifest::Parameter;
+using mechanism::Mechanism;
+using mechanism::Target;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const Mechanism& mechanism_of(const std::string& id) {
+  for (const Mechanism* m : mechanism::all_mechanisms())
+    if (m->id == id) return *m;
+  throw std::runtime_error("no mechanism " + id);
+}
+
+Surface surface_of(const std::string& id, const std::string& model, const manifest::Parameters& parameters) {
+  Surface surface{.id = id, .model = surface::find(model), .parameters = parameters, .values = {}, .textures = {}};
+  refresh(surface, id);
+  return surface;
+}
+Light light_of(const std::string& id, const std::string& model, const manifest::Parameters& parameters) {
+  Light light{.id = id, .model = light::find(model), .parameters = parameters, .picture = {}, .emitter = {}};
+  refresh(light, id);
+  return light;
+}
+
+Appearance appearance() {
+  Appearance a;
+  a.surfaces = {surface_of("clay", "diffuse", {{"albedo", 0.5}}),
+                surface_of("steel", "metal", {{"f0", 0.6}, {"alpha", 0.2}})};
+  a.lights = {light_of("lamp", "point", {{"position_m", std::vector<double>{0.3, 0, 0.4}}, {"watt_per_sr", 2.0}}),
+              light_of("sky", "uniform", {{"radiance", 0.1}}),
+              light_of("sun", "directional", {{"towards", std::vector<double>{0, 0, 2}}, {"watt_per_m2", 1.0}})};
+  return a;
+}
+
+MechanismUse use(const manifest::Parameters& parameters, const std::vector<std::string>& on = {}) {
+  return {.on = on, .parameters = parameters, .sigma = {}};
+}
+
+const Vec3 wo = normalized(Vec3{0.3, 0.1, 0.8}), wi = normalized(Vec3{-0.4, 0.2, 0.7});
+const Vec3 point_m{0.01, 0.02, 0.03};
+
+std::vector<Vec3> numbers_of(const Appearance& a) {
+  std::vector<Vec3> numbers;
+  for (const Surface& s : a.surfaces) numbers.push_back(s.model->evaluate(s.values, wo, wi));
+  for (const Light& l : a.lights) {
+    const light::Sample sample = l.emitter->sample(point_m, {0.3, 0.6});
+    numbers.insert(numbers.end(), {sample.direction, sample.weight});
+  }
+  numbers.push_back({a.indirect_strength, a.vignetting_falloff, a.ambient ? 1.0 : 0.0});
+  return numbers;
+}
+
+// Walks the registry: whatever is declared for pictures is known here, and vanishes where it says it vanishes.
+TEST(Registry, EveryMechanismOfImagesAppliesAndVanishesAtNeutral) {
+  int count = 0;
+  for (const Mechanism* m : mechanism::all_mechanisms()) {
+    if (std::find(m->domains.begin(), m->domains.end(), "images") == m->domains.end()) continue;
+    if (m->target == Target::camera) continue;
+    ++count;
+    EXPECT_TRUE(applies_to_scenes(*m)) << m->id;
+    Appearance base = appearance(), edited;
+    if (m->id == "transport.indirect") base.indirect_strength = 0;  // its neutral base model
+    edited = base;
+    manifest::Parameters neutral, other;
+    for (const auto& p : m->parameters) {
+      neutral[p.name] = p.neutral;
+      other[p.name] = p.start != p.neutral ? p.start : 0.5 * (p.start + p.upper);
+    }
+    apply_mechanism(edited, *m, use(neutral), {}, "here");
+    EXPECT_EQ(numbers_of(edited), numbers_of(base)) << m->id;
+    apply_mechanism(edited, *m, use({}), {}, "here");
+    EXPECT_EQ(numbers_of(edited), numbers_of(base)) << m->id;
+    apply_mechanism(edited, *m, use(other), {}, "here");
+    EXPECT_NE(numbers_of(edited), numbers_of(base)) << m->id;
+  }
+  EXPECT_GE(count, 7);
+}
+
+TEST(Targets, AreThoseWhoseModelsCanTakeTheParameters) {
+  const Appearance a = appearance();
+  EXPECT_THAT(mechanism_targets(a, mechanism_of("surface.interface")), ElementsAre("clay"));
+  EXPECT_THAT(mechanism_targets(a, mechanism_of("light.finite-size")), ElementsAre("lamp"));
+  EXPECT_THAT(mechanism_targets(a, mechanism_of("light.direction")), ElementsAre("lamp", "sun"));
+  EXPECT_THAT(mechanism_targets(a, mechanism_of("light.ambient")), ElementsAre());
+}
+
+TEST(Interface, TurnsADiffuseSurfaceIntoACoatedOneOfTheSameBase) {
+  Appearance a = appearance();
+  apply_mechanism(a, mechanism_of("surface.interface"), use({{"f0", 0.04}, {"alpha", 0.1}}), {}, "here");
+  EXPECT_EQ(a.surfaces[0].model->info().id, "coated-diffuse");
+  EXPECT_EQ(a.surfaces[0].parameters.at("albedo"), Parameter(0.5));
+  EXPECT_EQ(a.surfaces[1].model->info().id, "metal");
+  const Surface direct = surface_of("x", "coated-diffuse", {{"albedo", 0.5}, {"f0", 0.04}, {"alpha", 0.1}});
+  EXPECT_EQ(a.surfaces[0].model->evaluate(a.surfaces[0].values, wo, wi), direct.model->evaluate(direct.values, wo, wi));
+}
+
+TEST(Together, RoughnessAndInterfaceInEitherOrder) {
+  Appearance a = appearance(), b = appearance();
+  const auto& rough = mechanism_of("surface.diffuse-roughness");
+  const auto& interface = mechanism_of("surface.interface");
+  const MechanismUse sigma = use({{"sigma_rad", 0.4}}), coat = use({{"f0", 0.05}, {"alpha", 0.3}});
+  apply_mechanism(a, rough, sigma, {}, "here");
+  apply_mechanism(a, interface, coat, {}, "here");
+  apply_mechanism(b, interface, coat, {}, "here");
+  apply_mechanism(b, rough, sigma, {}, "here");
+  EXPECT_EQ(numbers_of(a), numbers_of(b));
+}
+
+TEST(Direction, TurnsPositionsAboutTheCentreAndKeepsTheDistance) {
+  Appearance a = appearance();
+  const Vec3 centre{0, 0, 0.1};
+  const manifest::Parameters tilts = {{"tilt_x_rad", std::vector<double>{0.1, 0}},
+                                      {"tilt_y_rad", std::vector<double>{0, 0.2}}};
+  apply_mechanism(a, mechanism_of("light.direction"), use(tilts, {"lamp", "sun"}), centre, "here");
+  const Vec3 before = Vec3{0.3, 0, 0.4} - centre, after = a.lights[0].parameters.at("position_m").vector() - centre;
+  EXPECT_NEAR(norm(before), norm(after), 1e-15);
+  EXPECT_NEAR(std::acos(dot(before, after) / dot(before, before)), 0.1, 1e-12);
+  const Vec3 sun = a.lights[2].emitter->sample(point_m, {}).direction;
+  EXPECT_NEAR(std::acos(sun.z), 0.2, 1e-12);
+}
+
+TEST(Cameras, LensTermsReplaceTheDistortion) {
+  manifest::Camera camera;
+  camera.distortion = {{"k1", -0.1}, {"p1", 0.01}};
+  camera.model = "radial-tangential";
+  apply_mechanism(camera, "c", mechanism_of("lens.radial"), use({{"k1", -0.3}, {"k2", 0.1}}), "here");
+  EXPECT_EQ(camera.distortion.at("k1"), Parameter(-0.3));
+  EXPECT_EQ(camera.distortion.at("k2"), Parameter(0.1));
+  EXPECT_EQ(camera.distortion.at("p1"), Parameter(0.01));
+  apply_mechanism(camera, "c", mechanism_of("lens.thin-prism"), use({{"s1", 0.01}}, {"another"}), "here");
+  EXPECT_EQ(camera.model, "radial-tangential");
+  apply_mechanism(camera, "c", mechanism_of("lens.thin-prism"), use({{"s1", 0.01}}), "here");
+  EXPECT_EQ(camera.model, "thin-prism");
+}
+
+std::string problem_of(const std::string& id, const MechanismUse& what) {
+  Appearance a = appearance();
+  try {
+    apply_mechanism(a, mechanism_of(id), what, {}, "m.json#/mechanisms/" + id);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), Exit::data);
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Refusals, NameThePlace) {
+  EXPECT_THAT(problem_of("surface.interface", use({{"f0", 0.04}}, {"steel"})),
+              HasSubstr("does not apply to \"steel\""));
+  EXPECT_THAT(problem_of("surface.interface", use({{"f0", 0.04}}, {"wood"})),
+              HasSubstr("m.json#/mechanisms/surface.interface/on"));
+  EXPECT_THAT(problem_of("surface.interface", use({{"F0", 0.04}})), HasSubstr("no such parameter"));
+  EXPECT_THAT(problem_of("light.finite-size", use({{"radius_m", std::vector<double>{0.1, 0.2}}}, {"lamp"})),
+              HasSubstr("2 numbers for 1 targets"));
+  EXPECT_THAT(problem_of("light.finite-size", use({{"radius_m", -0.1}})), HasSubstr("-0.1"));
+}
+
+}  // namespace
+}  // namespace gonio::scene
