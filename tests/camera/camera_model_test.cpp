@@ -37,7 +37,8 @@ manifest::Camera real_lens() {  // the left camera of the OpenCV stereo pair
 manifest::Camera random_lens(Random& random) {
   manifest::Camera c = pinhole();
   c.model = "thin-prism";
-  const std::array sizes{0.3, 0.1, 0.003, 0.003, 0.1, 0.003, 0.001, 0.003, 0.001};
+  // Small enough that every lens reaches the corners of the picture (r = 0.8) before it folds back.
+  const std::array sizes{0.08, 0.03, 0.003, 0.003, 0.02, 0.003, 0.001, 0.003, 0.001};
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     c.distortion[std::string(distortion_names[i])] = random.uniform(-sizes[i], sizes[i]);
   }
@@ -46,7 +47,6 @@ manifest::Camera random_lens(Random& random) {
 
 TEST(CameraModel, RayAndProjectionUndoEachOther) {
   Random random(1);
-  int inside = 0;
   for (int lens = 0; lens < 200; ++lens) {
     const CameraModel camera(random_lens(random), "t#/cameras/c");
     for (int i = 0; i < 50; ++i) {
@@ -54,12 +54,10 @@ TEST(CameraModel, RayAndProjectionUndoEachOther) {
       const Ray ray = camera.ray(pixel);
       EXPECT_NEAR(norm(ray.direction), 1, 1e-14);
       const auto back = camera.project(ray.origin_m + ray.direction * random.uniform(0.1, 10));
-      if (!back) continue;
-      ++inside;
+      ASSERT_TRUE(back);
       EXPECT_LT(norm(*back - pixel), 1e-8) << pixel.x << " " << pixel.y;
     }
   }
-  EXPECT_GT(inside, 9900);
 }
 
 TEST(CameraModel, RealLensIsInvertedOverTheWholePicture) {

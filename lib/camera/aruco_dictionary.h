@@ -1,0 +1,10 @@
+// OpenCV's dictionary of a name from marker_dictionary.h. For sources of this folder only: the type is OpenCV's.
+#pragma once
+#include <opencv2/aruco.hpp>
+#include <string>
+
+namespace gonio::camera {
+
+cv::Ptr<cv::aruco::Dictionary> aruco_dictionary(const std::string& name);
+
+}  // namespace gonio::camera

@@ -1,0 +1,126 @@
+// One call for every kind of board, and what can be said about its corners without any lens model: mistakes and noise.
+//
+// A plane homography takes the perspective out; what is left over the grid is smooth (lens, warp) plus noise. Third
+// differences along rows and columns, e(i-1) - 3 e(i) + 3 e(i+1) - e(i+2), remove the smooth part up to its second
+// order and have 20 times the variance of one coordinate; their median absolute deviation gives the noise. A corner
+// that a quadratic through its neighbours misses by far is a mistake, not noise.
+#include "camera/corner_detection.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <opencv2/calib3d.hpp>
+
+#include "camera/board_detectors.h"
+#include "camera/grey_picture.h"
+
+namespace gonio::camera {
+namespace {
+
+constexpr std::size_t least_differences = 12;  // for a noise estimate
+constexpr double gross_share = 0.12;           // of a square
+constexpr double gross_sigmas = 12;
+constexpr double mad_to_sigma = 1.4826;  // of a normal distribution
+
+using Field = std::map<int, Vec2>;  // by corner: deviation from the plane homography, px
+
+double median(std::vector<double> v) {
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
+
+Field deviations(const std::vector<Corner>& corners, const Board& board, double& square_px) {
+  std::vector<cv::Point2d> from, to;
+  for (const Corner& c : corners) {
+    const Vec2 at = board.corner_m(c.id) * (1 / board.square_m);
+    from.emplace_back(at.x, at.y);
+    to.emplace_back(c.pixel.x, c.pixel.y);
+  }
+  const cv::Mat homography = cv::findHomography(from, to, cv::LMEDS);
+  if (homography.empty()) return {};
+  std::vector<cv::Point2d> mapped, shifted, steps = from;
+  for (cv::Point2d& p : steps) p.x += 1;
+  cv::perspectiveTransform(from, mapped, homography);
+  cv::perspectiveTransform(steps, shifted, homography);
+  Field field;
+  std::vector<double> sides;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    field[corners[i].id] = {to[i].x - mapped[i].x, to[i].y - mapped[i].y};
+    sides.push_back(cv::norm(shifted[i] - mapped[i]));
+  }
+  square_px = median(sides);
+  return field;
+}
+
+double noise_of(const Field& field, const Board& board) {
+  std::vector<double> sizes;
+  const auto collect = [&](int id, int step) {
+    const auto a = field.find(id), b = field.find(id + step), c = field.find(id + 2 * step),
+               d = field.find(id + 3 * step);
+    if (a == field.end() || b == field.end() || c == field.end() || d == field.end()) return;
+    const Vec2 third = a->second - b->second * 3 + c->second * 3 - d->second;
+    sizes.push_back(std::abs(third.x));
+    sizes.push_back(std::abs(third.y));
+  };
+  for (const auto& entry : field) {
+    const int id = entry.first;
+    if (id % board.corner_columns + 3 < board.corner_columns) collect(id, 1);
+    if (id / board.corner_columns + 3 < board.corner_rows) collect(id, board.corner_columns);
+  }
+  if (sizes.size() < least_differences) return 0;
+  return mad_to_sigma * median(sizes) / std::sqrt(20.0);
+}
+
+// What a quadratic through the neighbours (up to two steps away) leaves of the corner's deviation; 0 with too few
+// neighbours.
+double misfit(const Field& field, const Board& board, int id) {
+  const int column = id % board.corner_columns, row = id / board.corner_columns;
+  Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 24, 6> a(24, 6);
+  Eigen::Matrix<double, Eigen::Dynamic, 2, 0, 24, 2> b(24, 2);
+  int n = 0;
+  for (int dy = -2; dy <= 2; ++dy) {
+    for (int dx = -2; dx <= 2; ++dx) {
+      if ((dx == 0 && dy == 0) || column + dx < 0 || column + dx >= board.corner_columns) continue;
+      const auto found = field.find(id + dy * board.corner_columns + dx);
+      if (row + dy < 0 || row + dy >= board.corner_rows || found == field.end()) continue;
+      a.row(n) << 1, dx, dy, dx * dx, dx * dy, dy * dy;
+      b.row(n++) << found->second.x, found->second.y;
+    }
+  }
+  if (n < 10) return 0;
+  const auto solver = a.topRows(n).colPivHouseholderQr();
+  if (solver.rank() < 6) return 0;
+  const Eigen::Matrix<double, 1, 2> expected = solver.solve(b.topRows(n)).row(0);
+  const Vec2 here = field.at(id);
+  return std::hypot(here.x - expected(0), here.y - expected(1));
+}
+
+void examine(Detection& detection, const Board& board) {
+  if (detection.corners.size() < 8) return;
+  double square_px = 0;
+  Field field = deviations(detection.corners, board, square_px);
+  if (field.empty()) return;
+  while (true) {  // the worst first: a mistake spoils its neighbours' quadratics too
+    detection.noise_px = noise_of(field, board);
+    std::pair<double, int> worst{0, 0};
+    for (const auto& entry : field) worst = std::max(worst, {misfit(field, board, entry.first), entry.first});
+    if (worst.first <= std::max(gross_share * square_px, gross_sigmas * detection.noise_px)) return;
+    field.erase(worst.second);
+    std::erase_if(detection.corners, [&](const Corner& c) { return c.id == worst.second; });
+    ++detection.gross_errors;
+  }
+}
+
+}  // namespace
+
+Detection detect_board(const io::Image& image, const Board& board, const DetectionOptions& options) {
+  const GreyPicture picture = grey_picture(image);
+  Detection result = board.kind == BoardKind::charuco ? detect_charuco(picture, board, options)
+                                                      : detect_checkerboard(picture, board, options);
+  examine(result, board);
+  return result;
+}
+
+}  // namespace gonio::camera

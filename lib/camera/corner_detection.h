@@ -1,0 +1,53 @@
+// Corners of a calibration board in a photograph: pixels, pixel centres at integers, numbered as in board.h.
+//
+// The board is searched at reduced resolution; every corner is then refined on the full picture as the saddle point at
+// which all grey-level gradients nearby are perpendicular to the line to it (Foerstner & Guelch 1987; OpenCV's
+// cornerSubPix), in a window that is a fixed share of the local size of a square. Refinement fixes the position
+// whatever the search's own convention; OpenCV 4.6 returns ChArUco corners with a shift of about half a pixel, which
+// this avoids. Does not know lenses: prediction is local.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "camera/board.h"
+#include "geom/vector.h"
+#include "io/image.h"
+
+namespace gonio::camera {
+
+struct DetectionOptions {
+  // Half-window of the refinement. 0: a quarter of the local side of a square on checkerboards; on ChArUco boards what
+  // stays clear of the markers, whose borders would pull at the corner.
+  int window_px = 0;
+};
+
+struct Corner {
+  int id = 0;
+  Vec2 pixel;
+};
+
+struct Detection {
+  std::vector<Corner> corners;        // sorted by id; empty where the board was not found
+  double noise_px = 0;                // of one coordinate, estimated without any lens model; 0: too few corners to say
+  int gross_errors = 0;               // corners left out because they do not fit their neighbours
+  int markers = 0;                    // charuco: markers that belong to the board
+  int foreign_markers = 0;            // charuco: of the dictionary, but with ids that the board does not have
+  bool legacy = false;                // charuco: the layout in which the corners were numbered
+  std::array<int, 2> layout_votes{};  // charuco: markers that fit the current and the legacy layout
+  std::string problem;                // why there are no corners
+};
+
+// `image`: grey or RGB of any range; EXR values are linear and may exceed 1.
+Detection detect_board(const io::Image& image, const Board& board, const DetectionOptions& options);
+
+// For messages after nothing was found: the dictionary whose markers fill this picture best and how many it shows;
+// empty name where there are none at all.
+struct DictionaryGuess {
+  std::string family;  // "5X5_1000": the largest of its family
+  int markers = 0;
+  int largest_id = 0;
+};
+DictionaryGuess guess_dictionary(const io::Image& image);
+
+}  // namespace gonio::camera
