@@ -26,6 +26,8 @@ namespace gonio::explain {
 // A quantity known for every row which may carry structure: "camera.image-radius", "surface.incidence".
 // `direction` says how the structure enters a row: residual = direction * curve(value). Empty: 1. Corners use it for the radial
 // (or out-of-board) direction in (u, v); images may use the prediction, so that the curve is a relative error.
+// Neither values nor directions may be computed from the observations they are held against (predictions serve): their noise
+// would explain itself.
 struct Condition {
   std::string name, unit;
   std::string stage;               // of the simulator: lens, light, surface, transport, board, ...

@@ -20,7 +20,10 @@ std::vector<Condition> board_conditions() {
 void append_conditions(const BoardsInput::Camera& camera, const BoardsInput::Board& board, const BoardsInput::View& view,
                        const BoardsInput::Corner& corner, std::vector<Condition>& conditions) {
   const camera::Intrinsics& k = camera.intrinsics;
-  const Vec2 from_centre = corner.pixel - Vec2{k.cx_px, k.cy_px};
+  // The predicted pixel: with the detected one, its noise would be condition and residual at once.
+  Vec2 pixel = corner.pixel;
+  camera::predict(k, view.camera_from_board, board.extent, board.warp, corner.board_m, pixel);
+  const Vec2 from_centre = pixel - Vec2{k.cx_px, k.cy_px};
   const double half_x = 0.5 * camera.width_px, half_y = 0.5 * camera.height_px;
   const double radius_px = norm(from_centre), radius = radius_px / std::hypot(half_x, half_y);
   const Vec2 outward = radius_px > 0 ? from_centre * (1 / radius_px) : Vec2{0, 0};

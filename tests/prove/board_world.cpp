@@ -1,0 +1,190 @@
+// See board_world.h. The lens acts on (t cos, t sin) of the ray's angle; the board's arc keeps its length, as paper does.
+#include "board_world.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+namespace gonio::prove {
+namespace {
+
+using V3 = std::array<double, 3>;
+using M3 = std::array<V3, 3>;
+constexpr double square_m = 0.025, focal_px = 540, centre_x = 322, centre_y = 238;
+constexpr int columns = 9, rows = 6;
+
+double normal(std::mt19937_64& g) { return std::normal_distribution<double>()(g); }
+double between(std::mt19937_64& g, double a, double b) { return std::uniform_real_distribution<double>(a, b)(g); }
+
+M3 product(const M3& a, const M3& b) {
+  M3 c{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 3; ++k) c[i][j] += a[i][k] * b[k][j];
+  return c;
+}
+M3 turn(int axis, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  if (axis == 0) return {{{1, 0, 0}, {0, c, -s}, {0, s, c}}};
+  if (axis == 1) return {{{c, 0, s}, {0, 1, 0}, {-s, 0, c}}};
+  return {{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
+}
+
+// A strip of half length h whose middle stands `sag` above its ends, bent to an arc: where a point at s ends up (along, height).
+std::array<double, 2> on_arc(double s, double h, double sag) {
+  if (sag == 0) return {s, 0};
+  const double radius = (h * h + sag * sag) / (2 * sag), angle = s / radius;
+  return {radius * std::sin(angle), radius * (std::cos(angle) - std::cos(h / radius))};
+}
+
+V3 on_board(int column, int row, const BoardTruth& b) {
+  const double half_x = 0.5 * (columns - 1) * square_m, half_y = 0.5 * (rows - 1) * square_m;
+  const auto x = on_arc(column * square_m - half_x, half_x, b.sag_x_m);
+  const auto y = on_arc(row * square_m - half_y, half_y, b.sag_y_m);
+  return {half_x + x[0] * (1 + b.stretch_x), half_y + y[0], x[1] + y[1]};
+}
+
+std::array<double, 2> through_lens(double x, double y, const LensTruth& lens) {
+  const double t2 = x * x + y * y, t = std::sqrt(t2);
+  double scale = 1 + lens.k1 * t2 + lens.k2 * t2 * t2;
+  if (lens.division != 0 && t > 0) {
+    // r (1 - ...) : t = r / (1 + l r^2)  =>  l t r^2 - r + t = 0, the root that goes to t for small l.
+    const double l = lens.division;
+    scale = (1 - std::sqrt(1 - 4 * l * t2)) / (2 * l * t2);
+  }
+  return {x * scale + 2 * lens.p1 * x * y + lens.p2 * (t2 + 2 * x * x) + lens.s1 * t2,
+          y * scale + 2 * lens.p2 * x * y + lens.p1 * (t2 + 2 * y * y) + lens.s3 * t2};
+}
+
+struct View {
+  M3 rotation;
+  V3 origin;  // of the board, in the camera
+};
+View random_view(std::mt19937_64& g) {
+  View v;
+  v.rotation = product(turn(2, between(g, -0.4, 0.4)), product(turn(1, between(g, -0.6, 0.6)), turn(0, between(g, -0.6, 0.6))));
+  const double z = between(g, 0.28, 0.5);
+  const V3 middle = {between(g, -0.22, 0.22) * z, between(g, -0.15, 0.15) * z, z};
+  const V3 half = {0.5 * (columns - 1) * square_m, 0.5 * (rows - 1) * square_m, 0};
+  for (std::size_t i = 0; i < 3; ++i)
+    v.origin[i] = middle[i] - v.rotation[i][0] * half[0] - v.rotation[i][1] * half[1];
+  return v;
+}
+
+void print(std::string& text, const char* format, auto... values) {
+  std::array<char, 400> line{};
+  std::snprintf(line.data(), line.size(), format, values...);
+  text += line.data();
+}
+
+// The corner table's rows of one view, or nothing where the board leaves the picture.
+std::string corner_rows(const View& view, const CaseTruth& truth, double noise_px, const std::string& image, std::mt19937_64& g) {
+  std::string text;
+  const double obliqueness = 1 / std::max(0.3, std::abs(view.rotation[2][2]));
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const V3 p = on_board(column, row, truth.board);
+      V3 c = view.origin;
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k) c[i] += view.rotation[i][k] * p[k];
+      const auto image_point = through_lens(c[0] / c[2], c[1] / c[2], truth.lens);
+      double u = focal_px * image_point[0] + centre_x, v = focal_px * 1.001 * image_point[1] + centre_y;
+      if (u < 4 || v < 4 || u > 636 || v > 476) return "";
+      u += truth.wave_px * std::sin(u / 22.0);
+      const double sigma = noise_px * (0.8 + 0.2 * obliqueness), misplaced = between(g, 0, 1) < 1.0 / 300 ? 8 : 0;
+      u += sigma * normal(g) + misplaced * normal(g);
+      v += sigma * normal(g) + misplaced * normal(g);
+      print(text, "%s[\"%s\",%d,%.6f,%.6f,%.5f,%.5f,0.1]", text.empty() ? "" : ",", image.c_str(), row * columns + column,
+            column * square_m, row * square_m, u, v);
+    }
+  return text;
+}
+
+}  // namespace
+
+BoardCase board_case(const std::string& name, const CaseTruth& truth, std::size_t views, std::uint64_t seed) {
+  std::mt19937_64 g(seed);
+  const double noise_px = between(g, 0.06, 0.16);
+  std::string images, table;
+  for (std::size_t made = 0; made < views;) {
+    const View view = random_view(g);
+    const std::string id = "view" + std::to_string(made);
+    const std::string corners = corner_rows(view, truth, noise_px, id, g);
+    if (corners.empty()) continue;
+    table += (made == 0 ? "" : ",") + corners;
+    // What a first calibration hands over: poses that are a little off.
+    const M3 r = product(turn(0, 0.004 * normal(g)), product(turn(1, 0.004 * normal(g)), view.rotation));
+    print(images, "%s{\"id\":\"%s\",\"camera\":\"c\",\"board\":\"b\",\"camera_from_board\":{\"matrix\":[", made == 0 ? "" : ",",
+          id.c_str());
+    for (std::size_t i = 0; i < 3; ++i)
+      print(images, "[%.15g,%.15g,%.15g,%.9g],", r[i][0], r[i][1], r[i][2], view.origin[i] * (1 + 0.002 * normal(g)));
+    images += "[0,0,0,1]]}}";
+    ++made;
+  }
+  BoardCase result{name, "", truth};
+  print(result.manifest,
+        "{\"gonio\":1,\"boards\":{\"b\":{\"kind\":\"checkerboard\",\"inner_corners\":[%d,%d],\"square_m\":%g}},"
+        "\"cameras\":{\"c\":{\"model\":\"pinhole\",\"width_px\":640,\"height_px\":480,\"fx_px\":545,\"fy_px\":545,"
+        "\"cx_px\":320,\"cy_px\":240}},\"images\":[",
+        columns, rows, square_m);
+  result.manifest += images +
+                     "],\"tables\":{\"corners\":{\"model\":\"camera\",\"camera\":\"c\",\"board\":\"b\",\"columns\":{\"image\":\"\","
+                     "\"corner\":\"1\",\"board_x_m\":\"m\",\"board_y_m\":\"m\",\"u_px\":\"px\",\"v_px\":\"px\",\"sigma_px\":\"px\"},"
+                     "\"observed\":[\"u_px\",\"v_px\"],\"sigma\":[\"sigma_px\"],\"rows\":[" +
+                     table + "]}}}\n";
+  return result;
+}
+
+std::vector<BoardCase> all_board_cases(std::uint64_t seed, std::size_t repeats) {
+  std::mt19937_64 g(seed);
+  std::vector<CaseTruth> truths;
+  const auto sign = [&] { return between(g, 0, 1) < 0.5 ? -1.0 : 1.0; };
+  for (std::size_t k = 0; k < repeats; ++k) {
+    for (int nothing = 0; nothing < 4; ++nothing) truths.push_back({});
+    CaseTruth t;
+    t.effects = {"lens.radial"};
+    t.lens.k1 = sign() * between(g, 0.03, 0.25);
+    t.lens.k2 = between(g, -0.1, 0.1);
+    truths.push_back(t);
+    t.lens = {};
+    t.lens.division = sign() * between(g, 0.03, 0.2);
+    truths.push_back(t);
+    t = {};
+    t.effects = {"lens.tangential"};
+    t.lens.p1 = sign() * between(g, 0.004, 0.012);
+    t.lens.p2 = sign() * between(g, 0.004, 0.012);
+    truths.push_back(t);
+    t = {};
+    t.effects = {"lens.thin-prism"};
+    t.lens.s1 = sign() * between(g, 0.006, 0.02);
+    t.lens.s3 = sign() * between(g, 0.006, 0.02);
+    truths.push_back(t);
+    t = {};
+    t.effects = {"board.warp"};
+    t.board.sag_x_m = sign() * between(g, 0.0003, 0.0015);
+    t.board.sag_y_m = sign() * between(g, 0.0003, 0.0015);
+    truths.push_back(t);
+    t.effects = {"board.warp", "lens.radial"};
+    t.lens.k1 = sign() * between(g, 0.03, 0.25);
+    truths.push_back(t);
+    t = {};
+    t.outside = true;
+    t.board.stretch_x = sign() * between(g, 0.003, 0.008);
+    truths.push_back(t);
+    t = {};
+    t.outside = true;
+    t.wave_px = between(g, 0.3, 0.6);
+    truths.push_back(t);
+  }
+  std::shuffle(truths.begin(), truths.end(), g);
+  std::vector<BoardCase> cases;
+  for (const CaseTruth& truth : truths) {
+    const std::string name = "case-" + std::to_string(cases.size() + 1);
+    cases.push_back(board_case(name, truth, 10 + g() % 6, g()));
+  }
+  return cases;
+}
+
+}  // namespace gonio::prove
