@@ -24,6 +24,9 @@ constexpr std::array table = {
 std::string line(const std::string& place, const std::string& problem, const std::string& remedy) {
   std::string text = place.empty() ? problem : place + ": " + problem;
   if (!remedy.empty()) text += "; " + remedy;
+  // Names come from files that others wrote: whatever they hold, this stays one line and moves no cursor.
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
   return text;
 }
 

@@ -86,6 +86,15 @@ void check_header(const Imf::Header& header, std::uint64_t file_bytes, const std
                      place);
 }
 
+// The library quotes names from the file, whatever bytes they are.
+std::string shown(std::string what) {
+  constexpr std::size_t longest = 200;
+  if (what.size() > longest) what = what.substr(0, longest) + "...";
+  std::replace_if(
+      what.begin(), what.end(), [](unsigned char c) { return c < 0x20 || c > 0x7e; }, '?');
+  return what;
+}
+
 Image decode(const std::string& bytes, const std::string& place) {
   Imf::Header::setMaxImageSize(longest_side_px, longest_side_px);
   MemoryInput stream(bytes);
@@ -115,9 +124,8 @@ Image decode_exr(const std::string& bytes, const std::string& place) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& failure) {
-    std::string what = failure.what();
-    std::replace(what.begin(), what.end(), '\n', ' ');
-    throw Error(Exit::data, place, "is not a whole OpenEXR file (" + what + ")", "export or copy it again");
+    throw Error(Exit::data, place, "is not a whole OpenEXR file (" + shown(failure.what()) + ")",
+                "export or copy it again");
   }
 }
 

@@ -50,6 +50,7 @@ TEST(Error, IsOneLineOfPlaceProblemRemedy) {
   const Error error(Exit::data, "rig.json#/poses/3", "rotation is not orthonormal", "re-export with 7 digits");
   EXPECT_STREQ(error.what(), "rig.json#/poses/3: rotation is not orthonormal; re-export with 7 digits");
   EXPECT_STREQ(Error(Exit::data, "a", "b").what(), "a: b");
+  EXPECT_STREQ(Error(Exit::data, "a\nb", "key '\x1b[2J'").what(), "a b: key ' [2J'");
 }
 
 TEST(Error, TableNamesEveryExitOnceInOrder) {
