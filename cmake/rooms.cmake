@@ -92,5 +92,7 @@ ${entries}  };
 ")
   add_library(gonio_programs STATIC ${GONIO_GENERATED}/programs.cpp ${tool_files})
   target_link_libraries(gonio_programs PUBLIC gonio)
+  add_executable(gonio-describe ${CMAKE_SOURCE_DIR}/man/gonio_describe.cpp)
+  target_link_libraries(gonio-describe PRIVATE gonio_programs gonio)
   set(GONIO_TOOL_NAMES ${names} CACHE INTERNAL "")
 endfunction()
