@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/random.h"
+#include "render/image_seed.h"
 #include "render/strata.h"
 
 namespace gonio::render {
@@ -24,13 +25,6 @@ constexpr int roulette_from = 3;  // scattering events before paths may be ended
 // Veach 1997, equation 9.13 with beta = 2.
 double power_heuristic(double pdf, double other) {
   return pdf * pdf / (pdf * pdf + other * other);
-}
-
-// FNV-1a: pictures of one scene must not share their noise, and --image must not change it.
-std::uint64_t hash_of(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
 }
 
 struct Split {  // radiance by the number of scattering events
@@ -61,7 +55,7 @@ class Tracer {
         options_(options),
         plan_(sample_plan(options.spp)),
         rotation_(matrix_of(view_.world_from_camera.rotation)),
-        seed_(split_mix(options.seed) ^ hash_of(view_.image)) {
+        seed_(seed_of(options.seed, view_.image)) {
     for (const std::size_t light : view_.lights) emitters_.push_back(scene.appearance.lights[light].emitter.get());
     named_ = emitters_.size();
     if (scene.appearance.ambient) emitters_.push_back(scene.appearance.ambient.get());

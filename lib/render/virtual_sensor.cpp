@@ -1,9 +1,11 @@
 #include "render/virtual_sensor.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "base/random.h"
+#include "render/image_seed.h"
 
 namespace gonio::render {
 namespace {
@@ -19,21 +21,17 @@ double poisson(double expected, Random& random) {
   return events;
 }
 
-void forget(manifest::Parameters& parameters) {
-  for (auto& [name, parameter] : parameters)
-    if (parameter.free && parameter.min && parameter.max)
-      for (double& v : parameter.value) v = 0.5 * (*parameter.min + *parameter.max);
-}
-
 }  // namespace
 
-io::Image recorded(const io::Image& rendered, const manifest::Noise& noise, std::uint64_t seed) {
+io::Image recorded(const io::Image& rendered, const manifest::Noise& noise, const std::string& image_id,
+                   std::uint64_t seed) {
+  const std::uint64_t own_seed = seed_of(seed ^ 0x73656e736f72u, image_id);  // not the numbers that made the rendering
   io::Image image(rendered.width, rendered.height, {"R", "G", "B"});
   const std::array<int, 3> from = {rendered.channel("R"), rendered.channel("G"), rendered.channel("B")};
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
-      Random random(seed, static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(image.width) +
-                              static_cast<std::uint64_t>(x));
+      Random random(own_seed, static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(image.width) +
+                                  static_cast<std::uint64_t>(x));
       for (int c = 0; c < 3; ++c) {
         const double v = rendered.at(x, y, from[static_cast<std::size_t>(c)]);
         const double shot = noise.gain > 0 ? poisson(v * noise.gain, random) / noise.gain : v;
@@ -41,11 +39,6 @@ io::Image recorded(const io::Image& rendered, const manifest::Noise& noise, std:
       }
     }
   return image;
-}
-
-void forget_free_values(manifest::Document& document) {
-  for (auto& [id, surface] : document.surfaces) forget(surface.parameters);
-  for (auto& [id, light] : document.lights) forget(light.parameters);
 }
 
 }  // namespace gonio::render

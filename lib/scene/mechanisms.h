@@ -9,6 +9,7 @@
 // of boards do not change scenes; those of cameras replace terms of the distortion.
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "manifest/sections.h"
@@ -32,5 +33,9 @@ void apply_mechanism(Appearance& appearance, const mechanism::Mechanism& mechani
 // The camera's part: lens.* replace the distortion terms of the same names; others leave the camera as it is.
 void apply_mechanism(manifest::Camera& camera, const std::string& name, const mechanism::Mechanism& mechanism,
                      const manifest::MechanismUse& use, const std::string& place);
+
+// "surface.interface:f0=0.05,alpha=0.15,on=bunny,on=cup" as typed on a command line. Error(usage) at `place`.
+std::pair<const mechanism::Mechanism*, manifest::MechanismUse> parse_mechanism(const std::string& text,
+                                                                               const std::string& place);
 
 }  // namespace gonio::scene

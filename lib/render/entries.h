@@ -1,0 +1,29 @@
+// What `render` reads from and enters into the manifest's list of images.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "manifest/document.h"
+
+namespace gonio::render {
+
+// Places in document.images of the images with these ids; of all where `ids` is empty. Error(usage) for unknown ids,
+// Error(data) where nothing is left.
+std::vector<std::size_t> chosen_images(const manifest::Document& document, const std::vector<std::string>& ids);
+
+// The id with everything but letters, digits, '.', '-' and '_' replaced by '_': fit for a file name.
+std::string file_stem(const std::string& image_id);
+
+// `path` becomes the image's rendering, in place of an earlier one.
+void enter_rendering(manifest::Document& document, std::size_t image, const std::filesystem::path& path, int spp,
+                     std::uint64_t seed);
+// `path` becomes the image's own file, a linear recording.
+void enter_recording(manifest::Document& document, std::size_t image, const std::filesystem::path& path);
+
+// What someone who has only the recordings would write: free parameters of surfaces and lights that have two bounds are
+// set to the middle between them.
+void forget_free_values(manifest::Document& document);
+
+}  // namespace gonio::render

@@ -1,0 +1,10 @@
+// A picture for the eye.
+#pragma once
+#include "io/image.h"
+
+namespace gonio::render {
+
+// Channels R, G, B of a linear picture in sRGB, scaled so that the 99th percentile of the largest channel is white.
+io::Image preview(const io::Image& linear);
+
+}  // namespace gonio::render

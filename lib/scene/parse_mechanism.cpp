@@ -1,0 +1,62 @@
+// A mechanism as typed on a command line: ID:NAME=NUMBER,NAME=NUMBER,on=NAME. Quantities take units as elsewhere:
+// radius_m=35mm.
+#include <sstream>
+
+#include "base/error.h"
+#include "base/quantity.h"
+#include "scene/mechanisms.h"
+
+namespace gonio::scene {
+namespace {
+
+const mechanism::Parameter& parameter_of(const mechanism::Mechanism& mechanism, const std::string& name,
+                                         const std::string& place) {
+  std::string known;
+  for (const mechanism::Parameter& p : mechanism.parameters) {
+    if (p.name == name) return p;
+    known += (known.empty() ? "" : ", ") + p.name;
+  }
+  throw Error(Exit::usage, place, mechanism.id + " has no parameter \"" + name + "\"", "it takes " + known);
+}
+
+// A plain number is in the parameter's SI unit; a unit of the same dimension may follow it.
+double number_of(const mechanism::Parameter& parameter, const std::string& text, const std::string& place) {
+  const bool plain = text.find_first_not_of("0123456789.eE+-") == std::string::npos;
+  const Dimension dimension = plain                     ? Dimension::none
+                              : parameter.unit == "m"   ? Dimension::length
+                              : parameter.unit == "rad" ? Dimension::angle
+                                                        : Dimension::ratio;
+  const double value = parse_quantity(text, dimension, place);
+  if (!(value >= parameter.lower && value <= parameter.upper)) {
+    std::ostringstream limits;
+    limits << parameter.lower << " to " << parameter.upper << " " << parameter.unit;
+    throw Error(Exit::usage, place, parameter.name + " " + text + " is not plausible", "give " + limits.str());
+  }
+  return value;
+}
+
+}  // namespace
+
+std::pair<const mechanism::Mechanism*, manifest::MechanismUse> parse_mechanism(const std::string& text,
+                                                                               const std::string& place) {
+  const std::size_t colon = text.find(':');
+  const std::string id = text.substr(0, colon);
+  const mechanism::Mechanism* mechanism = mechanism::find_mechanism(id);
+  if (!mechanism)
+    throw Error(Exit::usage, place, "there is no mechanism \"" + id + "\"", "gonio-manifest(5) lists them");
+  manifest::MechanismUse use;
+  std::istringstream items(colon == std::string::npos ? "" : text.substr(colon + 1));
+  for (std::string item; std::getline(items, item, ',');) {
+    const std::size_t equals = item.find('=');
+    if (equals == std::string::npos)
+      throw Error(Exit::usage, place, "\"" + item + "\" is not NAME=VALUE", "type, say, " + id + ":NAME=VALUE");
+    const std::string name = item.substr(0, equals), value = item.substr(equals + 1);
+    if (name == "on")
+      use.on.push_back(value);
+    else
+      use.parameters[name] = manifest::Parameter(number_of(parameter_of(*mechanism, name, place), value, place));
+  }
+  return {mechanism, use};
+}
+
+}  // namespace gonio::scene
