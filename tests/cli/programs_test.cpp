@@ -1,0 +1,134 @@
+// What every program promises, whichever programs there are: help, description, completions and man page that agree.
+#include "cli/program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "base/atomic_file.h"
+#include "cli/common_options.h"
+#include "cli/reference.h"
+#include "cli/roff.h"
+#include "data.h"
+#include "process.h"
+
+namespace gonio::tests {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<cli::Option> all_options(const cli::Program& program) {
+  std::vector<cli::Option> all = program.options;
+  for (const auto& o : cli::common_options(program)) all.push_back(o);
+  return all;
+}
+
+TEST(Programs, AreThere) {
+  std::set<std::string> names;
+  for (const auto* program : cli::all_programs()) names.insert(program->name);
+  EXPECT_THAT(names, testing::IsSupersetOf({"calib-charuco", "render", "compare", "explain"}));
+}
+
+TEST(Programs, DescriptionsAreComplete) {
+  for (const auto* program : cli::all_programs()) {
+    SCOPED_TRACE(program->name);
+    EXPECT_FALSE(program->sentence.empty() || program->synopsis.empty());
+    EXPECT_TRUE(program->run);
+    std::set<std::string> seen;
+    for (const auto& o : all_options(*program)) {
+      EXPECT_TRUE(seen.insert(o.name).second) << o.name << " stands twice";
+      EXPECT_TRUE(o.help.ends_with('.')) << o.name << ": " << o.help;
+      if (o.type == cli::Type::choice) EXPECT_FALSE(o.choices.empty()) << o.name;
+    }
+    for (const auto& o : all_options(*program))
+      for (const auto& other : o.conflicts) EXPECT_TRUE(seen.contains(other)) << o.name << " conflicts with " << other;
+    for (const auto& o : program->standalone) EXPECT_TRUE(seen.contains(o)) << o;
+  }
+}
+
+TEST(Programs, HelpVersionAndDescriptionGoToStandardOutput) {
+  for (const auto* program : cli::all_programs()) {
+    SCOPED_TRACE(program->name);
+    const Ended help = run({program->name, "--help"});
+    EXPECT_EQ(help.status, 0);
+    EXPECT_EQ(help.err, "");
+    for (const auto& o : all_options(*program)) EXPECT_THAT(help.out, HasSubstr("--" + o.name));
+    EXPECT_THAT(run({program->name, "--version"}).out, HasSubstr(program->name + " (gonio) "));
+    const Ended described = run({program->name, "--describe"});
+    const manifest::Value v = manifest::parse_json(described.out, "description");
+    EXPECT_EQ(v.find("name")->as_string(), program->name);
+    EXPECT_EQ(v.find("options")->as_array().size(), program->options.size());
+  }
+}
+
+TEST(Programs, RefuseWhatNobodyKnows) {
+  for (const auto* program : cli::all_programs()) {
+    SCOPED_TRACE(program->name);
+    const Ended unknown = run({program->name, "--treads", "3"});
+    EXPECT_EQ(unknown.status, 64);
+    EXPECT_THAT(unknown.err, HasSubstr("did you mean --threads?"));
+    EXPECT_EQ(std::ranges::count(unknown.err, '\n'), 1);
+    EXPECT_EQ(run({program->name, "--threads", "many"}).status, 64);
+    EXPECT_EQ(run({program->name, "--threads", "-1"}).status, 64);
+    EXPECT_EQ(run({program->name, "--progress", "sometimes"}).status, 64);
+    const Ended missing = run({program->name, "-i", "no-such-manifest.json"});
+    EXPECT_EQ(missing.status, 66) << missing.err;
+  }
+}
+
+TEST(Programs, ManPagesAreAsPrinted) {
+  for (const auto* program : cli::all_programs()) {
+    SCOPED_TRACE(program->name);
+    const std::filesystem::path root = GONIO_SOURCE;
+    const std::string prose = read_file(root / "man" / "prose" / (program->name + ".md"));
+    EXPECT_FALSE(cli::section_of(prose, "DESCRIPTION").empty());
+    EXPECT_FALSE(cli::section_of(prose, "EXAMPLES").empty());
+    EXPECT_EQ(read_file(root / "man" / (program->name + ".1")), cli::man_page(*program, prose)) << "run scripts/regenerate";
+  }
+}
+
+TEST(Programs, CompletionsAreAcceptedByTheirShells) {
+  ScratchFolder folder;
+  for (const auto* program : cli::all_programs()) {
+    SCOPED_TRACE(program->name);
+    write_file(folder / "c.bash", cli::bash_completion(*program));
+    write_file(folder / "c.zsh", cli::zsh_completion(*program));
+    write_file(folder / "c.fish", cli::fish_completion(*program));
+    EXPECT_EQ(run({"bash", "-n", "c.bash"}, folder.path()).status, 0);
+    const int zsh = run({"zsh", "-n", "c.zsh"}, folder.path()).status;
+    EXPECT_TRUE(zsh == 0 || zsh == 127) << zsh;  // 127: not installed
+    const int fish = run({"fish", "-n", "c.fish"}, folder.path()).status;
+    EXPECT_TRUE(fish == 0 || fish == 127) << fish;
+  }
+}
+
+// The blocks between ``` under "# EXAMPLES" of man/prose, each as one shell script in a folder of its own.
+std::vector<std::string> examples_of(const std::string& prose) {
+  std::vector<std::string> blocks;
+  const std::string text = cli::section_of(prose, "EXAMPLES");
+  for (std::size_t at = text.find("```"); at != std::string::npos;) {
+    const std::size_t first = text.find('\n', at) + 1, last = text.find("```", first);
+    blocks.push_back(text.substr(first, last - first));
+    at = text.find("```", last + 3);
+  }
+  return blocks;
+}
+
+TEST(Programs, ExamplesOfManPagesRun) {
+  const std::string path = std::string("PATH=") + GONIO_BIN + ":$PATH\n";
+  for (const auto* program : cli::all_programs()) {
+    const std::string prose = read_file(std::filesystem::path(GONIO_SOURCE) / "man" / "prose" / (program->name + ".md"));
+    const auto blocks = examples_of(prose);
+    EXPECT_FALSE(blocks.empty()) << program->name;
+    ScratchFolder folder;  // the examples of one page build on each other
+    for (const auto& block : blocks) {
+      const Ended ended = run({"bash", "-euc", path + block}, folder.path());
+      EXPECT_EQ(ended.status, 0) << program->name << ": " << block << ended.err;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gonio::tests
