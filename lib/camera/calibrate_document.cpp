@@ -246,6 +246,9 @@ void tell(const Session& session, const Calibration& calibration, const manifest
 CalibrationOptions options_for(const Session& session, const CalibrationRequest& request,
                                const manifest::Document& document) {
   CalibrationOptions options = request.calibration;
+  const manifest::Parameters& warp = document.boards.at(session.board_id).warp;
+  if (warp.contains("x_m")) options.warp.sag_x_m = warp.at("x_m").scalar();
+  if (warp.contains("y_m")) options.warp.sag_y_m = warp.at("y_m").scalar();
   const auto known = document.cameras.find(session.camera);
   if (known == document.cameras.end()) return options;
   const std::string place = manifest::place(document, "/cameras/" + session.camera);
@@ -275,6 +278,9 @@ void enter_pictures(const std::vector<std::string>& paths, const std::string& mo
   if (document.cameras.empty()) document.cameras["camera"].model = model;
   const std::string camera = document.cameras.size() == 1 ? document.cameras.begin()->first : "camera";
   for (const std::string& path : paths) {
+    if (std::error_code error; !std::filesystem::is_regular_file(path, error)) {
+      throw Error(Exit::no_input, path, error ? error.message() : "not a file", "name photographs of the board");
+    }
     const std::string stem = std::filesystem::path(path).stem().string();
     std::string id = stem;
     for (int k = 2; std::ranges::find(document.images, id, &manifest::ImageEntry::id) != document.images.end(); ++k) {

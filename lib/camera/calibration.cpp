@@ -192,6 +192,7 @@ Calibration calibrate(const std::vector<View>& views, const Board& board, int wi
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (state.view_weights[i] > 0) state.poses[i] = start_pose(views[i], board, state.lens);
   }
+  state.warp = options.warp;
   state.loss_px = first_loss_px;
   adjust(views, board, options, state);
   if (try_other_poses(views, board, state)) adjust(views, board, options, state);

@@ -28,8 +28,9 @@ struct View {
 struct CalibrationOptions {
   std::string model = "radial-tangential";  // pinhole | radial-tangential | thin-prism
   std::set<std::string> fixed;              // "aspect", "principal-point", distortion names: held at their start
-  bool board_warp = false;
-  std::optional<Intrinsics> start;  // otherwise found; its distortion is zero
+  bool board_warp = false;                  // free the board's sag
+  BoardWarp warp;                           // its start, or what it is held at
+  std::optional<Intrinsics> start;          // otherwise found; its distortion is zero
 };
 // Names that `fixed` may hold.
 std::vector<std::string> fixable_terms();
