@@ -28,7 +28,7 @@ const Mechanism& light_direction() {
                       .upper = 0.35,
                       .start = 0,
                       .meaning = "turn about the axis y carried along from +z to the light"}},
-      .conditions = {"light.identity", "surface.incidence-angle", "surface.normal-azimuth", "image.whole"},
+      .conditions = {"light.identity", "surface.incidence-angle", "light.shadow-edge-distance"},
       .mistaken_for = {{.with = "albedo gradient",
                         .told_apart = "a mirror ball beside the object shows where the light is"},
                        {.with = "surface.diffuse-roughness", .told_apart = "more lights around the same object"}},
