@@ -12,7 +12,7 @@
 namespace gonio::explain {
 namespace {
 
-constexpr std::size_t groups_for_a_test_set = 8;
+constexpr std::size_t groups_for_a_test_set = 16;
 
 // A quarter of the groups, drawn by the seed, is opened once at the end; with few groups every one takes turns instead.
 std::vector<std::size_t> draw_test_groups(std::size_t groups, std::uint64_t seed) {

@@ -133,12 +133,12 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
   for (const std::size_t c : added)
     h.wald_p = std::max(h.wald_p, neutral_p(system_, after.fit, u, system_.problem().candidates()[c].parameters));
   const auto rivals =
-      std::count_if(dummies.begin(), dummies.end(), [&](const Hypothesis& dummy) { return dummy.gain >= h.gain; });
+      std::count_if(dummies.begin(), dummies.end(), [&](const Hypothesis& dummy) { return dummy.gain > h.gain + h.gain_sigma; });
   const auto at_bound = std::find_if(h.parameters.begin(), h.parameters.end(), [](const Estimate& e) { return e.at_bound; });
   if (!(h.gain > h.gain_sigma))
     h.refused = "does not lower the held-out score beyond its standard error";
   else if (10 * rivals > static_cast<std::ptrdiff_t>(dummies.size()))
-    h.refused = "dummies without physics do as well";
+    h.refused = "dummies without physics do better";
   else if (stats::sidak(h.wald_p, static_cast<double>(looks)) > options_.level)
     h.refused = "its parameters cannot be told from neutral";
   else if (at_bound != h.parameters.end())

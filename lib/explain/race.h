@@ -32,7 +32,8 @@ class Race {
   std::vector<std::size_t> open_to(const Model& model) const;
 
   // The step from `before` to `after` as one line of the scoreboard; `refused` says which condition of a name it fails.
-  // `dummies`: what those achieved on the same model; more than a tenth of them as good, and it is no better than chance.
+  // `dummies`: what those achieved on the same model; more than a tenth of them better by its standard
+  // error, and it is no better than chance.
   // `looks`: hypotheses tried beside it.
   Hypothesis judged(const Model& before, const Model& after, const std::vector<std::size_t>& added,
                     const std::vector<Hypothesis>& dummies, std::size_t looks) const;
