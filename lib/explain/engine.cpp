@@ -74,10 +74,9 @@ void final_fit(const System& system, const Race& race, const Selection& selectio
   const Model base = race.base(selection.base.fit.values);
   Model model = base;
   if (!selection.model.candidates.empty()) {
-    Model from = selection.model;
-    from.fit.values = selection.model.fit.values;
-    model = race.changed(from, selection.model.candidates);
+    model = race.changed(selection.model, selection.model.candidates);
   }
+  e.converged = base.fit.converged && model.fit.converged;
   e.base_values = base.fit.values;
   e.values = model.fit.values;
   e.residual_before = system.raw_residual(e.base_values);

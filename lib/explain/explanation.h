@@ -45,9 +45,10 @@ struct Isolability {
   bool visible = true;                           // false: "these recordings cannot show it"
 };
 
-// Residuals against one condition in bins of equal counts, in noise units along the condition's direction.
+// Residuals against one condition in bins of equal counts: the mean along the condition's direction, in `value_unit`, and its
+// standard error (over blocks).
 struct Curve {
-  std::string condition, unit;
+  std::string condition, unit, value_unit;
   std::vector<double> centre, before, after, sigma;
 };
 struct LocatedCondition {
@@ -87,6 +88,7 @@ struct Explanation {
 
   double held_out_before = 0, held_out_after = 0;       // user's unit
   double fitted_before = 0, fitted_after = 0;           // the same score on the groups that were fitted
+  bool converged = true;                                // of the final fit
   std::vector<std::size_t> test_groups;                 // opened once at the end; empty: nested cross-validation over all
   double false_alarm = 0;                               // share of dummies that would have passed for physics
   std::size_t dummies = 0;

@@ -71,7 +71,7 @@ Curve residual_curve(const System& system, std::size_t condition, const std::vec
   for (std::size_t i = 0; i < o.rows(); ++i)
     if (system.weight(i) > 0 && std::isfinite(c.values[i]) && (c.direction.empty() || c.direction[i] != 0)) rows.push_back(i);
   std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return c.values[a] < c.values[b]; });
-  Curve curve{c.name, c.unit, {}, {}, {}, {}};
+  Curve curve{c.name, c.unit, c.curve_unit, {}, {}, {}, {}};
   for (std::size_t b = 0; b < bins; ++b) {
     const std::size_t first = b * rows.size() / bins, last = (b + 1) * rows.size() / bins;
     if (first == last) continue;

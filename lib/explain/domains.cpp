@@ -1,0 +1,30 @@
+// See domains.h.
+#include "explain/domains.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "explain/boards/boards_problem.h"
+
+namespace gonio::explain {
+
+std::vector<std::unique_ptr<Problem>> problems_of(const manifest::Document& document) {
+  std::vector<std::unique_ptr<Problem>> problems;
+  if (has_boards(document)) problems.push_back(boards_problem(boards_input(document)));
+  if (problems.empty())
+    throw Error(Exit::data, manifest::place(document, ""), "has nothing to explain: no table of board corners, no recorded images of objects",
+                "calibrate with calib-charuco, or describe images with file and camera, and objects");
+  return problems;
+}
+
+std::vector<std::filesystem::path> files_of(const manifest::Document& document) {
+  std::vector<std::filesystem::path> files;
+  const auto add = [&](const std::string& id, const std::string& pointer) {
+    if (!id.empty()) files.push_back(manifest::resolve(document, id, pointer));
+  };
+  for (const auto& [name, table] : document.tables)
+    if (table.model == "camera") add(table.file, "/tables/" + name + "/file");
+  return files;
+}
+
+}  // namespace gonio::explain

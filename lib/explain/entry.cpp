@@ -1,0 +1,155 @@
+// See entry.h. Infinite and undefined numbers become null.
+#include "explain/entry.h"
+
+#include <cmath>
+
+namespace gonio::explain {
+namespace {
+
+using manifest::Value;
+
+Value number(double v) { return std::isfinite(v) ? Value(v) : Value(); }
+
+Value numbers(const std::vector<double>& values) {
+  Value list = Value::array();
+  for (const double v : values) list.push_back(number(v));
+  return list;
+}
+
+// Does `full` ("lens.radial.k1", "light-0/tilt_x_rad") name the mechanism's parameter `name`?
+bool is_parameter(const std::string& full, const std::string& name) {
+  if (full == name) return true;
+  return full.size() > name.size() && full.ends_with(name) &&
+         (full[full.size() - name.size() - 1] == '.' || full[full.size() - name.size() - 1] == '/');
+}
+
+// One number, or a list with one for each target.
+Value gathered(const std::vector<double>& values) { return values.size() == 1 ? number(values[0]) : numbers(values); }
+
+Value named_mechanism(const Problem& problem, const Explanation& e, std::size_t candidate) {
+  const Candidate& c = problem.candidates()[candidate];
+  Value entry = Value::object({{"mechanism", c.id()}});
+  if (!c.on.empty()) entry["on"] = c.on;
+  Value parameters = Value::object(), sigma = Value::object(), interval = Value::object();
+  for (const mechanism::Parameter& p : c.mechanism->parameters) {
+    std::vector<double> value, width, lower, upper;
+    for (const Estimate& estimate : e.estimates) {
+      bool own = false;
+      for (const std::size_t place : c.parameters) own = own || place == estimate.parameter;
+      if (!own || !is_parameter(problem.parameters()[estimate.parameter].name, p.name)) continue;
+      value.push_back(estimate.value);
+      width.push_back(estimate.sigma);
+      lower.push_back(estimate.lower_95);
+      upper.push_back(estimate.upper_95);
+    }
+    if (value.empty()) continue;
+    parameters[p.name] = gathered(value);
+    sigma[p.name] = gathered(width);
+    interval[p.name] = Value(Value::Array{gathered(lower), gathered(upper)});
+  }
+  entry["parameters"] = parameters;
+  entry["sigma"] = sigma;
+  entry["interval_95"] = interval;
+  return entry;
+}
+
+Value located(const Explanation& e, const Illustration& illustration) {
+  if (!e.significant || e.conditions.empty()) return {};
+  const LocatedCondition& first = e.conditions[0];
+  Value result = Value::object({{"condition", first.name}, {"range", numbers({first.lower, first.upper})},
+                                {"unit", first.unit}, {"share", number(first.share)}});
+  if (!illustration.masks.empty()) result["mask"] = illustration.masks[0];
+  if (illustration.masks.size() > 1) result["masks"] = illustration.masks;
+  if (!e.stage.empty()) result["stage"] = e.stage;
+  Value conditions = Value::array(), groups = Value::array();
+  for (const LocatedCondition& c : e.conditions)
+    conditions.push_back(Value::object({{"condition", c.name}, {"share", number(c.share)}, {"range", numbers({c.lower, c.upper})},
+                                        {"unit", c.unit}}));
+  for (const LocatedGroup& g : e.groups)
+    groups.push_back(Value::object(
+        {{"group", g.name}, {"share", number(g.share)}, {"before", number(g.before)}, {"after", number(g.after)}}));
+  result["conditions"] = conditions;
+  result["groups"] = groups;
+  return result;
+}
+
+Value scoreboard(const Explanation& e) {
+  Value list = Value::array();
+  for (const Hypothesis& h : e.scoreboard) {
+    const bool fitted = h.kind == Hypothesis::Kind::mechanisms;
+    Value entry = Value::object({{"hypothesis", h.name}, {"held_out", number(h.held_out)}, {"gain", number(h.gain)},
+                                 {"gain_sigma", number(h.gain_sigma)}, {"effect", number(h.effect)}});
+    if (fitted) entry["p_neutral"] = number(h.wald_p);
+    if (!h.refused.empty()) entry["refused"] = h.refused;
+    list.push_back(entry);
+  }
+  return list;
+}
+
+Value isolability(const Problem& problem, const Explanation& e) {
+  Value list = Value::array();
+  for (const Isolability& i : e.isolability) {
+    const Candidate& c = problem.candidates()[i.candidate];
+    Value limits = Value::object(), look_alikes = Value::array();
+    for (std::size_t k = 0; k < i.detection_limit.size(); ++k)
+      limits[problem.parameters()[c.parameters[k]].name] = number(i.detection_limit[k]);
+    for (const auto& [other, cosine] : i.look_alikes)
+      look_alikes.push_back(Value::object({{"mechanism", problem.candidates()[other].id()}, {"cosine", number(cosine)}}));
+    Value entry = Value::object({{"mechanism", c.id()}});
+    if (!c.on.empty()) entry["on"] = c.on;
+    entry["surviving_share"] = number(i.surviving_share);
+    entry["detection_limit"] = limits;
+    entry["looks_like"] = look_alikes;
+    entry["visible"] = i.visible;
+    list.push_back(entry);
+  }
+  return list;
+}
+
+Value compensation(const Problem& problem, const Explanation& e) {
+  Value list = Value::array();
+  for (const Compensation& c : e.compensation)
+    list.push_back(Value::object({{"parameter", problem.parameters()[c.parameter].name}, {"before", number(c.before)},
+                                  {"after", number(c.after)}, {"sigma", number(c.sigma)}}));
+  return list;
+}
+
+}  // namespace
+
+Value entry_of(const Problem& problem, const Explanation& e, const Illustration& illustration) {
+  Value named = Value::array(), apart = Value::array(), tests = Value::array();
+  for (const std::size_t c : e.named) named.push_back(named_mechanism(problem, e, c));
+  for (const std::vector<std::size_t>& set : e.not_told_apart) {
+    std::vector<std::string> ids;
+    for (const std::size_t c : set) ids.push_back(problem.candidates()[c].id());
+    apart.push_back(ids);
+  }
+  for (const std::size_t g : e.test_groups) tests.push_back(problem.observations().group[g]);
+  Value entry = Value::object({{"domain", problem.domain()}, {"verdict", verdict_name(e.verdict)}});
+  entry["named"] = named;
+  entry["not_told_apart"] = apart;
+  entry["outside"] = e.outside.empty() ? Value() : Value(e.outside);
+  entry["located"] = located(e, illustration);
+  entry["held_out"] = Value::object({{"before", number(e.held_out_before)},
+                                     {"after", number(e.held_out_after)},
+                                     {"unit", problem.unit()},
+                                     {"score", problem.score_name()},
+                                     {"how", e.test_groups.empty() ? "each group left out in turn" : "test groups opened once"},
+                                     {"test_groups", tests}});
+  entry["fitted"] = Value::object({{"before", number(e.fitted_before)}, {"after", number(e.fitted_after)}});
+  entry["null_test"] = Value::object({{"p", number(e.global_p)}, {"significant", e.significant}, {"important", e.important},
+                                      {"matters", number(e.matters)}});
+  entry["noise"] = Value::object({{"factor", number(e.noise_factor)},
+                                  {"blocks_set_aside", static_cast<std::int64_t>(e.outlier_blocks)}});
+  entry["dummies"] = Value::object({{"run", static_cast<std::int64_t>(e.dummies)}, {"passed_share", number(e.false_alarm)}});
+  entry["scoreboard"] = scoreboard(e);
+  entry["isolability"] = isolability(problem, e);
+  entry["compensation"] = compensation(problem, e);
+  entry["sentence"] = e.sentence;
+  Value next = Value::object();
+  if (!e.next_measurement.empty()) next["sentence"] = e.next_measurement;
+  entry["next_measurement"] = next;
+  return entry;
+}
+
+}  // namespace gonio::explain

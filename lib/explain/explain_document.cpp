@@ -1,0 +1,65 @@
+// See explain_document.h.
+#include "explain/explain_document.h"
+
+#include <algorithm>
+
+#include "base/atomic_file.h"
+#include "base/progress.h"
+#include "explain/domains.h"
+#include "explain/entry.h"
+#include "explain/report.h"
+
+namespace gonio::explain {
+namespace {
+
+bool doubtful(const Problem& problem, const Explanation& e) {
+  std::size_t blocks = 0;
+  for (const std::uint32_t b : problem.observations().block) blocks = std::max<std::size_t>(blocks, b + 1);
+  return !e.converged || 10 * e.outlier_blocks > blocks;
+}
+
+// The worse of two answers: a gate that failed outweighs a negative answer.
+Exit worse(Exit a, Exit b) { return static_cast<int>(a) > static_cast<int>(b) ? a : b; }
+
+}  // namespace
+
+Exit explain_document(manifest::Document& document, const ExplainRequest& request) {
+  const std::vector<std::unique_ptr<Problem>> problems = problems_of(document);
+  std::vector<Explanation> explanations(problems.size());
+  std::vector<Illustration> illustrations(problems.size());
+  std::vector<ReportPart> parts;
+  Exit exit = Exit::done;
+  document.explanations.clear();
+  for (std::size_t k = 0; k < problems.size(); ++k) {
+    const Problem& problem = *problems[k];
+    Explanation& e = explanations[k] = explain(problem, request.options);
+    illustrations[k] = problem.illustrate(e, request.out, document);
+    problem.apply(e, document);
+    document.explanations.push_back(entry_of(problem, e, illustrations[k]));
+    parts.push_back({&problem, &e, &illustrations[k]});
+    log(LogLevel::info, problem.domain() + ": " + e.sentence);
+    if (e.verdict == Verdict::unknown) exit = worse(exit, Exit::negative);
+    if (doubtful(problem, e)) exit = worse(exit, Exit::quality);
+  }
+  if (!request.page.empty()) write_file(request.page, report_page(document.name, parts));
+  return exit;
+}
+
+std::string list_of_mechanisms() {
+  std::string text;
+  for (const mechanism::Mechanism* m : mechanism::all_mechanisms()) {
+    text += m->id + "  (" + m->stage + ")\n    " + m->sentence + "\n    seen in:";
+    for (std::size_t k = 0; k < m->conditions.size(); ++k) text += (k == 0 ? " " : ", ") + m->conditions[k];
+    text += "\n";
+    for (const mechanism::Confusion& c : m->mistaken_for) text += "    mistaken for " + c.with + ": " + c.told_apart + "\n";
+  }
+  return text;
+}
+
+void check_hypotheses(const std::vector<std::string>& ids) {
+  for (const std::string& id : ids)
+    if (mechanism::find_mechanism(id) == nullptr)
+      throw Error(Exit::usage, "--hypotheses", "\"" + id + "\" is no mechanism", "explain --list shows them all");
+}
+
+}  // namespace gonio::explain
