@@ -70,8 +70,8 @@ io::TriangleMesh knot() {
     for (int sector = 0; sector < knot_sectors; ++sector) {
       const std::uint32_t a = vertex(ring, sector), b = vertex(ring + 1, sector), c = vertex(ring + 1, sector + 1),
                           d = vertex(ring, sector + 1);
-      mesh.triangles.push_back({a, b, c});
-      mesh.triangles.push_back({a, c, d});
+      mesh.triangles.push_back({a, c, b});
+      mesh.triangles.push_back({a, d, c});
     }
   return mesh;
 }
