@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::uint64_t harmless_bytes = std::uint64_t{64} << 20;
 constexpr std::uint64_t most_bytes = std::uint64_t{16} << 30;
-constexpr std::uint64_t largest_compression = 4096;
+// Deflate reaches 1032 : 1, and a pixel of one bit becomes three floats, 96 times its size.
+constexpr std::uint64_t largest_compression = 1032 * 96;
 
 [[noreturn]] void refuse(const std::string& place, const std::string& problem) {
   throw Error(Exit::data, place, problem, "export or copy it again");

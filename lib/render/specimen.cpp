@@ -11,6 +11,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/ply.h"
+#include "render/specimen_board.h"
 
 namespace gonio::render {
 namespace {
@@ -166,18 +167,20 @@ void add_knot(manifest::Document& document, const std::filesystem::path& out) {
 
 const std::vector<Specimen>& specimens() {
   static const std::vector<Specimen> all = {{"knot", "a trefoil knot of a round tube on a table; writes knot.ply"},
-                                            {"spheres", "two spheres on a table"}};
+                                            {"spheres", "two spheres on a table"},
+                                            {"board", "a calibration board from twelve sides; writes board.png"}};
   return all;
 }
 
 manifest::Document specimen(const std::string& name, const std::filesystem::path& out) {
+  if (name == "board") return board_specimen(out);
   manifest::Document document;
   if (name == "knot")
     add_knot(document, out);
   else if (name == "spheres")
     add_spheres(document, out);
   else
-    throw Error(Exit::usage, "--specimen", "there is no specimen \"" + name + "\"", "choose knot or spheres");
+    throw Error(Exit::usage, "--specimen", "there is no specimen \"" + name + "\"", "choose knot, spheres or board");
   add_table(document);
   add_lamps(document);
   add_images(document);
