@@ -1,5 +1,6 @@
-// gonio-describe: prints everything that is printed from descriptions: man pages, JSON Schema, shell completions. Not installed;
-// scripts/regenerate calls it:  gonio-describe SOURCE_ROOT  writes man/*.[157], schemas/ and completions/ below SOURCE_ROOT.
+// gonio-describe: prints everything that is printed from descriptions: man pages, JSON Schema, shell completions. Not
+// installed; scripts/regenerate calls it:  gonio-describe SOURCE_ROOT  writes man/*.[157], schemas/ and completions/
+// below SOURCE_ROOT.
 #include <filesystem>
 #include <iostream>
 
@@ -26,21 +27,25 @@ std::string page(const fs::path& root, const std::string& name, int section, con
   std::string sentence = cli::section_of(text, "NAME");
   while (!sentence.empty() && (sentence.back() == '\n' || sentence.back() == ' ')) sentence.pop_back();
   const auto first = text.find("\n# ");
-  return cli::man_header(name, section, sentence) + cli::roff_from_markdown(text.substr(first == std::string::npos ? 0 : first + 1)) +
+  return cli::man_header(name, section, sentence) +
+         cli::roff_from_markdown(text.substr(first == std::string::npos ? 0 : first + 1)) +
          cli::roff_from_markdown(generated);
 }
 
 std::string mechanisms_text() {
   std::string out = "# MECHANISMS\n";
   for (const auto* m : mechanism::all_mechanisms()) {
-    out += "## " + m->id + "\n" + m->sentence + "\n\n" + m->equation + "\n\n| parameter | unit | neutral | bounds | meaning |\n";
+    out += "## " + m->id + "\n" + m->sentence + "\n\n" + m->equation +
+           "\n\n| parameter | unit | neutral | bounds | meaning |\n";
     const auto number = [](double v) { return manifest::print_json(manifest::Value(v), -1); };
     for (const auto& p : m->parameters)
-      out += "| " + p.name + " | " + p.unit + " | " + number(p.neutral) + " | " + number(p.lower) + " to " + number(p.upper) + " | " + p.meaning + " |\n";
+      out += "| " + p.name + " | " + p.unit + " | " + number(p.neutral) + " | " + number(p.lower) + " to " +
+             number(p.upper) + " | " + p.meaning + " |\n";
     out += "\nStage: " + m->stage + ". Shows in:";
     for (std::size_t i = 0; i < m->conditions.size(); ++i) out += (i == 0 ? " " : ", ") + m->conditions[i];
     out += ".\n";
-    for (const auto& c : m->mistaken_for) out += "- mistaken for **" + c.with + "**; told apart by: " + c.told_apart + "\n";
+    for (const auto& c : m->mistaken_for)
+      out += "- mistaken for **" + c.with + "**; told apart by: " + c.told_apart + "\n";
     out += "\nSource: " + m->source + "\n\n";
   }
   return out;
@@ -53,9 +58,11 @@ void write_all(const fs::path& root) {
     write_file(root / "completions" / "zsh" / ("_" + program->name), cli::zsh_completion(*program));
     write_file(root / "completions" / "fish" / (program->name + ".fish"), cli::fish_completion(*program));
   }
-  write_file(root / "man" / "gonio-manifest.5", page(root, "gonio-manifest", 5, "# SECTIONS\n" + manifest::manifest_fields_text()));
+  write_file(root / "man" / "gonio-manifest.5",
+             page(root, "gonio-manifest", 5, "# SECTIONS\n" + manifest::manifest_fields_text()));
   write_file(root / "man" / "gonio-mechanisms.7", page(root, "gonio-mechanisms", 7, mechanisms_text()));
-  for (const char* name : {"gonio", "gonio-conventions"}) write_file(root / "man" / (std::string(name) + ".7"), page(root, name, 7));
+  for (const char* name : {"gonio", "gonio-conventions"})
+    write_file(root / "man" / (std::string(name) + ".7"), page(root, name, 7));
   write_file(root / "schemas" / "manifest-1.schema.json", manifest::print_json(manifest::manifest_schema()) + "\n");
 }
 
@@ -64,7 +71,8 @@ void write_all(const fs::path& root) {
 int main(int argc, char** argv) {
   try {
     if (argc != 2) throw Error(Exit::usage, "gonio-describe", "takes one operand", "the root of the source tree");
-    for (const char* folder : {"man", "schemas", "completions/bash", "completions/zsh", "completions/fish"}) make_folder(fs::path(argv[1]) / folder);
+    for (const char* folder : {"man", "schemas", "completions/bash", "completions/zsh", "completions/fish"})
+      make_folder(fs::path(argv[1]) / folder);
     write_all(argv[1]);
   } catch (const Error& e) {
     std::cerr << "gonio-describe: " << e.what() << '\n';

@@ -55,9 +55,12 @@ std::string limits_of(const Option& o) {
   std::string out;
   const std::string unit(o.type == Type::quantity ? si_unit(o.dimension) : "");
   const std::string suffix = unit.empty() ? "" : " " + unit;
-  if (o.lower && o.upper) out = number_text(*o.lower) + " to " + number_text(*o.upper) + suffix;
-  else if (o.lower) out = "at least " + number_text(*o.lower) + suffix;
-  else if (o.upper) out = "at most " + number_text(*o.upper) + suffix;
+  if (o.lower && o.upper)
+    out = number_text(*o.lower) + " to " + number_text(*o.upper) + suffix;
+  else if (o.lower)
+    out = "at least " + number_text(*o.lower) + suffix;
+  else if (o.upper)
+    out = "at most " + number_text(*o.upper) + suffix;
   return out;
 }
 
@@ -143,21 +146,29 @@ manifest::Value describe_option(const Option& o) {
 
 manifest::Value describe(const Program& program) {
   using manifest::Value;
-  Value v = Value::object({{"name", program.name}, {"version", GONIO_VERSION}, {"sentence", program.sentence}, {"synopsis", program.synopsis}});
-  Value operands = Value::array(), options = Value::array(), common = Value::array(), exits = Value::array(), files = Value::array();
+  Value v = Value::object({{"name", program.name},
+                           {"version", GONIO_VERSION},
+                           {"sentence", program.sentence},
+                           {"synopsis", program.synopsis}});
+  Value operands = Value::array(), options = Value::array(), common = Value::array(), exits = Value::array(),
+        files = Value::array();
   for (const auto& o : program.operands) operands.push_back(describe_option(o));
   for (const auto& o : program.options) options.push_back(describe_option(o));
   for (const auto& o : common_options(program)) common.push_back(describe_option(o));
   for (const auto& row : exit_table()) {
     const auto own = std::ranges::find(program.exits, row.code, &std::pair<Exit, std::string>::first);
-    exits.push_back(Value::object({{"code", static_cast<int>(row.code)}, {"name", row.name},
+    exits.push_back(Value::object({{"code", static_cast<int>(row.code)},
+                                   {"name", row.name},
                                    {"meaning", own != program.exits.end() ? own->second : std::string(row.meaning)}}));
   }
-  for (const auto& [pattern, meaning] : program.files) files.push_back(Value::object({{"pattern", pattern}, {"meaning", meaning}}));
+  for (const auto& [pattern, meaning] : program.files)
+    files.push_back(Value::object({{"pattern", pattern}, {"meaning", meaning}}));
   v["operands"] = std::move(operands);
   v["options"] = std::move(options);
   v["common_options"] = std::move(common);
-  v["reads_manifest"] = program.reads == Reads::none ? "no" : program.reads == Reads::optional ? "optional" : "required";
+  v["reads_manifest"] = program.reads == Reads::none       ? "no"
+                        : program.reads == Reads::optional ? "optional"
+                                                           : "required";
   v["writes_manifest"] = program.writes_manifest;
   v["sections_read"] = program.sections_read;
   v["sections_written"] = program.sections_written;

@@ -11,15 +11,15 @@ namespace gonio::cli {
 struct Argument {
   const Option* option = nullptr;
   bool given = false;
-  std::vector<std::string> texts;   // as typed, or the preset
-  std::vector<double> numbers;      // integer, number, quantity: SI
+  std::vector<std::string> texts;  // as typed, or the preset
+  std::vector<double> numbers;     // integer, number, quantity: SI
 };
 
 struct Invocation::State {
   const Program* program = nullptr;
-  std::vector<Option> options;                // common and own; stable once parsing has begun
-  std::map<std::string, Argument> arguments;  // by long name or operand's metavar
-  std::vector<std::filesystem::path> inputs;  // files read besides the manifest
+  std::vector<Option> options;                         // common and own; stable once parsing has begun
+  std::map<std::string, Argument> arguments;           // by long name or operand's metavar
+  std::vector<std::filesystem::path> inputs;           // files read besides the manifest
   mutable std::vector<std::filesystem::path> outputs;  // asked for with output_path()
 };
 

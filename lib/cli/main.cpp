@@ -1,4 +1,5 @@
-// From argv to exit code: the frame of every program. Nothing but the manifest reaches stdout; every failure is one line.
+// From argv to exit code: the frame of every program. Nothing but the manifest reaches stdout; every failure is one
+// line.
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,13 +22,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Writes all of `text` to stdout. A reader that went away (EPIPE) ends the program quietly with 74: the exit code tells.
+// Writes all of `text` to stdout. A reader that went away (EPIPE) ends the program quietly with 74: the exit code
+// tells.
 Exit to_stdout(std::string_view text) {
   while (!text.empty()) {
     const ssize_t n = ::write(STDOUT_FILENO, text.data(), text.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) {
-      if (errno != EPIPE) log(LogLevel::error, std::string("standard output: cannot be written: ") + std::strerror(errno));
+      if (errno != EPIPE)
+        log(LogLevel::error, std::string("standard output: cannot be written: ") + std::strerror(errno));
       return Exit::io;
     }
     text.remove_prefix(static_cast<std::size_t>(n));
@@ -36,11 +39,15 @@ Exit to_stdout(std::string_view text) {
 }
 
 LogLevel level_of(const std::string& word) {
-  return word == "quiet" ? LogLevel::quiet : word == "error" ? LogLevel::error : word == "warning" ? LogLevel::warning
-         : word == "info" ? LogLevel::info : LogLevel::debug;
+  return word == "quiet"     ? LogLevel::quiet
+         : word == "error"   ? LogLevel::error
+         : word == "warning" ? LogLevel::warning
+         : word == "info"    ? LogLevel::info
+                             : LogLevel::debug;
 }
 
-// The manifest's name on this command line: -i, an operand that ends in .json (which then is no operand any more), or "-".
+// The manifest's name on this command line: -i, an operand that ends in .json (which then is no operand any more), or
+// "-".
 std::string manifest_source(Invocation& call) {
   const Program& program = *call.state->program;
   if (program.reads == Reads::none) return {};
@@ -58,7 +65,8 @@ std::string manifest_source(Invocation& call) {
   if (operands || standalone) return {};
   if (!::isatty(STDIN_FILENO)) return "-";
   if (program.reads == Reads::required)
-    throw Error(Exit::no_input, program.name, "has no manifest to read", "pipe one in, or name it: " + program.name + " scene.json");
+    throw Error(Exit::no_input, program.name, "has no manifest to read",
+                "pipe one in, or name it: " + program.name + " scene.json");
   return {};
 }
 
@@ -81,7 +89,9 @@ void apply_common(Invocation& call) {
   const Program& program = *call.state->program;
   set_log_level(level_of(call.text("log-level")));
   const std::string& progress = call.text("progress");
-  set_progress_mode(progress == "auto" ? ProgressMode::automatic : progress == "always" ? ProgressMode::always : ProgressMode::never);
+  set_progress_mode(progress == "auto"     ? ProgressMode::automatic
+                    : progress == "always" ? ProgressMode::always
+                                           : ProgressMode::never);
   set_threads(static_cast<int>(call.integer("threads")));
   if (program.takes_seed) call.seed = static_cast<std::uint64_t>(call.integer("seed"));
   if (program.takes_out) {
@@ -92,8 +102,8 @@ void apply_common(Invocation& call) {
 }
 
 const std::vector<std::string>& options_without_effect() {
-  static const std::vector<std::string> names{"input", "output", "out", "depfile", "threads", "progress", "log-level",
-                                              "force", "resume", "allow-outside", "check"};
+  static const std::vector<std::string> names{"input",     "output", "out",    "depfile",       "threads", "progress",
+                                              "log-level", "force",  "resume", "allow-outside", "check"};
   return names;
 }
 
@@ -107,7 +117,9 @@ void record(Invocation& call, const std::string& input_id) {
     // Files are known by their content, not by their names.
     if (!a.given || o.type == Type::input_file || o.type == Type::output_file || o.type == Type::folder) continue;
     if (std::ranges::find(options_without_effect(), o.name) != options_without_effect().end()) continue;
-    step.options[o.name] = o.type == Type::flag ? manifest::Value(true) : a.texts.size() == 1 ? manifest::Value(a.texts[0]) : manifest::Value(a.texts);
+    step.options[o.name] = o.type == Type::flag  ? manifest::Value(true)
+                           : a.texts.size() == 1 ? manifest::Value(a.texts[0])
+                                                 : manifest::Value(a.texts);
   }
   for (const auto& path : call.state->inputs) step.input_hashes.push_back(sha256_of_file(path));
   manifest::record_step(call.document, step);
@@ -116,10 +128,12 @@ void record(Invocation& call, const std::string& input_id) {
 void write_depfile(const Invocation& call) {
   const auto escaped = [](const fs::path& p) {
     std::string out;
-    for (const char c : p.string()) out += c == ' ' || c == '#' ? std::string("\\") + c : c == '$' ? std::string("$$") : std::string(1, c);
+    for (const char c : p.string())
+      out += c == ' ' || c == '#' ? std::string("\\") + c : c == '$' ? std::string("$$") : std::string(1, c);
     return out;
   };
-  std::string text = call.state->program->writes_manifest && call.given("output") ? escaped(call.text("output")) : std::string();
+  std::string text =
+      call.state->program->writes_manifest && call.given("output") ? escaped(call.text("output")) : std::string();
   for (const auto& path : call.state->outputs) text += (text.empty() ? "" : " ") + escaped(path);
   text += ":";
   if (call.has_document && call.document.name != "standard input") text += " " + escaped(call.document.name);

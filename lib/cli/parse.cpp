@@ -1,5 +1,5 @@
-// The command line: CLI11 splits it into options and operands; types, units, ranges and conflicts are checked here against the
-// description, so that --check, the man page and the program mean the same.
+// The command line: CLI11 splits it into options and operands; types, units, ranges and conflicts are checked here
+// against the description, so that --check, the man page and the program mean the same.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
@@ -12,12 +12,15 @@
 namespace gonio::cli {
 namespace {
 
-std::string dashed(const Option& o, bool operand) { return operand ? o.name : "--" + o.name; }
+std::string dashed(const Option& o, bool operand) {
+  return operand ? o.name : "--" + o.name;
+}
 
 double plain_number(const std::string& text, const std::string& place, bool whole) {
   double v = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(v) || (whole && std::nearbyint(v) != v))
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(v) ||
+      (whole && std::nearbyint(v) != v))
     throw Error(Exit::usage, place, "\"" + text + "\" is not a " + (whole ? "whole number" : "number"));
   return v;
 }
@@ -33,8 +36,10 @@ double checked_number(const Option& o, const std::string& text, const std::strin
                                             : plain_number(text, place, o.type == Type::integer);
   const std::string unit(o.type == Type::quantity ? si_unit(o.dimension) : "");
   const std::string suffix = unit.empty() ? "" : " " + unit;
-  if (o.lower && !(v >= *o.lower)) throw Error(Exit::usage, place, "is " + text + ", at least " + shown(*o.lower) + suffix + " is needed");
-  if (o.upper && !(v <= *o.upper)) throw Error(Exit::usage, place, "is " + text + ", at most " + shown(*o.upper) + suffix + " is allowed");
+  if (o.lower && !(v >= *o.lower))
+    throw Error(Exit::usage, place, "is " + text + ", at least " + shown(*o.lower) + suffix + " is needed");
+  if (o.upper && !(v <= *o.upper))
+    throw Error(Exit::usage, place, "is " + text + ", at most " + shown(*o.upper) + suffix + " is allowed");
   return v;
 }
 
@@ -50,7 +55,8 @@ void interpret(Argument& a, bool operand) {
   const std::string place = dashed(o, operand);
   if (!a.given && !o.preset.empty()) a.texts = {o.preset};
   for (const auto& text : a.texts) {
-    if (o.type == Type::integer || o.type == Type::number || o.type == Type::quantity) a.numbers.push_back(checked_number(o, text, place));
+    if (o.type == Type::integer || o.type == Type::number || o.type == Type::quantity)
+      a.numbers.push_back(checked_number(o, text, place));
     if (o.type == Type::choice) check_choice(o, text, place);
     if (o.type != Type::flag && o.type != Type::text && text.empty()) throw Error(Exit::usage, place, "is empty");
   }
@@ -107,8 +113,10 @@ void parse_arguments(Invocation::State& state, int argc, char** argv) {
     Argument& a = state.arguments[o.name];
     a.option = &o;
     const std::string names = (o.letter != 0 ? std::string("-") + o.letter + "," : std::string()) + "--" + o.name;
-    if (o.type == Type::flag) app.add_flag(names, counts[o.name]);
-    else app.add_option(names, a.texts)->expected(1)->take_all()->allow_extra_args(false);
+    if (o.type == Type::flag)
+      app.add_flag(names, counts[o.name]);
+    else
+      app.add_option(names, a.texts)->expected(1)->take_all()->allow_extra_args(false);
   }
   for (const Option& o : program.operands) {
     Argument& a = state.arguments[o.name];
@@ -125,11 +133,14 @@ void parse_arguments(Invocation::State& state, int argc, char** argv) {
     if (o.type != Type::flag) {
       Argument& a = state.arguments[o.name];
       a.given = !a.texts.empty();
-      if (a.texts.size() > 1 && !o.repeat) throw Error(Exit::usage, "--" + o.name, "is given " + std::to_string(a.texts.size()) + " times", "give it once");
+      if (a.texts.size() > 1 && !o.repeat)
+        throw Error(Exit::usage, "--" + o.name, "is given " + std::to_string(a.texts.size()) + " times",
+                    "give it once");
     }
   for (const Option& o : program.operands) state.arguments[o.name].given = !state.arguments[o.name].texts.empty();
   if (const auto extra = app.remaining(); !extra.empty()) unknown_option(state, extra.front());
-  const bool only_asks = state.arguments["help"].given || state.arguments["version"].given || state.arguments["describe"].given;
+  const bool only_asks =
+      state.arguments["help"].given || state.arguments["version"].given || state.arguments["describe"].given;
   if (only_asks) return;
   for (auto& [name, a] : state.arguments)
     interpret(a, std::ranges::any_of(program.operands, [&n = name](const Option& o) { return o.name == n; }));

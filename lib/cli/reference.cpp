@@ -16,7 +16,8 @@ std::string upper(std::string s) {
 
 std::string option_item(const Option& o, const std::string& head) {
   const std::string remarks = remarks_of(o);
-  return ".TP\n\\fB" + roff_text(head) + "\\fR\n" + roff_text(o.help) + (remarks.empty() ? "" : " " + roff_text("(" + remarks + ")")) + "\n";
+  return ".TP\n\\fB" + roff_text(head) + "\\fR\n" + roff_text(o.help) +
+         (remarks.empty() ? "" : " " + roff_text("(" + remarks + ")")) + "\n";
 }
 
 std::vector<Option> all_options(const Program& program) {
@@ -33,8 +34,9 @@ std::string without_apostrophes(std::string s) {
 }  // namespace
 
 std::string man_header(const std::string& name, int section, const std::string& sentence) {
-  return "'\\\" t\n.\\\" Printed by scripts/regenerate; the prose lies in man/prose.\n.TH " + upper(name) + " " + std::to_string(section) +
-         " \"\" \"gonio " GONIO_VERSION "\" \"gonio manual\"\n.SH NAME\n" + roff_text(name) + " \\- " + roff_text(sentence) + "\n";
+  return "'\\\" t\n.\\\" Printed by scripts/regenerate; the prose lies in man/prose.\n.TH " + upper(name) + " " +
+         std::to_string(section) + " \"\" \"gonio " GONIO_VERSION "\" \"gonio manual\"\n.SH NAME\n" + roff_text(name) +
+         " \\- " + roff_text(sentence) + "\n";
 }
 
 std::string man_page(const Program& program, std::string_view prose) {
@@ -62,8 +64,10 @@ std::string man_page(const Program& program, std::string_view prose) {
   };
   sections("Reads the sections", program.sections_read);
   sections("Writes the sections", program.sections_written);
-  for (const auto& [pattern, meaning] : program.files) out += ".TP\n\\fB" + roff_text(pattern) + "\\fR\n" + roff_text(meaning) + "\n";
-  if (const std::string examples = section_of(prose, "EXAMPLES"); !examples.empty()) out += ".SH EXAMPLES\n" + roff_from_markdown(examples);
+  for (const auto& [pattern, meaning] : program.files)
+    out += ".TP\n\\fB" + roff_text(pattern) + "\\fR\n" + roff_text(meaning) + "\n";
+  if (const std::string examples = section_of(prose, "EXAMPLES"); !examples.empty())
+    out += ".SH EXAMPLES\n" + roff_from_markdown(examples);
   if (!program.references.empty()) out += ".SH REFERENCES\n";
   for (const auto& r : program.references) out += ".PP\n" + roff_text(r) + "\n";
   out += ".SH \"SEE ALSO\"\n";
@@ -90,13 +94,15 @@ std::string bash_completion(const Program& program) {
     } else if (o.type != Type::flag) {
       action = "COMPREPLY=()";
     }
-    if (!action.empty()) cases += "    --" + o.name + (o.letter != 0 ? std::string("|-") + o.letter : "") + ") " + action + "; return ;;\n";
+    if (!action.empty())
+      cases +=
+          "    --" + o.name + (o.letter != 0 ? std::string("|-") + o.letter : "") + ") " + action + "; return ;;\n";
   }
   return "# bash completion of " + program.name + "; printed by scripts/regenerate\n" + function +
-         "() {\n  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n  case $before in\n" + cases +
-         "  esac\n  if [[ $word == -* ]]; then\n    COMPREPLY=($(compgen -W '" + words +
-         "' -- \"$word\"))\n  else\n    COMPREPLY=($(compgen -f -- \"$word\"))\n  fi\n}\ncomplete -o filenames -F " + function + " " +
-         program.name + "\n";
+         "() {\n  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n  case $before in\n" +
+         cases + "  esac\n  if [[ $word == -* ]]; then\n    COMPREPLY=($(compgen -W '" + words +
+         "' -- \"$word\"))\n  else\n    COMPREPLY=($(compgen -f -- \"$word\"))\n  fi\n}\ncomplete -o filenames -F " +
+         function + " " + program.name + "\n";
 }
 
 std::string zsh_completion(const Program& program) {

@@ -7,9 +7,12 @@ namespace gonio::cli {
 namespace {
 
 void escape(char c, std::string& out) {
-  if (c == '\\') out += "\\e";
-  else if (c == '-') out += "\\-";
-  else out += c;
+  if (c == '\\')
+    out += "\\e";
+  else if (c == '-')
+    out += "\\-";
+  else
+    out += c;
 }
 
 std::vector<std::string> cells_of(const std::string& line) {
@@ -33,7 +36,8 @@ void print_table(const std::vector<std::vector<std::string>>& rows, std::string&
     out += pass == 0 ? "\n" : ".\n";
   }
   for (const auto& row : rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) out += std::string(c == 0 ? "" : "\t") + "T{\n" + roff_text(row[c]) + "\nT}";
+    for (std::size_t c = 0; c < row.size(); ++c)
+      out += std::string(c == 0 ? "" : "\t") + "T{\n" + roff_text(row[c]) + "\nT}";
     out += '\n';
   }
   out += ".TE\n.PP\n";

@@ -24,12 +24,12 @@ std::string item(const std::string& place, std::size_t index);  // place/3
 template <class T>
 struct Codec;  // static T read(const Value&, place); static Value write(const T&); static Value schema();
 
-#define GONIO_CODEC(TYPE)                                          \
-  template <>                                                      \
-  struct Codec<TYPE> {                                             \
+#define GONIO_CODEC(TYPE)                                           \
+  template <>                                                       \
+  struct Codec<TYPE> {                                              \
     static TYPE read(const Value& value, const std::string& place); \
-    static Value write(const TYPE& member);                        \
-    static Value schema();                                         \
+    static Value write(const TYPE& member);                         \
+    static Value schema();                                          \
   }
 GONIO_CODEC(bool);
 GONIO_CODEC(int);
@@ -56,7 +56,8 @@ struct Codec<std::vector<T>> {
   static std::vector<T> read(const Value& v, const std::string& place) {
     expect_array(v, place);
     std::vector<T> out;
-    for (std::size_t i = 0; i < v.as_array().size(); ++i) out.push_back(Codec<T>::read(v.as_array()[i], item(place, i)));
+    for (std::size_t i = 0; i < v.as_array().size(); ++i)
+      out.push_back(Codec<T>::read(v.as_array()[i], item(place, i)));
     return out;
   }
   static Value write(const std::vector<T>& m) {
@@ -85,7 +86,8 @@ struct Codec<std::map<std::string, T>> {
   static Value schema() { return Value::object({{"type", "object"}, {"additionalProperties", Codec<T>::schema()}}); }
 };
 
-// The rigid motion of a pose or link: {"rotation", "translation_m", "sigma"} or {"matrix"}. Checks finiteness and orthonormality.
+// The rigid motion of a pose or link: {"rotation", "translation_m", "sigma"} or {"matrix"}. Checks finiteness and
+// orthonormality.
 struct RigidFields {
   Quaternion rotation;
   Vec3 translation_m;

@@ -1,5 +1,6 @@
-// Reading and printing of the whole document. A section that a program did not change is written as it was read: what to_value()
-// prints for an entry is compared with what it would print for the entry as read, and where the two agree the original stands.
+// Reading and printing of the whole document. A section that a program did not change is written as it was read: what
+// to_value() prints for an entry is compared with what it would print for the entry as read, and where the two agree
+// the original stands.
 #include "manifest/document.h"
 
 #include <unistd.h>
@@ -66,8 +67,10 @@ Value write_section(const std::map<std::string, T>& section, const Value* origin
   if (original != nullptr && original->is_object()) {
     out = Value::object();
     for (const auto& [key, member] : original->as_object()) {  // what was there keeps its place
-      if (key.starts_with("x-")) out[key] = member;
-      else if (const auto found = section.find(key); found != section.end()) out[key] = write_entry(found->second, &member);
+      if (key.starts_with("x-"))
+        out[key] = member;
+      else if (const auto found = section.find(key); found != section.end())
+        out[key] = write_entry(found->second, &member);
     }
   }
   for (const auto& [key, entry] : section)
@@ -78,14 +81,17 @@ Value write_section(const std::map<std::string, T>& section, const Value* origin
 template <class T>
 Value write_section(const std::vector<T>& section, const Value* original) {
   if (section.empty() && original == nullptr) return {};
-  const auto id_of = [](const Value& v) -> const Value* { return v.find("id") != nullptr ? v.find("id") : v.find("image"); };
+  const auto id_of = [](const Value& v) -> const Value* {
+    return v.find("id") != nullptr ? v.find("id") : v.find("image");
+  };
   Value out = Value::array();
   for (std::size_t i = 0; i < section.size(); ++i) {
     const Value written = Codec<T>::write(section[i]);
     const Value* before = nullptr;
     if (original != nullptr && original->is_array()) {
       const auto& entries = original->as_array();
-      if (i < entries.size() && (id_of(written) == nullptr || (id_of(entries[i]) != nullptr && *id_of(entries[i]) == *id_of(written))))
+      if (i < entries.size() &&
+          (id_of(written) == nullptr || (id_of(entries[i]) != nullptr && *id_of(entries[i]) == *id_of(written))))
         before = &entries[i];
       for (std::size_t k = 0; before == nullptr && id_of(written) != nullptr && k < entries.size(); ++k)
         if (id_of(entries[k]) != nullptr && *id_of(entries[k]) == *id_of(written)) before = &entries[k];
@@ -104,7 +110,8 @@ void must_exist(const std::map<std::string, T>& section, const std::string& sect
   std::string names;
   for (const auto& [name, entry] : section) names += (names.empty() ? "" : ", ") + name;
   throw Error(Exit::data, where, "names \"" + key + "\", which is not in " + section_name,
-              names.empty() ? "that section is empty" : "there is " + (names.size() > 80 ? names.substr(0, 77) + "..." : names));
+              names.empty() ? "that section is empty"
+                            : "there is " + (names.size() > 80 ? names.substr(0, 77) + "..." : names));
 }
 
 template <class T>
@@ -112,7 +119,8 @@ void unique_ids(const std::vector<T>& section, const std::string& place) {
   std::set<std::string> seen;
   for (std::size_t i = 0; i < section.size(); ++i)
     if (!seen.insert(section[i].id).second)
-      throw Error(Exit::data, item(place, i) + "/id", "\"" + section[i].id + "\" stands twice", "give every entry its own id");
+      throw Error(Exit::data, item(place, i) + "/id", "\"" + section[i].id + "\" stands twice",
+                  "give every entry its own id");
 }
 
 void check_images(const Document& d) {
@@ -145,7 +153,8 @@ void check_references(const Document& d) {
   for (const auto& [name, surface] : d.surfaces)
     for (const auto& [parameter, file] : surface.textures)
       must_exist(d.files, "files", file, place(d, "/surfaces/" + name + "/textures/" + parameter));
-  for (const auto& [name, light] : d.lights) must_exist(d.files, "files", light.file, place(d, "/lights/" + name + "/file"));
+  for (const auto& [name, light] : d.lights)
+    must_exist(d.files, "files", light.file, place(d, "/lights/" + name + "/file"));
   for (const auto& [name, table] : d.tables) {
     const std::string at = place(d, "/tables/" + name);
     must_exist(d.files, "files", table.file, at + "/file");
@@ -168,9 +177,12 @@ const std::vector<std::string>& section_names() {
 
 }  // namespace
 
-std::string place(const Document& document, const std::string& pointer) { return document.name + "#" + pointer; }
+std::string place(const Document& document, const std::string& pointer) {
+  return document.name + "#" + pointer;
+}
 
-Document parse_document(std::string_view text, const std::string& name, const fs::path& folder, const ReadOptions& options) {
+Document parse_document(std::string_view text, const std::string& name, const fs::path& folder,
+                        const ReadOptions& options) {
   Document d;
   d.name = name;
   d.folder = folder.empty() ? fs::path(".") : folder;
@@ -179,7 +191,8 @@ Document parse_document(std::string_view text, const std::string& name, const fs
   expect_object(d.original, name);
   const Value* version = d.original.find("gonio");
   if (version == nullptr)
-    throw Error(Exit::data, name + "#", "is not a gonio manifest: the key \"gonio\" is missing", "a manifest starts with {\"gonio\": 1");
+    throw Error(Exit::data, name + "#", "is not a gonio manifest: the key \"gonio\" is missing",
+                "a manifest starts with {\"gonio\": 1");
   if (!version->is_integer() || version->as_integer() != 1)
     throw Error(Exit::data, name + "#/gonio", "is " + print_json(*version, -1) + ", this program reads version 1");
   for (const auto& [key, member] : d.original.as_object())
@@ -199,7 +212,8 @@ Document parse_document(std::string_view text, const std::string& name, const fs
 Document read_document(const fs::path& path, const ReadOptions& options) {
   if (path == "-") {
     const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
-    if (text.empty()) throw Error(Exit::no_input, "standard input", "is empty", "pipe a manifest in, or name one with -i");
+    if (text.empty())
+      throw Error(Exit::no_input, "standard input", "is empty", "pipe a manifest in, or name one with -i");
     return parse_document(text, "standard input", ".", options);
   }
   return parse_document(read_file(path), path.string(), path.parent_path(), options);
@@ -211,7 +225,8 @@ Value to_value(const Document& d, const fs::path& folder) {
   const fs::path target = fs::absolute(folder.empty() ? fs::path(".") : folder).lexically_normal();
   const fs::path source = fs::absolute(d.folder).lexically_normal();
   if (target != source)
-    for (auto& [id, file] : copy.files) file.path = (source / file.path).lexically_normal().lexically_relative(target).generic_string();
+    for (auto& [id, file] : copy.files)
+      file.path = (source / file.path).lexically_normal().lexically_relative(target).generic_string();
   for_each_section(copy, [&](const char* key, auto& section) {
     const Value* original = d.original.find(key);
     Value v = write_section(section, original);
@@ -224,7 +239,9 @@ Value to_value(const Document& d, const fs::path& folder) {
   return out;
 }
 
-std::string print_document(const Document& d, const fs::path& folder) { return print_json(to_value(d, folder)) + "\n"; }
+std::string print_document(const Document& d, const fs::path& folder) {
+  return print_json(to_value(d, folder)) + "\n";
+}
 
 std::string content_id(const Document& d) {
   Value v = to_value(d, d.folder);
@@ -238,7 +255,8 @@ std::string content_id(const Document& d) {
 void record_step(Document& d, const Step& step) {
   Value node = Value::object({{"program", step.program}, {"version", step.version}, {"options", step.options}});
   Value inputs = Value::array();
-  for (const auto& hash : std::set<std::string>(step.input_hashes.begin(), step.input_hashes.end())) inputs.push_back(hash);
+  for (const auto& hash : std::set<std::string>(step.input_hashes.begin(), step.input_hashes.end()))
+    inputs.push_back(hash);
   node["inputs"] = std::move(inputs);
   if (!step.input_id.empty()) node["manifest"] = step.input_id;
   const Value* last = d.provenance.find("last");
@@ -270,22 +288,29 @@ fs::path resolve(const Document& d, const std::string& file_id, const std::strin
     const fs::path root = fs::weakly_canonical(d.folder.empty() ? "." : d.folder, ignored);
     const fs::path inside = fs::weakly_canonical(path, ignored).lexically_relative(root);
     if (inside.empty() || *inside.begin() == "..")
-      throw Error(Exit::data, at + "/path", "\"" + file.path + "\" leaves the manifest's folder", "move the file, or allow it with --allow-outside");
+      throw Error(Exit::data, at + "/path", "\"" + file.path + "\" leaves the manifest's folder",
+                  "move the file, or allow it with --allow-outside");
   }
   std::error_code error;
   const auto bytes = fs::file_size(path, error);
   if (error) throw Error(Exit::no_input, at + "/path", "\"" + file.path + "\" cannot be read: " + error.message());
   if (file.bytes && *file.bytes != bytes)
-    throw Error(Exit::data, at, "\"" + file.path + "\" has " + std::to_string(bytes) + " bytes, the manifest says " + std::to_string(*file.bytes),
+    throw Error(Exit::data, at,
+                "\"" + file.path + "\" has " + std::to_string(bytes) + " bytes, the manifest says " +
+                    std::to_string(*file.bytes),
                 "restore the file, or make the manifest anew");
   if (!file.sha256.empty() && sha256_of_file(path) != file.sha256)
-    throw Error(Exit::data, at, "\"" + file.path + "\" has another SHA-256 than the manifest says", "restore the file, or make the manifest anew");
+    throw Error(Exit::data, at, "\"" + file.path + "\" has another SHA-256 than the manifest says",
+                "restore the file, or make the manifest anew");
   return path;
 }
 
 std::string add_file(Document& d, const fs::path& path, const std::string& id) {
   File file;
-  file.path = fs::absolute(path).lexically_normal().lexically_relative(fs::absolute(d.folder).lexically_normal()).generic_string();
+  file.path = fs::absolute(path)
+                  .lexically_normal()
+                  .lexically_relative(fs::absolute(d.folder).lexically_normal())
+                  .generic_string();
   file.bytes = fs::file_size(path);
   file.sha256 = sha256_of_file(path);
   std::string name = id;

@@ -1,5 +1,6 @@
-// The manifest: one JSON document that flows through the pipe (gonio-manifest(5)). Programs read it into these typed sections,
-// change their own, and write it; entries that did not change are written as they were read, key for key and digit for digit.
+// The manifest: one JSON document that flows through the pipe (gonio-manifest(5)). Programs read it into these typed
+// sections, change their own, and write it; entries that did not change are written as they were read, key for key and
+// digit for digit.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -28,17 +29,17 @@ struct Document {
   std::vector<Value> explanations;  // written by explain; its shape is checked against the field table
   Value provenance = Value::object();
 
-  std::string name = "(empty)";           // file as the user typed it, "standard input", for messages
-  std::filesystem::path folder = ".";     // relative paths of `files` start here
-  bool allow_outside = false;             // may `files` leave the folder?
-  Value original;                         // as read: source of the untouched entries and of x-* keys
+  std::string name = "(empty)";        // file as the user typed it, "standard input", for messages
+  std::filesystem::path folder = ".";  // relative paths of `files` start here
+  bool allow_outside = false;          // may `files` leave the folder?
+  Value original;                      // as read: source of the untouched entries and of x-* keys
 };
 
 struct ReadOptions {
   bool allow_outside = false;
 };
-// `path` "-" is standard input (relative paths then start at the working directory). Unknown keys (except x-*), wrong units,
-// NaN, non-orthonormal rotations, dangling references are Error(data) at NAME#/json/pointer. No file is opened.
+// `path` "-" is standard input (relative paths then start at the working directory). Unknown keys (except x-*), wrong
+// units, NaN, non-orthonormal rotations, dangling references are Error(data) at NAME#/json/pointer. No file is opened.
 Document read_document(const std::filesystem::path& path, const ReadOptions& options = {});
 Document parse_document(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                         const ReadOptions& options = {});
@@ -47,8 +48,9 @@ Document parse_document(std::string_view text, const std::string& name, const st
 Value to_value(const Document& document, const std::filesystem::path& folder);
 std::string print_document(const Document& document, const std::filesystem::path& folder);
 
-// Absolute path of a file the manifest names. `user` is the JSON pointer that asks for it, for messages. Refuses ids that do
-// not exist, paths that leave the folder (unless allow_outside), missing files (no_input), other sizes or hashes (data).
+// Absolute path of a file the manifest names. `user` is the JSON pointer that asks for it, for messages. Refuses ids
+// that do not exist, paths that leave the folder (unless allow_outside), missing files (no_input), other sizes or
+// hashes (data).
 std::filesystem::path resolve(const Document& document, const std::string& file_id, const std::string& user);
 // Enters an existing file with its size and hash under `id` (made unique when taken by another file). Returns the id.
 std::string add_file(Document& document, const std::filesystem::path& path, const std::string& id);
@@ -56,13 +58,13 @@ std::string add_file(Document& document, const std::filesystem::path& path, cons
 // "NAME#/cameras/c" for messages.
 std::string place(const Document& document, const std::string& pointer);
 
-// Provenance: a graph keyed by content. A step's key is the hash of program, version, canonical options and the hashes of its inputs;
-// time and host stand beside it and do not enter the id: same inputs, same id.
+// Provenance: a graph keyed by content. A step's key is the hash of program, version, canonical options and the hashes
+// of its inputs; time and host stand beside it and do not enter the id: same inputs, same id.
 struct Step {
   std::string program, version;
-  Value options = Value::object();            // without --threads, --progress, --log-level, -i, -o, --out
-  std::vector<std::string> input_hashes;      // SHA-256 of files read
-  std::string input_id;                       // content id of the manifest read, empty for none
+  Value options = Value::object();        // without --threads, --progress, --log-level, -i, -o, --out
+  std::vector<std::string> input_hashes;  // SHA-256 of files read
+  std::string input_id;                   // content id of the manifest read, empty for none
 };
 void record_step(Document& document, const Step& step);
 std::string content_id(const Document& document);  // of everything but provenance's times and hosts

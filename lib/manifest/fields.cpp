@@ -50,15 +50,18 @@ std::string number_text(double v) {
 void check_range(const Value& value, double lower, double upper, const std::string& unit, const std::string& place) {
   if (lower == -infinite && upper == infinite) return;
   if (value.is_array()) {
-    for (std::size_t i = 0; i < value.as_array().size(); ++i) check_range(value.as_array()[i], lower, upper, unit, item(place, i));
+    for (std::size_t i = 0; i < value.as_array().size(); ++i)
+      check_range(value.as_array()[i], lower, upper, unit, item(place, i));
   } else if (value.is_object() && value.find("value") != nullptr) {
     check_range(*value.find("value"), lower, upper, unit, place + "/value");
   } else if (value.is_number() && !(value.as_number() >= lower && value.as_number() <= upper)) {
     const std::string with_unit = unit.empty() || unit == "1" ? "" : " " + unit;
     const std::string limit = lower == tiny && upper == infinite ? "more than 0"
-                              : upper == infinite               ? number_text(lower) + " or more"
-                                                                : number_text(lower == tiny ? 0 : lower) + " to " + number_text(upper);
-    throw Error(Exit::data, place, "is " + number_text(value.as_number()) + with_unit + ", " + limit + with_unit + " is needed");
+                              : upper == infinite
+                                  ? number_text(lower) + " or more"
+                                  : number_text(lower == tiny ? 0 : lower) + " to " + number_text(upper);
+    throw Error(Exit::data, place,
+                "is " + number_text(value.as_number()) + with_unit + ", " + limit + with_unit + " is needed");
   }
 }
 

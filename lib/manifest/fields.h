@@ -1,5 +1,5 @@
-// Field tables: one line per field of a section (JSON name, member, unit, range, sentence) yields reading, validation, writing, the
-// JSON Schema and the table in gonio-manifest(5).
+// Field tables: one line per field of a section (JSON name, member, unit, range, sentence) yields reading, validation,
+// writing, the JSON Schema and the table in gonio-manifest(5).
 #pragma once
 #include <functional>
 #include <string>
@@ -20,10 +20,20 @@ struct Field {
   std::function<void(Record&, const Value&, const std::string& place)> read;
   std::function<Value(const Record&)> write;  // null: the field is left out
 
-  Field& range(double low, double high) { lower = low; upper = high; return *this; }
+  Field& range(double low, double high) {
+    lower = low;
+    upper = high;
+    return *this;
+  }
   Field& positive() { return range(tiny, infinite); }
-  Field& one_of(std::vector<std::string> words) { choices = std::move(words); return *this; }
-  Field& needed() { required = true; return *this; }
+  Field& one_of(std::vector<std::string> words) {
+    choices = std::move(words);
+    return *this;
+  }
+  Field& needed() {
+    required = true;
+    return *this;
+  }
 };
 
 template <class Record, class Member>
@@ -82,10 +92,12 @@ Value record_schema(const std::vector<Field<Record>>& fields) {
   for (const auto& f : fields) {
     Value s = f.schema;
     if (!f.choices.empty()) s["enum"] = Value(f.choices);
-    if (const Value* type = s.find("type"); type != nullptr && type->is_string() &&
-        (type->as_string() == "number" || type->as_string() == "integer")) {
-      if (f.lower == tiny) s["exclusiveMinimum"] = 0;
-      else if (f.lower > -infinite) s["minimum"] = f.lower;
+    if (const Value* type = s.find("type");
+        type != nullptr && type->is_string() && (type->as_string() == "number" || type->as_string() == "integer")) {
+      if (f.lower == tiny)
+        s["exclusiveMinimum"] = 0;
+      else if (f.lower > -infinite)
+        s["minimum"] = f.lower;
       if (f.upper < infinite) s["maximum"] = f.upper;
     }
     s["description"] = f.sentence + (f.unit.empty() ? "" : " [" + f.unit + "]");

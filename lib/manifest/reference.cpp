@@ -9,46 +9,54 @@ namespace {
 template <class Record>
 std::string rows(const std::string& heading, const std::string& what, const std::vector<Field<Record>>& fields) {
   std::string out = "## " + heading + "\n" + what + "\n\n| key | unit | meaning |\n| --- | --- | --- |\n";
-  for (const auto& f : fields) out += "| " + f.name + (f.required ? " (needed)" : "") + " | " + f.unit + " | " + f.sentence + " |\n";
+  for (const auto& f : fields)
+    out += "| " + f.name + (f.required ? " (needed)" : "") + " | " + f.unit + " | " + f.sentence + " |\n";
   return out + "\n";
 }
 
 std::string model_rows(const std::string& heading, const std::string& what, Family family) {
   std::string out = "## " + heading + "\n" + what + "\n\n";
   for (const ModelInfo* model : models(family)) {
-    out += "**" + model->id + "**: " + model->sentence + (model->source.empty() ? "" : " (" + model->source + ")") + "\n\n";
+    out += "**" + model->id + "**: " + model->sentence + (model->source.empty() ? "" : " (" + model->source + ")") +
+           "\n\n";
     out += "| key | unit | meaning |\n| --- | --- | --- |\n";
     for (const auto& p : model->parameters)
-      out += "| " + p.name + (p.preset ? "" : " (needed)") + " | " + (p.unit == "1" ? "" : p.unit) + " | " + p.meaning + " |\n";
+      out += "| " + p.name + (p.preset ? "" : " (needed)") + " | " + (p.unit == "1" ? "" : p.unit) + " | " + p.meaning +
+             " |\n";
     out += "\n";
   }
   return out;
 }
 
 template <class T>
-Value keyed() { return Codec<std::map<std::string, T>>::schema(); }
+Value keyed() {
+  return Codec<std::map<std::string, T>>::schema();
+}
 template <class T>
-Value listed() { return Codec<std::vector<T>>::schema(); }
+Value listed() {
+  return Codec<std::vector<T>>::schema();
+}
 
 }  // namespace
 
 Value manifest_schema() {
-  Value properties = Value::object({{"gonio", Value::object({{"const", 1}})},
-                                    {"files", keyed<File>()},
-                                    {"frames", listed<Link>()},
-                                    {"boards", keyed<Board>()},
-                                    {"cameras", keyed<Camera>()},
-                                    {"images", listed<ImageEntry>()},
-                                    {"meshes", keyed<Mesh>()},
-                                    {"surfaces", keyed<Surface>()},
-                                    {"lights", keyed<Light>()},
-                                    {"objects", listed<Object>()},
-                                    {"tables", keyed<Table>()},
-                                    {"mechanisms", keyed<MechanismUse>()},
-                                    {"renderings", listed<Rendering>()},
-                                    {"comparisons", listed<Comparison>()},
-                                    {"explanations", Value::object({{"type", "array"}, {"items", Value::object({{"type", "object"}})}})},
-                                    {"provenance", Value::object({{"type", "object"}})}});
+  Value properties = Value::object(
+      {{"gonio", Value::object({{"const", 1}})},
+       {"files", keyed<File>()},
+       {"frames", listed<Link>()},
+       {"boards", keyed<Board>()},
+       {"cameras", keyed<Camera>()},
+       {"images", listed<ImageEntry>()},
+       {"meshes", keyed<Mesh>()},
+       {"surfaces", keyed<Surface>()},
+       {"lights", keyed<Light>()},
+       {"objects", listed<Object>()},
+       {"tables", keyed<Table>()},
+       {"mechanisms", keyed<MechanismUse>()},
+       {"renderings", listed<Rendering>()},
+       {"comparisons", listed<Comparison>()},
+       {"explanations", Value::object({{"type", "array"}, {"items", Value::object({{"type", "object"}})}})},
+       {"provenance", Value::object({{"type", "object"}})}});
   return Value::object({{"$schema", "http://json-schema.org/draft-07/schema#"},
                         {"title", "gonio manifest, version 1"},
                         {"type", "object"},
@@ -60,12 +68,16 @@ Value manifest_schema() {
 
 std::string manifest_fields_text() {
   return rows("files", "Keyed by id. Pixels, meshes and tables beside the document.", file_fields()) +
-         rows("frames", "A list. Rigid motions between named frames: p_to = rotation * p_from + translation.", link_fields()) +
+         rows("frames", "A list. Rigid motions between named frames: p_to = rotation * p_from + translation.",
+              link_fields()) +
          rows("boards", "Keyed by name. Calibration targets.", board_fields()) +
          rows("cameras", "Keyed by name. How rays map to pixels.", camera_fields()) +
          rows("images", "A list. Recordings, or pictures to be simulated.", image_fields()) +
          rows("meshes", "Keyed by name. Exactly one of file, sphere, plane.", mesh_fields()) +
-         model_rows("surfaces", "Keyed by name. `model` and its parameters; `textures` maps a parameter to a file id; `sigma` holds uncertainties.", Family::surface) +
+         model_rows("surfaces",
+                    "Keyed by name. `model` and its parameters; `textures` maps a parameter to a file id; `sigma` "
+                    "holds uncertainties.",
+                    Family::surface) +
          model_rows("lights", "Keyed by name. `model` and its parameters.", Family::light) +
          rows("objects", "A list. A mesh with a surface at a place.", object_fields()) +
          rows("tables", "Keyed by name. One row per observation.", table_fields()) +

@@ -18,12 +18,12 @@ const std::vector<Field<Table>>& table_fields();
 const std::vector<Field<Rendering>>& rendering_fields();
 const std::vector<Field<Comparison>>& comparison_fields();
 
-#define GONIO_RECORD(TYPE, TABLE)                                                                                    \
-  template <>                                                                                                        \
-  struct Codec<TYPE> {                                                                                               \
-    static TYPE read(const Value& value, const std::string& place) { return read_record(value, TABLE(), place); }    \
-    static Value write(const TYPE& member) { return write_record(member, TABLE()); }                                 \
-    static Value schema() { return record_schema(TABLE()); }                                                         \
+#define GONIO_RECORD(TYPE, TABLE)                                                                                 \
+  template <>                                                                                                     \
+  struct Codec<TYPE> {                                                                                            \
+    static TYPE read(const Value& value, const std::string& place) { return read_record(value, TABLE(), place); } \
+    static Value write(const TYPE& member) { return write_record(member, TABLE()); }                              \
+    static Value schema() { return record_schema(TABLE()); }                                                      \
   }
 GONIO_RECORD(File, file_fields);
 GONIO_RECORD(Link, link_fields);
@@ -38,12 +38,12 @@ GONIO_RECORD(Comparison, comparison_fields);
 #undef GONIO_RECORD
 
 // Surfaces, lights and mechanisms are read against the registries instead of a table.
-#define GONIO_REGISTERED(TYPE)                                     \
-  template <>                                                      \
-  struct Codec<TYPE> {                                             \
+#define GONIO_REGISTERED(TYPE)                                      \
+  template <>                                                       \
+  struct Codec<TYPE> {                                              \
     static TYPE read(const Value& value, const std::string& place); \
-    static Value write(const TYPE& member);                        \
-    static Value schema();                                         \
+    static Value write(const TYPE& member);                         \
+    static Value schema();                                          \
   }
 GONIO_REGISTERED(Surface);
 GONIO_REGISTERED(Light);

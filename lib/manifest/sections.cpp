@@ -1,9 +1,8 @@
-#include "manifest/section_tables.h"
-
 #include <algorithm>
 
 #include "base/error.h"
 #include "manifest/model.h"
+#include "manifest/section_tables.h"
 
 namespace gonio::manifest {
 namespace {
@@ -41,14 +40,17 @@ Field<Record> sigma_field(Sigmas Record::*member) {
       [member](const Record& r) {
         if ((r.*member).empty()) return Value();
         Value out = Value::object();
-        for (const auto& [key, numbers] : r.*member) out[key] = numbers.size() == 1 ? Value(numbers[0]) : Value(numbers);
+        for (const auto& [key, numbers] : r.*member)
+          out[key] = numbers.size() == 1 ? Value(numbers[0]) : Value(numbers);
         return out;
       });
 }
 
 Value shape_schema(const char* key, Value schema) {
-  return Value::object({{"type", "object"}, {"properties", Value::object({{key, std::move(schema)}})},
-                        {"required", Value(Value::Array{key})}, {"additionalProperties", false}});
+  return Value::object({{"type", "object"},
+                        {"properties", Value::object({{key, std::move(schema)}})},
+                        {"required", Value(Value::Array{key})},
+                        {"additionalProperties", false}});
 }
 
 }  // namespace
@@ -74,12 +76,14 @@ const std::vector<Field<Link>>& link_fields() {
 const std::vector<Field<Board>>& board_fields() {
   static const std::vector<Field<Board>> table{
       field("kind", &Board::kind, "", "checkerboard or charuco").one_of({"checkerboard", "charuco"}).needed(),
-      field("inner_corners", &Board::inner_corners, "", "checkerboard: columns and rows of inner corners").range(2, 1000),
+      field("inner_corners", &Board::inner_corners, "", "checkerboard: columns and rows of inner corners")
+          .range(2, 1000),
       field("squares", &Board::squares, "", "charuco: columns and rows of squares").range(2, 1000),
       field("square_m", &Board::square_m, "m", "side of a square").positive().needed(),
       field("marker_m", &Board::marker_m, "m", "charuco: side of a marker").positive(),
       field("dictionary", &Board::dictionary, "", "charuco: 4X4_50, 5X5_1000, ..."),
-      field("legacy_layout", &Board::legacy_layout, "", "charuco: the layout of OpenCV before 4.6; left out: found from the pictures"),
+      field("legacy_layout", &Board::legacy_layout, "",
+            "charuco: the layout of OpenCV before 4.6; left out: found from the pictures"),
       field("warp", &Board::warp, "m", "board.warp: sag_x_m and sag_y_m of the middle against the edges"),
       sigma_field(&Board::sigma)};
   return table;
@@ -87,7 +91,8 @@ const std::vector<Field<Board>>& board_fields() {
 
 const std::vector<Field<Camera>>& camera_fields() {
   static const std::vector<Field<Camera>> table{
-      field("model", &Camera::model, "", "how rays map to pixels").one_of({"pinhole", "radial-tangential", "thin-prism", "orthographic"}),
+      field("model", &Camera::model, "", "how rays map to pixels")
+          .one_of({"pinhole", "radial-tangential", "thin-prism", "orthographic"}),
       field("width_px", &Camera::width_px, "px", "columns").range(1, 1 << 20),
       field("height_px", &Camera::height_px, "px", "rows").range(1, 1 << 20),
       field("fx_px", &Camera::fx_px, "px", "focal length along x").positive(),
@@ -97,7 +102,8 @@ const std::vector<Field<Camera>>& camera_fields() {
       field("px_per_m", &Camera::px_per_m, "px/m", "orthographic: pixels per metre").positive(),
       field("distortion", &Camera::distortion, "", "k1 k2 p1 p2 k3 s1 s2 s3 s4, left out: 0"),
       sigma_field(&Camera::sigma),
-      field("rms_px", &Camera::rms_px, "px", "root mean square of the reprojection error of the fit").range(0, infinite),
+      field("rms_px", &Camera::rms_px, "px", "root mean square of the reprojection error of the fit")
+          .range(0, infinite),
       field("covariance", &Camera::covariance, "", "of the fit: {\"order\": [names], \"values\": [[...]]}")};
   return table;
 }
@@ -107,11 +113,13 @@ const std::vector<Field<ImageEntry>>& image_fields() {
       field("id", &ImageEntry::id, "", "name, unique among images").needed(),
       field("file", &ImageEntry::file, "", "file id of the recording"),
       field("camera", &ImageEntry::camera, "", "name of its camera"),
-      field("world_from_camera", &ImageEntry::world_from_camera, "", "takes camera to world coordinates; left out: identity"),
+      field("world_from_camera", &ImageEntry::world_from_camera, "",
+            "takes camera to world coordinates; left out: identity"),
       custom<ImageEntry>(
           "light", "", "name or names of the lights that are on; left out: all of the scene", Codec<Value>::schema(),
           [](ImageEntry& r, const Value& v, const std::string& place) {
-            r.light = v.is_string() ? std::vector<std::string>{v.as_string()} : Codec<std::vector<std::string>>::read(v, place);
+            r.light = v.is_string() ? std::vector<std::string>{v.as_string()}
+                                    : Codec<std::vector<std::string>>::read(v, place);
           },
           [](const ImageEntry& r) {
             return r.light.empty() ? Value() : r.light.size() == 1 ? Value(r.light[0]) : Value(r.light);
@@ -121,7 +129,8 @@ const std::vector<Field<ImageEntry>>& image_fields() {
       field("mask", &ImageEntry::mask, "", "file id; pixels above 0.5 count"),
       field("board", &ImageEntry::board, "", "name of the board it shows"),
       field("camera_from_board", &ImageEntry::camera_from_board, "", "takes board to camera coordinates"),
-      field("rms_px", &ImageEntry::rms_px, "px", "root mean square of the reprojection error in this image").range(0, infinite),
+      field("rms_px", &ImageEntry::rms_px, "px", "root mean square of the reprojection error in this image")
+          .range(0, infinite),
       field("weight", &ImageEntry::weight, "", "in fits; 0: dropped").range(0, 1),
       field("noise", &ImageEntry::noise, "", "of a linear value v: variance v / gain + read^2"),
       field("gain", &ImageEntry::gain, "", "factor on the simulated radiance; free: unknown exposure"),
@@ -139,35 +148,40 @@ const std::vector<Field<Mesh>>& mesh_fields() {
   };
   static const std::vector<Field<Mesh>> table{
       field("file", &Mesh::file, "", "file id of a PLY mesh"),
-      custom<Mesh>("sphere", "", "{\"radius_m\": r}: a sphere about the object's origin",
-                   shape_schema("radius_m", Value::object({{"type", "number"}, {"exclusiveMinimum", 0}})),
-                   [nested](Mesh& m, const Value& v, const std::string& place) {
-                     const Value& r = nested(v, "radius_m", place);
-                     m.sphere_radius_m = Codec<double>::read(r, place + "/radius_m");
-                     check_range(r, tiny, infinite, "m", place + "/radius_m");
-                   },
-                   [](const Mesh& m) {
-                     return m.sphere_radius_m ? Value::object({{"radius_m", *m.sphere_radius_m}}) : Value();
-                   }),
-      custom<Mesh>("plane", "", "{\"size_m\": [x, y]}: a rectangle in its own xy plane about its origin, normal +z",
-                   shape_schema("size_m", Codec<std::vector<double>>::schema()),
-                   [nested](Mesh& m, const Value& v, const std::string& place) {
-                     const Value& s = nested(v, "size_m", place);
-                     m.plane_size_m = Codec<std::vector<double>>::read(s, place + "/size_m");
-                     check_range(s, tiny, infinite, "m", place + "/size_m");
-                     if (m.plane_size_m->size() != 2) wrong_type(s, "two lengths [x, y]", place + "/size_m");
-                   },
-                   [](const Mesh& m) { return m.plane_size_m ? Value::object({{"size_m", *m.plane_size_m}}) : Value(); }),
-      field("normals", &Mesh::normals, "", "smooth (the file's, else averaged by area and angle) or flat").one_of({"smooth", "flat"})};
+      custom<Mesh>(
+          "sphere", "", "{\"radius_m\": r}: a sphere about the object's origin",
+          shape_schema("radius_m", Value::object({{"type", "number"}, {"exclusiveMinimum", 0}})),
+          [nested](Mesh& m, const Value& v, const std::string& place) {
+            const Value& r = nested(v, "radius_m", place);
+            m.sphere_radius_m = Codec<double>::read(r, place + "/radius_m");
+            check_range(r, tiny, infinite, "m", place + "/radius_m");
+          },
+          [](const Mesh& m) {
+            return m.sphere_radius_m ? Value::object({{"radius_m", *m.sphere_radius_m}}) : Value();
+          }),
+      custom<Mesh>(
+          "plane", "", "{\"size_m\": [x, y]}: a rectangle in its own xy plane about its origin, normal +z",
+          shape_schema("size_m", Codec<std::vector<double>>::schema()),
+          [nested](Mesh& m, const Value& v, const std::string& place) {
+            const Value& s = nested(v, "size_m", place);
+            m.plane_size_m = Codec<std::vector<double>>::read(s, place + "/size_m");
+            check_range(s, tiny, infinite, "m", place + "/size_m");
+            if (m.plane_size_m->size() != 2) wrong_type(s, "two lengths [x, y]", place + "/size_m");
+          },
+          [](const Mesh& m) {
+            return m.plane_size_m ? Value::object({{"size_m", *m.plane_size_m}}) : Value();
+          }),
+      field("normals", &Mesh::normals, "", "smooth (the file's, else averaged by area and angle) or flat")
+          .one_of({"smooth", "flat"})};
   return table;
 }
 
 const std::vector<Field<Object>>& object_fields() {
-  static const std::vector<Field<Object>> table{
-      field("id", &Object::id, "", "name, unique among objects").needed(),
-      field("mesh", &Object::mesh, "", "name of its mesh").needed(),
-      field("surface", &Object::surface, "", "name of its surface").needed(),
-      field("world_from_object", &Object::world_from_object, "", "takes object to world coordinates; left out: identity")};
+  static const std::vector<Field<Object>> table{field("id", &Object::id, "", "name, unique among objects").needed(),
+                                                field("mesh", &Object::mesh, "", "name of its mesh").needed(),
+                                                field("surface", &Object::surface, "", "name of its surface").needed(),
+                                                field("world_from_object", &Object::world_from_object, "",
+                                                      "takes object to world coordinates; left out: identity")};
   return table;
 }
 
@@ -221,11 +235,13 @@ const std::vector<Field<Comparison>>& comparison_fields() {
 
 namespace {
 
-// Values of `parameters` against what the model declares. Scalars stand for three equal colours where a colour is wanted.
+// Values of `parameters` against what the model declares. Scalars stand for three equal colours where a colour is
+// wanted.
 void check_parameter(const ParameterInfo& info, const Value& raw, const Parameter& p, const std::string& place) {
   const auto n = static_cast<int>(p.value.size());
   if (n != info.components && !(info.rgb && n == 1))
-    throw Error(Exit::data, place, "has " + std::to_string(n) + " numbers, " + std::to_string(info.components) + " are needed");
+    throw Error(Exit::data, place,
+                "has " + std::to_string(n) + " numbers, " + std::to_string(info.components) + " are needed");
   check_range(raw, info.lower, info.upper, info.unit, place);
 }
 
@@ -249,7 +265,8 @@ Record read_modelled(Family family, const Value& v, const std::string& place) {
     if (key == "sigma") {
       expect_object(member, at);
       for (const auto& [name, value] : member.as_object())
-        out.sigma[name] = value.is_number() ? std::vector<double>{value.as_number()} : Codec<std::vector<double>>::read(value, at + "/" + name);
+        out.sigma[name] = value.is_number() ? std::vector<double>{value.as_number()}
+                                            : Codec<std::vector<double>>::read(value, at + "/" + name);
       continue;
     }
     if constexpr (requires { out.textures; }) {
@@ -281,14 +298,19 @@ Record read_modelled(Family family, const Value& v, const std::string& place) {
   return out;
 }
 
-Surface Codec<Surface>::read(const Value& v, const std::string& place) { return read_modelled<Surface>(Family::surface, v, place); }
-Light Codec<Light>::read(const Value& v, const std::string& place) { return read_modelled<Light>(Family::light, v, place); }
+Surface Codec<Surface>::read(const Value& v, const std::string& place) {
+  return read_modelled<Surface>(Family::surface, v, place);
+}
+Light Codec<Light>::read(const Value& v, const std::string& place) {
+  return read_modelled<Light>(Family::light, v, place);
+}
 
 namespace {
 void write_parameters(const Parameters& parameters, const Sigmas& sigma, Value& out) {
   for (const auto& [name, p] : parameters)
     if (p.given()) out[name] = Codec<Parameter>::write(p);
-  for (const auto& [name, numbers] : sigma) out["sigma"][name] = numbers.size() == 1 ? Value(numbers[0]) : Value(numbers);
+  for (const auto& [name, numbers] : sigma)
+    out["sigma"][name] = numbers.size() == 1 ? Value(numbers[0]) : Value(numbers);
 }
 }  // namespace
 
@@ -319,27 +341,37 @@ Value modelled_schema(Family family) {
     properties["sigma"] = Value::object();
     if (family == Family::surface) properties["textures"] = Codec<std::map<std::string, std::string>>::schema();
     if (model->takes_file) properties["file"] = Codec<std::string>::schema();
-    alternatives.push_back(Value::object({{"title", model->id}, {"description", model->sentence}, {"type", "object"},
+    alternatives.push_back(Value::object({{"title", model->id},
+                                          {"description", model->sentence},
+                                          {"type", "object"},
                                           {"properties", std::move(properties)},
                                           {"patternProperties", Value::object({{"^x-", Value::object()}})},
-                                          {"required", std::move(required)}, {"additionalProperties", false}}));
+                                          {"required", std::move(required)},
+                                          {"additionalProperties", false}}));
   }
   return Value::object({{"oneOf", std::move(alternatives)}});
 }
 }  // namespace
-Value Codec<Surface>::schema() { return modelled_schema(Family::surface); }
-Value Codec<Light>::schema() { return modelled_schema(Family::light); }
+Value Codec<Surface>::schema() {
+  return modelled_schema(Family::surface);
+}
+Value Codec<Light>::schema() {
+  return modelled_schema(Family::light);
+}
 
 MechanismUse Codec<MechanismUse>::read(const Value& v, const std::string& place) {
   expect_object(v, place);
   MechanismUse out;
   for (const auto& [key, member] : v.as_object()) {
     const std::string at = place + "/" + key;
-    if (key == "on") out.on = member.is_string() ? std::vector<std::string>{member.as_string()} : Codec<std::vector<std::string>>::read(member, at);
+    if (key == "on")
+      out.on = member.is_string() ? std::vector<std::string>{member.as_string()}
+                                  : Codec<std::vector<std::string>>::read(member, at);
     else if (key == "sigma") {
       expect_object(member, at);
       for (const auto& [name, value] : member.as_object())
-        out.sigma[name] = value.is_number() ? std::vector<double>{value.as_number()} : Codec<std::vector<double>>::read(value, at + "/" + name);
+        out.sigma[name] = value.is_number() ? std::vector<double>{value.as_number()}
+                                            : Codec<std::vector<double>>::read(value, at + "/" + name);
     } else if (!key.starts_with("x-")) {
       out.parameters[key] = Codec<Parameter>::read(member, at);
     }
@@ -352,6 +384,8 @@ Value Codec<MechanismUse>::write(const MechanismUse& m) {
   write_parameters(m.parameters, m.sigma, out);
   return out;
 }
-Value Codec<MechanismUse>::schema() { return Value::object({{"type", "object"}}); }
+Value Codec<MechanismUse>::schema() {
+  return Value::object({{"type", "object"}});
+}
 
 }  // namespace gonio::manifest

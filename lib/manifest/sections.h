@@ -1,8 +1,8 @@
-// The sections of the manifest as C++ structs. Their field tables (sections.cpp, one line a field: JSON name, member, unit,
-// range, sentence) yield reading, validation, writing, schemas/*.schema.json and gonio-manifest(5).
+// The sections of the manifest as C++ structs. Their field tables (sections.cpp, one line a field: JSON name, member,
+// unit, range, sentence) yield reading, validation, writing, schemas/*.schema.json and gonio-manifest(5).
 //
-// Frames: `world_from_camera` takes camera coordinates to world coordinates; camera axes x right, y down, z forward. Units
-// stand in the names. Pixel centres lie at integers. gonio-conventions(7) has it in full.
+// Frames: `world_from_camera` takes camera coordinates to world coordinates; camera axes x right, y down, z forward.
+// Units stand in the names. Pixel centres lie at integers. gonio-conventions(7) has it in full.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -29,7 +29,9 @@ struct Parameter {
   Parameter(std::vector<double> v) : value(std::move(v)) {}
   bool given() const { return !value.empty(); }
   double scalar() const { return value.at(0); }
-  Rgb rgb() const { return value.size() == 3 ? Rgb{value[0], value[1], value[2]} : Rgb{value.at(0), value.at(0), value.at(0)}; }
+  Rgb rgb() const {
+    return value.size() == 3 ? Rgb{value[0], value[1], value[2]} : Rgb{value.at(0), value.at(0), value.at(0)};
+  }
   Vec3 vector() const { return {value.at(0), value.at(1), value.at(2)}; }
   bool operator==(const Parameter&) const = default;
 };
@@ -48,7 +50,7 @@ struct Pose : Rigid<To, From> {
   bool operator==(const Pose&) const = default;
 };
 
-struct File {  // "files"
+struct File {        // "files"
   std::string path;  // relative to the manifest's folder
   std::optional<std::uint64_t> bytes;
   std::string sha256;
@@ -59,18 +61,18 @@ struct Link {  // "frames": a rigid motion between two named frames
   Vec3 translation_m;
   std::optional<PoseSigma> sigma;
 };
-struct Board {  // "boards"
-  std::string kind;               // "checkerboard" | "charuco"
-  std::vector<int> inner_corners; // checkerboard: [columns, rows]
-  std::vector<int> squares;       // charuco: [columns, rows]
+struct Board {                     // "boards"
+  std::string kind;                // "checkerboard" | "charuco"
+  std::vector<int> inner_corners;  // checkerboard: [columns, rows]
+  std::vector<int> squares;        // charuco: [columns, rows]
   double square_m = 0;
-  std::optional<double> marker_m; // charuco
-  std::string dictionary;         // charuco: "4X4_50", "5X5_1000", ...
+  std::optional<double> marker_m;     // charuco
+  std::string dictionary;             // charuco: "4X4_50", "5X5_1000", ...
   std::optional<bool> legacy_layout;  // charuco: the layout of OpenCV before 4.6; absent: found from the pictures
-  Parameters warp;                // board.warp: {"x_m", "y_m"} sag in metres (0: flat)
+  Parameters warp;                    // board.warp: {"x_m", "y_m"} sag in metres (0: flat)
   Sigmas sigma;
 };
-struct Camera {  // "cameras"
+struct Camera {                   // "cameras"
   std::string model = "pinhole";  // pinhole | radial-tangential | thin-prism | orthographic
   int width_px = 0, height_px = 0;
   Parameter fx_px, fy_px, cx_px, cy_px;  // orthographic: fx, fy are pixels per metre (px_per_m_x ...) instead
@@ -88,7 +90,7 @@ struct ImageEntry {  // "images"
   std::optional<Pose<frame::World, frame::Camera>> world_from_camera;  // absent: the camera sits at the world's origin
   std::vector<std::string> light;  // one name or a list; empty: every light of the scene is on
   std::optional<double> exposure_s;
-  Value response;  // "linear" (default for EXR), "srgb", or a table [[code, linear], ...]
+  Value response;    // "linear" (default for EXR), "srgb", or a table [[code, linear], ...]
   std::string mask;  // file id: pixels > 0.5 count
   std::string board;
   std::optional<Pose<frame::Camera, frame::Board>> camera_from_board;
@@ -100,8 +102,8 @@ struct ImageEntry {  // "images"
 };
 struct Mesh {  // "meshes": a PLY file or an analytic shape
   std::string file;
-  std::optional<double> sphere_radius_m;             // {"sphere": {"radius_m": r}}, centred at the object's origin
-  std::optional<std::vector<double>> plane_size_m;   // {"plane": {"size_m": [x, y]}}, in its own xy plane, normal +z
+  std::optional<double> sphere_radius_m;            // {"sphere": {"radius_m": r}}, centred at the object's origin
+  std::optional<std::vector<double>> plane_size_m;  // {"plane": {"size_m": [x, y]}}, in its own xy plane, normal +z
   std::string normals;  // "smooth" (default: the file's, else averaged by area and angle) | "flat"
 };
 // "surfaces" and "lights": a registered model and its parameters, validated against the registry (manifest/model.h).
@@ -123,14 +125,14 @@ struct Object {  // "objects"
 };
 struct Table {  // "tables": one row per observation, in a CSV file or inline
   std::string file;
-  Value rows;         // inline rows [[...], ...] in the order of `columns`
-  std::string model;  // forward model that predicts it: "camera", "surface", ...
+  Value rows;                                                // inline rows [[...], ...] in the order of `columns`
+  std::string model;                                         // forward model that predicts it: "camera", "surface", ...
   std::vector<std::pair<std::string, std::string>> columns;  // name -> unit, in the file's order
   std::vector<std::string> observed, sigma;
   std::string camera, board;  // model "camera": whose corners these are
 };
-// "mechanisms": optional physics that is switched on, by canonical id. `on` names the surfaces or lights it applies to (empty:
-// all it can apply to); a parameter is one number, or one per name in `on`.
+// "mechanisms": optional physics that is switched on, by canonical id. `on` names the surfaces or lights it applies to
+// (empty: all it can apply to); a parameter is one number, or one per name in `on`.
 struct MechanismUse {
   std::vector<std::string> on;
   Parameters parameters;

@@ -25,7 +25,8 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     return add(Value(static_cast<std::int64_t>(v)));
   }
   bool number_float(number_float_t v, const string_t& text) override {
-    if (!std::isfinite(v)) throw Error(Exit::data, place_, "number " + text + " is not finite", "write a finite number");
+    if (!std::isfinite(v))
+      throw Error(Exit::data, place_, "number " + text + " is not finite", "write a finite number");
     return add(Value(v));
   }
   bool string(string_t& v) override { return add(Value(std::move(v))); }
@@ -36,7 +37,8 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool end_array() override { return close(); }
   bool key(string_t& v) override {
     for (const auto& member : stack_.back().first.as_object())
-      if (member.first == v) throw Error(Exit::data, place_, "key \"" + v + "\" stands twice in one object", "keep one of them");
+      if (member.first == v)
+        throw Error(Exit::data, place_, "key \"" + v + "\" stands twice in one object", "keep one of them");
     stack_.back().second = v;
     return true;
   }
@@ -90,11 +92,16 @@ void print(const Value& v, int indent, int level, bool sorted, std::string& out)
   const auto new_line = [&](int at) {
     if (indent >= 0) out.append("\n").append(static_cast<std::size_t>(indent * at), ' ');
   };
-  if (v.is_null()) out += "null";
-  else if (v.is_bool()) out += v.as_bool() ? "true" : "false";
-  else if (v.is_integer()) out += std::to_string(v.as_integer());
-  else if (v.is_number()) print_number(v.as_number(), out);
-  else if (v.is_string()) print_string(v.as_string(), out);
+  if (v.is_null())
+    out += "null";
+  else if (v.is_bool())
+    out += v.as_bool() ? "true" : "false";
+  else if (v.is_integer())
+    out += std::to_string(v.as_integer());
+  else if (v.is_number())
+    print_number(v.as_number(), out);
+  else if (v.is_string())
+    print_string(v.as_string(), out);
   else if (v.is_array()) {
     const bool flat = std::ranges::none_of(v.as_array(), [](const Value& e) { return e.is_array() || e.is_object(); });
     out += '[';

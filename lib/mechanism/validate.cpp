@@ -33,7 +33,8 @@ void validate_uses(const manifest::Document& d) {
     const Mechanism* m = find_mechanism(id);
     if (m == nullptr) throw Error(Exit::data, at, "is no mechanism that gonio knows", "explain --list prints them");
     for (const auto& name : use.on)
-      if (!exists(d, m->target, name)) throw Error(Exit::data, at + "/on", "names \"" + name + "\", which the manifest does not have");
+      if (!exists(d, m->target, name))
+        throw Error(Exit::data, at + "/on", "names \"" + name + "\", which the manifest does not have");
     for (const auto& [name, parameter] : use.parameters) {
       if (std::ranges::find(m->parameters, name, &Parameter::name) == m->parameters.end())
         throw Error(Exit::data, at + "/" + name, "is no parameter of " + id, "there is " + known_parameters(*m));

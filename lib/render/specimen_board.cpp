@@ -11,10 +11,12 @@ namespace {
 
 constexpr double distance_m = 0.32, millimetre = 1e-3;
 
-// Looks at `target_m` from `distance_m` away: straight down on the board first, then tilted about the world's x and y axes and rolled.
+// Looks at `target_m` from `distance_m` away: straight down on the board first, then tilted about the world's x and y
+// axes and rolled.
 Rigid<frame::World, frame::Camera> view(double tilt_x_rad, double tilt_y_rad, double roll_rad, Vec3 target_m) {
   const Quaternion down{0, 1, 0, 0};  // camera z to world -z, camera y to world -y
-  const Quaternion tilt = quaternion_of_rotation_vector({tilt_x_rad, 0, 0}) * quaternion_of_rotation_vector({0, tilt_y_rad, 0});
+  const Quaternion tilt =
+      quaternion_of_rotation_vector({tilt_x_rad, 0, 0}) * quaternion_of_rotation_vector({0, tilt_y_rad, 0});
   const Quaternion rotation = normalized(tilt * down * quaternion_of_rotation_vector({0, 0, roll_rad}));
   return {rotation, target_m - matrix_of(rotation) * Vec3{0, 0, distance_m}};
 }
@@ -28,7 +30,8 @@ void add_views(manifest::Document& document) {
     image.light = {"lamp"};
     image.noise = manifest::Noise{.gain = 16000, .read = 0.0005};
     static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
-        view(0.5 * std::cos(turn), 0.5 * std::sin(turn), 0.3 * std::sin(2 * turn), {0.03 * std::cos(3 * turn), 0.03 * std::sin(5 * turn), 0});
+        view(0.5 * std::cos(turn), 0.5 * std::sin(turn), 0.3 * std::sin(2 * turn),
+             {0.03 * std::cos(3 * turn), 0.03 * std::sin(5 * turn), 0});
     document.images.push_back(image);
   }
 }

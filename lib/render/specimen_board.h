@@ -1,5 +1,5 @@
-// A built-in calibration scene: a ChArUco board under a distant lamp, seen from twelve sides through a lens that distorts. What
-// the demo photographs to calibrate its virtual camera.
+// A built-in calibration scene: a ChArUco board under a distant lamp, seen from twelve sides through a lens that
+// distorts. What the demo photographs to calibrate its virtual camera.
 #pragma once
 #include <filesystem>
 

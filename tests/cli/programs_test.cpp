@@ -1,6 +1,4 @@
 // What every program promises, whichever programs there are: help, description, completions and man page that agree.
-#include "cli/program.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 
 #include "base/atomic_file.h"
 #include "cli/common_options.h"
+#include "cli/program.h"
 #include "cli/reference.h"
 #include "cli/roff.h"
 #include "data.h"
@@ -85,7 +84,8 @@ TEST(Programs, ManPagesAreAsPrinted) {
     const std::string prose = read_file(root / "man" / "prose" / (program->name + ".md"));
     EXPECT_FALSE(cli::section_of(prose, "DESCRIPTION").empty());
     EXPECT_FALSE(cli::section_of(prose, "EXAMPLES").empty());
-    EXPECT_EQ(read_file(root / "man" / (program->name + ".1")), cli::man_page(*program, prose)) << "run scripts/regenerate";
+    EXPECT_EQ(read_file(root / "man" / (program->name + ".1")), cli::man_page(*program, prose))
+        << "run scripts/regenerate";
   }
 }
 
@@ -119,7 +119,8 @@ std::vector<std::string> examples_of(const std::string& prose) {
 TEST(Programs, ExamplesOfManPagesRun) {
   const std::string path = std::string("PATH=") + GONIO_BIN + ":$PATH\n";
   for (const auto* program : cli::all_programs()) {
-    const std::string prose = read_file(std::filesystem::path(GONIO_SOURCE) / "man" / "prose" / (program->name + ".md"));
+    const std::string prose =
+        read_file(std::filesystem::path(GONIO_SOURCE) / "man" / "prose" / (program->name + ".md"));
     const auto blocks = examples_of(prose);
     EXPECT_FALSE(blocks.empty()) << program->name;
     ScratchFolder folder;  // the examples of one page build on each other

@@ -13,7 +13,9 @@ namespace {
 
 using testing::HasSubstr;
 
-Document parse(const std::string& text) { return parse_document(text, "rig.json", "."); }
+Document parse(const std::string& text) {
+  return parse_document(text, "rig.json", ".");
+}
 
 std::string refusal(const std::string& text, Exit code = Exit::data) {
   try {
@@ -54,27 +56,39 @@ TEST(Document, UntouchedEntriesKeepTheirFormAndOwnKeys) {
 }
 
 TEST(Document, RefusalsNamePlaceValueAndRemedy) {
-  EXPECT_THAT(refusal(R"({"gonio":1,"camera":{}})"), HasSubstr("rig.json#/camera: is not a key that gonio knows; did you mean \"cameras\"?"));
+  EXPECT_THAT(refusal(R"({"gonio":1,"camera":{}})"),
+              HasSubstr("rig.json#/camera: is not a key that gonio knows; did you mean \"cameras\"?"));
   EXPECT_THAT(refusal(R"({"gonio":1,"cameras":{"c":{"fx":3}}})"), HasSubstr("rig.json#/cameras/c/fx"));
   EXPECT_THAT(refusal(R"({"gonio":1,"cameras":{"c":{"fx_px":-3}}})"), HasSubstr("is -3 px, more than 0 px is needed"));
-  EXPECT_THAT(refusal(R"({"gonio":1,"images":[{"id":"a","camera":"c"}]})"), HasSubstr("rig.json#/images/0/camera: names \"c\""));
+  EXPECT_THAT(refusal(R"({"gonio":1,"images":[{"id":"a","camera":"c"}]})"),
+              HasSubstr("rig.json#/images/0/camera: names \"c\""));
   EXPECT_THAT(refusal(R"({"gonio":1,"images":[{"id":"a"},{"id":"a"}]})"), HasSubstr("stands twice"));
   EXPECT_THAT(refusal(R"({"gonio":1,"gonio":1})"), HasSubstr("stands twice"));
   EXPECT_THAT(refusal(R"({"gonio":2})"), HasSubstr("rig.json#/gonio"));
   EXPECT_THAT(refusal(R"({})"), HasSubstr("is not a gonio manifest"));
-  EXPECT_THAT(refusal(R"({"gonio":1,"images":[{"id":"a","world_from_camera":{"rotation":[1,0.1,0,0],"translation_m":[0,0,0]}}]})"),
-              HasSubstr("1 within 1e-6"));
-  EXPECT_THAT(refusal(R"({"gonio":1,"images":[{"id":"a","world_from_camera":{"matrix":[[1,0.03,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}}]})"),
-              HasSubstr("rotation is not orthonormal (|R'R - I| = 0.03, limit 1e-6); re-export with 7 digits"));
-  EXPECT_THAT(refusal(R"({"gonio":1,"images":[{"id":"a","world_from_camera":{"translation_m":[NaN,0,0]}}]})"), HasSubstr("parse error"));
-  EXPECT_THAT(refusal(R"({"gonio":1,"images":[{"id":"a","world_from_camera":{"translation_m":[1e999,0,0]}}]})"), HasSubstr("rig.json"));
+  EXPECT_THAT(
+      refusal(
+          R"({"gonio":1,"images":[{"id":"a","world_from_camera":{"rotation":[1,0.1,0,0],"translation_m":[0,0,0]}}]})"),
+      HasSubstr("1 within 1e-6"));
+  EXPECT_THAT(
+      refusal(
+          R"({"gonio":1,"images":[{"id":"a","world_from_camera":{"matrix":[[1,0.03,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}}]})"),
+      HasSubstr("rotation is not orthonormal (|R'R - I| = 0.03, limit 1e-6); re-export with 7 digits"));
+  EXPECT_THAT(refusal(R"({"gonio":1,"images":[{"id":"a","world_from_camera":{"translation_m":[NaN,0,0]}}]})"),
+              HasSubstr("parse error"));
+  EXPECT_THAT(refusal(R"({"gonio":1,"images":[{"id":"a","world_from_camera":{"translation_m":[1e999,0,0]}}]})"),
+              HasSubstr("rig.json"));
   EXPECT_THAT(refusal(R"({"gonio":1,"lights":{"l":{"model":"pont"}}})"), HasSubstr("did you mean \"point\"?"));
   EXPECT_THAT(refusal("{\"gonio\":1,"), HasSubstr("is not JSON"));
 }
 
 TEST(Document, ContentIdLeavesOutTimeAndHost) {
   Document a = parse(R"({"gonio":1})"), b = a;
-  Step step{.program = "render", .version = "1", .options = Value::object({{"spp", 4}}), .input_hashes = {"ff"}, .input_id = ""};
+  Step step{.program = "render",
+            .version = "1",
+            .options = Value::object({{"spp", 4}}),
+            .input_hashes = {"ff"},
+            .input_id = ""};
   record_step(a, step);
   record_step(b, step);
   for (auto& [key, node] : b.provenance["steps"].as_object()) node["time"] = "another day";

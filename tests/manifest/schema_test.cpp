@@ -1,4 +1,5 @@
-// The generated JSON Schema against documents that programs accept and documents that they refuse, by an independent validator.
+// The generated JSON Schema against documents that programs accept and documents that they refuse, by an independent
+// validator.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -42,7 +43,8 @@ TEST_F(SchemaTest, AcceptsTheFixtureThatProgramsAccept) {
   const std::string text = read_file(std::filesystem::path(GONIO_SOURCE) / "tests/manifest/fixtures/manifest-1.json");
   EXPECT_TRUE(accepted(text));
   EXPECT_TRUE(valid(text));
-  EXPECT_EQ(canonical_json(to_value(parse_document(text, "fixture", "."), ".")), canonical_json(parse_json(text, "fixture")));
+  EXPECT_EQ(canonical_json(to_value(parse_document(text, "fixture", "."), ".")),
+            canonical_json(parse_json(text, "fixture")));
 }
 
 TEST_F(SchemaTest, AcceptsThePracticeRecordings) {
@@ -52,12 +54,13 @@ TEST_F(SchemaTest, AcceptsThePracticeRecordings) {
 }
 
 TEST_F(SchemaTest, AndProgramsRefuseTheSame) {
-  for (const char* text : {R"({"gonio":2})", R"({})", R"({"gonio":1,"camera":{}})", R"({"gonio":1,"cameras":{"c":{"fx":1}}})",
-                           R"({"gonio":1,"cameras":{"c":{"width_px":0}}})", R"({"gonio":1,"cameras":{"c":{"model":"fish"}}})",
-                           R"({"gonio":1,"images":[{}]})", R"({"gonio":1,"images":{"id":"a"}})",
-                           R"({"gonio":1,"lights":{"l":{"model":"pont"}}})", R"({"gonio":1,"meshes":{"m":{"sphere":{"r":1}}}})",
-                           R"({"gonio":1,"images":[{"id":"a","noise":{"gain":0,"read":0}}]})",
-                           R"({"gonio":1,"surfaces":{"s":{"model":"diffuse","albedo":"red"}}})"}) {
+  for (const char* text :
+       {R"({"gonio":2})", R"({})", R"({"gonio":1,"camera":{}})", R"({"gonio":1,"cameras":{"c":{"fx":1}}})",
+        R"({"gonio":1,"cameras":{"c":{"width_px":0}}})", R"({"gonio":1,"cameras":{"c":{"model":"fish"}}})",
+        R"({"gonio":1,"images":[{}]})", R"({"gonio":1,"images":{"id":"a"}})",
+        R"({"gonio":1,"lights":{"l":{"model":"pont"}}})", R"({"gonio":1,"meshes":{"m":{"sphere":{"r":1}}}})",
+        R"({"gonio":1,"images":[{"id":"a","noise":{"gain":0,"read":0}}]})",
+        R"({"gonio":1,"surfaces":{"s":{"model":"diffuse","albedo":"red"}}})"}) {
     EXPECT_FALSE(accepted(text)) << text;
     EXPECT_FALSE(valid(text)) << text;
   }
