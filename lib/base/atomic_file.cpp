@@ -259,6 +259,15 @@ std::string read_file(const std::filesystem::path& path, std::uint64_t limit) {
   }
 }
 
+void check_writable(const std::filesystem::path& path) {
+  const auto target = resolved(path);
+  const Kind kind = kind_of(target);
+  if (kind == Kind::folder) refuse_folder(path);
+  const int failed =
+      kind == Kind::device ? ::access(target.c_str(), W_OK) : ::access(folder_of(target).c_str(), W_OK | X_OK);
+  if (failed != 0) throw_create_error(path, errno);
+}
+
 void make_folder(const std::filesystem::path& path) {
   std::error_code failure;
   std::filesystem::create_directories(path, failure);

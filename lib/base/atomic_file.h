@@ -20,6 +20,9 @@ void write_file_through(const std::filesystem::path& path,
 // Whole file, at most `limit` bytes. Error(no_input) where it is missing, Error(data) above the limit.
 std::string read_file(const std::filesystem::path& path, std::uint64_t limit = std::uint64_t{1} << 32);
 
+// Error(cannot_create) where write_file() could not create `path`: asked before long work, so that it is not lost.
+void check_writable(const std::filesystem::path& path);
+
 void make_folder(const std::filesystem::path& path);  // with parents; Error(cannot_create)
 
 // SIGINT, SIGTERM, SIGHUP: the first removes temporaries and sets interrupted(); programs end with try_again (75) at the

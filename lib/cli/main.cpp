@@ -171,6 +171,8 @@ Exit run(const Program& program, int argc, char** argv) {
   const std::string input_id = call.has_document ? manifest::content_id(call.document) : std::string();
   if (program.check) program.check(call);
   if (call.flag("check")) return Exit::done;
+  for (const char* option : {"output", "depfile"})
+    if (call.given(option) && call.text(option) != "-") check_writable(call.text(option));
   if (!call.out.empty()) make_folder(call.out);
   const Exit result = program.run(call);
   return deliver(call, result, input_id);

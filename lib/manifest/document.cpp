@@ -285,8 +285,8 @@ fs::path resolve(const Document& d, const std::string& file_id, const std::strin
   const fs::path path = (d.folder / file.path).lexically_normal();
   if (!d.allow_outside) {
     std::error_code ignored;
-    const fs::path root = fs::weakly_canonical(d.folder.empty() ? "." : d.folder, ignored);
-    const fs::path inside = fs::weakly_canonical(path, ignored).lexically_relative(root);
+    const fs::path root = fs::weakly_canonical(fs::absolute(d.folder.empty() ? "." : d.folder), ignored);
+    const fs::path inside = fs::weakly_canonical(fs::absolute(path), ignored).lexically_relative(root);
     if (inside.empty() || *inside.begin() == "..")
       throw Error(Exit::data, at + "/path", "\"" + file.path + "\" leaves the manifest's folder",
                   "move the file, or allow it with --allow-outside");

@@ -97,6 +97,11 @@ TEST(AtomicFile, RefusalsHaveTheirExitCodes) {
   EXPECT_EQ(code_of([&] { write_file(folder / "none/file", "x"); }), Exit::cannot_create);
   EXPECT_EQ(code_of([&] { write_file(folder / "file/below", "x"); }), Exit::cannot_create);
   EXPECT_EQ(code_of([&] { write_file(folder.path(), "x"); }), Exit::cannot_create);
+  EXPECT_EQ(code_of([&] { check_writable(folder / "none/file"); }), Exit::cannot_create);
+  EXPECT_EQ(code_of([&] { check_writable(folder.path()); }), Exit::cannot_create);
+  EXPECT_EQ(code_of([&] { check_writable(folder / "file"); }), Exit::done);
+  EXPECT_EQ(code_of([&] { check_writable(folder / "new"); }), Exit::done);
+  EXPECT_EQ(code_of([&] { check_writable("/dev/null"); }), Exit::done);
   EXPECT_EQ(code_of([&] { make_folder(folder / "file"); }), Exit::cannot_create);
   EXPECT_EQ(code_of([&] { make_folder(folder / "file/below"); }), Exit::cannot_create);
   EXPECT_EQ(code_of([&] { make_folder(folder / "new/deep"); }), Exit::done);

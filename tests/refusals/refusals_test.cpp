@@ -199,11 +199,12 @@ TEST_F(Refusals, AFolderThatMayNotBeWrittenTo) {
 // A small tmpfs where that may be mounted, in a mount namespace of this test's own.
 TEST_F(Refusals, AFullDisk) {
   fs::create_directory(path("small"));
-  if (::mount("none", path("small").c_str(), "tmpfs", 0, "size=16k") != 0) GTEST_SKIP() << "mounting is not allowed";
+  if (::mount("none", path("small").c_str(), "tmpfs", 0, "size=64k") != 0) GTEST_SKIP() << "mounting is not allowed";
+  write_file(path("small/filler"), std::string(64 << 10, 'x'));
   const Ended ended = in_folder({"render", "scene.json", "--spp", "1", "--out", "small/r"});
   std::vector<fs::path> left;
   for (const auto& entry : fs::recursive_directory_iterator(path("small")))
-    if (!entry.is_directory() && entry.file_size() == 0) left.push_back(entry.path());
+    if (!entry.is_directory() && entry.path().filename() != "filler") left.push_back(entry.path());
   ::umount(path("small").c_str());
   EXPECT_EQ(ended.status, 74) << ended.err;
   EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
@@ -229,7 +230,7 @@ TEST_F(Refusals, AClosedPipe) {
 TEST_F(Refusals, SignalsAndKillLeaveNothingHalfWritten) {
   const auto before = files();
   for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
-    Process process({"render", "scene.json", "--spp", "100000000", "--out", "r"}, path(""));
+    Process process({"render", "scene.json", "--spp", "1000000", "--out", "r"}, path(""));
     ::usleep(400000);
     ::kill(process.id(), signal);
     const Ended ended = process.end();
