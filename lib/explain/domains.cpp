@@ -12,7 +12,8 @@ std::vector<std::unique_ptr<Problem>> problems_of(const manifest::Document& docu
   std::vector<std::unique_ptr<Problem>> problems;
   if (has_boards(document)) problems.push_back(boards_problem(boards_input(document)));
   if (problems.empty())
-    throw Error(Exit::data, manifest::place(document, ""), "has nothing to explain: no table of board corners, no recorded images of objects",
+    throw Error(Exit::data, manifest::place(document, ""),
+                "has nothing to explain: no table of board corners, no recorded images of objects",
                 "calibrate with calib-charuco, or describe images with file and camera, and objects");
   return problems;
 }

@@ -44,7 +44,8 @@ void key_numbers(Page& page, const Problem& problem, const Explanation& e) {
 
 void parameters(Page& page, const Problem& problem, const Explanation& e) {
   if (e.estimates.empty()) return;
-  metric::TableText table{"What was fitted", {{"parameter", "", false}, {"value", ""}, {"95 % interval", "", false}, {"unit", "", false}}, {}};
+  metric::TableText table{
+      "What was fitted", {{"parameter", "", false}, {"value", ""}, {"95 % interval", "", false}, {"unit", "", false}}, {}};
   for (const Estimate& x : e.estimates)
     table.rows.push_back({problem.parameters()[x.parameter].name, printed(x.value, 4),
                           printed(x.lower_95) + " to " + printed(x.upper_95), problem.parameters()[x.parameter].unit});
@@ -98,12 +99,21 @@ void which_curve(Page& page, const Explanation& e) {
 void scoreboard(Page& page, const Problem& problem, const Explanation& e) {
   const std::string unit = spelled(problem.unit());
   metric::TableText table{"Hypotheses on held-out " + problem.group_noun() + "s, best first",
-                          {{"hypothesis", "", false}, {"held-out score", unit}, {"gain", "noise variances"}, {"effect", ""}, {"named?", "", false}},
+                          {{"hypothesis", "", false},
+                           {"held-out score", unit},
+                           {"gain", "noise variances"},
+                           {"effect", ""},
+                           {"named?", "", false}},
                           {}};
   for (const Hypothesis& h : e.scoreboard) {
     const bool mechanisms = h.kind == Hypothesis::Kind::mechanisms;
-    const std::string answer = !mechanisms ? "for comparison" : h.refused.empty() ? "could be" : "no: " + h.refused;
-    table.rows.push_back({h.name, printed(h.held_out), printed(h.gain) + " ± " + printed(h.gain_sigma, 2), percent(h.effect), answer});
+    const bool named = mechanisms && h.refused.empty() && std::all_of(h.candidates.begin(), h.candidates.end(), [&](std::size_t c) {
+      return std::find(e.named.begin(), e.named.end(), c) != e.named.end();
+    });
+    const std::string answer =
+        !mechanisms ? "for comparison" : named ? "yes" : h.refused.empty() ? "could be" : "no: " + h.refused;
+    const std::string gained = printed(h.gain) + " ± " + printed(h.gain_sigma, 2);
+    table.rows.push_back({h.name, printed(h.held_out), gained, percent(h.effect), answer});
   }
   page.table(table);
 }
@@ -173,7 +183,7 @@ std::string report_page(const std::string& name, const std::vector<ReportPart>& 
   }
   Page page("explain: " + name, headline, name + ": " + lead, tone_of(worst));
   for (const ReportPart& p : parts) part(page, p);
-  page.footer("Written by gonio explain. Intervals are honest under correlation inside a block; scores are of groups that the fit did not see.");
+  page.footer("Written by gonio explain. Scores are of groups that the fit did not see; intervals hold under correlation inside blocks.");
   return page.html();
 }
 

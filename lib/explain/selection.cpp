@@ -88,7 +88,8 @@ void eliminate(const Race& race, const Options& options, Model& model) {
 bool as_good(const Model& before, const Model& best, const Model& other) {
   const Gain apart = gain(other.held_out, best.held_out);
   const Gain of_best = gain(before.held_out, best.held_out), of_other = gain(before.held_out, other.held_out);
-  return apart.mean <= 2 * apart.sigma && of_other.mean >= 0.5 * of_best.mean;
+  // Twins differ by rounding alone, and by hardly more than its spread.
+  return apart.mean <= 2 * apart.sigma + 1e-6 * of_best.mean && of_other.mean >= 0.5 * of_best.mean;
 }
 
 // For each named effect, what could stand in its place. A better one takes it.

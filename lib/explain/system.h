@@ -115,7 +115,7 @@ Eigen::MatrixXd group_columns(const System& system, const Linearisation& l, std:
 class NormalEquations {
  public:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
-  NormalEquations(const Linearisation& linearisation, std::vector<std::size_t> columns, std::size_t without = none,
+  NormalEquations(const Linearisation& linearisation, const std::vector<std::size_t>& columns, std::size_t without = none,
                   double damping = 0);
   Eigen::MatrixXd solve(const Eigen::MatrixXd& rhs) const;  // rows in the order of `columns`
   const Eigen::VectorXd& gradient() const { return gradient_; }  // J'r + prior pull
@@ -127,10 +127,19 @@ class NormalEquations {
     Eigen::LDLT<Eigen::MatrixXd> factor;
     Eigen::MatrixXd coupling;          // local x shared, scaled
   };
+  struct Part {                        // one group's share, restricted to the subset
+    std::vector<Eigen::Index> places;  // in `columns`
+    Eigen::MatrixXd gram;
+    Eigen::VectorXd score;
+  };
+  static Part part_of(const GroupGram& gram, const std::vector<Eigen::Index>& place_in_subset);
+  // Factors the group's own columns and subtracts their Schur complement from the shared system.
+  void eliminate(const Part& part, const std::vector<Eigen::Index>& place_in_shared, Eigen::MatrixXd& reduced);
+
   std::vector<Eigen::Index> shared_;
   std::vector<Local> locals_;
   Eigen::LDLT<Eigen::MatrixXd> factor_;
-  Eigen::VectorXd gradient_, diagonal_, scale_;
+  Eigen::VectorXd gradient_, diagonal_, scale_, lift_;  // lift: priors, damping and ridge on the scaled diagonal
 };
 
 }  // namespace gonio::explain

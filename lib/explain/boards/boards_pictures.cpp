@@ -21,7 +21,7 @@ std::string vectors(const BoardsInput& input, std::size_t camera, const Observat
   const BoardsInput::Camera& c = input.cameras[camera];
   char head[256];
   std::snprintf(head, sizeof head,
-                "<svg viewBox=\"-10 -10 %d %d\" width=\"480\" role=\"img\" style=\"background:#fff\">"
+                "<svg viewBox=\"-10 -10 %d %d\" role=\"img\" style=\"background:#fff;min-width:min(27rem,85vw)\">"
                 "<rect x=\"-0.5\" y=\"-0.5\" width=\"%d\" height=\"%d\" fill=\"none\" stroke=\"#888\"/>",
                 c.width_px + 20, c.height_px + 20, c.width_px, c.height_px);
   std::string path, dots;
