@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "explain/toy_problem.h"
 #include "stats/distributions.h"
 
@@ -103,6 +104,19 @@ TEST(Engine, SignificantIsNotImportant) {
   EXPECT_TRUE(e.significant);
   EXPECT_FALSE(e.important);
   EXPECT_EQ(e.verdict, Verdict::null) << e.sentence;
+}
+
+TEST(Engine, SameSeedSameAnswerWhateverTheThreads) {
+  const ToyProblem problem(three_effects(), {{0.2, 0, 0.1}, {}, 0.1, 0.05}, 77);
+  set_threads(1);
+  const Explanation one = explain(problem, quick(3));
+  set_threads(2);
+  const Explanation two = explain(problem, quick(3));
+  set_threads(0);
+  EXPECT_EQ(one.values, two.values);
+  EXPECT_EQ(one.covariance, two.covariance);
+  EXPECT_EQ(one.global_p, two.global_p);
+  EXPECT_EQ(one.sentence, two.sentence);
 }
 
 }  // namespace

@@ -1,0 +1,150 @@
+// explain on board corners: the whole pipe on real photographs as a person would run it, and the domain's derivatives.
+#include "explain/boards/boards_problem.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/atomic_file.h"
+#include "data.h"
+#include "explain/engine.h"
+#include "manifest/value.h"
+#include "process.h"
+
+namespace gonio::explain::tests {
+namespace {
+
+using gonio::tests::data;
+using gonio::tests::run;
+using manifest::Value;
+
+const Value& at(const Value& value, std::string_view key) {
+  const Value* found = value.find(key);
+  if (found == nullptr) throw std::runtime_error("no key " + std::string(key));
+  return *found;
+}
+
+// Calibrates the left checkerboard with `model` and explains what is left.
+Value explained(const std::string& model, const std::filesystem::path& folder) {
+  std::vector<std::string> words = {"calib-charuco", "--checkerboard", "9x6", "--square", "25mm", "--model", model};
+  for (const auto& entry : std::filesystem::directory_iterator(data("calibration/opencv_stereo_checkerboard")))
+    if (entry.path().filename().string().starts_with("left") && entry.path().extension() == ".jpg") words.push_back(entry.path());
+  std::sort(words.begin() + 7, words.end());
+  const auto calibrated = run(words, folder);
+  EXPECT_TRUE(calibrated.status == 0 || calibrated.status == 2) << calibrated.err;
+  const auto ended = run({"explain", "--allow-outside", "--html", "report.html"}, folder, calibrated.out);
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  return manifest::parse_json(ended.out, "explain");
+}
+
+std::vector<std::string> names(const Value& document) {
+  std::vector<std::string> result;
+  for (const Value& n : at(at(document, "explanations").as_array().at(0), "named").as_array())
+    result.push_back(at(n, "mechanism").as_string());
+  return result;
+}
+
+TEST(ExplainBoards, APinholeLacksItsRadialTermsFirst) {
+  GONIO_NEEDS_DATA("calibration/opencv_stereo_checkerboard");
+  const gonio::tests::ScratchFolder folder;
+  const Value document = explained("pinhole", folder.path());
+  const Value& entry = at(document, "explanations").as_array().at(0);
+  ASSERT_FALSE(names(document).empty()) << at(entry, "sentence").as_string();
+  EXPECT_EQ(names(document)[0], "lens.radial");
+  EXPECT_EQ(at(at(entry, "located"), "condition").as_string(), "camera.image-radius");
+  EXPECT_EQ(at(at(entry, "located"), "stage").as_string(), "lens");
+  EXPECT_GT(at(at(entry, "held_out"), "before").as_number(), 1.0);
+  EXPECT_LT(at(at(entry, "held_out"), "after").as_number(), 0.25);
+  const Value& camera = at(document, "cameras").as_object().at(0).second;
+  EXPECT_NE(at(camera, "model").as_string(), "pinhole");
+  EXPECT_NEAR(at(camera, "fx_px").as_number(), 532.8, 3);
+  EXPECT_NEAR(at(camera, "fy_px").as_number(), 532.9, 3);
+  EXPECT_NEAR(at(camera, "cx_px").as_number(), 342.5, 3);
+  EXPECT_NEAR(at(camera, "cy_px").as_number(), 233.9, 3);
+  EXPECT_GT(at(at(camera, "sigma"), "k1").as_number(), 0);
+  const std::string page = read_file(folder.path() / "report.html");
+  EXPECT_NE(page.find(at(entry, "sentence").as_string().substr(0, 40)), std::string::npos);
+}
+
+TEST(ExplainBoards, TheFullLensLacksNothingButTheBoardsShape) {
+  GONIO_NEEDS_DATA("calibration/opencv_stereo_checkerboard");
+  const gonio::tests::ScratchFolder folder;
+  for (const std::string& name : names(explained("radial-tangential", folder.path()))) EXPECT_EQ(name, "board.warp");
+}
+
+// A small rig for derivatives: two views of a 4 x 3 board by a lens with every term.
+BoardsInput small_rig() {
+  BoardsInput input;
+  BoardsInput::Camera camera;
+  camera.name = "c";
+  camera.width_px = 640, camera.height_px = 480;
+  camera.intrinsics = {500, 510, 320, 240, {}};
+  input.cameras = {camera};
+  BoardsInput::Board board;
+  board.name = "b";
+  board.square_m = 0.03;
+  board.extent = {{0.045, 0.03}, {0.045, 0.03}};
+  input.boards = {board};
+  for (int v = 0; v < 3; ++v) {
+    BoardsInput::View view;
+    view.image = "view" + std::to_string(v);
+    view.camera_from_board.rotation = quaternion_of_rotation_vector({0.3 * v - 0.2, 0.25, 0.1 * v});
+    view.camera_from_board.translation_m = {-0.04, -0.03 + 0.01 * v, 0.4};
+    for (int k = 0; k < 12; ++k) view.corners.push_back({{0.03 * (k % 4), 0.03 * (k / 4)}, {300.0 + k, 200.0 + 2 * k}, 0.1});
+    input.views.push_back(view);
+  }
+  return input;
+}
+
+TEST(ExplainBoards, DerivativesAgreeWithDifferences) {
+  const auto problem = boards_problem(small_rig());
+  const std::size_t count = problem->parameters().size(), rows = 24;
+  std::vector<double> values(count);
+  for (std::size_t p = 0; p < count; ++p) values[p] = problem->parameters()[p].neutral;
+  for (std::size_t p = 0; p < count; ++p) values[p] += problem->parameters()[p].size * (p % 3 == 0 ? 5 : -3);
+  std::vector<std::size_t> columns(count);
+  for (std::size_t p = 0; p < count; ++p) columns[p] = p;
+  std::vector<double> analytic(rows * count), numeric(rows * count);
+  problem->jacobian(values, 1, columns, analytic);
+  problem->Problem::jacobian(values, 1, columns, numeric);
+  for (std::size_t k = 0; k < analytic.size(); ++k)
+    EXPECT_NEAR(analytic[k], numeric[k], 1e-5 * (1 + std::abs(numeric[k]))) << problem->parameters()[k / rows].name;
+}
+
+TEST(ExplainBoards, MechanismsAtNeutralLeaveThePredictionBitIdentical) {
+  const auto problem = boards_problem(small_rig());
+  std::vector<double> values, without(24), with(24);
+  for (const Parameter& p : problem->parameters()) values.push_back(p.neutral);
+  problem->predict(values, 0, without);
+  for (const Candidate& c : problem->candidates()) {
+    std::vector<double> moved = values;
+    for (const std::size_t p : c.parameters) moved[p] = problem->parameters()[p].size;
+    problem->predict(moved, 0, with);
+    EXPECT_NE(without, with) << c.id();
+    problem->predict(values, 0, with);
+    EXPECT_EQ(without, with) << c.id();
+  }
+}
+
+TEST(ExplainBoards, RefusalsNameThePlaceAndTheRemedy) {
+  const std::string head = R"({"gonio":1,"boards":{"b":{"kind":"checkerboard","inner_corners":[4,3],"square_m":0.03}},
+    "cameras":{"c":{"model":"pinhole","width_px":640,"height_px":480,"fx_px":500,"fy_px":500,"cx_px":320,"cy_px":240}},
+    "images":[{"id":"a","camera":"c","board":"b"}])";
+  const auto nothing = run({"explain"}, {}, head + "}");
+  EXPECT_EQ(nothing.status, 65) << nothing.err;
+  EXPECT_NE(nothing.err.find("nothing to explain"), std::string::npos) << nothing.err;
+  const std::string table = R"(,"tables":{"t":{"model":"camera","camera":"c","board":"b","columns":{"image":"","corner":"1","board_x_m":"m",
+    "board_y_m":"m","u_px":"px","v_px":"px","sigma_px":"px"},"observed":["u_px","v_px"],"sigma":["sigma_px"],
+    "rows":[["a",0,0,0,100,100,0.1]]}}})";
+  const auto no_pose = run({"explain"}, {}, head + table);
+  EXPECT_EQ(no_pose.status, 65) << no_pose.err;
+  EXPECT_NE(no_pose.err.find("calibrate first"), std::string::npos) << no_pose.err;
+  EXPECT_EQ(run({"explain", "--hypotheses", "lens.imaginary"}, {}, head + table).status, 64);
+  const auto list = run({"explain", "--list"});
+  EXPECT_EQ(list.status, 0);
+  EXPECT_NE(list.out.find("lens.radial"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace gonio::explain::tests
