@@ -1,0 +1,46 @@
+// The numbers of the search and what each of them sets: free parameters of the base model (surfaces, lights, images, mechanisms
+// that the manifest switches on) and the parameters of candidate mechanisms.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "explain/images/scene_state.h"
+#include "explain/problem.h"
+#include "manifest/document.h"
+
+namespace gonio::explain::images {
+
+// One number in the scene's state.
+struct Place {
+  enum class Kind { surface, intensity, radius, tilt_x, tilt_y, ambient, falloff, indirect, gain } kind = Kind::surface;
+  std::size_t target = 0;     // surface, light or image
+  std::size_t parameter = 0;  // of the surface's model
+  int component = -1;         // of an RGB value; -1: all three
+};
+double value_at(const SceneState& state, const Place& place);
+void set_value(SceneState& state, const Place& place, double value);
+
+// Where a parameter's fitted value goes in the manifest: surfaces/NAME/KEY, lights/NAME/KEY, images/N/gain, mechanisms/ID/KEY.
+struct Origin {
+  enum class Section { surfaces, lights, images, mechanisms } section = Section::surfaces;
+  std::string name, key;
+  std::size_t entry = 0;      // images
+  std::size_t component = 0;
+};
+
+struct Bindings {
+  std::vector<Parameter> parameters;
+  std::vector<std::vector<Place>> places;    // what each sets (several where parameters share a name)
+  std::vector<std::vector<Origin>> origins;  // empty for candidates' parameters
+  std::vector<std::size_t> base;
+  std::vector<Candidate> candidates;
+
+  void set(SceneState& state, std::span<const double> values) const;
+};
+
+Bindings bind_parameters(const manifest::Document& document, const Recordings& recordings, const SceneLayout& layout);
+
+// Fitted values, their sigmas and the named mechanisms into the document's sections.
+void write_back(const Bindings& bindings, const Explanation& explanation, manifest::Document& document);
+
+}  // namespace gonio::explain::images

@@ -1,0 +1,17 @@
+// What is known of every row and may carry the signature of missing physics: angles at the surface, distances, places in the image.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "explain/images/image_model.h"
+#include "explain/problem.h"
+
+namespace gonio::explain::images {
+
+// One row per picked pixel and channel, images in order. `prediction`: of the base model, one per row; structure that scales with
+// the signal is a curve over a condition times it. Angles in rad; with several lights on, the first counts.
+std::vector<Condition> image_conditions(const Recordings& recordings, const ImageModel& model,
+                                        const std::vector<std::vector<std::uint32_t>>& picked, std::span<const double> prediction);
+
+}  // namespace gonio::explain::images

@@ -1,0 +1,61 @@
+// The image domain of explain: linear recordings of a scene whose geometry is known, simulated with direct light, light between
+// surfaces and the registered mechanisms.
+//
+// Rows: sampled pixels (a fixed number per tile of 8 x 8, drawn at random with a fixed seed), three channels each. Groups: images, one
+// for each camera pose and light. Blocks: tiles. The score is the relative RMSE.
+// Noise of a row: the recording's, at the local mean of the picture, plus the simulator's own variance.
+#pragma once
+#include <memory>
+
+#include "explain/images/bindings.h"
+#include "explain/images/image_model.h"
+#include "explain/images/recordings.h"
+#include "explain/problem.h"
+#include "render/ray_caster.h"
+
+namespace gonio::explain::images {
+
+struct Options {
+  std::size_t pixels = 15000;  // sampled over all images together
+  CacheOptions cache;
+};
+
+class ImagesProblem final : public Problem {
+ public:
+  explicit ImagesProblem(const manifest::Document& document, const Options& options = {});
+  ~ImagesProblem() override;
+
+  void predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const override;
+  // Central differences; direct light is shaded anew only where the parameter reaches it.
+  void jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
+                std::span<double> derivatives) const override;
+  std::string domain() const override { return "images"; }
+  std::string unit() const override { return "1"; }
+  std::string score_name() const override { return "relative RMSE"; }
+  std::string group_noun() const override { return "image"; }
+  Importance importance() const override { return Importance::share_of_signal; }
+  void apply(const Explanation& explanation, manifest::Document& document) const override;
+  Illustration illustrate(const Explanation& explanation, const std::filesystem::path& out,
+                          manifest::Document& document) const override;
+
+  const Recordings& recordings() const { return recordings_; }
+  const Bindings& bindings() const { return bindings_; }
+  const std::vector<std::uint32_t>& picked(std::size_t group) const { return picked_[group]; }
+  const ImageModel& model() const { return *model_; }
+  SceneState state(std::span<const double> values) const;
+
+ private:
+  void choose_pixels(std::size_t pixels, std::vector<std::vector<std::array<int, 2>>>& chosen) const;
+  void fill_rows();
+
+  Recordings recordings_;
+  SceneLayout layout_;
+  std::unique_ptr<render::Monomials> monomials_;
+  Bindings bindings_;
+  CacheOptions cache_options_;
+  std::unique_ptr<render::RayCaster> caster_;
+  std::unique_ptr<ImageModel> model_;
+  std::vector<std::vector<std::uint32_t>> picked_;  // per image: places in its view's cache, ascending
+};
+
+}  // namespace gonio::explain::images

@@ -1,0 +1,167 @@
+// Reading of recordings. Where the manifest states no noise it is measured: the median absolute value of the horizontal second
+// difference (1, -2, 1), whose variance is six times that of a pixel, scaled to a standard deviation by 1 / 0.6745 (Rousseeuw &
+// Croux 1993). Smooth shading cancels in it, and edges are too few to move a median.
+#include "explain/images/recordings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <tuple>
+
+#include "base/error.h"
+#include "io/picture.h"
+
+namespace gonio::explain::images {
+namespace {
+
+constexpr double saturation = 1.0 - 0.5 / 255;  // full scale of an integer file
+
+[[noreturn]] void refuse(const manifest::Document& document, std::size_t entry, const std::string& key, const std::string& problem,
+                         const std::string& remedy) {
+  throw Error(Exit::data, manifest::place(document, "/images/" + std::to_string(entry) + key), problem, remedy);
+}
+
+// The stated response as a function of the code value in [0, 1].
+class Response {
+ public:
+  Response(const manifest::Value& response, const manifest::Document& document, std::size_t entry) {
+    if (response.is_null() || (response.is_string() && response.as_string() == "linear")) return;
+    if (response.is_string() && response.as_string() == "srgb") {
+      srgb_ = true;
+      return;
+    }
+    if (!response.is_array() || response.as_array().size() < 2)
+      refuse(document, entry, "/response", "is neither \"linear\", \"srgb\" nor a table", "give [[code, linear], ...]");
+    for (const manifest::Value& row : response.as_array()) {
+      if (!row.is_array() || row.as_array().size() != 2)
+        refuse(document, entry, "/response", "has a row that is not a pair", "give [[code, linear], ...]");
+      table_.emplace_back(row.as_array()[0].as_number(), row.as_array()[1].as_number());
+    }
+    std::sort(table_.begin(), table_.end());
+  }
+  float operator()(float code) const {
+    if (srgb_) return io::linear_from_srgb(code);
+    if (table_.empty()) return code;
+    const auto above = std::upper_bound(table_.begin(), table_.end(), std::pair<double, double>(code, 1e300));
+    if (above == table_.begin()) return static_cast<float>(table_.front().second);
+    if (above == table_.end()) return static_cast<float>(table_.back().second);
+    const auto below = above - 1;
+    const double share = (code - below->first) / (above->first - below->first);
+    return static_cast<float>(below->second + share * (above->second - below->second));
+  }
+
+ private:
+  bool srgb_ = false;
+  std::vector<std::pair<double, double>> table_;
+};
+
+bool integer_file(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  return extension != ".exr";
+}
+
+void read_pixels(const manifest::Document& document, const std::filesystem::path& path, Recording& image) {
+  const io::Image raw = io::read_picture(path);
+  const manifest::ImageEntry& entry = document.images[image.entry];
+  const Response response(entry.response, document, image.entry);
+  const bool grey = raw.channel("G") < 0;
+  const int channel[3] = {grey ? 0 : raw.channel("R"), grey ? 0 : raw.channel("G"), grey ? 0 : raw.channel("B")};
+  if (!grey && (channel[0] < 0 || channel[2] < 0))
+    refuse(document, image.entry, "/file", "names a picture without channels R, G, B or Y", "record one of them");
+  image.picture = io::Image(raw.width, raw.height, {"R", "G", "B"});
+  image.counts.assign(raw.pixels(), 1);
+  const bool integer = integer_file(path);
+  for (int y = 0; y < raw.height; ++y)
+    for (int x = 0; x < raw.width; ++x)
+      for (int c = 0; c < 3; ++c) {
+        const float code = raw.at(x, y, channel[c]);
+        const float value = response(code);
+        image.picture.at(x, y, c) = value;
+        if (!std::isfinite(value) || (integer && code >= saturation))
+          image.counts[static_cast<std::size_t>(y) * static_cast<std::size_t>(raw.width) + static_cast<std::size_t>(x)] = 0;
+      }
+}
+
+void read_mask(const manifest::Document& document, Recording& image) {
+  const manifest::ImageEntry& entry = document.images[image.entry];
+  if (entry.mask.empty()) return;
+  const std::string pointer = "/images/" + std::to_string(image.entry) + "/mask";
+  const io::Image mask = io::read_picture(manifest::resolve(document, entry.mask, pointer));
+  if (mask.width != image.picture.width || mask.height != image.picture.height)
+    refuse(document, image.entry, "/mask", "has another size than the picture", "crop both alike");
+  for (std::size_t i = 0; i < image.counts.size(); ++i)
+    if (!(mask.data[i * mask.channels.size()] > 0.5f)) image.counts[i] = 0;
+}
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+manifest::Noise measured_noise(const Recording& image) {
+  std::vector<double> differences;
+  const io::Image& p = image.picture;
+  for (int y = 0; y < p.height; ++y)
+    for (int x = 1; x + 1 < p.width; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(p.width) + static_cast<std::size_t>(x);
+      if (!image.counts[i - 1] || !image.counts[i] || !image.counts[i + 1]) continue;
+      for (int c = 0; c < 3; ++c)
+        differences.push_back(std::abs(double{p.at(x - 1, y, c)} - 2.0 * p.at(x, y, c) + p.at(x + 1, y, c)));
+    }
+  const double sigma = median(differences) / 0.6745 / std::sqrt(6.0);
+  return {.gain = 0, .read = std::max(sigma, 1e-6)};
+}
+
+// The view that `entry` was taken from, entered where it is new.
+std::size_t view_of(const manifest::Document& document, const manifest::ImageEntry& entry, Recordings& recordings) {
+  Rigid<frame::World, frame::Camera> pose;
+  if (entry.world_from_camera) pose = {entry.world_from_camera->rotation, entry.world_from_camera->translation_m};
+  for (std::size_t v = 0; v < recordings.views.size(); ++v)
+    if (recordings.views[v].camera == entry.camera && recordings.views[v].world_from_camera == pose) return v;
+  const manifest::Camera& camera = document.cameras.at(entry.camera);
+  recordings.views.push_back(
+      {entry.camera, camera::CameraModel(camera, manifest::place(document, "/cameras/" + entry.camera)), pose});
+  return recordings.views.size() - 1;
+}
+
+}  // namespace
+
+Recordings read_recordings(const manifest::Document& document) {
+  Recordings recordings;
+  for (const auto& [name, light] : document.lights) recordings.lights.push_back(name);
+  for (std::size_t i = 0; i < document.images.size(); ++i) {
+    const manifest::ImageEntry& entry = document.images[i];
+    if (entry.weight && *entry.weight == 0) continue;
+    if (!document.cameras.contains(entry.camera))
+      refuse(document, i, "/camera", "names no camera: \"" + entry.camera + "\"", "enter it in cameras");
+    Recording image;
+    image.id = entry.id;
+    image.entry = i;
+    image.view = view_of(document, entry, recordings);
+    for (std::size_t l = 0; l < recordings.lights.size(); ++l)
+      if (entry.light.empty() || std::find(entry.light.begin(), entry.light.end(), recordings.lights[l]) != entry.light.end())
+        image.lights.push_back(l);
+    read_pixels(document, manifest::resolve(document, entry.file, "/images/" + std::to_string(i) + "/file"), image);
+    const camera::CameraModel& camera = recordings.views[image.view].model;
+    if (image.picture.width != camera.width_px() || image.picture.height != camera.height_px())
+      refuse(document, i, "/file",
+             "is " + std::to_string(image.picture.width) + "x" + std::to_string(image.picture.height) + " pixels, the camera " +
+                 std::to_string(camera.width_px()) + "x" + std::to_string(camera.height_px()),
+             "give the camera the size of its pictures");
+    read_mask(document, image);
+    image.noise = entry.noise ? *entry.noise : measured_noise(image);
+    image.gain = entry.gain ? *entry.gain : manifest::Parameter(1.0);
+    recordings.images.push_back(std::move(image));
+  }
+  return recordings;
+}
+
+double noise_sigma(const Recording& image, double value) {
+  const double shot = image.noise.gain > 0 ? std::max(value, 0.0) / image.noise.gain : 0;
+  return std::sqrt(shot + image.noise.read * image.noise.read);
+}
+
+}  // namespace gonio::explain::images

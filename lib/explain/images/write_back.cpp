@@ -1,0 +1,77 @@
+// The upgraded manifest: fitted values and their sigmas in the sections where the parameters came from, and the named mechanisms
+// switched on, one list per parameter in the order of `on`.
+#include <algorithm>
+#include <map>
+
+#include "explain/explanation.h"
+#include "explain/images/bindings.h"
+
+namespace gonio::explain::images {
+namespace {
+
+void enter(manifest::Parameter& parameter, manifest::Sigmas& sigmas, const Origin& origin, double value, double sigma) {
+  parameter.value.at(origin.component) = value;
+  std::vector<double>& all = sigmas[origin.key];
+  all.resize(parameter.value.size(), 0.0);
+  all[origin.component] = sigma;
+}
+
+void write_base(const Origin& origin, double value, double sigma, manifest::Document& document) {
+  switch (origin.section) {
+    case Origin::Section::surfaces: {
+      manifest::Surface& surface = document.surfaces.at(origin.name);
+      return enter(surface.parameters.at(origin.key), surface.sigma, origin, value, sigma);
+    }
+    case Origin::Section::lights: {
+      manifest::Light& light = document.lights.at(origin.name);
+      return enter(light.parameters.at(origin.key), light.sigma, origin, value, sigma);
+    }
+    case Origin::Section::images: {
+      manifest::ImageEntry& image = document.images.at(origin.entry);
+      if (!image.gain) image.gain = manifest::Parameter(1.0);
+      image.gain->value.at(origin.component) = value;
+      return;
+    }
+    case Origin::Section::mechanisms: {
+      manifest::MechanismUse& use = document.mechanisms.at(origin.name);
+      return enter(use.parameters.at(origin.key), use.sigma, origin, value, sigma);
+    }
+  }
+}
+
+// Values of one mechanism, target by target. Parameters of a candidate that acts on several targets at once are listed target by
+// target, the mechanism's parameters within (light.direction), or once for all (light.finite-size).
+struct Entry {
+  std::vector<std::string> on;
+  std::map<std::string, std::vector<double>> value, sigma;
+};
+
+void add_candidate(const Candidate& candidate, const Explanation& explanation, Entry& entry) {
+  const std::vector<mechanism::Parameter>& infos = candidate.mechanism->parameters;
+  const std::size_t sets = candidate.parameters.size() / infos.size();
+  entry.on.insert(entry.on.end(), candidate.on.begin(), candidate.on.end());
+  for (std::size_t s = 0; s < sets; ++s)
+    for (std::size_t k = 0; k < infos.size(); ++k) {
+      const std::size_t p = candidate.parameters[s * infos.size() + k];
+      entry.value[infos[k].name].push_back(explanation.values[p]);
+      entry.sigma[infos[k].name].push_back(explanation.sigma[p]);
+    }
+}
+
+}  // namespace
+
+void write_back(const Bindings& bindings, const Explanation& explanation, manifest::Document& document) {
+  for (std::size_t p = 0; p < bindings.origins.size(); ++p)
+    for (const Origin& origin : bindings.origins[p])
+      write_base(origin, explanation.values[p], explanation.sigma.empty() ? 0 : explanation.sigma[p], document);
+  std::map<std::string, Entry> entries;
+  for (const std::size_t c : explanation.named) add_candidate(bindings.candidates[c], explanation, entries[bindings.candidates[c].id()]);
+  for (auto& [id, entry] : entries) {
+    manifest::MechanismUse& use = document.mechanisms[id];
+    use.on = std::move(entry.on);
+    for (auto& [name, values] : entry.value) use.parameters[name] = manifest::Parameter(std::move(values));
+    for (auto& [name, sigmas] : entry.sigma) use.sigma[name] = std::move(sigmas);
+  }
+}
+
+}  // namespace gonio::explain::images
