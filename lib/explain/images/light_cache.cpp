@@ -240,7 +240,7 @@ class PixelBuilder {
     std::size_t term = 0;
     double albedo = 1;
     while (dot(wi, at.geometric_normal) > 0) {
-      const auto next = caster_.closest(at, wi);
+      const auto next = caster_.closest_from(at, wi);
       if (!next) {
         gathered.coefficient[lights * terms + term] += pi;
         gathered.path[lights] += pi * albedo;
