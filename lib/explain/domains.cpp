@@ -5,12 +5,14 @@
 
 #include "base/error.h"
 #include "explain/boards/boards_problem.h"
+#include "explain/images/images_problem.h"
 
 namespace gonio::explain {
 
 std::vector<std::unique_ptr<Problem>> problems_of(const manifest::Document& document) {
   std::vector<std::unique_ptr<Problem>> problems;
   if (has_boards(document)) problems.push_back(boards_problem(boards_input(document)));
+  if (images::has_recordings(document)) problems.push_back(std::make_unique<images::ImagesProblem>(document));
   if (problems.empty())
     throw Error(Exit::data, manifest::place(document, ""),
                 "has nothing to explain: no table of board corners, no recorded images of objects",
@@ -25,6 +27,13 @@ std::vector<std::filesystem::path> files_of(const manifest::Document& document) 
   };
   for (const auto& [name, table] : document.tables)
     if (table.model == "camera") add(table.file, "/tables/" + name + "/file");
+  if (images::has_recordings(document)) {
+    for (std::size_t i = 0; i < document.images.size(); ++i) {
+      add(document.images[i].file, "/images/" + std::to_string(i) + "/file");
+      add(document.images[i].mask, "/images/" + std::to_string(i) + "/mask");
+    }
+    for (const auto& [name, mesh] : document.meshes) add(mesh.file, "/meshes/" + name + "/file");
+  }
   return files;
 }
 

@@ -60,6 +60,12 @@ Value located(const Explanation& e, const Illustration& illustration) {
                                 {"unit", first.unit}, {"share", number(first.share)}});
   if (!illustration.masks.empty()) result["mask"] = illustration.masks[0];
   if (illustration.masks.size() > 1) result["masks"] = illustration.masks;
+  if (!illustration.boxes.empty()) {
+    Value boxes = Value::array();
+    for (const Box& b : illustration.boxes)
+      boxes.push_back(Value::object({{"group", b.group}, {"x_px", b.x}, {"y_px", b.y}, {"width_px", b.width}, {"height_px", b.height}}));
+    result["boxes"] = boxes;
+  }
   if (!e.stage.empty()) result["stage"] = e.stage;
   Value conditions = Value::array(), groups = Value::array();
   for (const LocatedCondition& c : e.conditions)

@@ -107,9 +107,14 @@ struct Picture {
   std::string title, png;  // bytes of a PNG, or
   std::string svg;         // an inline drawing
 };
+struct Box {  // part of a picture, px; (x, y) its top-left pixel
+  std::string group;
+  int x = 0, y = 0, width = 0, height = 0;
+};
 struct Illustration {
   std::vector<Picture> pictures;
   std::vector<std::string> masks;  // file ids entered in the document: where the mismatch is
+  std::vector<Box> boxes;          // the same as boxes
 };
 
 }  // namespace gonio::explain

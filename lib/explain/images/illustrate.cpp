@@ -1,5 +1,118 @@
+// What a person sees first: signed residuals before and after, and masks and boxes where the mismatch is. Whole pictures are
+// simulated coarser than the sampled pixels (16 sub-samples, 64 paths), which the noise accounts for.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/atomic_file.h"
 #include "explain/explanation.h"
 #include "explain/images/images_problem.h"
+#include "explain/images/pictures.h"
+#include "io/picture.h"
+
 namespace gonio::explain::images {
-Illustration ImagesProblem::illustrate(const Explanation&, const std::filesystem::path&, manifest::Document&) const { return {}; }
+namespace {
+
+constexpr double pixels_per_view = 60000;  // larger pictures are thinned out
+constexpr double mask_limit = 5;           // standard errors of a window
+constexpr std::size_t most_pictures = 4, least_box = 6, most_boxes = 4;
+
+WholeImage whole_image(const Recording& image, const ImageModel& model, std::size_t number, int stride, const SceneState& before,
+                       const SceneState& after) {
+  WholeImage whole;
+  whole.stride = stride;
+  whole.width = (image.picture.width + stride - 1) / stride;
+  whole.height = (image.picture.height + stride - 1) / stride;
+  std::vector<std::uint32_t> all(static_cast<std::size_t>(whole.width) * static_cast<std::size_t>(whole.height));
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+  const std::size_t rows = 3 * all.size();
+  whole.before.resize(rows), whole.after.resize(rows), whole.sigma.resize(rows), whole.observed.resize(rows);
+  whole.counts.resize(all.size());
+  model.predict(before, number, all, whole.before);
+  model.predict(after, number, all, whole.after);
+  model.variance(after, number, all, whole.sigma);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Pixel& pixel = model.cache(image.view).pixels[i];
+    const auto place = static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(image.picture.width) + static_cast<std::size_t>(pixel.x);
+    whole.counts[i] = image.counts[place];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t r = 3 * i + c;
+      const double noise = noise_sigma(image, whole.after[r]);
+      whole.observed[r] = image.picture.data[3 * place + c];
+      whole.sigma[r] = std::sqrt(whole.sigma[r] + noise * noise);
+    }
+  }
+  return whole;
 }
+
+int stride_for(const View& view) {
+  const double pixels = static_cast<double>(view.model.width_px()) * view.model.height_px();
+  return std::max(1, static_cast<int>(std::ceil(std::sqrt(pixels / pixels_per_view))));
+}
+
+double rms_of(const WholeImage& image) {
+  double sum = 0, n = 0;
+  for (std::size_t i = 0; i < image.counts.size(); ++i)
+    if (image.counts[i])
+      for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) sum += image.observed[c] * image.observed[c], n += 1;
+  return std::sqrt(sum / std::max(1.0, n));
+}
+
+void add_pictures(const std::string& id, const WholeImage& image, bool named, Illustration& result) {
+  char scale[48];
+  const double full = 0.1 * rms_of(image);
+  std::snprintf(scale, sizeof scale, "full colour at %.3g", full);
+  result.pictures.push_back({id + ": recording minus base model, " + scale, io::encode_png(residual_picture(image, false, full)), ""});
+  if (named)
+    result.pictures.push_back(
+        {id + ": recording minus upgraded model, " + scale, io::encode_png(residual_picture(image, true, full)), ""});
+}
+
+io::Image mask_picture(const std::vector<std::uint8_t>& mask, const WholeImage& image, const io::Image& full) {
+  io::Image picture(full.width, full.height, {"Y"});
+  for (int y = 0; y < full.height; ++y)
+    for (int x = 0; x < full.width; ++x)
+      picture.at(x, y, 0) =
+          mask[static_cast<std::size_t>(y / image.stride) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x / image.stride)];
+  return picture;
+}
+
+}  // namespace
+
+Illustration ImagesProblem::illustrate(const Explanation& explanation, const std::filesystem::path& out,
+                                       manifest::Document& document) const {
+  Illustration result;
+  std::vector<ViewCache> caches;
+  std::vector<int> strides;
+  CacheOptions coarse{4, 64, cache_options_.seed + 1};
+  for (const View& view : recordings_.views) {
+    strides.push_back(stride_for(view));
+    std::vector<std::array<int, 2>> grid;
+    for (int y = 0; y < view.model.height_px(); y += strides.back())
+      for (int x = 0; x < view.model.width_px(); x += strides.back()) grid.push_back({x, y});
+    caches.push_back(build_cache(*caster_, view, layout_.lights, *monomials_, grid, coarse));
+  }
+  const ImageModel model(recordings_, layout_, *monomials_, std::move(caches));
+  const SceneState before = state(explanation.base_values), after = state(explanation.values);
+  std::vector<std::string> worst;  // names of the groups that hold most of the excess
+  for (std::size_t k = 0; k < std::min(most_pictures, explanation.groups.size()); ++k) worst.push_back(explanation.groups[k].name);
+  for (std::size_t g = 0; g < recordings_.images.size(); ++g) {
+    const Recording& image = recordings_.images[g];
+    const WholeImage whole = whole_image(image, model, g, strides[image.view], before, after);
+    if (std::find(worst.begin(), worst.end(), image.id) != worst.end())
+      add_pictures(image.id, whole, !explanation.named.empty(), result);
+    if (explanation.verdict == Verdict::null) continue;
+    const std::vector<std::uint8_t> mask = mismatch_mask(whole, mask_limit, explanation.matters);
+    for (Box& box : boxes_of(mask, whole, least_box, most_boxes)) {
+      box.group = image.id;
+      result.boxes.push_back(box);
+    }
+    if (out.empty()) continue;
+    const std::filesystem::path path = out / ("mask-" + image.id + ".png");
+    io::write_picture(path, mask_picture(mask, whole, image.picture));
+    result.masks.push_back(manifest::add_file(document, path, "mask-" + image.id));
+  }
+  return result;
+}
+
+}  // namespace gonio::explain::images

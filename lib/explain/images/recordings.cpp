@@ -129,6 +129,12 @@ std::size_t view_of(const manifest::Document& document, const manifest::ImageEnt
 
 }  // namespace
 
+bool has_recordings(const manifest::Document& document) {
+  return !document.objects.empty() && std::any_of(document.images.begin(), document.images.end(), [](const manifest::ImageEntry& e) {
+    return !e.file.empty() && !e.camera.empty();
+  });
+}
+
 Recordings read_recordings(const manifest::Document& document) {
   Recordings recordings;
   for (const auto& [name, light] : document.lights) recordings.lights.push_back(name);

@@ -38,6 +38,8 @@ struct Recordings {
   std::vector<Recording> images;
 };
 
+// Objects, and images of them that name a file and a camera.
+bool has_recordings(const manifest::Document& document);
 // Reads the pictures and masks of all images whose weight is not zero. Error(data) with the place in the manifest where a size, a
 // response or a reference does not fit.
 Recordings read_recordings(const manifest::Document& document);

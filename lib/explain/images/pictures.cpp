@@ -1,0 +1,104 @@
+#include "explain/images/pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+namespace gonio::explain::images {
+namespace {
+
+constexpr int reach = 2;  // windows of 5 x 5
+
+std::size_t at(const WholeImage& image, int x, int y) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
+}
+double residual(const WholeImage& image, std::size_t value, bool after) {
+  return image.observed[value] - (after ? image.after[value] : image.before[value]);
+}
+
+}  // namespace
+
+std::vector<double> excess(const WholeImage& image, bool after) {
+  std::vector<double> result(image.counts.size());
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      double sum = 0, n = 0;
+      for (int v = std::max(0, y - reach); v <= std::min(image.height - 1, y + reach); ++v)
+        for (int u = std::max(0, x - reach); u <= std::min(image.width - 1, x + reach); ++u) {
+          const std::size_t i = at(image, u, v);
+          if (!image.counts[i]) continue;
+          for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) {
+            const double z = residual(image, c, after) / image.sigma[c];
+            sum += z * z - 1;
+            n += 1;
+          }
+        }
+      if (n > 0) result[at(image, x, y)] = sum / std::sqrt(2 * n);
+    }
+  return result;
+}
+
+std::vector<std::uint8_t> mismatch_mask(const WholeImage& image, double limit, double matters) {
+  const std::vector<double> significance = excess(image, false);
+  double square = 0, n = 0;
+  for (std::size_t i = 0; i < image.counts.size(); ++i)
+    if (image.counts[i])
+      for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) square += image.observed[c] * image.observed[c], n += 1;
+  const double least = matters * std::sqrt(square / std::max(1.0, n));
+  std::vector<std::uint8_t> mask(image.counts.size());
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (!image.counts[i] || significance[i] < limit) continue;
+    double mean = 0;
+    for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) mean += std::abs(residual(image, c, false)) / 3;
+    mask[i] = mean > least;
+  }
+  return mask;
+}
+
+std::vector<Box> boxes_of(const std::vector<std::uint8_t>& mask, const WholeImage& image, std::size_t least, std::size_t most) {
+  std::vector<std::uint8_t> seen(mask.size());
+  std::vector<std::pair<std::size_t, Box>> found;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      if (!mask[at(image, x, y)] || seen[at(image, x, y)]) continue;
+      std::queue<std::pair<int, int>> open;
+      open.push({x, y});
+      seen[at(image, x, y)] = 1;
+      int left = x, right = x, top = y, bottom = y;
+      std::size_t size = 0;
+      for (; !open.empty(); open.pop(), ++size) {
+        const auto [u, v] = open.front();
+        left = std::min(left, u), right = std::max(right, u), top = std::min(top, v), bottom = std::max(bottom, v);
+        for (int b = std::max(0, v - 1); b <= std::min(image.height - 1, v + 1); ++b)
+          for (int a = std::max(0, u - 1); a <= std::min(image.width - 1, u + 1); ++a)
+            if (mask[at(image, a, b)] && !seen[at(image, a, b)]) {
+              seen[at(image, a, b)] = 1;
+              open.push({a, b});
+            }
+      }
+      if (size < least) continue;
+      found.push_back({size, {"", left * image.stride, top * image.stride, (right - left + 1) * image.stride,
+                              (bottom - top + 1) * image.stride}});
+    }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Box> boxes;
+  for (std::size_t k = 0; k < std::min(most, found.size()); ++k) boxes.push_back(found[k].second);
+  return boxes;
+}
+
+io::Image residual_picture(const WholeImage& image, bool after, double scale) {
+  io::Image picture(image.width, image.height, {"R", "G", "B"});
+  for (std::size_t i = 0; i < image.counts.size(); ++i) {
+    double mean = 0;
+    if (image.counts[i])
+      for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) mean += residual(image, c, after) / 3;
+    const double strength = std::clamp(mean / scale, -1.0, 1.0);
+    const auto fade = static_cast<float>(1 - std::abs(strength));
+    picture.data[3 * i] = strength >= 0 ? 1 : fade;
+    picture.data[3 * i + 1] = fade;
+    picture.data[3 * i + 2] = strength <= 0 ? 1 : fade;
+  }
+  return picture;
+}
+
+}  // namespace gonio::explain::images
