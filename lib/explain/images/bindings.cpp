@@ -11,13 +11,21 @@ namespace {
 
 using Kind = Place::Kind;
 
-double& component_of(Rgb& rgb, int k) { return k == 0 ? rgb.x : k == 1 ? rgb.y : rgb.z; }
-const char* channel_name(std::size_t k) { return k == 0 ? "r" : k == 1 ? "g" : "b"; }
+double& component_of(Rgb& rgb, int k) {
+  return k == 0 ? rgb.x : k == 1 ? rgb.y : rgb.z;
+}
+const char* channel_name(std::size_t k) {
+  return k == 0 ? "r" : k == 1 ? "g" : "b";
+}
 
-double get(const Rgb& rgb, int component) { return rgb[component < 0 ? 0 : component]; }
+double get(const Rgb& rgb, int component) {
+  return rgb[component < 0 ? 0 : component];
+}
 void put(Rgb& rgb, int component, double value) {
-  if (component < 0) rgb = {value, value, value};
-  else component_of(rgb, component) = value;
+  if (component < 0)
+    rgb = {value, value, value};
+  else
+    component_of(rgb, component) = value;
 }
 
 // Collects parameters; those that share a name become one.
@@ -64,8 +72,8 @@ class Collector {
         if (key != "watt_per_sr" && key != "watt_per_m2")
           throw Error(Exit::data, manifest::place(document_, "/lights/" + name + "/" + key), "cannot be free on images",
                       "free the intensity; light.direction searches the place by itself");
-        each_free(parameter, {Kind::intensity, l, 0, -1}, {Origin::Section::lights, name, key, 0, 0}, "lights/" + name + "/" + key,
-                  key == "watt_per_sr" ? "W/sr" : "W/m^2", lit_by(l), 0);
+        each_free(parameter, {Kind::intensity, l, 0, -1}, {Origin::Section::lights, name, key, 0, 0},
+                  "lights/" + name + "/" + key, key == "watt_per_sr" ? "W/sr" : "W/m^2", lit_by(l), 0);
       }
     }
   }
@@ -80,8 +88,8 @@ class Collector {
   }
 
   // Enters every component of a free manifest parameter.
-  void each_free(const manifest::Parameter& parameter, Place place, Origin origin, const std::string& name, const std::string& unit,
-                 const std::vector<std::size_t>& groups, double lower) {
+  void each_free(const manifest::Parameter& parameter, Place place, Origin origin, const std::string& name,
+                 const std::string& unit, const std::vector<std::size_t>& groups, double lower) {
     if (!parameter.free) return;
     const std::size_t count = parameter.value.size();
     for (std::size_t k = 0; k < count; ++k) {
@@ -111,8 +119,10 @@ class Collector {
     out_.places[parameter].push_back(place);
     out_.origins[parameter].push_back(origin);
     std::vector<std::size_t>& all = out_.parameters[parameter].groups;
-    if (groups.empty()) all.clear();
-    else if (!all.empty()) all.insert(all.end(), groups.begin(), groups.end());
+    if (groups.empty())
+      all.clear();
+    else if (!all.empty())
+      all.insert(all.end(), groups.begin(), groups.end());
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
     if (all.size() == recordings_.images.size()) all.clear();
@@ -126,8 +136,8 @@ class Collector {
   }
 
   // A parameter of a mechanism as a number of the search; nothing where the base model has the mechanism already.
-  void enter(const mechanism::Mechanism& m, const mechanism::Parameter& info, std::vector<Place> places, const std::string& target,
-             const std::vector<std::size_t>& groups, Candidate& candidate) {
+  void enter(const mechanism::Mechanism& m, const mechanism::Parameter& info, std::vector<Place> places,
+             const std::string& target, const std::vector<std::size_t>& groups, Candidate& candidate) {
     Parameter p;
     p.name = m.id + (target.empty() ? "" : "@" + target) + "." + info.name;
     p.unit = info.unit;
@@ -173,7 +183,8 @@ class Collector {
     candidate.mechanism = &m;
     candidate.on = {layout_.surfaces[s]};
     for (const mechanism::Parameter& info : m.parameters)
-      enter(m, info, {{Kind::surface, s, parameter_index(*surface.model, info.name), -1}}, layout_.surfaces[s], {}, candidate);
+      enter(m, info, {{Kind::surface, s, parameter_index(*surface.model, info.name), -1}}, layout_.surfaces[s], {},
+            candidate);
     out_.candidates.push_back(std::move(candidate));
   }
 

@@ -1,5 +1,5 @@
-// The numbers of the search and what each of them sets: free parameters of the base model (surfaces, lights, images, mechanisms
-// that the manifest switches on) and the parameters of candidate mechanisms.
+// The numbers of the search and what each of them sets: free parameters of the base model (surfaces, lights, images,
+// mechanisms that the manifest switches on) and the parameters of candidate mechanisms.
 #pragma once
 #include <string>
 #include <vector>
@@ -20,11 +20,12 @@ struct Place {
 double value_at(const SceneState& state, const Place& place);
 void set_value(SceneState& state, const Place& place, double value);
 
-// Where a parameter's fitted value goes in the manifest: surfaces/NAME/KEY, lights/NAME/KEY, images/N/gain, mechanisms/ID/KEY.
+// Where a parameter's fitted value goes in the manifest: surfaces/NAME/KEY, lights/NAME/KEY, images/N/gain,
+// mechanisms/ID/KEY.
 struct Origin {
   enum class Section { surfaces, lights, images, mechanisms } section = Section::surfaces;
   std::string name, key;
-  std::size_t entry = 0;      // images
+  std::size_t entry = 0;  // images
   std::size_t component = 0;
 };
 

@@ -14,7 +14,9 @@ struct PixelConditions {
          shadow_edge = none, visibility = none, open_sky = none, light = none;
 };
 
-double angle(double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)); }
+double angle(double cosine) {
+  return std::acos(std::clamp(cosine, -1.0, 1.0));
+}
 
 // The largest facet of the pixel stands for it.
 PixelConditions of_pixel(const ImageModel& model, const Recording& image, const ViewCache& cache, const Pixel& pixel,
@@ -51,7 +53,8 @@ PixelConditions of_pixel(const ImageModel& model, const Recording& image, const 
 }  // namespace
 
 std::vector<Condition> image_conditions(const Recordings& recordings, const ImageModel& model,
-                                        const std::vector<std::vector<std::uint32_t>>& picked, std::span<const double> prediction) {
+                                        const std::vector<std::vector<std::uint32_t>>& picked,
+                                        std::span<const double> prediction) {
   const std::vector<double> relative(prediction.begin(), prediction.end());
   std::vector<Condition> all = {
       {"camera.image-radius", "half width", "optics", {}, relative},
@@ -73,7 +76,7 @@ std::vector<Condition> image_conditions(const Recordings& recordings, const Imag
     for (const std::uint32_t p : picked[g]) {
       const PixelConditions c = of_pixel(model, image, cache, cache.pixels[p], model.monomials().size());
       for (int k = 0; k < 3; ++k, ++row) {
-        const double values[] = {c.image_radius, c.half, c.exitance, c.incidence, c.phase, c.shadow_edge,
+        const double values[] = {c.image_radius,   c.half,       c.exitance, c.incidence,     c.phase, c.shadow_edge,
                                  c.light_distance, c.visibility, c.open_sky, prediction[row], c.light};
         for (std::size_t i = 0; i < all.size(); ++i) all[i].values.push_back(values[i]);
       }

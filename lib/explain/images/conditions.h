@@ -1,4 +1,5 @@
-// What is known of every row and may carry the signature of missing physics: angles at the surface, distances, places in the image.
+// What is known of every row and may carry the signature of missing physics: angles at the surface, distances, places
+// in the image.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -9,9 +10,10 @@
 
 namespace gonio::explain::images {
 
-// One row per picked pixel and channel, images in order. `prediction`: of the base model, one per row; structure that scales with
-// the signal is a curve over a condition times it. Angles in rad; with several lights on, the first counts.
+// One row per picked pixel and channel, images in order. `prediction`: of the base model, one per row; structure that
+// scales with the signal is a curve over a condition times it. Angles in rad; with several lights on, the first counts.
 std::vector<Condition> image_conditions(const Recordings& recordings, const ImageModel& model,
-                                        const std::vector<std::vector<std::uint32_t>>& picked, std::span<const double> prediction);
+                                        const std::vector<std::vector<std::uint32_t>>& picked,
+                                        std::span<const double> prediction);
 
 }  // namespace gonio::explain::images

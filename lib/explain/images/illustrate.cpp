@@ -1,5 +1,5 @@
-// What a person sees first: signed residuals before and after, and masks and boxes where the mismatch is. Whole pictures are
-// simulated coarser than the sampled pixels (16 sub-samples, 64 paths), which the noise accounts for.
+// What a person sees first: signed residuals before and after, and masks and boxes where the mismatch is. Whole
+// pictures are simulated coarser than the sampled pixels (16 sub-samples, 64 paths), which the noise accounts for.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,8 +17,8 @@ constexpr double pixels_per_view = 60000;  // larger pictures are thinned out
 constexpr double mask_limit = 5;           // standard errors of a window
 constexpr std::size_t most_pictures = 4, least_box = 6, most_boxes = 4;
 
-WholeImage whole_image(const Recording& image, const ImageModel& model, std::size_t number, int stride, const SceneState& before,
-                       const SceneState& after) {
+WholeImage whole_image(const Recording& image, const ImageModel& model, std::size_t number, int stride,
+                       const SceneState& before, const SceneState& after) {
   WholeImage whole;
   whole.stride = stride;
   whole.width = (image.picture.width + stride - 1) / stride;
@@ -33,7 +33,8 @@ WholeImage whole_image(const Recording& image, const ImageModel& model, std::siz
   model.variance(after, number, all, whole.sigma);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Pixel& pixel = model.cache(image.view).pixels[i];
-    const auto place = static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(image.picture.width) + static_cast<std::size_t>(pixel.x);
+    const auto place = static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(image.picture.width) +
+                       static_cast<std::size_t>(pixel.x);
     whole.counts[i] = image.counts[place];
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t r = 3 * i + c;
@@ -62,7 +63,8 @@ void add_pictures(const std::string& id, const WholeImage& image, bool named, Il
   char scale[48];
   const double full = 0.1 * rms_of(image);
   std::snprintf(scale, sizeof scale, "full colour at %.3g", full);
-  result.pictures.push_back({id + ": recording minus base model, " + scale, io::encode_png(residual_picture(image, false, full)), ""});
+  result.pictures.push_back(
+      {id + ": recording minus base model, " + scale, io::encode_png(residual_picture(image, false, full)), ""});
   if (named)
     result.pictures.push_back(
         {id + ": recording minus upgraded model, " + scale, io::encode_png(residual_picture(image, true, full)), ""});
@@ -72,8 +74,8 @@ io::Image mask_picture(const std::vector<std::uint8_t>& mask, const WholeImage& 
   io::Image picture(full.width, full.height, {"Y"});
   for (int y = 0; y < full.height; ++y)
     for (int x = 0; x < full.width; ++x)
-      picture.at(x, y, 0) =
-          mask[static_cast<std::size_t>(y / image.stride) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x / image.stride)];
+      picture.at(x, y, 0) = mask[static_cast<std::size_t>(y / image.stride) * static_cast<std::size_t>(image.width) +
+                                 static_cast<std::size_t>(x / image.stride)];
   return picture;
 }
 
@@ -95,7 +97,8 @@ Illustration ImagesProblem::illustrate(const Explanation& explanation, const std
   const ImageModel model(recordings_, layout_, *monomials_, std::move(caches));
   const SceneState before = state(explanation.base_values), after = state(explanation.values);
   std::vector<std::string> worst;  // names of the groups that hold most of the excess
-  for (std::size_t k = 0; k < std::min(most_pictures, explanation.groups.size()); ++k) worst.push_back(explanation.groups[k].name);
+  for (std::size_t k = 0; k < std::min(most_pictures, explanation.groups.size()); ++k)
+    worst.push_back(explanation.groups[k].name);
   for (std::size_t g = 0; g < recordings_.images.size(); ++g) {
     const Recording& image = recordings_.images[g];
     const WholeImage whole = whole_image(image, model, g, strides[image.view], before, after);

@@ -14,7 +14,8 @@ constexpr std::size_t radius_count = radii_m.size();
 // Polynomials in the albedos of a state, colour by colour.
 class Transport {
  public:
-  Transport(const SceneState& state, const render::Monomials& monomials) : strength_(state.indirect), terms_(monomials.size()) {
+  Transport(const SceneState& state, const render::Monomials& monomials)
+      : strength_(state.indirect), terms_(monomials.size()) {
     const Vec3 oblique{std::sqrt(0.5), 0, std::sqrt(0.5)};
     std::vector<Rgb> albedos;
     for (const SurfaceState& s : state.surfaces) albedos.push_back(s.model->albedo(s.values, oblique));
@@ -41,7 +42,8 @@ class Transport {
 };
 
 Rgb albedo_of(const SurfaceState& surface) {
-  return has_parameter(*surface.model, "albedo") ? surface.values.rgb(parameter_index(*surface.model, "albedo")) : Rgb{};
+  return has_parameter(*surface.model, "albedo") ? surface.values.rgb(parameter_index(*surface.model, "albedo"))
+                                                 : Rgb{};
 }
 
 }  // namespace
@@ -66,8 +68,8 @@ void ImageModel::shade_again(const SceneState& state, std::size_t image, std::sp
   shader(image).again(state, picked, surface, shading);
 }
 
-void ImageModel::compose(const SceneState& state, std::size_t number, std::span<const std::uint32_t> picked, const Shading& shading,
-                         std::span<double> radiance) const {
+void ImageModel::compose(const SceneState& state, std::size_t number, std::span<const std::uint32_t> picked,
+                         const Shading& shading, std::span<double> radiance) const {
   const Recording& image = recordings_.images[number];
   const ViewCache& cache = views_[image.view];
   const std::size_t lights = layout_.lights.size();
@@ -112,7 +114,8 @@ void ImageModel::variance(const SceneState& state, std::size_t number, std::span
   const std::size_t lights = layout_.lights.size();
   for (std::size_t i = 0; i < picked.size(); ++i) {
     const Pixel& pixel = cache.pixels[picked[i]];
-    Rgb sum, first, second;  // of the facets' radiances, weighted by their share of the pixel: the contrast between them
+    Rgb sum, first,
+        second;  // of the facets' radiances, weighted by their share of the pixel: the contrast between them
     for (std::size_t k = 0; k < pixel.facets; ++k) {
       const std::size_t f = pixel.first_facet + k;
       const Facet& facet = cache.facets[f];

@@ -20,7 +20,8 @@ std::size_t at(const io::Image& picture, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x);
 }
 
-// Highest degree of the polynomials of light between surfaces: six, or fewer where many surfaces would make too many terms.
+// Highest degree of the polynomials of light between surfaces: six, or fewer where many surfaces would make too many
+// terms.
 int degree_for(std::size_t surfaces) {
   constexpr std::size_t most_terms = 40;
   int degree = 6;
@@ -46,7 +47,8 @@ Rgb local_mean(const Recording& image, int x, int y) {
 ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& options)
     : recordings_(read_recordings(document)), cache_options_(options.cache) {
   if (recordings_.images.empty())
-    throw Error(Exit::data, manifest::place(document, "/images"), "holds no recording", "give at least one image with a weight");
+    throw Error(Exit::data, manifest::place(document, "/images"), "holds no recording",
+                "give at least one image with a weight");
   const scene::Scene scene = scene::build_scene(document);
   caster_ = std::make_unique<render::RayCaster>(scene.instances);
   std::vector<std::string> surfaces;
@@ -61,7 +63,8 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
   choose_pixels(options.pixels, chosen);
   std::vector<ViewCache> caches;
   for (std::size_t v = 0; v < chosen.size(); ++v)
-    caches.push_back(build_cache(*caster_, recordings_.views[v], layout_.lights, *monomials_, chosen[v], cache_options_));
+    caches.push_back(
+        build_cache(*caster_, recordings_.views[v], layout_.lights, *monomials_, chosen[v], cache_options_));
   model_ = std::make_unique<ImageModel>(recordings_, layout_, *monomials_, std::move(caches));
   fill_rows();
 }
@@ -161,7 +164,8 @@ struct Reach {
 Reach reach_of(const std::vector<Place>& places, const SceneState& state) {
   Reach reach;
   for (const Place& p : places) {
-    if (p.kind == Place::Kind::radius || p.kind == Place::Kind::tilt_x || p.kind == Place::Kind::tilt_y) reach.all = true;
+    if (p.kind == Place::Kind::radius || p.kind == Place::Kind::tilt_x || p.kind == Place::Kind::tilt_y)
+      reach.all = true;
     if (p.kind != Place::Kind::surface) continue;
     const surface::Model& model = *state.surfaces[p.target].model;
     if (!has_parameter(model, "albedo") || p.parameter != parameter_index(model, "albedo"))

@@ -1,9 +1,9 @@
-// The image domain of explain: linear recordings of a scene whose geometry is known, simulated with direct light, light between
-// surfaces and the registered mechanisms.
+// The image domain of explain: linear recordings of a scene whose geometry is known, simulated with direct light, light
+// between surfaces and the registered mechanisms.
 //
-// Rows: sampled pixels (a fixed number per tile of 8 x 8, drawn at random with a fixed seed), three channels each. Groups: images, one
-// for each camera pose and light. Blocks: tiles. The score is the relative RMSE.
-// Noise of a row: the recording's, at the local mean of the picture, plus the simulator's own variance.
+// Rows: sampled pixels (a fixed number per tile of 8 x 8, drawn at random with a fixed seed), three channels each.
+// Groups: images, one for each camera pose and light. Blocks: tiles. The score is the relative RMSE. Noise of a row:
+// the recording's, at the local mean of the picture, plus the simulator's own variance.
 #pragma once
 #include <memory>
 

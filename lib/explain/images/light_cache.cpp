@@ -1,9 +1,10 @@
 // Filling of the light cache: camera rays, shadow rays, diffuse paths.
 //
-// Sub-samples are jittered on a grid, whose error for an edge falls as samples^(-3/4) (Mitchell 1996); direct_sigma is the spread of
-// the sub-samples divided by that. Spheres are sampled in the cone they subtend (Shirley, Wang & Zimmerman 1996) with the same two
-// numbers for all radii, so that the tables are smooth in the radius; radiance I / (pi r^2) keeps the intensity I.
-// Paths: directions by cosine (density cos / pi), the first stratified; no roulette, cut at the monomials' degree.
+// Sub-samples are jittered on a grid, whose error for an edge falls as samples^(-3/4) (Mitchell 1996); direct_sigma is
+// the spread of the sub-samples divided by that. Spheres are sampled in the cone they subtend (Shirley, Wang &
+// Zimmerman 1996) with the same two numbers for all radii, so that the tables are smooth in the radius; radiance I /
+// (pi r^2) keeps the intensity I. Paths: directions by cosine (density cos / pi), the first stratified; no roulette,
+// cut at the monomials' degree.
 #include "explain/images/light_cache.h"
 
 #include <algorithm>
@@ -22,9 +23,9 @@ using render::RayCaster;
 using render::SurfacePoint;
 
 constexpr std::size_t radius_count = radii_m.size();
-constexpr int patch_side = 4;          // patches of a pixel, along each side
-constexpr double gloss_alpha = 0.1;    // roughness of the lobe that `mirrored` is collected from
-constexpr double margin_change = 0.02; // relative change of the irradiance that tells that an edge is near
+constexpr int patch_side = 4;           // patches of a pixel, along each side
+constexpr double gloss_alpha = 0.1;     // roughness of the lobe that `mirrored` is collected from
+constexpr double margin_change = 0.02;  // relative change of the irradiance that tells that an edge is near
 
 struct SubSample {
   bool found = false;
@@ -63,11 +64,13 @@ ConeSample sample_cone(const SurfacePoint& point, const LightSource& light, doub
   const double sine2 = std::min(1.0, radius_m * radius_m / square);
   const double cap = sine2 / (1 + std::sqrt(1 - sine2));  // without cancellation
   const double z = 1 - u.x * cap, across = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * pi * u.y;
-  return {Basis(to_light / distance_m).to_world({across * std::cos(phi), across * std::sin(phi), z}), distance_m - radius_m, cap};
+  return {Basis(to_light / distance_m).to_world({across * std::cos(phi), across * std::sin(phi), z}),
+          distance_m - radius_m, cap};
 }
 
 // One sample of the irradiance of a sphere of unit intensity, 1/m^2.
-double sphere_light(const RayCaster& caster, const SurfacePoint& point, const LightSource& light, double radius_m, Vec2 u) {
+double sphere_light(const RayCaster& caster, const SurfacePoint& point, const LightSource& light, double radius_m,
+                    Vec2 u) {
   const ConeSample s = sample_cone(point, light, radius_m, u);
   const double cosine = dot(point.normal, s.wi);
   if (cosine <= 0 || caster.occluded(point, s.wi, s.distance_m)) return 0;
@@ -76,15 +79,18 @@ double sphere_light(const RayCaster& caster, const SurfacePoint& point, const Li
 
 // What hides the largest sphere from a facet, as far as a few rays from each sub-sample tell.
 enum class Edges { none, near, hidden };
-Edges edges_near(const RayCaster& caster, const std::vector<const SubSample*>& samples, const LightSource& light, Random& random) {
+Edges edges_near(const RayCaster& caster, const std::vector<const SubSample*>& samples, const LightSource& light,
+                 Random& random) {
   constexpr int rays = 4;
   std::size_t seen = 0;
   bool above = true;
   for (const SubSample* s : samples) {
     const Vec3 to_light = light.position_m - s->point.position_m;
-    above = above && dot(s->point.normal, to_light) > radii_m.back() && dot(s->point.geometric_normal, to_light) > radii_m.back();
+    above = above && dot(s->point.normal, to_light) > radii_m.back() &&
+            dot(s->point.geometric_normal, to_light) > radii_m.back();
     for (int k = 0; k < rays; ++k) {
-      const ConeSample c = sample_cone(s->point, light, radii_m.back(), {random.uniform(), (k + random.uniform()) / rays});
+      const ConeSample c =
+          sample_cone(s->point, light, radii_m.back(), {random.uniform(), (k + random.uniform()) / rays});
       if (!caster.occluded(s->point, c.wi, c.distance_m)) ++seen;
     }
   }
@@ -100,14 +106,15 @@ Vec3 cosine_about(Vec3 normal, Vec2 u) {  // density cos / pi
 // Sums of what paths brought from every source, term by term, and the spread of that at albedo 1/2.
 struct Gathered {
   std::vector<double> coefficient, sum, square, path;
-  Gathered(std::size_t sources, std::size_t terms) : coefficient(sources * terms), sum(sources), square(sources), path(sources) {}
+  Gathered(std::size_t sources, std::size_t terms)
+      : coefficient(sources * terms), sum(sources), square(sources), path(sources) {}
 };
 
 // The cache of one pixel: facets, patches and tables numbered from zero.
 class PixelBuilder {
  public:
-  PixelBuilder(const RayCaster& caster, const View& view, std::span<const LightSource> lights, const render::Monomials& monomials,
-               const CacheOptions& options)
+  PixelBuilder(const RayCaster& caster, const View& view, std::span<const LightSource> lights,
+               const render::Monomials& monomials, const CacheOptions& options)
       : caster_(caster), view_(view), lights_(lights), monomials_(monomials), options_(options) {}
 
   ViewCache operator()(int x, int y) const {
@@ -118,7 +125,8 @@ class PixelBuilder {
     for (const SubSample& s : samples) {
       if (!s.found) continue;
       ++found;
-      if (std::find(surfaces.begin(), surfaces.end(), s.point.surface) == surfaces.end()) surfaces.push_back(s.point.surface);
+      if (std::find(surfaces.begin(), surfaces.end(), s.point.surface) == surfaces.end())
+        surfaces.push_back(s.point.surface);
     }
     std::sort(surfaces.begin(), surfaces.end());
     ViewCache out;
@@ -206,8 +214,8 @@ class PixelBuilder {
         : sum(lights), square(lights), margin(lights, std::numeric_limits<float>::quiet_NaN()) {}
   };
 
-  void add_direct(const std::vector<const SubSample*>& samples, std::size_t l, Edges edges, Random& random, Spread& spread,
-                  ViewCache& out) const {
+  void add_direct(const std::vector<const SubSample*>& samples, std::size_t l, Edges edges, Random& random,
+                  Spread& spread, ViewCache& out) const {
     const LightSource& light = lights_[l];
     std::array<double, radius_count> mean{};
     double visible = 0;
@@ -289,7 +297,8 @@ class PixelBuilder {
     for (const double c : gloss.coefficient) out.mirrored.push_back(static_cast<float>(c / m));
     for (std::size_t s = 0; s < diffuse.sum.size(); ++s) {
       const double mean = diffuse.sum[s] / n;
-      out.indirect_sigma.push_back(static_cast<float>(std::sqrt(std::max(0.0, diffuse.square[s] / n - mean * mean) / n)));
+      out.indirect_sigma.push_back(
+          static_cast<float>(std::sqrt(std::max(0.0, diffuse.square[s] / n - mean * mean) / n)));
     }
   }
 
@@ -308,10 +317,12 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 }  // namespace
 
 ViewCache build_cache(const RayCaster& caster, const View& view, std::span<const LightSource> lights,
-                      const render::Monomials& monomials, std::span<const std::array<int, 2>> chosen, const CacheOptions& options) {
+                      const render::Monomials& monomials, std::span<const std::array<int, 2>> chosen,
+                      const CacheOptions& options) {
   const PixelBuilder build(caster, view, lights, monomials, options);
   std::vector<ViewCache> parts(chosen.size());
-  parallel_for(0, chosen.size(), [&](std::size_t i) { parts[i] = build(chosen[i][0], chosen[i][1]); }, 16);
+  parallel_for(
+      0, chosen.size(), [&](std::size_t i) { parts[i] = build(chosen[i][0], chosen[i][1]); }, 16);
   ViewCache all;
   for (ViewCache& part : parts) {
     part.pixels[0].first_facet = static_cast<std::uint32_t>(all.facets.size());

@@ -1,20 +1,23 @@
-// What geometry decides about the recordings, computed once: which surfaces the sampled pixels see, how much of every light
-// reaches them directly, and how light travels between surfaces. A prediction for any albedos, intensities, surface terms, sizes
-// and small turns of the lights then costs microseconds a pixel.
+// What geometry decides about the recordings, computed once: which surfaces the sampled pixels see, how much of every
+// light reaches them directly, and how light travels between surfaces. A prediction for any albedos, intensities,
+// surface terms, sizes and small turns of the lights then costs microseconds a pixel.
 //
 //   pixel  a sampled pixel of one view; `sky` is the share of it that sees no surface
 //   facet  the part of a pixel that shows one surface
-//   patch  the part of a facet in one of 4 x 4 equal squares of the pixel, or all of it where it is flat: mean position, normal and direction to the eye (unit
+//   patch  the part of a facet in one of 4 x 4 equal squares of the pixel, or all of it where it is flat: mean
+//   position, normal and direction to the eye (unit
 //          vectors, world frame, metres). Glossy terms are evaluated per patch.
 //
-// Direct light: per patch and light the mean of V cos(theta) / d^2 over its sub-samples (1/m^2; directional lights: V cos), which
-// times the intensity is the irradiance, for a list of radii of the light: exact for small lights (radius 0), and for spheres of
-// that radius with the same intensity. A sphere that stands wholly above the horizon and unhidden gives the irradiance of the small
-// light exactly (Lambert 1760), so only penumbrae and terminators are integrated.
+// Direct light: per patch and light the mean of V cos(theta) / d^2 over its sub-samples (1/m^2; directional lights: V
+// cos), which times the intensity is the irradiance, for a list of radii of the light: exact for small lights (radius
+// 0), and for spheres of that radius with the same intensity. A sphere that stands wholly above the horizon and
+// unhidden gives the irradiance of the small light exactly (Lambert 1760), so only penumbrae and terminators are
+// integrated.
 //
-// Indirect light: per facet and source a polynomial in the albedos of the surfaces (render/geometry_cache.h), from diffuse paths; the
-// constant term of the ambient source is the visible sky. `mirrored` is the same for what arrives from about the mirror direction.
-// Paths that are glossy twice are left out. `indirect_sigma` is the Monte Carlo error at albedo 1/2.
+// Indirect light: per facet and source a polynomial in the albedos of the surfaces (render/geometry_cache.h), from
+// diffuse paths; the constant term of the ambient source is the visible sky. `mirrored` is the same for what arrives
+// from about the mirror direction. Paths that are glossy twice are left out. `indirect_sigma` is the Monte Carlo error
+// at albedo 1/2.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -56,23 +59,25 @@ struct ViewCache {
   std::vector<Pixel> pixels;
   std::vector<Facet> facets;
   std::vector<Patch> patches;
-  std::vector<float> direct;          // [patch][light][radius]
-  std::vector<float> visible;         // [patch][light]: share of the small light that is not hidden
-  std::vector<float> indirect;        // [facet][source][monomial]
-  std::vector<float> mirrored;        // [facet][source][monomial]: pi times the mean radiance about the mirror direction
+  std::vector<float> direct;    // [patch][light][radius]
+  std::vector<float> visible;   // [patch][light]: share of the small light that is not hidden
+  std::vector<float> indirect;  // [facet][source][monomial]
+  std::vector<float> mirrored;  // [facet][source][monomial]: pi times the mean radiance about the mirror direction
   std::vector<float> indirect_sigma;  // [facet][source]
   std::vector<float> direct_sigma;    // [facet][light]: error of the mean over the sub-samples
-  std::vector<float> margin;          // [facet][light]: angle from the light to the nearest edge that hides it, rad; NaN: none near
+  std::vector<float>
+      margin;  // [facet][light]: angle from the light to the nearest edge that hides it, rad; NaN: none near
 };
 
 struct CacheOptions {
-  int samples = 8;    // sub-samples of a pixel, along each side
-  int paths = 512;    // a facet
+  int samples = 8;  // sub-samples of a pixel, along each side
+  int paths = 512;  // a facet
   std::uint64_t seed = 1;
 };
 
 // `chosen`: (x, y) of the pixels to compute.
 ViewCache build_cache(const render::RayCaster& caster, const View& view, std::span<const LightSource> lights,
-                      const render::Monomials& monomials, std::span<const std::array<int, 2>> chosen, const CacheOptions& options);
+                      const render::Monomials& monomials, std::span<const std::array<int, 2>> chosen,
+                      const CacheOptions& options);
 
 }  // namespace gonio::explain::images

@@ -55,7 +55,8 @@ std::vector<std::uint8_t> mismatch_mask(const WholeImage& image, double limit, d
   return mask;
 }
 
-std::vector<Box> boxes_of(const std::vector<std::uint8_t>& mask, const WholeImage& image, std::size_t least, std::size_t most) {
+std::vector<Box> boxes_of(const std::vector<std::uint8_t>& mask, const WholeImage& image, std::size_t least,
+                          std::size_t most) {
   std::vector<std::uint8_t> seen(mask.size());
   std::vector<std::pair<std::size_t, Box>> found;
   for (int y = 0; y < image.height; ++y)
@@ -77,8 +78,9 @@ std::vector<Box> boxes_of(const std::vector<std::uint8_t>& mask, const WholeImag
             }
       }
       if (size < least) continue;
-      found.push_back({size, {"", left * image.stride, top * image.stride, (right - left + 1) * image.stride,
-                              (bottom - top + 1) * image.stride}});
+      found.push_back({size,
+                       {"", left * image.stride, top * image.stride, (right - left + 1) * image.stride,
+                        (bottom - top + 1) * image.stride}});
     }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<Box> boxes;

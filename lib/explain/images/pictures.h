@@ -1,10 +1,11 @@
-// Where in the pictures the mismatch is: the whole picture (not only the sampled pixels) simulated without and with the named physics.
+// Where in the pictures the mismatch is: the whole picture (not only the sampled pixels) simulated without and with the
+// named physics.
 #pragma once
 #include <cstdint>
 #include <vector>
 
-#include "explain/images/image_model.h"
 #include "explain/explanation.h"
+#include "explain/images/image_model.h"
 
 namespace gonio::explain::images {
 
@@ -14,18 +15,20 @@ struct WholeImage {  // at every `stride`-th pixel of a picture, rows from the t
   std::vector<std::uint8_t> counts;
 };
 
-// Excess of a window of 5 x 5 over the noise: the mean of z^2 - 1 against its own standard error, in standard errors; zero where nothing
-// counts. `after`: with the named physics.
+// Excess of a window of 5 x 5 over the noise: the mean of z^2 - 1 against its own standard error, in standard errors;
+// zero where nothing counts. `after`: with the named physics.
 std::vector<double> excess(const WholeImage& image, bool after);
 
 // 1 where the excess is above `limit` standard errors and the residual above `matters` of the picture's rms.
 std::vector<std::uint8_t> mismatch_mask(const WholeImage& image, double limit, double matters);
 
-// Boxes around the connected parts of a mask (eight neighbours), the largest first, at most `most`; parts under `least` pixels are left out.
-// In full pixels.
-std::vector<Box> boxes_of(const std::vector<std::uint8_t>& mask, const WholeImage& image, std::size_t least, std::size_t most);
+// Boxes around the connected parts of a mask (eight neighbours), the largest first, at most `most`; parts under `least`
+// pixels are left out. In full pixels.
+std::vector<Box> boxes_of(const std::vector<std::uint8_t>& mask, const WholeImage& image, std::size_t least,
+                          std::size_t most);
 
-// Signed residual, red where the recording is brighter and blue where it is darker than the simulation; full colour at `scale`.
+// Signed residual, red where the recording is brighter and blue where it is darker than the simulation; full colour at
+// `scale`.
 io::Image residual_picture(const WholeImage& image, bool after, double scale);
 
 }  // namespace gonio::explain::images

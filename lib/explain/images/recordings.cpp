@@ -1,6 +1,6 @@
-// Reading of recordings. Where the manifest states no noise it is measured: the median absolute value of the horizontal second
-// difference (1, -2, 1), whose variance is six times that of a pixel, scaled to a standard deviation by 1 / 0.6745 (Rousseeuw &
-// Croux 1993). Smooth shading cancels in it, and edges are too few to move a median.
+// Reading of recordings. Where the manifest states no noise it is measured: the median absolute value of the horizontal
+// second difference (1, -2, 1), whose variance is six times that of a pixel, scaled to a standard deviation by 1 /
+// 0.6745 (Rousseeuw & Croux 1993). Smooth shading cancels in it, and edges are too few to move a median.
 #include "explain/images/recordings.h"
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace {
 
 constexpr double saturation = 1.0 - 0.5 / 255;  // full scale of an integer file
 
-[[noreturn]] void refuse(const manifest::Document& document, std::size_t entry, const std::string& key, const std::string& problem,
-                         const std::string& remedy) {
+[[noreturn]] void refuse(const manifest::Document& document, std::size_t entry, const std::string& key,
+                         const std::string& problem, const std::string& remedy) {
   throw Error(Exit::data, manifest::place(document, "/images/" + std::to_string(entry) + key), problem, remedy);
 }
 
@@ -57,7 +57,8 @@ class Response {
 
 bool integer_file(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return extension != ".exr";
 }
 
@@ -79,7 +80,9 @@ void read_pixels(const manifest::Document& document, const std::filesystem::path
         const float value = response(code);
         image.picture.at(x, y, c) = value;
         if (!std::isfinite(value) || (integer && code >= saturation))
-          image.counts[static_cast<std::size_t>(y) * static_cast<std::size_t>(raw.width) + static_cast<std::size_t>(x)] = 0;
+          image
+              .counts[static_cast<std::size_t>(y) * static_cast<std::size_t>(raw.width) + static_cast<std::size_t>(x)] =
+              0;
       }
 }
 
@@ -106,7 +109,8 @@ manifest::Noise measured_noise(const Recording& image) {
   const io::Image& p = image.picture;
   for (int y = 0; y < p.height; ++y)
     for (int x = 1; x + 1 < p.width; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(p.width) + static_cast<std::size_t>(x);
+      const std::size_t i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(p.width) + static_cast<std::size_t>(x);
       if (!image.counts[i - 1] || !image.counts[i] || !image.counts[i + 1]) continue;
       for (int c = 0; c < 3; ++c)
         differences.push_back(std::abs(double{p.at(x - 1, y, c)} - 2.0 * p.at(x, y, c) + p.at(x + 1, y, c)));
@@ -130,9 +134,9 @@ std::size_t view_of(const manifest::Document& document, const manifest::ImageEnt
 }  // namespace
 
 bool has_recordings(const manifest::Document& document) {
-  return !document.objects.empty() && std::any_of(document.images.begin(), document.images.end(), [](const manifest::ImageEntry& e) {
-    return !e.file.empty() && !e.camera.empty();
-  });
+  return !document.objects.empty() &&
+         std::any_of(document.images.begin(), document.images.end(),
+                     [](const manifest::ImageEntry& e) { return !e.file.empty() && !e.camera.empty(); });
 }
 
 Recordings read_recordings(const manifest::Document& document) {
@@ -148,14 +152,15 @@ Recordings read_recordings(const manifest::Document& document) {
     image.entry = i;
     image.view = view_of(document, entry, recordings);
     for (std::size_t l = 0; l < recordings.lights.size(); ++l)
-      if (entry.light.empty() || std::find(entry.light.begin(), entry.light.end(), recordings.lights[l]) != entry.light.end())
+      if (entry.light.empty() ||
+          std::find(entry.light.begin(), entry.light.end(), recordings.lights[l]) != entry.light.end())
         image.lights.push_back(l);
     read_pixels(document, manifest::resolve(document, entry.file, "/images/" + std::to_string(i) + "/file"), image);
     const camera::CameraModel& camera = recordings.views[image.view].model;
     if (image.picture.width != camera.width_px() || image.picture.height != camera.height_px())
       refuse(document, i, "/file",
-             "is " + std::to_string(image.picture.width) + "x" + std::to_string(image.picture.height) + " pixels, the camera " +
-                 std::to_string(camera.width_px()) + "x" + std::to_string(camera.height_px()),
+             "is " + std::to_string(image.picture.width) + "x" + std::to_string(image.picture.height) +
+                 " pixels, the camera " + std::to_string(camera.width_px()) + "x" + std::to_string(camera.height_px()),
              "give the camera the size of its pictures");
     read_mask(document, image);
     image.noise = entry.noise ? *entry.noise : measured_noise(image);

@@ -1,8 +1,9 @@
-// The recordings that a manifest names, ready to be compared with a simulation: linear pictures, which of their pixels count, their
-// noise, and from which view and under which lights each was taken.
+// The recordings that a manifest names, ready to be compared with a simulation: linear pictures, which of their pixels
+// count, their noise, and from which view and under which lights each was taken.
 //
-// A view is one camera in one pose; images that share it share everything that geometry decides. Pixel values are linear in
-// radiance, in whatever unit the recording has. Integer files (PNG, JPEG) lose their saturated pixels: they say only "at least".
+// A view is one camera in one pose; images that share it share everything that geometry decides. Pixel values are
+// linear in radiance, in whatever unit the recording has. Integer files (PNG, JPEG) lose their saturated pixels: they
+// say only "at least".
 #pragma once
 #include <cstdint>
 #include <string>
@@ -23,13 +24,13 @@ struct View {
 
 struct Recording {
   std::string id;
-  std::size_t entry = 0;            // place in document.images
+  std::size_t entry = 0;  // place in document.images
   std::size_t view = 0;
-  std::vector<std::size_t> lights;  // that were on: places in Recordings::lights
-  io::Image picture;                // linear, channels R, G, B
-  std::vector<std::uint8_t> counts; // one per pixel: 1 where the pixel may be used
-  manifest::Noise noise;            // variance of a linear value v: v / gain + read^2 (gain 0: no shot noise)
-  manifest::Parameter gain;         // factor on the simulated radiance
+  std::vector<std::size_t> lights;   // that were on: places in Recordings::lights
+  io::Image picture;                 // linear, channels R, G, B
+  std::vector<std::uint8_t> counts;  // one per pixel: 1 where the pixel may be used
+  manifest::Noise noise;             // variance of a linear value v: v / gain + read^2 (gain 0: no shot noise)
+  manifest::Parameter gain;          // factor on the simulated radiance
 };
 
 struct Recordings {
@@ -40,8 +41,8 @@ struct Recordings {
 
 // Objects, and images of them that name a file and a camera.
 bool has_recordings(const manifest::Document& document);
-// Reads the pictures and masks of all images whose weight is not zero. Error(data) with the place in the manifest where a size, a
-// response or a reference does not fit.
+// Reads the pictures and masks of all images whose weight is not zero. Error(data) with the place in the manifest where
+// a size, a response or a reference does not fit.
 Recordings read_recordings(const manifest::Document& document);
 
 // One standard deviation of the noise of `image` where its picture is `value` bright.

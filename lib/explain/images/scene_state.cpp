@@ -42,7 +42,8 @@ void read_light(const manifest::Document& document, const std::string& name, Sce
     state.intensity = entry.parameters.at("watt_per_sr").rgb();
     if (entry.parameters.contains("radius_m")) state.radius_m = entry.parameters.at("radius_m").scalar();
   } else {
-    throw Error(Exit::data, place, "has the model \"" + entry.model + "\", which explain does not simulate on images yet",
+    throw Error(Exit::data, place,
+                "has the model \"" + entry.model + "\", which explain does not simulate on images yet",
                 "use directional, point or sphere; a uniform surrounding is the mechanism light.ambient");
   }
   layout.lights.push_back(source);
@@ -75,7 +76,8 @@ void read_mechanisms(const manifest::Document& document, const Recordings& recor
   for (const auto& [id, use] : document.mechanisms) {
     if (id == "surface.diffuse-roughness" || id == "surface.interface") {
       for_targets(use.on, layout.surfaces, [&](std::size_t s, std::size_t i) {
-        for (const auto& [parameter, value] : use.parameters) set_if_present(start.surfaces[s], parameter, given(use, parameter, i, 0));
+        for (const auto& [parameter, value] : use.parameters)
+          set_if_present(start.surfaces[s], parameter, given(use, parameter, i, 0));
       });
     } else if (id == "light.finite-size") {
       for_targets(use.on, recordings.lights,
@@ -115,8 +117,8 @@ std::size_t parameter_index(const surface::Model& model, const std::string& name
   throw Error(Exit::internal, "surface " + model.info().id, "has no parameter \"" + name + "\"");
 }
 
-SceneLayout read_scene(const manifest::Document& document, const Recordings& recordings, const std::vector<std::string>& surfaces,
-                       Vec3 centre_m) {
+SceneLayout read_scene(const manifest::Document& document, const Recordings& recordings,
+                       const std::vector<std::string>& surfaces, Vec3 centre_m) {
   SceneLayout layout;
   layout.surfaces = surfaces;
   layout.centre_m = centre_m;

@@ -1,5 +1,5 @@
-// The scene as numbers: every parameter that an image depends on besides geometry, at one place of the search. Mechanisms are
-// edits of it; at their neutral values they leave it, and the prediction, as it is.
+// The scene as numbers: every parameter that an image depends on besides geometry, at one place of the search.
+// Mechanisms are edits of it; at their neutral values they leave it, and the prediction, as it is.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,25 +11,25 @@
 
 namespace gonio::explain::images {
 
-// A surface. `diffuse` is carried as `coated-diffuse`, whose roughness and interface are absent at sigma_rad = f0 = 0, so that the
-// mechanisms find their parameters.
+// A surface. `diffuse` is carried as `coated-diffuse`, whose roughness and interface are absent at sigma_rad = f0 = 0,
+// so that the mechanisms find their parameters.
 struct SurfaceState {
   const surface::Model* model = nullptr;
   surface::Values values;
   bool lambertian() const;  // neither rough nor coated: one number, albedo / pi, says it all
 };
 struct LightState {
-  Rgb intensity;                     // W/sr, or W/m^2 on a facing plane for a directional light
+  Rgb intensity;  // W/sr, or W/m^2 on a facing plane for a directional light
   double radius_m = 0;
   double tilt_x_rad = 0, tilt_y_rad = 0;
 };
 struct SceneState {
   std::vector<SurfaceState> surfaces;
-  std::vector<LightState> lights;    // in the order of Recordings::lights
-  Rgb ambient;                       // radiance from all directions, W/(m^2 sr)
-  double falloff = 0;                // vignetting: 1 - falloff r^2, r = distance from the image's centre over half its width
-  double indirect = 1;               // share of light between surfaces that is simulated
-  std::vector<Rgb> gain;             // one per image
+  std::vector<LightState> lights;  // in the order of Recordings::lights
+  Rgb ambient;                     // radiance from all directions, W/(m^2 sr)
+  double falloff = 0;     // vignetting: 1 - falloff r^2, r = distance from the image's centre over half its width
+  double indirect = 1;    // share of light between surfaces that is simulated
+  std::vector<Rgb> gain;  // one per image
 };
 
 // The parts of a scene that images need, in a fixed order.
@@ -40,8 +40,8 @@ struct SceneLayout {
   SceneState start;                   // as the manifest has it, its mechanisms included
 };
 
-SceneLayout read_scene(const manifest::Document& document, const Recordings& recordings, const std::vector<std::string>& surfaces,
-                       Vec3 centre_m);
+SceneLayout read_scene(const manifest::Document& document, const Recordings& recordings,
+                       const std::vector<std::string>& surfaces, Vec3 centre_m);
 
 // Place of a parameter in its model's list; Error(internal) where there is none.
 std::size_t parameter_index(const surface::Model& model, const std::string& name);

@@ -11,7 +11,9 @@ namespace {
 constexpr std::size_t radius_count = radii_m.size();
 constexpr double grazing = 1e-3;  // mean directions of a patch are kept this far above its mean plane
 
-Vec3 above_horizon(Vec3 w) { return w.z >= grazing ? w : normalized(Vec3{w.x, w.y, grazing}); }
+Vec3 above_horizon(Vec3 w) {
+  return w.z >= grazing ? w : normalized(Vec3{w.x, w.y, grazing});
+}
 
 // Direction to a light and its falloff at a point: 1 / d^2, or 1 for directional lights.
 struct Aim {
@@ -126,7 +128,8 @@ Scattered Shader::direct(const SurfaceState& surface, std::size_t f, const Lamp&
     }
     const Basis basis(patch.normal);
     const Vec3 wo = above_horizon(basis.to_local(patch.wo)), wi = above_horizon(basis.to_local(now.wi));
-    const Scattered f_here = extremes.split([&](const surface::Values& v) { return surface.model->evaluate(v, wo, wi); });
+    const Scattered f_here =
+        extremes.split([&](const surface::Values& v) { return surface.model->evaluate(v, wo, wi); });
     sum.base += f_here.base * weighted;
     sum.gloss += f_here.gloss * weighted;
   }
@@ -151,7 +154,8 @@ Shading Shader::operator()(const SceneState& state, std::span<const std::uint32_
   return shading;
 }
 
-void Shader::again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface, Shading& shading) const {
+void Shader::again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface,
+                   Shading& shading) const {
   const std::vector<Lamp> on = lamps(state);
   const SurfaceState& its = state.surfaces[surface];
   std::size_t slot = 0;

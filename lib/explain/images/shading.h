@@ -1,9 +1,9 @@
-// Direct light of sampled pixels: the part of a prediction that depends on surface terms and on the lights' size and place, but
-// neither on albedos nor on intensities, in which an image is linear or nearly so.
+// Direct light of sampled pixels: the part of a prediction that depends on surface terms and on the lights' size and
+// place, but neither on albedos nor on intensities, in which an image is linear or nearly so.
 //
-// Per facet and light that is on: radiance = intensity (albedo * base + gloss), both per unit intensity and weighted by the facet's
-// share of the pixel. Per facet: the share of irregular incident light that is sent on is albedo * base + gloss. For models
-// without a diffuse base (metals) everything is gloss.
+// Per facet and light that is on: radiance = intensity (albedo * base + gloss), both per unit intensity and weighted by
+// the facet's share of the pixel. Per facet: the share of irregular incident light that is sent on is albedo * base +
+// gloss. For models without a diffuse base (metals) everything is gloss.
 //   base, gloss = sum over patches weight f(wo, wi) V cos(theta) / d^2,  f from lib/surface at albedo 0 and 1
 // A light that is turned keeps the shadows that it cast; cosines and distances follow it.
 #pragma once
@@ -27,8 +27,8 @@ struct Shading {
   std::vector<Scattered> indirect;  // [facet of the picked pixels, in order]
 };
 
-// Weights of the radius table's entries at one radius: cubic Hermite with tangents from the neighbouring nodes (Catmull & Rom 1974, for
-// uneven spacing). At radius 0 the small light's entry is taken as it stands.
+// Weights of the radius table's entries at one radius: cubic Hermite with tangents from the neighbouring nodes (Catmull
+// & Rom 1974, for uneven spacing). At radius 0 the small light's entry is taken as it stands.
 struct RadiusWeights {
   std::size_t first = 0, count = 1;
   std::array<double, 4> weight{1, 0, 0, 0};
@@ -49,7 +49,8 @@ class Shader {
       : layout_(layout), image_(image), cache_(cache), sums_(sums) {}
   Shading operator()(const SceneState& state, std::span<const std::uint32_t> picked) const;
   // The facets of one surface anew.
-  void again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface, Shading& shading) const;
+  void again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface,
+             Shading& shading) const;
 
  private:
   struct Lamp;

@@ -1,5 +1,5 @@
-// The upgraded manifest: fitted values and their sigmas in the sections where the parameters came from, and the named mechanisms
-// switched on, one list per parameter in the order of `on`.
+// The upgraded manifest: fitted values and their sigmas in the sections where the parameters came from, and the named
+// mechanisms switched on, one list per parameter in the order of `on`.
 #include <algorithm>
 #include <map>
 
@@ -39,8 +39,8 @@ void write_base(const Origin& origin, double value, double sigma, manifest::Docu
   }
 }
 
-// Values of one mechanism, target by target. Parameters of a candidate that acts on several targets at once are listed target by
-// target, the mechanism's parameters within (light.direction), or once for all (light.finite-size).
+// Values of one mechanism, target by target. Parameters of a candidate that acts on several targets at once are listed
+// target by target, the mechanism's parameters within (light.direction), or once for all (light.finite-size).
 struct Entry {
   std::vector<std::string> on;
   std::map<std::string, std::vector<double>> value, sigma;
@@ -65,7 +65,8 @@ void write_back(const Bindings& bindings, const Explanation& explanation, manife
     for (const Origin& origin : bindings.origins[p])
       write_base(origin, explanation.values[p], explanation.sigma.empty() ? 0 : explanation.sigma[p], document);
   std::map<std::string, Entry> entries;
-  for (const std::size_t c : explanation.named) add_candidate(bindings.candidates[c], explanation, entries[bindings.candidates[c].id()]);
+  for (const std::size_t c : explanation.named)
+    add_candidate(bindings.candidates[c], explanation, entries[bindings.candidates[c].id()]);
   for (auto& [id, entry] : entries) {
     manifest::MechanismUse& use = document.mechanisms[id];
     use.on = std::move(entry.on);
