@@ -24,9 +24,13 @@ std::array<int, 2> png_size(const std::string& png) {
 // Small pictures are enlarged by a whole factor to about `target` pixels, so that a pixel stays a square.
 int display_width(int width_px, int target) { return width_px > 0 ? width_px * std::max(1, target / width_px) : target; }
 
+int shown_width(const Figure& figure, int target) {
+  return display_width(figure.width_px > 0 ? figure.width_px : png_size(figure.png)[0], target);
+}
+
 std::string image_tag(const Figure& figure, int target, const std::string& kind) {
   const auto size = png_size(figure.png);
-  const int width = display_width(figure.width_px > 0 ? figure.width_px : size[0], target);
+  const int width = shown_width(figure, target);
   const int height = size[0] > 0 ? static_cast<int>(static_cast<std::int64_t>(width) * size[1] / size[0]) : 0;
   std::string tag = "<img" + kind + " width=\"" + std::to_string(width) + "\"";
   if (height > 0) tag += " height=\"" + std::to_string(height) + "\"";
@@ -140,14 +144,15 @@ void Page::table(const TableText& table) {
 void Page::figures(const std::vector<Figure>& figures) {
   body_ += "<div class=\"figures\">";
   for (const auto& figure : figures)
-    body_ += "<figure>" + (figure.svg.empty() ? image_tag(figure, 340, "") : figure.svg) +
-             caption_tag(figure.title, figure.caption) + "</figure>";
+    body_ += "<figure style=\"width:" + std::to_string(figure.svg.empty() ? shown_width(figure, 340) : 480) + "px\">" +
+             (figure.svg.empty() ? image_tag(figure, 340, "") : figure.svg) + caption_tag(figure.title, figure.caption) + "</figure>";
   body_ += "</div>\n";
 }
 
 void Page::slider(const Figure& left, const Figure& right, std::string_view caption) {
   const std::string left_name = escape(left.title), right_name = escape(right.title);
-  body_ += "<figure class=\"pair\"><div class=\"pair-frame\" data-left=\"" + left_name + "\">" + image_tag(left, 720, "") +
+  body_ += "<figure class=\"pair\"><div class=\"pair-frame\" style=\"width:" + std::to_string(shown_width(left, 720)) +
+           "px\" data-left=\"" + left_name + "\">" + image_tag(left, 720, "") +
            image_tag(right, 720, " class=\"over\"") +
            "<input type=\"range\" min=\"0\" max=\"1000\" value=\"500\" step=\"5\" aria-label=\"Divider between " + left_name +
            " and " + right_name + "\"><span class=\"tag left\">" + left_name + "</span><span class=\"tag right\">" + right_name +

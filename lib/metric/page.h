@@ -22,18 +22,18 @@ struct KeyNumber {       // a large figure with its name
   Tone tone = Tone::neutral;
 };
 struct Column {
-  std::string name, unit;
+  std::string name{}, unit{};
   bool numeric = true;   // numbers are aligned right, text left
 };
 struct TableText {
-  std::string caption;
-  std::vector<Column> columns;
-  std::vector<std::vector<std::string>> rows;
+  std::string caption{};
+  std::vector<Column> columns{};
+  std::vector<std::vector<std::string>> rows{};
 };
 struct Figure {
-  std::string png;       // bytes of a PNG, or
-  std::string svg;       // an inline drawing made by the program itself: not escaped
-  std::string title, caption;
+  std::string png{};     // bytes of a PNG, or
+  std::string svg{};     // an inline drawing made by the program itself: not escaped
+  std::string title{}, caption{};
   int width_px = 0;      // of the picture: small ones are enlarged by a whole factor, pixels left square; 0: from the PNG
 };
 struct ColourScale {     // the key of a false-colour picture: colours from left to right, labels at equal distances

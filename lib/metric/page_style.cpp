@@ -18,12 +18,12 @@ main,header,footer{max-width:72rem;margin:0 auto;padding:0 1.5rem}
 header{padding-top:3.25rem}
 .eyebrow{margin:0 0 .75rem;font-size:.8125rem;letter-spacing:.08em;text-transform:uppercase;color:var(--soft)}
 h1{margin:0 0 .9rem;max-width:54rem;font-size:clamp(1.5rem,1.1rem + 1.6vw,2.125rem);line-height:1.22;font-weight:620;
-letter-spacing:-.012em;text-wrap:balance}
+letter-spacing:-.012em;text-wrap:balance;overflow-wrap:anywhere}
 h1.good{border-left:4px solid var(--good);padding-left:1rem}
 h1.bad{border-left:4px solid var(--bad);padding-left:1rem}
 .lead{max-width:46rem;margin:0 0 1.5rem;color:var(--soft);font-size:1.0625rem}
 nav{position:sticky;top:0;z-index:5;background:var(--paper);border-bottom:1px solid var(--line)}
-nav div{max-width:72rem;margin:0 auto;padding:.6rem 1.5rem;display:flex;gap:.25rem 1.4rem;overflow-x:auto;font-size:.875rem}
+nav div{max-width:72rem;margin:0 auto;padding:.6rem 1.5rem;display:flex;gap:.25rem 1.4rem;overflow-x:auto;scrollbar-width:thin;font-size:.875rem}
 nav a{color:var(--soft);text-decoration:none;white-space:nowrap}
 nav a:hover,nav a:focus-visible{color:var(--accent)}
 section{padding:2.1rem 0 .4rem;scroll-margin-top:2rem}
@@ -43,7 +43,7 @@ dl.numbers dd.bad{color:var(--bad)}
 dl.numbers dd.good{color:var(--good)}
 dl.numbers dd small{font-size:.875rem;font-weight:400;color:var(--soft);letter-spacing:0}
 dl.numbers dd.under{font-size:.8125rem;font-weight:400;color:var(--soft);line-height:1.4;letter-spacing:0}
-.scroll{overflow-x:auto;margin:1rem 0 1.5rem}
+.scroll{overflow-x:auto;margin:1rem 0 1.5rem;scrollbar-width:thin}
 table{border-collapse:collapse;font-size:.9063rem;min-width:min(100%,26rem)}
 caption{caption-side:top;text-align:left;padding:0 0 .5rem;color:var(--soft);font-size:.875rem}
 th,td{padding:.4rem 1.6rem .4rem 0;text-align:left;vertical-align:baseline;border-bottom:1px solid var(--line)}
@@ -57,10 +57,9 @@ figure img,figure>svg{display:block;max-width:100%;height:auto}
 figure img{image-rendering:pixelated;border-radius:2px}
 figcaption{margin-top:.5rem;font-size:.875rem;line-height:1.45;color:var(--soft);max-width:46rem}
 .figures figcaption{max-width:none}
-.figures figure{width:min-content}
 figcaption b{display:block;color:var(--ink);font-weight:560}
 .pair{margin:1rem 0 1.5rem}
-.pair-frame{position:relative;display:grid;width:max-content;max-width:100%;overflow:hidden;border-radius:2px;--cut:50%}
+.pair-frame{position:relative;display:grid;max-width:100%;overflow:hidden;border-radius:2px;--cut:50%}
 .pair-frame img{grid-area:1/1;width:100%;border-radius:0}
 .pair-frame img.over{clip-path:inset(0 0 0 var(--cut))}
 .pair-frame input{grid-area:1/1;appearance:none;-webkit-appearance:none;width:100%;height:100%;margin:0;opacity:0;cursor:ew-resize;

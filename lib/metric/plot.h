@@ -13,10 +13,10 @@ namespace gonio::metric {
 struct Series {
   enum class Kind { line, points, bars, band };
   Kind kind = Kind::line;
-  std::string name;                 // in the legend; empty: not in the legend
-  std::vector<double> x, y;
-  std::vector<double> sigma;        // points: bars of one sigma; band: half width; empty: none
-  std::vector<double> edges;        // bars: one more than y
+  std::string name{};               // in the legend; empty: not in the legend
+  std::vector<double> x{}, y{};
+  std::vector<double> sigma{};      // points: bars of one sigma; band: half width; empty: none
+  std::vector<double> edges{};      // bars: one more than y
   int style = -1;                   // colour, dash and marker; series that belong together share one; -1: by place in the list
 };
 struct Mark {                       // a reference line with a word beside it
@@ -26,10 +26,10 @@ struct Mark {                       // a reference line with a word beside it
   std::string name;
 };
 struct Plot {
-  std::string title, caption;
-  std::string x_label, y_label;
-  std::vector<Series> series;
-  std::vector<Mark> marks;
+  std::string title{}, caption{};
+  std::string x_label{}, y_label{};
+  std::vector<Series> series{};
+  std::vector<Mark> marks{};
   bool log_x = false, log_y = false;        // values <= 0 are gaps
   bool zero_y = false;                      // the y axis includes zero
   bool equal_scales = false;                // one unit is as long on x as on y, and y points down: an image plane
