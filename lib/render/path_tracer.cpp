@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/atomic_file.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/random.h"
@@ -77,6 +78,7 @@ class Tracer {
     scratch.met = 0;
     Rgb spread;  // sum of squared deviations (Welford 1962)
     for (int replicate = 0; replicate < plan_.replicates; ++replicate) {
+      throw_if_interrupted();  // a tile with a million samples per pixel lasts minutes
       const Rgb value = replicate_mean(x, y, replicate, scratch);
       const Rgb step = value - result.mean;
       result.mean += step / (replicate + 1);
