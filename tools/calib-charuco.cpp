@@ -1,6 +1,4 @@
 // calib-charuco: photographs of a calibration board to a calibrated camera (camera/calibrate_document.h), or a board to print.
-#include <charconv>
-
 #include "camera/board_drawing.h"
 #include "camera/calibrate_document.h"
 #include "camera/marker_dictionary.h"
@@ -11,18 +9,6 @@ namespace {
 
 using cli::Type;
 
-// "9x6" to {9, 6}.
-std::vector<int> columns_and_rows(const std::string& text, const std::string& place) {
-  int columns = 0, rows = 0;
-  const char *begin = text.data(), *end = begin + text.size();
-  const auto first = std::from_chars(begin, end, columns);
-  if (first.ec == std::errc{} && first.ptr != end && (*first.ptr == 'x' || *first.ptr == 'X')) {
-    const auto second = std::from_chars(first.ptr + 1, end, rows);
-    if (second.ec == std::errc{} && second.ptr == end) return {columns, rows};
-  }
-  throw Error(Exit::usage, place, "\"" + text + "\" is not columns x rows", "write for example 9x6");
-}
-
 bool describes_board(const cli::Invocation& call) { return call.given("checkerboard") || call.given("charuco"); }
 
 camera::Board board_of(const cli::Invocation& call) {
@@ -30,7 +16,7 @@ camera::Board board_of(const cli::Invocation& call) {
   const std::string option = charuco ? "charuco" : "checkerboard";
   manifest::Board section;
   section.kind = option;
-  (charuco ? section.squares : section.inner_corners) = columns_and_rows(call.text(option), "--" + option);
+  (charuco ? section.squares : section.inner_corners) = camera::columns_and_rows(call.text(option), "--" + option);
   section.square_m = call.number("square");
   if (charuco) {
     section.marker_m = call.number("marker");
@@ -100,6 +86,38 @@ std::vector<std::string> paper_names() {
   return names;
 }
 
+std::vector<cli::Option> options() {
+  return {
+      {.name = "checkerboard", .type = Type::text, .help = "Plain board: columns and rows of inner corners.", .metavar = "CxR",
+       .conflicts = {"charuco"}, .needs = {"square"}},
+      {.name = "charuco", .type = Type::text, .help = "ChArUco board: columns and rows of squares.", .metavar = "CxR",
+       .needs = {"square", "marker", "dictionary"}},
+      {.name = "square", .type = Type::quantity, .help = "Side of a square.", .dimension = Dimension::length, .lower = 1e-6,
+       .upper = 10},
+      {.name = "marker", .type = Type::quantity, .help = "Side of a marker with its black border.",
+       .dimension = Dimension::length, .lower = 1e-6, .upper = 10, .needs = {"charuco"}},
+      {.name = "dictionary", .type = Type::text, .help = "Dictionary of the markers: 4X4_50 to 7X7_1000, ARUCO_ORIGINAL.",
+       .metavar = "NAME", .needs = {"charuco"}},
+      {.name = "layout", .type = Type::choice,
+       .help = "Layout of a ChArUco board with an even number of rows: legacy is that of OpenCV before 4.6.", .preset = "auto",
+       .choices = {"auto", "current", "legacy"}, .needs = {"charuco"}},
+      {.name = "model", .type = Type::choice, .help = "Lens model; a camera in the manifest keeps its own unless this is given.",
+       .preset = "radial-tangential", .choices = {"pinhole", "radial-tangential", "thin-prism"}},
+      {.name = "fix", .type = Type::choice,
+       .help = "Hold a term: at the manifest's value, else at 0, equal focal lengths, the middle of the picture.",
+       .choices = camera::fixable_terms(), .repeat = true},
+      {.name = "board-warp", .type = Type::flag, .help = "Also fit how far the board sags (two parameters)."},
+      {.name = "refine-window", .type = Type::integer,
+       .help = "Half-window of corner refinement in pixels instead of the one that follows the squares.", .metavar = "N",
+       .lower = 1, .upper = 50},
+      {.name = "draw", .type = Type::output_file,
+       .help = "Print the board at true scale to a .pdf, .svg or .png instead of calibrating."},
+      {.name = "paper", .type = Type::choice, .help = "Paper to draw on; fit: as large as the board and a margin.",
+       .preset = "a4", .choices = paper_names(), .needs = {"draw"}},
+      {.name = "dpi", .type = Type::number, .help = "Dots per inch of a .png drawing.", .preset = "300", .lower = 10,
+       .upper = 4800, .needs = {"draw"}}};
+}
+
 }  // namespace
 
 const cli::Program& gonio_program() {
@@ -109,30 +127,19 @@ const cli::Program& gonio_program() {
       .synopsis = {"--checkerboard CxR --square LENGTH [OPTION]... IMAGE...",
                    "--charuco CxR --square LENGTH --marker LENGTH --dictionary NAME [OPTION]... IMAGE...",
                    "[-i FILE] [OPTION]...", "--draw FILE --charuco CxR --square LENGTH ..."},
-      .options =
-          {{.name = "checkerboard", .type = Type::text, .help = "Plain board: columns and rows of inner corners.", .metavar = "CxR", .conflicts = {"charuco"}, .needs = {"square"}},
-           {.name = "charuco", .type = Type::text, .help = "ChArUco board: columns and rows of squares.", .metavar = "CxR", .needs = {"square", "marker", "dictionary"}},
-           {.name = "square", .type = Type::quantity, .help = "Side of a square.", .dimension = Dimension::length, .lower = 1e-6, .upper = 10},
-           {.name = "marker", .type = Type::quantity, .help = "Side of a marker with its black border.", .dimension = Dimension::length, .lower = 1e-6, .upper = 10, .needs = {"charuco"}},
-           {.name = "dictionary", .type = Type::text, .help = "Dictionary of the markers: 4X4_50 to 7X7_1000, ARUCO_ORIGINAL.", .metavar = "NAME", .needs = {"charuco"}},
-           {.name = "layout", .type = Type::choice, .help = "Layout of a ChArUco board with an even number of rows: legacy is that of OpenCV before 4.6.", .preset = "auto", .choices = {"auto", "current", "legacy"}, .needs = {"charuco"}},
-           {.name = "model", .type = Type::choice, .help = "Lens model; a camera in the manifest keeps its own unless this is given.", .preset = "radial-tangential", .choices = {"pinhole", "radial-tangential", "thin-prism"}},
-           {.name = "fix", .type = Type::choice, .help = "Hold a term: at the manifest's value, else at 0, equal focal lengths, the middle of the picture.", .choices = camera::fixable_terms(), .repeat = true},
-           {.name = "board-warp", .type = Type::flag, .help = "Also fit how far the board sags (two parameters)."},
-           {.name = "refine-window", .type = Type::integer, .help = "Half-window of corner refinement in pixels instead of the one that follows the squares.", .metavar = "N", .lower = 1, .upper = 50},
-           {.name = "draw", .type = Type::output_file, .help = "Print the board at true scale to a .pdf, .svg or .png instead of calibrating."},
-           {.name = "paper", .type = Type::choice, .help = "Paper to draw on; fit: as large as the board and a margin.", .preset = "a4", .choices = paper_names(), .needs = {"draw"}},
-           {.name = "dpi", .type = Type::number, .help = "Dots per inch of a .png drawing.", .preset = "300", .lower = 10, .upper = 4800, .needs = {"draw"}}},
-      .operands = {{.name = "IMAGE", .type = Type::input_file, .help = "Photographs of the board, from different directions.", .repeat = true}},
-      .standalone = {"draw"},
-      .takes_out = true,
+      .options = options(),
+      .operands = {{.name = "IMAGE", .type = Type::input_file, .help = "Photographs of the board, from different directions.",
+                    .repeat = true}},
+      .standalone = {"draw"}, .takes_out = true,
       .sections_read = {"files", "boards", "cameras", "images"},
       .sections_written = {"files", "boards", "cameras", "images", "tables"},
       .files = {{"corners.csv", "found corners: image, corner, board and pixel coordinates, sigma"}},
-      .exits = {{Exit::quality, "The camera is written, but the fit did not converge, the views are too few or too frontal, or corners miss by more than 3 px."}},
+      .exits = {{Exit::quality, "The camera is written, but the fit did not converge, the views are too few or too frontal, or corners "
+                                "miss by more than 3 px."}},
       .references = {"Z. Zhang, A flexible new technique for camera calibration, PAMI 22(11), 2000.",
                      "D. C. Brown, Close-range camera calibration, Photogrammetric Engineering 37(8), 1971.",
-                     "S. Garrido-Jurado et al., Automatic generation and detection of highly reliable fiducial markers, Pattern Recognition 47(6), 2014.",
+                     "S. Garrido-Jurado et al., Automatic generation and detection of highly reliable fiducial markers, Pattern "
+                     "Recognition 47(6), 2014.",
                      "T. Collins, A. Bartoli, Infinitesimal plane-based pose estimation, IJCV 109(3), 2014."},
       .see_also = {"explain(1)", "render(1)", "gonio-manifest(5)", "gonio-conventions(7)"},
       .check = check,

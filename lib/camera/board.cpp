@@ -2,6 +2,7 @@
 #include "camera/board.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
@@ -69,6 +70,17 @@ Vec2 Board::corner_m(int id) const {
 BoardExtent Board::extent() const {
   const Vec2 first = corner_m(0), last = corner_m(corners() - 1);
   return {(first + last) * 0.5, (last - first) * 0.5};
+}
+
+std::vector<int> columns_and_rows(const std::string& text, const std::string& place) {
+  int columns = 0, rows = 0;
+  const char *begin = text.data(), *end = begin + text.size();
+  const auto first = std::from_chars(begin, end, columns);
+  if (first.ec == std::errc{} && first.ptr != end && (*first.ptr == 'x' || *first.ptr == 'X')) {
+    const auto second = std::from_chars(first.ptr + 1, end, rows);
+    if (second.ec == std::errc{} && second.ptr == end) return {columns, rows};
+  }
+  throw Error(Exit::usage, place, "\"" + text + "\" is not columns x rows", "write for example 9x6");
 }
 
 Board board_of(const manifest::Board& section, const std::string& place) {

@@ -39,6 +39,9 @@ struct Board {
 Board board_of(const manifest::Board& section, const std::string& place);
 manifest::Board section_of(const Board& board);
 
+// "9x6", as people type it, to {9, 6}. Error(usage) at `place`.
+std::vector<int> columns_and_rows(const std::string& text, const std::string& place);
+
 struct Marker {
   int id = 0;
   std::array<Vec2, 4> corners_m;  // clockwise from the top left as seen, OpenCV's order
