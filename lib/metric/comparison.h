@@ -48,7 +48,7 @@ Differences differences(const Overlay& overlay, double exposure_scale);
 
 // The user's limits; an absent measure that has a limit fails, and so does a NaN or an infinity whatever the limits.
 struct Limits {
-  std::optional<double> max_rmse, max_relative_rmse, max_log10_error, max_z_rms, min_ssim;
+  std::optional<double> max_rmse{}, max_relative_rmse{}, max_log10_error{}, max_z_rms{}, min_ssim{};
 };
 std::vector<std::string> violations(const Measures& measures, const Limits& limits);  // in words; empty: passed
 
