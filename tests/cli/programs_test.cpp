@@ -39,7 +39,7 @@ TEST(Programs, DescriptionsAreComplete) {
     for (const auto& o : all_options(*program)) {
       EXPECT_TRUE(seen.insert(o.name).second) << o.name << " stands twice";
       EXPECT_TRUE(o.help.ends_with('.')) << o.name << ": " << o.help;
-      if (o.type == cli::Type::choice) EXPECT_FALSE(o.choices.empty()) << o.name;
+      EXPECT_EQ(o.type == cli::Type::choice, !o.choices.empty()) << o.name;
     }
     for (const auto& o : all_options(*program))
       for (const auto& other : o.conflicts) EXPECT_TRUE(seen.contains(other)) << o.name << " conflicts with " << other;
