@@ -19,32 +19,54 @@ cli::Program describe() {
   p.name = "compare";
   p.sentence = "compare renderings with photographs pixel by pixel";
   p.synopsis = {"[OPTION]... [manifest.json]", "--reference PHOTO --rendered PICTURE [--mask MASK] [OPTION]..."};
-  p.operands = {{.name = "MANIFEST", .type = Type::input_file, .help = "Manifest with images and renderings; ends in .json."}};
+  p.operands = {
+      {.name = "MANIFEST", .type = Type::input_file, .help = "Manifest with images and renderings; ends in .json."}};
   p.options = {
-      {.name = "reference", .type = Type::input_file, .help = "Photograph: linear EXR, or 8/16-bit with --response.", .needs = {"rendered"}},
-      {.name = "rendered", .type = Type::input_file, .help = "Rendering of the same size; its variance channels are used where it has them.", .needs = {"reference"}},
-      {.name = "mask", .type = Type::input_file, .help = "Pixels above half of full scale count.", .needs = {"reference"}},
-      {.name = "response", .type = Type::choice, .help = "How the codes of 8/16-bit pictures become linear (a table: in the manifest).", .choices = {"linear", "srgb"}, .needs = {"reference"}},
-      {.name = "gain", .type = Type::number, .help = "Noise of the photograph: variance v / gain + read^2 of a linear value v.", .lower = 1e-12, .needs = {"reference"}},
-      {.name = "read", .type = Type::number, .help = "Read noise of the photograph, linear; see --gain.", .preset = "0", .lower = 0, .needs = {"gain"}},
-      {.name = "channels", .type = Type::choice, .help = "What to compare; colour against grey is compared as luminance.", .preset = "all", .choices = {"all", "luminance", "red", "green", "blue"}},
+      {.name = "reference", .type = Type::input_file, .help = "Photograph: linear EXR, or 8/16-bit with --response.",
+       .needs = {"rendered"}},
+      {.name = "rendered", .type = Type::input_file,
+       .help = "Rendering of the same size; its variance channels are used where it has them.",
+       .needs = {"reference"}},
+      {.name = "mask", .type = Type::input_file, .help = "Pixels above half of full scale count.",
+       .needs = {"reference"}},
+      {.name = "response", .type = Type::choice,
+       .help = "How the codes of 8/16-bit pictures become linear (a table: in the manifest).",
+       .choices = {"linear", "srgb"}, .needs = {"reference"}},
+      {.name = "gain", .type = Type::number,
+       .help = "Noise of the photograph: variance v / gain + read^2 of a linear value v.", .lower = 1e-12,
+       .needs = {"reference"}},
+      {.name = "read", .type = Type::number, .help = "Read noise of the photograph, linear; see --gain.",
+       .preset = "0", .lower = 0, .needs = {"gain"}},
+      {.name = "channels", .type = Type::choice,
+       .help = "What to compare; colour against grey is compared as luminance.", .preset = "all",
+       .choices = {"all", "luminance", "red", "green", "blue"}},
       {.name = "fit-exposure", .type = Type::flag, .help = "Fit one factor on each rendering before comparing."},
-      {.name = "one-exposure", .type = Type::flag, .help = "Fit one factor for all renderings together.", .conflicts = {"fit-exposure"}},
-      {.name = "exposure-scale", .type = Type::number, .help = "Multiply the renderings by this factor.", .preset = "1", .lower = 1e-12, .conflicts = {"fit-exposure", "one-exposure"}},
-      {.name = "data-range", .type = Type::number, .help = "Range of the data for SSIM; by default 1 for 8/16-bit photographs, else their 99.9th percentile.", .lower = 1e-12},
-      {.name = "max-rmse", .type = Type::number, .help = "Exit 1 above this RMSE, in the photograph's unit.", .lower = 0},
-      {.name = "max-relative-rmse", .type = Type::quantity, .help = "Exit 1 above this RMSE over the photograph's root mean square.", .dimension = Dimension::ratio, .lower = 0},
+      {.name = "one-exposure", .type = Type::flag, .help = "Fit one factor for all renderings together.",
+       .conflicts = {"fit-exposure"}},
+      {.name = "exposure-scale", .type = Type::number, .help = "Multiply the renderings by this factor.",
+       .preset = "1", .lower = 1e-12, .conflicts = {"fit-exposure", "one-exposure"}},
+      {.name = "data-range", .type = Type::number,
+       .help = "Range of the data for SSIM; by default 1 for 8/16-bit photographs, else their 99.9th percentile.",
+       .lower = 1e-12},
+      {.name = "max-rmse", .type = Type::number, .help = "Exit 1 above this RMSE, in the photograph's unit.",
+       .lower = 0},
+      {.name = "max-relative-rmse", .type = Type::quantity,
+       .help = "Exit 1 above this RMSE over the photograph's root mean square.", .dimension = Dimension::ratio,
+       .lower = 0},
       {.name = "max-log10-error", .type = Type::number, .help = "Exit 1 above this mean of log10 |difference|."},
       {.name = "max-z-rms", .type = Type::number, .help = "Exit 1 above this root mean square of z.", .lower = 0},
-      {.name = "min-ssim", .type = Type::number, .help = "Exit 1 below this structural similarity.", .lower = -1, .upper = 1},
+      {.name = "min-ssim", .type = Type::number, .help = "Exit 1 below this structural similarity.", .lower = -1,
+       .upper = 1},
       {.name = "html", .type = Type::output_file, .help = "Write the report: one page that needs no network."}};
   p.standalone = {"reference"};
   p.takes_out = true;
   p.sections_read = {"files", "images", "renderings"};
   p.sections_written = {"comparisons", "files"};
-  p.files = {{"ID-difference.exr", "difference.R, ...: scale x rendering - photograph, linear; z.R, ... where variances are known"},
+  p.files = {{"ID-difference.exr",
+              "difference.R, ...: scale x rendering - photograph, linear; z.R, ... where variances are known"},
              {"ID-positive.png, ID-negative.png", "where the rendering is too bright, and too dark: gamma 2.2"},
-             {"ID-signed.png, ID-log10-error.png", "signed difference (red: too bright) and log10 |difference| in false colour"}};
+             {"ID-signed.png, ID-log10-error.png",
+              "signed difference (red: too bright) and log10 |difference| in false colour"}};
   p.exits = {{Exit::negative, "a threshold is exceeded, or a pixel that counts is NaN or infinite"}};
   p.references = {"Wang, Bovik, Sheikh & Simoncelli, Image quality assessment, IEEE TIP 13(4), 2004",
                   "York, Evensen, Martinez & De Basabe Delgado, Unified equations for the slope, Am. J. Phys. 72, 2004",
@@ -72,7 +94,8 @@ Entry quick_entry(const cli::Invocation& call) {
 std::vector<Entry> entries_of(const cli::Invocation& call) {
   if (call.given("reference")) return {quick_entry(call)};
   if (call.has_document) return entries(call.document);
-  throw Error(Exit::no_input, "compare", "has nothing to compare", "pipe a manifest in, or give --reference and --rendered");
+  throw Error(Exit::no_input, "compare", "has nothing to compare",
+              "pipe a manifest in, or give --reference and --rendered");
 }
 
 std::vector<Compared> measured(const cli::Invocation& call, std::vector<Overlay> overlays) {
@@ -83,8 +106,11 @@ std::vector<Compared> measured(const cli::Invocation& call, std::vector<Overlay>
   if (call.given("data-range")) options.data_range = call.number("data-range");
   const bool each = call.flag("fit-exposure"), one = call.flag("one-exposure") && !all.empty();
   options.exposure_scale = one ? fit_exposure(all) : Estimate{call.number("exposure-scale"), 0};
-  const auto limit = [&](const char* name) { return call.given(name) ? std::optional(call.number(name)) : std::nullopt; };
-  const Limits limits{limit("max-rmse"), limit("max-relative-rmse"), limit("max-log10-error"), limit("max-z-rms"), limit("min-ssim")};
+  const auto limit = [&](const char* name) {
+    return call.given(name) ? std::optional(call.number(name)) : std::nullopt;
+  };
+  const Limits limits{limit("max-rmse"), limit("max-relative-rmse"), limit("max-log10-error"), limit("max-z-rms"),
+                      limit("min-ssim")};
   std::vector<Compared> images;
   for (auto& overlay : overlays) {
     const Overlay* alone = &overlay;

@@ -1,6 +1,7 @@
-// Style: one column of text 46 rem wide, figures up to 70 rem; numbers in tabular figures; one accent; no decoration that carries
-// no meaning. Series colours are those of Okabe & Ito (2008), darkened on white and lightened on black to a contrast of 3:1.
-// Script: moves the dividers of the pairs; without it each divider stands in the middle and everything else works.
+// Style: one column of text 46 rem wide, figures up to 70 rem; numbers in tabular figures; one accent; no decoration
+// that carries no meaning. Series colours are those of Okabe & Ito (2008), darkened on white and lightened on black to
+// a contrast of 3:1. Script: moves the dividers of the pairs; without it each divider stands in the middle and
+// everything else works.
 #include "metric/page_style.h"
 
 namespace gonio::metric {
@@ -23,7 +24,8 @@ h1.good{border-left:4px solid var(--good);padding-left:1rem}
 h1.bad{border-left:4px solid var(--bad);padding-left:1rem}
 .lead{max-width:46rem;margin:0 0 1.5rem;color:var(--soft);font-size:1.0625rem}
 nav{position:sticky;top:0;z-index:5;background:var(--paper);border-bottom:1px solid var(--line)}
-nav div{max-width:72rem;margin:0 auto;padding:.6rem 1.5rem;display:flex;gap:.25rem 1.4rem;overflow-x:auto;scrollbar-width:thin;font-size:.875rem}
+nav div{max-width:72rem;margin:0 auto;padding:.6rem 1.5rem;display:flex;gap:.25rem 1.4rem;overflow-x:auto;
+scrollbar-width:thin;font-size:.875rem}
 nav a{color:var(--soft);text-decoration:none;white-space:nowrap}
 nav a:hover,nav a:focus-visible{color:var(--accent)}
 section{padding:2.1rem 0 .4rem;scroll-margin-top:2rem}

@@ -20,12 +20,24 @@ std::vector<SourceFile> all_sources() {
   return files;
 }
 
+// The table of a program's options is data: its entries count neither for the file nor for the function around them.
+std::size_t length_without_options(const std::vector<std::string>& lines) {
+  const std::regex begins("^ +(add\\()?\\{+\\.name = .*"), continues("^ +\\.[a-z_]+ = .*[,});]$");
+  std::size_t length = 0;
+  bool in_option = false;
+  for (const auto& line : lines) {
+    in_option = std::regex_match(line, begins) || (in_option && std::regex_match(line, continues));
+    if (!in_option) ++length;
+  }
+  return length;
+}
+
 TEST(Files, NoneIsTooLong) {
   for (const auto& file : all_sources()) {
     const bool tool = file.path.starts_with("tools/");
     const std::size_t limit = tool ? longest_tool : file.path.ends_with(".h") ? longest_header : longest_source;
-    EXPECT_LE(file.lines.size(), limit) << place(file, static_cast<int>(limit)) << ": " << file.lines.size()
-                                        << " lines";
+    const std::size_t length = tool ? length_without_options(file.lines) : file.lines.size();
+    EXPECT_LE(length, limit) << place(file, static_cast<int>(limit)) << ": " << length << " lines";
   }
 }
 
@@ -38,12 +50,14 @@ TEST(Files, NoFunctionIsTooLong) {
     for (std::size_t i = 0; i < file.lines.size(); ++i) {
       std::smatch match;
       if (!std::regex_match(file.lines[i], match, opens)) continue;
-      const std::string closing = match[1].str() + "}";
+      std::string closing = match[1].str() + "}";
+      if (file.lines[i].starts_with("    : "))
+        closing = "}";  // the initializers of a constructor stand four further in
       const auto from = file.lines.begin() + static_cast<std::ptrdiff_t>(i);
       const auto end =
           std::find_if(from, file.lines.end(), [&](const std::string& line) { return line.starts_with(closing); });
       if (end == file.lines.end()) continue;
-      EXPECT_LE(static_cast<std::size_t>(end - from) + 1, longest_function)
+      EXPECT_LE(length_without_options({from, end}) + 1, longest_function)
           << place(file, static_cast<int>(i) + 1) << ": " << file.lines[i];
     }
 }

@@ -20,7 +20,8 @@ TEST(Page, EscapesWhatItIsGiven) {
   page.table({.caption = "<u>", .columns = {{"<b>", "m"}}, .rows = {{"<s>"}}});
   page.figures({{.png = "", .title = "\" onerror=\"alert(1)"}});
   const std::string html = page.html();
-  for (const char* bad : {"<script>alert", "<i>", "<u>", "<s>", "\" onerror=\""}) EXPECT_THAT(html, Not(HasSubstr(bad)));
+  for (const char* bad : {"<script>alert", "<i>", "<u>", "<s>", "\" onerror=\""})
+    EXPECT_THAT(html, Not(HasSubstr(bad)));
   EXPECT_THAT(html, HasSubstr("&lt;script&gt;alert(1)"));
 }
 
@@ -28,7 +29,8 @@ TEST(Page, RefersToNothingOutside) {
   Page page("t", "h", "l");
   page.section("s");
   page.plot({.title = "p", .series = {{.x = {1, 2}, .y = {3, 4}}}});
-  for (const char* bad : {"http:", "https:", "src=\"//", "@import", "url("}) EXPECT_THAT(page.html(), Not(HasSubstr(bad))) << bad;
+  for (const char* bad : {"http:", "https:", "src=\"//", "@import", "url("})
+    EXPECT_THAT(page.html(), Not(HasSubstr(bad))) << bad;
 }
 
 TEST(Page, Base64) {  // RFC 4648, section 10
@@ -40,15 +42,20 @@ TEST(Page, Base64) {  // RFC 4648, section 10
 }
 
 TEST(Plot, TicksAreRoundAndInside) {
-  EXPECT_THAT(tick_positions(0, 1, 5), testing::Pointwise(testing::DoubleNear(1e-12), std::vector<double>{0, 0.2, 0.4, 0.6, 0.8, 1}));
-  EXPECT_THAT(tick_positions(-3, 7, 5), testing::Pointwise(testing::DoubleNear(1e-12), std::vector<double>{-2, 0, 2, 4, 6}));
-  EXPECT_THAT(log_tick_positions(0.001, 10, 5), testing::Pointwise(testing::DoubleNear(1e-9), std::vector<double>{0.001, 0.01, 0.1, 1, 10}));
+  EXPECT_THAT(tick_positions(0, 1, 5),
+              testing::Pointwise(testing::DoubleNear(1e-12), std::vector<double>{0, 0.2, 0.4, 0.6, 0.8, 1}));
+  EXPECT_THAT(tick_positions(-3, 7, 5),
+              testing::Pointwise(testing::DoubleNear(1e-12), std::vector<double>{-2, 0, 2, 4, 6}));
+  EXPECT_THAT(log_tick_positions(0.001, 10, 5),
+              testing::Pointwise(testing::DoubleNear(1e-9), std::vector<double>{0.001, 0.01, 0.1, 1, 10}));
   EXPECT_TRUE(tick_positions(1, 1, 5).empty());
 }
 
 TEST(Plot, DrawsNoNumberThatIsNone) {
   const double nan = std::nan("");
-  Plot plot{.title = "p", .series = {{.x = {1, 2, nan, 4}, .y = {1, nan, 2, 3}}, {.kind = Series::Kind::points, .x = {1}, .y = {2}, .sigma = {nan}}}};
+  Plot plot{.title = "p",
+            .series = {{.x = {1, 2, nan, 4}, .y = {1, nan, 2, 3}},
+                       {.kind = Series::Kind::points, .x = {1}, .y = {2}, .sigma = {nan}}}};
   for (const bool logarithmic : {false, true}) {
     plot.log_y = plot.log_x = logarithmic;
     EXPECT_THAT(svg(plot), Not(HasSubstr("nan")));

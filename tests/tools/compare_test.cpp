@@ -29,7 +29,8 @@ class Compare : public testing::Test {
     io::Image image(48, 32, {"R", "G", "B"});
     for (int y = 0; y < 32; ++y)
       for (int x = 0; x < 48; ++x)
-        for (int c = 0; c < 3; ++c) image.at(x, y, c) = scale * static_cast<float>(0.3 + 0.2 * std::sin(0.3 * x + c) * std::cos(0.2 * y));
+        for (int c = 0; c < 3; ++c)
+          image.at(x, y, c) = scale * static_cast<float>(0.3 + 0.2 * std::sin(0.3 * x + c) * std::cos(0.2 * y));
     image.data[0] += first;
     io::write_picture(folder_ / name, image);
   }
@@ -49,7 +50,8 @@ class Compare : public testing::Test {
 };
 
 TEST_F(Compare, EqualPicturesPassEveryLimit) {
-  const Ended ended = compare({"--reference", "photo.exr", "--rendered", "same.exr", "--max-rmse", "0", "--min-ssim", "0.999", "--html", "r.html"});
+  const Ended ended = compare({"--reference", "photo.exr", "--rendered", "same.exr", "--max-rmse", "0", "--min-ssim",
+                               "0.999", "--html", "r.html"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(comparison(ended).find("rmse")->as_number(), 0);
   EXPECT_THAT(content("r.html"), HasSubstr("</html>"));
@@ -63,7 +65,8 @@ TEST_F(Compare, LimitsSetTheExit) {
 }
 
 TEST_F(Compare, ExposureIsFittedOnRequest) {
-  const Ended ended = compare({"--reference", "photo.exr", "--rendered", "half.exr", "--fit-exposure", "--max-relative-rmse", "0.1%"});
+  const Ended ended =
+      compare({"--reference", "photo.exr", "--rendered", "half.exr", "--fit-exposure", "--max-relative-rmse", "0.1%"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_NEAR(comparison(ended).find("exposure_scale")->as_number(), 2, 1e-6);
   EXPECT_NE(comparison(ended).find("sigma")->find("exposure_scale"), nullptr);
@@ -71,7 +74,8 @@ TEST_F(Compare, ExposureIsFittedOnRequest) {
 
 TEST_F(Compare, NotANumberAlwaysFailsAndIsWritten) {
   for (const bool reference : {true, false}) {
-    const Ended ended = compare({"--reference", reference ? "nan.exr" : "photo.exr", "--rendered", reference ? "photo.exr" : "nan.exr", "--fit-exposure", "--html", "r.html"});
+    const Ended ended = compare({"--reference", reference ? "nan.exr" : "photo.exr", "--rendered",
+                                 reference ? "photo.exr" : "nan.exr", "--fit-exposure", "--html", "r.html"});
     EXPECT_EQ(ended.status, 1);
     EXPECT_THAT(ended.err, HasSubstr("(0, 0)"));
     EXPECT_EQ(comparison(ended).find("not_finite")->as_integer(), 1);
@@ -83,7 +87,9 @@ TEST_F(Compare, RefusesWhatItCannotAnswer) {
   EXPECT_EQ(compare({"--reference", "photo.exr", "--rendered", "same.exr", "--max-rmse", "nan"}).status, 64);
   EXPECT_EQ(compare({"--reference", "photo.exr"}).status, 64);
   EXPECT_EQ(compare({"--reference", "absent.exr", "--rendered", "same.exr"}).status, 66);
-  EXPECT_EQ(compare({"--reference", "photo.exr", "--rendered", "same.exr", "--fit-exposure", "--exposure-scale", "2"}).status, 64);
+  EXPECT_EQ(
+      compare({"--reference", "photo.exr", "--rendered", "same.exr", "--fit-exposure", "--exposure-scale", "2"}).status,
+      64);
   const Ended ended = compare({}, R"({"gonio": 1, "images": []})");
   EXPECT_EQ(ended.status, 65);
   EXPECT_THAT(ended.err, HasSubstr("nothing to compare"));
