@@ -8,7 +8,8 @@
 //                  percentile of the photograph, unless given
 //   z              d / sigma, sigma^2 = c^2 var(s) + var(r); z_rms = sqrt(mean z^2) is 1, and the share |z| > 3 is 0.27 %, where
 //                  rendering and photograph differ by noise alone
-// Standard errors: delete-one-block jackknife (Kunsch 1989) over the blocks of blocks.h, at the given c.
+// Standard errors: delete-one-block jackknife (Kunsch 1989) over the blocks of blocks.h, at the given c. They hold for
+// scenes like this one: that some parts of a picture err more than others counts as spread, which noise alone would not show.
 // A NaN or an infinity in a pixel that counts leaves every measure undefined.
 #pragma once
 #include <cstdint>

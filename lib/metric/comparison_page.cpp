@@ -211,7 +211,8 @@ void add_definitions(Page& page, const std::vector<Compared>& images) {
        "z: d over its standard deviation, from the rendering\u2019s variance and the photograph\u2019s noise at the "
        "predicted value.",
        "\u00b1: one standard error, delete-one-block jackknife over blocks of " + std::to_string(m.block_px) +
-           " px; for the exposure scale the sandwich estimate over the same blocks."});
+           " px: how far another picture of a like scene might be off; for the exposure scale the sandwich estimate "
+           "over the same blocks."});
 }
 
 std::string headline(const std::vector<Compared>& images, std::size_t failed) {
