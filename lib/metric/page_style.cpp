@@ -35,7 +35,7 @@ h3{margin:1.8rem 0 .5rem;font-size:1rem;font-weight:620}
 p,ul{max-width:46rem;margin:0 0 1rem}
 li{margin:.2rem 0}
 .note{font-size:.875rem;color:var(--soft)}
-dl.numbers{display:grid;grid-template-columns:repeat(auto-fill,minmax(10.5rem,1fr));gap:1.1rem 1.75rem;margin:1.1rem 0 1.7rem}
+dl.numbers{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(10.5rem,40%),1fr));gap:1.1rem 1.75rem;margin:1.1rem 0 1.7rem}
 dl.numbers div{border-top:2px solid var(--line);padding-top:.5rem;min-width:0}
 dl.numbers .good{border-color:var(--good)}
 dl.numbers .bad{border-color:var(--bad)}
@@ -51,7 +51,7 @@ caption{caption-side:top;text-align:left;padding:0 0 .5rem;color:var(--soft);fon
 th,td{padding:.4rem 1.6rem .4rem 0;text-align:left;vertical-align:baseline;border-bottom:1px solid var(--line)}
 th{font-weight:560;font-size:.8125rem;color:var(--soft);border-bottom-color:var(--soft);white-space:nowrap}
 th small{font-weight:400;font-size:inherit}
-.n{text-align:right}
+.n{text-align:right;white-space:nowrap}
 tr>:last-child{padding-right:0}
 .figures{display:flex;flex-wrap:wrap;gap:1.5rem 2rem;margin:1rem 0 1.5rem}
 figure{margin:0;min-width:0;max-width:100%}
@@ -78,7 +78,7 @@ font-size:.75rem;pointer-events:none}
 .pair-frame .tag.left{left:.6rem}
 .pair-frame .tag.right{right:.6rem}
 .plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,26rem),1fr));gap:1.5rem 2.5rem;margin:1rem 0 1.5rem}
-.plot{max-width:44rem;width:100%}
+.plot{max-width:44rem;width:100%;margin-bottom:1.25rem}
 .plot svg{width:100%;height:auto;overflow:visible}
 .plot .title{margin:0 0 .3rem;font-weight:560;font-size:.9375rem}
 .legend{display:flex;flex-wrap:wrap;gap:.1rem 1.2rem;margin:0 0 .3rem;font-size:.8125rem;color:var(--soft)}
