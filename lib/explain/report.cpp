@@ -13,7 +13,10 @@ namespace {
 using metric::Page;
 
 std::string spelled(const std::string& unit) { return unit == "1" ? "" : unit; }
-std::string percent(double share) { return printed(100 * share, 2) + " %"; }
+std::string percent(double share) {  // two digits, and no exponents
+  if (std::abs(share) < 1e-4) return share == 0 ? "0 %" : "< 0.01 %";
+  return printed(100 * share, std::abs(share) >= 0.995 ? 3 : 2) + " %";
+}
 
 metric::Tone tone_of(Verdict verdict) {
   if (verdict == Verdict::unknown) return metric::Tone::bad;
