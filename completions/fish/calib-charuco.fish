@@ -17,6 +17,7 @@ complete -c calib-charuco -l output -s o -r -d 'Where the manifest goes instead 
 complete -c calib-charuco -l out -r -d 'Folder for the files that are written; made where it is missing.'
 complete -c calib-charuco -l allow-outside -d 'Let the manifest name files outside its own folder.'
 complete -c calib-charuco -l force -d 'Replace files that exist.'
+complete -c calib-charuco -l stamp -d 'Record time and host beside the provenance; without it, same inputs give the same bytes.'
 complete -c calib-charuco -l depfile -r -d 'Write the files that were read as a make rule.'
 complete -c calib-charuco -l threads -x -d 'Threads to use; 0: all there are. Results do not depend on it.'
 complete -c calib-charuco -l progress -x -a 'auto always never' -d 'A bar with the time to go: auto shows it on a terminal only.'

@@ -37,6 +37,10 @@ std::vector<Option> common_options(const Program& program) {
          .metavar = "N",
          .preset = "1",
          .lower = 0});
+  if (program.writes_manifest)
+    add({.name = "stamp",
+         .type = Type::flag,
+         .help = "Record time and host beside the provenance; without it, same inputs give the same bytes."});
   add({.name = "depfile",
        .type = Type::output_file,
        .help = "Write the files that were read as a make rule.",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <iostream>
 #include <new>
 
@@ -103,7 +104,7 @@ void apply_common(Invocation& call) {
 
 const std::vector<std::string>& options_without_effect() {
   static const std::vector<std::string> names{"input",     "output", "out",    "depfile",       "threads", "progress",
-                                              "log-level", "force",  "resume", "allow-outside", "check"};
+                                              "log-level", "force",  "resume", "allow-outside", "check",   "stamp"};
   return names;
 }
 
@@ -122,7 +123,30 @@ void record(Invocation& call, const std::string& input_id) {
                                                  : manifest::Value(a.texts);
   }
   for (const auto& path : call.state->inputs) step.input_hashes.push_back(sha256_of_file(path));
+  if (call.flag("stamp")) {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    ::gmtime_r(&now, &utc);
+    char text[32] = "", host[256] = "";
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    ::gethostname(host, sizeof host - 1);
+    step.time = text;
+    step.host = host;
+  }
   manifest::record_step(call.document, step);
+}
+
+// What is known to fail before any work is done: --out below something that is no folder, a depfile about nothing.
+void check_places(const Invocation& call) {
+  std::error_code ignored;
+  fs::path folder = fs::absolute(call.out.empty() ? fs::path(".") : call.out);
+  while (!fs::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();
+  if (!call.out.empty() && !fs::is_directory(folder, ignored))
+    throw Error(Exit::cannot_create, "--out", folder.string() + " is no folder", "choose another place");
+  const bool to_file = call.state->program->writes_manifest && call.given("output") && call.text("output") != "-";
+  if (call.given("depfile") && !to_file && call.out.empty())
+    throw Error(Exit::usage, "--depfile", "nothing is written to a file that could depend on anything",
+                "give -o FILE or --out DIR");
 }
 
 void write_depfile(const Invocation& call) {
@@ -167,6 +191,7 @@ Exit run(const Program& program, int argc, char** argv) {
   if (call.flag("version")) return to_stdout(program.name + " (gonio) " GONIO_VERSION "\n");
   if (call.flag("describe")) return to_stdout(manifest::print_json(describe(program)) + "\n");
   apply_common(call);
+  check_places(call);
   read_manifest(call);
   const std::string input_id = call.has_document ? manifest::content_id(call.document) : std::string();
   if (program.check) program.check(call);

@@ -123,6 +123,13 @@ void parse_arguments(Invocation::State& state, int argc, char** argv) {
     a.option = &o;
     app.add_option(o.name, a.texts)->expected(0, o.repeat ? CLI::detail::expected_max_vector_size : 1);
   }
+  // Before CLI11 sees them: it would take an unknown option's value for an operand and complain about that one.
+  for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+    const std::string word = argv[i], name = word.substr(0, word.find('='));
+    if (word.starts_with("--") &&
+        std::ranges::none_of(state.options, [&](const Option& o) { return "--" + o.name == name; }))
+      unknown_option(state, word);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

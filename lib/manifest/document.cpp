@@ -3,11 +3,7 @@
 // the original stands.
 #include "manifest/document.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 #include <iostream>
 #include <iterator>
 #include <set>
@@ -16,6 +12,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "manifest/section_tables.h"
+#include "manifest/units.h"
 
 namespace gonio::manifest {
 namespace {
@@ -50,15 +47,28 @@ void read_section(std::vector<T>& section, const Value& v, const std::string& pl
   section = Codec<std::vector<T>>::read(v, place);
 }
 
+// What is written where an entry was read: `before` is what the entry as read would print, `written` what it prints
+// now. Members that agree stand as they were read, digit for digit, and x-* keys stay, at every level.
+Value merged(Value written, const Value* before, const Value& original) {
+  if (before != nullptr && written == *before) return original;
+  if (!written.is_object() || !original.is_object()) return written;
+  Value out = Value::object();
+  for (const auto& [key, member] : original.as_object()) {
+    if (key.starts_with("x-"))
+      out[key] = member;
+    else if (const Value* now = written.find(key))
+      out[key] = merged(*now, before == nullptr ? nullptr : before->find(key), member);
+  }
+  for (auto& [key, member] : written.as_object())
+    if (out.find(key) == nullptr) out[key] = std::move(member);
+  return out;
+}
+
 template <class T>
 Value write_entry(const T& entry, const Value* original) {
-  Value written = Codec<T>::write(entry);
-  if (original == nullptr) return written;
-  if (written == Codec<T>::write(Codec<T>::read(*original, ""))) return *original;
-  if (original->is_object() && written.is_object())
-    for (const auto& [key, member] : original->as_object())
-      if (key.starts_with("x-")) written[key] = member;
-  return written;
+  if (original == nullptr) return Codec<T>::write(entry);
+  const Value before = Codec<T>::write(Codec<T>::read(*original, ""));
+  return merged(Codec<T>::write(entry), &before, *original);
 }
 
 template <class T>
@@ -136,6 +146,28 @@ void check_images(const Document& d) {
   }
 }
 
+void check_table(const Table& table, const std::string& at) {
+  if (!table.file.empty() && !table.rows.is_null())
+    throw Error(Exit::data, at, "has both \"file\" and \"rows\"", "keep one of the two");
+  std::vector<std::string> names;
+  for (const auto& [name, unit] : table.columns) {
+    check_column_unit(name, unit, at + "/columns/" + name);
+    names.push_back(name);
+  }
+  for (const auto& name : table.observed)
+    if (std::ranges::find(names, name) == names.end())
+      throw Error(Exit::data, at + "/observed", "names column \"" + name + "\", which is not in columns",
+                  remedy_for(name, names));
+  if (table.rows.is_null()) return;
+  expect_array(table.rows, at + "/rows");
+  for (std::size_t i = 0; i < table.rows.as_array().size(); ++i) {
+    const Value& row = table.rows.as_array()[i];
+    if (!row.is_array() || row.as_array().size() != names.size())
+      throw Error(Exit::data, item(at + "/rows", i), "is no row of " + std::to_string(names.size()) + " entries",
+                  "give one for each column");
+  }
+}
+
 void check_references(const Document& d) {
   check_images(d);
   unique_ids(d.objects, place(d, "/objects"));
@@ -160,6 +192,7 @@ void check_references(const Document& d) {
     must_exist(d.files, "files", table.file, at + "/file");
     must_exist(d.cameras, "cameras", table.camera, at + "/camera");
     must_exist(d.boards, "boards", table.board, at + "/board");
+    check_table(table, at);
   }
   for (std::size_t i = 0; i < d.renderings.size(); ++i)
     must_exist(d.files, "files", d.renderings[i].file, place(d, "/renderings/" + std::to_string(i) + "/file"));
@@ -241,39 +274,6 @@ Value to_value(const Document& d, const fs::path& folder) {
 
 std::string print_document(const Document& d, const fs::path& folder) {
   return print_json(to_value(d, folder)) + "\n";
-}
-
-std::string content_id(const Document& d) {
-  Value v = to_value(d, d.folder);
-  if (v.find("provenance") != nullptr)
-    if (Value& provenance = v["provenance"]; provenance.find("steps") != nullptr)
-      for (auto& [key, step] : provenance["steps"].as_object())
-        std::erase_if(step.as_object(), [](const Value::Member& m) { return m.first == "time" || m.first == "host"; });
-  return sha256(canonical_json(v));
-}
-
-void record_step(Document& d, const Step& step) {
-  Value node = Value::object({{"program", step.program}, {"version", step.version}, {"options", step.options}});
-  Value inputs = Value::array();
-  for (const auto& hash : std::set<std::string>(step.input_hashes.begin(), step.input_hashes.end()))
-    inputs.push_back(hash);
-  node["inputs"] = std::move(inputs);
-  if (!step.input_id.empty()) node["manifest"] = step.input_id;
-  const Value* last = d.provenance.find("last");
-  if (last != nullptr) node["after"] = *last;
-  const std::string id = sha256(canonical_json(node)).substr(0, 16);
-  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
-  const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
-  char text[32] = "";
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  char host[256] = "";
-  gethostname(host, sizeof host - 1);
-  node["time"] = text;
-  node["host"] = static_cast<const char*>(host);
-  d.provenance["steps"][id] = std::move(node);
-  d.provenance["last"] = id;
 }
 
 fs::path resolve(const Document& d, const std::string& file_id, const std::string& user) {

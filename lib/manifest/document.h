@@ -65,6 +65,8 @@ struct Step {
   Value options = Value::object();        // without --threads, --progress, --log-level, -i, -o, --out
   std::vector<std::string> input_hashes;  // SHA-256 of files read
   std::string input_id;                   // content id of the manifest read, empty for none
+  // When and where, UTC; empty: not recorded, so that the same inputs give the same bytes.
+  std::string time{}, host{};
 };
 void record_step(Document& document, const Step& step);
 std::string content_id(const Document& document);  // of everything but provenance's times and hosts

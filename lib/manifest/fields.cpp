@@ -31,11 +31,9 @@ std::string listed(const std::vector<std::string>& words) {
   return out;
 }
 
-std::string remedy_for(const std::string& word, const std::vector<std::string>& known) {
-  const auto nearest = std::ranges::min_element(known, {}, [&](const std::string& k) { return distance(word, k); });
-  if (nearest != known.end() && distance(word, *nearest) <= std::max<std::size_t>(1, word.size() / 3))
-    return "did you mean \"" + *nearest + "\"?";
-  return "there is " + listed(known);
+// The part before the unit: "fx" of "fx_mm".
+std::string_view stem(std::string_view word) {
+  return word.substr(0, word.rfind('_'));
 }
 
 std::string number_text(double v) {
@@ -46,6 +44,15 @@ std::string number_text(double v) {
 }
 
 }  // namespace
+
+std::string remedy_for(const std::string& word, const std::vector<std::string>& known) {
+  const auto nearest = std::ranges::min_element(known, {}, [&](const std::string& k) { return distance(word, k); });
+  if (nearest == known.end()) return "none is known here";
+  const bool other_unit = word.find('_') != std::string::npos && stem(word) == stem(*nearest);
+  if (other_unit || distance(word, *nearest) <= std::max<std::size_t>(1, word.size() / 3))
+    return "did you mean \"" + *nearest + "\"?";
+  return "there is " + listed(known);
+}
 
 void check_range(const Value& value, double lower, double upper, const std::string& unit, const std::string& place) {
   if (lower == -infinite && upper == infinite) return;

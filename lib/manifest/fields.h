@@ -51,6 +51,9 @@ Field<Record> field(std::string name, Member Record::*member, std::string unit, 
 // Checks the numbers of `value` (also within lists and free parameters) against [lower, upper].
 void check_range(const Value& value, double lower, double upper, const std::string& unit, const std::string& place);
 void check_choice(const Value& value, const std::vector<std::string>& choices, const std::string& place);
+// As a remedy: `did you mean "fx_px"?` for a word near a known one or its stem with another unit, else the list of what
+// there is.
+std::string remedy_for(const std::string& word, const std::vector<std::string>& known);
 [[noreturn]] void unknown_key(const std::string& key, const std::vector<std::string>& known, const std::string& place);
 [[noreturn]] void missing_key(const std::string& key, const std::string& sentence, const std::string& place);
 

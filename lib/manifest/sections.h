@@ -146,8 +146,7 @@ struct Rendering {  // "renderings"
 struct Comparison {  // "comparisons"
   std::string image;
   std::optional<double> exposure_scale, rmse, relative_rmse, ssim, log10_error, z_rms;
-  std::optional<double> z_above_3;  // share of |z| > 3
-  std::optional<std::int64_t> pixels, not_finite;
+  std::optional<std::int64_t> pixels;
   Sigmas sigma;
   Value files;  // {"report": file id, ...}
 };

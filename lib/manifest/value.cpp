@@ -4,7 +4,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "base/error.h"
 
@@ -13,10 +16,43 @@ namespace {
 
 constexpr std::size_t depth_limit = 64;
 
+struct Position {
+  std::size_t line = 1, column = 0;
+};
+
+// Feeds the parser and knows where it stands; copies share the position.
+class CountingIterator {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  CountingIterator(const char* at, Position* position) : at_(at), position_(position) {}
+  reference operator*() const { return *at_; }
+  CountingIterator& operator++() {
+    const bool new_line = *at_++ == '\n';
+    position_->line += new_line ? 1 : 0;
+    position_->column = new_line ? 0 : position_->column + 1;
+    return *this;
+  }
+  CountingIterator operator++(int) {
+    const CountingIterator before = *this;
+    ++*this;
+    return before;
+  }
+  bool operator==(const CountingIterator& o) const { return at_ == o.at_; }
+
+ private:
+  const char* at_;
+  Position* position_;
+};
+
 // Builds a Value from nlohmann's event stream: keeps key order, refuses duplicate keys and deep nesting.
 class Builder : public nlohmann::json_sax<nlohmann::json> {
  public:
-  explicit Builder(const std::string& place) : place_(place) {}
+  Builder(const std::string& place, const Position& position) : place_(place), position_(position) {}
   bool null() override { return add(Value()); }
   bool boolean(bool v) override { return add(Value(v)); }
   bool number_integer(number_integer_t v) override { return add(Value(std::int64_t{v})); }
@@ -25,8 +61,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     return add(Value(static_cast<std::int64_t>(v)));
   }
   bool number_float(number_float_t v, const string_t& text) override {
-    if (!std::isfinite(v))
-      throw Error(Exit::data, place_, "number " + text + " is not finite", "write a finite number");
+    if (!std::isfinite(v)) fail("number " + text + " is not finite", "write a finite number");
     return add(Value(v));
   }
   bool string(string_t& v) override { return add(Value(std::move(v))); }
@@ -36,10 +71,8 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
   bool key(string_t& v) override {
-    for (const auto& member : stack_.back().first.as_object())
-      if (member.first == v)
-        throw Error(Exit::data, place_, "key \"" + v + "\" stands twice in one object", "keep one of them");
-    stack_.back().second = v;
+    if (!stack_.back().keys.insert(v).second) fail("key \"" + v + "\" stands twice in one object", "keep one of them");
+    stack_.back().key = v;
     return true;
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& e) override {
@@ -50,28 +83,40 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   Value result;
 
  private:
+  struct Open {  // a container that has not ended yet
+    Value value;
+    std::set<std::string> keys;
+    std::string key;
+  };
+  [[noreturn]] void fail(const std::string& problem, const std::string& remedy) const {
+    throw Error(
+        Exit::data, place_,
+        problem + " (line " + std::to_string(position_.line) + ", column " + std::to_string(position_.column) + ")",
+        remedy);
+  }
   bool open(Value v) {
-    if (stack_.size() >= depth_limit) throw Error(Exit::data, place_, "nested deeper than 64 levels");
-    stack_.emplace_back(std::move(v), std::string());
+    if (stack_.size() >= depth_limit) fail("nested deeper than 64 levels", "flatten it");
+    stack_.push_back({std::move(v), {}, {}});
     return true;
   }
   bool close() {
-    Value v = std::move(stack_.back().first);
+    Value v = std::move(stack_.back().value);
     stack_.pop_back();
     return add(std::move(v));
   }
   bool add(Value v) {
     if (stack_.empty()) {
       result = std::move(v);
-    } else if (auto& [parent, name] = stack_.back(); parent.is_array()) {
-      parent.as_array().push_back(std::move(v));
+    } else if (Open& parent = stack_.back(); parent.value.is_array()) {
+      parent.value.as_array().push_back(std::move(v));
     } else {
-      parent.as_object().emplace_back(name, std::move(v));
+      parent.value.as_object().emplace_back(std::move(parent.key), std::move(v));
     }
     return true;
   }
   const std::string& place_;
-  std::vector<std::pair<Value, std::string>> stack_;
+  const Position& position_;
+  std::vector<Open> stack_;
 };
 
 void print_string(const std::string& s, std::string& out) {
@@ -159,8 +204,10 @@ void Value::push_back(Value v) {
 }
 
 Value parse_json(std::string_view text, const std::string& place) {
-  Builder builder(place);
-  nlohmann::json::sax_parse(text, &builder);
+  Position position;
+  Builder builder(place, position);
+  nlohmann::json::sax_parse(CountingIterator(text.data(), &position),
+                            CountingIterator(text.data() + text.size(), &position), &builder);
   return std::move(builder.result);
 }
 

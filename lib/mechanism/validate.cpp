@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "manifest/fields.h"
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {
@@ -19,9 +20,15 @@ bool exists(const manifest::Document& d, Target target, const std::string& name)
   return false;
 }
 
-std::string known_parameters(const Mechanism& m) {
-  std::string out;
-  for (const auto& p : m.parameters) out += (out.empty() ? "" : ", ") + p.name;
+std::vector<std::string> ids() {
+  std::vector<std::string> out;
+  for (const Mechanism* m : all_mechanisms()) out.push_back(m->id);
+  return out;
+}
+
+std::vector<std::string> known_parameters(const Mechanism& m) {
+  std::vector<std::string> out;
+  for (const auto& p : m.parameters) out.push_back(p.name);
   return out;
 }
 
@@ -31,13 +38,14 @@ void validate_uses(const manifest::Document& d) {
   for (const auto& [id, use] : d.mechanisms) {
     const std::string at = manifest::place(d, "/mechanisms/" + id);
     const Mechanism* m = find_mechanism(id);
-    if (m == nullptr) throw Error(Exit::data, at, "is no mechanism that gonio knows", "explain --list prints them");
+    if (m == nullptr) throw Error(Exit::data, at, "is no mechanism that gonio knows", manifest::remedy_for(id, ids()));
     for (const auto& name : use.on)
       if (!exists(d, m->target, name))
         throw Error(Exit::data, at + "/on", "names \"" + name + "\", which the manifest does not have");
     for (const auto& [name, parameter] : use.parameters) {
       if (std::ranges::find(m->parameters, name, &Parameter::name) == m->parameters.end())
-        throw Error(Exit::data, at + "/" + name, "is no parameter of " + id, "there is " + known_parameters(*m));
+        throw Error(Exit::data, at + "/" + name, "is no parameter of " + id,
+                    manifest::remedy_for(name, known_parameters(*m)));
       if (parameter.value.size() != 1 && parameter.value.size() != use.on.size())
         throw Error(Exit::data, at + "/" + name, "has " + std::to_string(parameter.value.size()) + " numbers",
                     "give one, or one for each name in \"on\"");
