@@ -50,9 +50,9 @@ TEST(Files, NoFunctionIsTooLong) {
     for (std::size_t i = 0; i < file.lines.size(); ++i) {
       std::smatch match;
       if (!std::regex_match(file.lines[i], match, opens)) continue;
-      std::string closing = match[1].str() + "}";
-      if (file.lines[i].starts_with("    : "))
-        closing = "}";  // the initializers of a constructor stand four further in
+      // The initializers of a constructor stand four further in than its end.
+      const std::size_t indent = file.lines[i].starts_with("    : ") ? 0 : static_cast<std::size_t>(match.length(1));
+      const std::string closing = std::string(indent, ' ').append(1, '}');
       const auto from = file.lines.begin() + static_cast<std::ptrdiff_t>(i);
       const auto end =
           std::find_if(from, file.lines.end(), [&](const std::string& line) { return line.starts_with(closing); });
