@@ -1,5 +1,5 @@
-// Square blocks of pixels as independent witnesses: neighbours in a picture err together, so standard errors are computed over
-// blocks. 16 x 16 pixels, halved until at least 40 blocks cover the picture (or a block is one pixel).
+// Square blocks of pixels as independent witnesses: neighbours in a picture err together, so standard errors are
+// computed over blocks. 16 x 16 pixels, halved until at least 40 blocks cover the picture (or a block is one pixel).
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -15,8 +15,9 @@ struct Blocks {
     rows = cover(height);
   }
   std::size_t count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
-  std::size_t of(int x, int y) const { return static_cast<std::size_t>(y / side) * static_cast<std::size_t>(columns) +
-                                              static_cast<std::size_t>(x / side); }
+  std::size_t of(int x, int y) const {
+    return static_cast<std::size_t>(y / side) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x / side);
+  }
   std::size_t of_pixel(std::size_t p, int width) const {
     const auto w = static_cast<std::size_t>(width);
     return of(static_cast<int>(p % w), static_cast<int>(p / w));

@@ -31,14 +31,19 @@ Colour interpolate(std::span<const std::uint32_t> points, double t) {
 
 }  // namespace
 
-Colour magnitude_colour(double t) { return std::isnan(t) ? not_a_number : interpolate(viridis, t); }
+Colour magnitude_colour(double t) {
+  return std::isnan(t) ? not_a_number : interpolate(viridis, t);
+}
 
-Colour signed_colour(double t) { return std::isnan(t) ? not_a_number : interpolate(blue_white_red, (t + 1) / 2); }
+Colour signed_colour(double t) {
+  return std::isnan(t) ? not_a_number : interpolate(blue_white_red, (t + 1) / 2);
+}
 
 std::string hex(Colour colour) {
   const auto code = [](float v) { return static_cast<unsigned>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255.0f)); };
   char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", code(colour[0]) & 255u, code(colour[1]) & 255u, code(colour[2]) & 255u);
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", code(colour[0]) & 255u, code(colour[1]) & 255u,
+                code(colour[2]) & 255u);
   return text;
 }
 

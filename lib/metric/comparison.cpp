@@ -24,15 +24,18 @@ struct Sums {
     return *this;
   }
   Sums without(const Sums& o) const {
-    return {n - o.n, d - o.d, d2 - o.d2, r2 - o.r2, log - o.log, ssim - o.ssim, ssim_n - o.ssim_n, z2 - o.z2, z_n - o.z_n,
-            z_far - o.z_far};
+    return {n - o.n,       d - o.d,           d2 - o.d2, r2 - o.r2,   log - o.log,
+            ssim - o.ssim, ssim_n - o.ssim_n, z2 - o.z2, z_n - o.z_n, z_far - o.z_far};
   }
 };
 
-double root_mean(double squares, double n) { return std::sqrt(std::max(squares, 0.0) / n); }
+double root_mean(double squares, double n) {
+  return std::sqrt(std::max(squares, 0.0) / n);
+}
 
 // Delete-one-block jackknife of a function of the sums.
-std::optional<Estimate> jackknife(const std::vector<Sums>& blocks, const Sums& total, const std::function<double(const Sums&)>& f) {
+std::optional<Estimate> jackknife(const std::vector<Sums>& blocks, const Sums& total,
+                                  const std::function<double(const Sums&)>& f) {
   const double value = f(total);
   if (!std::isfinite(value)) return {};
   std::vector<double> left_out;
@@ -59,7 +62,8 @@ double mean_square(const Overlay& o) {
   double sum = 0, n = 0;
   const std::size_t channels = o.channels.size();
   for_each_pixel(o, [&](std::size_t p) {
-    for (std::size_t i = p * channels; i < (p + 1) * channels; ++i, ++n) sum += double{o.photograph[i]} * o.photograph[i];
+    for (std::size_t i = p * channels; i < (p + 1) * channels; ++i, ++n)
+      sum += double{o.photograph[i]} * o.photograph[i];
   });
   return n > 0 ? sum / n : 0;
 }
@@ -166,15 +170,17 @@ std::vector<std::string> violations(const Measures& m, const Limits& limits) {
   std::vector<std::string> found;
   if (m.not_finite.pixels > 0)
     found.push_back(std::to_string(m.not_finite.pixels) + (m.not_finite.pixels == 1 ? " pixel holds" : " pixels hold") +
-                    " a NaN or an infinity; the first lies at (" + std::to_string(m.not_finite.x) + ", " + std::to_string(m.not_finite.y) +
-                    ") in channel " + m.not_finite.channel + " of the " + (m.not_finite.in_photograph ? "photograph" : "rendering"));
-  const auto hold = [&](const char* name, const std::optional<Estimate>& value, const std::optional<double>& limit, bool upper) {
+                    " a NaN or an infinity; the first lies at (" + std::to_string(m.not_finite.x) + ", " +
+                    std::to_string(m.not_finite.y) + ") in channel " + m.not_finite.channel + " of the " +
+                    (m.not_finite.in_photograph ? "photograph" : "rendering"));
+  const auto hold = [&](const char* name, const std::optional<Estimate>& value, const std::optional<double>& limit,
+                        bool upper) {
     if (!limit || m.not_finite.pixels > 0) return;
     if (!value) {
       found.push_back(std::string(name) + " is not defined here, and has the limit " + number_text(*limit, 4));
     } else if (upper ? !(value->value <= *limit) : !(value->value >= *limit)) {
-      found.push_back(std::string(name) + " " + number_text(value->value, 4) + " is " + (upper ? "above" : "below") + " the limit " +
-                      number_text(*limit, 4));
+      found.push_back(std::string(name) + " " + number_text(value->value, 4) + " is " + (upper ? "above" : "below") +
+                      " the limit " + number_text(*limit, 4));
     }
   };
   hold("RMSE", m.rmse, limits.max_rmse, true);

@@ -1,5 +1,5 @@
-// The report page of compare: the pair under a slider, signed difference, log error, z-scores, histograms, numbers; one section
-// per image. Every scale, floor and tone is stated where it is used.
+// The report page of compare: the pair under a slider, signed difference, log error, z-scores, histograms, numbers; one
+// section per image. Every scale, floor and tone is stated where it is used.
 #pragma once
 #include <string>
 #include <vector>

@@ -89,11 +89,17 @@ io::Image display(const Overlay& o, Which which, double scale, double white) {
   return picture;
 }
 
-io::Image positive_part(const Overlay& o, const Differences& d, double white) { return part(o, d, white, 1); }
-io::Image negative_part(const Overlay& o, const Differences& d, double white) { return part(o, d, white, -1); }
+io::Image positive_part(const Overlay& o, const Differences& d, double white) {
+  return part(o, d, white, 1);
+}
+io::Image negative_part(const Overlay& o, const Differences& d, double white) {
+  return part(o, d, white, -1);
+}
 
 io::Image signed_map(const Overlay& o, const Differences& d, double white) {
-  return paint(o, [&](std::size_t p) { return signed_colour(mean_of(d.signed_difference, p, o.channels.size(), false) / white); });
+  return paint(o, [&](std::size_t p) {
+    return signed_colour(mean_of(d.signed_difference, p, o.channels.size(), false) / white);
+  });
 }
 
 io::Image log_map(const Overlay& o, const Differences& d, const DisplayTone& tone, double floor) {

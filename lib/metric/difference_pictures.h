@@ -1,7 +1,7 @@
 // Pictures of a comparison for people: what the two look like, where they differ, which way, and by how many orders.
 //
-// All are 8-bit display pictures (codes / 255 in sRGB) except the numbers' own planes. `white` is always stated beside the
-// picture: it is the linear value that full brightness or full colour stands for.
+// All are 8-bit display pictures (codes / 255 in sRGB) except the numbers' own planes. `white` is always stated beside
+// the picture: it is the linear value that full brightness or full colour stands for.
 #pragma once
 #include <array>
 
@@ -11,8 +11,8 @@
 namespace gonio::metric {
 
 struct DisplayTone {
-  double white = 1;       // linear radiance shown as white: the 99.5th percentile of the photograph
-  double difference = 1;  // |d| shown at full brightness or colour: the 99.5th percentile of |d|
+  double white = 1;                        // linear radiance shown as white: the 99.5th percentile of the photograph
+  double difference = 1;                   // |d| shown at full brightness or colour: the 99.5th percentile of |d|
   std::array<double, 2> log_range{-4, 0};  // log10 |d| at the ends of the scale: the floor, and the largest |d|
 };
 DisplayTone display_tone(const Overlay& overlay, const Differences& d, const Measures& m);
@@ -20,7 +20,8 @@ DisplayTone display_tone(const Overlay& overlay, const Differences& d, const Mea
 enum class Which { photograph, rendering };
 io::Image display(const Overlay& overlay, Which which, double exposure_scale, double white);  // sRGB curve
 
-// max(d, 0) and max(-d, 0), per channel, over `white`, gamma 2.2: where the rendering is too bright, and where too dark.
+// max(d, 0) and max(-d, 0), per channel, over `white`, gamma 2.2: where the rendering is too bright, and where too
+// dark.
 io::Image positive_part(const Overlay& overlay, const Differences& d, double white);
 io::Image negative_part(const Overlay& overlay, const Differences& d, double white);
 

@@ -13,7 +13,8 @@ std::vector<Entry> entries(const manifest::Document& document) {
     const std::string at = "/renderings/" + std::to_string(k);
     const auto image = std::ranges::find(document.images, rendering.image, &manifest::ImageEntry::id);
     if (image == document.images.end())
-      throw Error(Exit::data, manifest::place(document, at + "/image"), "names \"" + rendering.image + "\", which is not in images");
+      throw Error(Exit::data, manifest::place(document, at + "/image"),
+                  "names \"" + rendering.image + "\", which is not in images");
     if (image->file.empty()) continue;
     const std::string of_image = "/images/" + std::to_string(image - document.images.begin());
     Entry entry;
@@ -29,7 +30,8 @@ std::vector<Entry> entries(const manifest::Document& document) {
   }
   if (found.empty())
     throw Error(Exit::data, manifest::place(document, "/renderings"),
-                document.renderings.empty() ? "is empty: there is nothing to compare" : "has no rendering of an image with a file",
+                document.renderings.empty() ? "is empty: there is nothing to compare"
+                                            : "has no rendering of an image with a file",
                 "run render first, or give --reference and --rendered");
   return found;
 }
@@ -43,7 +45,8 @@ manifest::Document document_of(const Entry& entry) {
   image.noise = entry.noise;
   if (!entry.mask.empty()) image.mask = manifest::add_file(document, entry.mask, entry.image + "-mask");
   document.images.push_back(std::move(image));
-  document.renderings.push_back({entry.image, manifest::add_file(document, entry.rendering, entry.image + "-rendering"), {}, {}});
+  document.renderings.push_back(
+      {entry.image, manifest::add_file(document, entry.rendering, entry.image + "-rendering"), {}, {}});
   return document;
 }
 
@@ -51,8 +54,8 @@ Overlay lay_over(const Entry& entry, Channels channels) {
   std::optional<Mask> mask;
   if (!entry.mask.empty()) mask = read_mask(entry.mask);
   return lay_over(entry.image, read_linear(entry.photograph, entry.response, entry.photograph_place),
-                  read_linear(entry.rendering, entry.rendering_response, entry.rendering_place), mask ? &*mask : nullptr, channels,
-                  entry.noise);
+                  read_linear(entry.rendering, entry.rendering_response, entry.rendering_place),
+                  mask ? &*mask : nullptr, channels, entry.noise);
 }
 
 void enter(manifest::Document& document, const std::string& image, const Measures& m,

@@ -12,7 +12,7 @@
 namespace gonio::metric {
 
 struct Entry {
-  std::string image;  // id
+  std::string image;                                  // id
   std::filesystem::path photograph, rendering, mask;  // mask empty: every pixel counts
   manifest::Value response, rendering_response;       // null: EXR, linear
   std::string photograph_place, rendering_place;      // for messages

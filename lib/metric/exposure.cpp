@@ -12,7 +12,8 @@ struct Line {
   double score = 0, slope = 0;  // sum of w x (y - c x) and of w x x
 };
 
-// One sample's part at scale c: x the rendering, y the photograph. `known`: weigh by variance, and move x to its expected place.
+// One sample's part at scale c: x the rendering, y the photograph. `known`: weigh by variance, and move x to its
+// expected place.
 Line sample(const Overlay& o, std::size_t i, double c, bool known) {
   const double x = o.rendering[i], y = o.photograph[i];
   if (!known) return {x * (y - c * x), x * x};
@@ -73,12 +74,14 @@ Estimate fit_exposure(std::span<const Overlay* const> overlays) {
   const Line plain = sum(overlays, 0, false);
   const std::string name = overlays.size() == 1 ? overlays[0]->name : "the renderings";
   if (!(plain.slope > 0))
-    throw Error(Exit::data, name, "is black wherever the photograph counts: no exposure scale fits", "is the light on?");
+    throw Error(Exit::data, name, "is black wherever the photograph counts: no exposure scale fits",
+                "is the light on?");
   double c = plain.score / plain.slope, slope = plain.slope;
   if (known) {
     for (int iteration = 0; iteration < 100; ++iteration) {
       const Line at = sum(overlays, c, true);
-      if (!(at.slope > 0)) throw Error(Exit::data, name, "has a variance that weighs no sample", "check noise and variance");
+      if (!(at.slope > 0))
+        throw Error(Exit::data, name, "has a variance that weighs no sample", "check noise and variance");
       const double step = at.score / at.slope;
       slope = at.slope;
       c += step;
@@ -86,7 +89,8 @@ Estimate fit_exposure(std::span<const Overlay* const> overlays) {
     }
   }
   if (!(c > 0))
-    throw Error(Exit::data, name, "fits the photograph only with the exposure scale " + std::to_string(c) + ", which is not positive",
+    throw Error(Exit::data, name,
+                "fits the photograph only with the exposure scale " + std::to_string(c) + ", which is not positive",
                 "is this the rendering of that photograph?");
   return {c, sandwich_sigma(overlays, c, slope, known)};
 }

@@ -14,7 +14,8 @@ constexpr float full_scale = 1.0f - 0.5f / 65535.0f;  // the highest code of 8 a
 
 bool is_exr(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension == ".exr";
 }
 
@@ -55,12 +56,14 @@ Response::Response(const manifest::Value& stated, const std::string& place) {
   }
   if (!stated.is_array() || stated.as_array().size() < 2) refuse_response(place, "states no response that is known");
   for (const auto& row : stated.as_array()) {
-    if (!row.is_array() || row.as_array().size() != 2 || !row.as_array()[0].is_number() || !row.as_array()[1].is_number())
+    if (!row.is_array() || row.as_array().size() != 2 || !row.as_array()[0].is_number() ||
+        !row.as_array()[1].is_number())
       refuse_response(place, "has a row in the response table that is not a pair of numbers");
     table_.emplace_back(row.as_array()[0].as_number(), row.as_array()[1].as_number());
   }
   for (std::size_t i = 1; i < table_.size(); ++i)
-    if (!(table_[i].first > table_[i - 1].first)) refuse_response(place, "has codes that do not rise in the response table");
+    if (!(table_[i].first > table_[i - 1].first))
+      refuse_response(place, "has codes that do not rise in the response table");
 }
 
 float Response::operator()(float code) const {
@@ -74,7 +77,8 @@ float Response::operator()(float code) const {
   return static_cast<float>(below->second + share * (above->second - below->second));
 }
 
-LinearPicture read_linear(const std::filesystem::path& path, const manifest::Value& response, const std::string& place) {
+LinearPicture read_linear(const std::filesystem::path& path, const manifest::Value& response,
+                          const std::string& place) {
   LinearPicture picture;
   picture.name = path.string();
   picture.integer_codes = !is_exr(path);

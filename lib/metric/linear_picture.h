@@ -1,8 +1,9 @@
 // A picture as linear radiance: an EXR as it is, an 8 or 16-bit file through its stated response.
 //
-// A response takes the code (stored value over full scale, 0 to 1) to a linear value: "linear", "srgb" (IEC 61966-2-1), or a table
-// [[code, linear], ...], interpolated linearly, constant beyond its ends. EXR is linear unless stated otherwise; an 8 or
-// 16-bit file without a stated response is refused, because a guess would bend every number that follows.
+// A response takes the code (stored value over full scale, 0 to 1) to a linear value: "linear", "srgb" (IEC 61966-2-1),
+// or a table
+// [[code, linear], ...], interpolated linearly, constant beyond its ends. EXR is linear unless stated otherwise; an 8
+// or 16-bit file without a stated response is refused, because a guess would bend every number that follows.
 #pragma once
 #include <cstdint>
 #include <filesystem>

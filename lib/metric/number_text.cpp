@@ -16,11 +16,14 @@ std::string print(const char* format, int digits, double value) {
   return out;
 }
 
-bool plain(double value) { return value == 0 || (std::abs(value) >= 1e-4 && std::abs(value) < 1e6); }
+bool plain(double value) {
+  return value == 0 || (std::abs(value) >= 1e-4 && std::abs(value) < 1e6);
+}
 
 int decimals_for(double sigma) {
   const int place = static_cast<int>(std::floor(std::log10(sigma)));
-  const bool two = sigma / std::pow(10.0, place) < 3;  // 1 or 2 in front: one digit alone would be rounded by up to a half
+  const bool two =
+      sigma / std::pow(10.0, place) < 3;  // 1 or 2 in front: one digit alone would be rounded by up to a half
   return std::clamp(-place + (two ? 1 : 0), 0, 9);
 }
 
@@ -35,13 +38,15 @@ std::string number_text(double value, int significant) {
 }
 
 std::string value_for_sigma(double value, double sigma) {
-  if (!std::isfinite(value) || !(sigma > 0) || !std::isfinite(sigma) || !plain(value) || sigma < 1e-9) return number_text(value, 4);
+  if (!std::isfinite(value) || !(sigma > 0) || !std::isfinite(sigma) || !plain(value) || sigma < 1e-9)
+    return number_text(value, 4);
   return print("%.*f", decimals_for(sigma), value);
 }
 
 std::string sigma_text(double value, double sigma) {
   if (!(sigma > 0) || !std::isfinite(sigma)) return {};
-  return "\u00b1 " + (plain(value) && sigma >= 1e-9 ? print("%.*f", decimals_for(sigma), sigma) : number_text(sigma, 2));
+  return "\u00b1 " +
+         (plain(value) && sigma >= 1e-9 ? print("%.*f", decimals_for(sigma), sigma) : number_text(sigma, 2));
 }
 
 std::string with_sigma(double value, double sigma) {

@@ -13,7 +13,9 @@ namespace {
 
 constexpr float luminance_weights[3] = {0.2126f, 0.7152f, 0.0722f};
 
-std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+std::string size_text(int width, int height) {
+  return std::to_string(width) + "x" + std::to_string(height);
+}
 
 // Weighted sum of the channels; for variances of independent channels the weights enter squared.
 io::Image luminance(const io::Image& colour, bool squared) {
@@ -30,7 +32,8 @@ io::Image luminance(const io::Image& colour, bool squared) {
 io::Image one_channel(const io::Image& colour, std::size_t c, const std::string& name) {
   if (colour.data.empty()) return colour;
   if (colour.channels.size() != 3)
-    throw Error(Exit::data, name, "is grey and has no channel of its own for red, green or blue", "compare --channels luminance");
+    throw Error(Exit::data, name, "is grey and has no channel of its own for red, green or blue",
+                "compare --channels luminance");
   io::Image plane(colour.width, colour.height, {colour.channels[c]});
   for (std::size_t i = 0; i < plane.pixels(); ++i) plane.data[i] = colour.data[3 * i + c];
   return plane;
@@ -69,16 +72,21 @@ void find_not_finite(Overlay& o) {
   }
 }
 
-void check_sizes(const LinearPicture& photograph, const LinearPicture& rendering, const Mask* mask, const std::string& name) {
+void check_sizes(const LinearPicture& photograph, const LinearPicture& rendering, const Mask* mask,
+                 const std::string& name) {
   const io::Image &a = photograph.colour, &b = rendering.colour;
   if (a.width != b.width || a.height != b.height)
-    throw Error(Exit::data, rendering.name, "is " + size_text(b.width, b.height) + " px, the photograph " + photograph.name +
-                " is " + size_text(a.width, a.height) + " px", "render with the camera of the photograph");
+    throw Error(Exit::data, rendering.name,
+                "is " + size_text(b.width, b.height) + " px, the photograph " + photograph.name + " is " +
+                    size_text(a.width, a.height) + " px",
+                "render with the camera of the photograph");
   if (a.pixels() == 0) throw Error(Exit::data, photograph.name, "has no pixels");
   if (mask == nullptr) return;
   if (mask->width != a.width || mask->height != a.height)
-    throw Error(Exit::data, "mask of " + name, "is " + size_text(mask->width, mask->height) + " px, the photograph is " +
-                size_text(a.width, a.height) + " px", "cut both alike");
+    throw Error(
+        Exit::data, "mask of " + name,
+        "is " + size_text(mask->width, mask->height) + " px, the photograph is " + size_text(a.width, a.height) + " px",
+        "cut both alike");
   if (std::ranges::none_of(mask->counts, [](std::uint8_t v) { return v != 0; }))
     throw Error(Exit::data, "mask of " + name, "counts no pixel (none is above 0.5)", "is it inverted, or black?");
 }
@@ -104,8 +112,8 @@ double Overlay::variance(std::size_t i, double scale) const {
   return total;
 }
 
-Overlay lay_over(std::string name, LinearPicture photograph, LinearPicture rendering, const Mask* mask, Channels channels,
-                 std::optional<manifest::Noise> noise) {
+Overlay lay_over(std::string name, LinearPicture photograph, LinearPicture rendering, const Mask* mask,
+                 Channels channels, std::optional<manifest::Noise> noise) {
   check_sizes(photograph, rendering, mask, name);
   if (channels == Channels::all && photograph.colour.channels.size() != rendering.colour.channels.size())
     channels = Channels::luminance;
@@ -130,8 +138,10 @@ Overlay lay_over(std::string name, LinearPicture photograph, LinearPicture rende
   o.noise = noise;
   o.clipped = std::move(photograph.clipped);
   o.integer_codes = photograph.integer_codes;
-  if (mask != nullptr) o.counts = mask->counts;
-  else o.counts.assign(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height), 1);
+  if (mask != nullptr)
+    o.counts = mask->counts;
+  else
+    o.counts.assign(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height), 1);
   find_not_finite(o);
   return o;
 }

@@ -22,7 +22,9 @@ std::array<int, 2> png_size(const std::string& png) {
 }
 
 // Small pictures are enlarged by a whole factor to about `target` pixels, so that a pixel stays a square.
-int display_width(int width_px, int target) { return width_px > 0 ? width_px * std::max(1, target / width_px) : target; }
+int display_width(int width_px, int target) {
+  return width_px > 0 ? width_px * std::max(1, target / width_px) : target;
+}
 
 int shown_width(const Figure& figure, int target) {
   return display_width(figure.width_px > 0 ? figure.width_px : png_size(figure.png)[0], target);
@@ -39,10 +41,13 @@ std::string image_tag(const Figure& figure, int target, const std::string& kind)
 
 std::string caption_tag(const std::string& title, const std::string& caption) {
   if (title.empty() && caption.empty()) return {};
-  return "<figcaption>" + (title.empty() ? std::string() : "<b>" + escape(title) + "</b>") + escape(caption) + "</figcaption>";
+  return "<figcaption>" + (title.empty() ? std::string() : "<b>" + escape(title) + "</b>") + escape(caption) +
+         "</figcaption>";
 }
 
-std::string tone_class(Tone tone) { return tone == Tone::good ? " class=\"good\"" : tone == Tone::bad ? " class=\"bad\"" : ""; }
+std::string tone_class(Tone tone) {
+  return tone == Tone::good ? " class=\"good\"" : tone == Tone::bad ? " class=\"bad\"" : "";
+}
 
 std::string with_unit(const Column& column) {
   return escape(column.name) + (column.unit.empty() ? std::string() : " <small>/ " + escape(column.unit) + "</small>");
@@ -80,14 +85,14 @@ std::string base64(std::string_view bytes) {
     std::uint32_t group = 0;
     for (std::size_t k = 0; k < 3; ++k)
       group = (group << 8) | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k <= bytes.size() ? digits[(group >> (18 - 6 * k)) & 63u] : '=';
+    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[(group >> (18 - 6 * k)) & 63u] : '=';
   }
   return text;
 }
 
 Page::Page(std::string_view title, std::string_view headline, std::string_view lead, Tone tone) : title_(title) {
-  head_ = "<header><p class=\"eyebrow\">" + escape(title) + "</p><h1" + tone_class(tone) + ">" + escape(headline) + "</h1>";
+  head_ =
+      "<header><p class=\"eyebrow\">" + escape(title) + "</p><h1" + tone_class(tone) + ">" + escape(headline) + "</h1>";
   if (!lead.empty()) head_ += "<p class=\"lead\">" + escape(lead) + "</p>";
   head_ += "</header>\n";
 }
@@ -99,11 +104,17 @@ void Page::section(std::string_view heading) {
   body_ += "<section id=\"s" + std::to_string(headings_.size()) + "\"><h2>" + escape(heading) + "</h2>\n";
 }
 
-void Page::subsection(std::string_view heading) { body_ += "<h3>" + escape(heading) + "</h3>\n"; }
+void Page::subsection(std::string_view heading) {
+  body_ += "<h3>" + escape(heading) + "</h3>\n";
+}
 
-void Page::paragraph(std::string_view text) { body_ += "<p>" + escape(text) + "</p>\n"; }
+void Page::paragraph(std::string_view text) {
+  body_ += "<p>" + escape(text) + "</p>\n";
+}
 
-void Page::note(std::string_view text) { body_ += "<p class=\"note\">" + escape(text) + "</p>\n"; }
+void Page::note(std::string_view text) {
+  body_ += "<p class=\"note\">" + escape(text) + "</p>\n";
+}
 
 void Page::list(const std::vector<std::string>& items) {
   body_ += "<ul>";
@@ -145,7 +156,8 @@ void Page::figures(const std::vector<Figure>& figures) {
   body_ += "<div class=\"figures\">";
   for (const auto& figure : figures)
     body_ += "<figure style=\"width:" + std::to_string(figure.svg.empty() ? shown_width(figure, 340) : 480) + "px\">" +
-             (figure.svg.empty() ? image_tag(figure, 340, "") : figure.svg) + caption_tag(figure.title, figure.caption) + "</figure>";
+             (figure.svg.empty() ? image_tag(figure, 340, "") : figure.svg) +
+             caption_tag(figure.title, figure.caption) + "</figure>";
   body_ += "</div>\n";
 }
 
@@ -154,12 +166,15 @@ void Page::slider(const Figure& left, const Figure& right, std::string_view capt
   body_ += "<figure class=\"pair\"><div class=\"pair-frame\" style=\"width:" + std::to_string(shown_width(left, 720)) +
            "px\" data-left=\"" + left_name + "\">" + image_tag(left, 720, "") +
            image_tag(right, 720, " class=\"over\"") +
-           "<input type=\"range\" min=\"0\" max=\"1000\" value=\"500\" step=\"5\" aria-label=\"Divider between " + left_name +
-           " and " + right_name + "\"><span class=\"tag left\">" + left_name + "</span><span class=\"tag right\">" + right_name +
-           "</span><span class=\"divider\"></span></div>" + caption_tag("", std::string(caption)) + "</figure>\n";
+           "<input type=\"range\" min=\"0\" max=\"1000\" value=\"500\" step=\"5\" aria-label=\"Divider between " +
+           left_name + " and " + right_name + "\"><span class=\"tag left\">" + left_name +
+           "</span><span class=\"tag right\">" + right_name + "</span><span class=\"divider\"></span></div>" +
+           caption_tag("", std::string(caption)) + "</figure>\n";
 }
 
-void Page::plot(const Plot& plot) { body_ += plot_figure(plot) + "\n"; }
+void Page::plot(const Plot& plot) {
+  body_ += plot_figure(plot) + "\n";
+}
 
 void Page::plots(const std::vector<Plot>& plots) {
   body_ += "<div class=\"plots\">";
@@ -167,22 +182,30 @@ void Page::plots(const std::vector<Plot>& plots) {
   body_ += "</div>\n";
 }
 
-void Page::heat_strip(const HeatStrip& strip) { body_ += metric::html(strip) + "\n"; }
+void Page::heat_strip(const HeatStrip& strip) {
+  body_ += metric::html(strip) + "\n";
+}
 
 void Page::colour_scale(const ColourScale& scale) {
   std::string ramp, ticks;
   for (const auto& colour : scale.colours) ramp += (ramp.empty() ? "" : ",") + escape(colour);
   for (const auto& tick : scale.ticks) ticks += "<span>" + escape(tick) + "</span>";
   body_ += "<div class=\"scale\">" + escape(scale.label) + (scale.unit.empty() ? "" : " / " + escape(scale.unit)) +
-           "<div class=\"ramp\" style=\"background:linear-gradient(to right," + ramp + ")\"></div><div class=\"ticks\">" + ticks +
-           "</div></div>\n";
+           "<div class=\"ramp\" style=\"background:linear-gradient(to right," + ramp +
+           ")\"></div><div class=\"ticks\">" + ticks + "</div></div>\n";
 }
 
-void Page::open_details(std::string_view summary) { body_ += "<details><summary>" + escape(summary) + "</summary>\n"; }
+void Page::open_details(std::string_view summary) {
+  body_ += "<details><summary>" + escape(summary) + "</summary>\n";
+}
 
-void Page::close_details() { body_ += "</details>\n"; }
+void Page::close_details() {
+  body_ += "</details>\n";
+}
 
-void Page::footer(std::string_view text) { footer_ += "<p>" + escape(text) + "</p>"; }
+void Page::footer(std::string_view text) {
+  footer_ += "<p>" + escape(text) + "</p>";
+}
 
 std::string Page::html() const {
   std::string navigation;
@@ -195,10 +218,11 @@ std::string Page::html() const {
          "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
          "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
-         "<title>" + escape(title_) + "</title>\n<style>" + std::string(page_style) + "</style></head>\n<body>" + head_ +
+         "<title>" +
+         escape(title_) + "</title>\n<style>" + std::string(page_style) + "</style></head>\n<body>" + head_ +
          navigation + "<main>" + body_ + (in_section_ ? "</section>" : "") + "</main>\n" +
-         (footer_.empty() ? std::string() : "<footer>" + footer_ + "</footer>\n") + "<script>" + std::string(page_script) +
-         "</script></body></html>\n";
+         (footer_.empty() ? std::string() : "<footer>" + footer_ + "</footer>\n") + "<script>" +
+         std::string(page_script) + "</script></body></html>\n";
 }
 
 }  // namespace gonio::metric

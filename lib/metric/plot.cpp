@@ -30,16 +30,21 @@ constexpr std::array<const char*, 4> dashes{"", " stroke-dasharray=\"7 4\"", " s
 std::size_t style(const Plot& plot, std::size_t series) {
   return plot.series[series].style < 0 ? series : static_cast<std::size_t>(plot.series[series].style);
 }
-std::string colour_class(std::size_t series) { return print("c%d", static_cast<int>(series) % colours); }
-const char* dash(std::size_t series) { return dashes[series % dashes.size()]; }
+std::string colour_class(std::size_t series) {
+  return print("c%d", static_cast<int>(series) % colours);
+}
+const char* dash(std::size_t series) {
+  return dashes[series % dashes.size()];
+}
 
 // Circle, square, diamond, triangle: told apart without colour.
 std::string marker(std::size_t series, double x, double y, double r) {
   switch (series % 4) {
     case 0: return print("<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\"/>", x, y, r);
     case 1: return print("<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\"/>", x - r, y - r, 2 * r, 2 * r);
-    case 2: return print("<path d=\"M%.2f %.2fl%.2f %.2fl%.2f %.2fl%.2f %.2fz\"/>", x, y - 1.3 * r, 1.3 * r, 1.3 * r, -1.3 * r,
-                         1.3 * r, -1.3 * r, -1.3 * r);
+    case 2:
+      return print("<path d=\"M%.2f %.2fl%.2f %.2fl%.2f %.2fl%.2f %.2fz\"/>", x, y - 1.3 * r, 1.3 * r, 1.3 * r,
+                   -1.3 * r, 1.3 * r, -1.3 * r, -1.3 * r);
     default: return print("<path d=\"M%.2f %.2fl%.2f %.2fl%.2f 0z\"/>", x, y - 1.3 * r, 1.25 * r, 2.2 * r, -2.5 * r);
   }
 }
@@ -61,10 +66,12 @@ std::string frame(const Plot& plot, const Drawing& d) {
   for (const double tick : d.x.ticks(7)) {
     const double at = d.x.place(tick);
     axis += print("M%.2f %.2fv5", at, floor);
-    labels += print("<text x=\"%.2f\" y=\"%.2f\" text-anchor=\"middle\">", at, floor + 19) + d.x.label(tick) + "</text>";
+    labels +=
+        print("<text x=\"%.2f\" y=\"%.2f\" text-anchor=\"middle\">", at, floor + 19) + d.x.label(tick) + "</text>";
   }
   labels += print("<text x=\"%.0f\" y=\"14\">", 0.0) + escape(plot.y_label) + "</text>";
-  labels += print("<text x=\"%.0f\" y=\"%.2f\" text-anchor=\"end\">", width - right, floor + 38) + escape(plot.x_label) + "</text>";
+  labels += print("<text x=\"%.0f\" y=\"%.2f\" text-anchor=\"end\">", width - right, floor + 38) +
+            escape(plot.x_label) + "</text>";
   return "<path class=\"grid\" d=\"" + grid + "\"/><path class=\"axis\" d=\"" + axis + "\"/>" + labels;
 }
 
@@ -92,7 +99,8 @@ std::string points(const Series& s, std::size_t n, const Drawing& d) {
     errors += print("M%.2f %.2fV%.2f", x, low, d.y.place(s.y[i] + s.sigma[i]));
   }
   const std::string colour = colour_class(n);
-  return "<path class=\"error " + colour + "\" d=\"" + errors + "\"/><g class=\"" + colour + "\" stroke=\"none\">" + dots + "</g>";
+  return "<path class=\"error " + colour + "\" d=\"" + errors + "\"/><g class=\"" + colour + "\" stroke=\"none\">" +
+         dots + "</g>";
 }
 
 std::string bars(const Series& s, std::size_t n, const Drawing& d) {
@@ -101,7 +109,8 @@ std::string bars(const Series& s, std::size_t n, const Drawing& d) {
   const double zero = d.y.shows(0) ? std::min(d.y.place(0), floor) : floor;
   for (std::size_t i = 0; i < s.y.size() && i + 1 < s.edges.size(); ++i) {
     if (!d.y.shows(s.y[i]) || s.y[i] == 0 || !d.x.shows(s.edges[i]) || !d.x.shows(s.edges[i + 1])) continue;
-    path += print("M%.2f %.2fV%.2fH%.2fV%.2fz", d.x.place(s.edges[i]), zero, d.y.place(s.y[i]), d.x.place(s.edges[i + 1]), zero);
+    path += print("M%.2f %.2fV%.2fH%.2fV%.2fz", d.x.place(s.edges[i]), zero, d.y.place(s.y[i]),
+                  d.x.place(s.edges[i + 1]), zero);
   }
   return "<path class=\"bars " + colour_class(n) + "\" d=\"" + path + "\"/>";
 }
@@ -134,12 +143,15 @@ std::string draw(const Mark& mark, const Drawing& d) {
   const double at = on_x ? d.x.place(mark.at) : d.y.place(mark.at);
   if (on_x) {
     const bool crowded = at > width - right - 90;
-    return print("<path class=\"mark\" d=\"M%.2f %.0fV%.2f\"/><text class=\"mark-name\" x=\"%.2f\" y=\"%.0f\"%s>", at, top,
-                 d.height - bottom, crowded ? at - 5 : at + 5, top + 10, crowded ? " text-anchor=\"end\"" : "") +
+    return print("<path class=\"mark\" d=\"M%.2f %.0fV%.2f\"/><text class=\"mark-name\" x=\"%.2f\" y=\"%.0f\"%s>", at,
+                 top, d.height - bottom, crowded ? at - 5 : at + 5, top + 10, crowded ? " text-anchor=\"end\"" : "") +
            escape(mark.name) + "</text>";
   }
-  return print("<path class=\"mark\" d=\"M%.0f %.2fH%.0f\"/><text class=\"mark-name\" x=\"%.0f\" y=\"%.2f\" text-anchor=\"end\">",
-               left, at, width - right, width - right, at - 5) + escape(mark.name) + "</text>";
+  return print(
+             "<path class=\"mark\" d=\"M%.0f %.2fH%.0f\"/><text class=\"mark-name\" x=\"%.0f\" y=\"%.2f\" "
+             "text-anchor=\"end\">",
+             left, at, width - right, width - right, at - 5) +
+         escape(mark.name) + "</text>";
 }
 
 }  // namespace
@@ -147,14 +159,17 @@ std::string draw(const Mark& mark, const Drawing& d) {
 std::string svg(const Plot& plot) {
   const PlotRanges range = ranges(plot);
   const double inner_width = width - left - right;
-  const double height = plot.equal_scales ? top + bottom + inner_width * (range.y.second - range.y.first) /
-                                                               (range.x.second - range.x.first)
-                                          : plain_height;
+  const double height =
+      plot.equal_scales
+          ? top + bottom + inner_width * (range.y.second - range.y.first) / (range.x.second - range.x.first)
+          : plain_height;
   const double floor = height - bottom;
-  const Drawing d{PlotAxis(range.x, plot.log_x, left, width - right),
-                  plot.equal_scales ? PlotAxis(range.y, plot.log_y, top, floor) : PlotAxis(range.y, plot.log_y, floor, top), height};
-  std::string text = print("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\" aria-label=\"", width, height) + escape(plot.title) + "\">" +
-                     frame(plot, d);
+  const Drawing d{
+      PlotAxis(range.x, plot.log_x, left, width - right),
+      plot.equal_scales ? PlotAxis(range.y, plot.log_y, top, floor) : PlotAxis(range.y, plot.log_y, floor, top),
+      height};
+  std::string text = print("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\" aria-label=\"", width, height) +
+                     escape(plot.title) + "\">" + frame(plot, d);
   for (std::size_t n = 0; n < plot.series.size(); ++n) text += draw(plot.series[n], style(plot, n), d);
   for (const auto& mark : plot.marks) text += draw(mark, d);
   return text + "</svg>";
@@ -173,7 +188,8 @@ std::string legend(const Plot& plot) {
     else if (s.kind == Series::Kind::points)
       sample = "<g class=\"" + colour + "\" stroke=\"none\">" + marker(n, 13, 6, 4) + "</g>";
     else
-      sample = std::string("<path class=\"") + (s.kind == Series::Kind::band ? "band " : "bars ") + colour + "\" d=\"M4 0H22V12H4z\"/>";
+      sample = std::string("<path class=\"") + (s.kind == Series::Kind::band ? "band " : "bars ") + colour +
+               "\" d=\"M4 0H22V12H4z\"/>";
     text += "<span><svg viewBox=\"0 0 26 12\" aria-hidden=\"true\">" + sample + "</svg>" + escape(s.name) + "</span>";
   }
   return text.empty() ? text : "<div class=\"legend\">" + text + "</div>";
@@ -200,7 +216,8 @@ std::string html(const HeatStrip& strip) {
     }
     text += "</tr>";
   }
-  text += "</tbody></table></div><figcaption>" + escape(strip.label + (strip.caption.empty() ? "" : ". " + strip.caption));
+  text +=
+      "</tbody></table></div><figcaption>" + escape(strip.label + (strip.caption.empty() ? "" : ". " + strip.caption));
   return text + "</figcaption></figure>";
 }
 

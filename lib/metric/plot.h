@@ -1,8 +1,10 @@
-// Plots as inline SVG: lines, points with error bars, histograms, bands, and strips of heat, with axes, ticks and a legend.
+// Plots as inline SVG: lines, points with error bars, histograms, bands, and strips of heat, with axes, ticks and a
+// legend.
 //
-// Coordinates are the data's; labels carry quantity and unit ("image radius / px"). Colours are classes of the page's style
-// (page_style.cpp), so that a plot follows light and dark; series also differ by dash and by the shape of the marker, so that
-// they stay distinct without colour. NaN and infinities are gaps. The text of a drawing depends on the data alone.
+// Coordinates are the data's; labels carry quantity and unit ("image radius / px"). Colours are classes of the page's
+// style (page_style.cpp), so that a plot follows light and dark; series also differ by dash and by the shape of the
+// marker, so that they stay distinct without colour. NaN and infinities are gaps. The text of a drawing depends on the
+// data alone.
 #pragma once
 #include <string>
 #include <utility>
@@ -13,13 +15,13 @@ namespace gonio::metric {
 struct Series {
   enum class Kind { line, points, bars, band };
   Kind kind = Kind::line;
-  std::string name{};               // in the legend; empty: not in the legend
+  std::string name{};  // in the legend; empty: not in the legend
   std::vector<double> x{}, y{};
-  std::vector<double> sigma{};      // points: bars of one sigma; band: half width; empty: none
-  std::vector<double> edges{};      // bars: one more than y
-  int style = -1;                   // colour, dash and marker; series that belong together share one; -1: by place in the list
+  std::vector<double> sigma{};  // points: bars of one sigma; band: half width; empty: none
+  std::vector<double> edges{};  // bars: one more than y
+  int style = -1;  // colour, dash and marker; series that belong together share one; -1: by place in the list
 };
-struct Mark {                       // a reference line with a word beside it
+struct Mark {  // a reference line with a word beside it
   enum class Axis { x, y };
   Axis axis = Axis::x;
   double at = 0;
@@ -38,18 +40,19 @@ struct Plot {
 };
 // A row of cells, one per named thing: share of an effect, correlation between hypotheses, residual per recording.
 struct HeatStrip {
-  std::string title, caption, label;        // label: what the colour means, with its unit
+  std::string title, caption, label;  // label: what the colour means, with its unit
   std::vector<std::string> columns, rows;
-  std::vector<double> values;               // rows x columns, row-major
-  bool diverging = false;                   // colours centred on zero
-  double limit = 0;                         // full colour; 0: the largest magnitude
+  std::vector<double> values;  // rows x columns, row-major
+  bool diverging = false;      // colours centred on zero
+  double limit = 0;            // full colour; 0: the largest magnitude
 };
 
-std::string svg(const Plot& plot);       // <svg ...>...</svg>
-std::string legend(const Plot& plot);    // HTML, empty where no series has a name
+std::string svg(const Plot& plot);     // <svg ...>...</svg>
+std::string legend(const Plot& plot);  // HTML, empty where no series has a name
 std::string html(const HeatStrip& strip);
 
-// Steps of 1, 2 or 5 times a power of ten that cut [lower, upper] into at most `most` pieces: the tick positions inside it.
+// Steps of 1, 2 or 5 times a power of ten that cut [lower, upper] into at most `most` pieces: the tick positions inside
+// it.
 std::vector<double> tick_positions(double lower, double upper, int most);
 std::vector<double> log_tick_positions(double lower, double upper, int most);
 

@@ -41,7 +41,8 @@ void add_series(const Series& series, Extent& x, Extent& y) {
 }
 
 std::string with_minus(std::string text) {  // U+2212, as wide as a digit
-  for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at + 3)) text.replace(at, 1, "\u2212");
+  for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at + 3))
+    text.replace(at, 1, "\u2212");
   return text;
 }
 
@@ -67,8 +68,9 @@ std::vector<double> log_tick_positions(double lower, double upper, int most) {
   const double decades = std::log10(upper / lower);
   std::vector<double> ticks;
   const double stride = std::max(1.0, std::ceil(decades / most));
-  const std::vector<double> factors = decades < 1.2 ? std::vector{1.0, 2.0, 3.0, 5.0}
-                                      : decades < 2.5 ? std::vector{1.0, 3.0} : std::vector{1.0};
+  const std::vector<double> factors = decades < 1.2   ? std::vector{1.0, 2.0, 3.0, 5.0}
+                                      : decades < 2.5 ? std::vector{1.0, 3.0}
+                                                      : std::vector{1.0};
   for (double e = std::floor(std::log10(lower)); e <= std::ceil(std::log10(upper)); ++e) {
     if (std::fmod(std::abs(e), stride) != 0) continue;
     for (const double factor : factors) {
@@ -85,7 +87,9 @@ PlotAxis::PlotAxis(std::pair<double, double> range, bool logarithmic, double beg
   if (positions.size() > 1) step_ = positions[1] - positions[0];
 }
 
-bool PlotAxis::shows(double v) const { return std::isfinite(v) && (!logarithmic_ || v > 0); }
+bool PlotAxis::shows(double v) const {
+  return std::isfinite(v) && (!logarithmic_ || v > 0);
+}
 
 double PlotAxis::place(double v) const {
   const double share = logarithmic_ ? std::log(v / range_.first) / std::log(range_.second / range_.first)

@@ -1,4 +1,5 @@
-// Measures against pairs whose differences are known: null pairs, injected differences, masks, NaN. False-alarm rates are stated.
+// Measures against pairs whose differences are known: null pairs, injected differences, masks, NaN. False-alarm rates
+// are stated.
 #include "metric/comparison.h"
 
 #include <gmock/gmock.h>
@@ -14,7 +15,9 @@
 namespace gonio::metric {
 namespace {
 
-double truth(int x, int y, int c) { return 0.2 + 0.15 * std::sin(0.05 * x + c) * std::cos(0.07 * y); }
+double truth(int x, int y, int c) {
+  return 0.2 + 0.15 * std::sin(0.05 * x + c) * std::cos(0.07 * y);
+}
 
 LinearPicture picture(int width, int height, bool variance) {
   LinearPicture p;
@@ -35,7 +38,8 @@ Overlay null_pair(int side, double scale, std::uint64_t seed) {
   Random random(seed);
   for (std::size_t i = 0; i < photograph.colour.data.size(); ++i) {
     const double v = photograph.colour.data[i];
-    photograph.colour.data[i] = static_cast<float>(v + std::sqrt(v / noise.gain + noise.read * noise.read) * random.normal());
+    photograph.colour.data[i] =
+        static_cast<float>(v + std::sqrt(v / noise.gain + noise.read * noise.read) * random.normal());
     const double variance = 4e-5 * v * v / (scale * scale);
     rendering.colour.data[i] = static_cast<float>(v / scale + std::sqrt(variance) * random.normal());
     rendering.variance.data[i] = static_cast<float>(variance);
@@ -46,13 +50,14 @@ Overlay null_pair(int side, double scale, std::uint64_t seed) {
 TEST(Comparison, NullPairsHaveTheTailsOfTheNormalLaw) {
   const Measures m = measure(null_pair(1000, 1, 7), {});
   ASSERT_TRUE(m.z_rms && m.z_above_3);
-  EXPECT_NEAR(m.z_rms->value, 1, 0.003);          // 3 million samples: 7 standard errors
+  EXPECT_NEAR(m.z_rms->value, 1, 0.003);            // 3 million samples: 7 standard errors
   EXPECT_NEAR(m.z_above_3->value, 0.0027, 0.0005);  // 0.27 +- 0.05 %: 17 standard errors
   EXPECT_LT(std::abs(m.z_above_3->value - 0.0027), 5 * m.z_above_3->sigma);
 }
 
 TEST(Comparison, NoVarianceNoZ) {
-  const Measures m = measure(lay_over("pair", picture(64, 64, false), picture(64, 64, true), nullptr, Channels::all, {}), {});
+  const Measures m =
+      measure(lay_over("pair", picture(64, 64, false), picture(64, 64, true), nullptr, Channels::all, {}), {});
   EXPECT_FALSE(m.z_rms);
   EXPECT_TRUE(m.rmse);
 }
@@ -62,8 +67,10 @@ TEST(Comparison, RecoversInjectedDifferences) {
   double square = 0;
   for (const float v : rendering.colour.data) square += double{v} * v;
   const double rms = std::sqrt(square / static_cast<double>(rendering.colour.data.size()));
-  for (std::size_t i = 0; i < rendering.colour.data.size(); ++i) rendering.colour.data[i] += i % 2 == 0 ? 0.01f : -0.01f;
-  const Measures m = measure(lay_over("pair", picture(96, 80, false), std::move(rendering), nullptr, Channels::all, {}), {});
+  for (std::size_t i = 0; i < rendering.colour.data.size(); ++i)
+    rendering.colour.data[i] += i % 2 == 0 ? 0.01f : -0.01f;
+  const Measures m =
+      measure(lay_over("pair", picture(96, 80, false), std::move(rendering), nullptr, Channels::all, {}), {});
   EXPECT_NEAR(m.rmse->value, 0.01, 1e-6);
   EXPECT_NEAR(m.relative_rmse->value, 0.01 / rms, 1e-5);
   EXPECT_NEAR(m.log10_error->value, -2, 1e-5);
@@ -72,14 +79,16 @@ TEST(Comparison, RecoversInjectedDifferences) {
 }
 
 TEST(Comparison, OfEqualPicturesIsPerfect) {
-  const Measures m = measure(lay_over("pair", picture(64, 64, false), picture(64, 64, false), nullptr, Channels::all, {}), {});
+  const Measures m =
+      measure(lay_over("pair", picture(64, 64, false), picture(64, 64, false), nullptr, Channels::all, {}), {});
   EXPECT_EQ(m.rmse->value, 0);
   EXPECT_NEAR(m.ssim->value, 1, 1e-6);
   EXPECT_NEAR(m.log10_error->value, std::log10(m.log_floor), 1e-9);
 }
 
-// The jackknife's sigma of RMSE against the spread of 60 repetitions, with errors that are alike over 4 x 4 pixels and three
-// channels: single samples taken as witnesses would state a sigma seven times too small. The ratio's standard error is 10 %.
+// The jackknife's sigma of RMSE against the spread of 60 repetitions, with errors that are alike over 4 x 4 pixels and
+// three channels: single samples taken as witnesses would state a sigma seven times too small. The ratio's standard
+// error is 10 %.
 TEST(Comparison, StandardErrorsAreHonestWhereNeighboursErrTogether) {
   constexpr int repetitions = 60, side = 96;
   double sum = 0, squares = 0, stated = 0;
@@ -91,7 +100,8 @@ TEST(Comparison, StandardErrorsAreHonestWhereNeighboursErrTogether) {
         const auto error = static_cast<float>(0.01 * random.normal());
         for (int i = 0; i < 48; ++i) rendering.colour.at(x + i % 4, y + i / 4 % 4, i / 16) += error;
       }
-    const Measures m = measure(lay_over("pair", picture(side, side, false), std::move(rendering), nullptr, Channels::all, {}), {});
+    const Measures m =
+        measure(lay_over("pair", picture(side, side, false), std::move(rendering), nullptr, Channels::all, {}), {});
     sum += m.rmse->value;
     squares += m.rmse->value * m.rmse->value;
     stated += m.rmse->sigma / repetitions;
@@ -100,8 +110,8 @@ TEST(Comparison, StandardErrorsAreHonestWhereNeighboursErrTogether) {
   EXPECT_NEAR(stated / spread, 1, 0.4);
 }
 
-// 95 % intervals of the exposure scale over 400 pairs: coverage has a standard error of 1.1 %, so that 90 to 98 % is missed by an
-// honest interval about once in a thousand.
+// 95 % intervals of the exposure scale over 400 pairs: coverage has a standard error of 1.1 %, so that 90 to 98 % is
+// missed by an honest interval about once in a thousand.
 TEST(Exposure, IntervalsCoverTheTruth) {
   int covered = 0;
   for (std::uint64_t k = 0; k < 400; ++k) {
@@ -156,7 +166,8 @@ TEST(Comparison, NotANumberAlwaysFails) {
 
       Mask mask{32, 32, std::vector<std::uint8_t>(32 * 32, 1)};
       mask.counts[4 * 32 + 9] = 0;  // masked out, it is nobody's business
-      EXPECT_TRUE(violations(measure(lay_over("pair", photograph, rendering, &mask, Channels::all, {}), {}), {}).empty());
+      EXPECT_TRUE(
+          violations(measure(lay_over("pair", photograph, rendering, &mask, Channels::all, {}), {}), {}).empty());
     }
 }
 
@@ -168,7 +179,8 @@ TEST(Comparison, CountsOnlyWhatTheMaskCounts) {
       mask.counts[static_cast<std::size_t>(40 * y + x)] = x < 20;
       if (x >= 20) rendering.colour.at(x, y, 0) += 1;
     }
-  const Measures m = measure(lay_over("pair", picture(40, 40, false), std::move(rendering), &mask, Channels::all, {}), {});
+  const Measures m =
+      measure(lay_over("pair", picture(40, 40, false), std::move(rendering), &mask, Channels::all, {}), {});
   EXPECT_EQ(m.pixels, 800);
   EXPECT_EQ(m.rmse->value, 0);
 }
@@ -188,7 +200,8 @@ TEST(Comparison, GreyAgainstColourIsLuminance) {
   LinearPicture grey = picture(16, 16, false);
   io::Image y(16, 16, {"Y"});
   for (std::size_t p = 0; p < y.pixels(); ++p)
-    y.data[p] = 0.2126f * grey.colour.data[3 * p] + 0.7152f * grey.colour.data[3 * p + 1] + 0.0722f * grey.colour.data[3 * p + 2];
+    y.data[p] = 0.2126f * grey.colour.data[3 * p] + 0.7152f * grey.colour.data[3 * p + 1] +
+                0.0722f * grey.colour.data[3 * p + 2];
   grey.colour = y;
   const Measures m = measure(lay_over("pair", grey, picture(16, 16, false), nullptr, Channels::all, {}), {});
   EXPECT_NEAR(m.rmse->value, 0, 1e-7);

@@ -34,16 +34,17 @@ TEST(PageInABrowser, RunsItsScriptAndMovesTheDivider) {
   page.slider({.png = flat_png(0.2f), .title = "Dark"}, {.png = flat_png(0.8f), .title = "Bright"}, "drag");
   page.plot({.title = "p", .series = {{.x = {1, 2}, .y = {3, 4}}}});
   std::string html = page.html();
-  const std::string probe = "<script>const r=document.querySelector('.pair-frame input');r.value=250;"
-                            "r.dispatchEvent(new Event('input'));document.body.dataset.loaded="
-                            "[...document.images].filter(i=>i.complete&&i.naturalWidth===8).length;</script></body>";
+  const std::string probe =
+      "<script>const r=document.querySelector('.pair-frame input');r.value=250;"
+      "r.dispatchEvent(new Event('input'));document.body.dataset.loaded="
+      "[...document.images].filter(i=>i.complete&&i.naturalWidth===8).length;</script></body>";
   html.replace(html.find("</body>"), 7, probe);
   const tests::ScratchFolder folder;
   std::ofstream(folder / "page.html") << html;
   tests::Process chromium({browser(), "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
                            "--disable-background-networking", "--disable-component-update", "--disable-sync",
-                           "--user-data-dir=" + (folder / "profile").string(), "--virtual-time-budget=2000", "--dump-dom",
-                           "file://" + (folder / "page.html").string()});
+                           "--user-data-dir=" + (folder / "profile").string(), "--virtual-time-budget=2000",
+                           "--dump-dom", "file://" + (folder / "page.html").string()});
   const tests::Ended ended = chromium.end();
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("data-ready=\"1 pairs\""));

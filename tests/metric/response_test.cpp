@@ -8,7 +8,9 @@
 namespace gonio::metric {
 namespace {
 
-manifest::Value table() { return manifest::parse_json("[[0, 0.1], [0.5, 0.2], [1, 1]]", "table"); }
+manifest::Value table() {
+  return manifest::parse_json("[[0, 0.1], [0.5, 0.2], [1, 1]]", "table");
+}
 
 TEST(Response, TablesAreInterpolatedAndEndAtTheirEnds) {
   const Response response(table(), "here");
