@@ -225,8 +225,10 @@ const std::vector<Field<Comparison>>& comparison_fields() {
       field("rmse", &Comparison::rmse, "", "root mean square difference, in the recording's unit"),
       field("relative_rmse", &Comparison::relative_rmse, "", "rmse over the root mean square of the recording"),
       field("ssim", &Comparison::ssim, "", "mean structural similarity (Wang et al. 2004)"),
-      field("log10_error", &Comparison::log10_error, "", "see compare(1)"),
+      field("log10_error", &Comparison::log10_error, "", "mean of log10 |difference|, floor 1e-4 of the recording's rms"),
       field("z_rms", &Comparison::z_rms, "", "root mean square of difference over its standard deviation"),
+      field("z_above_3", &Comparison::z_above_3, "", "share of samples more than three standard deviations off"),
+      field("not_finite", &Comparison::not_finite, "", "pixels with a NaN or an infinity; every measure is then left out"),
       field("pixels", &Comparison::pixels, "", "pixels that counted"),
       sigma_field(&Comparison::sigma),
       field("files", &Comparison::files, "", "file ids of what was written beside it")};
