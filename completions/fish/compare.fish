@@ -21,6 +21,7 @@ complete -c compare -l output -s o -r -d 'Where the manifest goes instead of sta
 complete -c compare -l out -r -d 'Folder for the files that are written; made where it is missing.'
 complete -c compare -l allow-outside -d 'Let the manifest name files outside its own folder.'
 complete -c compare -l force -d 'Replace files that exist.'
+complete -c compare -l stamp -d 'Record time and host beside the provenance; without it, same inputs give the same bytes.'
 complete -c compare -l depfile -r -d 'Write the files that were read as a make rule.'
 complete -c compare -l threads -x -d 'Threads to use; 0: all there are. Results do not depend on it.'
 complete -c compare -l progress -x -a 'auto always never' -d 'A bar with the time to go: auto shows it on a terminal only.'

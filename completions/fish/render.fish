@@ -13,6 +13,7 @@ complete -c render -l out -r -d 'Folder for the files that are written; made whe
 complete -c render -l allow-outside -d 'Let the manifest name files outside its own folder.'
 complete -c render -l force -d 'Replace files that exist.'
 complete -c render -l seed -x -d 'Of the random numbers; the same seed gives the same bytes.'
+complete -c render -l stamp -d 'Record time and host beside the provenance; without it, same inputs give the same bytes.'
 complete -c render -l depfile -r -d 'Write the files that were read as a make rule.'
 complete -c render -l threads -x -d 'Threads to use; 0: all there are. Results do not depend on it.'
 complete -c render -l progress -x -a 'auto always never' -d 'A bar with the time to go: auto shows it on a terminal only.'
