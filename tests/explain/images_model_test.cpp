@@ -1,0 +1,168 @@
+// The fast simulator against the path tracer, and every mechanism of images injected by the path tracer and asked back:
+// a ball on a table, two cameras, three lamps. Nothing is shared between the two but surfaces, lights and rays.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "base/random.h"
+#include "data.h"
+#include "explain/engine.h"
+#include "explain/images/images_problem.h"
+#include "io/picture.h"
+#include "render/path_tracer.h"
+#include "render/ray_caster.h"
+#include "scene/scene.h"
+
+namespace gonio::explain {
+namespace {
+
+constexpr int side_px = 48;
+constexpr double noise = 0.002;
+
+// `mechanisms`: the section's content. Images 00 .. 12 are two cameras times three lamps.
+std::string manifest_text(const std::string& mechanisms) {
+  std::string files, images, lights;
+  const char* poses[2] = {"[[1,0,0,0],[0,-0.5,0.8660254037844386,-0.5],[0,-0.8660254037844386,-0.5,0.32],[0,0,0,1]]",
+                          "[[0,0.5,-0.8660254037844386,0.5],[1,0,0,0],[0,-0.8660254037844386,-0.5,0.32],[0,0,0,1]]"};
+  const char* places[3] = {"[0.3,-0.3,0.4]", "[-0.35,-0.1,0.45]", "[0.05,0.25,0.5]"};
+  for (int l = 0; l < 3; ++l)
+    lights += std::string(l ? "," : "") + "\"lamp-" + std::to_string(l) +
+              "\":{\"model\":\"point\",\"position_m\":" + places[l] +
+              ",\"watt_per_sr\":{\"value\":[0.6,0.6,0.6],\"free\":true,\"share\":\"lamp\"}}";
+  for (int c = 0; c < 2; ++c)
+    for (int l = 0; l < 3; ++l) {
+      const std::string id = std::to_string(c) + std::to_string(l), comma = c + l ? "," : "";
+      files += comma + "\"" + id + "\":{\"path\":\"" + id + ".exr\"}";
+      images += comma + "{\"id\":\"" + id + "\",\"file\":\"" + id + "\",\"camera\":\"camera\"," +
+                "\"world_from_camera\":{\"matrix\":" + poses[c] + "},\"light\":\"lamp-" + std::to_string(l) +
+                "\",\"noise\":{\"gain\":1e9,\"read\":" + std::to_string(noise) + "}}";
+    }
+  return "{\"gonio\":1,\"files\":{" + files +
+         "},\"cameras\":{\"camera\":{\"width_px\":48,\"height_px\":48,\"fx_px\":85,\"fy_px\":85,\"cx_px\":23.5,\"cy_"
+         "px\":23.5}},"
+         "\"meshes\":{\"ball\":{\"sphere\":{\"radius_m\":0.08}},\"table\":{\"plane\":{\"size_m\":[1.5,1.5]}}},"
+         "\"surfaces\":{\"ball\":{\"model\":\"diffuse\",\"albedo\":{\"value\":[0.5,0.4,0.3],\"free\":true}},"
+         "\"table\":{\"model\":\"diffuse\",\"albedo\":{\"value\":[0.5,0.5,0.5],\"free\":true}}},\"lights\":{" +
+         lights +
+         "},\"objects\":[{\"id\":\"ball\",\"mesh\":\"ball\",\"surface\":\"ball\",\"world_from_object\":{\"rotation\":["
+         "1,0,0,0],"
+         "\"translation_m\":[0,0,0.081]}},{\"id\":\"table\",\"mesh\":\"table\",\"surface\":\"table\"}],\"images\":[" +
+         images + "],\"mechanisms\":{" + mechanisms + "}}";
+}
+
+// Renders the manifest with `truth` switched on, adds noise, and returns the manifest with `believed` instead.
+manifest::Document record(const tests::ScratchFolder& folder, const std::string& truth, const std::string& believed,
+                          int spp, std::uint64_t seed, std::vector<io::Image>* renderings = nullptr) {
+  const manifest::Document full = manifest::parse_document(manifest_text(truth), "truth", folder.path());
+  const scene::Scene scene = scene::build_scene(full);
+  const render::RayCaster caster(scene.instances);
+  render::Options options;
+  options.spp = spp;
+  options.seed = seed;
+  options.geometry = false;
+  for (std::size_t v = 0; v < scene.views.size(); ++v) {
+    const io::Image rendered = render::render(scene, v, caster, options);
+    io::Image picture(side_px, side_px, {"R", "G", "B"});
+    Random random(seed, v);
+    for (std::size_t i = 0; i < picture.pixels(); ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        picture.data[3 * i + c] =
+            rendered.data[i * rendered.channels.size() + c] + static_cast<float>(noise * random.normal());
+    io::write_picture(folder / (full.images[v].file + ".exr"), picture);
+    if (renderings) renderings->push_back(rendered);
+  }
+  return manifest::parse_document(manifest_text(believed), "believed", folder.path());
+}
+
+std::vector<double> neutral_values(const Problem& problem) {
+  std::vector<double> values;
+  for (const Parameter& p : problem.parameters()) values.push_back(p.neutral);
+  return values;
+}
+
+// Mean of z^2 of the pixels when the fast simulator is handed the very parameters that the path tracer rendered; z
+// counts the camera's noise, the fast simulator's variance and the path tracer's own.
+double mean_square(const std::string& mechanisms) {
+  const tests::ScratchFolder folder;
+  std::vector<io::Image> renderings;
+  const images::ImagesProblem problem(record(folder, mechanisms, mechanisms, 1024, 5, &renderings));
+  const Observations& o = problem.observations();
+  double sum = 0;
+  for (std::size_t g = 0; g < o.groups(); ++g) {
+    std::vector<double> f(o.first[g + 1] - o.first[g]);
+    problem.predict(neutral_values(problem), g, f);
+    const char* variances[3] = {"variance.R", "variance.G", "variance.B"};
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      const images::Pixel& pixel =
+          problem.model().cache(problem.recordings().images[g].view).pixels[problem.picked(g)[i / 3]];
+      const std::size_t row = o.first[g] + i;
+      const double traced = renderings[g].at(pixel.x, pixel.y, renderings[g].channel(variances[i % 3]));
+      sum += std::pow(o.value[row] - f[i], 2) / (o.sigma[row] * o.sigma[row] + traced);
+    }
+  }
+  return sum / static_cast<double>(o.rows());
+}
+
+// Some 40 000 values: noise alone would keep the mean within 0.03 of 1 (four standard errors). The rest of the bound is
+// room for what the fast simulator leaves out on purpose: shadow edges between its nodes of the radius, light between
+// surfaces that are not Lambertian.
+TEST(ImagesModel, AgreesWithThePathTracer) {
+  EXPECT_NEAR(mean_square(""), 1, 0.1);
+  EXPECT_NEAR(
+      mean_square(
+          "\"light.finite-size\":{\"radius_m\":0.03},\"light.ambient\":{\"radiance_r\":0.05,\"radiance_g\":0.04,"
+          "\"radiance_b\":0.03}"),
+      1, 0.25);
+  EXPECT_NEAR(mean_square("\"surface.diffuse-roughness\":{\"sigma_rad\":0.4},\"optics.vignetting\":{\"falloff\":0.2}"),
+              1, 0.25);
+}
+
+TEST(ImagesModel, NeutralMechanismsChangeNoBit) {
+  const tests::ScratchFolder folder;
+  const images::ImagesProblem problem(record(folder, "", "", 16, 3));
+  const std::vector<double> values = neutral_values(problem);
+  images::SceneState bare = problem.model().layout().start;
+  for (std::size_t g = 0; g < problem.observations().groups(); ++g) {
+    std::vector<double> with(3 * problem.picked(g).size()), without(with.size());
+    problem.predict(values, g, with);
+    problem.model().predict(bare, g, problem.picked(g), without);
+    EXPECT_EQ(with, without);
+  }
+}
+
+struct Injected {
+  const char* id;
+  const char* truth;
+  const char* believed;
+};
+class ImagesInjected : public testing::TestWithParam<Injected> {};
+
+TEST_P(ImagesInjected, IsNamed) {
+  const tests::ScratchFolder folder;
+  const images::ImagesProblem problem(record(folder, GetParam().truth, GetParam().believed, 256, 7));
+  const Explanation e = explain(problem, Options{});
+  ASSERT_FALSE(e.named.empty()) << verdict_name(e.verdict) << ": " << e.sentence;
+  EXPECT_EQ(problem.candidates()[e.named[0]].id(), GetParam().id) << e.sentence;
+  EXPECT_LT(e.held_out_after, e.held_out_before);
+}
+INSTANTIATE_TEST_SUITE_P(
+    Mechanisms, ImagesInjected,
+    testing::Values(
+        Injected{"light.ambient", R"("light.ambient":{"radiance_r":0.05,"radiance_g":0.05,"radiance_b":0.05})", ""},
+        Injected{"light.finite-size", R"("light.finite-size":{"radius_m":0.04})", ""},
+        Injected{"optics.vignetting", R"("optics.vignetting":{"falloff":0.2})", ""},
+        Injected{"surface.diffuse-roughness", R"("surface.diffuse-roughness":{"on":["ball"],"sigma_rad":0.5})", ""},
+        Injected{"surface.interface", R"("surface.interface":{"on":["ball"],"f0":0.05,"alpha":0.2})", ""},
+        Injected{"transport.indirect", "", R"("transport.indirect":{"strength":0})"}));
+
+TEST(ImagesModel, NothingInjectedNothingNamed) {
+  for (const std::uint64_t seed : {11, 12, 13}) {
+    const tests::ScratchFolder folder;
+    const images::ImagesProblem problem(record(folder, "", "", 256, seed));
+    EXPECT_TRUE(explain(problem, Options{}).named.empty());
+  }
+}
+
+}  // namespace
+}  // namespace gonio::explain
