@@ -33,7 +33,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 13> instead 
 
 void check_column_unit(const std::string& column, const std::string& unit, const std::string& place) {
   std::size_t start = 0;
-  while (start <= unit.size()) {
+  while (!unit.empty() && start <= unit.size()) {  // "": a column of names
     const auto end = std::min(unit.find_first_of(" ./*", start), unit.size());
     std::string atom = unit.substr(start, end - start);
     atom = atom.substr(0, atom.find('^'));

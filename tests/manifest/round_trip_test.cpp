@@ -32,6 +32,18 @@ P pose(Random& random) {
   return p;
 }
 
+void add_things(Document& d, std::size_t i, Random& random) {
+  d.surfaces[name("s", i)].parameters["albedo"] =
+      std::vector<double>{random.uniform(), random.uniform(), random.uniform()};
+  d.lights[name("l", i)].parameters = {
+      {"position_m", std::vector<double>{random.normal(), random.normal(), random.normal()}},
+      {"watt_per_sr", std::vector<double>{1, 2, random.uniform(0, 9)}}};
+  d.meshes[name("m", i)].sphere_radius_m = random.uniform();
+  Object o{.id = name("o", i), .mesh = name("m", i), .surface = name("s", i), .world_from_object = {}};
+  if (random.below(2) == 0) o.world_from_object = pose<Pose<frame::World, frame::Object>>(random);
+  d.objects.push_back(o);
+}
+
 Document document(Random& random) {
   Document d;
   for (std::size_t i = 0; i < 1 + random.below(3); ++i) {
@@ -44,15 +56,7 @@ Document document(Random& random) {
     c.distortion["k1"] = parameter(random, -0.5, 0.5);
     c.sigma["fx_px"] = {random.uniform()};
     d.cameras[name("c", i)] = c;
-    d.surfaces[name("s", i)].parameters["albedo"] =
-        std::vector<double>{random.uniform(), random.uniform(), random.uniform()};
-    d.lights[name("l", i)].parameters = {
-        {"position_m", std::vector<double>{random.normal(), random.normal(), random.normal()}},
-        {"watt_per_sr", std::vector<double>{1, 2, random.uniform(0, 9)}}};
-    d.meshes[name("m", i)].sphere_radius_m = random.uniform();
-    Object o{.id = name("o", i), .mesh = name("m", i), .surface = name("s", i), .world_from_object = {}};
-    if (random.below(2) == 0) o.world_from_object = pose<Pose<frame::World, frame::Object>>(random);
-    d.objects.push_back(o);
+    add_things(d, i, random);
     ImageEntry image;
     image.id = name("i", i);
     image.camera = name("c", i);
