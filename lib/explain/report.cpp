@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "explain/sentence.h"
-#include "metric/page.h"
+#include "report/page.h"
 
 namespace gonio::explain {
 namespace {
 
-using metric::Page;
+using report::Page;
 
 std::string spelled(const std::string& unit) { return unit == "1" ? "" : unit; }
 std::string percent(double share) {  // two digits, and no exponents
@@ -18,9 +18,9 @@ std::string percent(double share) {  // two digits, and no exponents
   return printed(100 * share, std::abs(share) >= 0.995 ? 3 : 2) + " %";
 }
 
-metric::Tone tone_of(Verdict verdict) {
-  if (verdict == Verdict::unknown) return metric::Tone::bad;
-  return verdict == Verdict::named ? metric::Tone::good : metric::Tone::neutral;
+report::Tone tone_of(Verdict verdict) {
+  if (verdict == Verdict::unknown) return report::Tone::bad;
+  return verdict == Verdict::named ? report::Tone::good : report::Tone::neutral;
 }
 
 std::string name_of(const Problem& problem, std::size_t candidate) {
@@ -34,20 +34,20 @@ void key_numbers(Page& page, const Problem& problem, const Explanation& e) {
   const std::string unit = spelled(problem.unit());
   const std::string how = e.test_groups.empty() ? "each " + problem.group_noun() + " left out in turn"
                                                 : std::to_string(e.test_groups.size()) + " " + problem.group_noun() + "s opened once";
-  std::vector<metric::KeyNumber> numbers = {
-      {problem.score_name() + ", base model", printed(e.held_out_before), unit, how, metric::Tone::neutral}};
+  std::vector<report::KeyNumber> numbers = {
+      {problem.score_name() + ", base model", printed(e.held_out_before), unit, how, report::Tone::neutral}};
   if (!e.named.empty())
-    numbers.push_back({"with the named physics", printed(e.held_out_after), unit, how, metric::Tone::good});
+    numbers.push_back({"with the named physics", printed(e.held_out_after), unit, how, report::Tone::good});
   numbers.push_back({"chance of such residuals without a mismatch", printed(e.global_p, 2), "",
-                     e.significant ? "a mismatch is there" : "no mismatch beyond noise", metric::Tone::neutral});
+                     e.significant ? "a mismatch is there" : "no mismatch beyond noise", report::Tone::neutral});
   numbers.push_back({"dummies that passed for physics", percent(e.false_alarm), "", "of " + std::to_string(e.dummies),
-                     metric::Tone::neutral});
+                     report::Tone::neutral});
   page.key_numbers(numbers);
 }
 
 void parameters(Page& page, const Problem& problem, const Explanation& e) {
   if (e.estimates.empty()) return;
-  metric::TableText table{
+  report::TableText table{
       "What was fitted", {{"parameter", "", false}, {"value", ""}, {"95 % interval", "", false}, {"unit", "", false}}, {}};
   for (const Estimate& x : e.estimates)
     table.rows.push_back({problem.parameters()[x.parameter].name, printed(x.value, 4),
@@ -57,10 +57,10 @@ void parameters(Page& page, const Problem& problem, const Explanation& e) {
 
 void where(Page& page, const Problem& problem, const Explanation& e, const Illustration& illustration) {
   page.section("Where");
-  std::vector<metric::Figure> figures;
+  std::vector<report::Figure> figures;
   for (const Picture& p : illustration.pictures) figures.push_back({p.png, p.svg, p.title, "", 0});
   if (!figures.empty()) page.figures(figures);
-  metric::HeatStrip strip;
+  report::HeatStrip strip;
   strip.title = "Which " + problem.group_noun() + "s hold the excess over noise";
   strip.label = "share of the excess";
   strip.rows = {""};
@@ -72,20 +72,20 @@ void where(Page& page, const Problem& problem, const Explanation& e, const Illus
   page.heat_strip(strip);
 }
 
-metric::Plot curve_plot(const LocatedCondition& c, bool named) {
-  metric::Plot plot;
+report::Plot curve_plot(const LocatedCondition& c, bool named) {
+  report::Plot plot;
   plot.title = "Residual over " + c.name;
   plot.caption = "A free curve over it explains " + percent(c.share) + " of the excess; most of it between " + printed(c.lower, 2) +
                  " and " + printed(c.upper, 2) + " " + spelled(c.unit) + ".";
   plot.x_label = c.name + (spelled(c.unit).empty() ? "" : " / " + c.unit);
   plot.y_label = "mean residual" + (spelled(c.curve.value_unit).empty() ? "" : " / " + c.curve.value_unit);
   plot.zero_y = true;
-  metric::Series before{metric::Series::Kind::points, "base model", c.curve.centre, c.curve.before, c.curve.sigma, {}, 0};
-  metric::Series line{metric::Series::Kind::line, "", c.curve.centre, c.curve.before, {}, {}, 0};
+  report::Series before{report::Series::Kind::points, "base model", c.curve.centre, c.curve.before, c.curve.sigma, {}, 0};
+  report::Series line{report::Series::Kind::line, "", c.curve.centre, c.curve.before, {}, {}, 0};
   plot.series = {line, before};
   if (!named) return plot;
-  plot.series.push_back({metric::Series::Kind::line, "", c.curve.centre, c.curve.after, {}, {}, 1});
-  plot.series.push_back({metric::Series::Kind::points, "with the named physics", c.curve.centre, c.curve.after, c.curve.sigma, {}, 1});
+  plot.series.push_back({report::Series::Kind::line, "", c.curve.centre, c.curve.after, {}, {}, 1});
+  plot.series.push_back({report::Series::Kind::points, "with the named physics", c.curve.centre, c.curve.after, c.curve.sigma, {}, 1});
   return plot;
 }
 
@@ -93,7 +93,7 @@ void which_curve(Page& page, const Explanation& e) {
   if (e.conditions.empty()) return;
   page.section("Which curve");
   page.paragraph("Residuals in bins of equal counts, with their standard errors, over the conditions that tell most.");
-  std::vector<metric::Plot> plots;
+  std::vector<report::Plot> plots;
   for (std::size_t k = 0; k < std::min<std::size_t>(2, e.conditions.size()); ++k)
     plots.push_back(curve_plot(e.conditions[k], !e.named.empty()));
   page.plots(plots);
@@ -101,7 +101,7 @@ void which_curve(Page& page, const Explanation& e) {
 
 void scoreboard(Page& page, const Problem& problem, const Explanation& e) {
   const std::string unit = spelled(problem.unit());
-  metric::TableText table{"Hypotheses on held-out " + problem.group_noun() + "s, best first",
+  report::TableText table{"Hypotheses on held-out " + problem.group_noun() + "s, best first",
                           {{"hypothesis", "", false},
                            {"held-out score", unit},
                            {"gain", "noise variances"},
@@ -122,7 +122,7 @@ void scoreboard(Page& page, const Problem& problem, const Explanation& e) {
 }
 
 void isolability(Page& page, const Problem& problem, const Explanation& e) {
-  metric::TableText table{"What these recordings could show at all",
+  report::TableText table{"What these recordings could show at all",
                           {{"mechanism", "", false}, {"survives the free parameters", ""}, {"smallest amplitude seen", "", false},
                            {"looks like", "", false}},
                           {}};
@@ -145,7 +145,7 @@ void compensation(Page& page, const Problem& problem, const Explanation& e) {
   if (e.compensation.empty()) return;
   page.section("What the missing physics had bent");
   page.paragraph("Free parameters of the base model before and after the named physics was put in.");
-  metric::TableText table{"", {{"parameter", "", false}, {"before", ""}, {"after", ""}, {"sigma", ""}, {"unit", "", false}}, {}};
+  report::TableText table{"", {{"parameter", "", false}, {"before", ""}, {"after", ""}, {"sigma", ""}, {"unit", "", false}}, {}};
   for (std::size_t k = 0; k < std::min<std::size_t>(12, e.compensation.size()); ++k) {
     const Compensation& c = e.compensation[k];
     table.rows.push_back({problem.parameters()[c.parameter].name, printed(c.before, 5), printed(c.after, 5), printed(c.sigma, 2),

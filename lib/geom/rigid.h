@@ -22,7 +22,8 @@ Vec3 rotation_vector_of(const Quaternion& q);         // angle in [0, pi]
 
 namespace frame {
 struct World {};
-struct Base {};
+struct Rig {};   // several cameras held together; the frame of the first
+struct Base {};  // of a robot
 struct Tool {};
 struct Camera {};
 struct Light {};

@@ -26,6 +26,8 @@ void for_each_section(D& d, const Visit& visit) {
   visit("frames", d.frames);
   visit("boards", d.boards);
   visit("cameras", d.cameras);
+  visit("rigs", d.rigs);
+  visit("robots", d.robots);
   visit("images", d.images);
   visit("meshes", d.meshes);
   visit("surfaces", d.surfaces);
@@ -35,6 +37,9 @@ void for_each_section(D& d, const Visit& visit) {
   visit("mechanisms", d.mechanisms);
   visit("renderings", d.renderings);
   visit("comparisons", d.comparisons);
+  visit("mountings", d.mountings);
+  visit("light_positions", d.light_positions);
+  visit("acceptance", d.acceptance);
   visit("explanations", d.explanations);
 }
 
@@ -142,6 +147,9 @@ void check_images(const Document& d) {
     must_exist(d.files, "files", image.mask, at + "/mask");
     must_exist(d.cameras, "cameras", image.camera, at + "/camera");
     must_exist(d.boards, "boards", image.board, at + "/board");
+    for (std::size_t k = 0; k < image.boards.size(); ++k)
+      must_exist(d.boards, "boards", image.boards[k].board, at + "/boards/" + std::to_string(k) + "/board");
+    must_exist(d.robots, "robots", image.robot, at + "/robot");
     for (const auto& light : image.light) must_exist(d.lights, "lights", light, at + "/light");
   }
 }
@@ -194,6 +202,13 @@ void check_references(const Document& d) {
     must_exist(d.boards, "boards", table.board, at + "/board");
     check_table(table, at);
   }
+  for (const auto& [name, rig] : d.rigs)
+    for (std::size_t i = 0; i < rig.cameras.size(); ++i)
+      must_exist(d.cameras, "cameras", rig.cameras[i].camera,
+                 place(d, "/rigs/" + name + "/cameras/" + std::to_string(i) + "/camera"));
+  for (const auto& [name, robot] : d.robots)
+    must_exist(d.files, "files", robot.calibration, place(d, "/robots/" + name + "/calibration"));
+  unique_ids(d.light_positions, place(d, "/light_positions"));
   for (std::size_t i = 0; i < d.renderings.size(); ++i)
     must_exist(d.files, "files", d.renderings[i].file, place(d, "/renderings/" + std::to_string(i) + "/file"));
 }

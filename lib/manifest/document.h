@@ -17,6 +17,8 @@ struct Document {
   std::vector<Link> frames;
   std::map<std::string, Board> boards;
   std::map<std::string, Camera> cameras;
+  std::map<std::string, Rig> rigs;
+  std::map<std::string, Robot> robots;
   std::vector<ImageEntry> images;
   std::map<std::string, Mesh> meshes;
   std::map<std::string, Surface> surfaces;
@@ -26,6 +28,9 @@ struct Document {
   std::map<std::string, MechanismUse> mechanisms;
   std::vector<Rendering> renderings;
   std::vector<Comparison> comparisons;
+  std::map<std::string, Mounting> mountings;
+  std::vector<LightPosition> light_positions;
+  std::vector<AcceptanceResult> acceptance;
   std::vector<Value> explanations;  // written by explain; its shape is checked against the field table
   Value provenance = Value::object();
 

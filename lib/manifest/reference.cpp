@@ -46,6 +46,8 @@ Value manifest_schema() {
        {"frames", listed<Link>()},
        {"boards", keyed<Board>()},
        {"cameras", keyed<Camera>()},
+       {"rigs", keyed<Rig>()},
+       {"robots", keyed<Robot>()},
        {"images", listed<ImageEntry>()},
        {"meshes", keyed<Mesh>()},
        {"surfaces", keyed<Surface>()},
@@ -55,6 +57,9 @@ Value manifest_schema() {
        {"mechanisms", keyed<MechanismUse>()},
        {"renderings", listed<Rendering>()},
        {"comparisons", listed<Comparison>()},
+       {"mountings", keyed<Mounting>()},
+       {"light_positions", listed<LightPosition>()},
+       {"acceptance", listed<AcceptanceResult>()},
        {"explanations", Value::object({{"type", "array"}, {"items", Value::object({{"type", "object"}})}})},
        {"provenance", Value::object({{"type", "object"}})}});
   return Value::object({{"$schema", "http://json-schema.org/draft-07/schema#"},
@@ -72,7 +77,13 @@ std::string manifest_fields_text() {
               link_fields()) +
          rows("boards", "Keyed by name. Calibration targets.", board_fields()) +
          rows("cameras", "Keyed by name. How rays map to pixels.", camera_fields()) +
+         rows("cameras: quality", "How well a calibration predicts, an object in a camera.", camera_quality_fields()) +
+         rows("rigs", "Keyed by name. Cameras held together.", rig_fields()) +
+         rows("rigs: cameras", "The members of a rig.", rig_member_fields()) +
+         rows("robots", "Keyed by name. Arms that hold cameras, boards or lights.", robot_fields()) +
+         rows("robots: dh", "Rows of a Denavit-Hartenberg table.", dh_row_fields()) +
          rows("images", "A list. Recordings, or pictures to be simulated.", image_fields()) +
+         rows("images: boards", "Boards in an image that shows several.", seen_board_fields()) +
          rows("meshes", "Keyed by name. Exactly one of file, sphere, plane.", mesh_fields()) +
          model_rows("surfaces",
                     "Keyed by name. `model` and its parameters; `textures` maps a parameter to a file id; `sigma` "
@@ -82,7 +93,14 @@ std::string manifest_fields_text() {
          rows("objects", "A list. A mesh with a surface at a place.", object_fields()) +
          rows("tables", "Keyed by name. One row per observation.", table_fields()) +
          rows("renderings", "A list, written by render.", rendering_fields()) +
-         rows("comparisons", "A list, written by compare.", comparison_fields());
+         rows("comparisons", "A list, written by compare.", comparison_fields()) +
+         rows("mountings", "Keyed by name, written by handeye. What is fixed to a robot's tool or stands in its world.",
+              mounting_fields()) +
+         rows("mountings: held_out", "Errors on poses that the fit did not see.", held_out_fields()) +
+         rows("mountings: parts", "Standard deviations of the board's position.", scatter_parts_fields()) +
+         rows("light_positions", "A list. Where a light was while its robot stood at a pose.",
+              light_position_fields()) +
+         rows("acceptance", "A list, written by vdi2634. Figures of an optical scanner.", acceptance_fields());
 }
 
 }  // namespace gonio::manifest

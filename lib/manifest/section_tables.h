@@ -17,6 +17,17 @@ const std::vector<Field<Object>>& object_fields();
 const std::vector<Field<Table>>& table_fields();
 const std::vector<Field<Rendering>>& rendering_fields();
 const std::vector<Field<Comparison>>& comparison_fields();
+const std::vector<Field<SeenBoard>>& seen_board_fields();
+const std::vector<Field<CameraQuality>>& camera_quality_fields();
+const std::vector<Field<RigMember>>& rig_member_fields();
+const std::vector<Field<Rig>>& rig_fields();
+const std::vector<Field<DhRow>>& dh_row_fields();
+const std::vector<Field<Robot>>& robot_fields();
+const std::vector<Field<HeldOut>>& held_out_fields();
+const std::vector<Field<ScatterParts>>& scatter_parts_fields();
+const std::vector<Field<Mounting>>& mounting_fields();
+const std::vector<Field<LightPosition>>& light_position_fields();
+const std::vector<Field<AcceptanceResult>>& acceptance_fields();
 
 #define GONIO_RECORD(TYPE, TABLE)                                                                                 \
   template <>                                                                                                     \
@@ -28,13 +39,24 @@ const std::vector<Field<Comparison>>& comparison_fields();
 GONIO_RECORD(File, file_fields);
 GONIO_RECORD(Link, link_fields);
 GONIO_RECORD(Board, board_fields);
+GONIO_RECORD(CameraQuality, camera_quality_fields);
 GONIO_RECORD(Camera, camera_fields);
+GONIO_RECORD(SeenBoard, seen_board_fields);
 GONIO_RECORD(ImageEntry, image_fields);
 GONIO_RECORD(Mesh, mesh_fields);
 GONIO_RECORD(Object, object_fields);
 GONIO_RECORD(Table, table_fields);
 GONIO_RECORD(Rendering, rendering_fields);
 GONIO_RECORD(Comparison, comparison_fields);
+GONIO_RECORD(RigMember, rig_member_fields);
+GONIO_RECORD(Rig, rig_fields);
+GONIO_RECORD(DhRow, dh_row_fields);
+GONIO_RECORD(Robot, robot_fields);
+GONIO_RECORD(HeldOut, held_out_fields);
+GONIO_RECORD(ScatterParts, scatter_parts_fields);
+GONIO_RECORD(Mounting, mounting_fields);
+GONIO_RECORD(LightPosition, light_position_fields);
+GONIO_RECORD(AcceptanceResult, acceptance_fields);
 #undef GONIO_RECORD
 
 // Surfaces, lights and mechanisms are read against the registries instead of a table.

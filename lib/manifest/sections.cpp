@@ -1,50 +1,12 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "manifest/field_makers.h"
 #include "manifest/model.h"
 #include "manifest/section_tables.h"
 
 namespace gonio::manifest {
 namespace {
-
-template <class Record>
-Field<Record> custom(std::string name, std::string unit, std::string sentence, Value schema,
-                     std::function<void(Record&, const Value&, const std::string&)> read,
-                     std::function<Value(const Record&)> write) {
-  Field<Record> f;
-  f.name = std::move(name);
-  f.unit = std::move(unit);
-  f.sentence = std::move(sentence);
-  f.schema = std::move(schema);
-  f.read = std::move(read);
-  f.write = std::move(write);
-  return f;
-}
-
-// A number stands for a list of one in "sigma": {"fx_px": 0.6}.
-template <class Record>
-Field<Record> sigma_field(Sigmas Record::*member) {
-  return custom<Record>(
-      "sigma", "", "one standard deviation beside each fitted value, under the same key", Codec<Value>::schema(),
-      [member](Record& r, const Value& v, const std::string& place) {
-        expect_object(v, place);
-        for (const auto& [key, value] : v.as_object()) {
-          const std::string at = place + "/" + key;
-          const auto numbers = value.is_number() ? std::vector<double>{Codec<double>::read(value, at)}
-                                                 : Codec<std::vector<double>>::read(value, at);
-          for (const double s : numbers)
-            if (s < 0) throw Error(Exit::data, at, "is negative", "a standard deviation is 0 or more");
-          (r.*member)[key] = numbers;
-        }
-      },
-      [member](const Record& r) {
-        if ((r.*member).empty()) return Value();
-        Value out = Value::object();
-        for (const auto& [key, numbers] : r.*member)
-          out[key] = numbers.size() == 1 ? Value(numbers[0]) : Value(numbers);
-        return out;
-      });
-}
 
 Value shape_schema(const char* key, Value schema) {
   return Value::object({{"type", "object"},
@@ -85,14 +47,16 @@ const std::vector<Field<Board>>& board_fields() {
       field("legacy_layout", &Board::legacy_layout, "",
             "charuco: the layout of OpenCV before 4.6; left out: found from the pictures"),
       field("warp", &Board::warp, "m", "board.warp: sag_x_m and sag_y_m of the middle against the edges"),
-      sigma_field(&Board::sigma)};
+      sigma_field(&Board::sigma),
+      field("dictionary_file", &Board::dictionary_file, "", "charuco: file id of a dictionary of one's own"),
+      field("flatness_m", &Board::flatness_m, "m", "estimated peak to valley height over the corners").range(0, infinite)};
   return table;
 }
 
 const std::vector<Field<Camera>>& camera_fields() {
   static const std::vector<Field<Camera>> table{
       field("model", &Camera::model, "", "how rays map to pixels")
-          .one_of({"pinhole", "radial-tangential", "thin-prism", "orthographic"}),
+          .one_of({"pinhole", "radial-tangential", "rational", "thin-prism", "fisheye", "orthographic"}),
       field("width_px", &Camera::width_px, "px", "columns").range(1, 1 << 20),
       field("height_px", &Camera::height_px, "px", "rows").range(1, 1 << 20),
       field("fx_px", &Camera::fx_px, "px", "focal length along x").positive(),
@@ -100,11 +64,12 @@ const std::vector<Field<Camera>>& camera_fields() {
       field("cx_px", &Camera::cx_px, "px", "principal point; pixel centres lie at integers"),
       field("cy_px", &Camera::cy_px, "px", "principal point; pixel centres lie at integers"),
       field("px_per_m", &Camera::px_per_m, "px/m", "orthographic: pixels per metre").positive(),
-      field("distortion", &Camera::distortion, "", "k1 k2 p1 p2 k3 s1 s2 s3 s4, left out: 0"),
+      field("distortion", &Camera::distortion, "", "coefficients by name, left out: 0"),
       sigma_field(&Camera::sigma),
       field("rms_px", &Camera::rms_px, "px", "root mean square of the reprojection error of the fit")
           .range(0, infinite),
-      field("covariance", &Camera::covariance, "", "of the fit: {\"order\": [names], \"values\": [[...]]}")};
+      field("covariance", &Camera::covariance, "", "of the fit: {\"order\": [names], \"values\": [[...]]}"),
+      field("quality", &Camera::quality, "", "how well it predicts pixels")};
   return table;
 }
 
@@ -134,7 +99,12 @@ const std::vector<Field<ImageEntry>>& image_fields() {
       field("weight", &ImageEntry::weight, "", "in fits; 0: dropped").range(0, 1),
       field("noise", &ImageEntry::noise, "", "of a linear value v: variance v / gain + read^2"),
       field("gain", &ImageEntry::gain, "", "factor on the simulated radiance; free: unknown exposure"),
-      field("group", &ImageEntry::group, "", "recordings that belong together are held out together")};
+      field("group", &ImageEntry::group, "", "recordings that belong together are held out together"),
+      field("shot", &ImageEntry::shot, "", "images of a rig's cameras taken at the same moment share it"),
+      field("robot", &ImageEntry::robot, "", "name of the robot that held the tool"),
+      field("base_from_tool", &ImageEntry::base_from_tool, "", "takes tool to robot base coordinates, as the controller said"),
+      field("joints_rad", &ImageEntry::joints_rad, "rad", "joint angles of the robot"),
+      field("boards", &ImageEntry::boards, "", "instead of board, where it shows several: one entry each")};
   return table;
 }
 

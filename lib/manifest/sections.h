@@ -71,19 +71,46 @@ struct Board {                     // "boards"
   std::optional<bool> legacy_layout;  // charuco: the layout of OpenCV before 4.6; absent: found from the pictures
   Parameters warp;                    // board.warp: {"x_m", "y_m"} sag in metres (0: flat)
   Sigmas sigma;
+  std::string dictionary_file;       // charuco: file id of a dictionary of the user's own
+  std::optional<double> flatness_m;  // estimated peak to valley height over the corners
+};
+// How well a calibration predicts pixels, judged over the image and by calibrating each half of the views alone.
+struct CameraQuality {
+  std::optional<double> predicts_within_px;  // at 95 %, over the image at the distances below; expected of this fit
+  std::vector<double> distances_m;
+  std::optional<double> halves_differ_px;    // root mean square over the image of the two halves' predictions' difference
+  std::optional<double> halves_expected_px;  // what their covariances expect of it
+  std::optional<bool> halves_agree;
+  std::optional<double> coverage;            // share of the image that corners reach, 0 .. 1
+  std::vector<std::string> next;             // what to photograph next, one sentence each
+  std::map<std::string, std::string> files;  // maps and pictures: "projection-sigma" -> file id
 };
 struct Camera {                   // "cameras"
-  std::string model = "pinhole";  // pinhole | radial-tangential | thin-prism | orthographic
+  std::string model = "pinhole";  // camera/intrinsics.h lists them
   int width_px = 0, height_px = 0;
   Parameter fx_px, fy_px, cx_px, cy_px;  // orthographic: fx, fy are pixels per metre (px_per_m_x ...) instead
   Parameter px_per_m;                    // orthographic only
-  Parameters distortion;                 // k1 k2 p1 p2 k3 s1 s2 s3 s4; left out: zero
+  Parameters distortion;                 // camera/lens_terms.h; left out: zero
   Sigmas sigma;
   std::optional<double> rms_px;
   Value covariance;  // {"order": [...], "values": [[...]]} or null
+  std::optional<CameraQuality> quality;
+};
+struct RigMember {
+  std::string camera;
+  Pose<frame::Rig, frame::Camera> rig_from_camera;
+};
+struct Rig {  // "rigs": cameras that are held together; the first defines the frame
+  std::vector<RigMember> cameras;
+  std::optional<double> rms_px;
 };
 struct Noise {  // of a linear value v: variance v / gain + read^2
   double gain = 0, read = 0;
+};
+struct SeenBoard {  // one of several boards in an image
+  std::string board;
+  std::optional<Pose<frame::Camera, frame::Board>> camera_from_board;
+  std::optional<double> rms_px, weight;
 };
 struct ImageEntry {  // "images"
   std::string id, file, camera;
@@ -99,6 +126,11 @@ struct ImageEntry {  // "images"
   std::optional<Noise> noise;
   std::optional<Parameter> gain;  // factor on the simulated radiance, per image (free: unknown exposure)
   std::string group;              // recordings that belong together; held out together
+  std::string shot;               // images of a rig's cameras that were taken at the same moment share it
+  std::string robot;              // whose tool pose or joints follow
+  std::optional<Pose<frame::Base, frame::Tool>> base_from_tool;  // as the robot's controller said
+  std::vector<double> joints_rad;
+  std::vector<SeenBoard> boards;  // instead of `board`, where it shows several
 };
 struct Mesh {  // "meshes": a PLY file or an analytic shape
   std::string file;
@@ -150,6 +182,54 @@ struct Comparison {  // "comparisons"
   std::optional<std::int64_t> pixels, not_finite;
   Sigmas sigma;
   Value files;  // {"report": file id, ...}
+};
+
+struct DhRow {  // standard Denavit-Hartenberg: T = Rz(theta) Tz(d) Tx(a) Rx(alpha)
+  double a_m = 0, d_m = 0, alpha_rad = 0, theta_rad = 0;
+};
+struct Robot {               // "robots"
+  std::string model;         // a known arm (robot/kinematics.h), or "dh" with `dh`
+  std::vector<DhRow> dh;     // instead of the model's nominal values
+  std::string calibration;   // file id of a UR controller's calibration.conf: deltas on the nominal values
+};
+struct HeldOut {  // of images that the fit did not see
+  std::optional<double> rms_px, translation_m, rotation_rad;
+};
+// Where the scatter of a hand-eye calibration comes from, as standard deviations of the board's position.
+struct ScatterParts {
+  std::optional<double> robot_m, camera_m, board_m, unexplained_m;
+};
+// "mountings": what is fixed to a robot's tool or stands in its world, as handeye found it.
+// eye-in-hand: tool_from_camera, base_from_board. eye-to-hand: base_from_camera, tool_from_board.
+// light-in-hand: light_in_tool_m, world_from_base.
+struct Mounting {
+  std::string kind, robot, camera, board, light;
+  std::optional<Pose<frame::Tool, frame::Camera>> tool_from_camera;
+  std::optional<Pose<frame::Base, frame::Board>> base_from_board;
+  std::optional<Pose<frame::Base, frame::Camera>> base_from_camera;
+  std::optional<Pose<frame::Tool, frame::Board>> tool_from_board;
+  std::optional<Pose<frame::World, frame::Base>> world_from_base;
+  std::vector<double> light_in_tool_m;
+  Sigmas sigma;
+  std::string method;                                           // closed form and refinement
+  std::optional<double> corner_px, robot_m, robot_rad;          // estimated noise, one coordinate
+  std::optional<double> scatter_m, scatter_rad, rms_px;         // of the fit
+  std::optional<HeldOut> held_out;
+  std::optional<ScatterParts> parts;
+  Value covariance;                                             // {"order": [...], "values": [[...]]} or null
+  std::vector<std::string> unobservable, outliers, next;        // directions; image ids; poses to add, in words
+};
+struct LightPosition {  // "light_positions": where a light was while its robot stood at a pose
+  std::string id, light, robot;
+  std::optional<Pose<frame::Base, frame::Tool>> base_from_tool;
+  std::vector<double> position_m, sigma_m;  // world; sigma: 1 or 3
+};
+struct AcceptanceResult {  // "acceptance": figures after VDI/VDE 2634 part 2 of an optical scanner
+  std::string quantity;    // probing-form, probing-size, sphere-distance, flatness
+  std::string file, unit;
+  double value = 0;                               // worst case, as the guideline asks
+  std::optional<double> bias, sigma, limit, uncertainty;  // same unit
+  std::optional<std::int64_t> count, rejected;
 };
 
 }  // namespace gonio::manifest

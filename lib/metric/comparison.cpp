@@ -7,11 +7,13 @@
 #include <limits>
 
 #include "metric/blocks.h"
-#include "metric/number_text.h"
+#include "report/number_text.h"
 #include "metric/ssim.h"
 
 namespace gonio::metric {
 namespace {
+
+using report::number_text;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 

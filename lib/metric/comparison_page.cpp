@@ -4,13 +4,30 @@
 #include <cmath>
 
 #include "io/picture.h"
-#include "metric/colour_map.h"
+#include "report/colour_map.h"
 #include "metric/difference_pictures.h"
-#include "metric/number_text.h"
-#include "metric/page.h"
+#include "report/number_text.h"
+#include "report/page.h"
 
 namespace gonio::metric {
 namespace {
+
+using report::Figure;
+using report::KeyNumber;
+using report::Mark;
+using report::Page;
+using report::Plot;
+using report::Series;
+using report::TableText;
+using report::Tone;
+using report::hex;
+using report::magnitude_colour;
+using report::number_text;
+using report::percent_text;
+using report::sigma_text;
+using report::signed_colour;
+using report::value_for_sigma;
+using report::with_sigma;
 
 std::string text_of(const std::optional<Estimate>& e) {
   return e ? with_sigma(e->value, e->sigma) : "\u2013";

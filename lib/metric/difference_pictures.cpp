@@ -6,10 +6,14 @@
 #include <limits>
 
 #include "io/picture.h"
-#include "metric/colour_map.h"
+#include "report/colour_map.h"
 
 namespace gonio::metric {
 namespace {
+
+using report::Colour;
+using report::magnitude_colour;
+using report::signed_colour;
 
 constexpr Colour not_counted{0.62f, 0.62f, 0.62f};
 constexpr Colour magenta{1, 0, 1};

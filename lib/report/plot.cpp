@@ -1,4 +1,4 @@
-#include "metric/plot.h"
+#include "report/plot.h"
 
 #include <algorithm>
 #include <array>
@@ -6,11 +6,11 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "metric/colour_map.h"
-#include "metric/page.h"
-#include "metric/plot_axis.h"
+#include "report/colour_map.h"
+#include "report/page.h"
+#include "report/plot_axis.h"
 
-namespace gonio::metric {
+namespace gonio::report {
 namespace {
 
 constexpr double width = 560, top = 28, left = 58, right = 16, bottom = 44, plain_height = 300;
@@ -221,4 +221,4 @@ std::string html(const HeatStrip& strip) {
   return text + "</figcaption></figure>";
 }
 
-}  // namespace gonio::metric
+}  // namespace gonio::report

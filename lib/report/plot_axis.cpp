@@ -1,11 +1,11 @@
-#include "metric/plot_axis.h"
+#include "report/plot_axis.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
-namespace gonio::metric {
+namespace gonio::report {
 namespace {
 
 struct Extent {
@@ -139,4 +139,4 @@ PlotRanges ranges(const Plot& plot) {
   return result;
 }
 
-}  // namespace gonio::metric
+}  // namespace gonio::report

@@ -1,4 +1,4 @@
-#include "metric/colour_map.h"
+#include "report/colour_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <span>
 
-namespace gonio::metric {
+namespace gonio::report {
 namespace {
 
 constexpr Colour not_a_number{1, 0, 1};
@@ -47,4 +47,4 @@ std::string hex(Colour colour) {
   return text;
 }
 
-}  // namespace gonio::metric
+}  // namespace gonio::report

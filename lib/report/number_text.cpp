@@ -1,10 +1,10 @@
-#include "metric/number_text.h"
+#include "report/number_text.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-namespace gonio::metric {
+namespace gonio::report {
 namespace {
 
 std::string print(const char* format, int digits, double value) {
@@ -58,4 +58,4 @@ std::string percent_text(double share, int decimals) {
   return std::isfinite(share) ? print("%.*f", decimals, 100 * share) + " %" : "\u2013";
 }
 
-}  // namespace gonio::metric
+}  // namespace gonio::report

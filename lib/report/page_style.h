@@ -2,8 +2,8 @@
 #pragma once
 #include <string_view>
 
-namespace gonio::metric {
+namespace gonio::report {
 
 extern const std::string_view page_style, page_script;
 
-}  // namespace gonio::metric
+}  // namespace gonio::report

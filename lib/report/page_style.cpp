@@ -2,9 +2,9 @@
 // that carries no meaning. Series colours are those of Okabe & Ito (2008), darkened on white and lightened on black to
 // a contrast of 3:1. Script: moves the dividers of the pairs; without it each divider stands in the middle and
 // everything else works.
-#include "metric/page_style.h"
+#include "report/page_style.h"
 
-namespace gonio::metric {
+namespace gonio::report {
 
 const std::string_view page_style = R"css(
 :root{color-scheme:light dark;--paper:#fdfdfc;--ink:#1c1d1f;--soft:#62666d;--line:#e2e2de;--fill:#f4f4f1;--accent:#1f5fa8;
@@ -133,4 +133,4 @@ addEventListener('beforeprint', () => document.querySelectorAll('details').forEa
 document.documentElement.dataset.ready = document.querySelectorAll('.pair-frame').length + ' pairs';
 )js";
 
-}  // namespace gonio::metric
+}  // namespace gonio::report

@@ -6,7 +6,7 @@
 #include <array>
 #include <string>
 
-namespace gonio::metric {
+namespace gonio::report {
 
 using Colour = std::array<float, 3>;  // sRGB codes / 255
 
@@ -14,4 +14,4 @@ Colour magnitude_colour(double t);  // 0 .. 1, clipped; NaN is magenta
 Colour signed_colour(double t);     // -1 .. 1, clipped, 0 is white; NaN is magenta
 std::string hex(Colour colour);     // "#rrggbb"
 
-}  // namespace gonio::metric
+}  // namespace gonio::report

@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "metric/plot.h"
+#include "report/plot.h"
 
-namespace gonio::metric {
+namespace gonio::report {
 
 class PlotAxis {
  public:
@@ -30,4 +30,4 @@ struct PlotRanges {
 };
 PlotRanges ranges(const Plot& plot);
 
-}  // namespace gonio::metric
+}  // namespace gonio::report

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace gonio::metric {
+namespace gonio::report {
 
 struct Series {
   enum class Kind { line, points, bars, band };
@@ -56,4 +56,4 @@ std::string html(const HeatStrip& strip);
 std::vector<double> tick_positions(double lower, double upper, int most);
 std::vector<double> log_tick_positions(double lower, double upper, int most);
 
-}  // namespace gonio::metric
+}  // namespace gonio::report

@@ -1,13 +1,13 @@
-#include "metric/page.h"
+#include "report/page.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdio>
 
-#include "metric/page_style.h"
+#include "report/page_style.h"
 
-namespace gonio::metric {
+namespace gonio::report {
 namespace {
 
 // Width and height from the header chunk of a PNG (ISO/IEC 15948, 11.2.2); zero where it is none.
@@ -183,7 +183,7 @@ void Page::plots(const std::vector<Plot>& plots) {
 }
 
 void Page::heat_strip(const HeatStrip& strip) {
-  body_ += metric::html(strip) + "\n";
+  body_ += report::html(strip) + "\n";
 }
 
 void Page::colour_scale(const ColourScale& scale) {
@@ -225,4 +225,4 @@ std::string Page::html() const {
          std::string(page_script) + "</script></body></html>\n";
 }
 
-}  // namespace gonio::metric
+}  // namespace gonio::report

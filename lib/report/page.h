@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "metric/plot.h"
+#include "report/plot.h"
 
-namespace gonio::metric {
+namespace gonio::report {
 
 enum class Tone { neutral, good, bad };
 
@@ -77,4 +77,4 @@ class Page {
 std::string escape(std::string_view text);  // & < > " ' for element content and attribute values
 std::string base64(std::string_view bytes);
 
-}  // namespace gonio::metric
+}  // namespace gonio::report

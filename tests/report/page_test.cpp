@@ -1,14 +1,14 @@
-#include "metric/page.h"
+#include "report/page.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "metric/colour_map.h"
-#include "metric/number_text.h"
+#include "report/colour_map.h"
+#include "report/number_text.h"
 
-namespace gonio::metric {
+namespace gonio::report {
 namespace {
 
 using testing::HasSubstr;
@@ -82,4 +82,4 @@ TEST(NumberText, StopsWhereTheSigmaBegins) {
 }
 
 }  // namespace
-}  // namespace gonio::metric
+}  // namespace gonio::report

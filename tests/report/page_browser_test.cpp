@@ -7,10 +7,10 @@
 
 #include "data.h"
 #include "io/picture.h"
-#include "metric/page.h"
+#include "report/page.h"
 #include "process.h"
 
-namespace gonio::metric {
+namespace gonio::report {
 namespace {
 
 using testing::HasSubstr;
@@ -57,4 +57,4 @@ TEST(PageInABrowser, RunsItsScriptAndMovesTheDivider) {
 }
 
 }  // namespace
-}  // namespace gonio::metric
+}  // namespace gonio::report
