@@ -149,6 +149,22 @@ void check_places(const Invocation& call) {
                 "give -o FILE or --out DIR");
 }
 
+// Can everything be written? What lies below --out is asked after that folder was made, the rest before.
+void prepare_places(const Invocation& call) {
+  const auto below_out = [&call](const fs::path& path) {
+    if (call.out.empty()) return false;
+    const fs::path inside = fs::absolute(path).lexically_normal().lexically_relative(
+        (fs::absolute(call.out) / "").lexically_normal());
+    return !inside.empty() && *inside.begin() != "..";
+  };
+  for (const bool below : {false, true}) {
+    if (below && !call.out.empty()) make_folder(call.out);
+    for (const char* option : {"output", "depfile"})
+      if (call.given(option) && call.text(option) != "-" && below_out(call.text(option)) == below)
+        check_writable(call.text(option));
+  }
+}
+
 void write_depfile(const Invocation& call) {
   const auto escaped = [](const fs::path& p) {
     std::string out;
@@ -196,9 +212,7 @@ Exit run(const Program& program, int argc, char** argv) {
   const std::string input_id = call.has_document ? manifest::content_id(call.document) : std::string();
   if (program.check) program.check(call);
   if (call.flag("check")) return Exit::done;
-  for (const char* option : {"output", "depfile"})
-    if (call.given(option) && call.text(option) != "-") check_writable(call.text(option));
-  if (!call.out.empty()) make_folder(call.out);
+  prepare_places(call);
   const Exit result = program.run(call);
   return deliver(call, result, input_id);
 }

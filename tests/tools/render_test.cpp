@@ -43,6 +43,15 @@ TEST_F(Render, ASpecimenThroughAPipe) {
   EXPECT_EQ(ended.err, "");
 }
 
+TEST_F(Render, AManifestInsideTheFolderThatOutMakes) {
+  const Ended ended = render({"--specimen", "knot", "--out", "new/folder", "-o", "new/folder/scene.json"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "new/folder/scene.json"));
+  const Ended beside = render({"--specimen", "knot", "--out", "other", "-o", "missing/scene.json"});
+  EXPECT_EQ(beside.status, 73);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "other")) << "nothing is made where the answer has no place";
+}
+
 TEST_F(Render, SameSeedSameBytes) {
   write_file(folder_ / "s.json", render({"--specimen", "spheres"}).out);
   const Process::Words words = {"s.json", "--image", "view-0-lamp-0", "--spp", "4", "--seed", "5"};
