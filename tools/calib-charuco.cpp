@@ -102,7 +102,7 @@ std::vector<cli::Option> options() {
        .help = "Layout of a ChArUco board with an even number of rows: legacy is that of OpenCV before 4.6.", .preset = "auto",
        .choices = {"auto", "current", "legacy"}, .needs = {"charuco"}},
       {.name = "model", .type = Type::choice, .help = "Lens model; a camera in the manifest keeps its own unless this is given.",
-       .preset = "radial-tangential", .choices = {"pinhole", "radial-tangential", "thin-prism"}},
+       .preset = "radial-tangential", .choices = camera::calibrated_models()},
       {.name = "fix", .type = Type::choice,
        .help = "Hold a term: at the manifest's value, else at 0, equal focal lengths, the middle of the picture.",
        .choices = camera::fixable_terms(), .repeat = true},

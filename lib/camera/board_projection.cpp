@@ -1,8 +1,6 @@
-// Derivatives by dual numbers (Ceres' Jets) over the templates of board_terms.h; the pose enters as a first-order
-// change at the given pose, R p -> R p + w x (R p), whose derivative at w = 0 is exact.
+// Derivatives in closed form; the pose enters as a first-order change at the given pose, R p -> R p + w x (R p), whose
+// derivative at w = 0 is exact.
 #include "camera/board_projection.h"
-
-#include <ceres/jet.h>
 
 namespace gonio::camera {
 
@@ -28,35 +26,31 @@ bool predict(const Intrinsics& intrinsics, const BoardPose& camera_from_board, c
 bool predict(const Intrinsics& intrinsics, const BoardPose& camera_from_board, const BoardExtent& extent,
              const BoardWarp& warp, Vec2 at, Vec2& pixel,
              std::array<std::array<double, BoardColumn::count>, 2>& jacobian) {
-  using Jet = ceres::Jet<double, static_cast<int>(BoardColumn::count)>;
-  const auto variable = [](double value, std::size_t column) { return Jet(value, static_cast<int>(column)); };
-  const std::array pinhole{variable(intrinsics.fx_px, 0), variable(intrinsics.fy_px, 1), variable(intrinsics.cx_px, 2),
-                           variable(intrinsics.cy_px, 3)};
-  std::array<Jet, distortion_terms> distortion;
-  for (std::size_t i = 0; i < distortion_terms; ++i) {
-    distortion[i] = variable(intrinsics.distortion[i], BoardColumn::distortion + i);
-  }
-  const std::array sag{variable(warp.sag_x_m, BoardColumn::warp), variable(warp.sag_y_m, BoardColumn::warp + 1)};
-  const Jet height = board_height(extent, at, sag.data());
+  const std::array sag{warp.sag_x_m, warp.sag_y_m};
   const Mat3 r = matrix_of(camera_from_board.rotation);
-  const Vec3 turned = r * Vec3{at.x, at.y, height.a};
-  const std::array<double, 3> q{turned.x, turned.y, turned.z};
-  const std::array<double, 3> t{camera_from_board.translation_m.x, camera_from_board.translation_m.y,
-                                camera_from_board.translation_m.z};
-  std::array<Jet, 3> point;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    point[i] = Jet(q[i] + t[i]);
-    point[i].v = r(static_cast<int>(i), 2) * height.v;
-    point[i].v[static_cast<int>(BoardColumn::rotation + j)] += q[k];  // (w x q)_i = w_j q_k - w_k q_j
-    point[i].v[static_cast<int>(BoardColumn::rotation + k)] -= q[j];
-    point[i].v[static_cast<int>(BoardColumn::translation + i)] += 1;
-  }
-  std::array<Jet, 2> uv;
-  if (!project_point(point.data(), pinhole.data(), distortion.data(), uv.data())) return false;
-  pixel = {uv[0].a, uv[1].a};
+  const Vec3 q = r * Vec3{at.x, at.y, board_height(extent, at, sag.data())};
+  LensMap map;
+  if (!lens_map_derivatives(intrinsics.distortion.data(), q + camera_from_board.translation_m, map)) return false;
+  pixel = {intrinsics.fx_px * map.x + intrinsics.cx_px, intrinsics.fy_px * map.y + intrinsics.cy_px};
+  const std::array x_unit{1.0, 0.0}, y_unit{0.0, 1.0};
+  const double rise_x = board_height(extent, at, x_unit.data()), rise_y = board_height(extent, at, y_unit.data());
   for (std::size_t row = 0; row < 2; ++row) {
-    for (std::size_t c = 0; c < BoardColumn::count; ++c) jacobian[row][c] = uv[row].v[static_cast<int>(c)];
+    auto& j = jacobian[row];
+    const double f = row == 0 ? intrinsics.fx_px : intrinsics.fy_px;
+    j[0] = row == 0 ? map.x : 0;
+    j[1] = row == 0 ? 0 : map.y;
+    j[2] = row == 0 ? 1 : 0;
+    j[3] = row == 0 ? 0 : 1;
+    for (std::size_t i = 0; i < distortion_terms; ++i) j[BoardColumn::distortion + i] = f * map.by_term[row][i];
+    const Vec3 g = Vec3{map.by_direction[row][0], map.by_direction[row][1], map.by_direction[row][2]} * f;
+    const Vec3 turn = cross(q, g);  // g . (w x q) = w . (q x g)
+    const double lift = g.x * r(0, 2) + g.y * r(1, 2) + g.z * r(2, 2);
+    for (int i = 0; i < 3; ++i) {
+      j[BoardColumn::rotation + static_cast<std::size_t>(i)] = turn[i];
+      j[BoardColumn::translation + static_cast<std::size_t>(i)] = g[i];
+    }
+    j[BoardColumn::warp] = lift * rise_x;
+    j[BoardColumn::warp + 1] = lift * rise_y;
   }
   return true;
 }

@@ -15,12 +15,12 @@ namespace gonio::camera {
 // camera's axes through the board's origin, R <- exp([w]x) R, and shifts it, t <- t + dt: the convention of
 // manifest::PoseSigma.
 struct BoardColumn {
-  static constexpr std::size_t intrinsics = 0;    // fx fy cx cy, px
-  static constexpr std::size_t distortion = 4;    // k1 k2 p1 p2 k3 s1 s2 s3 s4
-  static constexpr std::size_t rotation = 13;     // x y z, rad
-  static constexpr std::size_t translation = 16;  // x y z, m
-  static constexpr std::size_t warp = 19;         // sag_x_m sag_y_m
-  static constexpr std::size_t count = 21;
+  static constexpr std::size_t intrinsics = 0;                            // fx fy cx cy, px
+  static constexpr std::size_t distortion = 4;                            // as distortion_names
+  static constexpr std::size_t rotation = distortion + distortion_terms;  // x y z, rad
+  static constexpr std::size_t translation = rotation + 3;                // x y z, m
+  static constexpr std::size_t warp = translation + 3;                    // sag_x_m sag_y_m
+  static constexpr std::size_t count = warp + 2;
 };
 
 using BoardPose = Rigid<frame::Camera, frame::Board>;
@@ -32,7 +32,7 @@ struct BoardWarp {
 // The pose moved by [rotation vector (3, rad), shift (3, m)] in the sense of the Jacobian's columns.
 BoardPose moved(const BoardPose& pose, const std::array<double, 6>& change);
 
-// False for points behind the camera, where `pixel` is left alone.
+// False for points that the lens does not show (behind a perspective camera), where `pixel` is left alone.
 bool predict(const Intrinsics& intrinsics, const BoardPose& camera_from_board, const BoardExtent& extent,
              const BoardWarp& warp, Vec2 board_point_m, Vec2& pixel);
 

@@ -1,5 +1,5 @@
-// From a point of a calibration board to its pixel, as templates over the scalar, so that calibration and explain
-// differentiate one and the same forward model.
+// From a point of a calibration board to its pixel, as templates over the scalar, for whoever differentiates by dual
+// numbers. board_projection.h has the same with derivatives in closed form, which calibration and explain share.
 //
 // Board frame: x along the columns to the right, y along the rows downwards, z = x cross y, away from the viewer;
 // metres. A board that is not flat (mechanism board.warp) has
@@ -24,13 +24,12 @@ T board_height(const BoardExtent& extent, Vec2 at, const T* sag) {
   return sag[0] * (1 - xi * xi) + sag[1] * (1 - eta * eta);
 }
 
-// Pixel of a point in the camera frame. intrinsics: [fx fy cx cy]; distortion: as distortion_names. False behind the
-// camera.
+// Pixel of a point in the camera frame. intrinsics: [fx fy cx cy]; distortion: as distortion_names. False where the
+// lens shows no such point, behind a perspective camera.
 template <class T>
 bool project_point(const T* point_m, const T* intrinsics, const T* distortion, T* pixel) {
-  if (!(point_m[2] > T(0))) return false;
-  const T x = point_m[0] / point_m[2], y = point_m[1] / point_m[2];
-  T xd, yd;
+  T x, y, xd, yd;
+  if (!lay_on_plane(distortion[LensTerm::fisheye], point_m, &x, &y)) return false;
   distort(distortion, x, y, &xd, &yd);
   pixel[0] = intrinsics[0] * xd + intrinsics[2];
   pixel[1] = intrinsics[1] * yd + intrinsics[3];

@@ -79,9 +79,9 @@ void hold(ceres::Problem& problem, double* block, int size, const std::vector<in
 
 std::vector<int> held_distortion(const CalibrationOptions& options) {
   std::vector<int> held;
-  const std::size_t terms = camera_model_info(options.model, "calibration").terms;
+  const TermSet& fitted = camera_model_info(options.model, "calibration").fitted;
   for (std::size_t i = 0; i < distortion_terms; ++i) {
-    if (i >= terms || options.fixed.contains(std::string(distortion_names[i]))) held.push_back(static_cast<int>(i));
+    if (!fitted.has(i) || options.fixed.contains(std::string(distortion_names[i]))) held.push_back(static_cast<int>(i));
   }
   return held;
 }

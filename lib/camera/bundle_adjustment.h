@@ -19,7 +19,8 @@ struct Adjustment {
   bool converged = false;
 };
 
-Intrinsics start_lens(const std::vector<View>& views, const Board& board, int width_px, int height_px);
+Intrinsics start_lens(const std::vector<View>& views, const Board& board, const std::string& model, int width_px,
+                      int height_px);
 // The better one of the two poses that a plane allows.
 BoardPose start_pose(const View& view, const Board& board, const Intrinsics& lens);
 

@@ -255,14 +255,15 @@ CalibrationOptions options_for(const Session& session, const CalibrationRequest&
   if (!request.model_given) options.model = known->second.model;
   if (!camera_model_info(options.model, place).perspective) {
     throw Error(Exit::data, place + "/model", "\"" + options.model + "\" cannot be calibrated from a board",
-                "use pinhole, radial-tangential or thin-prism");
+                "use pinhole, radial-tangential, rational, thin-prism or fisheye");
   }
   if (known->second.fx_px.given() && !options.fixed.empty()) {
-    manifest::Camera start = known->second;
-    start.model = "thin-prism";  // terms that the new model lacks are cut off below
-    Intrinsics lens = intrinsics_of(start, place);
-    for (std::size_t i = camera_model_info(options.model, place).terms; i < distortion_terms; ++i)
-      lens.distortion[i] = 0;
+    const CameraModelInfo& model = camera_model_info(options.model, place);
+    Intrinsics lens = intrinsics_of(known->second, place);
+    for (std::size_t i = 0; i < LensTerm::fisheye; ++i) {  // terms that the new model lacks are cut off
+      if (!model.terms.has(i)) lens.distortion[i] = 0;
+    }
+    if (options.model != known->second.model) lens.distortion[LensTerm::fisheye] = model.fisheye;
     options.start = lens;
   }
   return options;

@@ -187,7 +187,7 @@ Calibration calibrate(const std::vector<View>& views, const Board& board, int wi
     result.complaints.push_back("no view shows enough corners of the board");
     return result;
   }
-  state.lens = options.start ? *options.start : start_lens(usable, board, width_px, height_px);
+  state.lens = options.start ? *options.start : start_lens(usable, board, options.model, width_px, height_px);
   if (options.fixed.contains("aspect") && !options.start) state.lens.fy_px = state.lens.fx_px;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (state.view_weights[i] > 0) state.poses[i] = start_pose(views[i], board, state.lens);

@@ -79,9 +79,10 @@ std::vector<FreeParameter> free_parameters(const CalibrationOptions& options, co
     free.push_back({"cx_px", {{2, 1.0}}});
     free.push_back({"cy_px", {{3, 1.0}}});
   }
-  for (std::size_t i = 0; i < camera_model_info(options.model, "calibration").terms; ++i) {
+  const TermSet& fitted = camera_model_info(options.model, "calibration").fitted;
+  for (std::size_t i = 0; i < distortion_terms; ++i) {
     const std::string name(distortion_names[i]);
-    if (!held(name)) free.push_back({name, {{BoardColumn::distortion + i, 1.0}}});
+    if (fitted.has(i) && !held(name)) free.push_back({name, {{BoardColumn::distortion + i, 1.0}}});
   }
   if (options.board_warp) {
     free.push_back({"sag_x_m", {{BoardColumn::warp, 1.0}}});

@@ -1,4 +1,4 @@
-// Projection and its inverse. The inverse is found by damped Newton steps on the two-dimensional map of lens_terms.h,
+// Projection and its inverse. The inverse is found by damped Newton steps on the plane of lens_terms.h,
 // from the distorted point or, where the radial part alone has moved it far, from the radial solution.
 #include "camera/camera_model.h"
 
@@ -30,10 +30,13 @@ void read_orthographic(const manifest::Camera& camera, const std::string& place,
 
 // r with r R(r) = target on the growing branch below `limit`, by bisection; nothing where the branch ends earlier.
 std::optional<double> radial_inverse(const Intrinsics& lens, double target, double limit) {
-  const auto& c = lens.distortion;
-  const auto radius = [&](double r) {
-    const double r2 = r * r;
-    return r * (1 + r2 * (c[0] + r2 * (c[1] + r2 * c[4])));
+  const double* c = lens.distortion.data();
+  const auto radius = [&](double r) {  // the radial part alone
+    const double w = r * r, f = c[LensTerm::fisheye];
+    const double above =
+        1 + w * (c[LensTerm::k1] + w * (c[LensTerm::k2] + w * (c[LensTerm::k3] + w * f * c[LensTerm::k4])));
+    const double below = 1 + (1 - f) * w * (c[LensTerm::k4] + w * (c[LensTerm::k5] + w * c[LensTerm::k6]));
+    return r * above / below;
   };
   double low = 0, high = std::min(limit, std::max(1.0, target));
   while (radius(high) < target) {
@@ -61,14 +64,24 @@ CameraModel::CameraModel(const manifest::Camera& camera, const std::string& plac
     return;
   }
   lens_ = intrinsics_of(camera, place);
+  find_limits();
+}
+
+CameraModel::CameraModel(const Intrinsics& lens, int width_px, int height_px)
+    : width_px_(width_px), height_px_(height_px), lens_(lens) {
+  find_limits();
+}
+
+void CameraModel::find_limits() {
   distorted_ = std::ranges::any_of(lens_.distortion, [](double v) { return v != 0; });
-  radius_limit_ = one_to_one_radius(lens_.distortion[0], lens_.distortion[1], lens_.distortion[4]);
+  radius_limit_ = one_to_one_radius(lens_.distortion.data());
 }
 
 std::optional<Vec2> CameraModel::project(Vec3 p) const {
   if (orthographic_) return Vec2{lens_.fx_px * p.x + lens_.cx_px, lens_.fy_px * p.y + lens_.cy_px};
-  if (!(p.z > 0)) return std::nullopt;
-  double x = p.x / p.z, y = p.y / p.z;
+  const std::array<double, 3> direction{p.x, p.y, p.z};
+  double x = 0, y = 0;
+  if (!lay_on_plane(lens_.distortion[LensTerm::fisheye], direction.data(), &x, &y)) return std::nullopt;
   if (distorted_) {
     if (std::hypot(x, y) > radius_limit_) return std::nullopt;
     const double x0 = x, y0 = y;
@@ -81,7 +94,11 @@ Ray CameraModel::ray(Vec2 pixel) const {
   const Vec2 at{(pixel.x - lens_.cx_px) / lens_.fx_px, (pixel.y - lens_.cy_px) / lens_.fy_px};
   if (orthographic_) return {{at.x, at.y, 0}, {0, 0, 1}};
   const Vec2 p = distorted_ ? undistort(at) : at;
-  return {{0, 0, 0}, normalized(Vec3{p.x, p.y, 1})};
+  const double fisheye = lens_.distortion[LensTerm::fisheye];
+  if (fisheye == 0) return {{0, 0, 0}, normalized(Vec3{p.x, p.y, 1})};
+  const double r = norm(p), theta = std::min(angle_of_radius(fisheye, r), pi);
+  const double across = r > 0 ? std::sin(theta) / r : 1;
+  return {{0, 0, 0}, normalized(Vec3{across * p.x, across * p.y, std::cos(theta)})};
 }
 
 Vec2 CameraModel::undistort(Vec2 target) const {

@@ -13,7 +13,7 @@ struct Ray {                 // camera frame
   Vec3 origin_m, direction;  // direction is a unit vector
 };
 
-// pinhole, radial-tangential, thin-prism: central projection with the terms of lens_terms.h. orthographic: rays
+// pinhole to fisheye: central projection with the terms of lens_terms.h. orthographic: rays
 // parallel to +z through the plane z = 0, px_per_m (one number, or two for x and y), principal point by default in the
 // middle of the image.
 class CameraModel {
@@ -21,9 +21,10 @@ class CameraModel {
   // `place` is where the section stands, for messages. Error(data) for unknown models, distortion names, sizes or f <=
   // 0.
   CameraModel(const manifest::Camera& camera, const std::string& place);
+  CameraModel(const Intrinsics& lens, int width_px, int height_px);
 
   // Pixel of a point in the camera frame, metres; nothing for points behind a perspective camera or beyond the radius
-  // up to which the distortion is one-to-one.
+  // up to which the distortion is one-to-one. A fisheye sees beyond 90 degrees from its axis.
   std::optional<Vec2> project(Vec3 point_m) const;
   // Ray through a pixel position (Newton iteration on the distortion to 1e-12; continues undistorted where it has no
   // inverse).
@@ -35,12 +36,13 @@ class CameraModel {
   bool orthographic() const { return orthographic_; }
 
  private:
+  void find_limits();
   Vec2 undistort(Vec2 distorted) const;
 
   int width_px_ = 0, height_px_ = 0;
   Intrinsics lens_;  // orthographic: fx_px, fy_px are pixels per metre
   bool distorted_ = false, orthographic_ = false;
-  double radius_limit_ = 0;  // largest normalised radius at which the radial part still grows
+  double radius_limit_ = 0;  // largest radius on the plane at which the radial part still grows
 };
 
 }  // namespace gonio::camera

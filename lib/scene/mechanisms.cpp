@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "camera/intrinsics.h"
 #include "light/turn.h"
 
 namespace gonio::scene {
@@ -227,13 +228,13 @@ void apply_mechanism(manifest::Camera& camera, const std::string& name, const Me
   if (camera.model == "orthographic")
     throw Error(Exit::data, place, mechanism.id + " does not apply to the orthographic camera \"" + name + "\"",
                 "name perspective cameras in \"on\"");
-  bool prism = camera.model == "thin-prism";
+  camera::TermSet terms;
   for (std::size_t i = 0; i < amounts.size(); ++i) {
     const std::string& term = mechanism.parameters[i].name;
     camera.distortion[term] = manifest::Parameter(amounts[i]);
-    prism = prism || term.starts_with("s");
+    terms.add(camera::distortion_index(term, place));
   }
-  camera.model = prism ? "thin-prism" : "radial-tangential";
+  camera.model = camera::model_with(camera.model, terms);
 }
 
 }  // namespace gonio::scene

@@ -20,6 +20,7 @@ State random_state(Random& random) {
   State s;
   s.lens = {random.uniform(400, 900), random.uniform(400, 900), random.uniform(300, 340), random.uniform(220, 260), {}};
   for (double& d : s.lens.distortion) d = random.uniform(-0.1, 0.1);
+  s.lens.distortion[LensTerm::fisheye] = random.uniform(0, 1);
   s.pose.rotation =
       quaternion_of_rotation_vector({random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), random.uniform(-3, 3)});
   s.pose.translation_m = {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(0.5, 1)};

@@ -15,7 +15,7 @@ namespace gonio::camera {
 namespace {
 
 constexpr int width = 640, height = 480;
-const Intrinsics truth{532.8, 534.1, 330.2, 236.4, {-0.28, 0.06, 0.0012, -0.0004, 0.05, 0, 0, 0, 0}};
+const Intrinsics truth{532.8, 534.1, 330.2, 236.4, {-0.28, 0.06, 0.0012, -0.0004, 0.05}};
 
 Board board() {
   return {BoardKind::checkerboard, 8, 6, 0.03, 0, "", {}};

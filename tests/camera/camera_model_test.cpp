@@ -38,11 +38,17 @@ manifest::Camera random_lens(Random& random) {
   manifest::Camera c = pinhole();
   c.model = "thin-prism";
   // Small enough that every lens reaches the corners of the picture (r = 0.8) before it folds back.
-  const std::array sizes{0.08, 0.03, 0.003, 0.003, 0.02, 0.003, 0.001, 0.003, 0.001};
+  const std::array sizes{0.08, 0.03, 0.003, 0.003, 0.02, 0.03, 0.01, 0.01, 0.003, 0.001, 0.003, 0.001};
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     c.distortion[std::string(distortion_names[i])] = random.uniform(-sizes[i], sizes[i]);
   }
   return c;
+}
+
+double limit_of(double k1, double k2, double k3) {
+  std::array<double, distortion_terms> c{};
+  c[LensTerm::k1] = k1, c[LensTerm::k2] = k2, c[LensTerm::k3] = k3;
+  return one_to_one_radius(c.data());
 }
 
 TEST(CameraModel, RayAndProjectionUndoEachOther) {
@@ -75,7 +81,7 @@ TEST(CameraModel, KnownPixelOfTheDistortionEquations) {
   // x = 0.3, y = -0.2: r^2 = 0.13; R = 1 + 0.1 * 0.13 + 0.2 * 0.0169 + 0.3 * 0.002197
   manifest::Camera c = pinhole();
   c.model = "thin-prism";
-  const std::array values{0.1, 0.2, 0.01, 0.02, 0.3, 0.04, 0.05, 0.06, 0.07};
+  const std::array values{0.1, 0.2, 0.01, 0.02, 0.3, 0.0, 0.0, 0.0, 0.04, 0.05, 0.06, 0.07};
   for (std::size_t i = 0; i < values.size(); ++i) c.distortion[std::string(distortion_names[i])] = values[i];
   const double radial = 1 + 0.013 + 0.00338 + 0.0006591;
   const double x = 0.3 * radial + 2 * 0.01 * 0.3 * -0.2 + 0.02 * (0.13 + 0.18) + 0.04 * 0.13 + 0.05 * 0.0169;
@@ -88,7 +94,7 @@ TEST(CameraModel, KnownPixelOfTheDistortionEquations) {
 
 TEST(CameraModel, TermsAtZeroLeaveTheProjectionBitIdentical) {
   manifest::Camera with_terms = pinhole();
-  with_terms.model = "thin-prism";
+  with_terms.model = "fisheye";  // which has every term; fisheye = 0 is perspective
   for (const auto name : distortion_names) with_terms.distortion[std::string(name)] = 0.0;
   const CameraModel a(pinhole(), "a"), b(with_terms, "b");
   Random random(2);
@@ -109,7 +115,7 @@ TEST(CameraModel, NothingBehindTheCameraOrBeyondTheTurningPointOfTheLens) {
   manifest::Camera barrel = real_lens();
   barrel.distortion = {{"k1", -0.3}};
   const double limit = 1 / std::sqrt(0.9);  // 1 - 0.9 r^2 = 0
-  EXPECT_NEAR(one_to_one_radius(-0.3, 0, 0), limit, 1e-12);
+  EXPECT_NEAR(limit_of(-0.3, 0, 0), limit, 1e-12);
   const CameraModel folded(barrel, "t");
   EXPECT_TRUE(folded.project({limit - 1e-6, 0, 1}));
   EXPECT_FALSE(folded.project({limit + 1e-6, 0, 1}));
@@ -117,13 +123,13 @@ TEST(CameraModel, NothingBehindTheCameraOrBeyondTheTurningPointOfTheLens) {
 }
 
 TEST(LensTerms, OneToOneRadiusIsWhereTheSlopeVanishesFirst) {
-  EXPECT_EQ(one_to_one_radius(0, 0, 0), std::numeric_limits<double>::infinity());
-  EXPECT_EQ(one_to_one_radius(0.1, 0.2, 0), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(limit_of(0, 0, 0), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(limit_of(0.1, 0.2, 0), std::numeric_limits<double>::infinity());
   Random random(3);
   for (int i = 0; i < 1000; ++i) {
     const double k1 = random.uniform(-1, 1), k2 = random.uniform(-3, 3), k3 = random.uniform(-5, 5);
     const auto slope = [&](double u) { return 1 + u * (3 * k1 + u * (5 * k2 + u * 7 * k3)); };
-    const double r = one_to_one_radius(k1, k2, k3);
+    const double r = limit_of(k1, k2, k3);
     const double end = std::isfinite(r) ? r * r : 100;
     for (int j = 0; j < 200; ++j) ASSERT_GT(slope(end * (1 - 1e-9) * j / 200), 0);
     if (std::isfinite(r)) {
@@ -163,7 +169,7 @@ TEST(CameraModel, RefusesWhatIsNoCamera) {
   c.fx_px = -5.0;
   expect_refused(c, "/fx_px");
   c = pinhole();
-  c.model = "fisheye";
+  c.model = "telecentric";
   expect_refused(c, "/model");
   c = pinhole();
   c.width_px = 0;

@@ -36,7 +36,7 @@ class BoardsProblem : public Problem {
     for (std::size_t c = 0; c < input_.cameras.size(); ++c) declare_camera(c);
     for (std::size_t b = 0; b < input_.boards.size(); ++b) declare_board(b);
     for (std::size_t v = 0; v < input_.views.size(); ++v) declare_view(v);
-    for (const char* id : {"lens.radial", "lens.tangential", "lens.thin-prism"}) declare_lens(id);
+    for (const char* id : {"lens.radial", "lens.rational", "lens.tangential", "lens.thin-prism", "lens.fisheye"}) declare_lens(id);
     declare_warp();
     observe();
   }
@@ -199,10 +199,20 @@ class BoardsProblem : public Problem {
                               {none, none, v, BoardColumn::rotation + i}));
   }
 
+  // lens.rational and lens.fisheye say how lens.radial falls short: over a moderate field all three bow lines alike, and
+  // the plain one is to be named first. An equidistant lens has neither of them: its term is at the end of the range, and
+  // the denominators have faded.
+  static bool describes_radius(const BoardsInput::Camera& camera, const mechanism::Parameter& p, std::size_t term) {
+    const std::array<double, camera::distortion_terms>& lens = camera.intrinsics.distortion;
+    const bool radial = std::find(camera.terms.begin(), camera.terms.end(), camera::LensTerm::k1) != camera.terms.end();
+    return radial && lens[term] == p.neutral && lens[camera::LensTerm::fisheye] < 1;
+  }
+
   void declare_lens(const std::string& id) {
     const mechanism::Mechanism* m = mechanism::find_mechanism(id);
     if (m == nullptr) throw Error(Exit::internal, "explain", "mechanism " + id + " is not registered");
     Candidate candidate{m, {}, {}, {}};
+    const bool finer = id == "lens.rational" || id == "lens.fisheye";
     for (std::size_t c = 0; c < input_.cameras.size(); ++c) {
       const BoardsInput::Camera& own = input_.cameras[c];
       bool lacking = false;
@@ -210,6 +220,7 @@ class BoardsProblem : public Problem {
         const auto name = std::find(camera::distortion_names.begin(), camera::distortion_names.end(), p.name);
         const auto term = static_cast<std::size_t>(name - camera::distortion_names.begin());
         if (std::find(own.terms.begin(), own.terms.end(), term) != own.terms.end()) continue;
+        if (finer && !describes_radius(own, p, term)) continue;
         lacking = true;
         const std::string prefix = input_.cameras.size() > 1 ? "cameras/" + own.name + "/" : id + ".";
         candidate.parameters.push_back(declare(

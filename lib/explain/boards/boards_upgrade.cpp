@@ -30,29 +30,28 @@ double rms(const BoardsInput& input, const Observations& o, const Explanation& e
 
 void upgrade_camera(const Problem& problem, const BoardsInput& input, std::size_t c, const std::vector<BoardRole>& roles,
                     const Explanation& e, manifest::Camera& section) {
-  if (is_named(problem, e, "lens.thin-prism"))
-    section.model = "thin-prism";
-  else if (section.model == "pinhole" && (is_named(problem, e, "lens.radial") || is_named(problem, e, "lens.tangential")))
-    section.model = "radial-tangential";
   camera::Intrinsics k = input.cameras[c].intrinsics;
   std::array<double, 4> pinhole = {k.fx_px, k.fy_px, k.cx_px, k.cy_px};
   std::vector<std::string> order;
   std::vector<std::size_t> places;
+  camera::TermSet terms;
   section.sigma.clear();
   for (std::size_t p = 0; p < roles.size(); ++p) {
     if (roles[p].camera != c) continue;
     const std::size_t column = roles[p].column;
     const bool lens = column >= BoardColumn::distortion;
+    const auto active = std::find(e.active.begin(), e.active.end(), p);
+    if (lens && active != e.active.end()) terms.add(column - BoardColumn::distortion);
     (lens ? k.distortion[column - BoardColumn::distortion] : pinhole[column]) = e.values[p];
     const std::string& full = problem.parameters()[p].name;
     const std::string name = full.substr(full.find_last_of(lens && full.find('/') == std::string::npos ? '.' : '/') + 1);
-    const auto active = std::find(e.active.begin(), e.active.end(), p);
     if (active == e.active.end()) continue;
     section.sigma[name] = {e.sigma[p]};
     order.push_back(name);
     places.push_back(static_cast<std::size_t>(active - e.active.begin()));
   }
   k.fx_px = pinhole[0], k.fy_px = pinhole[1], k.cx_px = pinhole[2], k.cy_px = pinhole[3];
+  section.model = camera::model_with(section.model, terms);
   camera::store(k, section);
   manifest::Value values = manifest::Value::array();
   for (const std::size_t a : places) {
