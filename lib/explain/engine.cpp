@@ -27,6 +27,17 @@ std::vector<std::size_t> draw_test_groups(std::size_t groups, std::uint64_t seed
   return order;
 }
 
+void set_aside_groups(const std::vector<std::size_t>& test_groups, System& system) {
+  std::erase_if(system.groups, [&](std::size_t g) { return std::binary_search(test_groups.begin(), test_groups.end(), g); });
+}
+
+// Whether there is a mismatch is asked of all groups: it chooses nothing, and the groups set aside judge names, not this.
+double mismatch_p(const System& all, const std::vector<double>& start, Options options) {
+  options.dummies = 0;
+  const Race race(all, options);
+  return remainder(race, race.base(start), options).global_p;
+}
+
 std::vector<double> starting_values(const Problem& problem) {
   std::vector<double> values;
   for (const Parameter& p : problem.parameters()) values.push_back(p.neutral);
@@ -169,6 +180,13 @@ std::string verdict_name(Verdict verdict) {
   return "null";
 }
 
+double null_test(const Problem& problem, const Options& options) {
+  System system(problem, options.seed);
+  const std::vector<double> start = starting_values(problem);
+  settle_noise(system, start);
+  return mismatch_p(system, start, options);
+}
+
 Explanation explain(const Problem& problem, const Options& options) {
   Explanation e;
   e.matters = options.matters;
@@ -180,11 +198,9 @@ Explanation explain(const Problem& problem, const Options& options) {
 
   e.test_groups = draw_test_groups(all.groups.size(), options.seed);
   System chosen_on = all;
-  std::erase_if(chosen_on.groups, [&](std::size_t g) {
-    return std::binary_search(e.test_groups.begin(), e.test_groups.end(), g);
-  });
+  set_aside_groups(e.test_groups, chosen_on);
   const Race race(chosen_on, options);
-  const Selection selection = select(race, options, start);
+  const Selection selection = select(race, options, start, mismatch_p(all, start, options));
 
   e.global_p = selection.before.global_p;
   e.isolability = selection.before.isolability;

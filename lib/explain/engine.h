@@ -24,4 +24,8 @@ struct Options {
 
 Explanation explain(const Problem& problem, const Options& options);
 
+// The first steps alone, noise, fair refit and the null test, exactly as explain() takes them: the chance of such structure in the
+// residuals of the base model where nothing was left out. A mismatch is there at the level alpha where it is at most alpha.
+double null_test(const Problem& problem, const Options& options);
+
 }  // namespace gonio::explain

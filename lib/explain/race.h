@@ -62,6 +62,7 @@ struct Selection {
   std::vector<Hypothesis> scoreboard;
   std::vector<std::vector<std::size_t>> not_told_apart;
 };
-Selection select(const Race& race, const Options& options, const std::vector<double>& start);
+// `mismatch_p`: of the null test on the base model; above the level nothing is added to it.
+Selection select(const Race& race, const Options& options, const std::vector<double>& start, double mismatch_p);
 
 }  // namespace gonio::explain

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "explain/global_test.h"
 #include "explain/race.h"
 #include "stats/sign_flip.h"
 
@@ -38,6 +39,15 @@ Hypothesis linear_hypothesis(const Race& race, const Projection& p, const Struct
   return h;
 }
 
+// Has the mechanism a number of its own for every group?
+bool of_single_groups(const System& system, const Structure& structure) {
+  if (structure.kind != Structure::Kind::mechanism) return false;
+  const std::vector<Parameter>& all = system.problem().parameters();
+  const std::vector<std::size_t>& own = system.problem().candidates()[structure.index].parameters;
+  return std::all_of(own.begin(), own.end(), [&](std::size_t p) { return all[p].groups.size() == 1; }) &&
+         own.size() >= system.groups.size();
+}
+
 void sort_by_gain(std::vector<Hypothesis>& list) {
   std::stable_sort(list.begin(), list.end(), [](const Hypothesis& a, const Hypothesis& b) { return a.gain > b.gain; });
 }
@@ -57,10 +67,15 @@ Remainder remainder(const Race& race, const Model& model, const Options& options
   Remainder r;
   const Projection p = project(system, model.fit, structures);
   BlockScores scores = block_scores(system, p, structures);
-  std::vector<stats::ScoreFamily> real, dummy;
-  for (std::size_t s = 0; s < structures.list.size(); ++s)
-    (structures.list[s].kind == Structure::Kind::dummy ? dummy : real).push_back(std::move(scores.families[s]));
-  r.global_p = stats::sign_flip_test(real, scores.blocks, scores.inflation, options.draws, options.seed).global_p;
+  std::vector<Look> looks;
+  std::vector<stats::ScoreFamily> dummy;
+  for (std::size_t s = 0; s < structures.list.size(); ++s) {
+    if (structures.list[s].kind == Structure::Kind::dummy)
+      dummy.push_back(std::move(scores.families[s]));
+    else
+      looks.push_back({std::move(scores.families[s]), of_single_groups(system, structures.list[s])});
+  }
+  r.global_p = global_p(looks, scores.blocks, scores.inflation, options.draws, options.seed);
   const stats::SignFlipResult dummy_test = stats::sign_flip_test(dummy, scores.blocks, scores.inflation, 1, options.seed);
 
   r.isolability = isolability(system, p, structures, options.level);

@@ -115,10 +115,11 @@ void find_equals(const Race& race, Selection& s) {
 
 }  // namespace
 
-Selection select(const Race& race, const Options& options, const std::vector<double>& start) {
+Selection select(const Race& race, const Options& options, const std::vector<double>& start, double mismatch_p) {
   Selection s;
   s.base = s.model = race.base(start);
   s.before = s.after = remainder(race, s.base, options);
+  s.before.global_p = s.after.global_p = mismatch_p;
   while (s.after.global_p <= options.level && s.model.candidates.size() < most_effects) {
     std::vector<Runner> runners = run_round(race, s.model, s.after);
     for (const Runner& r : runners) {

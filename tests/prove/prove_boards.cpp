@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "base/atomic_file.h"
-#include "board_world.h"
+#include "explain/board_world.h"
 #include "manifest/value.h"
 #include "stats/intervals.h"
 

@@ -3,11 +3,12 @@
 #include <vector>
 
 #include "explain/boards/boards_problem.h"
+#include "explain/boards/rolling_shutter.h"
 #include "explain/explanation.h"
 
 namespace gonio::explain {
 
-// What a parameter of the problem moves: a column of camera::BoardColumn of one camera, board or view; the others are none.
+// What a parameter of the problem moves: a column of MovingColumn of one camera, board or view; the others are none.
 struct BoardRole {
   std::size_t camera = static_cast<std::size_t>(-1), board = static_cast<std::size_t>(-1), view = static_cast<std::size_t>(-1);
   std::size_t column = 0;

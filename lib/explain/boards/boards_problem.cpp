@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "explain/boards/boards_outcome.h"
+#include "explain/boards/rolling_shutter.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain {
@@ -38,6 +39,7 @@ class BoardsProblem : public Problem {
     for (std::size_t v = 0; v < input_.views.size(); ++v) declare_view(v);
     for (const char* id : {"lens.radial", "lens.rational", "lens.tangential", "lens.thin-prism", "lens.fisheye"}) declare_lens(id);
     declare_warp();
+    declare_rolling_shutter();
     observe();
   }
 
@@ -53,7 +55,7 @@ class BoardsProblem : public Problem {
     const BoardsInput::View& view = input_.views[group];
     for (std::size_t i = 0; i < view.corners.size(); ++i) {
       Vec2 pixel{0, 0};
-      const bool seen = camera::predict(s.intrinsics, s.pose, s.extent, s.warp, view.corners[i].board_m, pixel);
+      const bool seen = predict_moving(s.intrinsics, s.pose, s.extent, s.warp, s.readout, view.corners[i].board_m, pixel);
       prediction[2 * i] = seen ? pixel.x : infinity;
       prediction[2 * i + 1] = seen ? pixel.y : infinity;
     }
@@ -67,10 +69,10 @@ class BoardsProblem : public Problem {
     const std::size_t rows = 2 * view.corners.size();
     for (std::size_t i = 0; i < view.corners.size(); ++i) {
       Vec2 pixel{0, 0};
-      std::array<std::array<double, BoardColumn::count>, 2> j{};
-      camera::predict(s.intrinsics, s.pose, s.extent, s.warp, view.corners[i].board_m, pixel, j);
+      MovingJacobian j{};
+      predict_moving(s.intrinsics, s.pose, s.extent, s.warp, s.readout, view.corners[i].board_m, pixel, j);
       for (std::size_t axis = 0; axis < 2; ++axis) {
-        std::array<double, BoardColumn::count>& d = j[axis];
+        std::array<double, MovingColumn::count>& d = j[axis];
         const std::array<double, 3> w = {d[BoardColumn::rotation], d[BoardColumn::rotation + 1], d[BoardColumn::rotation + 2]};
         for (int k = 0; k < 3; ++k)
           d[BoardColumn::rotation + static_cast<std::size_t>(k)] = w[0] * turn(0, k) + w[1] * turn(1, k) + w[2] * turn(2, k);
@@ -125,15 +127,19 @@ class BoardsProblem : public Problem {
     camera::BoardExtent extent;
     camera::BoardWarp warp;
     Vec3 turn;
+    Readout readout;
   };
 
   Scene scene(std::span<const double> values, std::size_t group) const {
     const BoardsInput::View& view = input_.views[group];
-    Scene s{input_.cameras[view.camera].intrinsics, {}, input_.boards[view.board].extent, input_.boards[view.board].warp, {}};
+    const BoardsInput::Camera& camera = input_.cameras[view.camera];
+    Scene s{camera.intrinsics, {}, input_.boards[view.board].extent, input_.boards[view.board].warp, {}, {camera.height_px, {}}};
     std::array<double, 6> change{};
     for (std::size_t p = 0; p < roles_.size(); ++p) {
       const Role& r = roles_[p];
-      if (r.view == group) change[r.column - BoardColumn::rotation] = values[p];
+      if (r.view == group && r.column < MovingColumn::motion) change[r.column - BoardColumn::rotation] = values[p];
+      if (r.view == group && r.column >= MovingColumn::motion)
+        (r.column == MovingColumn::motion ? s.readout.motion_m.x : s.readout.motion_m.y) = values[p];
       if (r.camera == view.camera) {
         if (r.column == 0) s.intrinsics.fx_px = values[p];
         if (r.column == 1) s.intrinsics.fy_px = values[p];
@@ -248,6 +254,22 @@ class BoardsProblem : public Problem {
       }
     }
     if (!candidate.parameters.empty()) candidates_.push_back(std::move(candidate));
+  }
+
+  // Every view has its own motion: nuisance like its pose, under one mechanism.
+  void declare_rolling_shutter() {
+    const mechanism::Mechanism* m = mechanism::find_mechanism("camera.rolling-shutter");
+    if (m == nullptr) throw Error(Exit::internal, "explain", "mechanism camera.rolling-shutter is not registered");
+    Candidate candidate{m, {}, {}, {}};
+    for (const BoardsInput::Camera& c : input_.cameras) candidate.on.push_back(c.name);
+    for (std::size_t v = 0; v < input_.views.size(); ++v)
+      for (std::size_t k = 0; k < 2; ++k) {
+        const mechanism::Parameter& p = m->parameters.at(k);
+        candidate.parameters.push_back(
+            declare({input_.views[v].image + "/" + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, 1e-4, {}, {v}},
+                    {none, none, v, MovingColumn::motion + k}));
+      }
+    candidates_.push_back(std::move(candidate));
   }
 
   void observe() {

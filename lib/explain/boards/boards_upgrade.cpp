@@ -67,7 +67,7 @@ void upgrade_image(const BoardsInput& input, std::size_t v, const std::vector<Bo
   std::array<double, 6> change{};
   manifest::PoseSigma sigma{std::vector<double>(3, 0.0), std::vector<double>(3, 0.0)};
   for (std::size_t p = 0; p < roles.size(); ++p) {
-    if (roles[p].view != v) continue;
+    if (roles[p].view != v || roles[p].column >= MovingColumn::motion) continue;
     const std::size_t i = roles[p].column - BoardColumn::rotation;
     change[i] = e.values[p];
     (i < 3 ? sigma.rotation_rad : sigma.translation_m)[i % 3] = e.sigma[p];

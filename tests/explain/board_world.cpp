@@ -1,5 +1,5 @@
 // See board_world.h. The lens acts on (t cos, t sin) of the ray's angle; the board's arc keeps its length, as paper does.
-#include "board_world.h"
+#include "explain/board_world.h"
 
 #include <algorithm>
 #include <array>
@@ -12,9 +12,6 @@ namespace {
 
 using V3 = std::array<double, 3>;
 using M3 = std::array<V3, 3>;
-constexpr double square_m = 0.025, focal_px = 540, centre_x = 322, centre_y = 238;
-constexpr int columns = 9, rows = 6;
-
 double normal(std::mt19937_64& g) { return std::normal_distribution<double>()(g); }
 double between(std::mt19937_64& g, double a, double b) { return std::uniform_real_distribution<double>(a, b)(g); }
 
@@ -39,16 +36,19 @@ std::array<double, 2> on_arc(double s, double h, double sag) {
   return {radius * std::sin(angle), radius * (std::cos(angle) - std::cos(h / radius))};
 }
 
-V3 on_board(int column, int row, const BoardTruth& b) {
-  const double half_x = 0.5 * (columns - 1) * square_m, half_y = 0.5 * (rows - 1) * square_m;
-  const auto x = on_arc(column * square_m - half_x, half_x, b.sag_x_m);
-  const auto y = on_arc(row * square_m - half_y, half_y, b.sag_y_m);
+// From the first corner to the board's middle.
+V3 middle_of(const CaseDesign& d) { return {0.5 * (d.columns - 1) * d.square_m, 0.5 * (d.rows - 1) * d.square_m, 0}; }
+
+V3 on_board(int column, int row, const BoardTruth& b, const CaseDesign& d) {
+  const double half_x = middle_of(d)[0], half_y = middle_of(d)[1];
+  const auto x = on_arc(column * d.square_m - half_x, half_x, b.sag_x_m);
+  const auto y = on_arc(row * d.square_m - half_y, half_y, b.sag_y_m);
   return {half_x + x[0] * (1 + b.stretch_x), half_y + y[0], x[1] + y[1]};
 }
 
 std::array<double, 2> through_lens(double x, double y, const LensTruth& lens) {
   const double t2 = x * x + y * y, t = std::sqrt(t2);
-  double scale = 1 + lens.k1 * t2 + lens.k2 * t2 * t2;
+  double scale = 1 + lens.k1 * t2 + lens.k2 * t2 * t2 + lens.k3 * t2 * t2 * t2;
   if (lens.division != 0 && t > 0) {
     // r (1 - ...) : t = r / (1 + l r^2)  =>  l t r^2 - r + t = 0, the root that goes to t for small l.
     const double l = lens.division;
@@ -60,58 +60,78 @@ std::array<double, 2> through_lens(double x, double y, const LensTruth& lens) {
 
 struct View {
   M3 rotation;
-  V3 origin;  // of the board, in the camera
+  V3 origin{};    // of the board, in the camera, when the middle row is read
+  V3 velocity{};  // of the board, metres per readout
 };
-View random_view(std::mt19937_64& g) {
+View random_view(const CaseTruth& truth, const CaseDesign& d, std::mt19937_64& g) {
   View v;
   v.rotation = product(turn(2, between(g, -0.4, 0.4)), product(turn(1, between(g, -0.6, 0.6)), turn(0, between(g, -0.6, 0.6))));
   const double z = between(g, 0.28, 0.5);
   const V3 middle = {between(g, -0.22, 0.22) * z, between(g, -0.15, 0.15) * z, z};
-  const V3 half = {0.5 * (columns - 1) * square_m, 0.5 * (rows - 1) * square_m, 0};
+  const V3 half = middle_of(d);
   for (std::size_t i = 0; i < 3; ++i)
     v.origin[i] = middle[i] - v.rotation[i][0] * half[0] - v.rotation[i][1] * half[1];
+  if (truth.rolling_px == 0) return v;
+  const double way = truth.rolling_px * z / d.focal_px, towards = between(g, 0, 2 * std::acos(-1.0));
+  v.velocity = {way * std::cos(towards), way * std::sin(towards), 0};
   return v;
 }
 
+// Where a point of the board (in the camera's axes, from the board's origin) is seen. Its row is read when it is read: the moment
+// is found by stepping, as the shutter does, not from a formula.
+std::array<double, 2> seen_at(const V3& point, const View& view, const CaseTruth& truth, const CaseDesign& d) {
+  std::array<double, 2> pixel{};
+  double moment = 0;
+  for (int step = 0; step < 6; ++step) {
+    V3 c = point;
+    for (std::size_t i = 0; i < 3; ++i) c[i] += view.origin[i] + moment * view.velocity[i];
+    const auto image_point = through_lens(c[0] / c[2], c[1] / c[2], truth.lens);
+    pixel = {d.focal_px * image_point[0] + 0.5 * d.width_px + 2, d.focal_px * 1.001 * image_point[1] + 0.5 * d.height_px - 2};
+    moment = (pixel[1] + 0.5) / d.height_px - 0.5;
+  }
+  return pixel;
+}
+
 void print(std::string& text, const char* format, auto... values) {
-  std::array<char, 400> line{};
+  std::array<char, 600> line{};
   std::snprintf(line.data(), line.size(), format, values...);
   text += line.data();
 }
 
 // The corner table's rows of one view, or nothing where the board leaves the picture.
-std::string corner_rows(const View& view, const CaseTruth& truth, double noise_px, const std::string& image, std::mt19937_64& g) {
+std::string corner_rows(const View& view, const CaseTruth& truth, const CaseDesign& d, double noise_px, const std::string& image,
+                        std::mt19937_64& g) {
   std::string text;
   const double obliqueness = 1 / std::max(0.3, std::abs(view.rotation[2][2]));
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < columns; ++column) {
-      const V3 p = on_board(column, row, truth.board);
-      V3 c = view.origin;
+  for (int row = 0; row < d.rows; ++row)
+    for (int column = 0; column < d.columns; ++column) {
+      const V3 p = on_board(column, row, truth.board, d);
+      V3 turned{};
       for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t k = 0; k < 3; ++k) c[i] += view.rotation[i][k] * p[k];
-      const auto image_point = through_lens(c[0] / c[2], c[1] / c[2], truth.lens);
-      double u = focal_px * image_point[0] + centre_x, v = focal_px * 1.001 * image_point[1] + centre_y;
-      if (u < 4 || v < 4 || u > 636 || v > 476) return "";
+        for (std::size_t k = 0; k < 3; ++k) turned[i] += view.rotation[i][k] * p[k];
+      auto [u, v] = seen_at(turned, view, truth, d);
+      if (u < 4 || v < 4 || u > d.width_px - 4 || v > d.height_px - 4) return "";
       u += truth.wave_px * std::sin(u / 22.0);
-      const double sigma = noise_px * (0.8 + 0.2 * obliqueness), misplaced = between(g, 0, 1) < 1.0 / 300 ? 8 : 0;
+      const double sigma = noise_px * (0.8 + 0.2 * obliqueness), misplaced = between(g, 0, 1) < d.misplaced ? 8 : 0;
       u += sigma * normal(g) + misplaced * normal(g);
       v += sigma * normal(g) + misplaced * normal(g);
-      print(text, "%s[\"%s\",%d,%.6f,%.6f,%.5f,%.5f,0.1]", text.empty() ? "" : ",", image.c_str(), row * columns + column,
-            column * square_m, row * square_m, u, v);
+      print(text, "%s[\"%s\",%d,%.6f,%.6f,%.5f,%.5f,0.1]", text.empty() ? "" : ",", image.c_str(), row * d.columns + column,
+            column * d.square_m, row * d.square_m, u, v);
     }
   return text;
 }
 
 }  // namespace
 
-BoardCase board_case(const std::string& name, const CaseTruth& truth, std::size_t views, std::uint64_t seed) {
+BoardCase board_case(const std::string& name, const CaseTruth& truth, std::size_t views, std::uint64_t seed,
+                     const CaseDesign& design) {
   std::mt19937_64 g(seed);
-  const double noise_px = between(g, 0.06, 0.16);
+  const double noise_px = between(g, design.least_noise_px, design.most_noise_px);
   std::string images, table;
   for (std::size_t made = 0; made < views;) {
-    const View view = random_view(g);
+    const View view = random_view(truth, design, g);
     const std::string id = "view" + std::to_string(made);
-    const std::string corners = corner_rows(view, truth, noise_px, id, g);
+    const std::string corners = corner_rows(view, truth, design, noise_px, id, g);
     if (corners.empty()) continue;
     table += (made == 0 ? "" : ",") + corners;
     // What a first calibration hands over: poses that are a little off.
@@ -126,9 +146,11 @@ BoardCase board_case(const std::string& name, const CaseTruth& truth, std::size_
   BoardCase result{name, "", truth};
   print(result.manifest,
         "{\"gonio\":1,\"boards\":{\"b\":{\"kind\":\"checkerboard\",\"inner_corners\":[%d,%d],\"square_m\":%g}},"
-        "\"cameras\":{\"c\":{\"model\":\"pinhole\",\"width_px\":640,\"height_px\":480,\"fx_px\":545,\"fy_px\":545,"
-        "\"cx_px\":320,\"cy_px\":240}},\"images\":[",
-        columns, rows, square_m);
+        "\"cameras\":{\"c\":{\"model\":\"%s\",\"width_px\":%d,\"height_px\":%d,\"fx_px\":%g,\"fy_px\":%g,\"cx_px\":%g,\"cy_px\":%g%s}},"
+        "\"images\":[",
+        design.columns, design.rows, design.square_m, design.knows_lens ? "radial-tangential" : "pinhole", design.width_px,
+        design.height_px, 1.01 * design.focal_px, 1.01 * design.focal_px, 0.5 * design.width_px, 0.5 * design.height_px,
+        design.knows_lens ? ",\"distortion\":{\"k1\":0,\"k2\":0,\"p1\":0,\"p2\":0}" : "");
   result.manifest += images +
                      "],\"tables\":{\"corners\":{\"model\":\"camera\",\"camera\":\"c\",\"board\":\"b\",\"columns\":{\"image\":\"\","
                      "\"corner\":\"1\",\"board_x_m\":\"m\",\"board_y_m\":\"m\",\"u_px\":\"px\",\"v_px\":\"px\",\"sigma_px\":\"px\"},"
