@@ -11,10 +11,13 @@
 namespace gonio::camera {
 namespace {
 
+// Six numbers a line: readers of YAML may have buffers for lines.
 std::string matrix(const std::string& name, std::size_t rows, const std::vector<double>& values) {
+  std::string numbers;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    numbers += (i == 0 ? "" : i % 6 == 0 ? ",\n       " : ", ") + shortest_text(values[i]);
   return name + ": !!opencv-matrix\n   rows: " + std::to_string(rows) +
-         "\n   cols: " + std::to_string(rows == 0 ? 0 : values.size() / rows) + "\n   dt: d\n   data: [ " +
-         joined(values, ", ") + " ]\n";
+         "\n   cols: " + std::to_string(rows == 0 ? 0 : values.size() / rows) + "\n   dt: d\n   data: [ " + numbers + " ]\n";
 }
 
 std::vector<double> coefficients(const ExportedCamera& exported) {
