@@ -1,0 +1,49 @@
+// Rigid motions as Eigen matrices, and the projections onto rotations that the solvers share. For sources of this folder
+// only.
+#pragma once
+#include <Eigen/Dense>
+
+#include "geom/rigid.h"
+
+namespace gonio::robot::handeye {
+
+using Matrix3 = Eigen::Matrix3d;
+using Vector3 = Eigen::Vector3d;
+
+inline Vector3 eigen_of(Vec3 v) { return {v.x, v.y, v.z}; }
+inline Vec3 vec_of(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+inline Matrix3 eigen_of(const Quaternion& q) {
+  const Mat3 m = matrix_of(q);
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.m.data());
+}
+inline Quaternion quaternion_from(const Matrix3& rotation) {
+  Mat3 m;
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.m.data()) = rotation;
+  return quaternion_of(m);
+}
+inline Matrix3 cross_matrix(const Vector3& v) {
+  Matrix3 m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+// The rotation that maximises trace(R' m): Arun, Huang & Blostein, PAMI 9(5), 1987, with Umeyama's sign (PAMI 13(4),
+// 1991).
+inline Matrix3 nearest_rotation(const Matrix3& m) {
+  const Eigen::JacobiSVD<Matrix3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * Vector3(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+}
+// The rotation in a multiple of a rotation matrix, whose factor may be negative.
+inline Matrix3 rotation_in_multiple(const Matrix3& m) { return nearest_rotation(m.determinant() < 0 ? Matrix3(-m) : m); }
+
+// Solution of n x = b for a symmetric, positive semidefinite n: along directions whose eigenvalue is below `share` of
+// the largest, x is zero.
+inline Eigen::VectorXd solve_semidefinite(const Eigen::MatrixXd& n, const Eigen::VectorXd& b, double share = 1e-13) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> e(n);
+  Eigen::VectorXd y = e.eigenvectors().transpose() * b;
+  const double limit = share * e.eigenvalues().cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < y.size(); ++i) y(i) = e.eigenvalues()(i) > limit ? y(i) / e.eigenvalues()(i) : 0;
+  return e.eigenvectors() * y;
+}
+
+}  // namespace gonio::robot::handeye

@@ -1,0 +1,113 @@
+#include "robot/handeye/views.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "robot/handeye/corner_information.h"
+
+namespace gonio::robot::handeye {
+namespace {
+
+using camera::BoardColumn;
+static_assert(BoardColumn::translation == BoardColumn::rotation + 3);
+
+constexpr double huber_sigmas = 3;
+constexpr int most_steps = 50;
+
+std::size_t column_of(const std::string& name) {
+  constexpr std::array<std::string_view, 4> pinhole = {"fx_px", "fy_px", "cx_px", "cy_px"};
+  const auto at = std::ranges::find(pinhole, name);
+  if (at != pinhole.end()) return BoardColumn::intrinsics + static_cast<std::size_t>(at - pinhole.begin());
+  const auto term = std::ranges::find(camera::distortion_names, name);
+  if (term == camera::distortion_names.end()) return BoardColumn::count;
+  return BoardColumn::distortion + static_cast<std::size_t>(term - camera::distortion_names.begin());
+}
+
+}  // namespace
+
+CornerInformation corner_information(const Setup& setup, const View& view, const camera::BoardPose& pose,
+                                     double factor) {
+  CornerInformation sum;
+  std::vector<std::size_t> lens_columns;
+  for (const std::string& name : setup.lens_order) lens_columns.push_back(column_of(name));
+  sum.lens = Eigen::MatrixXd::Zero(6, static_cast<Eigen::Index>(lens_columns.size()));
+  std::array<std::array<double, BoardColumn::count>, 2> jacobian{};
+  for (const SeenCorner& corner : view.corners) {
+    Vec2 pixel;
+    if (!camera::predict(setup.lens, pose, setup.extent, setup.warp, corner.board_m, pixel, jacobian)) {
+      sum.in_front = false;
+      continue;
+    }
+    const Vec2 r = pixel - corner.pixel;
+    const double size = norm(r) / (corner.sigma_px * factor);
+    const double robust = size > huber_sigmas ? huber_sigmas / size : 1;
+    const double weight = robust / (corner.sigma_px * corner.sigma_px);
+    sum.squares += weight * dot(r, r);
+    sum.coordinates += 2 * robust;
+    for (const int row : {0, 1}) {
+      const auto& j = jacobian[static_cast<std::size_t>(row)];
+      const Eigen::Map<const Vector6> g(j.data() + BoardColumn::rotation);
+      sum.information.noalias() += weight * g * g.transpose();
+      sum.gradient.noalias() += weight * (row == 0 ? r.x : r.y) * g;
+      for (std::size_t k = 0; k < lens_columns.size(); ++k) {
+        if (lens_columns[k] == BoardColumn::count) continue;
+        sum.lens.col(static_cast<Eigen::Index>(k)) += weight * j[lens_columns[k]] * g;
+      }
+    }
+  }
+  return sum;
+}
+
+camera::BoardPose moved_by(const camera::BoardPose& pose, const Vector6& change) {
+  return camera::moved(pose, {change(0), change(1), change(2), change(3), change(4), change(5)});
+}
+
+camera::BoardPose pose_by_camera(const Setup& setup, const View& view) {
+  camera::BoardPose pose = view.camera_from_board;
+  double factor = 1, damping = 1e-6;
+  CornerInformation at = corner_information(setup, view, pose, factor);
+  for (int step = 0; step < most_steps; ++step) {
+    factor = std::sqrt(std::max(1.0, at.squares / std::max(1.0, at.coordinates - 6)));
+    at = corner_information(setup, view, pose, factor);
+    const Matrix6 damped = at.information + damping * Matrix6(at.information.diagonal().asDiagonal());
+    const Vector6 change = -damped.ldlt().solve(at.gradient);
+    const camera::BoardPose next = moved_by(pose, change);
+    const CornerInformation there = corner_information(setup, view, next, factor);
+    if (!there.in_front || there.squares > at.squares * (1 + 1e-12)) {
+      damping = std::max(damping, 1e-9) * 10;
+      if (damping > 1e6) break;
+      continue;
+    }
+    pose = next;
+    damping *= 0.1;
+    const double sigmas = std::sqrt(std::max(0.0, change.dot(at.information * change)));
+    at = there;
+    if (sigmas < 1e-9) break;
+  }
+  return pose;
+}
+
+std::vector<PoseSample> samples_of(const Setup& setup, const std::vector<View>& views) {
+  std::vector<PoseSample> samples;
+  for (const View& view : views) samples.push_back(sample_of(setup.kind, view.base_from_tool, view.camera_from_board));
+  return samples;
+}
+
+camera::BoardPose predicted_pose(Kind kind, const View& view, const Solution& solution) {
+  const PoseSample sample = sample_of(kind, view.base_from_tool, {});
+  return inverse(solution.mount_from_camera) * inverse(sample.stand_from_mount) * solution.stand_from_board;
+}
+
+double rms_px(const Setup& setup, const View& view, const camera::BoardPose& pose) {
+  double squares = 0;
+  for (const SeenCorner& corner : view.corners) {
+    Vec2 pixel;
+    if (!camera::predict(setup.lens, pose, setup.extent, setup.warp, corner.board_m, pixel)) return HUGE_VAL;
+    const Vec2 r = corner.pixel - pixel;
+    squares += dot(r, r);
+  }
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, view.corners.size())));
+}
+
+}  // namespace gonio::robot::handeye
