@@ -15,6 +15,7 @@
 
 #include "camera/aruco_dictionary.h"
 #include "camera/board_detectors.h"
+#include "camera/corner_refinement.h"
 #include "camera/grey_picture.h"
 #include "camera/marker_dictionary.h"
 
@@ -30,7 +31,6 @@ constexpr int search_sides_px[] = {1600, 3200, 1 << 20};  // longest side at whi
 constexpr double enough = 0.9;                            // of the board's markers: no need to look closer
 constexpr double least_marker_px = 9;
 constexpr double layout_tolerance = 0.35;  // of a square: halfway between a fit and a shift by one square is 0.5
-constexpr double window_clearance = 0.9;   // half-window over the distance from a corner to the markers beside it
 constexpr double stray_tolerance = 1.0;    // of a square: lens distortion stays below, wrong ids do not
 
 std::vector<Found> find_markers_at(const Reduced& picture, const std::string& dictionary) {
@@ -101,9 +101,16 @@ int votes(const std::vector<double>& misfit) {
   return static_cast<int>(std::ranges::count_if(misfit, [](double d) { return d < layout_tolerance; }));
 }
 
+// Prediction::bare: black squares have no markers, and the top-left square of the current layout is black.
+int bare_squares(const Board& board, int corner, bool legacy) {
+  const int row = corner / board.corner_columns, column = corner % board.corner_columns;
+  const bool first_is_black = !(board.layout_matters() && legacy);
+  return ((row + column) % 2 == 0) == first_is_black ? 1 : -1;
+}
+
 // The homography of the markers nearest to `corner`, of which one at least must touch it.
 std::vector<Prediction> predict_corners(const std::vector<Found>& found, const MarkerPlaces& places,
-                                        const Board& board) {
+                                        const Board& board, bool legacy) {
   std::vector<Prediction> predictions;
   for (int id = 0; id < board.corners(); ++id) {
     const Vec2 corner = board.corner_m(id);
@@ -130,8 +137,7 @@ std::vector<Prediction> predict_corners(const std::vector<Found>& found, const M
     const std::vector<cv::Point2f> ask{{0, 0}, {0.5F, 0}, {-0.5F, 0}, {0, 0.5F}, {0, -0.5F}};
     std::vector<cv::Point2f> p;
     cv::perspectiveTransform(ask, p, homography);
-    const double side = std::min(cv::norm(p[1] - p[2]), cv::norm(p[3] - p[4]));
-    predictions.push_back({id, p[0], side});
+    predictions.push_back({id, p[0], p[1] - p[2], p[3] - p[4], bare_squares(board, id, legacy)});
   }
   return predictions;
 }
@@ -164,14 +170,16 @@ Detection detect_charuco(const GreyPicture& picture, const Board& board, const D
     result.problem = "no marker of " + board.dictionary + " that belongs to the board";
     return result;
   }
-  const double share = window_clearance * 0.5 * (1 - board.marker_m / board.square_m);
-  result.corners = refine(picture, predict_corners(trusted, result.legacy ? legacy : current, board), share, options);
+  const double clear = 0.5 * (1 - board.marker_m / board.square_m);
+  result.corners =
+      refine(picture.values, predict_corners(trusted, result.legacy ? legacy : current, board, result.legacy), clear, options);
   if (result.corners.empty()) result.problem = "markers, but no corner between them could be refined";
   return result;
 }
 
 DictionaryGuess guess_dictionary(const io::Image& image) {
-  const GreyPicture picture = grey_picture(image);
+  const io::GreyImage grey = io::grey_of(image);
+  const GreyPicture picture = grey_picture(grey);
   DictionaryGuess best;
   for (const char* family : {"4X4_1000", "5X5_1000", "6X6_1000", "7X7_1000", "ARUCO_ORIGINAL"}) {
     const std::vector<Found> found = find_markers_at(reduced(picture, 3200), family);

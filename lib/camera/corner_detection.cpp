@@ -1,9 +1,9 @@
 // One call for every kind of board, and what can be said about its corners without any lens model: mistakes and noise.
 //
-// A plane homography takes the perspective out; what is left over the grid is smooth (lens, warp) plus noise. Third
-// differences along rows and columns, e(i-1) - 3 e(i) + 3 e(i+1) - e(i+2), remove the smooth part up to its second
-// order and have 20 times the variance of one coordinate; their median absolute deviation gives the noise. A corner
-// that a quadratic through its neighbours misses by far is a mistake, not noise.
+// A plane homography takes the perspective out; what is left over the grid is smooth (lens, warp) plus noise. A
+// polynomial over the grid of degree 4 (3 where corners are few) removes the smooth part, which radial distortion makes
+// cubic to first order; the median absolute deviation of the rest gives the noise. A corner that a quadratic through
+// its neighbours misses by far is a mistake, not noise.
 #include "camera/corner_detection.h"
 
 #include <Eigen/Dense>
@@ -18,9 +18,12 @@
 namespace gonio::camera {
 namespace {
 
-constexpr std::size_t least_differences = 12;  // for a noise estimate
+constexpr int least_corners_per_term = 2;  // for a noise estimate
 constexpr double gross_share = 0.12;           // of a square
 constexpr double gross_sigmas = 12;
+// A field that is rougher than this many times what the pixels around the corners let expect is a strong lens that few
+// corners do not resolve, not noise.
+constexpr double most_times_expected = 4;
 constexpr double mad_to_sigma = 1.4826;  // of a normal distribution
 
 using Field = std::map<int, Vec2>;  // by corner: deviation from the plane homography, px
@@ -54,23 +57,29 @@ Field deviations(const std::vector<Corner>& corners, const Board& board, double&
   return field;
 }
 
+// Median absolute deviation of the field from a polynomial in columns and rows that follows lens and warp.
 double noise_of(const Field& field, const Board& board) {
-  std::vector<double> sizes;
-  const auto collect = [&](int id, int step) {
-    const auto a = field.find(id), b = field.find(id + step), c = field.find(id + 2 * step),
-               d = field.find(id + 3 * step);
-    if (a == field.end() || b == field.end() || c == field.end() || d == field.end()) return;
-    const Vec2 third = a->second - b->second * 3 + c->second * 3 - d->second;
-    sizes.push_back(std::abs(third.x));
-    sizes.push_back(std::abs(third.y));
-  };
-  for (const auto& entry : field) {
-    const int id = entry.first;
-    if (id % board.corner_columns + 3 < board.corner_columns) collect(id, 1);
-    if (id / board.corner_columns + 3 < board.corner_rows) collect(id, board.corner_columns);
+  const auto n = static_cast<Eigen::Index>(field.size());
+  int degree = 4;
+  while (degree > 1 && n < least_corners_per_term * (degree + 1) * (degree + 2) / 2) --degree;
+  if (degree < 3) return 0;
+  const Eigen::Index terms = (degree + 1) * (degree + 2) / 2;
+  Eigen::MatrixXd a(n, terms), b(n, 2);
+  Eigen::Index row = 0;
+  for (const auto& [id, deviation] : field) {
+    const double x = 2.0 * (id % board.corner_columns) / (board.corner_columns - 1) - 1;
+    const double y = 2.0 * (id / board.corner_columns) / (board.corner_rows - 1) - 1;
+    Eigen::Index column = 0;
+    for (int i = 0; i <= degree; ++i) {
+      for (int j = 0; i + j <= degree; ++j) a(row, column++) = std::pow(x, i) * std::pow(y, j);
+    }
+    b.row(row++) << deviation.x, deviation.y;
   }
-  if (sizes.size() < least_differences) return 0;
-  return mad_to_sigma * median(sizes) / std::sqrt(20.0);
+  const auto solver = a.colPivHouseholderQr();
+  const Eigen::MatrixXd left = b - a * solver.solve(b);
+  std::vector<double> sizes;
+  for (const double v : left.reshaped()) sizes.push_back(std::abs(v));
+  return mad_to_sigma * median(sizes) * std::sqrt(static_cast<double>(n) / static_cast<double>(n - solver.rank()));
 }
 
 // What a quadratic through the neighbours (up to two steps away) leaves of the corner's deviation; 0 with too few
@@ -98,12 +107,17 @@ double misfit(const Field& field, const Board& board, int id) {
 }
 
 void examine(Detection& detection, const Board& board) {
+  if (detection.corners.empty()) return;
+  std::vector<double> sigmas;
+  for (const Corner& c : detection.corners) sigmas.push_back(c.sigma_px);
+  const double expected = detection.noise_px = median(sigmas);
   if (detection.corners.size() < 8) return;
   double square_px = 0;
   Field field = deviations(detection.corners, board, square_px);
   if (field.empty()) return;
   while (true) {  // the worst first: a mistake spoils its neighbours' quadratics too
-    detection.noise_px = noise_of(field, board);
+    const double scatter = noise_of(field, board);
+    detection.noise_px = scatter > 0 ? std::min(scatter, most_times_expected * expected) : expected;
     std::pair<double, int> worst{0, 0};
     for (const auto& entry : field) worst = std::max(worst, {misfit(field, board, entry.first), entry.first});
     if (worst.first <= std::max(gross_share * square_px, gross_sigmas * detection.noise_px)) return;
@@ -116,6 +130,10 @@ void examine(Detection& detection, const Board& board) {
 }  // namespace
 
 Detection detect_board(const io::Image& image, const Board& board, const DetectionOptions& options) {
+  return detect_board(io::grey_of(image), board, options);
+}
+
+Detection detect_board(const io::GreyImage& image, const Board& board, const DetectionOptions& options) {
   const GreyPicture picture = grey_picture(image);
   Detection result = board.kind == BoardKind::charuco ? detect_charuco(picture, board, options)
                                                       : detect_checkerboard(picture, board, options);

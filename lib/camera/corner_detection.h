@@ -1,10 +1,8 @@
 // Corners of a calibration board in a photograph: pixels, pixel centres at integers, numbered as in board.h.
 //
-// The board is searched at reduced resolution; every corner is then refined on the full picture as the saddle point at
-// which all grey-level gradients nearby are perpendicular to the line to it (Foerstner & Guelch 1987; OpenCV's
-// cornerSubPix), in a window that is a fixed share of the local size of a square. Refinement fixes the position
-// whatever the search's own convention; OpenCV 4.6 returns ChArUco corners with a shift of about half a pixel, which
-// this avoids. Does not know lenses: prediction is local.
+// The board is searched at reduced resolution; every corner is then refined on the full picture as the crossing of two
+// blurred edges (corner_refinement.h), which fixes its position whatever the search's own convention; OpenCV 4.6 returns
+// ChArUco corners with a shift of about half a pixel, which this avoids. Does not know lenses: prediction is local.
 #pragma once
 #include <array>
 #include <string>
@@ -12,24 +10,25 @@
 
 #include "camera/board.h"
 #include "geom/vector.h"
+#include "io/grey.h"
 #include "io/image.h"
 
 namespace gonio::camera {
 
 struct DetectionOptions {
-  // Half-window of the refinement. 0: a quarter of the local side of a square on checkerboards; on ChArUco boards what
-  // stays clear of the markers, whose borders would pull at the corner.
+  // How far from a corner along the edges its refinement looks. 0: 0.42 of the local side of a square, 2.5 to 12 px.
   int window_px = 0;
 };
 
 struct Corner {
   int id = 0;
   Vec2 pixel;
+  double sigma_px = 0;  // of one coordinate, as the picture's noise around this corner lets expect; 0: not known
 };
 
 struct Detection {
   std::vector<Corner> corners;        // sorted by id; empty where the board was not found
-  double noise_px = 0;                // of one coordinate, estimated without any lens model; 0: too few corners to say
+  double noise_px = 0;                // of one coordinate, estimated without any lens model; 0: no corners
   int gross_errors = 0;               // corners left out because they do not fit their neighbours
   int markers = 0;                    // charuco: markers that belong to the board
   int foreign_markers = 0;            // charuco: of the dictionary, but with ids that the board does not have
@@ -38,6 +37,7 @@ struct Detection {
   std::string problem;                // why there are no corners
 };
 
+Detection detect_board(const io::GreyImage& image, const Board& board, const DetectionOptions& options);
 // `image`: grey or RGB of any range; EXR values are linear and may exceed 1.
 Detection detect_board(const io::Image& image, const Board& board, const DetectionOptions& options);
 

@@ -24,15 +24,19 @@ std::string lower_extension(const std::filesystem::path& path) {
 
 }  // namespace
 
-Image read_picture(const std::filesystem::path& path) {
+PictureFormat picture_format(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
-  const bool exr = extension == ".exr";
-  const bool raster =
-      extension == ".png" || extension == ".jpg" || extension == ".jpeg" || extension == ".tif" || extension == ".tiff";
-  if (!exr && !raster)
-    throw Error(Exit::data, path.string(), "'" + extension + "' is not a picture that can be read", readable);
+  if (extension == ".exr") return PictureFormat::exr;
+  for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff"}) {
+    if (extension == known) return PictureFormat::raster;
+  }
+  throw Error(Exit::data, path.string(), "'" + extension + "' is not a picture that can be read", readable);
+}
+
+Image read_picture(const std::filesystem::path& path) {
+  const PictureFormat format = picture_format(path);
   const std::string bytes = read_file(path);
-  return exr ? decode_exr(bytes, path.string()) : decode_raster(bytes, path.string());
+  return format == PictureFormat::exr ? decode_exr(bytes, path.string()) : decode_raster(bytes, path.string());
 }
 
 void write_picture(const std::filesystem::path& path, const Image& image) {

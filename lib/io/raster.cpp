@@ -14,11 +14,11 @@
 namespace gonio::io {
 namespace {
 
-cv::Mat decode(const std::string& bytes, const std::string& place) {
+cv::Mat decode(const std::string& bytes, const std::string& place, int flags) {
   const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
   cv::Mat picture;
   try {
-    picture = cv::imdecode(buffer, cv::IMREAD_UNCHANGED);
+    picture = cv::imdecode(buffer, flags);
   } catch (const cv::Exception& failure) {
     throw Error(Exit::data, place, "cannot be decoded (" + failure.err + ")", "export or copy it again");
   }
@@ -53,10 +53,23 @@ std::uint8_t code(float value) {
 Image decode_raster(const std::string& bytes, const std::string& place) {
   const RasterHeader header = read_raster_header(bytes, place);
   check_decoded_size(header.width, header.height, 3 * sizeof(float), bytes.size(), place);
-  const cv::Mat picture = decode(bytes, place);
+  const cv::Mat picture = decode(bytes, place, cv::IMREAD_UNCHANGED);
   if (picture.depth() == CV_8U) return scaled<std::uint8_t>(picture);
   if (picture.depth() == CV_16U) return scaled<std::uint16_t>(picture);
   throw Error(Exit::data, place, "holds neither 8 nor 16-bit codes", "export floats as OpenEXR");
+}
+
+GreyImage decode_grey(const std::string& bytes, const std::string& place) {
+  const RasterHeader header = read_raster_header(bytes, place);
+  check_decoded_size(header.width, header.height, 3 * sizeof(float), bytes.size(), place);
+  const cv::Mat picture =
+      decode(bytes, place, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+  if (picture.depth() == CV_16U) return grey_of(scaled<std::uint16_t>(picture));
+  if (picture.depth() != CV_8U) throw Error(Exit::data, place, "holds neither 8 nor 16-bit codes", "export floats as OpenEXR");
+  GreyImage grey{picture.cols, picture.rows, {}, {}};
+  grey.bytes.reserve(picture.total());
+  for (int y = 0; y < picture.rows; ++y) grey.bytes.insert(grey.bytes.end(), picture.ptr(y), picture.ptr(y) + picture.cols);
+  return grey;
 }
 
 std::string encode_raster_png(const Image& image) {
