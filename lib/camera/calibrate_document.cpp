@@ -9,6 +9,7 @@
 #include "base/progress.h"
 #include "camera/corner_table.h"
 #include "camera/detection_failure.h"
+#include "io/grey.h"
 #include "io/picture.h"
 
 namespace gonio::camera {
@@ -83,7 +84,7 @@ std::vector<Session> sessions_of(const manifest::Document& document) {
 }
 
 void look(Shot& shot, const Board& board, const DetectionOptions& options) {
-  const io::Image image = io::read_picture(shot.path);
+  const io::GreyImage image = io::read_grey(shot.path);
   shot.width_px = image.width;
   shot.height_px = image.height;
   shot.detection = detect_board(image, board, options);
