@@ -103,19 +103,31 @@ TEST(ClosedForms, AreAsGoodAsOpenCvs) {
   const std::vector<std::pair<std::string, cv::HandEyeCalibrationMethod>> peers{
       {"tsai", cv::CALIB_HAND_EYE_TSAI}, {"park", cv::CALIB_HAND_EYE_PARK}, {"horaud", cv::CALIB_HAND_EYE_HORAUD},
       {"andreff", cv::CALIB_HAND_EYE_ANDREFF}, {"daniilidis", cv::CALIB_HAND_EYE_DANIILIDIS}};
-  HandEyeWorld world;
-  for (const auto& [name, method] : peers) {
-    double ours = 0, theirs = 0;
-    for (std::uint64_t seed = 0; seed < 20; ++seed) {
-      const auto samples = samples_of(world.setup(), world.views(seed));
-      const Solution mine = closed_form(name, "").solve(samples), peer = by_opencv(samples, method);
-      ours += std::pow(norm(mine.mount_from_camera.translation_m - world.truth.mount_from_camera.translation_m), 2);
-      theirs += std::pow(norm(peer.mount_from_camera.translation_m - world.truth.mount_from_camera.translation_m), 2);
-      if (name == "daniilidis") continue;  // OpenCV 4.6 is off by decimetres and more here
-      EXPECT_LT(norm(mine.mount_from_camera.translation_m - peer.mount_from_camera.translation_m), 0.01) << name;
+  // Two cameras: one nearly along the tool's axes, one turned by 145 degrees, where OpenCV 4.6 fails by decimetres with
+  // tsai, horaud and daniilidis.
+  for (const Quaternion q : {normalized(Quaternion{1, 0.1, -0.2, 0.05}), normalized(Quaternion{0.3, 0.7, -0.5, 0.4})}) {
+    HandEyeWorld world;
+    world.truth.mount_from_camera.rotation = q;
+    for (const auto& [name, method] : peers) {
+      double ours = 0, theirs = 0;
+      int failed = 0;
+      for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const auto samples = samples_of(world.setup(), world.views(seed));
+        const Vec3 truth = world.truth.mount_from_camera.translation_m;
+        const Vec3 mine = closed_form(name, "").solve(samples).mount_from_camera.translation_m;
+        const Vec3 peer = by_opencv(samples, method).mount_from_camera.translation_m;
+        EXPECT_LT(norm(mine - truth), 0.003) << name;
+        if (norm(peer - truth) > 0.02) {
+          ++failed;
+          continue;
+        }
+        ours += std::pow(norm(mine - truth), 2);
+        theirs += std::pow(norm(peer - truth), 2);
+      }
+      EXPECT_LE(std::sqrt(ours), 1.05 * std::sqrt(theirs)) << name;
+      std::cout << name << ": " << std::sqrt(ours / 20) * 1000 << " mm, OpenCV " << std::sqrt(theirs / 20) * 1000
+                << " mm where it does not fail (" << failed << " of 20)\n";
     }
-    EXPECT_LE(std::sqrt(ours), 1.05 * std::sqrt(theirs)) << name;
-    std::cout << name << ": " << std::sqrt(ours / 20) * 1000 << " mm, OpenCV " << std::sqrt(theirs / 20) * 1000 << " mm\n";
   }
 }
 
