@@ -1,0 +1,169 @@
+// See robot_chain.h.
+#include "explain/robot/robot_chain.h"
+
+#include <cmath>
+
+namespace gonio::explain {
+namespace {
+
+template <class To, class From>
+Rigid<To, From> moved(const Rigid<To, From>& pose, const std::array<double, 6>& change) {
+  return {normalized(quaternion_of_rotation_vector({change[0], change[1], change[2]}) * pose.rotation),
+          pose.translation_m + Vec3{change[3], change[4], change[5]}};
+}
+
+template <class To, class From, class Any>
+Rigid<To, From> named(const Any& pose) {
+  return {pose.rotation, pose.translation_m};
+}
+
+Eigen::Matrix3d matrix(const Quaternion& q) {
+  const Mat3 m = matrix_of(q);
+  Eigen::Matrix3d result;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) result(i, j) = m(i, j);
+  return result;
+}
+
+Eigen::Matrix3d crossing(Vec3 v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z, v.y, v.z, 0, -v.x, -v.y, v.x, 0;
+  return m;
+}
+
+bool is_nominal(const RobotState& s) {
+  const std::array<double, 6> zero{};
+  return s.joint_rad == zero && s.a_m == zero && s.d_m == zero && s.sag_rad_per_m == std::array<double, 2>{};
+}
+
+}  // namespace
+
+PoseChange change_between(const camera::BoardPose& from, const camera::BoardPose& to) {
+  const Vec3 turn = rotation_vector_of(to.rotation * conjugate(from.rotation));
+  const Vec3 shift = to.translation_m - from.translation_m;
+  PoseChange change;
+  change << turn.x, turn.y, turn.z, shift.x, shift.y, shift.z;
+  return change;
+}
+
+Rigid<frame::Base, frame::Tool> tool_pose(const RobotInput& input, const RobotInput::View& view,
+                                          const RobotState& state) {
+  if (input.links.empty() || view.joints_rad.empty() || is_nominal(state)) return view.base_from_tool;
+  const auto nominal = robot::flange(input.links, view.joints_rad);
+  std::vector<robot::Link> links = input.links;
+  std::vector<double> joints = view.joints_rad;
+  const std::vector<double> levers = robot::weight_levers(links, joints);
+  for (std::size_t i = 0; i < links.size() && i < 6; ++i) {
+    links[i].a_m += state.a_m[i];
+    links[i].d_m += state.d_m[i];
+    joints[i] += state.joint_rad[i];
+  }
+  for (std::size_t k = 0; k < 2 && k + 1 < joints.size(); ++k) joints[k + 1] += state.sag_rad_per_m[k] * levers[k + 1];
+  return robot::flange(links, joints) * (inverse(nominal) * view.base_from_tool);
+}
+
+camera::BoardPose chain_pose(const RobotInput& input, const RobotInput::View& view, const RobotState& state) {
+  const auto hand = moved(input.tool_from_hand, state.hand);
+  const auto fixed = moved(input.base_from_fixed, state.fixed);
+  const auto tool = tool_pose(input, view, state);
+  if (input.eye_to_hand) return named<frame::Camera, frame::Board>(inverse(fixed) * (tool * hand));
+  return named<frame::Camera, frame::Board>(inverse(tool * hand) * fixed);
+}
+
+// Eye-in-hand: the chain is X^-1 T^-1 B, and T exp(xi) makes it X^-1 exp(-xi) X chain. Eye-to-hand: C^-1 T exp(xi) Z.
+PoseMatrix by_tool(const RobotInput& input, const RobotInput::View& view, const RobotState& state) {
+  const auto hand = moved(input.tool_from_hand, state.hand);
+  const camera::BoardPose chain = chain_pose(input, view, state);
+  PoseMatrix result = PoseMatrix::Zero();
+  if (input.eye_to_hand) {
+    const Eigen::Matrix3d camera_from_tool = matrix(chain.rotation * conjugate(hand.rotation));
+    result.topLeftCorner<3, 3>() = camera_from_tool;
+    result.bottomLeftCorner<3, 3>() = -camera_from_tool * crossing(hand.translation_m);
+    result.bottomRightCorner<3, 3>() = camera_from_tool;
+    return result;
+  }
+  const Eigen::Matrix3d camera_from_tool = matrix(conjugate(hand.rotation));
+  const Vec3 board_in_tool = hand.rotate(chain.translation_m) + hand.translation_m;
+  result.topLeftCorner<3, 3>() = -camera_from_tool;
+  result.bottomLeftCorner<3, 3>() = camera_from_tool * crossing(board_in_tool);
+  result.bottomRightCorner<3, 3>() = -camera_from_tool;
+  return result;
+}
+
+MeasuredPose measured_pose(const RobotInput::View& view, const RobotInput& input, const RobotState& state,
+                           const camera::BoardPose& start, int iterations) {
+  MeasuredPose result{start, PoseMatrix::Zero(), 0};
+  if (view.corners.empty()) {
+    result.covariance.diagonal().head<3>().setConstant(view.rotation_sigma_rad * view.rotation_sigma_rad);
+    result.covariance.diagonal().tail<3>().setConstant(view.shift_sigma_m * view.shift_sigma_m);
+    return result;
+  }
+  for (int i = 0; i <= iterations; ++i) {
+    PoseMatrix normal = PoseMatrix::Zero();
+    PoseChange gradient = PoseChange::Zero();
+    double squares = 0, rows = 0, pixels = 0;
+    for (const RobotInput::Corner& c : view.corners) {
+      Vec2 pixel;
+      std::array<std::array<double, camera::BoardColumn::count>, 2> jacobian{};
+      const Vec2 at{c.board_m.x * (1 + state.scale[0]), c.board_m.y * (1 + state.scale[1])};
+      if (!camera::predict(state.intrinsics, result.camera_from_board, input.extent, state.warp, at, pixel, jacobian))
+        continue;
+      const std::array<double, 2> error = {c.pixel.x - pixel.x, c.pixel.y - pixel.y};
+      for (std::size_t r = 0; r < 2; ++r) {
+        const Eigen::Map<const PoseChange> row(jacobian[r].data() + camera::BoardColumn::rotation);
+        normal += row * row.transpose() / (c.sigma_px * c.sigma_px);
+        gradient += row * (error[r] / (c.sigma_px * c.sigma_px));
+        squares += error[r] * error[r] / (c.sigma_px * c.sigma_px);
+        pixels += error[r] * error[r];
+        rows += 1;
+      }
+    }
+    const Eigen::LDLT<PoseMatrix> factor(normal);
+    if (i < iterations) {
+      const PoseChange step = factor.solve(gradient);
+      std::array<double, 6> change{};
+      for (std::size_t k = 0; k < 6; ++k) change[k] = step[static_cast<Eigen::Index>(k)];
+      result.camera_from_board = camera::moved(result.camera_from_board, change);
+      if (step.norm() < 1e-10) iterations = i + 1;
+      continue;
+    }
+    result.rms_px = std::sqrt(pixels / std::max(1.0, rows / 2));
+    result.covariance = factor.solve(PoseMatrix::Identity()) * (rows > 12 ? squares / (rows - 6) : 1.0);
+  }
+  return result;
+}
+
+Eigen::Matrix<double, 6, Eigen::Dynamic> measured_slopes(const RobotInput::View& view, const RobotInput& input,
+                                                         const RobotState& state, const camera::BoardPose& pose) {
+  using camera::BoardColumn;
+  constexpr auto count = static_cast<Eigen::Index>(slope_scale + 2);
+  PoseMatrix normal = PoseMatrix::Zero();
+  Eigen::Matrix<double, 6, count> mixed = Eigen::Matrix<double, 6, count>::Zero();
+  for (const RobotInput::Corner& c : view.corners) {
+    constexpr double step = 1e-6;  // of the scale, for the only derivatives that the camera's model does not give
+    std::array<std::array<double, BoardColumn::count>, 2> jacobian{};
+    std::array<Vec2, 2> stretched;
+    Vec2 pixel;
+    const Vec2 at{c.board_m.x * (1 + state.scale[0]), c.board_m.y * (1 + state.scale[1])};
+    if (!camera::predict(state.intrinsics, pose, input.extent, state.warp, at, pixel, jacobian)) continue;
+    camera::predict(state.intrinsics, pose, input.extent, state.warp, {at.x + step * c.board_m.x, at.y}, stretched[0]);
+    camera::predict(state.intrinsics, pose, input.extent, state.warp, {at.x, at.y + step * c.board_m.y}, stretched[1]);
+    for (std::size_t r = 0; r < 2; ++r) {
+      const Eigen::Map<const PoseChange> row(jacobian[r].data() + BoardColumn::rotation);
+      Eigen::Matrix<double, 1, count> own;
+      for (std::size_t k = 0; k < slope_warp; ++k)
+        own[static_cast<Eigen::Index>(k)] = jacobian[r][BoardColumn::intrinsics + k];
+      for (std::size_t k = 0; k < 2; ++k) {
+        own[static_cast<Eigen::Index>(slope_warp + k)] = jacobian[r][BoardColumn::warp + k];
+        const Vec2 change = (stretched[k] - pixel) * (1 / step);
+        own[static_cast<Eigen::Index>(slope_scale + k)] = r == 0 ? change.x : change.y;
+      }
+      const double weight = 1 / (c.sigma_px * c.sigma_px);
+      normal += weight * row * row.transpose();
+      mixed += weight * row * own;
+    }
+  }
+  return -normal.ldlt().solve(mixed);
+}
+
+}  // namespace gonio::explain

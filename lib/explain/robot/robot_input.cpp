@@ -1,0 +1,162 @@
+// See robot_problem.h: from the manifest to plain numbers.
+#include <algorithm>
+
+#include "base/error.h"
+#include "camera/board.h"
+#include "camera/corner_table.h"
+#include "explain/robot/robot_problem.h"
+#include "robot/ur_calibration.h"
+
+namespace gonio::explain {
+namespace {
+
+constexpr std::size_t fewest_images = 8, fewest_corners = 6;
+
+bool is_complete(const manifest::Mounting& m) {
+  return (m.kind == "eye-in-hand" && m.tool_from_camera && m.base_from_board) ||
+         (m.kind == "eye-to-hand" && m.tool_from_board && m.base_from_camera);
+}
+
+bool belongs(const manifest::ImageEntry& image, const manifest::Mounting& m) {
+  const auto same = [](const std::string& a, const std::string& b) { return a.empty() || b.empty() || a == b; };
+  return same(image.camera, m.camera) && same(image.board, m.board) && same(image.robot, m.robot) &&
+         image.camera_from_board && (image.base_from_tool || !image.joints_rad.empty()) &&
+         !(image.weight && *image.weight == 0);
+}
+
+std::vector<const manifest::ImageEntry*> images_of(const manifest::Document& document, const manifest::Mounting& m) {
+  std::vector<const manifest::ImageEntry*> images;
+  for (const manifest::ImageEntry& image : document.images)
+    if (belongs(image, m)) images.push_back(&image);
+  return images;
+}
+
+template <class Pose>
+auto as_part(const Pose& pose) {
+  return std::pair{pose.rotation, pose.translation_m};
+}
+
+void read_camera(const manifest::Document& document, RobotInput& input) {
+  const std::string place = manifest::place(document, "/cameras/" + input.camera);
+  const auto found = document.cameras.find(input.camera);
+  if (found == document.cameras.end())
+    throw Error(Exit::data, place, "is not described", "calibrate first: calib-charuco");
+  input.intrinsics = camera::intrinsics_of(found->second, place);
+  for (const auto& [term, value] : found->second.distortion)
+    input.terms.push_back(camera::distortion_index(term, place));
+  std::size_t i = 0;
+  for (const char* name : {"fx_px", "fy_px", "cx_px", "cy_px"}) {
+    const auto sigma = found->second.sigma.find(name);
+    if (sigma != found->second.sigma.end() && !sigma->second.empty()) input.pinhole_sigma_px[i] = sigma->second[0];
+    ++i;
+  }
+}
+
+void read_board(const manifest::Document& document, RobotInput& input) {
+  const std::string place = manifest::place(document, "/boards/" + input.board);
+  const auto found = document.boards.find(input.board);
+  if (found == document.boards.end())
+    throw Error(Exit::data, place, "is not described", "calibrate first: calib-charuco");
+  input.extent = camera::board_of(found->second, place).extent();
+  const auto sag = [&](const char* axis) {
+    const auto given = found->second.warp.find(axis);
+    if (given == found->second.warp.end()) return 0.0;
+    input.warped = true;
+    return given->second.scalar();
+  };
+  input.warp = {sag("x_m"), sag("y_m")};
+}
+
+void read_corners(const manifest::Document& document, RobotInput& input) {
+  for (const auto& [name, section] : document.tables) {
+    if (section.model != "camera") continue;
+    if (!section.camera.empty() && section.camera != input.camera) continue;
+    if (!section.board.empty() && section.board != input.board) continue;
+    const camera::CornerTable table = camera::read_corners(document, name);
+    for (const camera::ImageCorners& own : table.images)
+      for (RobotInput::View& view : input.views) {
+        if (view.image != own.image) continue;
+        for (const camera::TableCorner& c : own.corners) view.corners.push_back({c.board_m, c.pixel, c.sigma_px});
+      }
+  }
+}
+
+RobotInput::View view_of(const manifest::Document& document, const manifest::ImageEntry& image,
+                         const RobotInput& input) {
+  RobotInput::View view;
+  view.image = image.id;
+  view.joints_rad = image.joints_rad;
+  view.camera_from_board = *image.camera_from_board;
+  if (image.base_from_tool) {
+    view.base_from_tool = *image.base_from_tool;
+  } else {
+    const std::string place = manifest::place(document, "/images/" + image.id + "/joints_rad");
+    if (input.links.empty())
+      throw Error(Exit::data, place, "are given without base_from_tool, and the arm is not described",
+                  "describe it in robots");
+    view.base_from_tool = robot::flange(input.links, image.joints_rad);
+  }
+  if (const auto& sigma = image.camera_from_board->sigma;
+      sigma && !sigma->rotation_rad.empty() && !sigma->translation_m.empty()) {
+    view.rotation_sigma_rad = *std::ranges::max_element(sigma->rotation_rad);
+    view.shift_sigma_m = *std::ranges::max_element(sigma->translation_m);
+  }
+  return view;
+}
+
+// Where any view lacks joints or corners, none of them counts: hypotheses are asked of all poses alike.
+void even_out(const manifest::Document& document, RobotInput& input) {
+  const auto lacks = [&](auto condition) { return std::any_of(input.views.begin(), input.views.end(), condition); };
+  if (lacks([&](const RobotInput::View& v) { return v.joints_rad.size() != input.links.size(); })) {
+    input.links.clear();
+    for (RobotInput::View& v : input.views) v.joints_rad.clear();
+  }
+  std::erase_if(input.views,
+                [](const RobotInput::View& v) { return !v.corners.empty() && v.corners.size() < fewest_corners; });
+  if (!lacks([](const RobotInput::View& v) { return v.corners.empty(); })) return;
+  for (RobotInput::View& v : input.views) {
+    v.corners.clear();
+    if (!(v.rotation_sigma_rad > 0) || !(v.shift_sigma_m > 0))
+      throw Error(Exit::data, manifest::place(document, "/images/" + v.image + "/camera_from_board"),
+                  "has no sigma, and there is no table of corners for all images", "hand on what calib-charuco writes");
+  }
+}
+
+RobotInput input_of(const manifest::Document& document, const std::string& name, const manifest::Mounting& m) {
+  RobotInput input;
+  input.mounting = name;
+  input.eye_to_hand = m.kind == "eye-to-hand";
+  const auto hand = input.eye_to_hand ? as_part(*m.tool_from_board) : as_part(*m.tool_from_camera);
+  const auto fixed = input.eye_to_hand ? as_part(*m.base_from_camera) : as_part(*m.base_from_board);
+  input.tool_from_hand = {hand.first, hand.second};
+  input.base_from_fixed = {fixed.first, fixed.second};
+  const std::vector<const manifest::ImageEntry*> images = images_of(document, m);
+  input.robot = m.robot.empty() ? images[0]->robot : m.robot;
+  input.camera = m.camera.empty() ? images[0]->camera : m.camera;
+  input.board = m.board.empty() ? images[0]->board : m.board;
+  if (document.robots.contains(input.robot)) input.links = robot::arm_of(document, input.robot).links;
+  read_camera(document, input);
+  read_board(document, input);
+  for (const manifest::ImageEntry* image : images) input.views.push_back(view_of(document, *image, input));
+  read_corners(document, input);
+  even_out(document, input);
+  return input;
+}
+
+}  // namespace
+
+bool has_hand_eye(const manifest::Document& document) {
+  return std::any_of(document.mountings.begin(), document.mountings.end(), [&](const auto& m) {
+    return is_complete(m.second) && images_of(document, m.second).size() >= fewest_images;
+  });
+}
+
+std::vector<RobotInput> robot_inputs(const manifest::Document& document) {
+  std::vector<RobotInput> inputs;
+  for (const auto& [name, mounting] : document.mountings)
+    if (is_complete(mounting) && images_of(document, mounting).size() >= fewest_images)
+      inputs.push_back(input_of(document, name, mounting));
+  return inputs;
+}
+
+}  // namespace gonio::explain

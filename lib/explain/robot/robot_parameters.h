@@ -1,0 +1,30 @@
+// The parameters of the robot domain: what each one moves, and the candidates they make. Private to robot/.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "explain/robot/robot_chain.h"
+
+namespace gonio::explain {
+
+struct RobotRole {
+  enum class Part { hand, fixed, pinhole, distortion, joint, a, d, sag, warp, scale };
+  Part part = Part::hand;
+  std::size_t index = 0;
+};
+bool moves_camera_or_board(RobotRole::Part part);  // and with it the measured pose, not the chain
+Eigen::Index slope_column(const RobotRole& role);  // of measured_slopes(), for those
+
+struct RobotParameters {
+  std::vector<Parameter> parameters;
+  std::vector<RobotRole> roles;
+  std::vector<std::size_t> base;
+  std::vector<Candidate> candidates;
+};
+// Candidates have all parameters that these recordings could move, estimable or not.
+RobotParameters robot_parameters(const RobotInput& input);
+
+RobotState state_of(const RobotInput& input, const RobotParameters& parameters, std::span<const double> values);
+
+}  // namespace gonio::explain

@@ -1,0 +1,140 @@
+// See robot_problem.h: the tables that the engine works on, whitened view by view.
+#include "explain/robot/robot_problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "explain/robot/robot_findings.h"
+
+namespace gonio::explain {
+namespace {
+
+constexpr std::size_t fewest_views = 8;
+constexpr double estimable =
+    0.02;  // share of a parameter's signature that must survive mounting and earlier parameters
+
+class HandEyeProblem final : public RobotProblem {
+ public:
+  explicit HandEyeProblem(RobotInput input) : work_{std::move(input), {}, {}, {}, {}, {}, {}, {}} {
+    work_.parameters = robot_parameters(work_.input);
+    settle(work_);
+    if (work_.input.views.size() < fewest_views)
+      throw Error(Exit::data, work_.input.mounting,
+                  "has " + std::to_string(work_.input.views.size()) + " poses that fit each other (at least " +
+                      std::to_string(fewest_views) + ")",
+                  "record more poses");
+    parameters_ = work_.parameters.parameters;
+    base_ = work_.parameters.base;
+    whiten();
+    keep_estimable();
+    observe();
+  }
+
+  void predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const override {
+    const RobotState state = state_of(work_.input, work_.parameters, values);
+    const PoseChange whitened = whitener_[group] * pose_difference(work_, group, state);
+    for (std::size_t i = 0; i < 6; ++i) prediction[i] = whitened[static_cast<Eigen::Index>(i)];
+  }
+
+  // Chain: central differences, cheap. Measured pose: its implicit derivatives, with the opposite sign.
+  void jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
+                std::span<double> derivatives) const override {
+    const RobotState state = state_of(work_.input, work_.parameters, values);
+    const Eigen::MatrixXd by_chain = chain_slopes(work_, group, {values.begin(), values.end()}, columns);
+    const Eigen::MatrixXd by_measurement = pose_slopes(work_, group, state);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const RobotRole& role = work_.parameters.roles[columns[c]];
+      PoseChange slope = by_chain.col(static_cast<Eigen::Index>(c));
+      if (moves_camera_or_board(role.part)) slope = -by_measurement.col(slope_column(role));
+      const PoseChange whitened = whitener_[group] * slope;
+      for (std::size_t i = 0; i < 6; ++i) derivatives[6 * c + i] = whitened[static_cast<Eigen::Index>(i)];
+    }
+  }
+
+  std::string domain() const override { return "robot"; }
+  std::string unit() const override { return "1"; }
+  std::string score_name() const override { return "error of the board's pose over its noise"; }
+  std::string group_noun() const override { return "pose"; }
+  Importance importance() const override { return Importance::share_of_residual; }
+  bool sets_outliers_aside() const override { return false; }  // those are left out before: settle()
+
+  RobotFindings findings(const Explanation& e) const override {
+    return findings_of(work_, observations_, whitener_, e);
+  }
+  void apply(const Explanation& e, manifest::Document& document) const override {
+    upgrade_robot(work_, *this, findings(e), e, document);
+  }
+  Illustration illustrate(const Explanation& e, const std::filesystem::path&, manifest::Document&) const override {
+    return illustrate_robot(findings(e));
+  }
+
+ private:
+  void whiten() {
+    for (const NoisyView& view : work_.noisy) {
+      const PoseMatrix covariance = view.covariance(work_.noise.rotation_rad, work_.noise.shift_m);
+      whitener_.push_back(covariance.llt().matrixL().solve(PoseMatrix::Identity()));
+    }
+  }
+
+  // Parameters that the mounting, or parameters before them, imitate to 0.02 of their length are no hypotheses here:
+  // rotations of the first and the last joint, offsets along parallel axes.
+  void keep_estimable() {
+    const std::vector<double> values = start_values(work_);
+    const auto columns = [&](std::size_t p) {
+      Eigen::VectorXd column(6 * static_cast<Eigen::Index>(work_.noisy.size()));
+      for (std::size_t v = 0; v < work_.noisy.size(); ++v)
+        column.segment<6>(6 * static_cast<Eigen::Index>(v)) =
+            whitener_[v] * work_.noisy[v].jacobian.col(static_cast<Eigen::Index>(p));
+      return column;
+    };
+    for (Candidate& candidate : work_.parameters.candidates) {
+      std::vector<Eigen::VectorXd> basis;
+      const auto remainder = [&](Eigen::VectorXd column) {
+        for (int twice = 0; twice < 2; ++twice)
+          for (const Eigen::VectorXd& b : basis) column -= b * b.dot(column);
+        return column;
+      };
+      const auto join = [&](std::size_t p, double least) {
+        const Eigen::VectorXd column = columns(p), rest = remainder(column);
+        if (!(rest.norm() > least * column.norm())) return false;
+        basis.push_back(rest / rest.norm());
+        return true;
+      };
+      for (const std::size_t p : base_) join(p, 1e-9);
+      std::vector<std::size_t> kept;
+      for (const std::size_t p : candidate.parameters)
+        if (join(p, estimable)) kept.push_back(p);
+      candidate.parameters = kept;
+      if (!kept.empty()) candidates_.push_back(candidate);
+    }
+  }
+
+  void observe() {
+    Observations& o = observations_;
+    o.first.push_back(0);
+    o.conditions = robot_conditions(work_);
+    for (std::size_t v = 0; v < work_.input.views.size(); ++v) {
+      o.group.push_back(work_.input.views[v].image);
+      for (int i = 0; i < 6; ++i) {
+        o.value.push_back(0);
+        o.sigma.push_back(1);
+        o.norm.push_back(1);
+        o.block.push_back(static_cast<std::uint32_t>(v));
+      }
+      append_robot_conditions(work_, v, whitener_[v], o.conditions);
+      o.first.push_back(o.value.size());
+    }
+  }
+
+  RobotWork work_;
+  std::vector<PoseMatrix> whitener_;
+};
+
+}  // namespace
+
+std::unique_ptr<RobotProblem> robot_problem(RobotInput input) {
+  return std::make_unique<HandEyeProblem>(std::move(input));
+}
+
+}  // namespace gonio::explain

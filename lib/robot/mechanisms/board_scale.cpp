@@ -1,0 +1,33 @@
+// board.scale: a board that was printed larger or smaller than stated. A camera alone cannot see it; the robot's metres
+// can.
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+
+const Mechanism& board_scale() {
+  static const Mechanism declaration{
+      .id = "board.scale",
+      .sentence = "The calibration board's squares are not as large as stated, or not square.",
+      .equation = "x -> (1 + scale_x) x, y -> (1 + scale_y) y in the board's frame",
+      .source = "own; print and paper stretch differently along and across",
+      .stage = "board",
+      .target = Target::board,
+      .domains = {"robot"},
+      .parameters = {{.name = "scale_x",
+                      .unit = "1",
+                      .lower = -0.2,
+                      .upper = 0.2,
+                      .meaning = "stretch along the columns' direction"},
+                     {.name = "scale_y",
+                      .unit = "1",
+                      .lower = -0.2,
+                      .upper = 0.2,
+                      .meaning = "stretch along the rows' direction"}},
+      .conditions = {"camera.distance"},
+      .mistaken_for = {{.with = "robot.link-length", .told_apart = "measure the board with a caliper"},
+                       {.with = "lens.radial", .told_apart = "measure the board with a caliper"}},
+  };
+  return declaration;
+}
+
+}  // namespace gonio::mechanism
