@@ -89,15 +89,16 @@ const cli::Program& gonio_program() {
                    .help = "Exit 1 where a figure is larger: probing-form=0.05mm; may be repeated.",
                    .metavar = "FIGURE=LENGTH",
                    .repeat = true}},
-      .operands = {{.name = "CLOUD", .type = Type::input_file, .help = "PLY files, with or without faces.",
-                    .repeat = true}},
+      .operands =
+          {{.name = "CLOUD", .type = Type::input_file, .help = "PLY files, with or without faces.", .repeat = true}},
       .takes_seed = true,
       .sections_read = {"files"},
       .sections_written = {"acceptance", "files"},
       .exits = {{Exit::negative, "a figure exceeds its limit"}},
-      .references = {"VDI/VDE 2634 part 2, Optical 3-D measuring systems: optical systems based on area scanning, 2012.",
-                     "Coope, Circle fitting by linear and nonlinear least squares, JOTA 76(2), 1993.",
-                     "Liang & Zeger, Longitudinal data analysis using generalized linear models, Biometrika 73(1), 1986."},
+      .references =
+          {"VDI/VDE 2634 part 2, Optical 3-D measuring systems: optical systems based on area scanning, 2012.",
+           "Coope, Circle fitting by linear and nonlinear least squares, JOTA 76(2), 1993.",
+           "Liang & Zeger, Longitudinal data analysis using generalized linear models, Biometrika 73(1), 1986."},
       .see_also = {"gonio-manifest(5)", "gonio(7)"},
       .check = [](cli::Invocation& call) { mesh::check_acceptance(request_of(call)); },
       .run = run};

@@ -59,6 +59,7 @@ std::string manifest_source(Invocation& call) {
     if (found == texts.end()) continue;
     std::string name = *found;
     texts.erase(found);
+    if (texts.empty()) call.state->arguments[operand.name].given = false;
     return name;
   }
   const bool operands = std::ranges::any_of(program.operands, [&](const Option& o) { return call.given(o.name); });

@@ -43,9 +43,21 @@ Image scaled(const cv::Mat& picture) {
   return image;
 }
 
-std::uint8_t code(float value) {
-  const float clipped = std::clamp(std::isnan(value) ? 0.0f : value, 0.0f, 1.0f);
-  return static_cast<std::uint8_t>(std::lround(clipped * 255.0f));
+template <class Code>
+Code code(float value) {
+  const double clipped = std::clamp(std::isnan(value) ? 0.0 : static_cast<double>(value), 0.0, 1.0);
+  return static_cast<Code>(std::lround(clipped * std::numeric_limits<Code>::max()));
+}
+
+template <class Code>
+void fill(const Image& image, const std::vector<int>& sources, cv::Mat& picture) {
+  const int count = static_cast<int>(sources.size());
+  for (int y = 0; y < image.height; ++y) {
+    auto* row = picture.ptr<Code>(y);
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < count; ++c)
+        row[x * count + c] = code<Code>(image.at(x, y, sources[static_cast<std::size_t>(c)]));
+  }
 }
 
 }  // namespace
@@ -65,24 +77,25 @@ GreyImage decode_grey(const std::string& bytes, const std::string& place) {
   const cv::Mat picture =
       decode(bytes, place, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
   if (picture.depth() == CV_16U) return grey_of(scaled<std::uint16_t>(picture));
-  if (picture.depth() != CV_8U) throw Error(Exit::data, place, "holds neither 8 nor 16-bit codes", "export floats as OpenEXR");
+  if (picture.depth() != CV_8U)
+    throw Error(Exit::data, place, "holds neither 8 nor 16-bit codes", "export floats as OpenEXR");
   GreyImage grey{picture.cols, picture.rows, {}, {}};
   grey.bytes.reserve(picture.total());
-  for (int y = 0; y < picture.rows; ++y) grey.bytes.insert(grey.bytes.end(), picture.ptr(y), picture.ptr(y) + picture.cols);
+  for (int y = 0; y < picture.rows; ++y)
+    grey.bytes.insert(grey.bytes.end(), picture.ptr(y), picture.ptr(y) + picture.cols);
   return grey;
 }
 
-std::string encode_raster_png(const Image& image) {
+std::string encode_raster_png(const Image& image, int code_bits) {
   const bool colour = image.channel("R") >= 0 && image.channel("G") >= 0 && image.channel("B") >= 0;
   const std::vector<int> sources =  // in OpenCV's order
       colour ? std::vector<int>{image.channel("B"), image.channel("G"), image.channel("R")} : std::vector<int>{0};
   const int count = static_cast<int>(sources.size());
-  cv::Mat picture(image.height, image.width, CV_8UC(count));
-  for (int y = 0; y < image.height; ++y) {
-    auto* row = picture.ptr<std::uint8_t>(y);
-    for (int x = 0; x < image.width; ++x)
-      for (int c = 0; c < count; ++c) row[x * count + c] = code(image.at(x, y, sources[static_cast<std::size_t>(c)]));
-  }
+  cv::Mat picture(image.height, image.width, code_bits == 16 ? CV_16UC(count) : CV_8UC(count));
+  if (code_bits == 16)
+    fill<std::uint16_t>(image, sources, picture);
+  else
+    fill<std::uint8_t>(image, sources, picture);
   std::vector<std::uint8_t> bytes;
   if (picture.empty() || !cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6}))
     throw Error(Exit::internal, "PNG",

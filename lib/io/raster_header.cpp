@@ -73,7 +73,7 @@ RasterHeader png(std::string_view bytes, const std::string& place) {
     if (body.starts_with("IEND")) break;
     at += length + 12;
   }
-  return {read.big(16, 4), read.big(20, 4)};
+  return {read.big(16, 4), read.big(20, 4), read.byte(24) == 16 ? 16 : 8};
 }
 
 bool starts_frame(std::uint8_t marker) {  // SOF0 .. SOF15 without DHT, JPG, DAC
@@ -92,7 +92,7 @@ RasterHeader jpeg(std::string_view bytes, const std::string& place) {
       ++at;
       continue;
     }
-    if (starts_frame(marker)) header = {read.big(at + 7, 2), read.big(at + 5, 2)};
+    if (starts_frame(marker)) header = {read.big(at + 7, 2), read.big(at + 5, 2), 8};
     at += 2 + read.big(at + 2, 2);
     if (marker == 0xda) break;
   }
@@ -116,6 +116,7 @@ class Tiff {
       const std::size_t tag = number(entry, 2);
       if (tag == 256) result.width = value(entry, 0);
       if (tag == 257) result.height = value(entry, 0);
+      if (tag == 258) result.code_bits = value(entry, 0) == 16 ? 16 : 8;
       if (tag == 273 || tag == 324) offsets = entry;
       if (tag == 279 || tag == 325) counts = entry;
     }

@@ -8,6 +8,7 @@ namespace gonio::io {
 
 struct RasterHeader {
   std::uint64_t width = 0, height = 0;
+  int code_bits = 8;  // 16 where the file says so; fewer than 8 are read as 8
 };
 
 // Error(data) at `place` for a file that is none of the three, is cut off or has a damaged structure.

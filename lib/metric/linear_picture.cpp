@@ -46,6 +46,17 @@ io::Image select(const io::Image& raw, const std::vector<std::string>& names, co
   throw Error(Exit::data, place, problem, "a response is \"linear\", \"srgb\" or a table [[code, linear], ...]");
 }
 
+// `table` from its column `from` to the other one, linear between rows, constant beyond its ends.
+float looked_up(const std::vector<std::pair<double, double>>& table, float value,
+                double std::pair<double, double>::*from, double std::pair<double, double>::*to) {
+  const auto above = std::ranges::upper_bound(table, static_cast<double>(value), {}, from);
+  if (above == table.begin()) return static_cast<float>(table.front().*to);
+  if (above == table.end()) return static_cast<float>(table.back().*to);
+  const auto below = above - 1;
+  const double share = (value - (*below).*from) / ((*above).*from - (*below).*from);
+  return static_cast<float>((*below).*to + share * ((*above).*to - (*below).*to));
+}
+
 }  // namespace
 
 Response::Response(const manifest::Value& stated, const std::string& place) {
@@ -69,12 +80,20 @@ Response::Response(const manifest::Value& stated, const std::string& place) {
 float Response::operator()(float code) const {
   if (srgb_) return io::linear_from_srgb(code);
   if (table_.empty() || std::isnan(code)) return code;
-  const auto above = std::ranges::upper_bound(table_, static_cast<double>(code), {}, &std::pair<double, double>::first);
-  if (above == table_.begin()) return static_cast<float>(table_.front().second);
-  if (above == table_.end()) return static_cast<float>(table_.back().second);
-  const auto below = above - 1;
-  const double share = (code - below->first) / (above->first - below->first);
-  return static_cast<float>(below->second + share * (above->second - below->second));
+  return looked_up(table_, code, &std::pair<double, double>::first, &std::pair<double, double>::second);
+}
+
+float Response::code(float linear) const {
+  if (srgb_) return io::srgb_from_linear(linear);
+  if (table_.empty() || std::isnan(linear)) return linear;
+  return looked_up(table_, linear, &std::pair<double, double>::second, &std::pair<double, double>::first);
+}
+
+void Response::check_invertible(const std::string& place) const {
+  for (std::size_t i = 1; i < table_.size(); ++i)
+    if (!(table_[i].second > table_[i - 1].second))
+      throw Error(Exit::data, place, "has linear values that do not rise in the response table",
+                  "write OpenEXR (--format exr), which needs no way back to codes");
 }
 
 LinearPicture read_linear(const std::filesystem::path& path, const manifest::Value& response,

@@ -20,6 +20,8 @@ class Response {
  public:
   explicit Response(const manifest::Value& stated, const std::string& place);
   float operator()(float code) const;
+  float code(float linear) const;  // the inverse
+  void check_invertible(const std::string& place) const;  // Error(data) for a table whose linear values do not rise
 
  private:
   bool srgb_ = false;

@@ -1,5 +1,5 @@
-// Exports for renderers, held against those programs' own mathematics, written from their documentation and not from the
-// writers: Mitsuba's perspective sensor, pbrt's perspective camera, Blender's view plane.
+// Exports for renderers, held against those programs' own mathematics, written from their documentation and not from
+// the writers: Mitsuba's perspective sensor, pbrt's perspective camera, Blender's view plane.
 #include <cstdlib>
 
 #include "export_cases.h"
@@ -14,11 +14,13 @@ struct Axes {
   Vec3 to_camera(Vec3 p) const { return {dot(x, p - eye), dot(y, p - eye), dot(z, p - eye)}; }
 };
 
-Vec3 vec(const std::vector<double>& v, std::size_t first = 0) { return {v.at(first), v.at(first + 1), v.at(first + 2)}; }
+Vec3 vec(const std::vector<double>& v, std::size_t first = 0) {
+  return {v.at(first), v.at(first + 1), v.at(first + 2)};
+}
 
 // Mitsuba's Transform::look_at: dir = target - origin, left = up x dir, new_up = dir x left; columns left, new_up, dir.
-// perspective_projection: clip = cot(fov / 2) (x / z, y / z), film = (1 - clip_x) / 2, (1 - aspect clip_y) / 2. A ray of
-// film position s starts at s + principal_point_offset, so a point is seen where that sum is its projection.
+// perspective_projection: clip = cot(fov / 2) (x / z, y / z), film = (1 - clip_x) / 2, (1 - aspect clip_y) / 2. A ray
+// of film position s starts at s + principal_point_offset, so a point is seen where that sum is its projection.
 Vec2 mitsuba(const std::string& xml, Vec3 p) {
   const auto value = [&](const std::string& name) {
     return numbers_after(xml, "value", xml.find("name=\"" + name + "\"")).at(0);
@@ -47,8 +49,8 @@ TEST(ExportMitsuba, RefusesPixelsThatAreNotSquare) {
   EXPECT_THROW(export_cameras(exported_document(false), {.format = "mitsuba"}), Error);
 }
 
-// pbrt-v4's LookAt: right = normalize(up) x dir, newUp = dir x right; rows of camera_from_world. Scale multiplies from the
-// left: it stands before LookAt in the file. Perspective divides by z and by tan(fov / 2); rasterFromScreen as in
+// pbrt-v4's LookAt: right = normalize(up) x dir, newUp = dir x right; rows of camera_from_world. Scale multiplies from
+// the left: it stands before LookAt in the file. Perspective divides by z and by tan(fov / 2); rasterFromScreen as in
 // ProjectiveCamera, y turned.
 Vec2 pbrt(const std::string& scene, Vec3 p) {
   const auto look = numbers_after(scene, "LookAt");
@@ -61,7 +63,8 @@ Vec2 pbrt(const std::string& scene, Vec3 p) {
   const double tangent = std::tan(numbers_after(scene, "float fov\"").at(0) * pi / 360);
   const double screen_x = c.x / c.z / tangent, screen_y = c.y / c.z / tangent;
   const auto window = numbers_after(scene, "float screenwindow\"");  // x min, x max, y min, y max
-  const double width = numbers_after(scene, "xresolution\"").at(0), height = numbers_after(scene, "yresolution\"").at(0);
+  const double width = numbers_after(scene, "xresolution\"").at(0),
+               height = numbers_after(scene, "yresolution\"").at(0);
   const double raster_x = width * (screen_x - window.at(0)) / (window.at(1) - window.at(0));
   const double raster_y = -height * (screen_y - window.at(3)) / (window.at(3) - window.at(2));
   return {raster_x - 0.5, raster_y - 0.5};

@@ -1,5 +1,5 @@
-// Figures of the guideline from simulated scanners: exact where there is no noise, and with uncertainties that hold over
-// hundreds of clouds, for errors that are independent and for such that neighbours share.
+// Figures of the guideline from simulated scanners: exact where there is no noise, and with uncertainties that hold
+// over hundreds of clouds, for errors that are independent and for such that neighbours share.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -18,8 +18,7 @@ constexpr Vec3 centre{0.03, -0.05, 0.42};
 constexpr double radius = 0.0125;
 
 // The part of a sphere that a scanner at the origin sees: up to 60 degrees from the direction to it.
-std::vector<Vec3> cap(std::size_t count, Random& random, const std::function<double(Vec3)>& error,
-                      Vec3 at = centre) {
+std::vector<Vec3> cap(std::size_t count, Random& random, const std::function<double(Vec3)>& error, Vec3 at = centre) {
   const Basis basis(-normalized(at));
   std::vector<Vec3> points;
   while (points.size() < count) {

@@ -21,8 +21,7 @@ class Vdi2634 : public testing::Test {
   void add_sphere(std::vector<Vec3>& points, Vec3 centre_mm) {
     for (int i = 0; i < 2000; ++i) {
       const double z = random_.uniform(0, 1), phi = random_.uniform(0, 2 * pi), r = std::sqrt(1 - z * z);
-      points.push_back(centre_mm +
-                       Vec3{r * std::cos(phi), r * std::sin(phi), -z} * (12.5 + 0.01 * random_.normal()));
+      points.push_back(centre_mm + Vec3{r * std::cos(phi), r * std::sin(phi), -z} * (12.5 + 0.01 * random_.normal()));
     }
   }
   void write(const char* name, const std::vector<Vec3>& points) const {

@@ -1,12 +1,12 @@
 // Blender: a Python script that adds the cameras to the open scene; the numbers stand in it as JSON.
 //
 // Conventions: Blender's camera looks along -z with x right and y up: world_from_camera times a half turn about x.
-// With sensor_fit HORIZONTAL, fx = lens / sensor_width times the picture's width; shift_x and shift_y move the WINDOW, in
-// units of the picture's width: the optical axis meets the picture at 0.5 - shift_x of the width from the left and at
-// height / 2 + shift_y width / a from the top, where a = pixel_aspect_y / pixel_aspect_x = fx / fy. Edges of the picture
-// lie half a pixel beyond the outer centres. Blender takes aspects of at least 1. Resolution and aspect belong to
-// Blender's scene, not to a camera: a script with cameras of several sizes sets those of the first.
-// fov = 2 atan(width / (2 fx)) is there for reading; lens and sensor_width decide.
+// With sensor_fit HORIZONTAL, fx = lens / sensor_width times the picture's width; shift_x and shift_y move the WINDOW,
+// in units of the picture's width: the optical axis meets the picture at 0.5 - shift_x of the width from the left and
+// at height / 2 + shift_y width / a from the top, where a = pixel_aspect_y / pixel_aspect_x = fx / fy. Edges of the
+// picture lie half a pixel beyond the outer centres. Blender takes aspects of at least 1. Resolution and aspect belong
+// to Blender's scene, not to a camera: a script with cameras of several sizes sets those of the first. fov = 2
+// atan(width / (2 fx)) is there for reading; lens and sensor_width decide.
 #include <algorithm>
 
 #include "base/text.h"
@@ -20,7 +20,8 @@ using manifest::Value;
 
 constexpr double sensor_width_mm = 36;  // Blender's own; only lens / sensor_width has a meaning
 
-constexpr const char* head = R"(# Cameras for Blender: open in its text editor and run, or: blender -b scene.blend -P cameras.py
+constexpr const char* head =
+    R"(# Cameras for Blender: open in its text editor and run, or: blender -b scene.blend -P cameras.py
 import json
 import bpy
 from mathutils import Quaternion
@@ -63,19 +64,18 @@ Value entry(const manifest::Camera& camera, const ExportedView& view) {
   const double fx = camera.fx_px.scalar(), fy = camera.fy_px.scalar(), aspect = fx / fy;
   const Quaternion q = view.world_from_camera.rotation * Quaternion{0, 1, 0, 0};
   const LookAt look = look_at(view);
-  return Value::object(
-      {{"name", view.id},
-       {"location", list(look.eye)},
-       {"rotation_quaternion", list({q.w, q.x, q.y, q.z})},
-       {"look_at", list(look.target)},
-       {"up", list(look.up)},
-       {"fov_degrees", field_of_view_degrees(width, fx)},
-       {"sensor_width_mm", sensor_width_mm},
-       {"lens_mm", sensor_width_mm * fx / width},
-       {"shift_x", 0.5 - (camera.cx_px.scalar() + 0.5) / width},
-       {"shift_y", (camera.cy_px.scalar() + 0.5 - 0.5 * height) * aspect / width},
-       {"resolution", Value(Value::Array{Value(camera.width_px), Value(camera.height_px)})},
-       {"pixel_aspect", list({std::max(1.0, 1 / aspect), std::max(1.0, aspect)})}});
+  return Value::object({{"name", view.id},
+                        {"location", list(look.eye)},
+                        {"rotation_quaternion", list({q.w, q.x, q.y, q.z})},
+                        {"look_at", list(look.target)},
+                        {"up", list(look.up)},
+                        {"fov_degrees", field_of_view_degrees(width, fx)},
+                        {"sensor_width_mm", sensor_width_mm},
+                        {"lens_mm", sensor_width_mm * fx / width},
+                        {"shift_x", 0.5 - (camera.cx_px.scalar() + 0.5) / width},
+                        {"shift_y", (camera.cy_px.scalar() + 0.5 - 0.5 * height) * aspect / width},
+                        {"resolution", Value(Value::Array{Value(camera.width_px), Value(camera.height_px)})},
+                        {"pixel_aspect", list({std::max(1.0, 1 / aspect), std::max(1.0, aspect)})}});
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 // COLMAP: a text model, cameras.txt, images.txt, points3D.txt (colmap.github.io/format.html).
 //
-// Conventions: axes x right, y down, z forward as here, but the centre of the top-left pixel is (0.5, 0.5): half a pixel
-// is added to the principal point. images.txt holds camera_from_world as QW QX QY QZ TX TY TZ, and a second line per
-// picture with its points, which is empty. Models: SIMPLE_PINHOLE f cx cy; PINHOLE fx fy cx cy; OPENCV with k1 k2 p1 p2;
-// FULL_OPENCV with k1 k2 p1 p2 k3 k4 k5 k6; OPENCV_FISHEYE with k1 k2 k3 k4: the simplest that holds the camera exactly.
+// Conventions: axes x right, y down, z forward as here, but the centre of the top-left pixel is (0.5, 0.5): half a
+// pixel is added to the principal point. images.txt holds camera_from_world as QW QX QY QZ TX TY TZ, and a second line
+// per picture with its points, which is empty. Models: SIMPLE_PINHOLE f cx cy; PINHOLE fx fy cx cy; OPENCV with k1 k2
+// p1 p2; FULL_OPENCV with k1 k2 p1 p2 k3 k4 k5 k6; OPENCV_FISHEYE with k1 k2 k3 k4: the simplest that holds the camera
+// exactly.
 #include "base/text.h"
 #include "camera/export/formats.h"
 
@@ -46,8 +47,9 @@ std::vector<ExportedFile> write_colmap(const std::vector<ExportedCamera>& camera
     lines += camera_line(cameras[k], k + 1);
     for (const ExportedView& view : cameras[k].views) {
       const auto pose = inverse(view.world_from_camera);
-      const std::vector<double> values = {pose.rotation.w,      pose.rotation.x,      pose.rotation.y,     pose.rotation.z,
-                                          pose.translation_m.x, pose.translation_m.y, pose.translation_m.z};
+      const std::vector<double> values = {pose.rotation.w,     pose.rotation.x,      pose.rotation.y,
+                                          pose.rotation.z,     pose.translation_m.x, pose.translation_m.y,
+                                          pose.translation_m.z};
       images += std::to_string(++image_id) + " " + joined(values, " ") + " " + std::to_string(k + 1) + " " +
                 view.picture + "\n\n";
     }

@@ -70,6 +70,23 @@ void check_lens(const ExportedCamera& camera, const ExportFormat& format) {
                 "pictures have none any more");
 }
 
+bool took(const manifest::Document& document, const std::string& camera, const manifest::ImageEntry& image) {
+  return image.camera == camera || (image.camera.empty() && document.cameras.size() == 1);
+}
+
+bool wanted(const std::vector<std::string>& list, const std::string& name) {
+  return list.empty() || std::ranges::find(list, name) != list.end();
+}
+
+// Those that are named; else those that took the images, so that a camera whose pictures have been undistorted into
+// another one is left alone; all where there are no images.
+bool is_asked_for(const manifest::Document& document, const std::string& camera, const ExportRequest& request) {
+  if (!request.cameras.empty()) return wanted(request.cameras, camera);
+  return document.images.empty() || std::ranges::any_of(document.images, [&](const manifest::ImageEntry& image) {
+           return took(document, camera, image) && wanted(request.images, image.id);
+         });
+}
+
 std::string picture_of(const manifest::Document& document, const manifest::ImageEntry& image) {
   const auto file = document.files.find(image.file);
   return file == document.files.end() ? image.id : std::filesystem::path(file->second.path).filename().string();
@@ -91,12 +108,9 @@ std::vector<ExportedFile> export_cameras(const manifest::Document& document, con
   check_names(request.images, images, "--image");
   if (names.empty())
     throw Error(Exit::data, manifest::place(document, "/cameras"), "empty", "calibrate a camera first");
-  const auto wanted = [](const std::vector<std::string>& list, const std::string& name) {
-    return list.empty() || std::ranges::find(list, name) != list.end();
-  };
   std::vector<ExportedCamera> cameras;
   for (const auto& [name, camera] : document.cameras) {
-    if (!wanted(request.cameras, name)) continue;
+    if (!is_asked_for(document, name, request)) continue;
     ExportedCamera exported{name, manifest::place(document, "/cameras/" + name), camera, {}};
     if (request.undistorted) {
       exported.camera.model = "pinhole";
@@ -104,9 +118,8 @@ std::vector<ExportedFile> export_cameras(const manifest::Document& document, con
     }
     check_lens(exported, *format);
     for (const auto& image : document.images) {
-      const bool its = image.camera == name || (image.camera.empty() && document.cameras.size() == 1);
       const auto pose = pose_of(image, request.board_frame);
-      if (its && pose && wanted(request.images, image.id))
+      if (took(document, name, image) && pose && wanted(request.images, image.id))
         exported.views.push_back({image.id, picture_of(document, image), *pose});
     }
     cameras.push_back(std::move(exported));

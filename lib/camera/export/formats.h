@@ -15,7 +15,7 @@
 
 namespace gonio::camera {
 
-struct ExportedView {   // a picture whose pose is known
+struct ExportedView {  // a picture whose pose is known
   std::string id;
   std::string picture;  // name of its file without folders, or its id
   Rigid<frame::World, frame::Camera> world_from_camera;
@@ -37,7 +37,7 @@ std::span<const ExportFormat> export_formats();
 
 struct ExportRequest {
   std::string format;
-  std::vector<std::string> cameras{}, images{};  // empty: all
+  std::vector<std::string> cameras{}, images{};  // empty: all images, and the cameras that took them
   bool board_frame = false;  // poses against the board that a picture shows, instead of world_from_camera
   bool undistorted = false;  // the pictures have no distortion any more: leave the lens away
 };

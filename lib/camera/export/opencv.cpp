@@ -17,7 +17,8 @@ std::string matrix(const std::string& name, std::size_t rows, const std::vector<
   for (std::size_t i = 0; i < values.size(); ++i)
     numbers += (i == 0 ? "" : i % 6 == 0 ? ",\n       " : ", ") + shortest_text(values[i]);
   return name + ": !!opencv-matrix\n   rows: " + std::to_string(rows) +
-         "\n   cols: " + std::to_string(rows == 0 ? 0 : values.size() / rows) + "\n   dt: d\n   data: [ " + numbers + " ]\n";
+         "\n   cols: " + std::to_string(rows == 0 ? 0 : values.size() / rows) + "\n   dt: d\n   data: [ " + numbers +
+         " ]\n";
 }
 
 std::vector<double> coefficients(const ExportedCamera& exported) {
@@ -58,8 +59,8 @@ std::vector<ExportedFile> write_opencv(const std::vector<ExportedCamera>& camera
   std::vector<ExportedFile> files;
   for (const ExportedCamera& exported : cameras) {
     const manifest::Camera& camera = exported.camera;
-    const std::vector<double> k = {camera.fx_px.scalar(), 0, camera.cx_px.scalar(), 0, camera.fy_px.scalar(),
-                                   camera.cy_px.scalar(), 0, 0,                     1};
+    const std::vector<double> k = {
+        camera.fx_px.scalar(), 0, camera.cx_px.scalar(), 0, camera.fy_px.scalar(), camera.cy_px.scalar(), 0, 0, 1};
     std::string text = "%YAML:1.0\n---\nimage_width: " + std::to_string(camera.width_px) +
                        "\nimage_height: " + std::to_string(camera.height_px) + "\n" + matrix("camera_matrix", 3, k);
     text += "fisheye_model: " + std::to_string(is_fisheye(camera) ? 1 : 0) + "\n";

@@ -1,11 +1,11 @@
 // pbrt-v4: the head of a scene per picture, to be followed by WorldBegin.
 //
-// Conventions: pbrt's camera looks along +z with x right and y up, a left-handed frame, and its LookAt takes the world as
-// left-handed, too: right = up x forward would mirror a right-handed world. `Scale -1 1 1` before it undoes that; shapes
-// are not touched, because WorldBegin resets the transform. fov is the angle of the screen from -1 to 1, which is that of
-// the SHORTER side of the picture; screenwindow xmin xmax ymin ymax says which part of that plane the film covers, and so
-// holds the principal point and two focal lengths: raster x = (s - xmin) / (xmax - xmin) width, raster y =
-// (ymax - s) / (ymax - ymin) height. Raster coordinates have pixel centres at i + 0.5.
+// Conventions: pbrt's camera looks along +z with x right and y up, a left-handed frame, and its LookAt takes the world
+// as left-handed, too: right = up x forward would mirror a right-handed world. `Scale -1 1 1` before it undoes that;
+// shapes are not touched, because WorldBegin resets the transform. fov is the angle of the screen from -1 to 1, which
+// is that of the SHORTER side of the picture; screenwindow xmin xmax ymin ymax says which part of that plane the film
+// covers, and so holds the principal point and two focal lengths: raster x = (s - xmin) / (xmax - xmin) width, raster y
+// = (ymax - s) / (ymax - ymin) height. Raster coordinates have pixel centres at i + 0.5.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,9 +1,9 @@
 // ROS: sensor_msgs/CameraInfo as the YAML file of camera_calibration_parsers and camera_info_manager.
 //
-// Conventions: pixel centres at integers, optical frame x right, y down, z forward (REP 103, 104), as here. D in OpenCV's
-// order: plumb_bob k1 k2 p1 p2 k3, rational_polynomial with k4 k5 k6, equidistant k1 k2 k3 k4 (Kannala-Brandt). R is the
-// identity and P = [K | 0]: one camera alone, rectified into its own focal lengths and principal point. Thin-prism terms
-// do not exist. What it does not do: the baseline of a stereo pair in P.
+// Conventions: pixel centres at integers, optical frame x right, y down, z forward (REP 103, 104), as here. D in
+// OpenCV's order: plumb_bob k1 k2 p1 p2 k3, rational_polynomial with k4 k5 k6, equidistant k1 k2 k3 k4
+// (Kannala-Brandt). R is the identity and P = [K | 0]: one camera alone, rectified into its own focal lengths and
+// principal point. Thin-prism terms do not exist. What it does not do: the baseline of a stereo pair in P.
 #include <array>
 
 #include "base/text.h"

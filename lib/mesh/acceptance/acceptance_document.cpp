@@ -40,7 +40,8 @@ void tell(const std::string& place, const Deviations& deviations) {
   if (deviations.still_beyond <= too_many_beyond) return;
   char share[40];
   std::snprintf(share, sizeof share, "%.1f %%", 100 * deviations.still_beyond);
-  log(LogLevel::warning, place + ": " + share + " of the points lie beyond three sigmas and count, because only 0.3 % may " +
+  log(LogLevel::warning, place + ": " + share +
+                             " of the points lie beyond three sigmas and count, because only 0.3 % may " +
                              "be left out; cut away what is not the artefact (--region)");
 }
 
@@ -48,8 +49,8 @@ void check_size(const SphereFit& sphere, const AcceptanceRequest& request, const
   if (!request.radius_m || request.hold_radius) return;
   const double ratio = sphere.radius_m / *request.radius_m;
   if (ratio > 0.2 && ratio < 5) return;
-  throw Error(Exit::data, place, "holds a sphere of radius " + millimetres(sphere.radius_m) + ", not " +
-                                     millimetres(*request.radius_m),
+  throw Error(Exit::data, place,
+              "holds a sphere of radius " + millimetres(sphere.radius_m) + ", not " + millimetres(*request.radius_m),
               "say what the coordinates count (--unit mm), or where the sphere is (--region)");
 }
 
@@ -103,7 +104,8 @@ Region region_of(const std::string& text) {
     from = comma + 1;
   }
   if (numbers.size() != 4 || !(numbers[3] > 0))
-    throw Error(Exit::usage, "--region", "\"" + text + "\" is no centre and radius", "write X,Y,Z,R: 0mm,20mm,400mm,30mm");
+    throw Error(Exit::usage, "--region", "\"" + text + "\" is no centre and radius",
+                "write X,Y,Z,R: 0mm,20mm,400mm,30mm");
   return {{numbers[0], numbers[1], numbers[2]}, numbers[3]};
 }
 
@@ -138,8 +140,7 @@ Exit measure_acceptance(manifest::Document& document, const AcceptanceRequest& r
       if (request.distance_m && measured.spheres.size() == 2)
         measured.results.push_back(sphere_distance(measured.spheres[0], measured.spheres[1], *request.distance_m));
       if (request.distance_m && measured.spheres.size() == 1) {
-        if (partner)
-          measured.results.push_back(sphere_distance(*partner, measured.spheres[0], *request.distance_m));
+        if (partner) measured.results.push_back(sphere_distance(*partner, measured.spheres[0], *request.distance_m));
         partner = partner ? std::nullopt : std::optional(measured.spheres[0]);
       }
     }
@@ -148,8 +149,8 @@ Exit measure_acceptance(manifest::Document& document, const AcceptanceRequest& r
   }
   for (auto& summary : summaries(measured.results)) measured.results.push_back(std::move(summary));
   if (!request.planes && request.clouds.size() < positions_asked_for)
-    log(LogLevel::info, "the guideline asks for the sphere in at least ten places; there are " +
-                            std::to_string(request.clouds.size()));
+    log(LogLevel::info,
+        "the guideline asks for the sphere in at least ten places; there are " + std::to_string(request.clouds.size()));
   const bool within = within_limits(measured.results, request);
   document.acceptance = std::move(measured.results);
   return within ? Exit::done : Exit::negative;

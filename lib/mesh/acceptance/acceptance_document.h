@@ -22,12 +22,12 @@ Region region_of(const std::string& text);
 
 struct AcceptanceRequest {
   std::vector<std::filesystem::path> clouds;
-  double metres_per_unit = 1;                   // of the coordinates in the files
-  bool planes = false;                          // else spheres
-  std::vector<Region> regions;                  // of the spheres; empty: each cloud is one
-  std::optional<double> radius_m, distance_m;   // calibrated
+  double metres_per_unit = 1;                  // of the coordinates in the files
+  bool planes = false;                         // else spheres
+  std::vector<Region> regions;                 // of the spheres; empty: each cloud is one
+  std::optional<double> radius_m, distance_m;  // calibrated
   bool hold_radius = false;
-  std::map<std::string, double> limits_m;       // quantity -> largest |value|
+  std::map<std::string, double> limits_m;  // quantity -> largest |value|
   std::uint64_t seed = 0;
   std::function<void(const std::filesystem::path&)> note_input;
 };

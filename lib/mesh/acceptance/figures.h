@@ -5,8 +5,8 @@
 //   sphere-distance  SD = measured minus calibrated distance of two spheres' centres
 //   flatness         F  = range of the distances from the fitted plane
 //
-// Ranges are taken after at most 0.3 % of the points were left out (fitted_surface.h). Beside the guideline's worst case
-// stand bias and standard deviation, over the points of one cloud, and over clouds where several were measured.
+// Ranges are taken after at most 0.3 % of the points were left out (fitted_surface.h). Beside the guideline's worst
+// case stand bias and standard deviation, over the points of one cloud, and over clouds where several were measured.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,5 @@
-// Distances of a sphere: d = |p - c| - R, so d(d) / dc = -(p - c) / |p - c| and d(d) / dR = -1. All sums are taken about
-// the points' centroid, so that clouds far from the origin lose no digits.
+// Distances of a sphere: d = |p - c| - R, so d(d) / dc = -(p - c) / |p - c| and d(d) / dR = -1. All sums are taken
+// about the points' centroid, so that clouds far from the origin lose no digits.
 #include "mesh/acceptance/fitted_surface.h"
 
 #include <Eigen/Cholesky>

@@ -1,0 +1,193 @@
+#include "camera/undistort_document.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "base/text.h"
+#include "io/codes.h"
+#include "io/picture.h"
+
+namespace gonio::camera {
+namespace {
+
+std::string pointer_of(std::size_t index) {
+  return "/images/" + std::to_string(index);
+}
+
+std::string camera_name(const manifest::Document& document, std::size_t index) {
+  const std::string& given = document.images[index].camera;
+  if (!given.empty()) return given;
+  if (document.cameras.size() == 1) return document.cameras.begin()->first;
+  throw Error(Exit::data, manifest::place(document, pointer_of(index) + "/camera"), "missing",
+              "say which of the cameras took the image");
+}
+
+struct Work {
+  std::string camera, place;
+  std::filesystem::path path;
+  manifest::Camera pinhole;
+};
+
+Work work_of(const manifest::Document& document, std::size_t index, const UndistortRequest& request) {
+  const manifest::ImageEntry& image = document.images[index];
+  Work work;
+  work.camera = camera_name(document, index);
+  work.place = manifest::place(document, "/cameras/" + work.camera);
+  if (!document.cameras.contains(work.camera)) throw Error(Exit::data, work.place, "missing", "calibrate it first");
+  if (image.file.empty())
+    throw Error(Exit::data, manifest::place(document, pointer_of(index) + "/file"), "missing", "name the photograph");
+  work.path = manifest::resolve(document, image.file, pointer_of(index) + "/file");
+  work.pinhole = pinhole_for(document.cameras.at(work.camera), request.choice, work.place);
+  return work;
+}
+
+// Colour and its variances; other channels of an EXR (ids, positions) mean nothing between pixels.
+io::Image colour_of(const io::Image& raw, const std::string& place) {
+  std::vector<std::string> names;
+  for (const std::string& name : raw.channels) {
+    const std::string base = name.starts_with("variance.") ? name.substr(9) : name;
+    if (base == "R" || base == "G" || base == "B" || base == "Y") names.push_back(name);
+  }
+  if (names.empty()) throw Error(Exit::data, place, "has neither the channels R, G, B nor Y");
+  if (names.size() == raw.channels.size()) return raw;
+  io::Image image(raw.width, raw.height, names);
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const auto from = static_cast<std::size_t>(raw.channel(names[c]));
+    for (std::size_t i = 0; i < raw.pixels(); ++i)
+      image.data[i * names.size() + c] = raw.data[i * raw.channels.size() + from];
+  }
+  return image;
+}
+
+bool is_variance(const io::Image& image, std::size_t value) {
+  return image.channels[value % image.channels.size()].starts_with("variance.");
+}
+
+// Per pixel: no saturated sample, and counted by the image's mask.
+std::vector<std::uint8_t> good_pixels(const io::Image& stored, double saturation, const std::filesystem::path& mask) {
+  std::vector<std::uint8_t> good(stored.pixels(), 1);
+  const std::size_t channels = stored.channels.size();
+  for (std::size_t i = 0; i < stored.data.size(); ++i)
+    if (stored.data[i] >= saturation && !is_variance(stored, i)) good[i / channels] = 0;
+  if (mask.empty()) return good;
+  const io::Image counts = io::read_picture(mask);
+  if (counts.width != stored.width || counts.height != stored.height)
+    throw Error(Exit::data, mask.string(), "has another size than its picture", "make a mask of the same size");
+  for (std::size_t i = 0; i < good.size(); ++i)
+    if (!(counts.data[i * counts.channels.size()] > 0.5f)) good[i] = 0;
+  return good;
+}
+
+void check_size(const io::Image& stored, const manifest::Camera& camera, const Work& work) {
+  if (stored.width == camera.width_px && stored.height == camera.height_px) return;
+  throw Error(Exit::data, work.path.string(),
+              std::to_string(stored.width) + " x " + std::to_string(stored.height) + " pixels, its camera has " +
+                  std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px),
+              "use the camera that took it; pictures must be neither cropped nor scaled");
+}
+
+// Back to codes. Returns how many values lay outside what codes can hold by more than half a code.
+std::size_t encode(io::Image& image, const Transfer& transfer, double half_code) {
+  std::size_t outside = 0;
+  for (float& v : image.data) {
+    v = transfer.code(v);
+    if (v < -half_code || v > 1 + half_code) ++outside;
+  }
+  return outside;
+}
+
+void write(const std::filesystem::path& path, io::Image& picture, const std::vector<std::uint8_t>& valid,
+           const Transfer& transfer, int bits) {
+  if (bits == 0) {
+    io::write_picture(path, picture);
+    return;
+  }
+  const std::size_t outside = encode(picture, transfer, bits == 16 ? 0.5 / 65535 : 0.5 / 255);
+  io::write_png(path, picture, bits);
+  const auto invalid = static_cast<std::size_t>(std::ranges::count(valid, std::uint8_t{0}));
+  if (outside > 0)
+    log(LogLevel::info, path.string() + ": " + std::to_string(outside) +
+                            " interpolated values lie outside the range of codes and were clipped (" +
+                            std::to_string(invalid) + " pixels are invalid); --format exr keeps them");
+}
+
+int bits_for(PictureFormat format, int source_bits) {
+  if (format == PictureFormat::same) return source_bits;
+  return format == PictureFormat::exr ? 0 : format == PictureFormat::png8 ? 8 : 16;
+}
+
+void undistort_image(manifest::Document& document, std::size_t index, const UndistortRequest& request,
+                     const std::filesystem::path& picture_path, const std::filesystem::path& mask_path, int bits) {
+  const Work work = work_of(document, index, request);
+  manifest::ImageEntry& image = document.images[index];
+  const manifest::Camera& camera = document.cameras.at(work.camera);
+  const std::string place = manifest::place(document, pointer_of(index));
+  const int source_bits = io::code_bits(work.path);
+  io::Image stored = colour_of(io::read_picture(work.path), work.path.string());
+  check_size(stored, camera, work);
+  request.note_input(work.path);
+  const auto mask = image.mask.empty() ? std::filesystem::path()
+                                       : manifest::resolve(document, image.mask, pointer_of(index) + "/mask");
+  if (!mask.empty()) request.note_input(mask);
+  const double highest_code = 1 - (source_bits == 16 ? 0.5 / 65535 : 0.5 / 255);
+  const double saturation = request.saturation ? *request.saturation : source_bits == 0 ? INFINITY : highest_code;
+  const std::vector<std::uint8_t> good = good_pixels(stored, saturation, mask);
+  const Transfer transfer = request.transfer(image.response, place, bits != 0);
+  for (std::size_t i = 0; i < stored.data.size(); ++i)
+    if (!is_variance(stored, i)) stored.data[i] = transfer.linear(stored.data[i]);
+  const Resampling resampling{request.choice.kernel, std::max(1.0, 1 / request.choice.scale), request.limit_overshoot};
+  Undistorted result =
+      undistort(stored, good, CameraModel(camera, work.place), CameraModel(work.pinhole, work.place), resampling);
+  write(picture_path, result.picture, result.valid, transfer, bits);
+  io::Image counts(result.picture.width, result.picture.height, {"Y"});
+  std::ranges::transform(result.valid, counts.data.begin(), [](std::uint8_t v) { return static_cast<float>(v); });
+  io::write_png(mask_path, counts, 8);
+  image.camera = work.camera + "-undistorted";
+  document.cameras[image.camera] = work.pinhole;
+  image.file = manifest::add_file(document, picture_path, image.id + "-undistorted");
+  image.mask = manifest::add_file(document, mask_path, image.id + "-mask");
+  image.noise.reset();
+  if (bits == 0) image.response = {};
+  if (bits != 0 && source_bits == 0) image.response = "linear";
+}
+
+}  // namespace
+
+void check_undistortion(const manifest::Document& document, const UndistortRequest& request) {
+  if (request.images.empty())
+    throw Error(Exit::data, manifest::place(document, "/images"), "has no image with a file", "name photographs");
+  for (const std::size_t index : request.images) {
+    const Work work = work_of(document, index, request);
+    const manifest::ImageEntry& image = document.images[index];
+    const int source_bits = io::code_bits(work.path), bits = bits_for(request.format, source_bits);
+    const std::string place = manifest::place(document, pointer_of(index));
+    if (bits == 0 && source_bits != 0 && image.response.is_null())
+      throw Error(Exit::data, place, "is an 8 or 16-bit picture whose response is not stated, and EXR is linear",
+                  "state \"response\" (--response), or write codes");
+    request.transfer(image.response, place, bits != 0);
+  }
+}
+
+void undistort_document(manifest::Document& document, const UndistortRequest& request) {
+  check_undistortion(document, request);
+  struct Paths {
+    std::filesystem::path picture, mask;
+    int bits = 0;
+  };
+  std::vector<Paths> paths;  // asked for before the work begins: an existing file is an error at once
+  for (const std::size_t index : request.images) {
+    const std::string stem = file_stem(document.images[index].id);
+    const int bits = bits_for(request.format, io::code_bits(work_of(document, index, request).path));
+    paths.push_back(
+        {request.output_path(stem + (bits == 0 ? ".exr" : ".png")), request.output_path(stem + "-mask.png"), bits});
+  }
+  Progress progress("undistort", request.images.size());
+  for (std::size_t k = 0; k < request.images.size(); ++k) {
+    undistort_image(document, request.images[k], request, paths[k].picture, paths[k].mask, paths[k].bits);
+    progress.advance();
+  }
+}
+
+}  // namespace gonio::camera

@@ -1,0 +1,41 @@
+// The manifest's photographs through undistort(): pictures and masks on disk, a pinhole camera in the manifest.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camera/undistort.h"
+#include "manifest/document.h"
+
+namespace gonio::camera {
+
+enum class PictureFormat { same, exr, png8, png16 };  // same: EXR from EXR, else PNG with the source's number of bits
+
+// Between stored values and linear light. Where the response of an 8 or 16-bit picture is not known both are the
+// identity, and codes are interpolated as they are.
+struct Transfer {
+  std::function<float(float)> linear, code;
+};
+
+struct UndistortRequest {
+  PinholeChoice choice;
+  bool limit_overshoot = false;
+  PictureFormat format = PictureFormat::same;
+  std::optional<double> saturation;  // stored values from here on are saturated; left out: the highest code, EXR never
+  std::vector<std::size_t> images;   // places in document.images
+  // `codes`: the way back to codes is needed, too. Error(data) at `place` for responses that cannot give it.
+  std::function<Transfer(const manifest::Value& response, const std::string& place, bool codes)> transfer;
+  std::function<std::filesystem::path(const std::string& name)> output_path;
+  std::function<void(const std::filesystem::path&)> note_input;
+};
+
+// Images with a file that is there, whose camera has a lens: what undistort_document() would do, without the pixels.
+void check_undistortion(const manifest::Document& document, const UndistortRequest& request);
+
+// Writes ID.exr or ID.png and ID-mask.png for every image, points the image to them and to the camera
+// CAMERA-undistorted, and takes back what no longer holds: `noise`, because neighbours are no more independent.
+void undistort_document(manifest::Document& document, const UndistortRequest& request);
+
+}  // namespace gonio::camera
