@@ -3,11 +3,10 @@
 // For every pixel of the pinhole's picture the ray through its centre is projected by the calibrated camera; the source
 // is interpolated there by a separable kernel:
 //   keys      cubic convolution with a = -1/2 (Keys, IEEE Trans. ASSP 29(6), 1981): exact for polynomials of degree 2
-//   mitchell  B = C = 1/3 (Mitchell & Netravali, SIGGRAPH 1988): exact for degree 1; blurs a little, even at whole
-//   pixels lanczos3  sinc x sinc(x / 3), weights corrected in sum and first moment: sharpest; exact for degree 1
+//   mitchell  B = C = 1/3 (Mitchell & Netravali, SIGGRAPH 1988): exact for degree 1; blurs, even at whole pixels
+//   lanczos3  sinc x sinc(x / 3), weights corrected in sum and first moment: sharpest; exact for degree 1
 // Where the picture shrinks (stretch > 1) the kernel is widened by that factor. Keys and Lanczos overshoot at edges by
-// up to 7 and 9 % of the step; the values are kept, below zero, too, unless the caller limits them to the footprint's
-// own.
+// up to 7 and 9 % of the step; the values are kept, below zero, too, unless the caller limits them to the footprint's.
 //
 // A pixel is valid where every sample that its kernel weighs lies inside the picture and is good. Saturated samples are
 // not good: an interpolation over clipped codes is neither the light nor a bound for it (sensor.clipped-resampling).
