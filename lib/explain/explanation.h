@@ -27,7 +27,7 @@ struct Hypothesis {
   enum class Kind { base, mechanisms, dummy, free_curve };
   Kind kind = Kind::mechanisms;
   std::string name;
-  std::vector<std::size_t> candidates;
+  std::vector<std::size_t> candidates;  // dummy: the one whose freedom it has
   double held_out = 0;             // score on held-out groups, in the user's unit
   double gain = 0, gain_sigma = 0; // fall of the held-out mean square in noise units against the model it extends, and the
                                    // standard error of that over groups

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "stats/distributions.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain {
@@ -15,6 +16,14 @@ std::string family_of(const Candidate& c) {
   std::string family = c.id();
   for (const std::string& on : c.on) family += "/" + on;
   return family;
+}
+
+bool has_numbers_of_groups(const System& system, const std::vector<std::size_t>& candidates) {
+  return std::any_of(candidates.begin(), candidates.end(), [&](std::size_t c) {
+    const std::vector<std::size_t>& own = system.problem().candidates()[c].parameters;
+    return std::all_of(own.begin(), own.end(),
+                       [&](std::size_t p) { return system.problem().parameters()[p].groups.size() == 1; });
+  });
 }
 
 bool is_protected(const std::string& name, const std::vector<std::string>& protect) {
@@ -132,12 +141,23 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
   h.wald_p = 0;
   for (const std::size_t c : added)
     h.wald_p = std::max(h.wald_p, neutral_p(system_, after.fit, u, system_.problem().candidates()[c].parameters));
-  const auto rivals =
-      std::count_if(dummies.begin(), dummies.end(), [&](const Hypothesis& dummy) { return dummy.gain > h.gain + h.gain_sigma; });
+  // A free hand in every group beats physics that all groups share: dummies are held against mechanisms of their own kind.
+  const bool grouped = has_numbers_of_groups(system_, added);
+  std::ptrdiff_t peers = 0, rivals = 0;
+  for (const Hypothesis& dummy : dummies) {
+    if (has_numbers_of_groups(system_, dummy.candidates) != grouped) continue;
+    ++peers;
+    rivals += dummy.gain > h.gain + h.gain_sigma;
+  }
   const auto at_bound = std::find_if(h.parameters.begin(), h.parameters.end(), [](const Estimate& e) { return e.at_bound; });
+  // Numbers of single groups soak up any misfit, so that their being away from neutral proves nothing: held-out groups alone speak.
+  const double freedom = static_cast<double>(system_.groups.size()) - 1;
+  const bool by_chance = grouped && !(h.gain_sigma > 0 && stats::student_upper(h.gain / h.gain_sigma, freedom) <= options_.level);
   if (!(h.gain > h.gain_sigma))
     h.refused = "does not lower the held-out score beyond its standard error";
-  else if (10 * rivals > static_cast<std::ptrdiff_t>(dummies.size()))
+  else if (by_chance)
+    h.refused = "has a number for every " + system_.problem().group_noun() + ", and too few of them agree that it helps";
+  else if (10 * rivals > peers)
     h.refused = "dummies without physics do better";
   else if (stats::sidak(h.wald_p, static_cast<double>(looks)) > options_.level)
     h.refused = "its parameters cannot be told from neutral";

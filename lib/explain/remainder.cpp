@@ -15,6 +15,7 @@ Hypothesis linear_hypothesis(const Race& race, const Projection& p, const Struct
   Hypothesis h;
   h.kind = structures.list[s].kind == Structure::Kind::dummy ? Hypothesis::Kind::dummy : Hypothesis::Kind::free_curve;
   h.name = structures.list[s].name;
+  if (h.kind == Hypothesis::Kind::dummy) h.candidates = {structures.list[s].shape};
   std::vector<std::size_t> columns = p.own;
   const std::vector<std::size_t> added = p.columns(structures, s);
   columns.insert(columns.end(), added.begin(), added.end());

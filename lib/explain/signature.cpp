@@ -28,7 +28,7 @@ void Structures::add_mechanism(const System& system, const std::vector<double>& 
   const Candidate& c = system.problem().candidates()[candidate];
   Signature signature{values, c.parameters};
   for (const std::size_t p : c.parameters) signature.values[p] = system.problem().parameters()[p].start;
-  list.push_back({Structure::Kind::mechanism, candidate, c.id(), signature_columns, c.parameters.size()});
+  list.push_back({Structure::Kind::mechanism, candidate, c.id(), signature_columns, c.parameters.size(), 0});
   signature_columns += c.parameters.size();
   signatures.push_back(std::move(signature));
 }
@@ -37,7 +37,7 @@ void Structures::add_curve(const System& system, std::size_t condition) {
   const CurveBasis* curve = basis(system, condition);
   if (curve->size() < 2) return;
   list.push_back({Structure::Kind::curve, condition, system.observations().conditions[condition].name, extras.size(),
-                  curve->size()});
+                  curve->size(), 0});
   for (std::size_t k = 0; k < curve->size(); ++k) {
     std::vector<double> hat(curve->size(), 0.0);
     hat[k] = 1;
@@ -51,7 +51,7 @@ void Structures::add_dummy(const System& system, std::size_t candidate, std::siz
   if (conditions == 0) return;
   Random random(seed, 0x64756d6d79u + number);
   const std::vector<std::size_t>& parameters = problem.candidates()[candidate].parameters;
-  list.push_back({Structure::Kind::dummy, number, "dummy-" + std::to_string(number + 1), extras.size(), parameters.size()});
+  list.push_back({Structure::Kind::dummy, number, "dummy-" + std::to_string(number + 1), extras.size(), parameters.size(), candidate});
   for (const std::size_t p : parameters) {
     ExtraColumn column;
     column.groups = problem.parameters()[p].groups;

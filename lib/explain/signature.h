@@ -18,6 +18,7 @@ struct Structure {
   std::size_t index = 0;              // candidate, condition, or number of the dummy
   std::string name;
   std::size_t first = 0, count = 0;   // its columns among all signature parameters, or among all extras
+  std::size_t shape = 0;              // dummies: the candidate whose freedom it has
 };
 
 // The columns of all structures, as extras and signatures that linearise() understands. Not copyable: extras point at bases.

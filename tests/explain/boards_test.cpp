@@ -25,6 +25,37 @@ const Value& at(const Value& value, std::string_view key) {
   return *found;
 }
 
+std::vector<std::string> names(const Value& document) {
+  std::vector<std::string> result;
+  for (const Value& n : at(at(document, "explanations").as_array().at(0), "named").as_array())
+    result.push_back(at(n, "mechanism").as_string());
+  return result;
+}
+
+// Six photographs of a large ChArUco board, calibrated as if it were flat: what is left is the board's shape, on views that the fit
+// did not see. The camera is at rest: whatever else those few views hold, no motion is named for it.
+TEST(ExplainBoards, ABoardThatIsNotFlatIsNamedOnHeldOutViews) {
+  GONIO_NEEDS_DATA("handeye/rwhe_kuka_3/images");
+  const gonio::tests::ScratchFolder folder;
+  std::vector<std::string> words = {"calib-charuco", "--charuco", "12x9", "--square", "60mm", "--marker", "46mm",
+                                    "--dictionary", "5X5_250", "--model", "radial-tangential"};
+  const std::size_t options = words.size();
+  for (const auto& entry : std::filesystem::directory_iterator(data("handeye/rwhe_kuka_3/images"))) words.push_back(entry.path());
+  std::sort(words.begin() + static_cast<std::ptrdiff_t>(options), words.end());
+  ASSERT_EQ(words.size(), options + 6);
+  const auto calibrated = run(words, folder.path());
+  ASSERT_TRUE(calibrated.status == 0 || calibrated.status == 2) << calibrated.err;
+  const auto ended = run({"explain", "--allow-outside"}, folder.path(), calibrated.out);
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const Value document = manifest::parse_json(ended.out, "explain");
+  const Value& entry = at(document, "explanations").as_array().at(0);
+  EXPECT_EQ(names(document), std::vector<std::string>{"board.warp"}) << at(entry, "sentence").as_string();
+  EXPECT_EQ(at(at(entry, "located"), "stage").as_string(), "board");
+  EXPECT_LT(at(at(entry, "held_out"), "after").as_number(), 0.95 * at(at(entry, "held_out"), "before").as_number());
+  const Value& board = at(document, "boards").as_object().at(0).second;
+  EXPECT_NEAR(at(at(board, "warp"), "x_m").as_number(), 3.3e-4, 1.5e-4);
+}
+
 // Calibrates the left checkerboard with `model` and explains what is left.
 Value explained(const std::string& model, const std::filesystem::path& folder) {
   std::vector<std::string> words = {"calib-charuco", "--checkerboard", "9x6", "--square", "25mm", "--model", model};
@@ -36,13 +67,6 @@ Value explained(const std::string& model, const std::filesystem::path& folder) {
   const auto ended = run({"explain", "--allow-outside", "--html", "report.html"}, folder, calibrated.out);
   EXPECT_EQ(ended.status, 0) << ended.err;
   return manifest::parse_json(ended.out, "explain");
-}
-
-std::vector<std::string> names(const Value& document) {
-  std::vector<std::string> result;
-  for (const Value& n : at(at(document, "explanations").as_array().at(0), "named").as_array())
-    result.push_back(at(n, "mechanism").as_string());
-  return result;
 }
 
 TEST(ExplainBoards, APinholeLacksItsRadialTermsFirst) {
