@@ -14,6 +14,7 @@ namespace {
 
 constexpr int most_steps = 60, noise_steps = 12;
 constexpr double least_m = 1e-9, least_rad = 1e-9;
+constexpr double board_turn_share = 0.3;  // of the robot's turn, to begin with
 
 Matrix3 inverse_left_jacobian(const Vector3& v) {
   const Matrix3 k = cross_matrix(v);
@@ -31,7 +32,8 @@ Rigid<To, From> moved(const Rigid<To, From>& pose, const Eigen::Ref<const Vector
 struct Linearised {
   Vector6 e;
   Matrix6x12 j;
-  Matrix6 camera;  // covariance that the camera brings
+  Matrix6 camera;  // covariance that the corners bring
+  Eigen::Matrix<double, 6, 3> turn;
 };
 
 std::vector<Linearised> linearise(Kind kind, const std::vector<ObservedPose>& observed, const Solution& solution) {
@@ -39,13 +41,14 @@ std::vector<Linearised> linearise(Kind kind, const std::vector<ObservedPose>& ob
   for (const ObservedPose& o : observed) {
     if (!o.counts) continue;
     const Deviation d = deviation(kind, o, solution);
-    rows.push_back({d.value, d.by_mountings, d.by_pose * o.covariance * d.by_pose.transpose()});
+    rows.push_back({d.value, d.by_mountings, d.by_pose * o.covariance * d.by_pose.transpose(),
+                    d.by_board_turn});
   }
   return rows;
 }
 
-Matrix6 with_robot(const Matrix6& camera, const Noise& noise) {
-  Matrix6 v = camera;
+Matrix6 covariance_of(const Matrix6& camera, const Eigen::Matrix<double, 6, 3>& turn, const Noise& noise) {
+  Matrix6 v = camera + noise.board_rad * noise.board_rad * turn * turn.transpose();
   v.diagonal().head<3>().array() += noise.robot_rad * noise.robot_rad;
   v.diagonal().tail<3>().array() += noise.robot_m * noise.robot_m;
   return v;
@@ -58,7 +61,7 @@ struct Normal {
 Normal normal_equations(const std::vector<Linearised>& rows, const Noise& noise) {
   Normal n;
   for (const Linearised& row : rows) {
-    const Matrix6x12 weighted = with_robot(row.camera, noise).ldlt().solve(row.j);
+    const Matrix6x12 weighted = covariance_of(row.camera, row.turn, noise).ldlt().solve(row.j);
     n.information.noalias() += row.j.transpose() * weighted;
     n.gradient.noalias() += weighted.transpose() * row.e;
   }
@@ -75,14 +78,15 @@ Matrix12 pseudo_inverse(const Matrix12& n) {
   return root * inverse.asDiagonal() * root.transpose();
 }
 
-// One update of both variances at a fixed linearisation: v <- v (y' y) / trace(P), y = P e, over the rows of each.
+// One update of the variances at a fixed linearisation: v <- v (y' G G' y) / trace(G' P G), y = P e, with G the rows or the
+// columns through which each of them acts.
 double update_noise(const std::vector<Linearised>& rows, Noise& noise) {
   const Normal n = normal_equations(rows, noise);
   const Matrix12 inverse = pseudo_inverse(n.information);
   const Vector12 change = -inverse * n.gradient;
-  double squares_r = 0, squares_t = 0, trace_r = 0, trace_t = 0;
+  double squares_r = 0, squares_t = 0, squares_b = 0, trace_r = 0, trace_t = 0, trace_b = 0;
   for (const Linearised& row : rows) {
-    const auto solver = with_robot(row.camera, noise).ldlt();
+    const auto solver = covariance_of(row.camera, row.turn, noise).ldlt();
     const Vector6 y = solver.solve(row.e + row.j * change);
     const Matrix6x12 weighted = solver.solve(row.j);
     const Matrix6 p = Matrix6(solver.solve(Matrix6::Identity())) - weighted * inverse * weighted.transpose();
@@ -90,6 +94,8 @@ double update_noise(const std::vector<Linearised>& rows, Noise& noise) {
     squares_t += y.tail<3>().squaredNorm();
     trace_r += p.diagonal().head<3>().sum();
     trace_t += p.diagonal().tail<3>().sum();
+    squares_b += (row.turn.transpose() * y).squaredNorm();
+    trace_b += (row.turn.transpose() * p * row.turn).trace();
   }
   const auto updated = [](double sigma, double squares, double trace, double least) {
     if (!(trace > 0)) return sigma;
@@ -98,8 +104,11 @@ double update_noise(const std::vector<Linearised>& rows, Noise& noise) {
   const Noise before = noise;
   noise.robot_rad = updated(noise.robot_rad, squares_r, trace_r, least_rad);
   noise.robot_m = updated(noise.robot_m, squares_t, trace_t, least_m);
-  return std::max(std::abs(std::log(noise.robot_rad / before.robot_rad)),
-                  std::abs(std::log(noise.robot_m / before.robot_m)));
+  noise.board_rad = updated(noise.board_rad, squares_b, trace_b, least_rad);
+  // A variance on its way to zero takes long and matters little: changes count by their share of what they join.
+  const double board_share = std::min(1.0, noise.board_rad / noise.robot_rad);
+  return std::max({std::abs(std::log(noise.robot_rad / before.robot_rad)), std::abs(std::log(noise.robot_m / before.robot_m)),
+                   board_share * board_share * std::abs(std::log(noise.board_rad / before.board_rad))});
 }
 
 }  // namespace
@@ -130,8 +139,10 @@ Deviation deviation(Kind kind, const ObservedPose& observed, const Solution& s) 
   const Vector3 turn = eigen_of(rotation_vector_of(tool.rotation * conjugate(observed.base_from_tool.rotation)));
   d.value << turn, eigen_of(tool.translation_m - observed.base_from_tool.translation_m);
   const Matrix3 log = inverse_left_jacobian(turn);
+  const Vector3 arm = eigen_of(observed.camera_from_board.rotate(observed.middle_m));
   d.by_pose.topRows<3>() = (log * d.by_pose.topRows<3>()).eval();
   d.by_mountings.topRows<3>() = (log * d.by_mountings.topRows<3>()).eval();
+  d.by_board_turn = d.by_pose.leftCols<3>() + d.by_pose.rightCols<3>() * cross_matrix(arm);
   return d;
 }
 
@@ -140,7 +151,7 @@ Solution moved_by(const Solution& s, const Vector12& change) {
 }
 
 Matrix6 deviation_covariance(const Deviation& d, const ObservedPose& observed, const Noise& noise) {
-  return with_robot(d.by_pose * observed.covariance * d.by_pose.transpose(), noise);
+  return covariance_of(d.by_pose * observed.covariance * d.by_pose.transpose(), d.by_board_turn, noise);
 }
 
 Matrix12 information(Kind kind, const std::vector<ObservedPose>& observed, const Solution& solution,
@@ -161,6 +172,7 @@ PoseAdjustment adjust_poses(Kind kind, const std::vector<ObservedPose>& observed
     const double coordinates = 3 * std::max<double>(1, static_cast<double>(rows.size()));
     result.noise.robot_rad = std::max(least_rad, std::sqrt(turn / coordinates));
     result.noise.robot_m = std::max(least_m, std::sqrt(shift / coordinates));
+    result.noise.board_rad = board_turn_share * result.noise.robot_rad;
   }
   for (int step = 0; step < most_steps; ++step) {
     const Normal n = normal_equations(rows, result.noise);

@@ -16,12 +16,14 @@ struct ObservedPose {
   camera::BoardPose camera_from_board;
   Matrix6 covariance;  // of its changes, columns of camera::moved()
   bool counts = true;
+  Vec3 middle_m{};  // of the board
 };
 // Deviation of the robot's pose that an observed pose implies, [turn; shift], and its derivatives.
 struct Deviation {
   Vector6 value;
   Matrix6 by_pose;
   Matrix6x12 by_mountings;
+  Eigen::Matrix<double, 6, 3> by_board_turn;  // of the seen board about its middle
 };
 Deviation deviation(Kind kind, const ObservedPose& observed, const Solution& solution);
 Solution moved_by(const Solution& solution, const Vector12& change);
@@ -32,7 +34,7 @@ Matrix12 information(Kind kind, const std::vector<ObservedPose>& observed, const
 
 struct PoseAdjustment {
   Solution solution;
-  Noise noise;  // robot_m, robot_rad estimated; corner as given
+  Noise noise;  // all but corner estimated
   bool converged = false;
 };
 PoseAdjustment adjust_poses(Kind kind, const std::vector<ObservedPose>& observed, const Solution& start, const Noise& noise);

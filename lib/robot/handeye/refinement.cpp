@@ -39,7 +39,8 @@ ObservedPose observed_pose(const Setup& setup, const View& view, const camera::B
   const auto solver = c.information.ldlt();
   const Vector6 change = -solver.solve(c.gradient);
   const Matrix6 inverse = solver.solve(Matrix6::Identity());
-  return {view.base_from_tool, moved_by(at, change), 0.5 * factor * factor * (inverse + inverse.transpose()), counts};
+  return {view.base_from_tool, moved_by(at, change), 0.5 * factor * factor * (inverse + inverse.transpose()), counts,
+          setup.middle_m()};
 }
 
 // Best estimate of the board's pose in a view, given both what the camera saw and what the robot said.
@@ -95,7 +96,7 @@ Refined refine(const Setup& setup, const std::vector<View>& views, const std::ve
                const Solution& start) {
   Refined result;
   result.solution = start;
-  result.noise = {corner_factor(setup, views, counts), 0, 0};
+  result.noise.corner = corner_factor(setup, views, counts);
   for (const View& view : views) result.camera_from_board.push_back(view.camera_from_board);
   std::vector<ObservedPose> observed(views.size());
   for (int round = 0; round < most_rounds; ++round) {

@@ -2,17 +2,18 @@
 //
 // Unknown are the two mountings X = mount_from_camera, Z = stand_from_board, and at every view where the robot truly
 // was. Minimised is
-//   sum over corners |found - predicted|^2 / (s sigma_px)^2  +  sum over views |d_t|^2 / robot_m^2 + |d_r|^2 / robot_rad^2,
+//   sum over corners |found - predicted|^2 / (s sigma_px)^2
+//     + sum over views |d_t|^2 / robot_m^2 + |d_r|^2 / robot_rad^2 + |b|^2 / board_rad^2,
 // d_t, d_r: shift and rotation vector (about the tool's origin, in the base's axes) by which the robot deviates from its
-// controller's word. A pure reprojection error has robot_m = robot_rad = 0 and pulls the camera after the robot's errors;
+// controller's word; b: a turn of the seen board about its middle beyond the corners' noise, as lenses that are not quite
+// calibrated and boards that are not quite flat produce. A pure reprojection error has robot_m = robot_rad = 0 and pulls the camera after the robot's errors;
 // a pure pose error forgets that a camera knows some directions ten times better than others. Here the noises themselves
-// weigh them: s from the corners' residuals at poses fitted to each view alone, robot_m and robot_rad by restricted maximum
+// weigh them: s from the corners' residuals at poses fitted to each view alone, the others by restricted maximum
 // likelihood (Patterson & Thompson, Biometrika 58, 1971), iterated as by Fellner (Biometrics 42, 1986).
 //
 // The board's pose in a view is eliminated (Schur complement over views): what the corners say of it is a pose with a
 // covariance, re-linearised at the joint estimate, so that the minimum is that of the sum above. Deviations that are the
-// same at all poses cannot be told from the mountings; deviations that repeat (a lens badly calibrated) count as robot
-// noise.
+// same at all poses cannot be told from the mountings; what a bad lens does to distances counts as robot noise.
 #pragma once
 #include <array>
 #include <vector>
@@ -24,6 +25,7 @@ namespace gonio::robot::handeye {
 struct Noise {
   double corner = 1;                     // factor on sigma_px
   double robot_m = 0, robot_rad = 0;     // one coordinate, one axis
+  double board_rad = 0;                  // one axis
 };
 // Where the robot seems to have been in a view, by the camera and the solution, against what its controller said: shift of the
 // tool's origin and turn about it, in the base's axes.
