@@ -1,140 +1,146 @@
-// The adjustment itself: Ceres over the templates of board_terms.h.
-//
-// Blocks: [fx, fy / fx, cx, cy], so that the aspect ratio can be held; distortion; sag; per view a unit quaternion and
-// a translation.
+// The descent: damped normal equations (Marquardt's diagonal, Nielsen's rule for the damping, Madsen, Nielsen &
+// Tingleff, "Methods for non-linear least squares problems", 2004, algorithm 3.16).
 #include "camera/bundle_adjustment.h"
 
-#include <ceres/ceres.h>
-#include <ceres/rotation.h>
-
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 namespace gonio::camera {
 namespace {
 
-constexpr int most_iterations = 200;
+using Kind = SharedParameter::Kind;
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+using Change6 = Eigen::Matrix<double, 6, 1>;
 
-struct CornerCost {
-  Vec2 pixel, at_m;
-  BoardExtent extent;
-  double root_weight;
+constexpr int most_iterations = 100;
+constexpr double first_damping = 1e-4, largest_damping = 1e12;
+constexpr double settled = 1e-9;   // promised descent over the variance: a step of 3e-5 standard deviations
+constexpr double hardly = 1e-4;    // the same where rounding leaves no descent
+constexpr double exact_px = 1e-9;  // residuals that are rounding
 
-  template <class T>
-  bool operator()(const T* pinhole, const T* distortion, const T* sag, const T* rotation, const T* translation,
-                  T* residual) const {
-    const T point[3] = {T(at_m.x), T(at_m.y), board_height(extent, at_m, sag)};
-    T seen[3];
-    ceres::UnitQuaternionRotatePoint(rotation, point, seen);
-    for (int i = 0; i < 3; ++i) seen[i] += translation[i];
-    const T intrinsics[4] = {pinhole[0], pinhole[0] * pinhole[1], pinhole[2], pinhole[3]};
-    T predicted[2];
-    if (!project_point(seen, intrinsics, distortion, predicted)) return false;
-    residual[0] = root_weight * (predicted[0] - pixel.x);
-    residual[1] = root_weight * (predicted[1] - pixel.y);
-    return true;
-  }
+struct Step {
+  Vector shared;
+  std::vector<Change6> placements;
+  double promised = 0;  // descent of the cost by the quadratic model
+  bool solved = false;
 };
 
-struct Blocks {
-  std::array<double, 4> pinhole;
-  std::array<double, distortion_terms> distortion;
-  std::array<double, 2> sag;
-  std::vector<std::array<double, 4>> rotations;
-  std::vector<std::array<double, 3>> translations;
-};
-
-Blocks blocks_of(const Adjustment& state) {
-  Blocks b;
-  const Intrinsics& lens = state.lens;
-  b.pinhole = {lens.fx_px, lens.fy_px / lens.fx_px, lens.cx_px, lens.cy_px};
-  b.distortion = lens.distortion;
-  b.sag = {state.warp.sag_x_m, state.warp.sag_y_m};
-  for (const BoardPose& pose : state.poses) {
-    b.rotations.push_back({pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z});
-    b.translations.push_back({pose.translation_m.x, pose.translation_m.y, pose.translation_m.z});
+Step damped_step(const NormalEquations& n, double damping) {
+  const Eigen::Index k = n.a.rows();
+  Matrix s = n.a;
+  s.diagonal() *= 1 + damping;
+  Vector g = n.g;
+  std::vector<Matrix> reduced(n.c.size());  // C^-1 B'
+  std::vector<Change6> own(n.c.size(), Change6::Zero());
+  for (std::size_t p = 0; p < n.c.size(); ++p) {
+    if (!(n.c[p](0, 0) > 0)) continue;
+    Eigen::Matrix<double, 6, 6> c = n.c[p];
+    c.diagonal() *= 1 + damping;
+    const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(c);
+    own[p] = solver.solve(n.h[p]);
+    reduced[p] = solver.solve(n.b[p].transpose());
+    s.noalias() -= n.b[p] * reduced[p];
+    g.noalias() -= n.b[p] * own[p];
   }
-  return b;
+  Step step{Vector::Zero(k), std::move(own), 0, true};
+  if (k > 0) {
+    const Vector scale = n.a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Matrix scaled = scale.asDiagonal() * s * scale.asDiagonal();
+    step.shared = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * g);
+  }
+  const auto gain = [damping](const auto& d, const auto& gradient, const auto& diagonal) {
+    return d.dot(gradient) + damping * d.dot(diagonal.cwiseProduct(d));
+  };
+  step.promised = k > 0 ? gain(step.shared, n.g, Vector(n.a.diagonal())) : 0;
+  for (std::size_t p = 0; p < n.c.size(); ++p) {
+    if (!(n.c[p](0, 0) > 0)) continue;
+    if (k > 0) step.placements[p] -= reduced[p] * step.shared;
+    step.promised += gain(step.placements[p], n.h[p], Change6(n.c[p].diagonal()));
+    step.solved = step.solved && step.placements[p].allFinite();
+  }
+  step.solved = step.solved && step.shared.allFinite();
+  return step;
 }
 
-void take(const Blocks& b, Adjustment& state) {
-  state.lens = {b.pinhole[0], b.pinhole[0] * b.pinhole[1], b.pinhole[2], b.pinhole[3], b.distortion};
-  state.warp = {b.sag[0], b.sag[1]};
-  for (std::size_t i = 0; i < state.poses.size(); ++i) {
-    const auto& q = b.rotations[i];
-    const auto& t = b.translations[i];
-    state.poses[i] = {normalized(Quaternion{q[0], q[1], q[2], q[3]}), {t[0], t[1], t[2]}};
-  }
+std::array<double, 6> array_of(const Change6& change) {
+  return {change(0), change(1), change(2), change(3), change(4), change(5)};
 }
 
-// Holds the entries `held` of a block; a block held as a whole becomes a constant.
-void hold(ceres::Problem& problem, double* block, int size, const std::vector<int>& held) {
-  if (held.empty()) return;
-  if (static_cast<int>(held.size()) == size) {
-    problem.SetParameterBlockConstant(block);
-  } else {
-    problem.SetManifold(block, new ceres::SubsetManifold(size, held));
-  }
+template <class To, class From>
+Rigid<To, From> turned(const Rigid<To, From>& pose, const std::array<double, 6>& change) {
+  const BoardPose result = moved({pose.rotation, pose.translation_m}, change);
+  return {result.rotation, result.translation_m};
 }
 
-std::vector<int> held_distortion(const CalibrationOptions& options) {
-  std::vector<int> held;
-  const TermSet& fitted = camera_model_info(options.model, "calibration").fitted;
-  for (std::size_t i = 0; i < distortion_terms; ++i) {
-    if (!fitted.has(i) || options.fixed.contains(std::string(distortion_names[i]))) held.push_back(static_cast<int>(i));
+Adjustment stepped(const Adjustment& state, const std::vector<FreeParameter>& free, const Step& step) {
+  Adjustment next = state;
+  std::vector<std::array<double, 6>> rig(state.lenses.size());
+  for (std::size_t p = 0; p < free.size(); ++p) {
+    const double d = step.shared(static_cast<Eigen::Index>(p));
+    const auto& [what, columns] = free[p];
+    for (const auto& [column, factor] : columns) {
+      if (what.kind == Kind::rig) {
+        rig[what.of][column] += factor * d;
+      } else if (what.kind == Kind::board) {
+        BoardWarp& warp = next.warps[what.of];
+        (column == BoardColumn::warp ? warp.sag_x_m : warp.sag_y_m) += factor * d;
+      } else {
+        Intrinsics& lens = next.lenses[what.of];
+        const std::array<double*, 4> pinhole{&lens.fx_px, &lens.fy_px, &lens.cx_px, &lens.cy_px};
+        (column < 4 ? *pinhole[column] : lens.distortion[column - BoardColumn::distortion]) += factor * d;
+      }
+    }
   }
-  return held;
+  for (std::size_t c = 0; c < rig.size(); ++c) {
+    if (state.tied[c]) next.camera_from_rig[c] = turned(state.camera_from_rig[c], rig[c]);
+  }
+  for (std::size_t p = 0; p < state.placements.size(); ++p) {
+    next.placements[p] = turned(state.placements[p], array_of(step.placements[p]));
+  }
+  return next;
+}
+
+bool sensible(const Adjustment& state) {
+  return std::ranges::all_of(state.lenses, [](const Intrinsics& lens) { return lens.fx_px > 1 && lens.fy_px > 1; });
 }
 
 }  // namespace
 
-std::vector<std::string> fixable_terms() {
-  std::vector<std::string> names{"aspect", "principal-point"};
-  for (const auto name : distortion_names) names.emplace_back(name);
-  return names;
-}
-
-void adjust(const std::vector<View>& views, const Board& board, const CalibrationOptions& options, Adjustment& state) {
-  Blocks b = blocks_of(state);
-  ceres::Problem problem;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (state.view_weights[i] == 0) continue;
-    for (const Corner& corner : views[i].corners) {
-      auto* cost = new ceres::AutoDiffCostFunction<CornerCost, 2, 4, distortion_terms, 2, 4, 3>(
-          new CornerCost{corner.pixel, board.corner_m(corner.id), board.extent(), std::sqrt(state.view_weights[i])});
-      problem.AddResidualBlock(cost, new ceres::HuberLoss(state.loss_px), b.pinhole.data(), b.distortion.data(),
-                               b.sag.data(), b.rotations[i].data(), b.translations[i].data());
+void adjust(const std::vector<View>& views, const CalibrationSetup& setup, Adjustment& state) {
+  const std::vector<FreeParameter> free = free_parameters(setup, state);
+  NormalEquations n = normal_equations(views, setup, free, state);
+  double damping = first_damping, growth = 2;
+  state.converged = false;
+  for (int i = 0; i < most_iterations && !state.converged; ++i) {
+    const Step step = damped_step(n, damping);
+    const double variance = n.squares / std::max(1.0, n.coordinates);
+    if (step.solved && (step.promised <= settled * variance || variance <= exact_px * exact_px)) {
+      state.converged = true;
+      break;
     }
-    problem.SetManifold(b.rotations[i].data(), new ceres::QuaternionManifold);
+    Adjustment next = step.solved ? stepped(state, free, step) : state;
+    if (step.solved && sensible(next)) {
+      NormalEquations there = normal_equations(views, setup, free, next);
+      const double ratio = (n.cost - there.cost) / step.promised;
+      if (ratio > 0) {
+        const double u = 2 * ratio - 1;
+        damping = std::max(1e-15, damping * std::max(0.1, 1 - u * u * u));
+        growth = 2;
+        state = std::move(next);
+        n = std::move(there);
+        continue;
+      }
+      if (step.promised <= hardly * variance) {
+        state.converged = true;
+        break;
+      }
+    }
+    damping *= growth;
+    growth *= 2;
+    if (damping > largest_damping) break;
   }
-  std::vector<int> held;
-  if (options.fixed.contains("aspect")) held.push_back(1);
-  if (options.fixed.contains("principal-point")) held.insert(held.end(), {2, 3});
-  hold(problem, b.pinhole.data(), 4, held);
-  hold(problem, b.distortion.data(), static_cast<int>(distortion_terms), held_distortion(options));
-  if (!options.board_warp) problem.SetParameterBlockConstant(b.sag.data());
-  problem.SetParameterLowerBound(b.pinhole.data(), 0, 1.0);
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_SCHUR;
-  solver.max_num_iterations = most_iterations;
-  solver.function_tolerance = 1e-12;
-  solver.parameter_tolerance = 1e-11;
-  solver.num_threads = 1;  // sums in one order: the same bytes on every machine
-  solver.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  state.converged = summary.termination_type == ceres::CONVERGENCE;
-  take(b, state);
-}
-
-std::vector<Vec2> residuals(const View& view, const Board& board, const Adjustment& state, std::size_t index) {
-  std::vector<Vec2> result;
-  for (const Corner& corner : view.corners) {
-    Vec2 pixel{HUGE_VAL, HUGE_VAL};
-    predict(state.lens, state.poses[index], board.extent(), state.warp, board.corner_m(corner.id), pixel);
-    result.push_back(corner.pixel - pixel);
-  }
-  return result;
 }
 
 }  // namespace gonio::camera

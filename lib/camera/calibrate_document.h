@@ -1,14 +1,17 @@
 // Calibration of the cameras of a manifest from its images: what the program calib-charuco does between reading and
 // writing.
 //
-// Reads `images` (with `board` and `camera`, which may be left out where there is only one), `boards`, `cameras` and
-// `files`. Writes the cameras (intrinsics, distortion, sigma, covariance, rms_px), the boards (layout, warp),
-// camera_from_board, rms_px and weight of every image, and the table of corners. Images are searched in parallel;
-// results do not depend on the number of threads.
+// Reads `images` (with `board` or `boards`, `camera` and `shot`; the first two may be left out where there is only
+// one), `boards`, `cameras` and `files`. Cameras whose images share shots are one rig and calibrated together. Writes
+// the cameras (intrinsics, distortion, sigma, covariance, rms_px), the `rigs`, the boards (layout, warp, flatness),
+// pose, rms_px and weight of every image, and the tables of corners. Images are searched in parallel; results do not
+// depend on the number of threads.
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "camera/calibration.h"
@@ -17,8 +20,10 @@
 namespace gonio::camera {
 
 struct CalibrationRequest {
-  CalibrationOptions calibration;
-  bool model_given = false;  // else a camera that the manifest knows keeps its model
+  std::string model = "radial-tangential";  // one of calibrated_models(), or "auto": chosen by held-out views
+  bool model_given = false;                 // else a camera that the manifest knows keeps its model
+  std::set<std::string> fixed;              // fixable_terms()
+  bool board_warp = false;                  // free every board's sag; "auto" decides where it is not given
   DetectionOptions detection;
   std::filesystem::path corners_csv;                             // empty: the table's rows stand in the manifest
   std::function<void(const std::filesystem::path&)> note_input;  // called for every picture read
@@ -27,6 +32,12 @@ struct CalibrationRequest {
 // Quick form: enters board, camera and pictures as "board", "camera" and images named after the files.
 void enter_board(const Board& board, manifest::Document& document);
 void enter_pictures(const std::vector<std::string>& paths, const std::string& model, manifest::Document& document);
+// The same for a rig. A picture belongs to the camera whose name its file name contains (else its folder's name); what
+// the name says beside that is the shot: left01.jpg and right01.jpg, or left/01.png and right/01.png. Error(usage)
+// where a name contains none or several of the cameras, where a camera has two pictures of one shot, or where a camera
+// shares no shot with another.
+void enter_rig(const std::vector<std::string>& cameras, const std::vector<std::string>& paths, const std::string& model,
+               manifest::Document& document);
 
 // Everything that can be refused without looking at a picture.
 void check_calibration(const manifest::Document& document);

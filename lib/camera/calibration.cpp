@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "camera/bundle_adjustment.h"
 
@@ -16,12 +17,11 @@ constexpr double least_loss_px = 0.02;
 constexpr double loss_sigmas = 3;
 constexpr double set_aside_sigmas = 6;
 constexpr double suspicious = 2.5, hopeless = 6;  // noise of a view over the median of all
+constexpr std::size_t few_views = 6;              // too few to call one of them the odd one out
 constexpr int weighing_rounds = 4;
-constexpr std::size_t least_views = 3;
-constexpr double focal_limit = 0.02;  // sigma over focal length
-constexpr double rms_limit_px = 3;
+constexpr double largest_precision = 9;  // and its inverse: no view outweighs another by more than 81
 
-std::string format(const char* pattern, double a, double b = 0) {
+std::string format(const char* pattern, double a, double b) {
   char text[256];
   std::snprintf(text, sizeof text, pattern, a, b);
   return text;
@@ -50,161 +50,219 @@ double robust_noise(const std::vector<Vec2>& residual) {
   return median(sizes) / std::sqrt(2 * std::log(2.0));
 }
 
-double robust_noise(const std::vector<View>& views, const Board& board, const Adjustment& state) {
-  std::vector<Vec2> all;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (state.view_weights[i] == 0) continue;
-    const std::vector<Vec2> residual = residuals(views[i], board, state, i);
-    all.insert(all.end(), residual.begin(), residual.end());
-  }
-  return robust_noise(all);
-}
-
 double rms(const std::vector<Vec2>& residual) {
   double sum = 0;
   for (const Vec2 r : residual) sum += dot(r, r);
   return residual.empty() ? 0 : std::sqrt(sum / static_cast<double>(residual.size()));
 }
 
-// Weights from how much worse a view fits than the median one, single bad corners apart; true where they changed.
-bool weigh_views(const std::vector<View>& views, const Board& board, Adjustment& state, Calibration& result) {
-  std::vector<double> all(views.size()), used;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (state.view_weights[i] == 0) continue;
-    all[i] = robust_noise(residuals(views[i], board, state, i));
-    used.push_back(all[i]);
-  }
-  if (used.size() < 2 * least_views) return false;  // too few to call one of them the odd one out
-  const double usual = median(used);
-  bool changed = false;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (state.view_weights[i] == 0) continue;
-    const double ratio = all[i] / usual;
-    const double weight = ratio > hopeless ? 0 : ratio > suspicious ? 1 / (ratio * ratio) : 1;
-    changed |= std::abs(weight - state.view_weights[i]) > 0.05;
-    state.view_weights[i] = weight;
-    result.views[i].note = weight == 1
-                               ? ""
-                               : format("its corners scatter by %.2f px, the median view's by %.2f px", all[i], usual) +
-                                     (weight == 0 ? "; dropped" : "; weighted down");
-  }
-  return changed;
+// Residuals in units of a corner of precision 1.
+std::vector<Vec2> whitened(const View& view, const CalibrationSetup& setup, const Adjustment& state, std::size_t i) {
+  std::vector<Vec2> result = residuals(view, setup, state, i);
+  for (std::size_t k = 0; k < result.size(); ++k) result[k] = result[k] * std::sqrt(state.precision[i][k]);
+  return result;
 }
 
-// Poses that fit better from the other solution of the plane, now that the lens is known.
-bool try_other_poses(const std::vector<View>& views, const Board& board, Adjustment& state) {
-  bool changed = false;
+// Sigma of a corner of precision 1.
+double usual_noise(const std::vector<View>& views, const CalibrationSetup& setup, const Adjustment& state) {
+  std::vector<Vec2> all;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (state.view_weights[i] == 0) continue;
-    const double now = rms(residuals(views[i], board, state, i));
-    Adjustment other = state;
-    other.poses[i] = start_pose(views[i], board, state.lens);
-    if (rms(residuals(views[i], board, other, i)) >= 0.9 * now) continue;
-    state.poses[i] = other.poses[i];
-    changed = true;
+    for (const Vec2 r : whitened(views[i], setup, state, i)) all.push_back(r * std::sqrt(state.view_weights[i]));
   }
-  return changed;
+  return robust_noise(all);
 }
 
-void summarise(const std::vector<View>& views, const Board& board, const Adjustment& state, Calibration& result) {
-  result.lens = state.lens;
-  result.warp = state.warp;
-  result.converged = state.converged;
-  const double limit = set_aside_sigmas * std::max(robust_noise(views, board, state), 1e-6);
-  double sum = 0;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    CalibratedView& view = result.views[i];
-    view.camera_from_board = state.poses[i];
-    view.weight = state.view_weights[i];
-    if (views[i].corners.size() < least_corners) continue;
-    std::vector<Vec2> kept = residuals(views[i], board, state, i);
-    if (view.weight > 0) {
-      result.set_aside +=
-          static_cast<int>(std::erase_if(kept, [&](Vec2 r) { return std::sqrt(view.weight) * norm(r) > limit; }));
-      result.corners += static_cast<int>(kept.size());
-      for (const Vec2 r : kept) sum += dot(r, r);
+// Corners count by their inverse variance: the noise measured in the picture, and what the views of the camera miss by
+// beyond it (a bent board, an incomplete lens).
+void set_precisions(const std::vector<View>& views, const CalibrationSetup& setup, Adjustment& state,
+                    Calibration& result) {
+  std::vector<std::vector<double>> variance(views.size());
+  std::vector<double> all;
+  for (std::size_t c = 0; c < state.lenses.size(); ++c) {
+    std::vector<double> known, excess;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (views[i].camera == c && state.view_weights[i] > 0 && views[i].noise_px > 0)
+        known.push_back(views[i].noise_px);
     }
-    view.rms_px = rms(kept);
+    const double usual = median(known);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (views[i].camera != c || state.view_weights[i] == 0) continue;
+      const double noise = views[i].noise_px > 0 ? views[i].noise_px : usual;
+      for (const Corner& corner : views[i].corners) {
+        const double sigma = corner.sigma_px > 0 ? corner.sigma_px : noise;
+        variance[i].push_back(sigma * sigma);
+      }
+      const double scatter = robust_noise(residuals(views[i], setup, state, i));
+      excess.push_back(scatter * scatter - median(variance[i]));
+    }
+    const double common = std::max(0.0, median(excess));
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (views[i].camera != c) continue;
+      for (double& v : variance[i]) all.push_back(v = std::max(common + v, 1e-12));
+    }
   }
-  result.rms_px = result.corners > 0 ? std::sqrt(sum / result.corners) : 0;
+  const double reference = median(all);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (variance[i].empty()) continue;
+    result.views[i].sigma_px = std::sqrt(median(variance[i]));
+    for (std::size_t k = 0; k < variance[i].size(); ++k) {
+      state.precision[i][k] = std::clamp(reference / variance[i][k], 1 / largest_precision, largest_precision);
+    }
+  }
 }
 
-void judge(Calibration& result) {
-  const auto used = static_cast<std::size_t>(
-      std::ranges::count_if(result.views, [](const CalibratedView& v) { return v.weight > 0; }));
-  if (used < least_views) {
-    result.complaints.push_back(std::to_string(used) + (used == 1 ? " view shows" : " views show") +
-                                " the board (at least 3 are needed); photograph it from more directions");
+// Weights from how much worse a view fits than the median one of its camera, single bad corners apart; true where they
+// changed.
+bool weigh_views(const std::vector<View>& views, const CalibrationSetup& setup, Adjustment& state,
+                 Calibration& result) {
+  bool changed = false;
+  for (std::size_t c = 0; c < state.lenses.size(); ++c) {
+    std::vector<double> scatter(views.size()), used;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (views[i].camera != c || state.view_weights[i] == 0) continue;
+      scatter[i] = robust_noise(whitened(views[i], setup, state, i));
+      used.push_back(scatter[i]);
+    }
+    if (used.size() < few_views) continue;
+    const double usual = median(used);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (scatter[i] == 0) continue;
+      const double ratio = scatter[i] / usual;
+      const double weight = ratio > hopeless ? 0 : ratio > suspicious ? 1 / (ratio * ratio) : 1;
+      changed |= std::abs(weight - state.view_weights[i]) > 0.05;
+      state.view_weights[i] = weight;
+      result.views[i].note =
+          weight == 1 ? ""
+                      : format("its corners scatter by %.2f px, the median view's by %.2f px", scatter[i], usual) +
+                            (weight == 0 ? "; dropped" : "; weighted down");
+    }
   }
-  if (!result.converged) {
-    result.complaints.push_back("the adjustment did not converge; look at the views with the largest rms_px");
+  return changed;
+}
+
+void summarise_view(const View& view, const CalibrationSetup& setup, const Adjustment& state, std::size_t i,
+                    double limit, Calibration& result) {
+  CalibratedView& own = result.views[i];
+  own.placement = state.placement_of[i];
+  own.camera_from_board = state.pose(view, i);
+  own.weight = state.view_weights[i];
+  if (view.corners.size() < least_corners) return;
+  own.residuals = residuals(view, setup, state, i);
+  std::vector<Vec2> kept;
+  for (std::size_t k = 0; k < own.residuals.size(); ++k) {
+    const Vec2 r = own.residuals[k];
+    const double size = std::sqrt((own.weight > 0 ? own.weight : 1) * state.precision[i][k]) * norm(r);
+    own.corner_weights.push_back(size > state.loss_px ? state.loss_px / size : 1);
+    if (own.weight == 0 || size <= limit) kept.push_back(r);
   }
-  if (result.rms_px > rms_limit_px) {
-    result.complaints.push_back(format("corners miss by %.1f px (limit %.0f px)", result.rms_px, rms_limit_px) +
-                                "; check the board's size, its layout and the lens model");
+  own.rms_px = rms(kept);
+  if (own.weight == 0) return;
+  CalibratedCamera& camera = result.cameras[view.camera];
+  camera.set_aside += static_cast<int>(own.residuals.size() - kept.size());
+  camera.corners += static_cast<int>(kept.size());
+  for (const Vec2 r : kept) camera.rms_px += dot(r, r);  // a sum until all views are in
+}
+
+void summarise(const std::vector<View>& views, const CalibrationSetup& setup, const Adjustment& state,
+               Calibration& result) {
+  result.converged = state.converged;
+  const double limit = set_aside_sigmas * std::max(usual_noise(views, setup, state), 1e-6);
+  for (std::size_t c = 0; c < result.cameras.size(); ++c) {
+    result.cameras[c].lens = state.lenses[c];
+    if (state.tied[c]) result.cameras[c].rig_from_camera = inverse(state.camera_from_rig[c]);
+    result.cameras[c].tied = state.tied[c];
   }
-  if (result.covariance.empty()) {
-    result.complaints.push_back(
-        "the views do not determine the camera (singular normal equations); tilt the board by 20 to 45 degrees about "
-        "both axes");
-    return;
+  for (std::size_t b = 0; b < result.boards.size(); ++b) result.boards[b].warp = state.warps[b];
+  for (std::size_t p = 0; p < result.placements.size(); ++p) {
+    result.placements[p].rig_from_board = state.placements[p];
   }
-  const double share = std::max(result.sigma("fx_px").value_or(0) / result.lens.fx_px,
-                                result.sigma("fy_px").value_or(0) / result.lens.fy_px);
-  if (share > focal_limit) {
-    result.complaints.push_back(
-        format("the focal length is known to %.1f %% only (limit %.0f %%)", 100 * share, 100 * focal_limit) +
-        ": the views are too frontal or too few; tilt the board by 20 to 45 degrees about both axes");
+  for (std::size_t i = 0; i < views.size(); ++i) summarise_view(views[i], setup, state, i, limit, result);
+  double sum = 0;
+  int corners = 0;
+  for (CalibratedCamera& camera : result.cameras) {
+    sum += camera.rms_px;
+    corners += camera.corners;
+    camera.rms_px = camera.corners > 0 ? std::sqrt(camera.rms_px / camera.corners) : 0;
   }
+  result.rms_px = corners > 0 ? std::sqrt(sum / corners) : 0;
+}
+
+// Noise of a camera's coordinates: that of unit weight over the root of its views' usual precision.
+void store_noise(const std::vector<View>& views, const Adjustment& state, Calibration& result) {
+  for (std::size_t c = 0; c < result.cameras.size(); ++c) {
+    std::vector<double> precision;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (views[i].camera != c || state.view_weights[i] == 0) continue;
+      precision.insert(precision.end(), state.precision[i].begin(), state.precision[i].end());
+    }
+    if (!precision.empty()) result.cameras[c].noise_px = result.noise_px / std::sqrt(median(precision));
+  }
+}
+
+// Views that can be used, and the places of boards that they share.
+void lay_out(const std::vector<View>& views, const CalibrationSetup& setup, Adjustment& state, Calibration& result) {
+  result.views.resize(views.size());
+  result.cameras.resize(setup.cameras.size());
+  result.boards.resize(setup.boards.size());
+  state.view_weights.resize(views.size());
+  for (const View& view : views) state.precision.emplace_back(view.corners.size(), 1.0);
+  state.placement_of.resize(views.size());
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> known;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const auto [place, fresh] = known.emplace(std::pair{views[i].shot, views[i].board}, result.placements.size());
+    if (fresh) result.placements.push_back({views[i].shot, views[i].board, {}, {}, {}});
+    state.placement_of[i] = place->second;
+    const Board& board = setup.boards[views[i].board].board;
+    const bool enough = views[i].corners.size() >= least_corners && spans_a_plane(views[i], board);
+    state.view_weights[i] = enough ? 1 : 0;
+    if (!enough) result.views[i].note = "too few corners (" + std::to_string(views[i].corners.size()) + ")";
+  }
+  state.placements.resize(result.placements.size(), PlacedBoard{{}, {0, 0, 1}});
 }
 
 }  // namespace
 
-std::optional<double> Calibration::sigma(const std::string& name) const {
-  const auto found = std::ranges::find(order, name);
-  if (found == order.end() || covariance.empty()) return std::nullopt;
-  const auto i = static_cast<std::size_t>(found - order.begin());
-  return std::sqrt(covariance[i * order.size() + i]);
+std::optional<double> Calibration::sigma(const std::string& name, std::size_t of) const {
+  const auto found =
+      std::ranges::find_if(shared, [&](const SharedParameter& p) { return p.name == name && p.of == of; });
+  if (found == shared.end() || covariance.empty()) return std::nullopt;
+  const auto i = static_cast<std::size_t>(found - shared.begin());
+  return std::sqrt(covariance[i * shared.size() + i]);
 }
 
-Calibration calibrate(const std::vector<View>& views, const Board& board, int width_px, int height_px,
-                      const CalibrationOptions& options) {
+std::vector<std::size_t> Calibration::lens_parameters(std::size_t camera) const {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < shared.size(); ++i) {
+    if (shared[i].kind == SharedParameter::Kind::lens && shared[i].of == camera) places.push_back(i);
+  }
+  return places;
+}
+
+Calibration calibrate(const std::vector<View>& views, const CalibrationSetup& setup) {
   Calibration result;
-  result.views.resize(views.size());
   Adjustment state;
-  state.poses.resize(views.size(), BoardPose{{}, {0, 0, 1}});
-  state.view_weights.resize(views.size());
-  std::vector<View> usable;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const bool enough = views[i].corners.size() >= least_corners && spans_a_plane(views[i], board);
-    state.view_weights[i] = enough ? 1 : 0;
-    if (enough)
-      usable.push_back(views[i]);
-    else
-      result.views[i].note = "too few corners (" + std::to_string(views[i].corners.size()) + ")";
+  lay_out(views, setup, state, result);
+  for (std::size_t c = 0; c < setup.cameras.size(); ++c) {
+    bool seen = false;
+    for (std::size_t i = 0; i < views.size(); ++i) seen |= views[i].camera == c && state.view_weights[i] > 0;
+    if (!seen) result.complaints.push_back("no view of " + setup.cameras[c].name + " shows enough corners of a board");
   }
-  if (usable.empty()) {
-    result.complaints.push_back("no view shows enough corners of the board");
-    return result;
-  }
-  state.lens = options.start ? *options.start : start_lens(usable, board, options.model, width_px, height_px);
-  if (options.fixed.contains("aspect") && !options.start) state.lens.fy_px = state.lens.fx_px;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (state.view_weights[i] > 0) state.poses[i] = start_pose(views[i], board, state.lens);
-  }
-  state.warp = options.warp;
+  if (!result.complaints.empty()) return result;
   state.loss_px = first_loss_px;
-  adjust(views, board, options, state);
-  if (try_other_poses(views, board, state)) adjust(views, board, options, state);
+  start(views, setup, state);
+  adjust(views, setup, state);
   for (int round = 0; round < weighing_rounds; ++round) {
-    const bool changed = weigh_views(views, board, state, result);
-    state.loss_px = std::max(least_loss_px, loss_sigmas * robust_noise(views, board, state));
-    adjust(views, board, options, state);
+    set_precisions(views, setup, state, result);
+    const bool changed = weigh_views(views, setup, state, result);
+    state.loss_px = std::max(least_loss_px, loss_sigmas * usual_noise(views, setup, state));
+    adjust(views, setup, state);
     if (!changed && round > 0) break;
   }
-  summarise(views, board, state, result);
-  estimate_covariance(views, board, options, state, result);
-  judge(result);
+  summarise(views, setup, state, result);
+  estimate_covariance(views, setup, state, result);
+  store_noise(views, state, result);
+  judge(views, setup, state, result);
   return result;
 }
 

@@ -1,6 +1,6 @@
-// Covariance of an adjustment from its normal equations, poses eliminated by the Schur complement:
-//   [A  B_i; B_i' C_i],   S = A - sum B_i C_i^-1 B_i',   cov(lens) = s^2 S^-1,
-//   cov(pose i) = s^2 (C_i^-1 + C_i^-1 B_i' S^-1 B_i C_i^-1),
+// Covariance of an adjustment from its normal equations, placements eliminated by the Schur complement:
+//   [A  B_p; B_p' C_p],   S = A - sum B_p C_p^-1 B_p',   cov(shared) = s^2 S^-1,   slope_p = -C_p^-1 B_p',
+//   cov(placement p) = s^2 C_p^-1 + slope_p cov(shared) slope_p',
 // with s^2 the weighted sum of squares over the degrees of freedom. Parameters are scaled to unit diagonal of A, so
 // that the smallest eigenvalue of the scaled S says which share of some direction's information the poses leave.
 #include <Eigen/Dense>
@@ -12,122 +12,140 @@
 namespace gonio::camera {
 namespace {
 
-constexpr double least_share = 1e-12;  // of the information that rounding errors cannot feign
-
+using Kind = SharedParameter::Kind;
 using Matrix = Eigen::MatrixXd;
 using Pose6 = Eigen::Matrix<double, 6, 6>;
 
-struct NormalEquations {
-  Matrix a;               // of the free parameters
-  std::vector<Matrix> b;  // free parameters x 6, per view
-  std::vector<Pose6> c;
-  double squares = 0;      // weighted sum of squared residuals
-  double coordinates = 0;  // how many were summed, weights below one counted as such
-};
+constexpr double least_share = 1e-12;  // of the information that rounding errors cannot feign
 
-double huber_weight(Vec2 residual, double view_weight, double loss_px) {
-  const double size = std::sqrt(view_weight) * norm(residual);
-  return size > loss_px ? loss_px / size : 1;
+Eigen::Matrix3d eigen_of(const Mat3& m) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.m.data());
+}
+Eigen::Matrix3d crossing(Vec3 v) {
+  return Eigen::Matrix3d{{0, -v.z, v.y}, {v.z, 0, -v.x}, {-v.y, v.x, 0}};
 }
 
-NormalEquations normal_equations(const std::vector<View>& views, const Board& board,
-                                 const std::vector<FreeParameter>& free, const Adjustment& state) {
-  const auto k = static_cast<Eigen::Index>(free.size());
-  NormalEquations n{Matrix::Zero(k, k), {}, {}};
-  std::array<std::array<double, BoardColumn::count>, 2> j{};
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    n.b.push_back(Matrix::Zero(k, 6));
-    n.c.push_back(Pose6::Zero());
-    if (state.view_weights[i] == 0) continue;
-    for (const Corner& corner : views[i].corners) {
-      Vec2 pixel;
-      if (!predict(state.lens, state.poses[i], board.extent(), state.warp, board.corner_m(corner.id), pixel, j))
-        continue;
-      const Vec2 r = corner.pixel - pixel;
-      const double robust = huber_weight(r, state.view_weights[i], state.loss_px);
-      const double weight = robust * state.view_weights[i];
-      n.squares += weight * dot(r, r);
-      n.coordinates += 2 * robust;
-      for (const auto& row : j) {
-        Eigen::VectorXd g(k);
-        for (Eigen::Index p = 0; p < k; ++p) {
-          g(p) = 0;
-          for (const auto& [column, factor] : free[static_cast<std::size_t>(p)].columns) g(p) += factor * row[column];
-        }
-        const Eigen::Map<const Eigen::Matrix<double, 6, 1>> h(row.data() + BoardColumn::rotation);
-        n.a.noalias() += weight * g * g.transpose();
-        n.b[i].noalias() += weight * g * h.transpose();
-        n.c[i].noalias() += weight * h * h.transpose();
-      }
-    }
+std::array<double, 6> roots(const Pose6& covariance) {
+  std::array<double, 6> sigma{};
+  for (int i = 0; i < 6; ++i) sigma[static_cast<std::size_t>(i)] = std::sqrt(std::max(covariance(i, i), 0.0));
+  return sigma;
+}
+
+// Change of camera_from_board for changes of camera_from_rig and of rig_from_board, all on the left.
+std::pair<Pose6, Pose6> composition(const CameraFromRig& camera, const PlacedBoard& placed) {
+  const Eigen::Matrix3d r = eigen_of(matrix_of(camera.rotation));
+  Pose6 by_camera = Pose6::Identity(), by_placement = Pose6::Zero();
+  by_camera.block<3, 3>(3, 0) = -crossing(camera.rotate(placed.translation_m));
+  by_placement.block<3, 3>(0, 0) = r;
+  by_placement.block<3, 3>(3, 3) = r;
+  return {by_camera, by_placement};
+}
+
+// Places of a camera's six rig parameters in `shared`; none where it is not tied.
+std::vector<Eigen::Index> rig_places(const std::vector<SharedParameter>& shared, std::size_t camera) {
+  std::vector<Eigen::Index> places;
+  for (std::size_t i = 0; i < shared.size(); ++i) {
+    if (shared[i].kind == Kind::rig && shared[i].of == camera) places.push_back(static_cast<Eigen::Index>(i));
   }
-  return n;
+  return places;
+}
+
+// Change of rig_from_camera for one of camera_from_rig: it turns by -R' w and moves by -R' (d - w x t).
+void store_rig_sigma(const Adjustment& state, const Matrix& covariance, Calibration& result) {
+  for (std::size_t c = 0; c < result.cameras.size(); ++c) {
+    const std::vector<Eigen::Index> places = rig_places(result.shared, c);
+    if (places.empty()) continue;
+    const CameraFromRig& camera = state.camera_from_rig[c];
+    const Eigen::Matrix3d back = eigen_of(matrix_of(camera.rotation)).transpose();
+    Pose6 inverse = Pose6::Zero();
+    inverse.block<3, 3>(0, 0) = -back;
+    inverse.block<3, 3>(3, 0) = -back * crossing(camera.translation_m);
+    inverse.block<3, 3>(3, 3) = -back;
+    const Pose6 own = covariance(places, places);
+    result.cameras[c].rig_sigma = roots(inverse * own * inverse.transpose());
+  }
+}
+
+void store_pose_sigmas(const std::vector<View>& views, const Adjustment& state, const std::vector<Matrix>& slopes,
+                       const std::vector<Pose6>& own, const Matrix& covariance, Calibration& result) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (state.view_weights[i] == 0) continue;
+    const std::size_t p = state.placement_of[i], c = views[i].camera;
+    const auto [by_camera, by_placement] = composition(state.camera_from_rig[c], state.placements[p]);
+    Matrix slope = by_placement * slopes[p];
+    const std::vector<Eigen::Index> places = rig_places(result.shared, c);
+    for (std::size_t k = 0; k < places.size(); ++k) slope.col(places[k]) += by_camera.col(static_cast<Eigen::Index>(k));
+    const Pose6 pose = by_placement * own[p] * by_placement.transpose() + Pose6(slope * covariance * slope.transpose());
+    result.views[i].sigma = roots(pose);
+  }
+}
+
+// The inverse of the scaled S; empty where the views leave a direction undetermined.
+Matrix shared_inverse(const NormalEquations& n) {
+  const Matrix s = schur_complement(n);
+  if (s.rows() == 0) return s;
+  const Eigen::VectorXd scale = n.a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scale.asDiagonal() * s * scale.asDiagonal());
+  if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()(0) > least_share)) return {};
+  const Matrix root = scale.asDiagonal() * eigen.eigenvectors();
+  const Matrix inverse = root * eigen.eigenvalues().cwiseInverse().asDiagonal() * root.transpose();
+  return 0.5 * (inverse + inverse.transpose());
+}
+
+// Peak to valley of the paraboloid over the corners and its sigma: the height spans sag_x from 1 - xi^2 and sag_y from
+// 1 - eta^2 alike, so that the range is |a| + |b| where the signs agree or differ, with slopes of +-1.
+void store_flatness(Calibration& result) {
+  for (std::size_t b = 0; b < result.boards.size(); ++b) {
+    CalibratedBoard& board = result.boards[b];
+    const SharedParameter x{Kind::board, b, "sag_x_m"}, y{Kind::board, b, "sag_y_m"};
+    const auto i = static_cast<std::size_t>(std::ranges::find(result.shared, x) - result.shared.begin());
+    const auto j = static_cast<std::size_t>(std::ranges::find(result.shared, y) - result.shared.begin());
+    const std::size_t k = result.shared.size();
+    if (i >= k || j >= k) continue;
+    board.flatness_m = std::abs(board.warp.sag_x_m) + std::abs(board.warp.sag_y_m);
+    if (result.covariance.empty()) continue;
+    const double sign = std::copysign(1.0, board.warp.sag_x_m) * std::copysign(1.0, board.warp.sag_y_m);
+    const auto& v = result.covariance;
+    board.flatness_sigma_m = std::sqrt(std::max(0.0, v[i * k + i] + v[j * k + j] + 2 * sign * v[i * k + j]));
+  }
 }
 
 }  // namespace
 
-std::vector<FreeParameter> free_parameters(const CalibrationOptions& options, const Intrinsics& lens) {
-  const auto held = [&](const std::string& name) { return options.fixed.contains(name); };
-  std::vector<FreeParameter> free;
-  if (held("aspect")) {
-    free.push_back({"fx_px", {{0, 1.0}, {1, lens.fy_px / lens.fx_px}}});
-  } else {
-    free.push_back({"fx_px", {{0, 1.0}}});
-    free.push_back({"fy_px", {{1, 1.0}}});
-  }
-  if (!held("principal-point")) {
-    free.push_back({"cx_px", {{2, 1.0}}});
-    free.push_back({"cy_px", {{3, 1.0}}});
-  }
-  const TermSet& fitted = camera_model_info(options.model, "calibration").fitted;
-  for (std::size_t i = 0; i < distortion_terms; ++i) {
-    const std::string name(distortion_names[i]);
-    if (fitted.has(i) && !held(name)) free.push_back({name, {{BoardColumn::distortion + i, 1.0}}});
-  }
-  if (options.board_warp) {
-    free.push_back({"sag_x_m", {{BoardColumn::warp, 1.0}}});
-    free.push_back({"sag_y_m", {{BoardColumn::warp + 1, 1.0}}});
-  }
-  return free;
-}
-
-void estimate_covariance(const std::vector<View>& views, const Board& board, const CalibrationOptions& options,
-                         const Adjustment& state, Calibration& result) {
-  const std::vector<FreeParameter> free = free_parameters(options, state.lens);
-  const NormalEquations n = normal_equations(views, board, free, state);
+void estimate_covariance(const std::vector<View>& views, const CalibrationSetup& setup, const Adjustment& state,
+                         Calibration& result) {
+  const std::vector<FreeParameter> free = free_parameters(setup, state);
+  const NormalEquations n = normal_equations(views, setup, free, state);
   const auto k = static_cast<Eigen::Index>(free.size());
-  result.order.clear();
-  for (const FreeParameter& parameter : free) result.order.push_back(parameter.name);
-  const auto used = std::ranges::count_if(state.view_weights, [](double w) { return w > 0; });
+  result.shared.clear();
+  for (const FreeParameter& parameter : free) result.shared.push_back(parameter.what);
+  const auto used = std::ranges::count_if(n.c, [](const Pose6& c) { return c(0, 0) > 0; });
   const double freedom = n.coordinates - static_cast<double>(k) - 6.0 * static_cast<double>(used);
   result.covariance.clear();
   result.noise_px = 0;
+  store_flatness(result);
   if (freedom < 1) return;
   const double variance = n.squares / freedom;
   result.noise_px = std::sqrt(variance);
-  Matrix s = n.a;
-  std::vector<Pose6> c_inverse(views.size(), Pose6::Zero());
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (state.view_weights[i] == 0) continue;
-    c_inverse[i] = n.c[i].ldlt().solve(Pose6::Identity());
-    s.noalias() -= n.b[i] * c_inverse[i] * n.b[i].transpose();
+  const Matrix inverse = shared_inverse(n);
+  if (inverse.rows() != k) return;
+  const Matrix covariance = variance * inverse;
+  result.covariance.assign(covariance.data(), covariance.data() + covariance.size());
+  std::vector<Matrix> slopes(n.c.size(), Matrix::Zero(6, k));
+  std::vector<Pose6> own(n.c.size(), Pose6::Zero());
+  for (std::size_t p = 0; p < n.c.size(); ++p) {
+    if (!(n.c[p](0, 0) > 0)) continue;
+    const Eigen::LDLT<Pose6> solver(n.c[p]);
+    slopes[p] = -solver.solve(n.b[p].transpose());
+    own[p] = variance * solver.solve(Pose6::Identity());
+    Placement& placement = result.placements[p];
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = slopes[p];
+    placement.slope.assign(rows.data(), rows.data() + rows.size());
+    std::copy(own[p].data(), own[p].data() + 36, placement.own.begin());  // symmetric
   }
-  const Eigen::VectorXd scale = n.a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scale.asDiagonal() * s * scale.asDiagonal());
-  if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()(0) > least_share)) return;
-  const Matrix root = scale.asDiagonal() * eigen.eigenvectors();
-  const Matrix lens = root * eigen.eigenvalues().cwiseInverse().asDiagonal() * root.transpose();
-  for (Eigen::Index i = 0; i < k; ++i) {
-    for (Eigen::Index j = 0; j < k; ++j) result.covariance.push_back(variance * 0.5 * (lens(i, j) + lens(j, i)));
-  }
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (state.view_weights[i] == 0) continue;
-    const Matrix slope = n.b[i] * c_inverse[i];
-    const Pose6 pose = c_inverse[i] + slope.transpose() * lens * slope;
-    for (int p = 0; p < 6; ++p) {
-      result.views[i].sigma[static_cast<std::size_t>(p)] = std::sqrt(variance * std::max(pose(p, p), 0.0));
-    }
-  }
+  store_rig_sigma(state, covariance, result);
+  store_pose_sigmas(views, state, slopes, own, covariance, result);
+  store_flatness(result);
 }
 
 }  // namespace gonio::camera

@@ -14,14 +14,16 @@
 namespace gonio::camera {
 namespace {
 
-enum Column : std::size_t { image, corner, board_x, board_y, u, v, sigma, columns };
+enum Column : std::size_t { image, corner, board_x, board_y, u, v, sigma, weight, columns };
 constexpr std::array<std::pair<const char*, const char*>, columns> names = {{{"image", ""},
                                                                              {"corner", "1"},
                                                                              {"board_x_m", "m"},
                                                                              {"board_y_m", "m"},
                                                                              {"u_px", "px"},
                                                                              {"v_px", "px"},
-                                                                             {"sigma_px", "px"}}};
+                                                                             {"sigma_px", "px"},
+                                                                             {"weight", "1"}}};
+constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 constexpr double largest_corner_id = 1e6;
 
 // Where each of our columns stands in the rows.
@@ -29,6 +31,10 @@ std::array<std::size_t, columns> places_of(const std::vector<std::string>& given
   std::array<std::size_t, columns> places{};
   for (std::size_t i = 0; i < columns; ++i) {
     const auto found = std::ranges::find(given, names[i].first);
+    if (found == given.end() && i == weight) {
+      places[i] = nowhere;
+      continue;
+    }
     if (found == given.end()) {
       throw Error(Exit::data, place, std::string("column ") + names[i].first + " is missing",
                   "a table of corners has image, corner, board_x_m, board_y_m, u_px, v_px, sigma_px");
@@ -46,6 +52,7 @@ void append(CornerTable& table, const std::string& name, const std::array<double
   }
   if (!(value[sigma] > 0))
     throw Error(Exit::data, place, "sigma_px is not above 0", "state the noise of the corner in pixels");
+  if (!(value[weight] >= 0)) throw Error(Exit::data, place, "weight is below 0");
   if (!(std::abs(value[corner]) <= largest_corner_id)) throw Error(Exit::data, place, "corner is no corner's number");
   auto group = std::find_if(table.images.rbegin(), table.images.rend(),
                             [&](const ImageCorners& candidate) { return candidate.image == name; });
@@ -54,7 +61,7 @@ void append(CornerTable& table, const std::string& name, const std::array<double
     group = table.images.rbegin();
   }
   group->corners.push_back(
-      {static_cast<int>(value[corner]), {value[board_x], value[board_y]}, {value[u], value[v]}, value[sigma]});
+      {static_cast<int>(value[corner]), {value[board_x], value[board_y]}, {value[u], value[v]}, value[sigma], value[weight]});
 }
 
 // One record of a CSV file, from `at` to behind its line end. Fields may be quoted, with "" for a quote.
@@ -109,7 +116,10 @@ void read_csv(const std::filesystem::path& path, CornerTable& table) {
                   std::to_string(fields.size()) + " fields (the header names " + std::to_string(header.size()) + ")");
     }
     std::array<double, columns> value{};
-    for (std::size_t i = corner; i < columns; ++i) value[i] = number(fields[places[i]], place);
+    value[weight] = 1;
+    for (std::size_t i = corner; i < columns; ++i) {
+      if (places[i] != nowhere) value[i] = number(fields[places[i]], place);
+    }
     append(table, fields[places[image]], value, place);
   }
 }
@@ -128,7 +138,9 @@ void read_rows(const manifest::Table& section, const std::string& place, CornerT
     const auto& cells = row.as_array();
     if (!cells[places[image]].is_string()) throw Error(Exit::data, here, "image is not an id in quotes");
     std::array<double, columns> value{};
+    value[weight] = 1;
     for (std::size_t i = corner; i < columns; ++i) {
+      if (places[i] == nowhere) continue;
       if (!cells[places[i]].is_number()) throw Error(Exit::data, here, std::string(names[i].first) + " is no number");
       value[i] = cells[places[i]].as_number();
     }
@@ -156,7 +168,7 @@ std::string csv_of(const CornerTable& table) {
   for (const ImageCorners& group : table.images) {
     for (const TableCorner& c : group.corners) {
       text += quoted(group.image) + ',' + std::to_string(c.id);
-      for (const double x : {c.board_m.x, c.board_m.y, c.pixel.x, c.pixel.y, c.sigma_px}) text += ',' + shortest(x);
+      for (const double x : {c.board_m.x, c.board_m.y, c.pixel.x, c.pixel.y, c.sigma_px, c.weight}) text += ',' + shortest(x);
       text += '\n';
     }
   }
@@ -168,7 +180,7 @@ manifest::Value rows_of(const CornerTable& table) {
   for (const ImageCorners& group : table.images) {
     for (const TableCorner& c : group.corners) {
       rows.push_back(
-          manifest::Value::Array{group.image, c.id, c.board_m.x, c.board_m.y, c.pixel.x, c.pixel.y, c.sigma_px});
+          manifest::Value::Array{group.image, c.id, c.board_m.x, c.board_m.y, c.pixel.x, c.pixel.y, c.sigma_px, c.weight});
     }
   }
   return rows;

@@ -1,6 +1,6 @@
 // The table of found corners through which calib-charuco hands its measurements on: one row per corner, inline in the
 // manifest or a CSV file beside it. Columns: image (an id of `images`), corner, board_x_m, board_y_m, u_px, v_px,
-// sigma_px; observed [u_px, v_px], sigma [sigma_px]; model "camera". Board frame and pixel convention: board.h.
+// sigma_px, weight (may be left out); observed [u_px, v_px], sigma [sigma_px]; model "camera". Board frame and pixel convention: board.h.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -15,6 +15,7 @@ struct TableCorner {
   int id = 0;
   Vec2 board_m, pixel;
   double sigma_px = 0;  // of one coordinate
+  double weight = 1;    // that a fit gave the corner; below 1: held back as an outlier
 };
 struct ImageCorners {
   std::string image;

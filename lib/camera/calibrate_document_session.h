@@ -1,0 +1,51 @@
+// Pictures of cameras that are calibrated together, and what was found in them. For calibrate_document*.cpp only.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "camera/calibrate_document.h"
+
+namespace gonio::camera {
+
+struct Sighting {  // a board that a picture is said to show
+  std::size_t board = 0;
+  Detection detection;
+  std::size_t view = 0;  // place among the calibration's views
+};
+struct Picture {
+  std::size_t entry = 0;  // place in document.images
+  std::filesystem::path path;
+  int width_px = 0, height_px = 0;
+  std::size_t camera = 0, shot = 0;
+  std::vector<Sighting> sightings;
+};
+struct Session {
+  std::vector<std::string> cameras, board_ids;
+  std::vector<Board> boards;
+  std::vector<Picture> pictures;
+};
+
+std::string image_pointer(std::size_t index);
+
+// Cameras that share shots stand in one session; Error(data) for what the manifest leaves open.
+std::vector<Session> sessions_of(const manifest::Document& document);
+
+// Searches all pictures; the layout of ChArUco boards is the one that the majority of all markers fit.
+void look_at_all(Session& session, const DetectionOptions& options);
+
+// Error(data) for pictures of other sizes, the same picture twice, mirrored pictures, a board that no picture shows.
+void check_pictures(const manifest::Document& document, const Session& session);
+
+// Noise of one coordinate in a picture, the camera's median where there were too few corners to measure it.
+double noise_of(const Session& session, const Picture& picture, const Sighting& sighting);
+
+// One view per sighting, in order; numbers them.
+std::vector<View> views_of(const manifest::Document& document, Session& session);
+
+void store_calibration(const Session& session, const CalibrationSetup& setup, const Calibration& calibration,
+                       manifest::Document& document);
+void store_corners(const Session& session, const Calibration& calibration, bool alone,
+                   const std::filesystem::path& csv, manifest::Document& document);
+
+}  // namespace gonio::camera

@@ -1,0 +1,212 @@
+// Folds by shots, residuals of held-out views, and the choice.
+#include "camera/model_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "base/parallel.h"
+
+namespace gonio::camera {
+namespace {
+
+constexpr std::size_t most_folds = 5, least_views = 6;
+constexpr double outlier_sigmas = 6;  // a corner counts no more than this
+constexpr std::size_t least_corners = 6;
+
+std::string format(const char* pattern, auto... values) {
+  char text[300];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+// The lenses fitted without the held-out shots, held for these; every held-out view keeps a pose of its own.
+CalibrationSetup held(const CalibrationSetup& setup, const Calibration& fit) {
+  CalibrationSetup result = setup;
+  for (std::size_t c = 0; c < setup.cameras.size(); ++c) {
+    result.cameras[c].fixed = {"intrinsics"};
+    result.cameras[c].start = fit.cameras[c].lens;
+  }
+  for (std::size_t b = 0; b < setup.boards.size(); ++b) {
+    result.boards[b].free_warp = false;
+    result.boards[b].warp = fit.boards[b].warp;
+  }
+  return result;
+}
+
+struct Fold {
+  std::vector<std::vector<Vec2>> residuals;  // per held-out view
+  std::vector<std::size_t> shots;
+  bool failed = false;
+};
+
+Fold judged(const std::vector<View>& views, const CalibrationSetup& setup,
+            const std::map<std::size_t, std::size_t>& fold_of, std::size_t fold) {
+  Fold result;
+  std::vector<View> seen;
+  std::vector<std::vector<View>> apart(setup.cameras.size());
+  for (const View& view : views) {
+    if (fold_of.at(view.shot) != fold) {
+      seen.push_back(view);
+    } else if (view.corners.size() >= least_corners) {
+      apart[view.camera].push_back(view);
+      apart[view.camera].back().shot = apart[view.camera].size();
+      result.shots.push_back(view.shot);
+    }
+  }
+  const Calibration fit = calibrate(seen, setup);
+  result.failed = !fit.converged;
+  if (result.failed) return result;
+  const CalibrationSetup known = held(setup, fit);
+  std::vector<Calibration> posed(setup.cameras.size());
+  for (std::size_t c = 0; c < setup.cameras.size(); ++c) {
+    for (View& view : apart[c]) view.camera = 0;
+    if (!apart[c].empty()) posed[c] = calibrate(apart[c], {{known.cameras[c]}, known.boards});
+  }
+  std::vector<std::size_t> at(setup.cameras.size());
+  for (const View& view : views) {
+    if (fold_of.at(view.shot) != fold || view.corners.size() < least_corners) continue;
+    result.residuals.push_back(posed[view.camera].views[at[view.camera]++].residuals);
+  }
+  return result;
+}
+
+// Mean squared distance per shot, corners beyond the cap counting as the cap.
+std::map<std::size_t, double> scores_of(const std::vector<Fold>& folds, double cap) {
+  std::map<std::size_t, std::pair<double, double>> sums;
+  for (const Fold& fold : folds) {
+    for (std::size_t v = 0; v < fold.residuals.size(); ++v) {
+      auto& [sum, count] = sums[fold.shots[v]];
+      for (const Vec2 r : fold.residuals[v]) sum += std::min(dot(r, r), cap * cap);
+      count += static_cast<double>(fold.residuals[v].size());
+    }
+  }
+  std::map<std::size_t, double> scores;
+  for (const auto& [shot, sum] : sums) scores[shot] = sum.first / std::max(1.0, sum.second);
+  return scores;
+}
+
+double mean(const std::map<std::size_t, double>& scores) {
+  double sum = 0;
+  for (const auto& [shot, score] : scores) sum += score;
+  return scores.empty() ? HUGE_VAL : sum / static_cast<double>(scores.size());
+}
+
+double typical_px(const std::vector<Fold>& folds) {
+  std::vector<double> sizes;
+  for (const Fold& fold : folds) {
+    for (const auto& view : fold.residuals) {
+      for (const Vec2 r : view) sizes.push_back(norm(r));
+    }
+  }
+  if (sizes.empty()) return HUGE_VAL;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return *middle / std::sqrt(2 * std::log(2.0));
+}
+
+std::string called(const ModelScore& score) {
+  return score.model + (score.warp ? " with board warp" : "");
+}
+
+std::string sentence(const ModelChoice& choice, std::size_t i) {
+  const ModelScore &own = choice.scores[i], &best = choice.scores[choice.best];
+  const std::string head = called(own) + ": ";
+  if (own.failed) return head + "could not be fitted to every part of the views";
+  const std::string reach = head + format("%.3f px on held-out views", own.held_out_px);
+  if (i == choice.chosen && i == choice.best) return reach + "; chosen, because it predicts best";
+  if (i == choice.chosen)
+    return reach + "; chosen, as the simplest within one standard error of the best (" + called(best) + ")";
+  const double errors = own.gap_sigma > 0 ? own.gap / own.gap_sigma : HUGE_VAL;
+  if (errors > 1) return reach + format("; worse than the best by %.1f standard errors", std::min(errors, 999.0));
+  return reach + "; as good as the chosen one, but with more parameters";
+}
+
+std::vector<ModelScore> hypotheses(const CalibrationSetup& setup) {
+  std::vector<ModelScore> list;
+  const bool settled = std::ranges::any_of(setup.boards, &BoardSetup::free_warp);
+  for (const std::string& model : calibrated_models()) {
+    for (const bool warp : {false, true}) {
+      if (settled && !warp) continue;
+      int terms = 4 + (warp ? 2 : 0);
+      for (std::size_t t = 0; t < distortion_terms; ++t) terms += camera_model_info(model, "").fitted.has(t);
+      list.push_back({model, warp, terms, 0, 0, 0, false});
+    }
+  }
+  std::ranges::stable_sort(list, {}, &ModelScore::parameters);
+  return list;
+}
+
+CalibrationSetup setup_of(const CalibrationSetup& setup, const ModelScore& hypothesis) {
+  CalibrationSetup result = setup;
+  for (CameraSetup& camera : result.cameras) camera.model = hypothesis.model;
+  for (BoardSetup& board : result.boards) board.free_warp = hypothesis.warp;
+  return result;
+}
+
+}  // namespace
+
+ModelChoice score_models(const std::vector<View>& views, const CalibrationSetup& setup) {
+  std::map<std::size_t, std::size_t> fold_of;
+  for (const View& view : views) {
+    if (view.corners.size() >= least_corners) fold_of.emplace(view.shot, fold_of.size());
+  }
+  if (fold_of.size() < least_views) {
+    throw Error(Exit::data, "--model auto",
+                std::to_string(fold_of.size()) + " views show the board (at least " + std::to_string(least_views) +
+                    " are needed to hold some out)",
+                "photograph it from more directions, or name a model");
+  }
+  const std::size_t folds = std::min(most_folds, fold_of.size());
+  for (auto& [shot, fold] : fold_of) fold %= folds;
+  std::vector<View> usable;
+  for (const View& view : views) {
+    if (view.corners.size() >= least_corners) usable.push_back(view);
+  }
+  ModelChoice choice;
+  choice.scores = hypotheses(setup);
+  std::vector<std::vector<Fold>> all(choice.scores.size(), std::vector<Fold>(folds));
+  parallel_for(0, all.size() * folds, [&](std::size_t i) {
+    const std::size_t h = i / folds, fold = i % folds;
+    all[h][fold] = judged(usable, setup_of(setup, choice.scores[h]), fold_of, fold);
+  });
+  double noise = HUGE_VAL;
+  for (const auto& own : all) noise = std::min(noise, typical_px(own));
+  std::vector<std::map<std::size_t, double>> scores;
+  for (std::size_t h = 0; h < all.size(); ++h) {
+    ModelScore& own = choice.scores[h];
+    own.failed = std::ranges::any_of(all[h], &Fold::failed);
+    scores.push_back(scores_of(all[h], outlier_sigmas * noise));
+    own.held_out_px = std::sqrt(mean(scores.back()));
+    const ModelScore& best = choice.scores[choice.best];
+    if (!own.failed && (best.failed || own.held_out_px < best.held_out_px)) choice.best = h;
+  }
+  choice.chosen = choice.best;
+  for (std::size_t h = all.size(); h-- > 0;) {
+    ModelScore& own = choice.scores[h];
+    if (own.failed) continue;
+    double sum = 0, squares = 0;
+    for (const auto& [shot, score] : scores[h]) {
+      const double d = score - scores[choice.best].at(shot);
+      sum += d;
+      squares += d * d;
+    }
+    const auto n = static_cast<double>(scores[h].size());
+    own.gap = sum / n;
+    own.gap_sigma = std::sqrt(std::max(0.0, squares - n * own.gap * own.gap) / (n * (n - 1)));
+    if (own.gap <= own.gap_sigma && h < choice.chosen) choice.chosen = h;
+  }
+  for (std::size_t h = 0; h < all.size(); ++h) choice.sentences.push_back(sentence(choice, h));
+  return choice;
+}
+
+void choose_model(const std::vector<View>& views, CalibrationSetup& setup) {
+  const ModelChoice choice = score_models(views, setup);
+  for (const std::string& line : choice.sentences) log(LogLevel::info, line);
+  setup = setup_of(setup, choice.scores[choice.chosen]);
+}
+
+}  // namespace gonio::camera
