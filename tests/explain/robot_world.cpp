@@ -160,8 +160,9 @@ manifest::Document robot_cell(const CellTruth& truth, std::size_t views, std::ui
   describe(d);
   camera::CornerTable table{"cam", "board", {}};
   for (int tries = 0; table.images.size() < views && tries < 10000; ++tries) {
-    // A camera that looks at the board's middle from 0.35 to 0.7 m, up to 40 degrees aslant, rolled.
-    const double tilt = dice.between(0, 0.7), around = dice.between(0, 2 * pi), range = dice.between(0.35, 0.7);
+    // A camera that looks at the board's middle from 0.35 to 0.7 m, aslant, rolled.
+    const double tilt = dice.between(0, truth.tilt_rad), around = dice.between(0, 2 * pi),
+                 range = dice.between(0.35, 0.7);
     Pose board_from_camera = Pose::Identity();
     board_from_camera.rotate(Eigen::AngleAxisd(around, Eigen::Vector3d::UnitZ()))
         .rotate(Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()));

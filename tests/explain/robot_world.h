@@ -15,6 +15,7 @@ struct CellTruth {
   double longer_upper_arm_m = 0;
   double robot_shift_m = 5e-5, robot_turn_rad = 5e-5;  // noise of every pose, one coordinate, one axis
   double corner_px = 0.1;
+  double tilt_rad = 0.7;                      // the camera looks at the board up to this much aslant
   double board_stretch = 0, board_sag_m = 0;  // both axes; a paraboloid over x
 };
 

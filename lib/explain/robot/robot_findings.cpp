@@ -32,6 +32,15 @@ Eigen::MatrixXd beyond_mounting(const RobotWork& work, const std::vector<PoseMat
   return columns - m * m.completeOrthogonalDecomposition().solve(columns);
 }
 
+// From a change of the board's pose in a view to the shift of the board's middle, in the camera's axes.
+using ShiftMatrix = Eigen::Matrix<double, 3, 6>;
+ShiftMatrix of_middle(const RobotWork& work, std::size_t view) {
+  const Vec3 arm = work.reference[view].rotate({work.input.extent.middle_m.x, work.input.extent.middle_m.y, 0});
+  ShiftMatrix m;
+  m << 0, arm.z, -arm.y, 1, 0, 0, -arm.z, 0, arm.x, 0, 1, 0, arm.y, -arm.x, 0, 0, 0, 1;
+  return m;
+}
+
 enum class Family { robot, camera, board, mounting };
 Family family_of(Part part) {
   switch (part) {
@@ -45,28 +54,7 @@ Family family_of(Part part) {
   }
 }
 
-// Mean square shift of the board, beyond the mounting, by a family's effects as estimated with all hypotheses free,
-// less what their uncertainty feigns.
-double systematic_m2(const RobotWork& work, const std::vector<PoseMatrix>& whitener, Family family) {
-  std::vector<std::size_t> columns;
-  std::vector<Eigen::Index> places;
-  for (std::size_t p = 0; p < work.parameters.roles.size(); ++p)
-    if (family_of(work.parameters.roles[p].part) == family)
-      columns.push_back(p), places.push_back(static_cast<Eigen::Index>(p));
-  if (columns.empty()) return 0;
-  const Eigen::MatrixXd rest = beyond_mounting(work, whitener, stacked(work, whitener, columns));
-  const Eigen::VectorXd x = work.noise.estimate(places);
-  const Eigen::MatrixXd c = work.noise.covariance(places, places);
-  double sum = 0;
-  for (std::size_t v = 0; v < work.noisy.size(); ++v) {
-    const Eigen::MatrixXd raw =
-        (whitener[v].inverse() * rest.middleRows<6>(6 * static_cast<Eigen::Index>(v))).bottomRows<3>();
-    sum += (raw * x).squaredNorm() - (raw * c * raw.transpose()).trace();
-  }
-  return std::max(0.0, sum / static_cast<double>(work.noisy.size()));
-}
-
-// The same for what was named, from the final fit.
+// Mean square shift of the board, beyond the mounting, by a family's named effects in the final fit.
 double named_m2(const RobotWork& work, const std::vector<PoseMatrix>& whitener, const Explanation& e, Family family) {
   std::vector<std::size_t> columns;
   Eigen::VectorXd x(static_cast<Eigen::Index>(e.estimates.size()));
@@ -81,39 +69,76 @@ double named_m2(const RobotWork& work, const std::vector<PoseMatrix>& whitener, 
                                  x.head(static_cast<Eigen::Index>(columns.size()));
   double sum = 0;
   for (std::size_t v = 0; v < work.noisy.size(); ++v)
-    sum +=
-        PoseChange(whitener[v].inverse() * effect.segment<6>(6 * static_cast<Eigen::Index>(v))).tail<3>().squaredNorm();
+    sum += (of_middle(work, v) * whitener[v].inverse() * effect.segment<6>(6 * static_cast<Eigen::Index>(v)))
+               .squaredNorm();
   return sum / static_cast<double>(work.noisy.size());
 }
 
 // Mean square of the shift in whitened residuals of the views.
-double shift_m2(const std::vector<PoseMatrix>& whitener, const std::vector<double>& residual) {
+double shift_m2(const RobotWork& work, const std::vector<PoseMatrix>& whitener, const std::vector<double>& residual) {
   double sum = 0;
   for (std::size_t v = 0; v < whitener.size(); ++v) {
     const Eigen::Map<const PoseChange> z(residual.data() + 6 * v);
-    sum += PoseChange(whitener[v].inverse() * z).tail<3>().squaredNorm();
+    sum += (of_middle(work, v) * whitener[v].inverse() * z).squaredNorm();
   }
   return sum / static_cast<double>(whitener.size());
 }
 
-// Noise by its covariances. What is systematic: the named physics; where nothing is named, the families share what the
-// noise leaves, each up to what it is estimated to make.
-manifest::ScatterParts parts_of(const RobotWork& work, const std::vector<PoseMatrix>& whitener, const Explanation& e,
-                                double scatter_m2) {
-  const double n = static_cast<double>(work.noisy.size());
-  std::array<double, 3> part{};  // robot, camera, board: the order of Family
-  for (const NoisyView& view : work.noisy) {
-    const PoseMatrix robot = view.covariance(work.noise.rotation_rad, work.noise.shift_m) - view.measured;
-    part[0] += robot.bottomRightCorner<3, 3>().trace() / n;
-    part[1] += view.measured.bottomRightCorner<3, 3>().trace() / n;
+// The noise under the model that stands: what was not named is the robot's.
+struct FinalNoise {
+  std::vector<NoisyView> views;  // with the columns of that model alone
+  Eigen::VectorXd prior;
+  RobotNoise noise;
+};
+FinalNoise final_noise(const RobotWork& work, const Explanation& e) {
+  std::vector<Eigen::Index> columns;
+  for (const std::size_t p : work.parameters.base) columns.push_back(static_cast<Eigen::Index>(p));
+  for (const Estimate& estimate : e.estimates) columns.push_back(static_cast<Eigen::Index>(estimate.parameter));
+  FinalNoise result{work.noisy, prior_precision(work.parameters)(columns), {}};
+  for (NoisyView& view : result.views) view.jacobian = Eigen::MatrixXd(view.jacobian(Eigen::all, columns));
+  result.noise = robot_noise(result.views, result.prior);
+  return result;
+}
+
+// Mean squares of the shift that noise of robot and corners leaves in the residuals of that model, (I - H) V (I - H)'
+// part by part.
+std::array<double, 2> noise_m2(const RobotWork& work, const FinalNoise& f) {
+  const Eigen::Index n = f.prior.size();
+  Eigen::MatrixXd normal = f.prior.asDiagonal();
+  std::vector<PoseMatrix> weight;
+  for (const NoisyView& view : f.views) {
+    weight.push_back(view.covariance(f.noise.rotation_rad, f.noise.shift_m).inverse());
+    normal += view.jacobian.transpose() * weight.back() * view.jacobian;
   }
+  const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+  const Eigen::MatrixXd inverse = scale.asDiagonal() *
+                                  scaled.completeOrthogonalDecomposition().solve(Eigen::MatrixXd::Identity(n, n)) *
+                                  scale.asDiagonal();
+  std::array<double, 2> sums{};
+  for (std::size_t i = 0; i < f.views.size(); ++i)
+    for (std::size_t j = 0; j < f.views.size(); ++j) {
+      PoseMatrix m = -f.views[i].jacobian * inverse * f.views[j].jacobian.transpose() * weight[j];
+      if (i == j) m += PoseMatrix::Identity();
+      const ShiftMatrix rows = of_middle(work, i) * m;
+      const PoseMatrix& measured = f.views[j].measured;
+      const PoseMatrix robot = f.views[j].covariance(f.noise.rotation_rad, f.noise.shift_m) - measured;
+      sums[0] += (rows * robot * rows.transpose()).trace() / static_cast<double>(f.views.size());
+      sums[1] += (rows * measured * rows.transpose()).trace() / static_cast<double>(f.views.size());
+    }
+  return sums;
+}
+
+// Noise, and what was named where the noise leaves room for it. Where rotations and shifts of the robot are not as
+// independent as the noise model has them, its parts exceed the scatter: then they share it.
+manifest::ScatterParts parts_of(const RobotWork& work, const std::vector<PoseMatrix>& whitener, const Explanation& e,
+                                const FinalNoise& final, double scatter_m2) {
+  const std::array<double, 2> noise = noise_m2(work, final);
+  const double share = std::min(1.0, scatter_m2 / std::max(noise[0] + noise[1], 1e-30));
+  std::array<double, 3> part = {share * noise[0], share * noise[1], 0};  // robot, camera, board: the order of Family
   double left = std::max(0.0, scatter_m2 - part[0] - part[1]), wanted = 0;
   std::array<double, 3> systematic{};
-  for (std::size_t f = 0; f < 3; ++f) {
-    const auto family = static_cast<Family>(f);
-    systematic[f] = e.named.empty() ? systematic_m2(work, whitener, family) : named_m2(work, whitener, e, family);
-    wanted += systematic[f];
-  }
+  for (std::size_t f = 0; f < 3; ++f) wanted += systematic[f] = named_m2(work, whitener, e, static_cast<Family>(f));
   const double granted = wanted > left ? left / wanted : 1;
   for (std::size_t f = 0; f < 3; ++f) {
     part[f] += granted * systematic[f];
@@ -173,16 +198,14 @@ std::string words_of(const RobotWork& work, const RobotFindings& f) {
 
 }  // namespace
 
-RobotFindings findings_of(const RobotWork& work, const Observations& o, const std::vector<PoseMatrix>& whitener,
-                          const Explanation& e) {
+RobotFindings findings_of(const RobotWork& work, const std::vector<PoseMatrix>& whitener, const Explanation& e) {
   RobotFindings f;
-  const double rows = static_cast<double>(o.rows());
-  const double freedom = rows / std::max(1.0, rows - static_cast<double>(work.parameters.base.size()));
-  const double scatter = shift_m2(whitener, e.residual_before);
+  const double scatter = shift_m2(work, whitener, e.residual_before);
+  const FinalNoise final = final_noise(work, e);
   f.scatter_m = std::sqrt(scatter);
-  f.robot_m = work.noise.shift_m;
-  f.robot_rad = work.noise.rotation_rad;
-  f.parts = parts_of(work, whitener, e, scatter * freedom);
+  f.robot_m = final.noise.shift_m;
+  f.robot_rad = final.noise.rotation_rad;
+  f.parts = parts_of(work, whitener, e, final, scatter);
   find_entangled(work, whitener, f);
   f.sentence = words_of(work, f);
   return f;

@@ -24,6 +24,10 @@ struct RobotWork {
 // size, so that they are not taken for noise), and leaves out poses beyond any noise.
 void settle(RobotWork& work);
 
+// Of each parameter about its neutral value: hypotheses are free within their typical size, pinhole terms within what
+// the camera states, mountings without bound.
+Eigen::VectorXd prior_precision(const RobotParameters& parameters);
+
 std::vector<double> start_values(const RobotWork& work);
 // Change from the measured to the chain's pose of a view.
 PoseChange pose_difference(const RobotWork& work, std::size_t view, const RobotState& state);
@@ -37,8 +41,7 @@ std::vector<Condition> robot_conditions(const RobotWork& work);
 void append_robot_conditions(const RobotWork& work, std::size_t view, const PoseMatrix& whitener,
                              std::vector<Condition>& conditions);
 
-RobotFindings findings_of(const RobotWork& work, const Observations& o, const std::vector<PoseMatrix>& whitener,
-                          const Explanation& e);
+RobotFindings findings_of(const RobotWork& work, const std::vector<PoseMatrix>& whitener, const Explanation& e);
 void upgrade_robot(const RobotWork& work, const Problem& problem, const RobotFindings& findings, const Explanation& e,
                    manifest::Document& document);
 Illustration illustrate_robot(const RobotFindings& findings);

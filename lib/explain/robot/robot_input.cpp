@@ -10,7 +10,7 @@
 namespace gonio::explain {
 namespace {
 
-constexpr std::size_t fewest_images = 8, fewest_corners = 6;
+constexpr std::size_t fewest_images = 6, fewest_corners = 6;
 
 bool is_complete(const manifest::Mounting& m) {
   return (m.kind == "eye-in-hand" && m.tool_from_camera && m.base_from_board) ||

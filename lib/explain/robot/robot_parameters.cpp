@@ -127,12 +127,12 @@ RobotParameters robot_parameters(const RobotInput& input) {
   if (corners) declare.camera();
   if (joints) {
     const auto has_link = [&](const RobotRole& r) { return r.index < input.links.size(); };
-    declare.candidate("robot.joint-offset", roles_of(Part::joint, 6), 1e-2, has_link);
+    declare.candidate("robot.joint-offset", roles_of(Part::joint, 6), 3e-3, has_link);
     std::vector<RobotRole> lengths = roles_of(Part::a, 6);
     const std::vector<RobotRole> offsets = roles_of(Part::d, 6);
     lengths.insert(lengths.end(), offsets.begin(), offsets.end());
-    declare.candidate("robot.link-length", lengths, 1e-2, has_link);
-    declare.candidate("robot.sag", roles_of(Part::sag, 2), 1e-2,
+    declare.candidate("robot.link-length", lengths, 2e-3, has_link);
+    declare.candidate("robot.sag", roles_of(Part::sag, 2), 2e-3,
                       [&](const RobotRole& r) { return r.index + 1 < input.links.size(); });
   }
   if (corners) {

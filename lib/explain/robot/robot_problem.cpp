@@ -10,7 +10,7 @@
 namespace gonio::explain {
 namespace {
 
-constexpr std::size_t fewest_views = 8;
+constexpr std::size_t fewest_views = 6;
 constexpr double estimable =
     0.02;  // share of a parameter's signature that must survive mounting and earlier parameters
 
@@ -59,9 +59,7 @@ class HandEyeProblem final : public RobotProblem {
   Importance importance() const override { return Importance::share_of_residual; }
   bool sets_outliers_aside() const override { return false; }  // those are left out before: settle()
 
-  RobotFindings findings(const Explanation& e) const override {
-    return findings_of(work_, observations_, whitener_, e);
-  }
+  RobotFindings findings(const Explanation& e) const override { return findings_of(work_, whitener_, e); }
   void apply(const Explanation& e, manifest::Document& document) const override {
     upgrade_robot(work_, *this, findings(e), e, document);
   }

@@ -56,7 +56,7 @@ struct RobotInput {
   std::vector<View> views;
 };
 
-// Mountings with both of their poses, and at least eight images that have a tool pose (or joints) and
+// Mountings with both of their poses, and at least six images that have a tool pose (or joints) and
 // camera_from_board.
 bool has_hand_eye(const manifest::Document& document);
 // One for each such mounting. Error(data) in words where a part is missing.

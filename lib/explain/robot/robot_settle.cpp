@@ -72,18 +72,6 @@ void align(RobotWork& work) {
   }
 }
 
-// Hypotheses are free within a quarter of their plausible range, pinhole terms within their prior, mountings without
-// bound.
-Eigen::VectorXd prior_precision(const RobotParameters& parameters) {
-  Eigen::VectorXd precision(static_cast<Eigen::Index>(parameters.parameters.size()));
-  for (std::size_t k = 0; k < parameters.parameters.size(); ++k) {
-    const Parameter& p = parameters.parameters[k];
-    const double width = p.prior_sigma ? *p.prior_sigma : (p.upper - p.lower) / 4;
-    precision[static_cast<Eigen::Index>(k)] = std::isfinite(width) ? 1 / (width * width) : 0;
-  }
-  return precision;
-}
-
 template <class T>
 void erase_marked(std::vector<T>& list, const std::vector<bool>& marked) {
   std::vector<T> kept;
@@ -93,6 +81,16 @@ void erase_marked(std::vector<T>& list, const std::vector<bool>& marked) {
 }
 
 }  // namespace
+
+Eigen::VectorXd prior_precision(const RobotParameters& parameters) {
+  Eigen::VectorXd precision(static_cast<Eigen::Index>(parameters.parameters.size()));
+  for (std::size_t k = 0; k < parameters.parameters.size(); ++k) {
+    const Parameter& p = parameters.parameters[k];
+    const double width = p.prior_sigma ? *p.prior_sigma : std::isfinite(p.upper) ? p.size : 0;
+    precision[static_cast<Eigen::Index>(k)] = width > 0 ? 1 / (width * width) : 0;
+  }
+  return precision;
+}
 
 std::vector<double> start_values(const RobotWork& work) {
   return work.aligned;

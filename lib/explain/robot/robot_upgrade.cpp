@@ -81,7 +81,6 @@ void upgrade_robot(const RobotWork& work, const Problem& problem, const RobotFin
                    manifest::Document& document) {
   const RobotState state = state_of(work.input, work.parameters, e.values);
   upgrade_mounting(work, findings, e, document.mountings.at(work.input.mounting));
-  log(LogLevel::info, work.input.mounting + ": " + findings.sentence);
   for (const std::string& text : findings.entangled) log(LogLevel::info, work.input.mounting + ": " + text);
   if (is_named(problem, e, "robot.")) upgrade_arm(work, state, document);
   if (is_named(problem, e, "lens.")) {
