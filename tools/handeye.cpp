@@ -4,6 +4,7 @@
 #include "cli/program.h"
 #include "robot/handeye/closed_forms.h"
 #include "robot/handeye_page.h"
+#include "robot/light_handeye.h"
 #include "robot/pose_list.h"
 
 namespace gonio::tools::handeye {
@@ -47,6 +48,11 @@ std::vector<cli::Option> options() {
       {.name = "board", .type = Type::text, .help = "Which board, where the manifest has several.", .metavar = "NAME"},
       {.name = "robot", .type = Type::text, .help = "Which robot: images of others are left out.", .metavar = "NAME"},
       {.name = "table", .type = Type::text, .help = "Table of the corners.", .metavar = "NAME", .preset = "corners"},
+      {.name = "light", .type = Type::flag,
+       .help = "Find a light on the tool, and the robot's base in the world, from light_positions instead.",
+       .conflicts = {"kind", "method", "poses", "camera", "board", "table", "max-error"}},
+      {.name = "light-name", .type = Type::text, .help = "Which light, where light_positions has several.", .metavar = "NAME",
+       .needs = {"light"}},
       {.name = "max-error", .type = Type::quantity,
        .help = "Exit 2 where the board lies farther off than this at 95 %, at a pose not seen.", .dimension = Dimension::length,
        .lower = 0},
@@ -86,7 +92,19 @@ void write_page(cli::Invocation& call, const std::string& html) {
   }
 }
 
+Exit calibrate_lamp(cli::Invocation& call) {
+  std::string light = call.given("light-name") ? call.text("light-name") : "";
+  const std::string robot = call.given("robot") ? call.text("robot") : "";
+  const auto samples = light_samples(call.document, light, robot);
+  const LightMounting mounting = calibrate_light(samples);
+  enter_light_mounting(mounting, light, robot, call.document);
+  write_page(call, light_page(mounting, samples, light));
+  for (const std::string& open : mounting.unobservable) log(LogLevel::error, "not determined by these poses: " + open);
+  return mounting.unobservable.empty() ? Exit::done : Exit::quality;
+}
+
 Exit calibrate(cli::Invocation& call) {
+  if (call.flag("light")) return calibrate_lamp(call);
   const HandEyeRequest request = request_of(call);
   const HandEyeInput input = handeye_input(call.document, request);
   for (const std::string& image : input.left_out) log(LogLevel::warning, image + ": left out");
@@ -109,11 +127,12 @@ const cli::Program& gonio_program() {
   static const cli::Program program{
       .name = "handeye",
       .sentence = "find how a camera is mounted on a robot or stands before it",
-      .synopsis = {"[OPTION]... [manifest.json]", "--poses FILE --pose-format NAME [OPTION]... [manifest.json]"},
+      .synopsis = {"[OPTION]... [manifest.json]", "--poses FILE --pose-format NAME [OPTION]... [manifest.json]",
+                   "--light [OPTION]... [manifest.json]"},
       .options = options(),
       .operands = {{.name = "MANIFEST", .type = Type::input_file, .help = "Manifest with images, cameras, boards, corners; ends in .json."}},
       .reads = cli::Reads::required, .takes_out = true,
-      .sections_read = {"boards", "cameras", "images", "tables"},
+      .sections_read = {"boards", "cameras", "images", "tables", "light_positions"},
       .sections_written = {"files", "frames", "images", "mountings"},
       .files = {{"handeye.html", "the report"}},
       .exits = {{Exit::quality, "The mountings are written, but the poses do not determine them (what they leave open is named and left out), too many are "
@@ -125,6 +144,11 @@ const cli::Program& gonio_program() {
                      "H. Patterson, R. Thompson, Recovery of inter-block information when block sizes are unequal, Biometrika 58, 1971."},
       .see_also = {"calib-charuco(1)", "explain(1)", "gonio-manifest(5)", "gonio-conventions(7)"},
       .check = [](cli::Invocation& call) {
+        std::string light = call.given("light-name") ? call.text("light-name") : "";
+        if (call.flag("light")) {
+          light_samples(call.document, light, call.given("robot") ? call.text("robot") : "");
+          return;
+        }
         read_poses(call);
         handeye_input(call.document, request_of(call));
       },

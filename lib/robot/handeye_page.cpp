@@ -171,7 +171,7 @@ void add_parts(Page& page, const Analysis& a) {
 std::string handeye_page(const HandEyeInput& input, const Analysis& a) {
   const Tone tone = a.complaints.empty() ? Tone::good : Tone::bad;
   Page page("Hand-eye calibration", headline(a),
-            "Camera " + input.camera + " and board " + input.board + ", " + std::string(handeye::name_of(input.setup.kind)) + ", " +
+            "Camera \u201c" + input.camera + "\u201d, board \u201c" + input.board + "\u201d, " + std::string(handeye::name_of(input.setup.kind)) + ", " +
                 std::to_string(input.views.size()) + " poses.",
             tone);
   page.section("Verdict");

@@ -47,13 +47,14 @@ View imagined(const Setup& setup, const View& like, const camera::BoardPose& pos
 std::string words_of(Kind kind, double tilt_deg, double azimuth_deg, double spin_deg, double distance_m) {
   char text[200];
   const char* mover = kind == Kind::eye_in_hand ? "turn the camera" : "turn the board";
+  char spin[100] = "";
+  if (spin_deg != 0) std::snprintf(spin, sizeof spin, ", %s by %.0f degrees about the optical axis", mover, spin_deg);
   if (tilt_deg == 0) {
-    std::snprintf(text, sizeof text, "face the board squarely from %.2f m and %s %.0f degrees about the optical axis",
-                  distance_m, mover, spin_deg);
+    std::snprintf(text, sizeof text, "face the board squarely from %.2f m%s", distance_m, spin);
   } else {
     const char* side = azimuth_deg == 0 ? "its right" : azimuth_deg == 90 ? "below" : azimuth_deg == 180 ? "its left" : "above";
-    std::snprintf(text, sizeof text, "view the board from %s, tilted by %.0f degrees, at %.2f m, %s %.0f degrees about the optical axis",
-                  side, tilt_deg, distance_m, mover, spin_deg);
+    std::snprintf(text, sizeof text, "view the board from %s, tilted by %.0f degrees, at %.2f m%s",
+                  side, tilt_deg, distance_m, spin);
   }
   return text;
 }

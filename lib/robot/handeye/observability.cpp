@@ -12,7 +12,7 @@ namespace {
 
 constexpr int disturbances = 24;
 constexpr double feigned_limit = 0.25;    // relative growth of a direction's information under the noise
-constexpr double rounding_share = 1e-9;   // of scaled information
+constexpr double rounding_share = 1e-10;  // of the best determined direction's information
 constexpr double part_of_direction = 0.2; // a direction touches a block if this much of its length lies in it
 
 using Basis12 = Eigen::Matrix<double, 12, Eigen::Dynamic>;
@@ -42,8 +42,34 @@ std::vector<ObservedPose> disturbed(Kind kind, std::vector<ObservedPose> poses, 
   return poses;
 }
 
+// Columns of eigenvectors `chosen`.
+Basis12 columns(const Matrix12& vectors, const std::vector<int>& chosen) {
+  Basis12 basis(12, static_cast<Eigen::Index>(chosen.size()));
+  for (std::size_t k = 0; k < chosen.size(); ++k) basis.col(static_cast<Eigen::Index>(k)) = vectors.col(chosen[k]);
+  return basis;
+}
+
+// Directions that the geometry of the poses leaves open, whatever the noise: a robot with equal noise in turns, at the
+// board's distance, and shifts, and an exact camera.
+Basis12 geometrically_free(const Setup& setup, std::vector<ObservedPose> poses, const Refined& refined, double reach) {
+  for (ObservedPose& o : poses) o.covariance.setZero();
+  Noise unit;
+  unit.robot_m = 1;
+  unit.robot_rad = 1 / reach;
+  Vector12 scale;
+  scale << Vector3::Constant(1 / reach), Vector3::Ones(), Vector3::Constant(1 / reach), Vector3::Ones();
+  const Matrix12 n = scale.asDiagonal() * information(setup.kind, poses, refined.solution, unit) * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix12> e(n);
+  std::vector<int> free;
+  for (int k = 0; k < 12; ++k) {
+    if (e.eigenvalues()(k) < rounding_share * e.eigenvalues()(11)) free.push_back(k);
+  }
+  return columns(e.eigenvectors(), free);
+}
+
 // Lengths stand for turns as well: a turn by w counts as the shift w * reach at a typical distance.
 Basis12 free_directions(const Setup& setup, const std::vector<ObservedPose>& poses, const Refined& refined, double reach) {
+  if (const Basis12 exact = geometrically_free(setup, poses, refined, reach); exact.cols() > 0) return exact;
   Vector12 unit;
   unit << Vector3::Constant(1 / reach), Vector3::Ones(), Vector3::Constant(1 / reach), Vector3::Ones();
   const auto at = [&](const std::vector<ObservedPose>& p) -> Matrix12 {
@@ -58,11 +84,9 @@ Basis12 free_directions(const Setup& setup, const std::vector<ObservedPose>& pos
   for (int k = 0; k < 12; ++k) {
     const Vector12 v = e.eigenvectors().col(k);
     const double there = v.dot(n * v), then = v.dot(more * v);
-    if (there < rounding_share * e.eigenvalues()(11) || (then - there) > feigned_limit * there) free.push_back(k);
+    if (then - there > feigned_limit * there) free.push_back(k);
   }
-  Basis12 basis(12, static_cast<Eigen::Index>(free.size()));
-  for (std::size_t k = 0; k < free.size(); ++k) basis.col(static_cast<Eigen::Index>(k)) = e.eigenvectors().col(free[k]);
-  return basis;
+  return columns(e.eigenvectors(), free);
 }
 
 // Directions of R^3 that a block of the basis reaches, strongest first.

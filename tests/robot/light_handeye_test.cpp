@@ -1,0 +1,126 @@
+// A light on a tool, found in the world: simulation with known truth, coverage of the intervals, motions that leave something
+// open.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "robot/light_handeye.h"
+
+namespace gonio::robot {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+const Rigid<frame::World, frame::Base> true_base{normalized(Quaternion{0.7, 0.1, -0.2, 0.6}), {0.8, -0.3, 0.4}};
+const Vec3 true_light{0.03, -0.02, 0.15};
+enum class Motion { rich, shifts, one_axis };
+
+std::vector<LightSample> samples(std::uint64_t seed, int count, double robot_m, double sigma_m, Motion motion = Motion::rich) {
+  Random random(seed, 3);
+  std::vector<LightSample> list;
+  const auto normal3 = [&] { return Vec3{random.normal(), random.normal(), random.normal()}; };
+  for (int i = 0; i < count; ++i) {
+    Vec3 turn{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-2, 2)};
+    if (motion == Motion::shifts) turn = {0.3, -0.2, 0.5};
+    if (motion == Motion::one_axis) turn = {0, 0, turn.z};
+    const Rigid<frame::Base, frame::Tool> tool{quaternion_of_rotation_vector(turn),
+                                               {random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(0.1, 0.6)}};
+    const Vec3 p = true_base * (tool * true_light) + normal3() * sigma_m + normal3() * robot_m;
+    list.push_back({"p" + std::to_string(i), tool, p, {std::max(sigma_m, 1e-6), std::max(sigma_m, 1e-6), std::max(sigma_m, 1e-6)}});
+  }
+  return list;
+}
+
+std::array<double, 9> error(const LightMounting& m) {
+  const Vec3 turn = rotation_vector_of(m.world_from_base.rotation * conjugate(true_base.rotation));
+  const Vec3 shift = m.world_from_base.translation_m - true_base.translation_m, light = m.light_in_tool_m - true_light;
+  return {turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, light.x, light.y, light.z};
+}
+
+TEST(LightHandEye, IsExactOnExactPositions) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const LightMounting m = calibrate_light(samples(seed, 8, 0, 0));
+    for (const double e : error(m)) EXPECT_LT(std::abs(e), 1e-8) << seed;
+    EXPECT_TRUE(m.unobservable.empty());
+  }
+}
+
+TEST(LightHandEye, IntervalsCoverTheTruth) {
+  int covered = 0, all = 0;
+  double noise = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const LightMounting m = calibrate_light(samples(seed, 15, 0.002, 0.001));
+    const auto e = error(m);
+    for (std::size_t k = 0; k < 9; ++k) covered += std::abs(e[k]) <= 1.96 * m.sigma(k);
+    all += 9;
+    noise += m.robot_m / 100;
+  }
+  const double share = static_cast<double>(covered) / all;
+  std::cout << "covered " << share << ", noise " << noise << "\n";
+  EXPECT_GT(share, 0.92);
+  EXPECT_LT(share, 0.98);
+  EXPECT_NEAR(noise, 0.002, 0.0002);
+}
+
+TEST(LightHandEye, ShiftsAloneLeaveTheLightOpen) {
+  for (const double noise : {0.0, 0.001}) {
+    const LightMounting m = calibrate_light(samples(5, 12, noise, noise, Motion::shifts));
+    EXPECT_THAT(m.unobservable, Contains("translation of the light in the tool's frame, in every direction"));
+    EXPECT_FALSE(m.light_known);
+    EXPECT_FALSE(m.base_known);
+  }
+}
+
+TEST(LightHandEye, OneAxisLeavesTheShiftAlongItOpen) {
+  const LightMounting m = calibrate_light(samples(6, 12, 0.001, 0.001, Motion::one_axis));
+  EXPECT_THAT(m.unobservable, Contains("translation of the light along the tool's z axis"));
+  EXPECT_FALSE(m.light_known);
+}
+
+manifest::Document document_of(const std::vector<LightSample>& list) {
+  manifest::Document d;
+  for (const LightSample& s : list) {
+    manifest::LightPosition p;
+    p.id = s.id;
+    p.light = "lamp";
+    p.base_from_tool.emplace();
+    static_cast<Rigid<frame::Base, frame::Tool>&>(*p.base_from_tool) = s.base_from_tool;
+    p.position_m = {s.position_m.x, s.position_m.y, s.position_m.z};
+    p.sigma_m = {s.sigma_m.x};
+    d.light_positions.push_back(p);
+  }
+  return d;
+}
+
+TEST(LightHandEye, GoesThroughTheManifest) {
+  manifest::Document d = document_of(samples(7, 10, 0.001, 0.001));
+  std::string light;
+  const auto list = light_samples(d, light, "");
+  EXPECT_EQ(light, "lamp");
+  const LightMounting m = calibrate_light(list);
+  enter_light_mounting(m, light, "", d);
+  const manifest::Mounting& entry = d.mountings.at("lamp");
+  EXPECT_EQ(entry.kind, "light-in-hand");
+  EXPECT_EQ(entry.light_in_tool_m.size(), 3U);
+  EXPECT_TRUE(entry.world_from_base->sigma);
+  EXPECT_THAT(light_page(m, list, light), HasSubstr("known within"));
+  d.light_positions.resize(3);
+  EXPECT_THROW(light_samples(d, light, ""), Error);
+}
+
+TEST(LightHandEye, LeavesOutWhatIsOpen) {
+  manifest::Document d = document_of(samples(8, 10, 0.001, 0.001, Motion::shifts));
+  std::string light;
+  enter_light_mounting(calibrate_light(light_samples(d, light, "")), light, "", d);
+  EXPECT_TRUE(d.mountings.at("lamp").light_in_tool_m.empty());
+  EXPECT_FALSE(d.mountings.at("lamp").world_from_base);
+  EXPECT_FALSE(d.mountings.at("lamp").unobservable.empty());
+}
+
+}  // namespace
+}  // namespace gonio::robot
