@@ -114,6 +114,10 @@ void tell(const Session& session, const Calibration& calibration, const manifest
     }
     log(LogLevel::info, format("camera %s: rms %.3f px over %d corners of %zu views, noise %.3f px",
                                session.cameras[c].c_str(), camera.rms_px, camera.corners, used, camera.noise_px));
+    if (camera.focal_doubt > 0) {
+      log(LogLevel::info, format("camera %s: focal length to %.2f %% (noise, and a sag of a thousandth of the board)",
+                                 session.cameras[c].c_str(), 100 * camera.focal_doubt));
+    }
     if (camera.set_aside > 0) {
       log(LogLevel::warning, "camera " + session.cameras[c] + ": " + std::to_string(camera.set_aside) +
                                  " corners lie beyond six sigmas and do not count in the rms");
@@ -124,6 +128,7 @@ void tell(const Session& session, const Calibration& calibration, const manifest
                                1e3 * std::hypot(camera.rig_sigma[3], camera.rig_sigma[4], camera.rig_sigma[5]),
                                session.cameras[0].c_str()));
   }
+  for (const std::string& line : calibration.advice) log(LogLevel::info, line);
   for (std::size_t b = 0; b < session.boards.size(); ++b) {
     const CalibratedBoard& board = calibration.boards[b];
     if (!board.flatness_m) continue;

@@ -23,7 +23,8 @@ std::vector<std::string> rig_of(const cli::Invocation& call) {
   const std::vector<std::string> names = names_of(call.text("rig"));
   for (std::size_t i = 0; i < names.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (names[i] == names[j]) throw Error(Exit::usage, "--rig", "names " + names[i] + " twice", "name every camera once");
+      if (names[i] != names[j]) continue;
+      throw Error(Exit::usage, "--rig", "names " + names[i] + " twice", "name every camera once");
     }
     if (names[i].empty()) throw Error(Exit::usage, "--rig", "has an empty name", "name the cameras: --rig left,right");
   }
@@ -109,16 +110,16 @@ std::vector<cli::Option> calibration_options() {
        .lower = 1e-6, .upper = 10},
       {.name = "marker", .type = Type::quantity, .help = "Side of a marker with its black border.",
        .dimension = Dimension::length, .lower = 1e-6, .upper = 10, .needs = {"charuco"}},
-      {.name = "dictionary", .type = Type::text, .help = "Dictionary of the markers: 4X4_50 to 7X7_1000, ARUCO_ORIGINAL.",
-       .metavar = "NAME", .needs = {"charuco"}},
+      {.name = "dictionary", .type = Type::text,
+       .help = "Dictionary of the markers: 4X4_50 to 7X7_1000, ARUCO_ORIGINAL.", .metavar = "NAME", .needs = {"charuco"}},
       {.name = "layout", .type = Type::choice,
        .help = "Layout of a ChArUco board with an even number of rows: legacy is that of OpenCV before 4.6.",
        .preset = "auto", .choices = {"auto", "current", "legacy"}, .needs = {"charuco"}},
       {.name = "rig", .type = Type::text,
-       .help = "Cameras held together, by names that the pictures' names contain; the rest of a name is the shot.",
+       .help = "Cameras held together, by words that the pictures' names contain; the rest of a name is the shot.",
        .metavar = "NAME,NAME", .needs = {"IMAGE"}},
       {.name = "model", .type = Type::choice,
-       .help = "Lens model; a camera in the manifest keeps its own unless this is given. auto: chosen by held-out views.",
+       .help = "Lens model; a camera of the manifest keeps its own unless this is given. auto: by held-out views.",
        .preset = "radial-tangential", .choices = model_choices()},
       {.name = "fix", .type = Type::choice,
        .help = "Hold a term: at the manifest's value, else at 0, equal focal lengths, the middle of the picture.",

@@ -212,11 +212,15 @@ void check_found(const manifest::Document& document, const Session& session) {
         detections.push_back(s.detection);
       }
     }
-    if (std::ranges::any_of(detections, [](const Detection& d) { return !d.corners.empty(); })) continue;
+    const auto shows = [](std::size_t corners) {
+      return [corners](const Detection& d) { return d.corners.size() >= corners; };
+    };
+    if (std::ranges::any_of(detections, shows(enough_corners))) continue;
     const io::Image image = io::read_picture(first->path);
-    if (!detect_board(flipped(image), session.boards[b], {}).corners.empty()) {
+    if (detect_board(flipped(image), session.boards[b], {}).corners.size() >= enough_corners) {
       throw mirrored(manifest::place(document, image_pointer(first->entry)), document.images[first->entry].id);
     }
+    if (std::ranges::any_of(detections, shows(1))) continue;
     throw no_board_found(session.boards[b], image, detections,
                          manifest::place(document, "/boards/" + session.board_ids[b]));
   }

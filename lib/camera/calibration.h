@@ -116,6 +116,7 @@ struct Calibration {
   double rms_px = 0, noise_px = 0;  // over all cameras; noise: of unit weight
   bool converged = false;
   std::vector<std::string> complaints;  // quality gates that failed, one sentence each
+  std::vector<std::string> advice;      // what would make it better, one sentence each
 
   std::optional<double> sigma(const std::string& name, std::size_t of = 0) const;  // of a free parameter
   std::vector<std::size_t> lens_parameters(std::size_t camera) const;              // places in `shared`

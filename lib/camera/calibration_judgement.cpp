@@ -1,10 +1,14 @@
 // What a calibration must pass before it is trusted: enough views, a fit that converged and that fits, a focal length
-// that the views determine, by the noise and by what a board that is not quite flat would do to it.
+// that the views determine, by the noise and by the shape of the board.
 //
-// The latter from the normal equations: with the sag w of the board as one more parameter, held at zero, the Schur
-// complement over the placements is [S_l  S_lw; S_lw' S_w], and a true sag w moves the fitted lens by S_l^-1 S_lw w. A
-// sag of a thousandth of the side is what the flattest boards on sale promise; paper on a table has several times that.
-// Near-frontal views hold focal length apart from distance by little, so that the same sag moves it by percents.
+// A board that is not flat moves the focal length, the more the more frontal the views are. Both of its effects follow
+// from the normal equations with the sags w of all boards as further parameters, placements eliminated,
+//
+//   [S_l  S_lw; S_lw' S_w] (dl, dw) = (g_l, g_w):
+//
+// a sag w that the fit leaves out moves the lens by S_l^-1 S_lw w, at a thousandth of the board's side (what the
+// flattest boards on sale promise) and at right angles to the noise; and the solution (dl, dw) is what freeing the sag
+// would do, because the residuals of this very fit say that the board is bent.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -19,9 +23,12 @@ using Kind = SharedParameter::Kind;
 using Matrix = Eigen::MatrixXd;
 
 constexpr std::size_t least_views = 3;
-constexpr double noise_limit = 0.02;  // sigma over focal length
-constexpr double doubt_limit = 0.01;  // change over focal length by noise and sag together
-constexpr double usual_sag = 1e-3;    // of the board's side
+constexpr double noise_limit = 0.02;   // sigma over focal length
+constexpr double doubt_limit = 0.01;   // change over focal length by noise and sag together
+constexpr double usual_sag = 1e-3;     // of the board's side
+constexpr double significant = 12;     // chi-square of two sags over two: one false alarm in 160000
+constexpr double telling_share = 0.25; // of the squared residuals, for the board to be to blame
+constexpr double worth_saying = 1e-3;
 constexpr double rms_limit_px = 3;
 
 std::string format(const char* pattern, double a, double b = 0, double c = 0, double d = 0) {
@@ -30,10 +37,17 @@ std::string format(const char* pattern, double a, double b = 0, double c = 0, do
   return text;
 }
 
-// Change of the shared parameters that are free (rows) for every held sag (columns) at its usual size; empty where the
-// views do not determine them.
-Matrix changes_by_sag(const std::vector<View>& views, const CalibrationSetup& setup, const Adjustment& state,
-                      const Calibration& result) {
+// Changes of the shared parameters that are free, in their order.
+struct SagEffects {
+  Matrix usual;             // a column for every held sag at its usual size
+  Eigen::VectorXd freed;    // by freeing the held sags
+  double sag_m = 0;         // that freeing them would find, of the worst board, peak to valley
+  double significance = 0;  // chi-square of freeing them over its degrees of freedom
+  double share = 0;         // of the squared residuals that it would explain; little where something else misfits
+};
+
+SagEffects sag_effects(const std::vector<View>& views, const CalibrationSetup& setup, const Adjustment& state,
+                       const Calibration& result) {
   const std::vector<FreeParameter> all = free_parameters(setup, state, true);
   std::vector<Eigen::Index> free, held;
   std::vector<double> size;
@@ -47,9 +61,30 @@ Matrix changes_by_sag(const std::vector<View>& views, const CalibrationSetup& se
     size.push_back(2 * usual_sag * (all[i].what.name == "sag_x_m" ? half.x : half.y));
   }
   if (free.empty() || held.empty()) return {};
-  const Matrix s = schur_complement(normal_equations(views, setup, all, state));
+  const NormalEquations n = normal_equations(views, setup, all, state);
+  const Matrix s = schur_complement(n);
+  Eigen::VectorXd g = n.g;
+  for (std::size_t p = 0; p < n.c.size(); ++p) {
+    if (n.c[p](0, 0) > 0) g -= n.b[p] * n.c[p].ldlt().solve(n.h[p]);
+  }
   const Matrix cross = s(free, held);
-  return s(free, free).ldlt().solve(cross) * Eigen::Map<const Eigen::VectorXd>(size.data(), cross.cols()).asDiagonal();
+  SagEffects effects;
+  effects.usual =
+      s(free, free).ldlt().solve(cross) * Eigen::Map<const Eigen::VectorXd>(size.data(), cross.cols()).asDiagonal();
+  const Eigen::VectorXd scale = n.a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Matrix scaled = scale.asDiagonal() * s * scale.asDiagonal();
+  const Eigen::VectorXd change = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * g);
+  effects.freed = change(free);
+  effects.significance =
+      change.dot(g) / std::max(1e-300, result.noise_px * result.noise_px) / static_cast<double>(held.size());
+  effects.share = n.squares > 0 ? change.dot(g) / n.squares : 0;
+  std::vector<double> sags(setup.boards.size());
+  for (const Eigen::Index i : held) {
+    double& own = sags[all[static_cast<std::size_t>(i)].what.of];
+    own += std::abs(change(i));
+    effects.sag_m = std::max(effects.sag_m, own);
+  }
+  return effects;
 }
 
 // Angle between a view's board and the image plane.
@@ -57,52 +92,74 @@ double tilt(const BoardPose& pose) {
   return std::acos(std::min(1.0, std::abs(pose.rotate({0, 0, 1}).z)));
 }
 
-struct Focal {
-  double noise = 0, sag = 0;  // relative changes
-  double doubt() const { return std::hypot(noise, sag); }
+struct Focal {  // relative changes of a focal length
+  double noise = 0, usual_sag = 0, freed_sag = 0;
+  double doubt() const { return std::hypot(noise, usual_sag); }
 };
 
-Focal focal_doubt(const Calibration& result, const Matrix& by_sag, std::size_t camera) {
+Focal focal_changes(const Calibration& result, const SagEffects& effects, std::size_t camera) {
   Focal worst;
   for (const std::size_t p : result.lens_parameters(camera)) {
     const std::string& name = result.shared[p].name;
     if (name != "fx_px" && name != "fy_px") continue;
     const Intrinsics& lens = result.cameras[camera].lens;
     const double f = name == "fx_px" ? lens.fx_px : lens.fy_px;
-    const Focal own{result.sigma(name, camera).value_or(0) / f,
-                    by_sag.size() > 0 ? by_sag.row(static_cast<Eigen::Index>(p)).norm() / f : 0};
-    if (own.doubt() > worst.doubt()) worst = own;
+    const auto row = static_cast<Eigen::Index>(p);
+    worst.noise = std::max(worst.noise, result.sigma(name, camera).value_or(0) / f);
+    if (effects.usual.size() == 0) continue;
+    worst.usual_sag = std::max(worst.usual_sag, effects.usual.row(row).norm() / f);
+    worst.freed_sag = std::max(worst.freed_sag, std::abs(effects.freed(row)) / f);
   }
   return worst;
 }
 
-void judge_focal(const std::vector<View>& views, std::size_t camera, const std::string& name, const Matrix& by_sag,
-                 Calibration& result) {
-  const Focal focal = focal_doubt(result, by_sag, camera);
-  result.cameras[camera].focal_doubt = focal.doubt();
+// Tilt that half of a camera's views stay below, in degrees.
+double usual_tilt(const std::vector<View>& views, std::size_t camera, const Calibration& result) {
   std::vector<double> tilts;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (views[i].camera == camera && result.views[i].weight > 0)
       tilts.push_back(tilt(result.views[i].camera_from_board));
   }
   std::ranges::sort(tilts);
-  const std::string remedy =
-      "; tilt the board by 20 to 45 degrees about both axes, or hold a focal length that is known";
+  return tilts.empty() ? 0 : tilts[tilts.size() / 2] * 180 / pi;
+}
+
+void judge_focal(const std::vector<View>& views, std::size_t camera, const std::string& name, const SagEffects& effects,
+                 Calibration& result) {
+  const Focal focal = focal_changes(result, effects, camera);
+  result.cameras[camera].focal_doubt = focal.doubt();
+  const double tilted = usual_tilt(views, camera, result);
+  const std::string frontal = format(
+      "the views are too frontal or too few (half of them tilt the board by less than "
+      "%.0f degrees)",
+      tilted);
+  const std::string remedy = "tilt the board by 20 to 45 degrees about both axes, or hold a focal length that is known";
+  const bool bent = effects.significance > significant && effects.share > telling_share;
   if (focal.noise > noise_limit) {
     result.complaints.push_back(
         name +
-        format("the focal length is known to %.1f %% only (limit %.0f %%)", 100 * focal.noise, 100 * noise_limit) +
-        ": the views are too frontal or too few" + remedy);
+        format("the focal length is known to %.1f %% only (limit %.0f %%): ", 100 * focal.noise, 100 * noise_limit) +
+        frontal + "; " + remedy);
   } else if (focal.doubt() > doubt_limit) {
-    const double middle = tilts.empty() ? 0 : tilts[tilts.size() / 2] * 180 / pi;
+    result.complaints.push_back(name +
+                                format("the focal length cannot be trusted: it would change by %.1f %% (limit %.0f %%) "
+                                       "if the board bulged by a thousandth of its side, because ",
+                                       100 * focal.doubt(), 100 * doubt_limit) +
+                                frontal + "; " + remedy);
+  } else if (!bent) {
+    return;
+  } else if (focal.freed_sag > doubt_limit) {
     result.complaints.push_back(
         name +
-        format(
-            "the focal length cannot be trusted: it would change by %.1f %% (limit %.0f %%) if the board bulged by a "
-            "thousandth of its side, because the views are too frontal (half of them tilt the board by less than "
-            "%.0f degrees)",
-            100 * focal.doubt(), 100 * doubt_limit, middle) +
-        remedy);
+        format("the focal length cannot be trusted: the corners say that the board is not flat but bulges by about "
+               "%.1f mm, which alone changes it by about %.1f %% (limit %.0f %%) in views that tilt the board by %.0f "
+               "degrees",
+               1e3 * effects.sag_m, 100 * focal.freed_sag, 100 * doubt_limit, tilted) +
+        "; fix the board to glass, or fit its shape with --board-warp and " + remedy);
+  } else if (focal.freed_sag > worth_saying) {
+    result.advice.push_back(name + format("the corners say that the board bulges by about %.2f mm; --board-warp would "
+                                          "change the focal length by %.2f %%",
+                                          1e3 * effects.sag_m, 100 * focal.freed_sag));
   }
 }
 
@@ -138,10 +195,10 @@ void judge(const std::vector<View>& views, const CalibrationSetup& setup, const 
         "both axes");
     return;
   }
-  const Matrix by_sag = changes_by_sag(views, setup, state, result);
+  const SagEffects effects = sag_effects(views, setup, state, result);
   for (std::size_t c = 0; c < setup.cameras.size(); ++c) {
     const std::string name = setup.cameras.size() > 1 ? setup.cameras[c].name + ": " : "";
-    judge_focal(views, c, name, by_sag, result);
+    judge_focal(views, c, name, effects, result);
   }
 }
 

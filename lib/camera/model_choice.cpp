@@ -133,6 +133,7 @@ std::vector<ModelScore> hypotheses(const CalibrationSetup& setup) {
       if (settled && !warp) continue;
       int terms = 4 + (warp ? 2 : 0);
       for (std::size_t t = 0; t < distortion_terms; ++t) terms += camera_model_info(model, "").fitted.has(t);
+      terms += camera_model_info(model, "").fisheye > 0;  // the projection itself is chosen
       list.push_back({model, warp, terms, 0, 0, 0, false});
     }
   }
