@@ -111,7 +111,8 @@ std::vector<cli::Option> calibration_options() {
       {.name = "marker", .type = Type::quantity, .help = "Side of a marker with its black border.",
        .dimension = Dimension::length, .lower = 1e-6, .upper = 10, .needs = {"charuco"}},
       {.name = "dictionary", .type = Type::text,
-       .help = "Dictionary of the markers: 4X4_50 to 7X7_1000, ARUCO_ORIGINAL.", .metavar = "NAME", .needs = {"charuco"}},
+       .help = "Dictionary of the markers: 4X4_50 to 7X7_1000, ARUCO_ORIGINAL.",
+       .metavar = "NAME", .needs = {"charuco"}},
       {.name = "layout", .type = Type::choice,
        .help = "Layout of a ChArUco board with an even number of rows: legacy is that of OpenCV before 4.6.",
        .preset = "auto", .choices = {"auto", "current", "legacy"}, .needs = {"charuco"}},
@@ -126,7 +127,8 @@ std::vector<cli::Option> calibration_options() {
        .choices = fixable_terms(), .repeat = true},
       {.name = "board-warp", .type = Type::flag, .help = "Also fit how far the board sags (two parameters)."},
       {.name = "refine-window", .type = Type::integer,
-       .help = "Half-window of corner refinement in pixels instead of the one that follows the squares.", .metavar = "N",
+       .help = "Half-window of corner refinement in pixels instead of the one that follows the squares.",
+       .metavar = "N",
        .lower = 1, .upper = 50}};
 }
 
