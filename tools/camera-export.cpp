@@ -28,6 +28,7 @@ std::vector<camera::ExportedFile> exported(const cli::Invocation& call) {
   if (!call.has_document)
     throw Error(Exit::no_input, "camera-export", "has no manifest to read",
                 "pipe one in, or name it: camera-export --to opencv camera.json");
+  if (!call.given("to")) throw Error(Exit::usage, "--to", "is missing", "name the program to write for: --to opencv");
   return camera::export_cameras(call.document, {.format = call.text("to"),
                                                 .cameras = call.texts("camera"),
                                                 .images = call.texts("image"),
@@ -61,8 +62,7 @@ const cli::Program& gonio_program() {
       .options = {{.name = "to",
                    .type = Type::choice,
                    .help = "Program to write for.",
-                   .choices = format_names(),
-                   .required = true},
+                   .choices = format_names()},
                   {.name = "camera",
                    .type = Type::text,
                    .help = "Write this camera only; may be repeated.",

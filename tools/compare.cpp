@@ -1,12 +1,12 @@
 // compare: a rendering against the photograph that it claims to predict, pixel by pixel.
 #include "base/atomic_file.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "cli/program.h"
 #include "io/picture.h"
 #include "metric/comparison_page.h"
 #include "metric/difference_pictures.h"
 #include "metric/entries.h"
-#include "render/entries.h"
 
 namespace gonio::tools::compare {
 namespace {
@@ -130,7 +130,7 @@ std::map<std::string, std::string> write_pictures(cli::Invocation& call, const C
   const DisplayTone tone = display_tone(o, d, image.measures);
   std::map<std::string, std::string> ids;
   const auto write = [&](const std::string& name, const std::string& extension, const io::Image& picture) {
-    const auto path = call.output_path(render::file_stem(o.name) + "-" + name + extension);
+    const auto path = call.output_path(file_stem(o.name) + "-" + name + extension);
     io::write_picture(path, picture);
     ids[name] = manifest::add_file(call.document, path, o.name + "-" + name);
   };

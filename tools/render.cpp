@@ -1,4 +1,5 @@
 // render: the photographs that a scene would give, path traced to EXR with variance and geometry.
+#include "base/text.h"
 #include "cli/program.h"
 #include "io/picture.h"
 #include "render/entries.h"

@@ -1,5 +1,7 @@
 // From argv to exit code: the frame of every program. Nothing but the manifest reaches stdout; every failure is one
 // line.
+#include <poll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -47,6 +49,22 @@ LogLevel level_of(const std::string& word) {
                              : LogLevel::debug;
 }
 
+// A pipe, a socket or a file: something that a manifest may come from. Terminals, /dev/null and a closed descriptor are
+// not.
+bool input_may_come() {
+  struct stat status {};
+  if (::fstat(STDIN_FILENO, &status) != 0) return false;
+  return S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode) || S_ISREG(status.st_mode);
+}
+
+// An idle pipe looks like a program that hangs; to people at a terminal it says what it waits for.
+void say_that_it_waits() {
+  constexpr int patience_ms = 3000;
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  if (::isatty(STDERR_FILENO) && ::poll(&input, 1, patience_ms) == 0)
+    log(LogLevel::info, "waiting for a manifest on standard input");
+}
+
 // The manifest's name on this command line: -i, an operand that ends in .json (which then is no operand any more), or
 // "-".
 std::string manifest_source(Invocation& call) {
@@ -65,7 +83,7 @@ std::string manifest_source(Invocation& call) {
   const bool operands = std::ranges::any_of(program.operands, [&](const Option& o) { return call.given(o.name); });
   const bool standalone = std::ranges::any_of(program.standalone, [&](const std::string& o) { return call.given(o); });
   if (operands || standalone) return {};
-  if (!::isatty(STDIN_FILENO)) return "-";
+  if (input_may_come()) return "-";
   if (program.reads == Reads::required)
     throw Error(Exit::no_input, program.name, "has no manifest to read",
                 "pipe one in, or name it: " + program.name + " scene.json");
@@ -75,6 +93,7 @@ std::string manifest_source(Invocation& call) {
 void read_manifest(Invocation& call) {
   const std::string source = manifest_source(call);
   if (source.empty()) return;
+  if (source == "-") say_that_it_waits();
   const manifest::ReadOptions options{.allow_outside = call.flag("allow-outside")};
   try {
     call.document = manifest::read_document(source, options);
@@ -154,8 +173,8 @@ void check_places(const Invocation& call) {
 void prepare_places(const Invocation& call) {
   const auto below_out = [&call](const fs::path& path) {
     if (call.out.empty()) return false;
-    const fs::path inside = fs::absolute(path).lexically_normal().lexically_relative(
-        (fs::absolute(call.out) / "").lexically_normal());
+    const fs::path inside =
+        fs::absolute(path).lexically_normal().lexically_relative((fs::absolute(call.out) / "").lexically_normal());
     return !inside.empty() && *inside.begin() != "..";
   };
   for (const bool below : {false, true}) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/text.h"
 #include "cli/common_options.h"
 #include "cli/invocation.h"
 
@@ -73,21 +74,6 @@ void check_company(const Invocation::State& state) {
       if (const auto found = state.arguments.find(other); found == state.arguments.end() || !found->second.given)
         throw Error(Exit::usage, "--" + name, "needs --" + other);
   }
-}
-
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
-      diagonal = above;
-    }
-  }
-  return row.back();
 }
 
 [[noreturn]] void unknown_option(const Invocation::State& state, const std::string& typed) {

@@ -78,4 +78,34 @@ std::unique_ptr<Emitter> sphere_emitter(Vec3 position_m, Rgb watt_per_sr, double
   return std::make_unique<Point>(position_m, watt_per_sr);
 }
 
+SphereLamp::SphereLamp(std::string id, std::string sentence, std::string source, std::string position_meaning,
+                       std::optional<double> radius_preset, std::string radius_meaning)
+    : info_{.family = manifest::Family::light,
+            .id = std::move(id),
+            .sentence = std::move(sentence),
+            .source = std::move(source),
+            .parameters = {{.name = "position_m",
+                            .unit = "m",
+                            .components = 3,
+                            .preset = {},
+                            .meaning = std::move(position_meaning)},
+                           {.name = "watt_per_sr",
+                            .unit = "W/sr",
+                            .components = 3,
+                            .rgb = true,
+                            .preset = {},
+                            .lower = 0,
+                            .meaning = "radiant intensity of linear red, green and blue"},
+                           {.name = "radius_m",
+                            .unit = "m",
+                            .preset = radius_preset,
+                            .lower = 0,
+                            .meaning = std::move(radius_meaning)}}} {}
+
+std::unique_ptr<Emitter> SphereLamp::prepare(const manifest::Parameters& parameters, std::shared_ptr<const io::Image>,
+                                             const std::string& place) const {
+  const auto values = manifest::values_of(info_, parameters, place);  // in the order above
+  return sphere_emitter(values[0], values[1], values[2].x);
+}
+
 }  // namespace gonio::light

@@ -1,29 +1,13 @@
 #include "manifest/fields.h"
 
 #include <algorithm>
-#include <numeric>
 #include <sstream>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace gonio::manifest {
 namespace {
-
-// Levenshtein distance, for "did you mean".
-std::size_t distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
-      diagonal = above;
-    }
-  }
-  return row.back();
-}
 
 std::string listed(const std::vector<std::string>& words) {
   std::string out;
@@ -46,10 +30,11 @@ std::string number_text(double v) {
 }  // namespace
 
 std::string remedy_for(const std::string& word, const std::vector<std::string>& known) {
-  const auto nearest = std::ranges::min_element(known, {}, [&](const std::string& k) { return distance(word, k); });
+  const auto nearest =
+      std::ranges::min_element(known, {}, [&](const std::string& k) { return edit_distance(word, k); });
   if (nearest == known.end()) return "none is known here";
   const bool other_unit = word.find('_') != std::string::npos && stem(word) == stem(*nearest);
-  if (other_unit || distance(word, *nearest) <= std::max<std::size_t>(1, word.size() / 3))
+  if (other_unit || edit_distance(word, *nearest) <= std::max<std::size_t>(1, word.size() / 3))
     return "did you mean \"" + *nearest + "\"?";
   return "there is " + listed(known);
 }

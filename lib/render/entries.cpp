@@ -1,7 +1,6 @@
 #include "render/entries.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "base/error.h"
 
@@ -27,13 +26,6 @@ std::vector<std::size_t> chosen_images(const manifest::Document& document, const
   for (std::size_t i = 0; i < images.size(); ++i)
     if (ids.empty() || std::find(ids.begin(), ids.end(), images[i].id) != ids.end()) chosen.push_back(i);
   return chosen;
-}
-
-std::string file_stem(const std::string& image_id) {
-  std::string stem = image_id;
-  for (char& c : stem)
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-' && c != '_') c = '_';
-  return stem;
 }
 
 void enter_rendering(manifest::Document& document, std::size_t image, const std::filesystem::path& path, int spp,

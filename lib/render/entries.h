@@ -13,9 +13,6 @@ namespace gonio::render {
 // Error(data) where nothing is left.
 std::vector<std::size_t> chosen_images(const manifest::Document& document, const std::vector<std::string>& ids);
 
-// The id with everything but letters, digits, '.', '-' and '_' replaced by '_': fit for a file name.
-std::string file_stem(const std::string& image_id);
-
 // `path` becomes the image's rendering, in place of an earlier one.
 void enter_rendering(manifest::Document& document, std::size_t image, const std::filesystem::path& path, int spp,
                      std::uint64_t seed);

@@ -66,4 +66,20 @@ class MetalLobe {
   Rgb more_;
 };
 
+// A model that is one such lobe: `Optics` says, for a surface's values, `lobe(values, wo)` and `fresnel(values)`, which
+// takes a cosine to a colour.
+template <class Optics>
+class MetalModel : public Model {
+ public:
+  Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
+    return wo.z > 0 && wi.z > 0 ? Optics::lobe(values, wo).evaluate(Optics::fresnel(values), wi) : Rgb{};
+  }
+  Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
+    return wo.z > 0 ? Optics::lobe(values, wo).sample(Optics::fresnel(values), u, u_lobe) : Sample{};
+  }
+  double pdf(const Values& values, Vec3 wo, Vec3 wi) const override {
+    return wo.z > 0 && wi.z > 0 ? Optics::lobe(values, wo).pdf(wi) : 0;
+  }
+};
+
 }  // namespace gonio::surface

@@ -26,15 +26,17 @@ Rgb fresnel_mean(Rgb eta, Rgb k) {
   return sum;
 }
 
-MetalLobe lobe(const Values& values, Vec3 wo) {
-  return {values.scalar(alpha_index), fresnel_mean(values.rgb(eta_index), values.rgb(k_index)), wo};
-}
+struct Optics {
+  static MetalLobe lobe(const Values& values, Vec3 wo) {
+    return {values.scalar(alpha_index), fresnel_mean(values.rgb(eta_index), values.rgb(k_index)), wo};
+  }
+  static auto fresnel(const Values& values) {
+    return
+        [eta = values.rgb(eta_index), k = values.rgb(k_index)](double cosine) { return fresnel_rgb(cosine, eta, k); };
+  }
+};
 
-auto fresnel(const Values& values) {
-  return [eta = values.rgb(eta_index), k = values.rgb(k_index)](double cosine) { return fresnel_rgb(cosine, eta, k); };
-}
-
-class Conductor final : public Model {
+class Conductor final : public MetalModel<Optics> {
  public:
   const manifest::ModelInfo& info() const override {
     static const manifest::ModelInfo info{
@@ -67,19 +69,10 @@ class Conductor final : public Model {
     };
     return info;
   }
-  Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
-    return wo.z > 0 && wi.z > 0 ? lobe(values, wo).evaluate(fresnel(values), wi) : Rgb{};
-  }
-  Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
-    return wo.z > 0 ? lobe(values, wo).sample(fresnel(values), u, u_lobe) : Sample{};
-  }
-  double pdf(const Values& values, Vec3 wo, Vec3 wi) const override {
-    return wo.z > 0 && wi.z > 0 ? lobe(values, wo).pdf(wi) : 0;
-  }
   Rgb albedo(const Values& values, Vec3 wo) const override {
     if (wo.z <= 0) return {};
-    const MetalLobe once_and_more = lobe(values, wo);
-    return once_and_more.albedo_once(fresnel(values)) + once_and_more.albedo_more();
+    const MetalLobe once_and_more = Optics::lobe(values, wo);
+    return once_and_more.albedo_once(Optics::fresnel(values)) + once_and_more.albedo_more();
   }
 };
 

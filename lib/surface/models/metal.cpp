@@ -10,16 +10,17 @@ namespace {
 
 enum : std::size_t { f0_index, alpha_index };
 
-MetalLobe lobe(const Values& values, Vec3 wo) {
-  const Rgb f0 = values.rgb(f0_index);
-  return {values.scalar(alpha_index), f0 + (Rgb{1, 1, 1} - f0) / 21, wo};
-}
+struct Optics {
+  static MetalLobe lobe(const Values& values, Vec3 wo) {
+    const Rgb f0 = values.rgb(f0_index);
+    return {values.scalar(alpha_index), f0 + (Rgb{1, 1, 1} - f0) / 21, wo};
+  }
+  static auto fresnel(const Values& values) {
+    return [f0 = values.rgb(f0_index)](double cosine) { return fresnel_schlick(cosine, f0); };
+  }
+};
 
-auto fresnel(const Values& values) {
-  return [f0 = values.rgb(f0_index)](double cosine) { return fresnel_schlick(cosine, f0); };
-}
-
-class Metal final : public Model {
+class Metal final : public MetalModel<Optics> {
  public:
   const manifest::ModelInfo& info() const override {
     static const manifest::ModelInfo info{
@@ -44,19 +45,10 @@ class Metal final : public Model {
     };
     return info;
   }
-  Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
-    return wo.z > 0 && wi.z > 0 ? lobe(values, wo).evaluate(fresnel(values), wi) : Rgb{};
-  }
-  Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
-    return wo.z > 0 ? lobe(values, wo).sample(fresnel(values), u, u_lobe) : Sample{};
-  }
-  double pdf(const Values& values, Vec3 wo, Vec3 wi) const override {
-    return wo.z > 0 && wi.z > 0 ? lobe(values, wo).pdf(wi) : 0;
-  }
   Rgb albedo(const Values& values, Vec3 wo) const override {
     if (wo.z <= 0) return {};
     const double alpha = values.scalar(alpha_index), all = mirror_albedo(wo.z, alpha), rise = rise_albedo(wo.z, alpha);
-    return values.rgb(f0_index) * (all - rise) + Rgb{rise, rise, rise} + lobe(values, wo).albedo_more();
+    return values.rgb(f0_index) * (all - rise) + Rgb{rise, rise, rise} + Optics::lobe(values, wo).albedo_more();
   }
 };
 
