@@ -197,7 +197,9 @@ void enter_pictures(const std::vector<std::string>& paths, const std::string& mo
 void enter_rig(const std::vector<std::string>& cameras, const std::vector<std::string>& paths, const std::string& model,
                manifest::Document& document) {
   std::map<std::string, std::map<std::string, std::string>> shots;  // shot -> camera -> path
-  for (const std::string& camera : cameras) document.cameras.try_emplace(camera).first->second.model = model;
+  for (const std::string& camera : cameras) {
+    if (const auto [known, fresh] = document.cameras.try_emplace(camera); fresh) known->second.model = model;
+  }
   for (const std::string& path : paths) {
     const std::filesystem::path whole(path);
     std::string shot = whole.stem().string();

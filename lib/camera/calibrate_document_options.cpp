@@ -91,7 +91,11 @@ void enter_command_line(cli::Invocation& call) {
     }
     enter_board(board_of(call), call.document);
   }
-  if (!call.given("IMAGE")) return;
+  if (!call.given("IMAGE")) {
+    if (!call.given("rig")) return;
+    throw Error(Exit::usage, "--rig", "has no pictures to look for names in",
+                "name photographs, or give the images of the manifest a camera and a shot");
+  }
   call.document.allow_outside = true;  // what the user names may lie anywhere
   const std::string model = call.text("model") == "auto" ? "radial-tangential" : call.text("model");
   if (call.given("rig"))
@@ -118,7 +122,7 @@ std::vector<cli::Option> calibration_options() {
        .preset = "auto", .choices = {"auto", "current", "legacy"}, .needs = {"charuco"}},
       {.name = "rig", .type = Type::text,
        .help = "Cameras held together, by words that the pictures' names contain; the rest of a name is the shot.",
-       .metavar = "NAME,NAME", .needs = {"IMAGE"}},
+       .metavar = "NAME,NAME"},
       {.name = "model", .type = Type::choice,
        .help = "Lens model; a camera of the manifest keeps its own unless this is given. auto: by held-out views.",
        .preset = "radial-tangential", .choices = model_choices()},
@@ -128,8 +132,7 @@ std::vector<cli::Option> calibration_options() {
       {.name = "board-warp", .type = Type::flag, .help = "Also fit how far the board sags (two parameters)."},
       {.name = "refine-window", .type = Type::integer,
        .help = "Half-window of corner refinement in pixels instead of the one that follows the squares.",
-       .metavar = "N",
-       .lower = 1, .upper = 50}};
+       .metavar = "N", .lower = 1, .upper = 50}};
 }
 
 }  // namespace gonio::camera

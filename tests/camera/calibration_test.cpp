@@ -201,6 +201,34 @@ TEST(Calibration, HeldIntrinsicsStayToTheBit) {
   EXPECT_LT(norm(c.views[1].camera_from_board.translation_m - list[1].translation_m), 1e-9);
 }
 
+TEST(Calibration, HeldDistortionLeavesTheRestToBeFound) {
+  Random random(21);
+  CameraSetup options;
+  options.fixed = {"distortion"};
+  options.start = truth;
+  options.start->fx_px += 20;
+  options.start->cy_px -= 10;
+  const Calibration c = calibrate_alone(views_of(poses(8, 0.5, random), truth, 0.05, random), options);
+  EXPECT_EQ(c.cameras[0].lens.distortion, truth.distortion);
+  EXPECT_EQ(c.shared.size(), 4U);
+  EXPECT_NEAR(c.cameras[0].lens.fx_px, truth.fx_px, 4 * *c.sigma("fx_px"));
+  EXPECT_NEAR(c.cameras[0].lens.cy_px, truth.cy_px, 4 * *c.sigma("cy_px"));
+}
+
+// Nearly frontal views of a board that bulges by a hundredth of its side: the flat model's focal length is far off, and
+// the calibration says why; the board's shape gives it back.
+TEST(Calibration, ABulgeThatMovesTheFocalLengthIsNamed) {
+  Random random(22);
+  const Intrinsics lens{truth.fx_px, truth.fy_px, truth.cx_px, truth.cy_px, {}};
+  const std::vector<View> views = views_of(poses(14, 0.2, random), lens, 0.05, random, {2.5e-3, 0});
+  const Calibration flat = calibrate_alone(views);
+  ASSERT_FALSE(flat.complaints.empty());
+  EXPECT_THAT(flat.complaints.back(), testing::HasSubstr("focal length cannot be trusted"));
+  EXPECT_GT(std::abs(flat.cameras[0].lens.fx_px / lens.fx_px - 1), 0.01);
+  const Calibration shaped = calibrate_alone(views, {}, true);
+  EXPECT_NEAR(shaped.cameras[0].lens.fx_px, lens.fx_px, 4 * *shaped.sigma("fx_px"));
+}
+
 // Every model finds itself again from exact corners, the fisheye over a field of 150 degrees.
 TEST(Calibration, EveryModelIsFoundExactlyWithoutNoise) {
   Random random(19);

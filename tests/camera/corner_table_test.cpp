@@ -13,7 +13,7 @@ namespace {
 CornerTable example() {
   return {"c",
           "b",
-          {{"left, \"01\"", {{0, {0, 0}, {100.1, 200.2}, 0.1}, {7, {0.025, 0.05}, {1.0 / 3, -2e-7}, 0.15}}},
+          {{"left, \"01\"", {{0, {0, 0}, {100.1, 200.2}, 0.1}, {7, {0.025, 0.05}, {1.0 / 3, -2e-7}, 0.15, 0.25}}},
            {"left02", {{3, {0.075, 0}, {5, 6}, 0.2}}}}};
 }
 
@@ -30,6 +30,7 @@ void expect_same(const CornerTable& a, const CornerTable& b) {
       EXPECT_EQ(p.board_m, q.board_m);
       EXPECT_EQ(p.pixel, q.pixel);
       EXPECT_EQ(p.sigma_px, q.sigma_px);
+      EXPECT_EQ(p.weight, q.weight);
     }
   }
 }
@@ -75,6 +76,7 @@ TEST(CornerTable, BrokenRowsAreNamed) {
   expect_refused(header + "a,1,0,0,3,nan,0.1\n", "v_px");
   expect_refused(header + "a,1,0,0,3,4,0\n", "sigma_px");
   expect_refused(header + "a,1e300,0,0,3,4,1\n", "corner");
+  expect_refused("image,corner,board_x_m,board_y_m,u_px,v_px,sigma_px,weight\na,1,0,0,3,4,1,-1\n", "weight");
   manifest::Document none;
   EXPECT_THROW(read_corners(none, "corners"), Error);
 }
