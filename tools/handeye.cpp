@@ -135,13 +135,16 @@ const cli::Program& gonio_program() {
       .sections_read = {"boards", "cameras", "images", "tables", "light_positions"},
       .sections_written = {"files", "frames", "images", "mountings"},
       .files = {{"handeye.html", "the report"}},
-      .exits = {{Exit::quality, "The mountings are written, but the poses do not determine them (what they leave open is named and left out), too many are "
-                                "outliers, they fit better inverted, or --max-error is exceeded."}},
-      .references = {"R. Tsai, R. Lenz, A new technique for fully autonomous and efficient 3D robotics hand/eye calibration, IEEE T-RA 5(3), 1989.",
+      .exits = {{Exit::quality, "The mountings are written, but the poses do not determine them (what they leave open is named and left "
+                                "out), too many are outliers, they fit better inverted, or --max-error is exceeded."}},
+      .references = {"R. Tsai, R. Lenz, A new technique for fully autonomous and efficient 3D robotics hand/eye calibration, "
+                     "IEEE T-RA 5(3), 1989.",
                      "F. Park, B. Martin, Robot sensor calibration: solving AX = XB on the Euclidean group, IEEE T-RA 10(5), 1994.",
                      "K. Daniilidis, Hand-eye calibration using dual quaternions, IJRR 18(3), 1999.",
-                     "M. Shah, Solving the robot-world/hand-eye calibration problem using the Kronecker product, JMR 5(3), 2013.",
-                     "H. Patterson, R. Thompson, Recovery of inter-block information when block sizes are unequal, Biometrika 58, 1971."},
+                     "M. Shah, Solving the robot-world/hand-eye calibration problem using the Kronecker product, J. Mechanisms "
+                     "and Robotics 5(3), 2013.",
+                     "H. Patterson, R. Thompson, Recovery of inter-block information when block sizes are unequal, "
+                     "Biometrika 58, 1971."},
       .see_also = {"calib-charuco(1)", "explain(1)", "gonio-manifest(5)", "gonio-conventions(7)"},
       .check = [](cli::Invocation& call) {
         std::string light = call.given("light-name") ? call.text("light-name") : "";

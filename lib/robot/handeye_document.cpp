@@ -49,7 +49,8 @@ void enter_lens_covariance(const manifest::Value& value, handeye::Setup& setup) 
     kept.push_back(i);
   }
   for (const std::size_t i : kept) {
-    for (const std::size_t j : kept) setup.lens_covariance.push_back(rows->as_array().at(i).as_array().at(j).as_number());
+    for (const std::size_t j : kept)
+      setup.lens_covariance.push_back(rows->as_array().at(i).as_array().at(j).as_number());
   }
 }
 
@@ -69,7 +70,8 @@ handeye::Setup setup_of(const manifest::Document& document, const HandEyeRequest
 }
 
 // The pose of the board in an image, also where the image shows several boards.
-const manifest::Pose<frame::Camera, frame::Board>* pose_in(const manifest::ImageEntry& image, const std::string& board) {
+const manifest::Pose<frame::Camera, frame::Board>* pose_in(const manifest::ImageEntry& image,
+                                                           const std::string& board) {
   for (const manifest::SeenBoard& seen : image.boards) {
     if (seen.board == board && seen.camera_from_board && seen.weight.value_or(1) > 0) return &*seen.camera_from_board;
   }
@@ -80,9 +82,10 @@ const manifest::Pose<frame::Camera, frame::Board>* pose_in(const manifest::Image
 void check_motion(const manifest::Document& document, const HandEyeInput& input) {
   const std::size_t n = input.views.size();
   if (n < fewest_poses) {
-    throw Error(Exit::data, manifest::place(document, "/images"),
-                std::to_string(n) + (n == 1 ? " pose with a board" : " poses with a board") + " (at least 3 are needed)",
-                "photograph the board from ten or more poses with turns about different axes");
+    throw Error(
+        Exit::data, manifest::place(document, "/images"),
+        std::to_string(n) + (n == 1 ? " pose with a board" : " poses with a board") + " (at least 3 are needed)",
+        "photograph the board from ten or more poses with turns about different axes");
   }
   const auto& first = input.views.front().base_from_tool;
   const bool moves = std::ranges::any_of(input.views, [&](const handeye::View& view) {
@@ -160,7 +163,8 @@ void enter_poses(const PoseList& list, bool by_name, manifest::Document& documen
   const std::string place = manifest::place(document, "/images");
   if (list.poses.size() != document.images.size()) {
     throw Error(Exit::data, list.poses.empty() ? "--poses" : list.poses.front().place,
-                std::to_string(list.poses.size()) + " poses for " + std::to_string(document.images.size()) + " images of " + place,
+                std::to_string(list.poses.size()) + " poses for " + std::to_string(document.images.size()) +
+                    " images of " + place,
                 "give one pose per image, also for images without a board");
   }
   std::map<std::string, const ListedPose*> named;
@@ -174,7 +178,8 @@ void enter_poses(const PoseList& list, bool by_name, manifest::Document& documen
     }
     const ListedPose& pose = by_name ? *found->second : list.poses[i];
     if (image.base_from_tool) {
-      throw Error(Exit::data, image_place(document, i, "/base_from_tool"), "stands beside --poses", "give the pose once");
+      throw Error(Exit::data, image_place(document, i, "/base_from_tool"), "stands beside --poses",
+                  "give the pose once");
     }
     image.base_from_tool.emplace();
     static_cast<Rigid<frame::Base, frame::Tool>&>(*image.base_from_tool) = pose.base_from_tool;
@@ -212,7 +217,8 @@ HandEyeInput handeye_input(const manifest::Document& document, const HandEyeRequ
                   "give the robot's pose of every image with a board, here or by --poses");
     }
     handeye::View view{image.id, *image.base_from_tool, *pose, {}};
-    for (const camera::TableCorner& c : found->second->corners) view.corners.push_back({c.board_m, c.pixel, c.sigma_px});
+    for (const camera::TableCorner& c : found->second->corners)
+      view.corners.push_back({c.board_m, c.pixel, c.sigma_px});
     view.camera_from_board = handeye::pose_by_camera(input.setup, view);
     input.views.push_back(std::move(view));
   }
@@ -227,7 +233,8 @@ void enter_mounting(const HandEyeInput& input, const HandEyeRequest& request, co
   m.robot = request.robot;
   m.camera = input.camera;
   m.board = input.board;
-  m.method = a.method == "joint" ? "joint refinement of corners and robot poses, " + a.best_closed + " beside it" : a.method;
+  m.method =
+      a.method == "joint" ? "joint refinement of corners and robot poses, " + a.best_closed + " beside it" : a.method;
   const bool in_hand = request.kind == Kind::eye_in_hand;
   const auto& x = a.solution.mount_from_camera;
   const auto& z = a.solution.stand_from_board;
@@ -271,15 +278,17 @@ std::vector<std::string> outlier_lines(const HandEyeInput& input, const handeye:
 std::vector<std::string> summary_of(const HandEyeInput& input, const handeye::Analysis& a) {
   std::vector<std::string> lines;
   const auto& n = a.consensus.refined.noise;
-  lines.push_back(text("%zu poses; scatter of the board %.3f mm, %.4f deg, %.3f px; robot noise %.3f mm, %.4f deg per axis",
-                       input.views.size() - static_cast<std::size_t>(std::ranges::count(a.consensus.counts, false)),
-                       a.scatter.translation_m * 1e3, a.scatter.rotation_rad * 180 / pi, a.rms_px, n.robot_m * 1e3,
-                       n.robot_rad * 180 / pi));
+  lines.push_back(
+      text("%zu poses; scatter of the board %.3f mm, %.4f deg, %.3f px; robot noise %.3f mm, %.4f deg per axis",
+           input.views.size() - static_cast<std::size_t>(std::ranges::count(a.consensus.counts, false)),
+           a.scatter.translation_m * 1e3, a.scatter.rotation_rad * 180 / pi, a.rms_px, n.robot_m * 1e3,
+           n.robot_rad * 180 / pi));
   if (const auto* h = a.held_out_of(a.method)) {
     const auto* best = a.held_out_of(a.best_closed);
-    lines.push_back(text("poses left out: %.3f mm, %.4f deg, %.3f px (%s, the best closed form: %.3f mm, %.4f deg, %.3f px)",
-                         h->rms.translation_m * 1e3, h->rms.rotation_rad * 180 / pi, h->rms.rms_px, a.best_closed.c_str(),
-                         best->rms.translation_m * 1e3, best->rms.rotation_rad * 180 / pi, best->rms.rms_px));
+    lines.push_back(
+        text("poses left out: %.3f mm, %.4f deg, %.3f px (%s, the best closed form: %.3f mm, %.4f deg, %.3f px)",
+             h->rms.translation_m * 1e3, h->rms.rotation_rad * 180 / pi, h->rms.rms_px, a.best_closed.c_str(),
+             best->rms.translation_m * 1e3, best->rms.rotation_rad * 180 / pi, best->rms.rms_px));
     lines.push_back(text("at a pose not seen the board lies within %.3f mm at 95 %%", *a.within_m() * 1e3));
   }
   return lines;

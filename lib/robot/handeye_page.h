@@ -1,5 +1,5 @@
-// The report page of handeye: a verdict in millimetres, residuals of every pose before and after the refinement, methods side
-// by side by their errors at poses left out, uncertainty and correlations, outliers, what to add.
+// The report page of handeye: a verdict in millimetres, residuals of every pose before and after the refinement,
+// methods side by side by their errors at poses left out, uncertainty and correlations, outliers, what to add.
 #pragma once
 #include <string>
 

@@ -39,7 +39,9 @@ Vector3 at_base(const LightSample& s, const Vector3& light) {
   return eigen_of(s.base_from_tool.rotation) * light + eigen_of(s.base_from_tool.translation_m);
 }
 
-double weight_of(const LightSample& s) { return 3 / dot(s.sigma_m, s.sigma_m); }
+double weight_of(const LightSample& s) {
+  return 3 / dot(s.sigma_m, s.sigma_m);
+}
 
 // W for a given l.
 void fit_base(const std::vector<LightSample>& samples, State& state) {
@@ -79,8 +81,8 @@ void fit_light(const std::vector<LightSample>& samples, State& state) {
 double misfit(const std::vector<LightSample>& samples, const State& state) {
   double sum = 0;
   for (const LightSample& s : samples) {
-    sum += weight_of(s) *
-           (state.rotation * at_base(s, state.light) + state.shift - eigen_of(s.position_m)).squaredNorm();
+    sum +=
+        weight_of(s) * (state.rotation * at_base(s, state.light) + state.shift - eigen_of(s.position_m)).squaredNorm();
   }
   return sum;
 }
@@ -88,7 +90,8 @@ double misfit(const std::vector<LightSample>& samples, const State& state) {
 // Lights near the tool's origin and to its sides, at the size of the motions: an alternation from each.
 State start_of(const std::vector<LightSample>& samples) {
   double size = 0;
-  for (const LightSample& s : samples) size += norm(s.position_m - samples[0].position_m) / static_cast<double>(samples.size());
+  for (const LightSample& s : samples)
+    size += norm(s.position_m - samples[0].position_m) / static_cast<double>(samples.size());
   State best;
   double least = HUGE_VAL;
   for (int k = 0; k < 7; ++k) {
@@ -147,8 +150,8 @@ Matrix9 pseudo_inverse(const Matrix9& n) {
 
 // Gauss-Newton with the robot's noise estimated between the steps (Fellner 1986, as in handeye/refinement.h).
 void refine(const std::vector<LightSample>& samples, State& state, double& robot_m) {
-  robot_m = std::max(1e-9, std::sqrt(misfit(samples, state) / (9 * static_cast<double>(samples.size()))) *
-                               norm(samples[0].sigma_m));
+  robot_m = std::max(
+      1e-9, std::sqrt(misfit(samples, state) / (9 * static_cast<double>(samples.size()))) * norm(samples[0].sigma_m));
   for (int step = 0; step < most_steps; ++step) {
     const std::vector<Row> rows = rows_of(samples, state);
     const Matrix9 n = information(rows, robot_m), inverse = pseudo_inverse(n);
@@ -182,7 +185,9 @@ Eigen::MatrixXd free_directions(const std::vector<LightSample>& samples, const S
   for (const LightSample& s : samples) reach += at_base(s, state.light).norm() / static_cast<double>(samples.size());
   Vector9 unit;
   unit << Vector3::Constant(1 / std::max(reach, 1e-6)), Vector3::Ones(), Vector3::Ones();
-  const auto at = [&](const std::vector<Row>& r) -> Matrix9 { return unit.asDiagonal() * information(r, robot_m) * unit.asDiagonal(); };
+  const auto at = [&](const std::vector<Row>& r) -> Matrix9 {
+    return unit.asDiagonal() * information(r, robot_m) * unit.asDiagonal();
+  };
   const Matrix9 n = at(rows);
   Matrix9 more = Matrix9::Zero();
   Random random(9091);
@@ -220,12 +225,15 @@ void say(const std::string& what, const Eigen::MatrixXd& block, const std::strin
     words.push_back(what + " in " + frame + "'s frame, in every direction");
     return;
   }
-  for (const Vector3& d : reached) words.push_back(what + " " + joint + " " + handeye::direction_words(vec_of(d), frame));
+  for (const Vector3& d : reached)
+    words.push_back(what + " " + joint + " " + handeye::direction_words(vec_of(d), frame));
 }
 
 }  // namespace
 
-double LightMounting::sigma(std::size_t parameter) const { return std::sqrt(std::max(0.0, covariance[10 * parameter])); }
+double LightMounting::sigma(std::size_t parameter) const {
+  return std::sqrt(std::max(0.0, covariance[10 * parameter]));
+}
 
 LightMounting calibrate_light(const std::vector<LightSample>& samples) {
   State state = start_of(samples);

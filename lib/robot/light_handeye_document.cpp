@@ -13,16 +13,20 @@ namespace {
 constexpr std::size_t fewest_positions = 4;
 constexpr double mm = 1e3, deg = 180 / pi;
 
-std::string pointer(std::size_t i) { return "/light_positions/" + std::to_string(i); }
+std::string pointer(std::size_t i) {
+  return "/light_positions/" + std::to_string(i);
+}
 
 }  // namespace
 
-std::vector<LightSample> light_samples(const manifest::Document& document, std::string& light, const std::string& robot) {
+std::vector<LightSample> light_samples(const manifest::Document& document, std::string& light,
+                                       const std::string& robot) {
   const std::string section = manifest::place(document, "/light_positions");
   std::set<std::string> lights;
   for (const manifest::LightPosition& p : document.light_positions) lights.insert(p.light);
   if (light.empty() && lights.size() > 1) {
-    throw Error(Exit::data, section, "positions of " + std::to_string(lights.size()) + " lights", "choose one with --light-name");
+    throw Error(Exit::data, section, "positions of " + std::to_string(lights.size()) + " lights",
+                "choose one with --light-name");
   }
   if (light.empty() && lights.size() == 1) light = *lights.begin();
   std::vector<LightSample> samples;
@@ -30,7 +34,8 @@ std::vector<LightSample> light_samples(const manifest::Document& document, std::
     const manifest::LightPosition& p = document.light_positions[i];
     if (p.light != light || (!robot.empty() && !p.robot.empty() && p.robot != robot)) continue;
     if (p.position_m.size() != 3) {
-      throw Error(Exit::data, manifest::place(document, pointer(i) + "/position_m"), "not three numbers", "give x, y, z in metres");
+      throw Error(Exit::data, manifest::place(document, pointer(i) + "/position_m"), "not three numbers",
+                  "give x, y, z in metres");
     }
     if (p.sigma_m.size() != 1 && p.sigma_m.size() != 3) {
       throw Error(Exit::data, manifest::place(document, pointer(i) + "/sigma_m"), "not one or three numbers",
@@ -38,7 +43,8 @@ std::vector<LightSample> light_samples(const manifest::Document& document, std::
     }
     const Vec3 sigma{p.sigma_m[0], p.sigma_m[p.sigma_m.size() == 3 ? 1 : 0], p.sigma_m[p.sigma_m.size() == 3 ? 2 : 0]};
     if (!(std::min({sigma.x, sigma.y, sigma.z}) > 0)) {
-      throw Error(Exit::data, manifest::place(document, pointer(i) + "/sigma_m"), "not above 0", "state how well the position is known");
+      throw Error(Exit::data, manifest::place(document, pointer(i) + "/sigma_m"), "not above 0",
+                  "state how well the position is known");
     }
     samples.push_back({p.id, *p.base_from_tool, {p.position_m[0], p.position_m[1], p.position_m[2]}, sigma});
   }
@@ -78,9 +84,14 @@ void enter_light_mounting(const LightMounting& m, const std::string& light, cons
   entry.scatter_m = m.scatter_m;
   entry.unobservable = m.unobservable;
   if (m.unobservable.empty()) {
-    const std::vector<std::string> order{"world_from_base.rotation_x_rad", "world_from_base.rotation_y_rad",
-                                         "world_from_base.rotation_z_rad", "world_from_base.x_m", "world_from_base.y_m",
-                                         "world_from_base.z_m",            "light_in_tool.x_m",   "light_in_tool.y_m",
+    const std::vector<std::string> order{"world_from_base.rotation_x_rad",
+                                         "world_from_base.rotation_y_rad",
+                                         "world_from_base.rotation_z_rad",
+                                         "world_from_base.x_m",
+                                         "world_from_base.y_m",
+                                         "world_from_base.z_m",
+                                         "light_in_tool.x_m",
+                                         "light_in_tool.y_m",
                                          "light_in_tool.z_m"};
     manifest::Value values = manifest::Value::array();
     for (std::size_t i = 0; i < 9; ++i) {
@@ -96,33 +107,42 @@ std::string light_page(const LightMounting& m, const std::vector<LightSample>& s
   using report::number_text;
   const bool known = m.unobservable.empty();
   const double worst = std::max({m.sigma(6), m.sigma(7), m.sigma(8)});
-  report::Page page("Hand-eye calibration of a light",
-                    known ? "The light\u2019s place on the tool is known within " + number_text(1.96 * worst * mm, 2) + " mm at 95 %."
-                          : "These poses do not determine the " + m.unobservable.front() + ".",
-                    "Light \u201c" + light + "\u201d at " + std::to_string(samples.size()) + " poses.",
-                    known ? report::Tone::good : report::Tone::bad);
+  report::Page page(
+      "Hand-eye calibration of a light",
+      known ? "The light\u2019s place on the tool is known within " + number_text(1.96 * worst * mm, 2) + " mm at 95 %."
+            : "These poses do not determine the " + m.unobservable.front() + ".",
+      "Light \u201c" + light + "\u201d at " + std::to_string(samples.size()) + " poses.",
+      known ? report::Tone::good : report::Tone::bad);
   page.section("Result");
   if (!known) page.list(m.unobservable);
   report::TableText table;
-  table.columns = {{"", "", false}, {"x", "mm"}, {"y", "mm"}, {"z", "mm"}, {"turn x", "deg"}, {"turn y", "deg"}, {"turn z", "deg"}};
+  table.columns = {{"", "", false},   {"x", "mm"},       {"y", "mm"},      {"z", "mm"},
+                   {"turn x", "deg"}, {"turn y", "deg"}, {"turn z", "deg"}};
   const auto cell = [](double value, double sigma, bool is_known) {
     return is_known ? report::with_sigma(value, sigma) : std::string("not determined");
   };
-  const Vec3 t = m.world_from_base.translation_m, r = rotation_vector_of(m.world_from_base.rotation), l = m.light_in_tool_m;
+  const Vec3 t = m.world_from_base.translation_m, r = rotation_vector_of(m.world_from_base.rotation),
+             l = m.light_in_tool_m;
   std::vector<std::string> base{"world_from_base"}, place{"light in tool"};
-  for (int k = 0; k < 3; ++k) base.push_back(cell(t[k] * mm, m.sigma(3 + static_cast<std::size_t>(k)) * mm, m.base_known));
-  for (int k = 0; k < 3; ++k) base.push_back(cell(r[k] * deg, m.sigma(static_cast<std::size_t>(k)) * deg, m.base_known));
-  for (int k = 0; k < 3; ++k) place.push_back(cell(l[k] * mm, m.sigma(6 + static_cast<std::size_t>(k)) * mm, m.light_known));
+  for (int k = 0; k < 3; ++k)
+    base.push_back(cell(t[k] * mm, m.sigma(3 + static_cast<std::size_t>(k)) * mm, m.base_known));
+  for (int k = 0; k < 3; ++k)
+    base.push_back(cell(r[k] * deg, m.sigma(static_cast<std::size_t>(k)) * deg, m.base_known));
+  for (int k = 0; k < 3; ++k)
+    place.push_back(cell(l[k] * mm, m.sigma(6 + static_cast<std::size_t>(k)) * mm, m.light_known));
   place.insert(place.end(), 3, "");
   table.rows = {base, place};
-  table.caption = "\u00b1: one standard deviation; noise beyond the positions\u2019 own: " + number_text(m.robot_m * mm, 2) + " mm a coordinate.";
+  table.caption =
+      "\u00b1: one standard deviation; noise beyond the positions\u2019 own: " + number_text(m.robot_m * mm, 2) +
+      " mm a coordinate.";
   page.table(table);
   page.section("Residuals");
   report::TableText list;
   list.columns = {{"Position", "", false}, {"x", "mm"}, {"y", "mm"}, {"z", "mm"}, {"distance", "mm"}};
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Vec3 e = m.residual_m[i];
-    list.rows.push_back({samples[i].id, number_text(e.x * mm, 3), number_text(e.y * mm, 3), number_text(e.z * mm, 3), number_text(norm(e) * mm, 3)});
+    list.rows.push_back({samples[i].id, number_text(e.x * mm, 3), number_text(e.y * mm, 3), number_text(e.z * mm, 3),
+                         number_text(norm(e) * mm, 3)});
   }
   page.table(list);
   page.footer("handeye, gonio " GONIO_VERSION ". This page is one file and loads nothing.");

@@ -8,7 +8,6 @@
 #include <opencv2/calib3d.hpp>
 
 #include "base/error.h"
-
 #include "robot/handeye/closed_forms.h"
 #include "robot/handeye_world.h"
 
@@ -20,8 +19,10 @@ using Motion = tests::Motion;
 
 double distance(const Solution& a, const Solution& b) {
   double largest = 0;
-  for (const double x : tests::error_of(a.mount_from_camera, b.mount_from_camera)) largest = std::max(largest, std::abs(x));
-  for (const double x : tests::error_of(a.stand_from_board, b.stand_from_board)) largest = std::max(largest, std::abs(x));
+  for (const double x : tests::error_of(a.mount_from_camera, b.mount_from_camera))
+    largest = std::max(largest, std::abs(x));
+  for (const double x : tests::error_of(a.stand_from_board, b.stand_from_board))
+    largest = std::max(largest, std::abs(x));
   return largest;
 }
 
@@ -54,7 +55,8 @@ TEST(ClosedForms, HoldNearRotationsOf180Degrees) {
   const auto noisy = samples_of(world.setup(), world.views(5));
   for (const auto& form : closed_forms()) EXPECT_LT(distance(form.solve(noisy), world.truth), 0.01) << form.name;
   // The camera itself turned by 180 degrees, where a Gibbs vector is infinite.
-  for (const Quaternion q : {Quaternion{0, 1, 0, 0}, Quaternion{0, 0, 1, 0}, Quaternion{0, 0, 0, 1}, Quaternion{0, 0.6, 0.8, 0}}) {
+  for (const Quaternion q :
+       {Quaternion{0, 1, 0, 0}, Quaternion{0, 0, 1, 0}, Quaternion{0, 0, 0, 1}, Quaternion{0, 0.6, 0.8, 0}}) {
     HandEyeWorld turned;
     turned.truth.mount_from_camera.rotation = q;
     const auto samples = tests::exact_samples(turned, 6);
@@ -101,8 +103,11 @@ Solution by_opencv(const std::vector<PoseSample>& samples, cv::HandEyeCalibratio
 
 TEST(ClosedForms, AreAsGoodAsOpenCvs) {
   const std::vector<std::pair<std::string, cv::HandEyeCalibrationMethod>> peers{
-      {"tsai", cv::CALIB_HAND_EYE_TSAI}, {"park", cv::CALIB_HAND_EYE_PARK}, {"horaud", cv::CALIB_HAND_EYE_HORAUD},
-      {"andreff", cv::CALIB_HAND_EYE_ANDREFF}, {"daniilidis", cv::CALIB_HAND_EYE_DANIILIDIS}};
+      {"tsai", cv::CALIB_HAND_EYE_TSAI},
+      {"park", cv::CALIB_HAND_EYE_PARK},
+      {"horaud", cv::CALIB_HAND_EYE_HORAUD},
+      {"andreff", cv::CALIB_HAND_EYE_ANDREFF},
+      {"daniilidis", cv::CALIB_HAND_EYE_DANIILIDIS}};
   // Two cameras: one nearly along the tool's axes, one turned by 145 degrees, where OpenCV 4.6 fails by decimetres with
   // tsai, horaud and daniilidis.
   for (const Quaternion q : {normalized(Quaternion{1, 0.1, -0.2, 0.05}), normalized(Quaternion{0.3, 0.7, -0.5, 0.4})}) {

@@ -1,4 +1,5 @@
-// Motions that leave something open are named and nothing is made up; wrong poses are found; rich motions raise no alarm.
+// Motions that leave something open are named and nothing is made up; wrong poses are found; rich motions raise no
+// alarm.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +29,8 @@ HandEyeWorld with_axis_along_tool_z(Motion motion) {
   HandEyeWorld world;
   world.motion = motion;
   const Vec3 axis = normalized(Vec3{0.1, 0.2, 1}), z{0, 0, 1};
-  world.truth.mount_from_camera.rotation = quaternion_of_rotation_vector(normalized(cross(axis, z)) * std::acos(dot(axis, z)));
+  world.truth.mount_from_camera.rotation =
+      quaternion_of_rotation_vector(normalized(cross(axis, z)) * std::acos(dot(axis, z)));
   return world;
 }
 
@@ -53,10 +55,12 @@ TEST(Observability, OneAxisLeavesTheShiftAlongItOpen) {
         world.robot_rad *= noise;
         world.corner_px *= noise;
         const Observability o = observed(world, seed);
-        EXPECT_THAT(o.unobservable, Contains("translation of the camera along the tool's z axis")) << noise << " " << seed;
+        EXPECT_THAT(o.unobservable, Contains("translation of the camera along the tool's z axis"))
+            << noise << " " << seed;
         EXPECT_FALSE(o.mount_from_camera);
         EXPECT_FALSE(o.stand_from_board);
-        for (const auto& words : o.unobservable) EXPECT_THAT(words, testing::Not(HasSubstr("rotation"))) << noise << " " << seed;
+        for (const auto& words : o.unobservable)
+          EXPECT_THAT(words, testing::Not(HasSubstr("rotation"))) << noise << " " << seed;
       }
     }
 }

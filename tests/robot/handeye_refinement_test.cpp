@@ -17,7 +17,8 @@ using tests::HandEyeWorld;
 
 Refined refined(const HandEyeWorld& world, const std::vector<View>& views) {
   const Setup setup = world.setup();
-  return refine(setup, views, std::vector<bool>(views.size(), true), closed_form("park", "").solve(samples_of(setup, views)));
+  return refine(setup, views, std::vector<bool>(views.size(), true),
+                closed_form("park", "").solve(samples_of(setup, views)));
 }
 
 std::vector<double> errors(const Solution& found, const Solution& truth) {
@@ -65,12 +66,14 @@ TEST(Refinement, IntervalsCoverTheTruth) {
       const auto e = errors(r.solution, world.truth);
       for (std::size_t k = 0; k < 12; ++k) covered += std::abs(e[k]) <= 1.96 * r.sigma(k);
       all += 12;
-      joint += std::pow(norm(r.solution.mount_from_camera.translation_m - world.truth.mount_from_camera.translation_m), 2);
+      joint +=
+          std::pow(norm(r.solution.mount_from_camera.translation_m - world.truth.mount_from_camera.translation_m), 2);
       const Solution park = closed_form("park", "").solve(samples_of(world.setup(), views));
       closed += std::pow(norm(park.mount_from_camera.translation_m - world.truth.mount_from_camera.translation_m), 2);
     }
     const double share = static_cast<double>(covered) / all;
-    std::cout << "covered " << share << ", joint " << std::sqrt(joint / 50) << " m, park " << std::sqrt(closed / 50) << " m\n";
+    std::cout << "covered " << share << ", joint " << std::sqrt(joint / 50) << " m, park " << std::sqrt(closed / 50)
+              << " m\n";
     EXPECT_GT(share, 0.91);
     EXPECT_LT(share, 0.985);
     EXPECT_LT(joint, closed);

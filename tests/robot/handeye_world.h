@@ -77,7 +77,8 @@ struct HandEyeWorld {
         const auto other = inverse(stand_from_mount);
         tool = {other.rotation, other.translation_m};
       }
-      const Vec3 w{random.normal(), random.normal(), random.normal()}, d{random.normal(), random.normal(), random.normal()};
+      const Vec3 w{random.normal(), random.normal(), random.normal()},
+          d{random.normal(), random.normal(), random.normal()};
       tool.rotation = normalized(quaternion_of_rotation_vector(w * robot_rad) * tool.rotation);
       tool.translation_m += d * robot_m;
       he::View view{"view-" + std::to_string(i), tool, pose, {}};
@@ -86,8 +87,10 @@ struct HandEyeWorld {
         const Vec3 p = pose * Vec3{at.x, at.y, 0};
         const double x = p.x / p.z, y = p.y / p.z, r = 1 + s.lens.distortion[0] * (x * x + y * y);
         const double u = random.normal(), v = random.normal();
-        view.corners.push_back({at, {s.lens.fx_px * x * r + s.lens.cx_px + u * corner_px,
-                                     s.lens.fy_px * y * r + s.lens.cy_px + v * corner_px}, claimed_px});
+        view.corners.push_back(
+            {at,
+             {s.lens.fx_px * x * r + s.lens.cx_px + u * corner_px, s.lens.fy_px * y * r + s.lens.cy_px + v * corner_px},
+             claimed_px});
       }
       view.camera_from_board.translation_m += Vec3{0.001, -0.001, 0.002};  // a start that is a little off
       view.camera_from_board = he::pose_by_camera(s, view);

@@ -1,5 +1,7 @@
-// A light on a tool, found in the world: simulation with known truth, coverage of the intervals, motions that leave something
-// open.
+// A light on a tool, found in the world: simulation with known truth, coverage of the intervals, motions that leave
+// something open.
+#include "robot/light_handeye.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +10,6 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "robot/light_handeye.h"
 
 namespace gonio::robot {
 namespace {
@@ -20,7 +21,8 @@ const Rigid<frame::World, frame::Base> true_base{normalized(Quaternion{0.7, 0.1,
 const Vec3 true_light{0.03, -0.02, 0.15};
 enum class Motion { rich, shifts, one_axis };
 
-std::vector<LightSample> samples(std::uint64_t seed, int count, double robot_m, double sigma_m, Motion motion = Motion::rich) {
+std::vector<LightSample> samples(std::uint64_t seed, int count, double robot_m, double sigma_m,
+                                 Motion motion = Motion::rich) {
   Random random(seed, 3);
   std::vector<LightSample> list;
   const auto normal3 = [&] { return Vec3{random.normal(), random.normal(), random.normal()}; };
@@ -28,10 +30,14 @@ std::vector<LightSample> samples(std::uint64_t seed, int count, double robot_m, 
     Vec3 turn{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-2, 2)};
     if (motion == Motion::shifts) turn = {0.3, -0.2, 0.5};
     if (motion == Motion::one_axis) turn = {0, 0, turn.z};
-    const Rigid<frame::Base, frame::Tool> tool{quaternion_of_rotation_vector(turn),
-                                               {random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(0.1, 0.6)}};
+    const Rigid<frame::Base, frame::Tool> tool{
+        quaternion_of_rotation_vector(turn),
+        {random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(0.1, 0.6)}};
     const Vec3 p = true_base * (tool * true_light) + normal3() * sigma_m + normal3() * robot_m;
-    list.push_back({"p" + std::to_string(i), tool, p, {std::max(sigma_m, 1e-6), std::max(sigma_m, 1e-6), std::max(sigma_m, 1e-6)}});
+    list.push_back({"p" + std::to_string(i),
+                    tool,
+                    p,
+                    {std::max(sigma_m, 1e-6), std::max(sigma_m, 1e-6), std::max(sigma_m, 1e-6)}});
   }
   return list;
 }

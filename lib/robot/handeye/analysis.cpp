@@ -53,8 +53,9 @@ double inverted_ratio(const Setup& setup, const std::vector<View>& views, double
 void enter_complaints(const Setup& setup, std::size_t views, Analysis& a) {
   if (a.inverted_ratio > clearly_better) {
     a.complaints.push_back("the poses fit better inverted: " +
-                           std::string(setup.kind == Kind::eye_in_hand ? "does the camera stand still (--kind eye-to-hand)"
-                                                                       : "does the robot hold the camera (--kind eye-in-hand)") +
+                           std::string(setup.kind == Kind::eye_in_hand
+                                           ? "does the camera stand still (--kind eye-to-hand)"
+                                           : "does the robot hold the camera (--kind eye-in-hand)") +
                            ", or are they tool_from_base (--pose-direction)?");
   }
   const auto out = static_cast<double>(std::ranges::count(a.consensus.counts, false));

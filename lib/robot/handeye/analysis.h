@@ -1,5 +1,5 @@
-// A whole hand-eye calibration: outliers, closed forms, joint refinement, what can be observed, errors at poses that were
-// left out, where the scatter comes from, and what to add. Everything that the manifest and the page show.
+// A whole hand-eye calibration: outliers, closed forms, joint refinement, what can be observed, errors at poses that
+// were left out, where the scatter comes from, and what to add. Everything that the manifest and the page show.
 #pragma once
 #include <optional>
 #include <string>
@@ -15,9 +15,9 @@ struct Parts {  // of the scatter of the board's middle over the poses, three co
   double robot_m = 0, camera_m = 0, unexplained_m = 0;
 };
 struct Analysis {
-  std::string method;           // "joint", or the closed form that was asked for
-  std::string best_closed;      // closed form with the least error of position at poses left out
-  Solution solution, closed;    // of `method`; of best_closed
+  std::string method;         // "joint", or the closed form that was asked for
+  std::string best_closed;    // closed form with the least error of position at poses left out
+  Solution solution, closed;  // of `method`; of best_closed
   Consensus consensus;
   Observability observability;
   std::vector<HeldOutErrors> held_out;     // joint, reprojection, then the closed forms; empty below four poses

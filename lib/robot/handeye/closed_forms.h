@@ -4,8 +4,8 @@
 // They take every pair of samples as a motion, so that no order is preferred, and work on samples sorted by what they
 // hold, so that their sums do not depend on the order in which samples were given. Near rotations of 180 degrees, where
 // the axis of a motion has no sign, the sign is taken that agrees with a first rotation found without signs; small
-// rotations count by their sine and are nowhere divided by it. They minimise algebraic distances, know no noise and give
-// no uncertainty: refinement.h does. Where the motions do not determine a component it is returned as zero in some
+// rotations count by their sine and are nowhere divided by it. They minimise algebraic distances, know no noise and
+// give no uncertainty: refinement.h does. Where the motions do not determine a component it is returned as zero in some
 // frame: observability.h tells.
 #pragma once
 #include <span>

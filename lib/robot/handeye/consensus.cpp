@@ -100,8 +100,8 @@ Consensus find_consensus(const Setup& setup, const std::vector<View>& views) {
   const Solution start = least_median_start(samples, setup.middle_m());
   const auto errors = mismatches(samples, start, setup.middle_m());
   Consensus result;
-  result.counts = views.size() < 5 ? std::vector<bool>(views.size(), true)
-                                   : best_half(distances(errors, median_of(errors)));
+  result.counts =
+      views.size() < 5 ? std::vector<bool>(views.size(), true) : best_half(distances(errors, median_of(errors)));
   const double quantile = stats::chi2_quantile(1 - false_alarms / n, 6);
   double shortened = 1.8;  // a half chosen for its small distances shows too small a scatter (consistency at 6 degrees)
   for (int round = 0; round < most_rounds; ++round) {

@@ -1,10 +1,10 @@
 // Which poses fit together: a solution that a minority of wrong poses cannot bend, and the list of those poses.
 //
-// A start that wrong poses do not touch: over subsets of three poses (all of them, or 400 drawn in an order that depends on
-// the samples alone) the closed form with the least median mismatch (RANSAC without a threshold: Rousseeuw's least median
-// of squares, JASA 79, 1984). From its best half the joint refinement grows: a pose counts if its Mahalanobis distance,
-// by the noises estimated from the poses that count, stays below the quantile that one right pose in a hundred sets
-// exceeds; repeated until nothing changes.
+// A start that wrong poses do not touch: over subsets of three poses (all of them, or 400 drawn in an order that
+// depends on the samples alone) the closed form with the least median mismatch (RANSAC without a threshold: Rousseeuw's
+// least median of squares, JASA 79, 1984). From its best half the joint refinement grows: a pose counts if its
+// Mahalanobis distance, by the noises estimated from the poses that count, stays below the quantile that one right pose
+// in a hundred sets exceeds; repeated until nothing changes.
 #pragma once
 #include "robot/handeye/refinement.h"
 

@@ -15,12 +15,13 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 struct CornerInformation {
   Matrix6 information = Matrix6::Zero();
-  Vector6 gradient = Vector6::Zero();      // half the derivative of the squares
-  Eigen::MatrixXd lens;                    // 6 x lens_order: cross terms with the lens
+  Vector6 gradient = Vector6::Zero();  // half the derivative of the squares
+  Eigen::MatrixXd lens;                // 6 x lens_order: cross terms with the lens
   double squares = 0, coordinates = 0;
-  bool in_front = true;                    // false: some corner lies behind the camera
+  bool in_front = true;  // false: some corner lies behind the camera
 };
-CornerInformation corner_information(const Setup& setup, const View& view, const camera::BoardPose& pose, double factor);
+CornerInformation corner_information(const Setup& setup, const View& view, const camera::BoardPose& pose,
+                                     double factor);
 camera::BoardPose moved_by(const camera::BoardPose& pose, const Vector6& change);
 
 }  // namespace gonio::robot::handeye

@@ -1,6 +1,6 @@
 // Li, Wang & Wu 2010: both rotations and both translations as one linear problem of 24 unknowns (eqs. 20 and 21):
-// R_A R_X - R_Z R_B = 0 and R_Z t_B + t_Z - R_A t_X = t_A at every sample. Lengths are in units of the motions' size; the
-// rotations are projected, and the translations solved once more with the result.
+// R_A R_X - R_Z R_B = 0 and R_Z t_B + t_Z - R_A t_X = t_A at every sample. Lengths are in units of the motions' size;
+// the rotations are projected, and the translations solved once more with the result.
 #include "robot/handeye/motions.h"
 
 namespace gonio::robot::handeye {

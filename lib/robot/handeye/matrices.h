@@ -1,5 +1,5 @@
-// Rigid motions as Eigen matrices, and the projections onto rotations that the solvers share. For sources of this folder
-// only.
+// Rigid motions as Eigen matrices, and the projections onto rotations that the solvers share. For sources of this
+// folder only.
 #pragma once
 #include <Eigen/Dense>
 
@@ -10,8 +10,12 @@ namespace gonio::robot::handeye {
 using Matrix3 = Eigen::Matrix3d;
 using Vector3 = Eigen::Vector3d;
 
-inline Vector3 eigen_of(Vec3 v) { return {v.x, v.y, v.z}; }
-inline Vec3 vec_of(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+inline Vector3 eigen_of(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+inline Vec3 vec_of(const Vector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 inline Matrix3 eigen_of(const Quaternion& q) {
   const Mat3 m = matrix_of(q);
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.m.data());
@@ -34,7 +38,9 @@ inline Matrix3 nearest_rotation(const Matrix3& m) {
   return svd.matrixU() * Vector3(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
 }
 // The rotation in a multiple of a rotation matrix, whose factor may be negative.
-inline Matrix3 rotation_in_multiple(const Matrix3& m) { return nearest_rotation(m.determinant() < 0 ? Matrix3(-m) : m); }
+inline Matrix3 rotation_in_multiple(const Matrix3& m) {
+  return nearest_rotation(m.determinant() < 0 ? Matrix3(-m) : m);
+}
 
 // Solution of n x = b for a symmetric, positive semidefinite n: along directions whose eigenvalue is below `share` of
 // the largest, x is zero.

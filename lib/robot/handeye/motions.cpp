@@ -9,7 +9,9 @@ namespace {
 
 constexpr double sure_sign = 0.3;  // |w| of a quaternion above which its sign is that with w > 0
 
-Eigen::Vector4d vector_of(const Quaternion& q) { return {q.w, q.x, q.y, q.z}; }
+Eigen::Vector4d vector_of(const Quaternion& q) {
+  return {q.w, q.x, q.y, q.z};
+}
 
 std::array<double, 14> content(const PoseSample& s) {
   const auto canonical = [](Quaternion q) {
@@ -67,8 +69,8 @@ Motions motions_of(std::span<const PoseSample> samples) {
     for (std::size_t j = i + 1; j < all.samples.size(); ++j) {
       const auto a = inverse(all.samples[j].stand_from_mount) * all.samples[i].stand_from_mount;
       const auto b = all.samples[j].camera_from_board * inverse(all.samples[i].camera_from_board);
-      Motion m{vector_of(a.rotation),   vector_of(b.rotation),      eigen_of(a.rotation),
-               eigen_of(b.rotation),    eigen_of(a.translation_m), eigen_of(b.translation_m)};
+      Motion m{vector_of(a.rotation), vector_of(b.rotation),     eigen_of(a.rotation),
+               eigen_of(b.rotation),  eigen_of(a.translation_m), eigen_of(b.translation_m)};
       squares += m.shift_a.squaredNorm() + m.shift_b.squaredNorm();
       all.pairs.push_back(m);
     }
@@ -104,8 +106,9 @@ Solution with_board(const Motions& motions, const Rigid<Mount, frame::Camera>& x
     sum += z.translation_m;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> e(squares);
-  return {x, {quaternion_from(rotation_of(e.eigenvectors().col(3))),
-              sum / static_cast<double>(std::max<std::size_t>(1, motions.samples.size()))}};
+  return {x,
+          {quaternion_from(rotation_of(e.eigenvectors().col(3))),
+           sum / static_cast<double>(std::max<std::size_t>(1, motions.samples.size()))}};
 }
 
 Solution with_translations(const Motions& motions, const Matrix3& rotation_x, const Matrix3& rotation_z) {

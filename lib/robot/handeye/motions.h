@@ -27,8 +27,8 @@ Motions motions_of(std::span<const PoseSample> samples);
 
 // Camera's place on the mount from its rotation: (R_A - 1) t = R_X t_B - t_A over all pairs, least squares.
 Rigid<Mount, frame::Camera> with_translation(const Motions& motions, const Matrix3& rotation_x);
-// Adds the board's place: the mean of where the samples see it (rotations: eigenvector of summed quaternions, Markley et
-// al., J. Guidance 30(4), 2007).
+// Adds the board's place: the mean of where the samples see it (rotations: eigenvector of summed quaternions, Markley
+// et al., J. Guidance 30(4), 2007).
 Solution with_board(const Motions& motions, const Rigid<Mount, frame::Camera>& mount_from_camera);
 // Both places from both rotations: t_Z - R_A t_X = t_A - R_Z t_B over all samples, least squares.
 Solution with_translations(const Motions& motions, const Matrix3& rotation_x, const Matrix3& rotation_z);

@@ -39,8 +39,8 @@ View imagined(const Setup& setup, const View& like, const camera::BoardPose& pos
   const auto implied = solution.stand_from_board * inverse(pose) * inverse(solution.mount_from_camera);
   const Rigid<frame::Base, frame::Tool> forward{implied.rotation, implied.translation_m};
   const auto back = inverse(implied);
-  view.base_from_tool = setup.kind == Kind::eye_in_hand ? forward
-                                                        : Rigid<frame::Base, frame::Tool>{back.rotation, back.translation_m};
+  view.base_from_tool =
+      setup.kind == Kind::eye_in_hand ? forward : Rigid<frame::Base, frame::Tool>{back.rotation, back.translation_m};
   return view;
 }
 
@@ -52,9 +52,12 @@ std::string words_of(Kind kind, double tilt_deg, double azimuth_deg, double spin
   if (tilt_deg == 0) {
     std::snprintf(text, sizeof text, "face the board squarely from %.2f m%s", distance_m, spin);
   } else {
-    const char* side = azimuth_deg == 0 ? "its right" : azimuth_deg == 90 ? "below" : azimuth_deg == 180 ? "its left" : "above";
-    std::snprintf(text, sizeof text, "view the board from %s, tilted by %.0f degrees, at %.2f m%s",
-                  side, tilt_deg, distance_m, spin);
+    const char* side = azimuth_deg == 0     ? "its right"
+                       : azimuth_deg == 90  ? "below"
+                       : azimuth_deg == 180 ? "its left"
+                                            : "above";
+    std::snprintf(text, sizeof text, "view the board from %s, tilted by %.0f degrees, at %.2f m%s", side, tilt_deg,
+                  distance_m, spin);
   }
   return text;
 }
@@ -88,7 +91,8 @@ double spread(const Matrix12& n, double distance_m) {
   Matrix12 scaled = n;
   scaled.diagonal() *= 1 + 1e-12;
   const Matrix12 covariance = scaled.ldlt().solve(Matrix12::Identity());
-  return covariance.diagonal().segment<3>(0).sum() * distance_m * distance_m + covariance.diagonal().segment<3>(3).sum();
+  return covariance.diagonal().segment<3>(0).sum() * distance_m * distance_m +
+         covariance.diagonal().segment<3>(3).sum();
 }
 
 }  // namespace

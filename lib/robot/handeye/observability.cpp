@@ -11,9 +11,9 @@ namespace gonio::robot::handeye {
 namespace {
 
 constexpr int disturbances = 24;
-constexpr double feigned_limit = 0.25;    // relative growth of a direction's information under the noise
-constexpr double rounding_share = 1e-10;  // of the best determined direction's information
-constexpr double part_of_direction = 0.2; // a direction touches a block if this much of its length lies in it
+constexpr double feigned_limit = 0.25;     // relative growth of a direction's information under the noise
+constexpr double rounding_share = 1e-10;   // of the best determined direction's information
+constexpr double part_of_direction = 0.2;  // a direction touches a block if this much of its length lies in it
 
 using Basis12 = Eigen::Matrix<double, 12, Eigen::Dynamic>;
 
@@ -31,7 +31,8 @@ std::vector<ObservedPose> observed_poses(const Setup& setup, const std::vector<V
 }
 
 // The poses once more, each moved as the robot's and the camera's noise may have moved it.
-std::vector<ObservedPose> disturbed(Kind kind, std::vector<ObservedPose> poses, const Refined& refined, Random& random) {
+std::vector<ObservedPose> disturbed(Kind kind, std::vector<ObservedPose> poses, const Refined& refined,
+                                    Random& random) {
   for (ObservedPose& o : poses) {
     const Deviation d = deviation(kind, o, refined.solution);
     const Eigen::LLT<Matrix6> root(deviation_covariance(d, o, refined.noise));
@@ -68,7 +69,8 @@ Basis12 geometrically_free(const Setup& setup, std::vector<ObservedPose> poses, 
 }
 
 // Lengths stand for turns as well: a turn by w counts as the shift w * reach at a typical distance.
-Basis12 free_directions(const Setup& setup, const std::vector<ObservedPose>& poses, const Refined& refined, double reach) {
+Basis12 free_directions(const Setup& setup, const std::vector<ObservedPose>& poses, const Refined& refined,
+                        double reach) {
   if (const Basis12 exact = geometrically_free(setup, poses, refined, reach); exact.cols() > 0) return exact;
   Vector12 unit;
   unit << Vector3::Constant(1 / reach), Vector3::Ones(), Vector3::Constant(1 / reach), Vector3::Ones();
@@ -127,7 +129,8 @@ Observability observe(const Setup& setup, const std::vector<View>& views, const 
                       const Refined& refined) {
   const std::vector<ObservedPose> poses = observed_poses(setup, views, counts, refined);
   double reach = 0;
-  for (const ObservedPose& o : poses) reach += norm(o.camera_from_board.translation_m) / static_cast<double>(poses.size());
+  for (const ObservedPose& o : poses)
+    reach += norm(o.camera_from_board.translation_m) / static_cast<double>(poses.size());
   const Basis12 free = free_directions(setup, poses, refined, std::max(reach, 1e-6));
   Observability result;
   if (free.cols() == 0) return result;

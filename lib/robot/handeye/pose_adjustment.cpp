@@ -2,8 +2,9 @@
 //   turn of Z by w, shift d:   turn of M  w              shift of M  w x (t_M - t_Z) + d
 //   turn of T by w, shift d:   turn of M -R_Z R_T' w     shift of M  R_Z R_T' ((c - t_T) x w - d),  c = X^-1 0
 //   turn of X by w, shift d:   turn of M -R_M w          shift of M  R_M (w x t_X - d)
-// and where the robot says M^-1 (eye-to-hand), N = M^-1: turn of N = -R_N (turn of M), shift of N = -R_N (shift of M + t_M x
-// turn of M). The rotation vector of the deviation follows turns by the inverse left Jacobian of the rotation group.
+// and where the robot says M^-1 (eye-to-hand), N = M^-1: turn of N = -R_N (turn of M), shift of N = -R_N (shift of M +
+// t_M x turn of M). The rotation vector of the deviation follows turns by the inverse left Jacobian of the rotation
+// group.
 #include "robot/handeye/pose_adjustment.h"
 
 #include <algorithm>
@@ -41,8 +42,7 @@ std::vector<Linearised> linearise(Kind kind, const std::vector<ObservedPose>& ob
   for (const ObservedPose& o : observed) {
     if (!o.counts) continue;
     const Deviation d = deviation(kind, o, solution);
-    rows.push_back({d.value, d.by_mountings, d.by_pose * o.covariance * d.by_pose.transpose(),
-                    d.by_board_turn});
+    rows.push_back({d.value, d.by_mountings, d.by_pose * o.covariance * d.by_pose.transpose(), d.by_board_turn});
   }
   return rows;
 }
@@ -78,8 +78,8 @@ Matrix12 pseudo_inverse(const Matrix12& n) {
   return root * inverse.asDiagonal() * root.transpose();
 }
 
-// One update of the variances at a fixed linearisation: v <- v (y' G G' y) / trace(G' P G), y = P e, with G the rows or the
-// columns through which each of them acts.
+// One update of the variances at a fixed linearisation: v <- v (y' G G' y) / trace(G' P G), y = P e, with G the rows or
+// the columns through which each of them acts.
 double update_noise(const std::vector<Linearised>& rows, Noise& noise) {
   const Normal n = normal_equations(rows, noise);
   const Matrix12 inverse = pseudo_inverse(n.information);
@@ -107,21 +107,22 @@ double update_noise(const std::vector<Linearised>& rows, Noise& noise) {
   noise.board_rad = updated(noise.board_rad, squares_b, trace_b, least_rad);
   // A variance on its way to zero takes long and matters little: changes count by their share of what they join.
   const double board_share = std::min(1.0, noise.board_rad / noise.robot_rad);
-  return std::max({std::abs(std::log(noise.robot_rad / before.robot_rad)), std::abs(std::log(noise.robot_m / before.robot_m)),
+  return std::max({std::abs(std::log(noise.robot_rad / before.robot_rad)),
+                   std::abs(std::log(noise.robot_m / before.robot_m)),
                    board_share * board_share * std::abs(std::log(noise.board_rad / before.board_rad))});
 }
 
 }  // namespace
 
 Deviation deviation(Kind kind, const ObservedPose& observed, const Solution& s) {
-  const auto implied =
-      s.stand_from_board * inverse(observed.camera_from_board) * inverse(s.mount_from_camera);
+  const auto implied = s.stand_from_board * inverse(observed.camera_from_board) * inverse(s.mount_from_camera);
   const Vector3 t_m = eigen_of(implied.translation_m), t_x = eigen_of(s.mount_from_camera.translation_m);
   const Vector3 t_z = eigen_of(s.stand_from_board.translation_m);
   const Vector3 t_t = eigen_of(observed.camera_from_board.translation_m);
   const Vector3 c = eigen_of(inverse(s.mount_from_camera).translation_m);
   const Matrix3 r_m = eigen_of(implied.rotation);
-  const Matrix3 r_zt = eigen_of(s.stand_from_board.rotation) * eigen_of(observed.camera_from_board.rotation).transpose();
+  const Matrix3 r_zt =
+      eigen_of(s.stand_from_board.rotation) * eigen_of(observed.camera_from_board.rotation).transpose();
   Deviation d;
   d.by_pose << -r_zt, Matrix3::Zero(), r_zt * cross_matrix(c - t_t), -r_zt;
   d.by_mountings << -r_m, Matrix3::Zero(), Matrix3::Identity(), Matrix3::Zero(),  //

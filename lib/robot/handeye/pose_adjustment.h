@@ -1,4 +1,5 @@
-// The refinement with every view's corners summed up as one observed pose of the board. For sources of this folder only.
+// The refinement with every view's corners summed up as one observed pose of the board. For sources of this folder
+// only.
 #pragma once
 #include <vector>
 
@@ -30,13 +31,15 @@ Solution moved_by(const Solution& solution, const Vector12& change);
 
 // Covariance of a deviation: the robot's and the camera's.
 Matrix6 deviation_covariance(const Deviation& d, const ObservedPose& observed, const Noise& noise);
-Matrix12 information(Kind kind, const std::vector<ObservedPose>& observed, const Solution& solution, const Noise& noise);
+Matrix12 information(Kind kind, const std::vector<ObservedPose>& observed, const Solution& solution,
+                     const Noise& noise);
 
 struct PoseAdjustment {
   Solution solution;
   Noise noise;  // all but corner estimated
   bool converged = false;
 };
-PoseAdjustment adjust_poses(Kind kind, const std::vector<ObservedPose>& observed, const Solution& start, const Noise& noise);
+PoseAdjustment adjust_poses(Kind kind, const std::vector<ObservedPose>& observed, const Solution& start,
+                            const Noise& noise);
 
 }  // namespace gonio::robot::handeye

@@ -59,8 +59,7 @@ Matrix12 spread_of_lens(const Setup& setup, const std::vector<View>& views, cons
   Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(12, k);
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (!observed[i].counts) continue;
-    const CornerInformation c =
-        corner_information(setup, views[i], observed[i].camera_from_board, result.noise.corner);
+    const CornerInformation c = corner_information(setup, views[i], observed[i].camera_from_board, result.noise.corner);
     const Deviation d = deviation(setup.kind, observed[i], result.solution);
     const Matrix6x12 weighted = deviation_covariance(d, observed[i], result.noise).ldlt().solve(d.by_mountings);
     slope.noalias() += weighted.transpose() * d.by_pose * -c.information.ldlt().solve(c.lens);
@@ -75,7 +74,8 @@ void enter_covariance(const Setup& setup, const std::vector<View>& views, const 
   const Matrix12 n = information(setup.kind, observed, result.solution, result.noise);
   const Vector12 scale = n.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Matrix12 scaled = scale.asDiagonal() * n * scale.asDiagonal();
-  const Matrix12 inverse = scale.asDiagonal() * Matrix12(scaled.ldlt().solve(Matrix12::Identity())) * scale.asDiagonal();
+  const Matrix12 inverse =
+      scale.asDiagonal() * Matrix12(scaled.ldlt().solve(Matrix12::Identity())) * scale.asDiagonal();
   const auto used = std::ranges::count_if(observed, [](const ObservedPose& o) { return o.counts; });
   const double freedom = 3.0 * static_cast<double>(used) - 6;
   const double widening = stats::student_quantile(0.975, std::max(1.0, freedom)) / stats::normal_quantile(0.975);

@@ -1,5 +1,5 @@
-// Levenberg-Marquardt over the twelve numbers of both mountings. A change of the mountings moves the predicted pose of the
-// board so that the robot's deviation stays zero: by_pose * dT = -by_mountings * change.
+// Levenberg-Marquardt over the twelve numbers of both mountings. A change of the mountings moves the predicted pose of
+// the board so that the robot's deviation stays zero: by_pose * dT = -by_mountings * change.
 #include "robot/handeye/reprojection.h"
 
 #include <algorithm>

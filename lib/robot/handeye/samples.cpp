@@ -28,8 +28,7 @@ PoseError difference(const Rigid<Stand, frame::Board>& a, const Rigid<Stand, fra
 PoseError scatter(std::span<const PoseSample> samples, const Solution& solution, Vec3 middle_m) {
   PoseError sum;
   for (const PoseSample& sample : samples) {
-    const PoseError e =
-        difference(board_seen(sample, solution.mount_from_camera), solution.stand_from_board, middle_m);
+    const PoseError e = difference(board_seen(sample, solution.mount_from_camera), solution.stand_from_board, middle_m);
     sum.translation_m += e.translation_m * e.translation_m;
     sum.rotation_rad += e.rotation_rad * e.rotation_rad;
   }

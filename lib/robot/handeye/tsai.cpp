@@ -1,7 +1,7 @@
-// Tsai & Lenz 1989: with P = 2 sin(angle / 2) axis of each motion, eq. 12 gives the camera's rotation as a linear problem
-// in its Gibbs vector g = tan(angle / 2) axis:  (P_a + P_b) x g = P_b - P_a.  A Gibbs vector is infinite at 180 degrees;
-// so the camera's axes are first turned by 0 or 180 degrees about one of x, y, z, whichever leaves an angle of at most
-// 120 degrees, as one of four always does.
+// Tsai & Lenz 1989: with P = 2 sin(angle / 2) axis of each motion, eq. 12 gives the camera's rotation as a linear
+// problem in its Gibbs vector g = tan(angle / 2) axis:  (P_a + P_b) x g = P_b - P_a.  A Gibbs vector is infinite at 180
+// degrees; so the camera's axes are first turned by 0 or 180 degrees about one of x, y, z, whichever leaves an angle of
+// at most 120 degrees, as one of four always does.
 #include "robot/handeye/motions.h"
 
 namespace gonio::robot::handeye {
