@@ -118,7 +118,7 @@ class HandEyeProblem final : public RobotProblem {
         o.value.push_back(0);
         o.sigma.push_back(1);
         o.norm.push_back(1);
-        o.block.push_back(static_cast<std::uint32_t>(v));
+        o.block.push_back(static_cast<std::uint32_t>(6 * v) + static_cast<std::uint32_t>(i));
       }
       append_robot_conditions(work_, v, whitener_[v], o.conditions);
       o.first.push_back(o.value.size());

@@ -4,7 +4,8 @@
 //   camera_from_board = base_from_camera^-1 base_from_tool tool_from_board      (eye-to-hand),
 // whitened by the Cholesky factor of their covariance: the corners' noise through the pose estimate, plus the robot's
 // own noise (one standard deviation of position, one of rotation, about the tool), which is estimated from these very
-// recordings. One group and one block per view. Score: root mean square in units of that noise.
+// recordings. One group per view; its six numbers, once
+// whitened, are independent witnesses. Score: root mean square in units of that noise.
 //
 // Free in the base model: the two mountings, and focal lengths and principal point where the camera states their sigma
 // (as priors). Hypotheses: robot.joint-offset, robot.link-length, robot.sag (they need joints_rad and a known arm),
