@@ -27,7 +27,8 @@ std::string convention_names() {
 
 std::vector<cli::Option> options() {
   return {
-      {.name = "kind", .type = Type::choice, .help = "Where the camera sits: on the tool, or beside the robot with the board on the tool.",
+      {.name = "kind", .type = Type::choice,
+       .help = "Where the camera sits: on the tool, or beside the robot with the board on the tool.",
        .preset = "eye-in-hand", .choices = {"eye-in-hand", "eye-to-hand"}},
       {.name = "method", .type = Type::choice, .help = "What is written: the joint refinement, or a closed form by name.",
        .preset = "joint", .choices = methods()},
@@ -130,7 +131,8 @@ const cli::Program& gonio_program() {
       .synopsis = {"[OPTION]... [manifest.json]", "--poses FILE --pose-format NAME [OPTION]... [manifest.json]",
                    "--light [OPTION]... [manifest.json]"},
       .options = options(),
-      .operands = {{.name = "MANIFEST", .type = Type::input_file, .help = "Manifest with images, cameras, boards, corners; ends in .json."}},
+      .operands = {{.name = "MANIFEST", .type = Type::input_file,
+                    .help = "Manifest with images, cameras, boards, corners; ends in .json."}},
       .reads = cli::Reads::required, .takes_out = true,
       .sections_read = {"boards", "cameras", "images", "tables", "light_positions"},
       .sections_written = {"files", "frames", "images", "mountings"},

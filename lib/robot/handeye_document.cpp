@@ -283,6 +283,13 @@ std::vector<std::string> summary_of(const HandEyeInput& input, const handeye::An
            input.views.size() - static_cast<std::size_t>(std::ranges::count(a.consensus.counts, false)),
            a.scatter.translation_m * 1e3, a.scatter.rotation_rad * 180 / pi, a.rms_px, n.robot_m * 1e3,
            n.robot_rad * 180 / pi));
+  if (6 * n.board_rad * n.board_rad >
+      a.scatter.rotation_rad * a.scatter.rotation_rad) {  // more than half of the scatter
+    lines.push_back(
+        text("the board is seen turned by %.4f deg per axis beyond the corners' noise, most of its scatter: "
+             "look at the lens's calibration and the board's flatness",
+             n.board_rad * 180 / pi));
+  }
   if (const auto* h = a.held_out_of(a.method)) {
     const auto* best = a.held_out_of(a.best_closed);
     lines.push_back(

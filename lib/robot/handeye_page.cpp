@@ -58,6 +58,9 @@ std::vector<KeyNumber> key_numbers(const HandEyeInput& input, const Analysis& a)
   }
   numbers.push_back({"Robot noise", number_text(r.noise.robot_m * mm, 2), "mm",
                      number_text(r.noise.robot_rad * deg, 2) + " deg about each axis"});
+  numbers.push_back(
+      {"Turn of the seen board", number_text(r.noise.board_rad * deg, 2), "deg",
+       "about each axis, beyond the corners\u2019 noise: lens or board are not quite what they are taken for"});
   const auto out = std::ranges::count(a.consensus.counts, false);
   numbers.push_back({"Poses", std::to_string(input.views.size() - static_cast<std::size_t>(out)), "",
                      out == 0 ? "no outlier" : std::to_string(out) + " outliers left out",
