@@ -29,19 +29,13 @@ Exit run(cli::Invocation& call) {
   return camera::calibrate_document(call.document, camera::request_of(call));
 }
 
-std::vector<std::string> paper_names() {
-  std::vector<std::string> names;
-  for (const camera::Paper& paper : camera::papers()) names.emplace_back(paper.name);
-  return names;
-}
-
 std::vector<cli::Option> options() {
   std::vector<cli::Option> list = camera::calibration_options();
   const std::vector<cli::Option> drawing = {
       {.name = "draw", .type = Type::output_file,
        .help = "Print the board at true scale to a .pdf, .svg or .png instead of calibrating."},
       {.name = "paper", .type = Type::choice, .help = "Paper to draw on; fit: as large as the board and a margin.",
-       .preset = "a4", .choices = paper_names(), .needs = {"draw"}},
+       .preset = "a4", .choices = camera::paper_names(), .needs = {"draw"}},
       {.name = "dpi", .type = Type::number, .help = "Dots per inch of a .png drawing.", .preset = "300", .lower = 10,
        .upper = 4800, .needs = {"draw"}}};
   list.insert(list.end(), drawing.begin(), drawing.end());

@@ -34,7 +34,8 @@ std::pair<int, int> counts(const std::vector<int>& given, int least, const std::
   return {given[0], given[1]};
 }
 
-void read_charuco(const manifest::Board& section, const std::string& place, Board& board) {
+void read_charuco(const manifest::Board& section, const std::string& place, const std::filesystem::path& file,
+                  Board& board) {
   if (!section.marker_m)
     throw Error(Exit::data, place + "/marker_m", "missing", "give the side of the markers in metres");
   board.marker_m = *section.marker_m;
@@ -42,18 +43,27 @@ void read_charuco(const manifest::Board& section, const std::string& place, Boar
     throw Error(Exit::data, place + "/marker_m", "the marker does not fit into its square",
                 "measure both sides: 0 < marker_m < square_m");
   }
-  if (section.dictionary.empty()) {
+  if (board.layout_matters()) board.legacy = section.legacy_layout;
+  int present = 0;
+  if (!file.empty()) {
+    board.own_dictionary = read_dictionary(file);
+    board.dictionary = board.own_dictionary->name;
+    present = static_cast<int>(board.own_dictionary->white.size());
+  } else if (!section.dictionary_file.empty()) {
+    return;
+  } else if (section.dictionary.empty()) {
     throw Error(Exit::data, place + "/dictionary", "missing", "name the markers' dictionary, such as 4X4_50");
+  } else {
+    board.dictionary = dictionary_name(section.dictionary, place + "/dictionary");
+    present = dictionary_size(board.dictionary);
   }
-  board.dictionary = dictionary_name(section.dictionary, place + "/dictionary");
-  const int needed = board.square_columns() * board.square_rows() / 2, present = dictionary_size(board.dictionary);
+  const int needed = board.square_columns() * board.square_rows() / 2;
   if (needed > present) {
     throw Error(
         Exit::data, place + "/dictionary",
         board.dictionary + " has " + std::to_string(present) + " markers, the board needs " + std::to_string(needed),
-        "take the larger dictionary of the family");
+        board.own_dictionary ? "add markers to the file" : "take the larger dictionary of the family");
   }
-  if (board.layout_matters()) board.legacy = section.legacy_layout;
 }
 
 }  // namespace
@@ -72,6 +82,10 @@ BoardExtent Board::extent() const {
   return {(first + last) * 0.5, (last - first) * 0.5};
 }
 
+MarkerCells Board::cells(int marker) const {
+  return own_dictionary ? marker_cells(*own_dictionary, marker) : marker_cells(dictionary, marker);
+}
+
 std::vector<int> columns_and_rows(const std::string& text, const std::string& place) {
   int columns = 0, rows = 0;
   const char *begin = text.data(), *end = begin + text.size();
@@ -83,7 +97,7 @@ std::vector<int> columns_and_rows(const std::string& text, const std::string& pl
   throw Error(Exit::usage, place, "\"" + text + "\" is not columns x rows", "write for example 9x6");
 }
 
-Board board_of(const manifest::Board& section, const std::string& place) {
+Board board_of(const manifest::Board& section, const std::string& place, const std::filesystem::path& dictionary_file) {
   Board board;
   if (!(section.square_m > 0) || !std::isfinite(section.square_m)) {
     throw Error(Exit::data, place + "/square_m", "the side of a square is not above 0", "give it in metres");
@@ -101,12 +115,24 @@ Board board_of(const manifest::Board& section, const std::string& place) {
     const auto [columns, rows] = counts(section.squares, 3, place + "/squares", "squares");
     board.corner_columns = columns - 1;
     board.corner_rows = rows - 1;
-    read_charuco(section, place, board);
+    read_charuco(section, place, dictionary_file, board);
   } else {
     throw Error(Exit::data, place + "/kind", "\"" + section.kind + "\" is no kind of board",
                 "use checkerboard or charuco");
   }
   return board;
+}
+
+Board board_of(const manifest::Document& document, const std::string& id) {
+  const std::string pointer = "/boards/" + id, place = manifest::place(document, pointer);
+  const auto found = document.boards.find(id);
+  if (found == document.boards.end()) throw Error(Exit::data, place, "missing", "describe the board");
+  const manifest::Board& section = found->second;
+  if (section.dictionary_file.empty()) return board_of(section, place);
+  if (!section.dictionary.empty()) {
+    throw Error(Exit::data, place + "/dictionary_file", "stands beside \"dictionary\"", "give one of the two");
+  }
+  return board_of(section, place, manifest::resolve(document, section.dictionary_file, pointer + "/dictionary_file"));
 }
 
 manifest::Board section_of(const Board& board) {
@@ -119,7 +145,7 @@ manifest::Board section_of(const Board& board) {
     section.kind = "charuco";
     section.squares = {board.square_columns(), board.square_rows()};
     section.marker_m = board.marker_m;
-    section.dictionary = board.dictionary;
+    if (!board.own_dictionary) section.dictionary = board.dictionary;
     if (board.layout_matters()) section.legacy_layout = board.legacy;
   }
   return section;
@@ -152,7 +178,7 @@ std::vector<Rectangle> black_areas(const Board& board) {
   }
   if (board.kind == BoardKind::checkerboard) return areas;
   for (const Marker& marker : markers(board)) {
-    const MarkerCells cells = marker_cells(board.dictionary, marker.id);
+    const MarkerCells cells = board.cells(marker.id);
     const Vec2 top_left = marker.corners_m[0];
     const double cell = board.marker_m / cells.side;
     for (int y = 0; y < cells.side; ++y) {

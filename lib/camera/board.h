@@ -7,12 +7,16 @@
 // square bears a marker. With an odd number of rows they are the same.
 #pragma once
 #include <array>
+#include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "camera/board_terms.h"
+#include "camera/marker_dictionary.h"
 #include "geom/vector.h"
+#include "manifest/document.h"
 #include "manifest/sections.h"
 
 namespace gonio::camera {
@@ -25,6 +29,7 @@ struct Board {
   double square_m = 0, marker_m = 0;
   std::string dictionary;      // charuco: "4X4_50"
   std::optional<bool> legacy;  // charuco with an even number of rows: unknown until it is found or given
+  std::shared_ptr<const OwnDictionary> own_dictionary = nullptr;  // instead of the one named, whose name is then the file's
 
   int square_columns() const { return corner_columns + 1; }
   int square_rows() const { return corner_rows + 1; }
@@ -33,11 +38,16 @@ struct Board {
   Vec2 corner_m(int id) const;    // position of corner `id`
   BoardExtent extent() const;     // of the corners
   Vec2 squares_origin_m() const;  // top-left outer corner of the squares
+  MarkerCells cells(int marker) const;
 };
 
-// Error(data) at `place` (".../boards/b") for sizes, markers and dictionaries that make no board.
-Board board_of(const manifest::Board& section, const std::string& place);
-manifest::Board section_of(const Board& board);
+// Error(data) at `place` (".../boards/b") for sizes, markers and dictionaries that make no board. A board with a
+// dictionary_file has its geometry only, unless that file's path is given.
+Board board_of(const manifest::Board& section, const std::string& place,
+               const std::filesystem::path& dictionary_file = {});
+// The board of that id with its dictionary, from the manifest's file where it has one of its own.
+Board board_of(const manifest::Document& document, const std::string& id);
+manifest::Board section_of(const Board& board);  // without the id of a dictionary file
 
 // "9x6", as people type it, to {9, 6}. Error(usage) at `place`.
 std::vector<int> columns_and_rows(const std::string& text, const std::string& place);

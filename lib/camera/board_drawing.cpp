@@ -89,6 +89,12 @@ const std::vector<Paper>& papers() {
   return list;
 }
 
+std::vector<std::string> paper_names() {
+  std::vector<std::string> names;
+  for (const Paper& paper : papers()) names.emplace_back(paper.name);
+  return names;
+}
+
 Drawing lay_out(const Board& board, std::string_view paper, const std::string& place) {
   const double width = 1e3 * board.square_m * board.square_columns(),
                height = 1e3 * board.square_m * board.square_rows();

@@ -15,6 +15,7 @@ struct Paper {
   double width_mm, height_mm;  // upright; 0: as large as the board and a margin
 };
 const std::vector<Paper>& papers();  // a0 to a5, letter, fit
+std::vector<std::string> paper_names();
 
 struct Drawing {
   double width_mm = 0, height_mm = 0;  // of the page

@@ -183,7 +183,11 @@ std::string spoken_of(const std::string& name, const std::vector<std::string>& c
 }  // namespace
 
 void enter_board(const Board& board, manifest::Document& document) {
-  document.boards["board"] = section_of(board);
+  manifest::Board section = section_of(board);
+  if (board.own_dictionary) {
+    section.dictionary_file = manifest::add_file(document, board.own_dictionary->file, "dictionary");
+  }
+  document.boards["board"] = section;
 }
 
 void enter_pictures(const std::vector<std::string>& paths, const std::string& model, manifest::Document& document) {

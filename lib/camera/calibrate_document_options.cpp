@@ -53,12 +53,13 @@ Board board_of(const cli::Invocation& call) {
   section.square_m = call.number("square");
   if (charuco) {
     section.marker_m = call.number("marker");
-    section.dictionary = call.text("dictionary");
+    if (call.given("dictionary")) section.dictionary = call.text("dictionary");
     if (call.text("layout") != "auto") section.legacy_layout = call.text("layout") == "legacy";
   }
   try {
-    return board_of(section, "--" + option);
+    return board_of(section, "--" + option, call.given("dictionary-file") ? call.text("dictionary-file") : "");
   } catch (const Error& e) {
+    if (!e.place().starts_with("--")) throw;
     throw Error(Exit::usage, e.place(), e.problem(), e.remedy());
   }
 }
@@ -91,12 +92,13 @@ void enter_command_line(cli::Invocation& call) {
     }
     enter_board(board_of(call), call.document);
   }
+  // What the user names may lie anywhere.
+  if (call.given("IMAGE") || call.given("dictionary-file")) call.document.allow_outside = true;
   if (!call.given("IMAGE")) {
     if (!call.given("rig")) return;
     throw Error(Exit::usage, "--rig", "has no pictures to look for names in",
                 "name photographs, or give the images of the manifest a camera and a shot");
   }
-  call.document.allow_outside = true;  // what the user names may lie anywhere
   const std::string model = call.text("model") == "auto" ? "radial-tangential" : call.text("model");
   if (call.given("rig"))
     enter_rig(rig_of(call), call.texts("IMAGE"), model, call.document);
@@ -109,14 +111,16 @@ std::vector<cli::Option> calibration_options() {
       {.name = "checkerboard", .type = Type::text, .help = "Plain board: columns and rows of inner corners.",
        .metavar = "CxR", .conflicts = {"charuco"}, .needs = {"square"}},
       {.name = "charuco", .type = Type::text, .help = "ChArUco board: columns and rows of squares.", .metavar = "CxR",
-       .needs = {"square", "marker", "dictionary"}},
+       .needs = {"square", "marker"}},
       {.name = "square", .type = Type::quantity, .help = "Side of a square.", .dimension = Dimension::length,
        .lower = 1e-6, .upper = 10},
       {.name = "marker", .type = Type::quantity, .help = "Side of a marker with its black border.",
        .dimension = Dimension::length, .lower = 1e-6, .upper = 10, .needs = {"charuco"}},
       {.name = "dictionary", .type = Type::text,
        .help = "Dictionary of the markers: 4X4_50 to 7X7_1000, ARUCO_ORIGINAL.",
-       .metavar = "NAME", .needs = {"charuco"}},
+       .metavar = "NAME", .conflicts = {"dictionary-file"}, .needs = {"charuco"}},
+      {.name = "dictionary-file", .type = Type::input_file, .help = "Dictionary of one's own, in OpenCV's YAML or JSON.",
+       .needs = {"charuco"}},
       {.name = "layout", .type = Type::choice,
        .help = "Layout of a ChArUco board with an even number of rows: legacy is that of OpenCV before 4.6.",
        .preset = "auto", .choices = {"auto", "current", "legacy"}, .needs = {"charuco"}},

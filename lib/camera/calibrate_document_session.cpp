@@ -71,10 +71,7 @@ void enter_sightings(const manifest::Document& document, std::size_t index, Sess
   for (const std::string& id : board_ids_of(document, index)) {
     const std::size_t known = session.board_ids.size(), board = entered(session.board_ids, id);
     if (board == known) {
-      const auto found = document.boards.find(id);
-      const std::string place = manifest::place(document, "/boards/" + id);
-      if (found == document.boards.end()) throw Error(Exit::data, place, "missing", "describe the board");
-      session.boards.push_back(board_of(found->second, place));
+      session.boards.push_back(board_of(document, id));
     }
     picture.sightings.push_back({board, {}, 0});
   }

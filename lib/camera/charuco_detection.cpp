@@ -1,17 +1,21 @@
 // ChArUco boards: markers say which corner is which, and local homographies where to look for it.
 //
 // Markers (Garrido-Jurado et al. 2014) are found by OpenCV at reduced resolution first and at full resolution where
-// that shows too few. Their corners are never used as measurements. Which layout the board has, current or legacy, is
+// that hides some. Their corners are never used as measurements. Which layout the board has, current or legacy, is
 // told by the markers' places. In the wrong one rows are off by one square to the left and right in turn, where the
 // number of columns is even, so that a plane homography fits at most half of them; where it is odd, all are off by one
 // square to the same side except one marker in every other row, which lands on the next row. A view that does not show
 // those fits both layouts, and its geometry is the same.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <set>
 
 #include "camera/aruco_dictionary.h"
 #include "camera/board_detectors.h"
@@ -27,19 +31,30 @@ struct Found {
   std::vector<cv::Point2f> corners;  // full picture
 };
 
-constexpr int search_sides_px[] = {1600, 3200, 1 << 20};  // longest side at which markers are sought
-constexpr double enough = 0.9;                            // of the board's markers: no need to look closer
+constexpr int search_sides_px[] = {1000, 2000, 4000, 1 << 20};  // longest side at which markers are sought
+constexpr double enough = 0.9;                            // of the markers in sight: no need to look closer
+constexpr double comfortable_marker_px = 26;              // found wherever it is not covered
+constexpr std::size_t least_markers = 3;                  // that say where the others are
 constexpr double least_marker_px = 9;
 constexpr double layout_tolerance = 0.35;  // of a square: halfway between a fit and a shift by one square is 0.5
 constexpr double stray_tolerance = 1.0;    // of a square: lens distortion stays below, wrong ids do not
 
-std::vector<Found> find_markers_at(const Reduced& picture, const std::string& dictionary) {
+constexpr double neighbourhood = 3.2;  // squares
+constexpr std::size_t least_neighbours = 6;
+constexpr int growth_rounds = 3;
+constexpr double growth_move = 0.1, growth_sigmas = 3;  // of a square; of the median sigma
+
+std::vector<Found> find_markers_at(const Reduced& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary) {
   const auto parameters = cv::aruco::DetectorParameters::create();
   parameters->minMarkerPerimeterRate = 4 * least_marker_px / std::max(picture.bytes.cols, picture.bytes.rows);
+  // Two sizes of window instead of three: what either misses at one scale, the next scale finds.
+  parameters->adaptiveThreshWinSizeMin = 7;
+  parameters->adaptiveThreshWinSizeMax = 23;
+  parameters->adaptiveThreshWinSizeStep = 16;
   parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
   std::vector<int> ids;
   std::vector<std::vector<cv::Point2f>> corners;
-  cv::aruco::detectMarkers(picture.bytes, aruco_dictionary(dictionary), corners, ids, parameters);
+  cv::aruco::detectMarkers(picture.bytes, dictionary, corners, ids, parameters);
   std::vector<Found> found;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     Found marker{ids[i], {}};
@@ -48,20 +63,6 @@ std::vector<Found> find_markers_at(const Reduced& picture, const std::string& di
   }
   std::ranges::sort(found, [](const Found& a, const Found& b) { return a.id < b.id; });
   return found;
-}
-
-std::vector<Found> find_markers(const GreyPicture& picture, const std::string& dictionary, std::size_t on_board) {
-  std::vector<Found> best;
-  double last_scale = 0;
-  for (const int side : search_sides_px) {
-    const Reduced small = reduced(picture, side);
-    if (small.scale == last_scale) break;
-    last_scale = small.scale;
-    std::vector<Found> found = find_markers_at(small, dictionary);
-    if (found.size() > best.size()) best = std::move(found);
-    if (static_cast<double>(best.size()) >= enough * static_cast<double>(on_board)) break;
-  }
-  return best;
 }
 
 using MarkerPlaces = std::map<int, std::array<Vec2, 4>>;  // board frame, by id
@@ -99,6 +100,82 @@ std::vector<double> misfits(const std::vector<Found>& found, const MarkerPlaces&
 
 int votes(const std::vector<double>& misfit) {
   return static_cast<int>(std::ranges::count_if(misfit, [](double d) { return d < layout_tolerance; }));
+}
+
+// Which markers belong to the board, in the layout that more of them fit.
+struct Sight {
+  std::vector<Found> trusted;
+  int foreign = 0;
+  std::array<int, 2> votes{};
+  bool legacy = false;
+};
+
+Sight sight_of(std::vector<Found> found, const Board& board, const std::array<MarkerPlaces, 2>& places) {
+  Sight sight;
+  sight.foreign =
+      static_cast<int>(std::erase_if(found, [&](const Found& marker) { return !places[0].contains(marker.id); }));
+  // A marker seen twice cannot be trusted either time.
+  const std::vector<Found> all = found;
+  std::erase_if(found, [&](const Found& marker) { return std::ranges::count(all, marker.id, &Found::id) > 1; });
+  std::vector<double> misfit = misfits(found, places[0], board.square_m);
+  sight.votes[0] = votes(misfit);
+  sight.legacy = board.legacy.value_or(false);
+  if (board.layout_matters()) {
+    std::vector<double> misfit_legacy = misfits(found, places[1], board.square_m);
+    sight.votes[1] = votes(misfit_legacy);
+    if (!board.legacy) sight.legacy = sight.votes[1] > sight.votes[0];
+    if (sight.legacy) misfit = std::move(misfit_legacy);
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (misfit[i] < stray_tolerance) sight.trusted.push_back(found[i]);
+  }
+  return sight;
+}
+
+// How many markers that were not found lie inside the picture and are so small at this scale that a closer look may
+// find them: the others are covered, or there is nothing more to see of them.
+int hidden_by_scale(const Sight& sight, const MarkerPlaces& places, const GreyPicture& picture, double scale) {
+  std::vector<cv::Point2f> board, pixels;
+  for (const Found& marker : sight.trusted) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Vec2 at = places.at(marker.id)[k];
+      board.emplace_back(static_cast<float>(at.x), static_cast<float>(at.y));
+      pixels.push_back(marker.corners[k]);
+    }
+  }
+  const cv::Mat homography = cv::findHomography(board, pixels, 0);
+  if (homography.empty()) return static_cast<int>(places.size());
+  int hidden = 0;
+  for (const auto& [id, corners] : places) {
+    if (std::ranges::count(sight.trusted, id, &Found::id) > 0) continue;
+    std::vector<cv::Point2f> from, to;
+    for (const Vec2 at : corners) from.emplace_back(static_cast<float>(at.x), static_cast<float>(at.y));
+    cv::perspectiveTransform(from, to, homography);
+    const cv::Rect2f frame(0, 0, static_cast<float>(picture.bytes.cols), static_cast<float>(picture.bytes.rows));
+    const bool inside = std::ranges::all_of(to, [&](const cv::Point2f& p) { return frame.contains(p); });
+    const double side = std::sqrt(cv::contourArea(to)) / scale;
+    if (inside && side < comfortable_marker_px) ++hidden;
+  }
+  return hidden;
+}
+
+// At one size of the picture after the other, until a closer look promises nothing.
+Sight search(const GreyPicture& picture, const Board& board, const std::array<MarkerPlaces, 2>& places) {
+  const auto dictionary = aruco_dictionary(board);
+  Sight best;
+  double last_scale = 0;
+  for (const int side : search_sides_px) {
+    const Reduced small = reduced(picture, side);
+    if (small.scale == last_scale) break;
+    last_scale = small.scale;
+    Sight sight = sight_of(find_markers_at(small, dictionary), board, places);
+    if (sight.trusted.size() >= best.trusted.size()) best = std::move(sight);
+    if (best.trusted.size() < least_markers) continue;
+    const double seen = static_cast<double>(best.trusted.size());
+    const int hidden = hidden_by_scale(best, places[best.legacy ? 1 : 0], picture, small.scale);
+    if (seen >= enough * (seen + hidden)) break;
+  }
+  return best;
 }
 
 // Prediction::bare: black squares have no markers, and the top-left square of the current layout is black.
@@ -142,37 +219,83 @@ std::vector<Prediction> predict_corners(const std::vector<Found>& found, const M
   return predictions;
 }
 
+// The next corner as the homography of its neighbours predicts it; nothing where these are few or on one line.
+std::optional<Prediction> predict_beside(const std::vector<Corner>& corners, const Board& board, int id, bool legacy) {
+  const Vec2 corner = board.corner_m(id);
+  std::vector<std::pair<double, const Corner*>> near;
+  for (const Corner& c : corners) {
+    const double distance = norm(board.corner_m(c.id) - corner) / board.square_m;
+    if (distance < neighbourhood) near.emplace_back(distance, &c);
+  }
+  if (near.size() < least_neighbours) return {};
+  std::vector<cv::Point2f> from, to;
+  for (const auto& [distance, c] : near) {
+    const Vec2 at = (board.corner_m(c->id) - corner) * (1 / board.square_m);
+    from.emplace_back(static_cast<float>(at.x), static_cast<float>(at.y));
+    to.emplace_back(static_cast<float>(c->pixel.x), static_cast<float>(c->pixel.y));
+  }
+  const auto spread = cv::minAreaRect(from).size;
+  if (std::min(spread.width, spread.height) < 0.9F) return {};
+  const cv::Mat homography = cv::findHomography(from, to, 0);
+  if (homography.empty()) return {};
+  std::vector<cv::Point2f> p;
+  cv::perspectiveTransform(std::vector<cv::Point2f>{{0, 0}, {0.5F, 0}, {-0.5F, 0}, {0, 0.5F}, {0, -0.5F}}, p, homography);
+  return Prediction{id, p[0], p[1] - p[2], p[3] - p[4], bare_squares(board, id, legacy)};
+}
+
+// Corners whose own markers are cut off, blurred or covered, from the corners beside them, outwards. These must lie
+// where they are expected and be as sharp as the others.
+void grow(const GreyPicture& picture, const Board& board, bool legacy, const DetectionOptions& options,
+          std::vector<Corner>& corners) {
+  for (int round = 0; round < growth_rounds && corners.size() >= least_neighbours; ++round) {
+    std::vector<double> sigmas;
+    std::set<int> present;
+    for (const Corner& c : corners) {
+      sigmas.push_back(c.sigma_px);
+      present.insert(c.id);
+    }
+    std::ranges::nth_element(sigmas, sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2));
+    const double usual = sigmas[sigmas.size() / 2];
+    std::map<int, Prediction> predictions;
+    std::vector<Prediction> list;
+    for (int id = 0; id < board.corners(); ++id) {
+      if (present.contains(id)) continue;
+      if (const auto p = predict_beside(corners, board, id, legacy)) {
+        predictions[id] = *p;
+        list.push_back(*p);
+      }
+    }
+    std::size_t added = 0;
+    for (const Corner& c : refine(picture.values, list, 0.5 * (1 - board.marker_m / board.square_m), options)) {
+      const Prediction& p = predictions.at(c.id);
+      const double moved = cv::norm(cv::Point2d(c.pixel.x, c.pixel.y) - p.pixel);
+      if (moved > growth_move * p.square_px() || c.sigma_px > growth_sigmas * usual) continue;
+      corners.push_back(c);
+      ++added;
+    }
+    if (added == 0) break;
+  }
+  std::ranges::sort(corners, {}, &Corner::id);
+}
+
 }  // namespace
 
 Detection detect_charuco(const GreyPicture& picture, const Board& board, const DetectionOptions& options) {
   Detection result;
-  std::vector<Found> found = find_markers(picture, board.dictionary, markers(board).size());
-  const MarkerPlaces current = places_of(board, false), legacy = places_of(board, true);
-  result.foreign_markers =
-      static_cast<int>(std::erase_if(found, [&](const Found& marker) { return !current.contains(marker.id); }));
-  // A marker seen twice cannot be trusted either time.
-  std::erase_if(found, [&](const Found& marker) { return std::ranges::count(found, marker.id, &Found::id) > 1; });
-  std::vector<double> misfit = misfits(found, current, board.square_m);
-  result.layout_votes[0] = votes(misfit);
-  result.legacy = board.legacy.value_or(false);
-  if (board.layout_matters()) {
-    std::vector<double> misfit_legacy = misfits(found, legacy, board.square_m);
-    result.layout_votes[1] = votes(misfit_legacy);
-    if (!board.legacy) result.legacy = result.layout_votes[1] > result.layout_votes[0];
-    if (result.legacy) misfit = std::move(misfit_legacy);
-  }
-  std::vector<Found> trusted;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (misfit[i] < stray_tolerance) trusted.push_back(found[i]);
-  }
-  result.markers = static_cast<int>(trusted.size());
-  if (trusted.empty()) {
+  const std::array<MarkerPlaces, 2> places{places_of(board, false), places_of(board, true)};
+  const Sight sight = search(picture, board, places);
+  result.foreign_markers = sight.foreign;
+  result.layout_votes = sight.votes;
+  result.legacy = sight.legacy;
+  result.markers = static_cast<int>(sight.trusted.size());
+  if (sight.trusted.empty()) {
     result.problem = "no marker of " + board.dictionary + " that belongs to the board";
     return result;
   }
   const double clear = 0.5 * (1 - board.marker_m / board.square_m);
-  result.corners =
-      refine(picture.values, predict_corners(trusted, result.legacy ? legacy : current, board, result.legacy), clear, options);
+  const auto predictions = predict_corners(sight.trusted, places[sight.legacy ? 1 : 0], board, sight.legacy);
+  result.corners = refine(picture.values, predictions, clear, options);
+  grow(picture, board, sight.legacy, options, result.corners);
   if (result.corners.empty()) result.problem = "markers, but no corner between them could be refined";
   return result;
 }
@@ -182,7 +305,7 @@ DictionaryGuess guess_dictionary(const io::Image& image) {
   const GreyPicture picture = grey_picture(grey);
   DictionaryGuess best;
   for (const char* family : {"4X4_1000", "5X5_1000", "6X6_1000", "7X7_1000", "ARUCO_ORIGINAL"}) {
-    const std::vector<Found> found = find_markers_at(reduced(picture, 3200), family);
+    const std::vector<Found> found = find_markers_at(reduced(picture, 3200), aruco_dictionary(std::string(family)));
     if (static_cast<int>(found.size()) <= best.markers) continue;
     best = {family, static_cast<int>(found.size()), found.back().id};
   }

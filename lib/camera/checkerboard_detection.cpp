@@ -113,7 +113,7 @@ Detection detect_checkerboard(const GreyPicture& picture, const Board& board, co
   Detection result;
   Grid grid{board.corner_columns, board.corner_rows, find_grid(picture, {board.corner_columns, board.corner_rows})};
   if (grid.points.empty()) {
-    result.problem = "no checkerboard of " + std::to_string(board.corner_columns) + " x " +
+    result.problem = "no whole checkerboard of " + std::to_string(board.corner_columns) + " x " +
                      std::to_string(board.corner_rows) + " inner corners";
     return result;
   }

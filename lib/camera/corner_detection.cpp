@@ -134,6 +134,9 @@ Detection detect_board(const io::Image& image, const Board& board, const Detecti
 }
 
 Detection detect_board(const io::GreyImage& image, const Board& board, const DetectionOptions& options) {
+  // Pictures are searched side by side; threads of OpenCV's own inside each would only stand in each other's way.
+  static const bool one_thread_each = (cv::setNumThreads(1), true);
+  static_cast<void>(one_thread_each);
   const GreyPicture picture = grey_picture(image);
   Detection result = board.kind == BoardKind::charuco ? detect_charuco(picture, board, options)
                                                       : detect_checkerboard(picture, board, options);

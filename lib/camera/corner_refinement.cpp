@@ -24,7 +24,7 @@ constexpr double largest_misfit = 0.35, doubtful_misfit = 0.08, doubtful_times =
 constexpr double largest_sigma_px = 0.5;
 constexpr double start_blur_px = 0.9, least_blur_px = 0.3;
 constexpr int most_steps = 15;
-constexpr double small_step_px = 5e-4;
+constexpr double small_step_px = 2e-3;  // the last one; what is left after it is far less
 constexpr int parameters = 10;
 enum Parameter { x, y, turn1, turn2, blur1, blur2, level, slope_x, slope_y, contrast };
 
@@ -157,11 +157,10 @@ class Saddle {
       Vector j;
       j << k1 * s1 + k2 * s2, -k1 * c1 - k2 * c2, -k1 * a1, -k2 * a2, -k1 * d1 / q[blur1], -k2 * d2 / q[blur2], 1, s.x,
           s.y, e1 * e2;
-      normal->selfadjointView<Eigen::Lower>().rankUpdate(j);
+      normal->noalias() += j * j.transpose();
       *gradient += residual * j;
       cost += residual * residual;
     }
-    *normal = normal->selfadjointView<Eigen::Lower>();
     return cost;
   }
 
@@ -190,7 +189,7 @@ cv::Point2d rough_place(const cv::Mat& values, const cv::Point2d& at, double rea
   const int window = std::max(2, static_cast<int>(std::lround(0.75 * reach)));
   std::vector<cv::Point2f> point{cv::Point2f(at)};
   cv::cornerSubPix(values, point, cv::Size(window, window), cv::Size(-1, -1),
-                   {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 10, 0.02});
+                   {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 4, 0.1});
   return point[0];
 }
 

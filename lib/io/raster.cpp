@@ -14,16 +14,15 @@
 namespace gonio::io {
 namespace {
 
-cv::Mat decode(const std::string& bytes, const std::string& place, int flags) {
+void decode(const std::string& bytes, const std::string& place, int flags, cv::Mat& picture) {
   const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
-  cv::Mat picture;
+  bool decoded = false;
   try {
-    picture = cv::imdecode(buffer, flags);
+    decoded = !cv::imdecode(buffer, flags, &picture).empty();
   } catch (const cv::Exception& failure) {
     throw Error(Exit::data, place, "cannot be decoded (" + failure.err + ")", "export or copy it again");
   }
-  if (picture.empty()) throw Error(Exit::data, place, "the pixels cannot be decoded", "export or copy it again");
-  return picture;
+  if (!decoded) throw Error(Exit::data, place, "the pixels cannot be decoded", "export or copy it again");
 }
 
 template <class Code>
@@ -65,7 +64,8 @@ void fill(const Image& image, const std::vector<int>& sources, cv::Mat& picture)
 Image decode_raster(const std::string& bytes, const std::string& place) {
   const RasterHeader header = read_raster_header(bytes, place);
   check_decoded_size(header.width, header.height, 3 * sizeof(float), bytes.size(), place);
-  const cv::Mat picture = decode(bytes, place, cv::IMREAD_UNCHANGED);
+  cv::Mat picture;
+  decode(bytes, place, cv::IMREAD_UNCHANGED, picture);
   if (picture.depth() == CV_8U) return scaled<std::uint8_t>(picture);
   if (picture.depth() == CV_16U) return scaled<std::uint16_t>(picture);
   throw Error(Exit::data, place, "holds neither 8 nor 16-bit codes", "export floats as OpenEXR");
@@ -74,15 +74,15 @@ Image decode_raster(const std::string& bytes, const std::string& place) {
 GreyImage decode_grey(const std::string& bytes, const std::string& place) {
   const RasterHeader header = read_raster_header(bytes, place);
   check_decoded_size(header.width, header.height, 3 * sizeof(float), bytes.size(), place);
-  const cv::Mat picture =
-      decode(bytes, place, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+  GreyImage grey{static_cast<int>(header.width), static_cast<int>(header.height), {}, {}};
+  grey.bytes.resize(header.width * header.height);
+  cv::Mat picture(grey.height, grey.width, CV_8U, grey.bytes.data());  // filled in place where the file has 8 bits
+  decode(bytes, place, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION, picture);
   if (picture.depth() == CV_16U) return grey_of(scaled<std::uint16_t>(picture));
-  if (picture.depth() != CV_8U)
+  if (picture.type() != CV_8U || picture.cols != grey.width || picture.rows != grey.height) {
     throw Error(Exit::data, place, "holds neither 8 nor 16-bit codes", "export floats as OpenEXR");
-  GreyImage grey{picture.cols, picture.rows, {}, {}};
-  grey.bytes.reserve(picture.total());
-  for (int y = 0; y < picture.rows; ++y)
-    grey.bytes.insert(grey.bytes.end(), picture.ptr(y), picture.ptr(y) + picture.cols);
+  }
+  if (picture.data != grey.bytes.data()) std::copy_n(picture.ptr(), grey.bytes.size(), grey.bytes.data());
   return grey;
 }
 

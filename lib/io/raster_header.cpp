@@ -44,19 +44,33 @@ class Reader {
   const std::string& place_;
 };
 
-constexpr std::array<std::uint32_t, 256> crc_table = [] {
-  std::array<std::uint32_t, 256> table{};
+// Eight bytes at a step: table k moves a byte k bytes further (Kounavis & Berry, "slicing-by-8", 2005).
+constexpr auto crc_tables = [] {
+  std::array<std::array<std::uint32_t, 256>, 8> tables{};
   for (std::uint32_t n = 0; n < 256; ++n) {
     std::uint32_t c = n;
     for (int bit = 0; bit < 8; ++bit) c = (c & 1) ? 0xedb88320u ^ (c >> 1) : c >> 1;
-    table[n] = c;
+    tables[0][n] = c;
   }
-  return table;
+  for (std::size_t k = 1; k < 8; ++k) {
+    for (std::uint32_t n = 0; n < 256; ++n) {
+      tables[k][n] = tables[0][tables[k - 1][n] & 255] ^ (tables[k - 1][n] >> 8);
+    }
+  }
+  return tables;
 }();
 
 std::uint32_t crc32(std::string_view bytes) {
+  const auto byte = [&](std::size_t i) { return static_cast<std::uint32_t>(static_cast<std::uint8_t>(bytes[i])); };
   std::uint32_t c = 0xffffffffu;
-  for (const char byte : bytes) c = crc_table[(c ^ static_cast<std::uint8_t>(byte)) & 255] ^ (c >> 8);
+  std::size_t i = 0;
+  for (; i + 8 <= bytes.size(); i += 8) {
+    c ^= byte(i) | byte(i + 1) << 8 | byte(i + 2) << 16 | byte(i + 3) << 24;
+    c = crc_tables[7][c & 255] ^ crc_tables[6][(c >> 8) & 255] ^ crc_tables[5][(c >> 16) & 255] ^ crc_tables[4][c >> 24] ^
+        crc_tables[3][byte(i + 4)] ^ crc_tables[2][byte(i + 5)] ^ crc_tables[1][byte(i + 6)] ^
+        crc_tables[0][byte(i + 7)];
+  }
+  for (; i < bytes.size(); ++i) c = crc_tables[0][(c ^ byte(i)) & 255] ^ (c >> 8);
   return c ^ 0xffffffffu;
 }
 

@@ -2,6 +2,7 @@
 //
 //   bench-calib render FOLDER png|jpg   40 photographs of 8 MP with all that photographs have, of a camera that is known
 //   bench-calib plain FOLDER images|opencv   the plain path: where its two threads go; prints fx fy cx cy k1 k2 p1 p2 k3
+//   bench-calib recode FOLDER FOLDER png|jpg|tif   the same photographs in another format
 //   bench-calib judge MANIFEST|-   how far a camera predicts off in views that were not used: of a manifest, or of
 //                                      nine numbers from standard input
 //
@@ -19,6 +20,7 @@
 #include <thread>
 
 #include "../camera/synthetic_board.h"
+#include "base/error.h"
 #include "camera/intrinsics.h"
 #include "manifest/document.h"
 
@@ -127,6 +129,16 @@ int plain(const std::filesystem::path& folder, bool over_images) {
   return 0;
 }
 
+int recode(const std::filesystem::path& from, const std::filesystem::path& to, const std::string& format) {
+  std::filesystem::create_directories(to);
+  for (const auto& entry : std::filesystem::directory_iterator(from)) {
+    const cv::Mat codes = cv::imread(entry.path().string(), cv::IMREAD_GRAYSCALE);
+    cv::imwrite((to / entry.path().stem()).string() + "." + format, codes,
+                {cv::IMWRITE_JPEG_QUALITY, 95, cv::IMWRITE_TIFF_COMPRESSION, 1});
+  }
+  return 0;
+}
+
 std::vector<double> nine_of_manifest(const std::filesystem::path& path) {
   const manifest::Document document = manifest::read_document(path, {.allow_outside = true});
   const Intrinsics found = intrinsics_of(document.cameras.begin()->second, "cameras");
@@ -171,7 +183,7 @@ int judge(const std::string& which) {
 }  // namespace
 }  // namespace gonio::camera
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   using namespace gonio::camera;
   const std::vector<std::string> words(argv, argv + argc);
   if (argc == 4 && words[1] == "render") {
@@ -179,7 +191,11 @@ int main(int argc, char** argv) {
     return 0;
   }
   if (argc == 4 && words[1] == "plain") return plain(words[2], words[3] == "images");
+  if (argc == 5 && words[1] == "recode") return recode(words[2], words[3], words[4]);
   if (argc == 3 && words[1] == "judge") return judge(words[2]);
   std::fprintf(stderr, "usage: bench-calib render FOLDER png|jpg | plain FOLDER images|opencv | judge MANIFEST|-\n");
   return 64;
+} catch (const gonio::Error& e) {
+  std::fprintf(stderr, "bench-calib: %s\n", e.what());
+  return 65;
 }

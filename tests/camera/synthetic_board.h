@@ -24,7 +24,7 @@ class Pattern {
     for (const Marker& m : markers(board)) {
       const Vec2 middle = (m.corners_m[0] + m.corners_m[2]) * 0.5;
       marked_[index(static_cast<int>(middle.y / board.square_m), static_cast<int>(middle.x / board.square_m))] = {
-          m.corners_m[0], marker_cells(board.dictionary, m.id)};
+          m.corners_m[0], board.cells(m.id)};
     }
   }
   double reflectance(Vec2 at) const {
