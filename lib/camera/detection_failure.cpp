@@ -51,10 +51,11 @@ Error no_board_found(const Board& board, const io::Image& first, const std::vect
                 std::to_string(board.corner_rows) + " inner corners",
             remedy_checkerboard(board, first)};
   }
+  const std::string doubt = board_doubt(board, detections);
   return {Exit::data, place,
           "none of " + count + " shows a ChArUco board of " + std::to_string(board.square_columns()) + " x " +
               std::to_string(board.square_rows()) + " squares with markers of " + board.dictionary,
-          remedy_charuco(board, first)};
+          doubt.empty() ? remedy_charuco(board, first) : doubt};
 }
 
 std::string board_doubt(const Board& board, const std::vector<Detection>& detections) {
