@@ -34,6 +34,7 @@ struct Found {
 constexpr int search_sides_px[] = {1000, 2000, 4000, 1 << 20};  // longest side at which markers are sought
 constexpr double enough = 0.9;                            // of the markers in sight: no need to look closer
 constexpr double comfortable_marker_px = 26;              // found wherever it is not covered
+constexpr std::size_t least_trusted = 2;
 constexpr std::size_t least_markers = 3;                  // that say where the others are
 constexpr double least_marker_px = 9;
 constexpr double layout_tolerance = 0.35;  // of a square: halfway between a fit and a shift by one square is 0.5
@@ -105,6 +106,7 @@ int votes(const std::vector<double>& misfit) {
 // Which markers belong to the board, in the layout that more of them fit.
 struct Sight {
   std::vector<Found> trusted;
+  std::size_t own = 0;  // with ids of the board
   int foreign = 0;
   std::array<int, 2> votes{};
   bool legacy = false;
@@ -117,6 +119,7 @@ Sight sight_of(std::vector<Found> found, const Board& board, const std::array<Ma
   // A marker seen twice cannot be trusted either time.
   const std::vector<Found> all = found;
   std::erase_if(found, [&](const Found& marker) { return std::ranges::count(all, marker.id, &Found::id) > 1; });
+  sight.own = found.size();
   std::vector<double> misfit = misfits(found, places[0], board.square_m);
   sight.votes[0] = votes(misfit);
   sight.legacy = board.legacy.value_or(false);
@@ -290,6 +293,12 @@ Detection detect_charuco(const GreyPicture& picture, const Board& board, const D
   result.markers = static_cast<int>(sight.trusted.size());
   if (sight.trusted.empty()) {
     result.problem = "no marker of " + board.dictionary + " that belongs to the board";
+    return result;
+  }
+  // A single marker, or a few among many that do not fit, may be chance: of a mirrored board, or of another one.
+  if (sight.trusted.size() < least_trusted || 2 * sight.trusted.size() < sight.own) {
+    result.problem = "only " + std::to_string(sight.trusted.size()) + " of " + std::to_string(sight.own) +
+                     " markers of " + board.dictionary + " lie where the board has them";
     return result;
   }
   const double clear = 0.5 * (1 - board.marker_m / board.square_m);
