@@ -31,7 +31,8 @@ struct Found {
   std::vector<cv::Point2f> corners;  // full picture
 };
 
-constexpr int search_sides_px[] = {1000, 2000, 4000, 1 << 20};  // longest side at which markers are sought
+// Longest sides at which markers are sought; pictures that are hardly larger are not reduced.
+constexpr int search_sides_px[] = {1000, 2000, 4000, 1 << 20}, small_picture_px = 1600;
 constexpr double enough = 0.9;                            // of the markers in sight: no need to look closer
 constexpr double comfortable_marker_px = 26;              // found wherever it is not covered
 constexpr std::size_t least_trusted = 2;
@@ -168,6 +169,7 @@ Sight search(const GreyPicture& picture, const Board& board, const std::array<Ma
   Sight best;
   double last_scale = 0;
   for (const int side : search_sides_px) {
+    if (side < small_picture_px && std::max(picture.bytes.cols, picture.bytes.rows) <= small_picture_px) continue;
     const Reduced small = reduced(picture, side);
     if (small.scale == last_scale) break;
     last_scale = small.scale;
@@ -205,12 +207,18 @@ std::vector<Prediction> predict_corners(const std::vector<Found>& found, const M
     });
     if (near.empty() || near.front().first > 0.8) continue;  // the markers that touch it are 0.71 squares away
     std::vector<cv::Point2f> from, to;
+    cv::Mat board_from_pixel;  // by the nearest marker: the others count where they agree with it
     for (std::size_t i = 0; i < std::min<std::size_t>(4, near.size()) && near[i].first < 3; ++i) {
-      for (std::size_t k = 0; k < 4; ++k) {
-        const Vec2 at = (places.at(near[i].second->id)[k] - corner) * (1 / board.square_m);
-        from.emplace_back(static_cast<float>(at.x), static_cast<float>(at.y));
-        to.push_back(near[i].second->corners[k]);
+      std::vector<cv::Point2f> at_board, at_pixel = near[i].second->corners, mapped;
+      for (const Vec2 at : places.at(near[i].second->id)) {
+        const Vec2 there = (at - corner) * (1 / board.square_m);
+        at_board.emplace_back(static_cast<float>(there.x), static_cast<float>(there.y));
       }
+      if (i == 0) board_from_pixel = cv::getPerspectiveTransform(at_pixel, at_board);
+      cv::perspectiveTransform(at_pixel, mapped, board_from_pixel);
+      if (cv::norm(mapped[0] + mapped[2] - at_board[0] - at_board[2]) > 2 * layout_tolerance) continue;
+      from.insert(from.end(), at_board.begin(), at_board.end());
+      to.insert(to.end(), at_pixel.begin(), at_pixel.end());
     }
     const cv::Mat homography = cv::findHomography(from, to, 0);
     if (homography.empty()) continue;
@@ -295,8 +303,7 @@ Detection detect_charuco(const GreyPicture& picture, const Board& board, const D
     result.problem = "no marker of " + board.dictionary + " that belongs to the board";
     return result;
   }
-  // A single marker, or a few among many that do not fit, may be chance: of a mirrored board, or of another one.
-  if (sight.trusted.size() < least_trusted || 2 * sight.trusted.size() < sight.own) {
+  if (sight.trusted.size() < least_trusted) {  // one alone may be chance: of a mirrored board, or of another one
     result.problem = "only " + std::to_string(sight.trusted.size()) + " of " + std::to_string(sight.own) +
                      " markers of " + board.dictionary + " lie where the board has them";
     return result;
