@@ -9,11 +9,11 @@
 
 namespace gonio {
 
-// Writes `bytes` to `path`. Error(cannot_create) where the place cannot be written, Error(io) where writing fails midway.
+// Writes `bytes` to `path`. Error(cannot_create) where that cannot be done, Error(io) where it fails midway.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
-// For libraries that write by file name: `write(temporary)` fills the temporary, which then takes the target's place. The
-// temporary keeps the target's extension. Whatever `write` throws passes through after the temporary is removed.
+// For libraries that write by file name: `write(temporary)` fills the temporary, which takes the target's place. It
+// keeps the target's extension. Whatever `write` throws passes through after the temporary is removed.
 void write_file_through(const std::filesystem::path& path,
                         const std::function<void(const std::filesystem::path& temporary)>& write);
 
@@ -25,7 +25,7 @@ void check_writable(const std::filesystem::path& path);
 
 void make_folder(const std::filesystem::path& path);  // with parents; Error(cannot_create)
 
-// SIGINT, SIGTERM, SIGHUP: the first removes temporaries and sets interrupted(); programs end with try_again (75) at the
+// SIGINT, SIGTERM, SIGHUP: the first removes temporaries and sets interrupted(); programs end with try_again at the
 // next chunk of a parallel loop; a second one ends at once. SIGPIPE is ignored: a closed pipe surfaces as a write error
 // on stdout, which ends the program quietly with exit 74.
 void install_signal_handlers();

@@ -1,5 +1,5 @@
-// Seeded random numbers that do not depend on threads: a generator is addressed by (seed, stream), so that pixel 17 draws
-// the same numbers whoever computes it. PCG32 (O'Neill 2014) with the stream as its increment, both hashed by SplitMix64.
+// Seeded random numbers that do not depend on threads: a generator is addressed by (seed, stream), and pixel 17 draws
+// the same numbers whoever computes it. PCG32 (O'Neill 2014), the stream its increment, both hashed by SplitMix64.
 #pragma once
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Grey pictures for searching large photographs: one byte a pixel straight from the decoder where the file has no more to
-// say, which is several times as fast as floats of three channels (picture.h).
+// Grey pictures for searching large photographs: one byte a pixel straight from the decoder where the file has no
+// more to say, which is several times as fast as floats of three channels (picture.h).
 #pragma once
 #include <cstdint>
 #include <filesystem>

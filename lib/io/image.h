@@ -1,5 +1,5 @@
-// A picture in memory: named channels of 32-bit floats, interleaved, rows from the top. Pixel (0, 0) is the top-left one and
-// its centre lies at (0, 0).
+// A picture in memory: named channels of 32-bit floats, interleaved, rows from the top. Pixel (0, 0) is the top-left
+// one and its centre lies at (0, 0).
 #pragma once
 #include <cstddef>
 #include <string>

@@ -1,4 +1,4 @@
-// Lights: where radiance comes from. One model is one file in models/, registered by the build. World frame, metres; intensities in
+// Lights: where radiance comes from. A model is one file in models/. World frame, metres; intensities in
 // W/sr (`watt_per_sr`), radiances in W/(m^2 sr), irradiance of a directional light in W/m^2 on a plane facing it.
 //
 // sample(): the contribution to reflected radiance of an unoccluded light is  f(wo, wi) * cos(theta_i) * weight, where
@@ -35,8 +35,8 @@ class Emitter {
  public:
   virtual ~Emitter() = default;
   virtual Sample sample(Vec3 point_m, Vec2 u) const = 0;
-  // What a ray from `origin` along the unit `direction` receives from the light itself, nothing occluding; radiance zero for
-  // delta lights and misses.
+  // What a ray from `origin` along the unit `direction` receives from the light itself, nothing occluding;
+  // radiance zero for delta lights and misses.
   virtual Hit hit(Vec3 origin_m, Vec3 direction) const = 0;
   virtual bool infinite() const { return false; }  // environment: lights rays that leave the scene
 };
@@ -45,9 +45,9 @@ class Model {
  public:
   virtual ~Model() = default;
   virtual const manifest::ModelInfo& info() const = 0;
-  // `picture`: the lat-long environment where info().takes_file, else null.
+  // `image`: the lat-long environment where info().takes_file, else null.
   virtual std::unique_ptr<Emitter> prepare(const manifest::Parameters& parameters,
-                                           std::shared_ptr<const io::Image> picture, const std::string& place) const = 0;
+                                           std::shared_ptr<const io::Image> image, const std::string& place) const = 0;
 };
 
 std::span<const Model* const> all_models();  // generated

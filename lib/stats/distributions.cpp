@@ -1,4 +1,4 @@
-// See distributions.h. Quantiles invert the distribution function by bracketed Newton steps, so that both directions agree.
+// See distributions.h. Quantiles invert the distribution function by bracketed Newton steps: both directions agree.
 #include "stats/distributions.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// See sign_flip.h. Contributions are whitened once, U -> U V^-1/2 with V = U'U, which signs do not change; a draw is then one
-// signed column sum per direction.
+// See sign_flip.h. Contributions are whitened once, U -> U V^-1/2 with V = U'U, which signs do not change; a draw is
+// then one signed column sum per direction.
 #include "stats/sign_flip.h"
 
 #include <Eigen/Dense>

@@ -2,8 +2,8 @@
 //   E(cosine) = integral of F D G2 / (4 wiz woz) wiz d(wi),   mean = 2 integral of E(cosine) cosine d(cosine)
 // for three Fresnel factors: a dielectric of given f0 (exact Fresnel), a perfect mirror (F = 1) and Schlick's rise
 // (1 - cos)^5. Layers of light beneath or between facets are scaled by what the interface lets pass, 1 - E (Kelemen &
-// Szirmay-Kalos 2001; Kulla & Conty 2017). Interpolation is linear in sqrt(cosine), log(alpha) and f0^(1/4); a `mean` is
-// the exact integral of the interpolant, so that energy closes to rounding. Error against direct quadrature: below
+// Szirmay-Kalos 2001; Kulla & Conty 2017). Interpolation is linear in sqrt(cosine), log(alpha) and f0^(1/4); a `mean`
+// is the exact integral of the interpolant, so that energy closes to rounding. Error against direct quadrature: below
 // 2e-3, rms 5e-4 (f0 >= 0.001; 4e-3 below that).
 #pragma once
 

@@ -1,11 +1,11 @@
-// Surfaces: how light that arrives at a point leaves it again. One model is one file in models/, registered by the build.
+// Surfaces: how light that arrives at a point leaves it again. A model is one file in models/.
 //
-// All directions are unit vectors in the local frame whose +z is the shading normal n, pointing away from the surface: `wo` to the
-// eye, `wi` to the light. Models here reflect: below the horizon (z <= 0) everything is zero. evaluate() is the BRDF in 1/sr,
+// Directions are unit vectors in the local frame whose +z is the shading normal n, away from the surface: `wo` to the
+// eye, `wi` to the light. Models here reflect: below the horizon (z <= 0) all is zero. evaluate() is the BRDF in 1/sr,
 // WITHOUT the cosine. sample() draws wi with the density that pdf() states (per steradian).
 //
-// Conditions every model meets, tested for all registered ones: reciprocity f(wo, wi) = f(wi, wo); energy: the cosine-weighted
-// integral is <= 1 for albedo <= 1; sample and pdf agree (chi-square); albedo() equals the integral where it claims to be exact.
+// Conditions that every model meets, and a test checks: reciprocity f(wo, wi) = f(wi, wo); energy: the cosine-weighted
+// integral is <= 1 for albedo <= 1; sample and pdf agree (chi-square); albedo() is the integral where it claims so.
 #pragma once
 #include <array>
 #include <span>
@@ -43,7 +43,7 @@ class Model {
 std::span<const Model* const> all_models();  // generated
 const Model* find(const std::string& id);    // null pointer where there is none
 
-// Values of a manifest surface without textures, presets filled in. Error(data) at `place` for bounds and unknown names.
+// Values of a surface without textures, presets filled in. Error(data) at `place` for bounds and unknown names.
 Values values_of(const Model& model, const manifest::Parameters& parameters, const std::string& place);
 
 }  // namespace gonio::surface

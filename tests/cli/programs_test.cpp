@@ -27,7 +27,8 @@ std::vector<cli::Option> all_options(const cli::Program& program) {
 TEST(Programs, AreThere) {
   std::set<std::string> names;
   for (const auto* program : cli::all_programs()) names.insert(program->name);
-  EXPECT_THAT(names, testing::IsSupersetOf({"calib-charuco", "render", "compare", "explain"}));
+  EXPECT_THAT(names, testing::IsSupersetOf({"calib-charuco", "camera-export", "compare", "develop", "explain",
+                                            "handeye", "render", "vdi2634"}));
 }
 
 TEST(Programs, DescriptionsAreComplete) {

@@ -4,14 +4,33 @@
 
 #include <algorithm>
 #include <regex>
+#include <set>
+#include <string>
 
 #include "meta/source_tree.h"
 
 namespace gonio::tests {
 namespace {
 
-constexpr std::size_t longest_source = 600, longest_header = 250, longest_tool = 150, longest_line = 140;
+constexpr std::size_t longest_source = 400, longest_header = 250, longest_tool = 150, longest_line = 120;
 constexpr std::size_t longest_function = 60;
+
+// Style sheets inside sources: lines of CSS are not broken.
+const std::set<std::string>& with_style_sheets() {
+  static const std::set<std::string> files{"lib/report/page_style.cpp"};
+  return files;
+}
+
+// What is still to be brought into the limit of lines; nothing new may join.
+constexpr std::size_t longest_line_for_now = 140;
+bool is_excused(const std::string& path) {
+  for (const char* folder :
+       {"tests/manifest/", "tests/scene/", "tests/stats/", "lib/camera/", "lib/explain/", "lib/mechanism/",
+        "lib/manifest/", "lib/robot/", "tests/bench/", "tests/camera/", "tests/explain/", "tests/prove/",
+        "tests/robot/", "tools/calib-charuco.cpp", "tools/explain.cpp", "tools/handeye.cpp"})
+    if (path.starts_with(folder)) return true;
+  return false;
+}
 
 std::vector<SourceFile> all_sources() {
   std::vector<SourceFile> files;
@@ -64,12 +83,15 @@ TEST(Files, NoFunctionIsTooLong) {
 
 // Characters, not bytes: UTF-8 continuation bytes do not count.
 TEST(Files, LinesFitTheColumnLimit) {
-  for (const auto& file : all_sources())
+  for (const auto& file : all_sources()) {
+    const std::size_t limit = is_excused(file.path) ? longest_line_for_now : longest_line;
+    if (with_style_sheets().contains(file.path)) continue;
     for (std::size_t i = 0; i < file.lines.size(); ++i) {
       const auto width = std::count_if(file.lines[i].begin(), file.lines[i].end(),
                                        [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; });
-      EXPECT_LE(width, static_cast<std::ptrdiff_t>(longest_line)) << place(file, static_cast<int>(i) + 1);
+      EXPECT_LE(width, static_cast<std::ptrdiff_t>(limit)) << place(file, static_cast<int>(i) + 1);
     }
+  }
 }
 
 TEST(Files, FoldersAndFilesAreNamedAfterTheirSubject) {

@@ -97,7 +97,8 @@ TEST_F(Compare, RefusesWhatItCannotAnswer) {
 
 TEST_F(Compare, ReadsThePipeAndWritesPictures) {
   const std::string manifest = R"({"gonio": 1, "files": {"p": {"path": "photo.exr"}, "r": {"path": "half.exr"}},
-    "images": [{"id": "view", "file": "p", "noise": {"gain": 1000, "read": 0.001}}], "renderings": [{"image": "view", "file": "r"}]})";
+    "images": [{"id": "view", "file": "p", "noise": {"gain": 1000, "read": 0.001}}],
+    "renderings": [{"image": "view", "file": "r"}]})";
   const Ended ended = compare({"--one-exposure", "--out", "d", "--html", "r.html"}, manifest);
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(comparison(ended).find("image")->as_string(), "view");
