@@ -11,7 +11,7 @@ namespace gonio {
 
 std::string shortest_text(double value) {
   std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value == 0 ? 0.0 : value).ptr;
   return {text.data(), end};
 }
 

@@ -198,6 +198,12 @@ TEST(ExportColmap, ProjectsTheSameWithTheSimplestModelThatHoldsTheLens) {
   expect_colmap_projects_the_same(square, files);
 }
 
+TEST(ExportColmap, RefusesNamesThatItWouldCutOff) {
+  manifest::Document document = exported_document(true);
+  document.images[1].id = "first try";
+  EXPECT_THROW(export_cameras(document, {.format = "colmap"}), Error);
+}
+
 TEST(ExportColmap, RefusesAThinPrism) {
   EXPECT_THROW(export_cameras(document_with("thin-prism", {{"s1", 0.01}}), {.format = "colmap"}), Error);
 }

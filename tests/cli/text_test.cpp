@@ -10,6 +10,7 @@ namespace {
 TEST(Text, ShortestDigitsReadBack) {
   EXPECT_EQ(shortest_text(0.1), "0.1");
   EXPECT_EQ(shortest_text(-3), "-3");
+  EXPECT_EQ(shortest_text(-0.0), "0");
   for (const double v : {1.0 / 3, 1e-300, 532.8049999999999, 6.02e23})
     EXPECT_EQ(std::strtod(shortest_text(v).c_str(), nullptr), v);
 }

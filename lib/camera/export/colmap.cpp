@@ -5,6 +5,7 @@
 // per picture with its points, which is empty. Models: SIMPLE_PINHOLE f cx cy; PINHOLE fx fy cx cy; OPENCV with k1 k2
 // p1 p2; FULL_OPENCV with k1 k2 p1 p2 k3 k4 k5 k6; OPENCV_FISHEYE with k1 k2 k3 k4: the simplest that holds the camera
 // exactly.
+#include "base/error.h"
 #include "base/text.h"
 #include "camera/export/formats.h"
 
@@ -46,6 +47,9 @@ std::vector<ExportedFile> write_colmap(const std::vector<ExportedCamera>& camera
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     lines += camera_line(cameras[k], k + 1);
     for (const ExportedView& view : cameras[k].views) {
+      if (view.picture.find_first_of(" \t\n") != std::string::npos)
+        throw Error(Exit::data, cameras[k].place, "took \"" + view.picture + "\"; COLMAP's names end at a blank",
+                    "rename the picture");
       const auto pose = inverse(view.world_from_camera);
       const std::vector<double> values = {pose.rotation.w,     pose.rotation.x,      pose.rotation.y,
                                           pose.rotation.z,     pose.translation_m.x, pose.translation_m.y,
