@@ -57,13 +57,17 @@ const cli::Program& gonio_program() {
       .standalone = {"draw"}, .takes_out = true,
       .sections_read = {"files", "boards", "cameras", "images"},
       .sections_written = {"files", "boards", "cameras", "rigs", "images", "tables"},
-      .files = {{"corners.csv", "found corners: image, corner, board and pixel coordinates, sigma"}},
+      .files = {{"corners.csv", "found corners: image, corner, board and pixel coordinates, sigma"},
+                {"calibration.html", "one self-contained page: how good it is, residuals, views, what to photograph next"},
+                {"projection-sigma*.exr, .png", "projection uncertainty over the image, one at each distance"},
+                {"coverage.png", "how many views reach each part of the image"}},
       .exits = {{Exit::quality, "The camera is written, but the fit did not converge, the views are too few or too frontal to know the "
                                 "focal length to 1 %, or corners miss by more than 3 px."}},
       .references = {"Z. Zhang, A flexible new technique for camera calibration, PAMI 22(11), 2000.",
                      "D. C. Brown, Close-range camera calibration, Photogrammetric Engineering 37(8), 1971.",
                      "S. Garrido-Jurado et al., Automatic generation and detection of highly reliable fiducial markers, Pattern "
                      "Recognition 47(6), 2014.",
+                     "D. Kogan, mrcal: camera calibrations and more, 2021, on the uncertainty of projection.",
                      "T. Collins, A. Bartoli, Infinitesimal plane-based pose estimation, IJCV 109(3), 2014."},
       .see_also = {"explain(1)", "render(1)", "gonio-manifest(5)", "gonio-conventions(7)"},
       .check = check,

@@ -10,6 +10,7 @@
 #include "camera/calibrate_document_session.h"
 #include "camera/detection_failure.h"
 #include "camera/model_choice.h"
+#include "camera/quality/quality_page.h"
 
 namespace gonio::camera {
 namespace {
@@ -236,6 +237,27 @@ void check_calibration(const manifest::Document& document) {
   sessions_of(document);
 }
 
+namespace {
+
+// How well every camera predicts: into the document, files and a sentence each.
+void judge_cameras(const std::vector<View>& views, const CalibrationSetup& setup, const Calibration& calibration,
+                   const CalibrationRequest& request, manifest::Document& document) {
+  for (std::size_t c = 0; c < setup.cameras.size(); ++c) {
+    const CameraResult camera{views, setup, calibration, c};
+    const std::optional<Quality> quality = judge_quality(camera, request.distances_m);
+    if (!quality) continue;
+    const std::string& name = setup.cameras[c].name;
+    document.cameras.at(name).quality = section_of(*quality);
+    if (request.output)
+      write_quality(camera, *quality, request.output, document.cameras.size() == 1 ? "" : "-" + name, document);
+    log(LogLevel::info, "camera " + name + ": " + quality->verdict);
+    if (quality->halves.refused.empty() && !quality->halves.agree)
+      log(LogLevel::warning, "camera " + name + ": " + disagreement(quality->halves));
+  }
+}
+
+}  // namespace
+
 Exit calibrate_document(manifest::Document& document, const CalibrationRequest& request) {
   Exit worst = Exit::done;
   std::vector<Session> sessions = sessions_of(document);
@@ -256,6 +278,7 @@ Exit calibrate_document(manifest::Document& document, const CalibrationRequest& 
     tell(session, calibration, document);
     store_calibration(session, setup, calibration, document);
     store_corners(session, calibration, sessions.size() == 1, request.corners_csv, document);
+    if (request.judge) judge_cameras(views, setup, calibration, request, document);
     for (const std::string& complaint : calibration.complaints) {
       log(LogLevel::error,
           (session.cameras.size() == 1 ? "camera " + session.cameras[0] + ": " : std::string("rig: ")) + complaint);

@@ -2,6 +2,7 @@
 #include "camera/calibrate_document_options.h"
 
 #include "base/error.h"
+#include "base/quantity.h"
 
 namespace gonio::camera {
 namespace {
@@ -71,7 +72,15 @@ CalibrationRequest request_of(cli::Invocation& call) {
   request.board_warp = call.flag("board-warp");
   for (const std::string& term : call.texts("fix")) request.fixed.insert(term);
   if (call.given("refine-window")) request.detection.window_px = static_cast<int>(call.integer("refine-window"));
-  if (!call.out.empty()) request.corners_csv = call.output_path("corners.csv");
+  request.judge = !call.flag("no-quality");
+  for (const std::string& text : call.texts("distance"))
+    request.distances_m.push_back(parse_quantity(text, Dimension::length, "--distance"));
+  for (const double d : request.distances_m)
+    if (!(d > 0)) throw Error(Exit::usage, "--distance", "is not above zero", "give a distance from the camera: 0.5m");
+  if (!call.out.empty()) {
+    request.corners_csv = call.output_path("corners.csv");
+    request.output = [&call](const std::string& name) { return call.output_path(name); };
+  }
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
   return request;
 }
@@ -136,7 +145,12 @@ std::vector<cli::Option> calibration_options() {
       {.name = "board-warp", .type = Type::flag, .help = "Also fit how far the board sags (two parameters)."},
       {.name = "refine-window", .type = Type::integer,
        .help = "Half-window of corner refinement in pixels instead of the one that follows the squares.",
-       .metavar = "N", .lower = 1, .upper = 50}};
+       .metavar = "N", .lower = 1, .upper = 50},
+      {.name = "distance", .type = Type::quantity,
+       .help = "Judge the prediction at this distance; may be repeated. Default: the boards' median, and twice that.",
+       .dimension = Dimension::length, .lower = 1e-6, .upper = 1e6, .repeat = true},
+      {.name = "no-quality", .type = Type::flag,
+       .help = "Do not judge how well the camera predicts, nor compare halves of the views."}};
 }
 
 }  // namespace gonio::camera
