@@ -22,7 +22,8 @@ int main(int argc, char** argv) {
   claim("95 % circles of the projection hold the truth", c.circle, c.points);
   claim("95 % intervals of the focal lengths hold the truth", c.focal, c.focals);
   const stats::Interval apart = stats::share_interval(c.apart, c.halved);
-  std::printf("calib-quality halves of a right model called apart at 5 %%: measured %d of %d (95 %% interval %.1f to %.1f %%) required <= 5 %%%s\n",
+  std::printf("calib-quality halves of a right model called apart at 5 %%: measured %d of %d (95 %% interval %.1f to %.1f %%) "
+              "required <= 5 %%%s\n",
               c.apart, c.halved, 100 * apart.lower, 100 * apart.upper, apart.lower > 0.05 ? "  NOT MET" : "");
   met &= apart.lower <= 0.05;
   return met ? 0 : 1;
