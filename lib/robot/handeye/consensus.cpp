@@ -70,6 +70,21 @@ std::vector<bool> best_half(const std::vector<double>& distance) {
   return counts;
 }
 
+// Squared distance of six coordinates that a right pose exceeds with this probability, where the noises come from
+// `used` poses with 3 used - 6 degrees of freedom each: six times the quantile of the F distribution (Abramowitz &
+// Stegun 26.6.2), and more by what the mountings, fitted without the pose, are uncertain themselves (12 parameters from
+// 6 used numbers).
+double distance_limit2(double probability, double used) {
+  const double freedom = std::max(3.0, 3 * used - 6);
+  double low = 0, high = 1e6;
+  for (int step = 0; step < 100; ++step) {
+    const double middle = (low + high) / 2;
+    const double above = stats::beta_regularised(freedom / (freedom + middle), freedom / 2, 3);
+    (above > probability ? low : high) = middle;
+  }
+  return low * (1 + 2 / used);
+}
+
 }  // namespace
 
 Solution least_median_start(const std::vector<PoseSample>& given, Vec3 middle_m) {
@@ -102,14 +117,11 @@ Consensus find_consensus(const Setup& setup, const std::vector<View>& views) {
   Consensus result;
   result.counts =
       views.size() < 5 ? std::vector<bool>(views.size(), true) : best_half(distances(errors, median_of(errors)));
-  const double quantile = stats::chi2_quantile(1 - false_alarms / n, 6);
   double shortened = 1.8;  // a half chosen for its small distances shows too small a scatter (consistency at 6 degrees)
   for (int round = 0; round < most_rounds; ++round) {
     result.refined = refine(setup, views, result.counts, start);
     const auto used = static_cast<double>(std::ranges::count(result.counts, true));
-    const double widening = stats::student_quantile(1 - false_alarms / n / 2, std::max(2.0, 3 * used - 6)) /
-                            stats::normal_quantile(1 - false_alarms / n / 2);
-    result.limit2 = quantile * widening * widening * shortened;
+    result.limit2 = distance_limit2(false_alarms / n, used) * shortened;
     std::vector<bool> next;
     for (const Mismatch& m : result.refined.mismatches) next.push_back(m.distance2 <= result.limit2);
     if (views.size() < 5 || std::ranges::count(next, true) < 4 || next == result.counts) break;
