@@ -28,4 +28,6 @@ void Problem::jacobian(std::span<const double> values, std::size_t group, std::s
 
 std::optional<double> Problem::noise_factor(std::span<const double>) const { return std::nullopt; }
 
+std::string Problem::remarks(const Explanation&) const { return {}; }
+
 }  // namespace gonio::explain

@@ -108,6 +108,9 @@ class Problem {
   // no: a highlight is an effect, not an outlier.
   virtual bool sets_outliers_aside() const { return false; }
 
+  // What the domain has to say beside the verdict, in sentences; joins the explanation's own.
+  virtual std::string remarks(const Explanation& explanation) const;
+
   // The upgraded sections: mechanisms, cameras, boards, surfaces, lights, images with the fitted values and their sigmas.
   // Called for every verdict; where nothing is named the fair refit of the base model is written.
   virtual void apply(const Explanation& explanation, manifest::Document& document) const = 0;

@@ -98,6 +98,7 @@ std::string printed(double value, int digits) {
 
 void write_sentence(const Problem& problem, Explanation& e) {
   e.sentence = e.named.empty() ? plain_sentence(problem, e) : named_sentence(problem, e);
+  if (const std::string remarks = problem.remarks(e); !remarks.empty()) e.sentence += " " + remarks;
   e.next_measurement = measurement(problem, e);
 }
 

@@ -197,6 +197,7 @@ GroupGram group_gram(const System& system, const Linearisation& l, std::span<con
   for (std::size_t h = 0; h < 2; ++h) {
     const Eigen::MatrixXd part = a(rows[h], Eigen::all);
     gram.half[h] = Eigen::MatrixXd::Zero(a.cols(), a.cols());
+    if (rows[h].empty()) continue;  // a group of one block
     gram.half[h].selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
     gram.half[h].triangularView<Eigen::StrictlyUpper>() = gram.half[h].transpose();
   }

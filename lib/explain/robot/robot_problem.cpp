@@ -60,6 +60,7 @@ class HandEyeProblem final : public RobotProblem {
   bool sets_outliers_aside() const override { return false; }  // those are left out before: settle()
 
   RobotFindings findings(const Explanation& e) const override { return findings_of(work_, whitener_, e); }
+  std::string remarks(const Explanation& e) const override { return findings(e).sentence; }
   void apply(const Explanation& e, manifest::Document& document) const override {
     upgrade_robot(work_, *this, findings(e), e, document);
   }
