@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include <csignal>
+#include <fstream>
 #include <limits>
 #include <set>
 
@@ -227,11 +228,22 @@ TEST_F(Refusals, AClosedPipe) {
   EXPECT_EQ(closed.status, 74) << closed.err;
 }
 
+// Waits until a process has installed its handlers (SigCgt of proc(5)): before that a signal is not the program's to answer.
+bool handles_signals(pid_t id) {
+  for (int tries = 0; tries < 3000; ++tries, ::usleep(10000)) {
+    std::ifstream status("/proc/" + std::to_string(id) + "/status");
+    for (std::string line; std::getline(status, line);)
+      if (line.starts_with("SigCgt:") && (std::stoull(line.substr(7), nullptr, 16) >> (SIGTERM - 1) & 1) != 0) return true;
+  }
+  return false;
+}
+
 TEST_F(Refusals, SignalsAndKillLeaveNothingHalfWritten) {
   const auto before = files();
   for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
     Process process({"render", "scene.json", "--spp", "1000000", "--out", "r"}, path(""));
-    ::usleep(400000);
+    ASSERT_TRUE(handles_signals(process.id()));
+    ::usleep(200000);
     ::kill(process.id(), signal);
     const Ended ended = process.end();
     EXPECT_EQ(ended.status, signal == SIGKILL ? 128 + SIGKILL : 75) << ended.err;
