@@ -1,4 +1,5 @@
-// explain: from a mismatch between recordings and simulation to the physics that was left out (explain/explain_document.h).
+// explain: from a mismatch between recordings and simulation to the physics that was left out
+// (explain/explain_document.h).
 #include <iostream>
 
 #include "cli/program.h"
@@ -30,7 +31,8 @@ void check(cli::Invocation& call) {
   if (call.flag("list")) return;
   gonio::explain::check_hypotheses(call.texts("hypotheses"));
   if (!call.has_document)
-    throw Error(Exit::no_input, "explain", "has no manifest to read", "pipe one in, or name it: explain recording.json");
+    throw Error(Exit::no_input, "explain", "has no manifest to read",
+                "pipe one in, or name it: explain recording.json");
   if (call.flag("check")) gonio::explain::problems_of(call.document);
 }
 
@@ -45,38 +47,44 @@ Exit run(cli::Invocation& call) {
 }
 
 std::vector<cli::Option> options() {
-  return {{.name = "matters",
-           .type = Type::quantity,
-           .help = "Smallest effect worth a name: images, rms share of the radiance; boards, share of the held-out error removed.",
-           .preset = "1%",
-           .dimension = Dimension::ratio,
-           .lower = 0,
-           .upper = 1},
-          {.name = "level",
-           .type = Type::number,
-           .help = "False alarms allowed to the null test and to every name.",
-           .preset = "0.01",
-           .lower = 1e-6,
-           .upper = 0.2},
-          {.name = "hypotheses",
-           .type = Type::text,
-           .help = "Consider this mechanism only; may be repeated. Default: all that apply.",
-           .metavar = "ID",
-           .repeat = true},
-          {.name = "protect",
-           .type = Type::text,
-           .help = "Keep this parameter, or all whose name begins with it and a slash, at the manifest's value: cameras/c.",
-           .metavar = "NAME",
-           .repeat = true},
-          {.name = "dummies",
-           .type = Type::integer,
-           .help = "Mechanisms without physics that run in the same race.",
-           .metavar = "N",
-           .preset = "24",
-           .lower = 0,
-           .upper = 1000},
-          {.name = "html", .type = Type::output_file, .help = "Write the report page here; with --out it is DIR/report.html."},
-          {.name = "list", .type = Type::flag, .help = "Print the mechanisms with their conditions and confusions, and end."}};
+  return {
+      {.name = "matters",
+       .type = Type::quantity,
+       .help = "Smallest effect worth a name: images, rms share of the radiance; boards, share of the held-out error "
+               "removed.",
+       .preset = "1%",
+       .dimension = Dimension::ratio,
+       .lower = 0,
+       .upper = 1},
+      {.name = "level",
+       .type = Type::number,
+       .help = "False alarms allowed to the null test and to every name.",
+       .preset = "0.01",
+       .lower = 1e-6,
+       .upper = 0.2},
+      {.name = "hypotheses",
+       .type = Type::text,
+       .help = "Consider this mechanism only; may be repeated. Default: all that apply.",
+       .metavar = "ID",
+       .repeat = true},
+      {.name = "protect",
+       .type = Type::text,
+       .help = "Keep this parameter, or all whose name begins with it and a slash, at the manifest's value: cameras/c.",
+       .metavar = "NAME",
+       .repeat = true},
+      {.name = "dummies",
+       .type = Type::integer,
+       .help = "Mechanisms without physics that run in the same race.",
+       .metavar = "N",
+       .preset = "24",
+       .lower = 0,
+       .upper = 1000},
+      {.name = "html",
+       .type = Type::output_file,
+       .help = "Write the report page here; with --out it is DIR/report.html."},
+      {.name = "list",
+       .type = Type::flag,
+       .help = "Print the mechanisms with their conditions and confusions, and end."}};
 }
 
 }  // namespace
@@ -87,22 +95,27 @@ const cli::Program& gonio_program() {
       .sentence = "find the physics that a simulation left out",
       .synopsis = {"[OPTION]... [-i FILE | recording.json]", "--list"},
       .options = options(),
-      .operands = {{.name = "MANIFEST", .type = Type::input_file, .help = "Recordings with their base model; ends in .json."}},
+      .operands = {{.name = "MANIFEST",
+                    .type = Type::input_file,
+                    .help = "Recordings with their base model; ends in .json."}},
       .standalone = {"list"},
       .takes_out = true,
       .takes_seed = true,
-      .sections_read = {"files", "boards", "cameras", "images", "meshes", "surfaces", "lights", "objects", "tables", "mechanisms"},
+      .sections_read = {"files", "boards", "cameras", "images", "meshes", "surfaces", "lights", "objects", "tables",
+                        "mechanisms"},
       .sections_written = {"boards", "cameras", "images", "surfaces", "lights", "mechanisms", "explanations"},
       .files = {{"report.html", "one self-contained page: where, which curve, how sure, what to measure next"},
                 {"mask-*.png", "images: where the mismatch is"}},
       .exits = {{Exit::done, "No mismatch that matters, or the physics that explains it is named."},
                 {Exit::negative, "There is a mismatch that matters, and no physics in the library repairs it."},
-                {Exit::quality, "Written, but a fit did not converge or over a tenth of the observations were set aside."}},
-      .references = {"M. Kennedy, A. O'Hagan, Bayesian calibration of computer models, JRSS B 63(3), 2001.",
-                     "P. Westfall, S. Young, Resampling-based multiple testing, Wiley, 1993.",
-                     "J. Hemerik, J. Goeman, L. Finos, Robust testing in generalized linear models by sign-flipping score "
-                     "contributions, JRSS B 82(3), 2020.",
-                     "K. Liang, S. Zeger, Longitudinal data analysis using generalized linear models, Biometrika 73(1), 1986."},
+                {Exit::quality,
+                 "Written, but a fit did not converge or over a tenth of the observations were set aside."}},
+      .references =
+          {"M. Kennedy, A. O'Hagan, Bayesian calibration of computer models, JRSS B 63(3), 2001.",
+           "P. Westfall, S. Young, Resampling-based multiple testing, Wiley, 1993.",
+           "J. Hemerik, J. Goeman, L. Finos, Robust testing in generalized linear models by sign-flipping score "
+           "contributions, JRSS B 82(3), 2020.",
+           "K. Liang, S. Zeger, Longitudinal data analysis using generalized linear models, Biometrika 73(1), 1986."},
       .see_also = {"calib-charuco(1)", "render(1)", "compare(1)", "gonio-manifest(5)", "gonio-conventions(7)"},
       .check = check,
       .run = run};

@@ -29,7 +29,8 @@ struct Board {
   double square_m = 0, marker_m = 0;
   std::string dictionary;      // charuco: "4X4_50"
   std::optional<bool> legacy;  // charuco with an even number of rows: unknown until it is found or given
-  std::shared_ptr<const OwnDictionary> own_dictionary = nullptr;  // instead of the one named, whose name is then the file's
+  std::shared_ptr<const OwnDictionary> own_dictionary =
+      nullptr;  // instead of the one named, whose name is then the file's
 
   int square_columns() const { return corner_columns + 1; }
   int square_rows() const { return corner_rows + 1; }

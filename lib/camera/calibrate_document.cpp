@@ -16,6 +16,7 @@ namespace gonio::camera {
 namespace {
 
 constexpr std::size_t most_named = 5;  // corners and views that a message lists
+constexpr double worth_telling = 2;    // variance between shots over the noise of corners
 
 template <class... Numbers>
 std::string format(const char* pattern, Numbers... numbers) {
@@ -105,6 +106,11 @@ void tell_views(const Session& session, const Calibration& calibration, const ma
 
 void tell(const Session& session, const Calibration& calibration, const manifest::Document& document) {
   tell_views(session, calibration, document);
+  if (calibration.excess > worth_telling) {
+    log(LogLevel::info,
+        format("shots scatter by %.1f times what the corners' noise explains; standard deviations are widened by it",
+               std::sqrt(calibration.excess)));
+  }
   for (std::size_t c = 0; c < session.cameras.size(); ++c) {
     const CalibratedCamera& camera = calibration.cameras[c];
     std::size_t used = 0;
@@ -240,7 +246,7 @@ void check_calibration(const manifest::Document& document) {
 namespace {
 
 // How well every camera predicts: into the document, files and a sentence each.
-void judge_cameras(const std::vector<View>& views, const CalibrationSetup& setup, const Calibration& calibration,
+void judge_cameras(const std::vector<View>& views, const CalibrationSetup& setup, Calibration& calibration,
                    const CalibrationRequest& request, manifest::Document& document) {
   for (std::size_t c = 0; c < setup.cameras.size(); ++c) {
     const CameraResult camera{views, setup, calibration, c};
@@ -252,7 +258,7 @@ void judge_cameras(const std::vector<View>& views, const CalibrationSetup& setup
       write_quality(camera, *quality, request.output, document.cameras.size() == 1 ? "" : "-" + name, document);
     log(LogLevel::info, "camera " + name + ": " + quality->verdict);
     if (quality->halves.refused.empty() && !quality->halves.agree)
-      log(LogLevel::warning, "camera " + name + ": " + disagreement(quality->halves));
+      calibration.complaints.push_back((setup.cameras.size() == 1 ? "" : name + ": ") + disagreement(quality->halves));
   }
 }
 

@@ -25,11 +25,11 @@ struct CalibrationRequest {
   std::set<std::string> fixed;              // fixable_terms()
   bool board_warp = false;                  // free every board's sag; "auto" decides where it is not given
   DetectionOptions detection;
-  bool judge = true;                // say how well each camera predicts, and hold halves of the views against each other
+  bool judge = true;  // say how well each camera predicts, and hold halves of the views against each other
   std::vector<double> distances_m;  // at which that is judged; empty: quality/quality.h's usual ones
   std::function<std::filesystem::path(const std::string&)> output;  // place for maps, pictures and the page; none: none
-  std::filesystem::path corners_csv;                             // empty: the table's rows stand in the manifest
-  std::function<void(const std::filesystem::path&)> note_input;  // called for every picture read
+  std::filesystem::path corners_csv;                                // empty: the table's rows stand in the manifest
+  std::function<void(const std::filesystem::path&)> note_input;     // called for every picture read
 };
 
 // Quick form: enters board, camera and pictures as "board", "camera" and images named after the files.

@@ -45,7 +45,7 @@ std::vector<View> views_of(const manifest::Document& document, Session& session)
 
 void store_calibration(const Session& session, const CalibrationSetup& setup, const Calibration& calibration,
                        manifest::Document& document);
-void store_corners(const Session& session, const Calibration& calibration, bool alone,
-                   const std::filesystem::path& csv, manifest::Document& document);
+void store_corners(const Session& session, const Calibration& calibration, bool alone, const std::filesystem::path& csv,
+                   manifest::Document& document);
 
 }  // namespace gonio::camera

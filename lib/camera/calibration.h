@@ -114,6 +114,7 @@ struct Calibration {
   std::vector<SharedParameter> shared;
   std::vector<double> covariance;   // of `shared`, row-major; empty where the views do not determine them
   double rms_px = 0, noise_px = 0;  // over all cameras; noise: of unit weight
+  double excess = 1;  // variance between shots over what corners' noise explains; `covariance` is widened by it above 1
   bool converged = false;
   std::vector<std::string> complaints;  // quality gates that failed, one sentence each
   std::vector<std::string> advice;      // what would make it better, one sentence each

@@ -1,11 +1,18 @@
 // Covariance of an adjustment from its normal equations, placements eliminated by the Schur complement:
 //   [A  B_p; B_p' C_p],   S = A - sum B_p C_p^-1 B_p',   cov(shared) = s^2 S^-1,   slope_p = -C_p^-1 B_p',
 //   cov(placement p) = s^2 C_p^-1 + slope_p cov(shared) slope_p',
-// with s^2 the weighted sum of squares over the degrees of freedom. Parameters are scaled to unit diagonal of A, so
+// with s^2 the weighted sum of squares over the degrees of freedom. What is not modelled (a bent board, a printer's
+// error, a lens term) moves all corners of a shot together, and s^2, an average over corners, does not know it. The
+// shots' scores g_i = J_i' W r_i, placements eliminated, do: with the right model cov(g_i) = s^2 (S_i - S_i S^-1 S_i),
+//   f = sum g_i' S^-1 g_i / (s^2 (k - sum tr (S^-1 S_i)^2)),   E f = 1,
+// is the mean factor, over directions of the shared numbers, by which they scatter more between shots than corners'
+// noise explains (Birge's ratio with shots as the witnesses; Birge, Phys. Rev. 40, 1932; Liang & Zeger, Biometrika 73,
+// 1986). cov(shared) is multiplied by f where it exceeds 1. Parameters are scaled to unit diagonal of A, so
 // that the smallest eigenvalue of the scaled S says which share of some direction's information the poses leave.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "camera/bundle_adjustment.h"
 
@@ -16,6 +23,7 @@ using Kind = SharedParameter::Kind;
 using Matrix = Eigen::MatrixXd;
 using Pose6 = Eigen::Matrix<double, 6, 6>;
 
+constexpr std::size_t least_shots = 3;
 constexpr double least_share = 1e-12;  // of the information that rounding errors cannot feign
 
 Eigen::Matrix3d eigen_of(const Mat3& m) {
@@ -92,6 +100,46 @@ Matrix shared_inverse(const NormalEquations& n) {
   return 0.5 * (inverse + inverse.transpose());
 }
 
+struct Score {
+  Eigen::VectorXd g;
+  Matrix s;
+};
+// Of one shot alone: its gradient and information about the shared numbers, placements eliminated.
+Score score_of(const std::vector<View>& views, const CalibrationSetup& setup, const std::vector<FreeParameter>& free,
+               Adjustment state, std::size_t shot) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (views[i].shot != shot) state.view_weights[i] = 0;
+  }
+  const NormalEquations n = normal_equations(views, setup, free, state);
+  Score score{n.g, n.a};
+  for (std::size_t p = 0; p < n.c.size(); ++p) {
+    if (!(n.c[p](0, 0) > 0)) continue;
+    const Eigen::LDLT<Pose6> solver(n.c[p]);
+    score.g.noalias() -= n.b[p] * solver.solve(n.h[p]);
+    score.s.noalias() -= n.b[p] * solver.solve(n.b[p].transpose());
+  }
+  return score;
+}
+
+// f of the head of this file; 1 where there are too few shots to say. `inverse`: S^-1.
+double excess_between_shots(const std::vector<View>& views, const CalibrationSetup& setup,
+                            const std::vector<FreeParameter>& free, const Adjustment& state, const Matrix& inverse,
+                            double variance) {
+  std::set<std::size_t> shots;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (state.view_weights[i] > 0) shots.insert(views[i].shot);
+  }
+  if (shots.size() < least_shots || inverse.rows() == 0) return 1;
+  double found = 0, expected = static_cast<double>(inverse.rows());
+  for (const std::size_t shot : shots) {
+    const Score score = score_of(views, setup, free, state, shot);
+    const Matrix share = inverse * score.s;
+    found += score.g.dot(inverse * score.g);
+    expected -= (share * share).trace();
+  }
+  return expected > 0 ? found / (variance * expected) : 1;
+}
+
 // Peak to valley of the paraboloid over the corners and its sigma: the height spans sag_x from 1 - xi^2 and sag_y from
 // 1 - eta^2 alike, so that the range is |a| + |b| where the signs agree or differ, with slopes of +-1.
 void store_flatness(Calibration& result) {
@@ -123,13 +171,15 @@ void estimate_covariance(const std::vector<View>& views, const CalibrationSetup&
   const double freedom = n.coordinates - static_cast<double>(k) - 6.0 * static_cast<double>(used);
   result.covariance.clear();
   result.noise_px = 0;
+  result.excess = 1;
   store_flatness(result);
   if (freedom < 1) return;
   const double variance = n.squares / freedom;
   result.noise_px = std::sqrt(variance);
   const Matrix inverse = shared_inverse(n);
   if (inverse.rows() != k) return;
-  const Matrix covariance = variance * inverse;
+  result.excess = excess_between_shots(views, setup, free, state, inverse, variance);
+  const Matrix covariance = std::max(1.0, result.excess) * variance * inverse;
   result.covariance.assign(covariance.data(), covariance.data() + covariance.size());
   std::vector<Matrix> slopes(n.c.size(), Matrix::Zero(6, k));
   std::vector<Pose6> own(n.c.size(), Pose6::Zero());

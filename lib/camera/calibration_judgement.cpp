@@ -23,11 +23,11 @@ using Kind = SharedParameter::Kind;
 using Matrix = Eigen::MatrixXd;
 
 constexpr std::size_t least_views = 3;
-constexpr double noise_limit = 0.02;   // sigma over focal length
-constexpr double doubt_limit = 0.01;   // change over focal length by noise and sag together
-constexpr double usual_sag = 1e-3;     // of the board's side
-constexpr double significant = 12;     // chi-square of two sags over two: one false alarm in 160000
-constexpr double telling_share = 0.25; // of the squared residuals, for the board to be to blame
+constexpr double noise_limit = 0.02;    // sigma over focal length
+constexpr double doubt_limit = 0.01;    // change over focal length by noise and sag together
+constexpr double usual_sag = 1e-3;      // of the board's side
+constexpr double significant = 12;      // chi-square of two sags over two: one false alarm in 160000
+constexpr double telling_share = 0.25;  // of the squared residuals, for the board to be to blame
 constexpr double worth_saying = 1e-3;
 constexpr double rms_limit_px = 3;
 
@@ -105,7 +105,9 @@ Focal focal_changes(const Calibration& result, const SagEffects& effects, std::s
     const Intrinsics& lens = result.cameras[camera].lens;
     const double f = name == "fx_px" ? lens.fx_px : lens.fy_px;
     const auto row = static_cast<Eigen::Index>(p);
-    worst.noise = std::max(worst.noise, result.sigma(name, camera).value_or(0) / f);
+    // Of the corners' noise alone: what a wrong lens adds is no fault of the views.
+    const double noise = result.sigma(name, camera).value_or(0) / std::sqrt(std::max(1.0, result.excess));
+    worst.noise = std::max(worst.noise, noise / f);
     if (effects.usual.size() == 0) continue;
     worst.usual_sag = std::max(worst.usual_sag, effects.usual.row(row).norm() / f);
     worst.freed_sag = std::max(worst.freed_sag, std::abs(effects.freed(row)) / f);

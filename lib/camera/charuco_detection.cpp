@@ -33,10 +33,10 @@ struct Found {
 
 // Longest sides at which markers are sought; pictures that are hardly larger are not reduced.
 constexpr int search_sides_px[] = {1000, 2000, 4000, 1 << 20}, small_picture_px = 1600;
-constexpr double enough = 0.9;                            // of the markers in sight: no need to look closer
-constexpr double comfortable_marker_px = 26;              // found wherever it is not covered
+constexpr double enough = 0.9;                // of the markers in sight: no need to look closer
+constexpr double comfortable_marker_px = 26;  // found wherever it is not covered
 constexpr std::size_t least_trusted = 2;
-constexpr std::size_t least_markers = 3;                  // that say where the others are
+constexpr std::size_t least_markers = 3;  // that say where the others are
 constexpr double least_marker_px = 9;
 constexpr double layout_tolerance = 0.35;  // of a square: halfway between a fit and a shift by one square is 0.5
 constexpr double stray_tolerance = 1.0;    // of a square: lens distortion stays below, wrong ids do not
@@ -191,8 +191,8 @@ int bare_squares(const Board& board, int corner, bool legacy) {
 }
 
 // The homography of the markers nearest to `corner`, of which one at least must touch it.
-std::vector<Prediction> predict_corners(const std::vector<Found>& found, const MarkerPlaces& places,
-                                        const Board& board, bool legacy) {
+std::vector<Prediction> predict_corners(const std::vector<Found>& found, const MarkerPlaces& places, const Board& board,
+                                        bool legacy) {
   std::vector<Prediction> predictions;
   for (int id = 0; id < board.corners(); ++id) {
     const Vec2 corner = board.corner_m(id);
@@ -250,7 +250,8 @@ std::optional<Prediction> predict_beside(const std::vector<Corner>& corners, con
   const cv::Mat homography = cv::findHomography(from, to, 0);
   if (homography.empty()) return {};
   std::vector<cv::Point2f> p;
-  cv::perspectiveTransform(std::vector<cv::Point2f>{{0, 0}, {0.5F, 0}, {-0.5F, 0}, {0, 0.5F}, {0, -0.5F}}, p, homography);
+  cv::perspectiveTransform(std::vector<cv::Point2f>{{0, 0}, {0.5F, 0}, {-0.5F, 0}, {0, 0.5F}, {0, -0.5F}}, p,
+                           homography);
   return Prediction{id, p[0], p[1] - p[2], p[3] - p[4], bare_squares(board, id, legacy)};
 }
 

@@ -19,7 +19,7 @@ namespace gonio::camera {
 namespace {
 
 constexpr int least_corners_per_term = 2;  // for a noise estimate
-constexpr double gross_share = 0.12;           // of a square
+constexpr double gross_share = 0.12;       // of a square
 constexpr double gross_sigmas = 12;
 // A field that is rougher than this many times what the pixels around the corners let expect is a strong lens that few
 // corners do not resolve, not noise.

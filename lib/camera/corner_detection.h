@@ -1,8 +1,9 @@
 // Corners of a calibration board in a photograph: pixels, pixel centres at integers, numbered as in board.h.
 //
 // The board is searched at reduced resolution; every corner is then refined on the full picture as the crossing of two
-// blurred edges (corner_refinement.h), which fixes its position whatever the search's own convention; OpenCV 4.6 returns
-// ChArUco corners with a shift of about half a pixel, which this avoids. Does not know lenses: prediction is local.
+// blurred edges (corner_refinement.h), which fixes its position whatever the search's own convention; OpenCV 4.6
+// returns ChArUco corners with a shift of about half a pixel, which this avoids. Does not know lenses: prediction is
+// local.
 #pragma once
 #include <array>
 #include <string>

@@ -199,11 +199,10 @@ struct Refined {
 };
 
 std::optional<Refined> refine_one(const cv::Mat& values, const Prediction& p, double clear_share,
-                                 const DetectionOptions& options) {
+                                  const DetectionOptions& options) {
   const double side = p.square_px();
-  const double reach = options.window_px > 0
-                           ? options.window_px
-                           : std::clamp(reach_share * side, least_reach_px, largest_reach_px);
+  const double reach =
+      options.window_px > 0 ? options.window_px : std::clamp(reach_share * side, least_reach_px, largest_reach_px);
   const double band = std::clamp(clear_share * side - print_blur_px, least_band_px, largest_band_px);
   const double margin = reach + 1;
   const auto inside = [&](const cv::Point2d& at) {
@@ -213,8 +212,10 @@ std::optional<Refined> refine_one(const cv::Mat& values, const Prediction& p, do
   Window window{rough_place(values, p.pixel, std::min(reach, std::max(2.0, 0.9 * clear_share * side))), {}};
   if (cv::norm(window.middle - p.pixel) > largest_move * side) window.middle = p.pixel;
   if (!inside(window.middle)) return {};
-  if (values.depth() == CV_8U) collect<unsigned char>(values, p, reach, band, window);
-  else collect<float>(values, p, reach, band, window);
+  if (values.depth() == CV_8U)
+    collect<unsigned char>(values, p, reach, band, window);
+  else
+    collect<float>(values, p, reach, band, window);
   if (window.samples.size() < 2 * parameters) return {};
   Saddle saddle(window, p);
   if (!saddle.fit() || saddle.misfit() > largest_misfit) return {};

@@ -2,11 +2,12 @@
 //
 // A corner between four squares is the product of two blurred edges,
 //   I(p) = m + g . p + c E(n1 . (p - x) / s1) E(n2 . (p - x) / s2),   E(z) = erf(z / sqrt 2),
-// with the corner x, the edges' directions n1, n2 and blurs s1, s2 (which may differ: motion), the contrast c and a plane
-// of illumination (m, g). Its ten parameters are fitted by Levenberg-Marquardt to the pixels along both edges that stay
-// clear of anything else printed near by. All pixels count alike, and lines keep their places where the brightness scale
-// is bent, because the pattern is symmetric about x: a photograph need not be linearised. The fit also says how well it
-// knows x. cv::cornerSubPix makes the start; its own result scatters more, and by 0.05 px and more at sharp edges.
+// with the corner x, the edges' directions n1, n2 and blurs s1, s2 (which may differ: motion), the contrast c and a
+// plane of illumination (m, g). Its ten parameters are fitted by Levenberg-Marquardt to the pixels along both edges
+// that stay clear of anything else printed near by. All pixels count alike, and lines keep their places where the
+// brightness scale is bent, because the pattern is symmetric about x: a photograph need not be linearised. The fit also
+// says how well it knows x. cv::cornerSubPix makes the start; its own result scatters more, and by 0.05 px and more at
+// sharp edges.
 //
 // Does not know lenses: edges are straight within the reach, at most 12 px, over which a lens bends them by hundredths
 // of a pixel.
@@ -27,8 +28,9 @@ struct Prediction {
 };
 
 // Refined corners, sorted by id. `values`: grey, 8 bit or float, one channel. `clear_share`: how far from an edge, in
-// squares, other ink begins where there is any. Dropped are corners whose surroundings leave the picture, that move by more than a quarter
-// of a square from their prediction, or whose surroundings are not two edges that cross: covered, glared or blurred away.
+// squares, other ink begins where there is any. Dropped are corners whose surroundings leave the picture, that move by
+// more than a quarter of a square from their prediction, or whose surroundings are not two edges that cross: covered,
+// glared or blurred away.
 std::vector<Corner> refine(const cv::Mat& values, const std::vector<Prediction>& predictions, double clear_share,
                            const DetectionOptions& options);
 

@@ -60,8 +60,11 @@ void append(CornerTable& table, const std::string& name, const std::array<double
     table.images.push_back({name, {}});
     group = table.images.rbegin();
   }
-  group->corners.push_back(
-      {static_cast<int>(value[corner]), {value[board_x], value[board_y]}, {value[u], value[v]}, value[sigma], value[weight]});
+  group->corners.push_back({static_cast<int>(value[corner]),
+                            {value[board_x], value[board_y]},
+                            {value[u], value[v]},
+                            value[sigma],
+                            value[weight]});
 }
 
 // One record of a CSV file, from `at` to behind its line end. Fields may be quoted, with "" for a quote.
@@ -168,7 +171,8 @@ std::string csv_of(const CornerTable& table) {
   for (const ImageCorners& group : table.images) {
     for (const TableCorner& c : group.corners) {
       text += quoted(group.image) + ',' + std::to_string(c.id);
-      for (const double x : {c.board_m.x, c.board_m.y, c.pixel.x, c.pixel.y, c.sigma_px, c.weight}) text += ',' + shortest(x);
+      for (const double x : {c.board_m.x, c.board_m.y, c.pixel.x, c.pixel.y, c.sigma_px, c.weight})
+        text += ',' + shortest(x);
       text += '\n';
     }
   }
@@ -179,8 +183,8 @@ manifest::Value rows_of(const CornerTable& table) {
   manifest::Value rows = manifest::Value::array();
   for (const ImageCorners& group : table.images) {
     for (const TableCorner& c : group.corners) {
-      rows.push_back(
-          manifest::Value::Array{group.image, c.id, c.board_m.x, c.board_m.y, c.pixel.x, c.pixel.y, c.sigma_px, c.weight});
+      rows.push_back(manifest::Value::Array{group.image, c.id, c.board_m.x, c.board_m.y, c.pixel.x, c.pixel.y,
+                                            c.sigma_px, c.weight});
     }
   }
   return rows;

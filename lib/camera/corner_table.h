@@ -1,6 +1,7 @@
 // The table of found corners through which calib-charuco hands its measurements on: one row per corner, inline in the
 // manifest or a CSV file beside it. Columns: image (an id of `images`), corner, board_x_m, board_y_m, u_px, v_px,
-// sigma_px, weight (may be left out); observed [u_px, v_px], sigma [sigma_px]; model "camera". Board frame and pixel convention: board.h.
+// sigma_px, weight (may be left out); observed [u_px, v_px], sigma [sigma_px]; model "camera". Board frame and pixel
+// convention: board.h.
 #pragma once
 #include <filesystem>
 #include <string>

@@ -1,5 +1,5 @@
-// Names and cells of OpenCV's predefined dictionaries; those of the user's own: the flat keys of OpenCV's YAML and JSON,
-// and whether the markers can be told apart.
+// Names and cells of OpenCV's predefined dictionaries; those of the user's own: the flat keys of OpenCV's YAML and
+// JSON, and whether the markers can be told apart.
 #include "camera/marker_dictionary.h"
 
 #include <algorithm>
@@ -76,7 +76,8 @@ Keys keys_of(std::string_view text) {
 int number(const Keys& keys, const char* key, int least, int most, const std::string& place) {
   const auto found = keys.find(key);
   if (found == keys.end()) {
-    throw Error(Exit::data, place, std::string("no \"") + key + "\"", "write nmarkers, markersize and marker_0, marker_1, ...");
+    throw Error(Exit::data, place, std::string("no \"") + key + "\"",
+                "write nmarkers, markersize and marker_0, marker_1, ...");
   }
   int value = 0;
   const char *begin = found->second.data(), *end = begin + found->second.size();
@@ -128,10 +129,11 @@ int least_distance(const OwnDictionary& dictionary, const std::string& place) {
         least = std::min(least, distance);
         if (distance > 0) continue;
         const std::string first = "marker_" + std::to_string(i);
-        throw Error(Exit::data, place,
-                    i == k ? first + " looks the same when turned"
-                           : first + " and marker_" + std::to_string(k) + " are the same" + (turn > 0 ? " but for a turn" : ""),
-                    "replace one: which corner is which could not be told");
+        throw Error(
+            Exit::data, place,
+            i == k ? first + " looks the same when turned"
+                   : first + " and marker_" + std::to_string(k) + " are the same" + (turn > 0 ? " but for a turn" : ""),
+            "replace one: which corner is which could not be told");
       }
     }
   }

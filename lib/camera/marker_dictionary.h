@@ -1,9 +1,10 @@
-// Dictionaries of square markers (Garrido-Jurado et al., Pattern Recognition 47, 2014), as OpenCV publishes them; and of
-// the user's own, from files as OpenCV writes them:
+// Dictionaries of square markers (Garrido-Jurado et al., Pattern Recognition 47, 2014), as OpenCV publishes them; and
+// of the user's own, from files as OpenCV writes them:
 //   nmarkers: 35
 //   markersize: 6
 //   maxCorrectionBits: 2            (may be left out)
-//   marker_0: "101011..."           markersize^2 cells row by row, 1 is white, without the black border; up to marker_34
+//   marker_0: "101011..."           markersize^2 cells row by row, 1 is white, without the black border; up to
+//   marker_34
 // in YAML, or the same keys in JSON.
 #pragma once
 #include <filesystem>
@@ -27,9 +28,9 @@ struct MarkerCells {
 MarkerCells marker_cells(const std::string& dictionary, int id);
 
 struct OwnDictionary {
-  std::string name;             // of the file, for messages
-  std::filesystem::path file;   // empty where it did not come from one
-  int side = 0;      // cells along one side, without the border
+  std::string name;            // of the file, for messages
+  std::filesystem::path file;  // empty where it did not come from one
+  int side = 0;                // cells along one side, without the border
   std::vector<std::vector<bool>> white;
   // The least number of cells in which two markers differ however they are turned, or one from itself turned; and how
   // many wrong cells are put right: what the file says, but fewer than half the distance.

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "base/error.h"
-#include "base/progress.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 
 namespace gonio::camera {
 namespace {

@@ -16,10 +16,10 @@ namespace gonio::camera {
 struct ModelScore {
   std::string model;
   bool warp = false;
-  int parameters = 0;      // of the lens and the board
-  double held_out_px = 0;  // root mean square of a corner's distance
+  int parameters = 0;             // of the lens and the board
+  double held_out_px = 0;         // root mean square of a corner's distance
   double gap = 0, gap_sigma = 0;  // of the robust score above the best one's, and its standard error over shots
-  bool failed = false;     // some fold could not be fitted
+  bool failed = false;            // some fold could not be fitted
 };
 struct ModelChoice {
   std::vector<ModelScore> scores;  // simplest first

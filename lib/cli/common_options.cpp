@@ -1,5 +1,7 @@
 #include "cli/common_options.h"
 
+#include <cctype>
+
 namespace gonio::cli {
 
 std::vector<Option> common_options(const Program& program) {
@@ -67,6 +69,10 @@ std::vector<Option> common_options(const Program& program) {
   add({.name = "help", .type = Type::flag, .help = "Print this help and end.", .letter = 'h'});
   add({.name = "version", .type = Type::flag, .help = "Print the version and end."});
   return all;
+}
+
+std::string option_text(const std::string& name) {
+  return std::isupper(static_cast<unsigned char>(name.front())) ? name : "--" + name;
 }
 
 std::string metavar_of(const Option& o) {

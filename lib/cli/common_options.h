@@ -8,6 +8,8 @@
 namespace gonio::cli {
 
 std::vector<Option> common_options(const Program& program);  // those that `program` takes
+// A name as people type it: "--poses"; operands, whose names are capitals, as they are.
+std::string option_text(const std::string& name);
 std::string metavar_of(const Option& option);                // its own, or one that its type suggests; empty for flags
 
 }  // namespace gonio::cli

@@ -77,8 +77,8 @@ std::string remarks_of(const Option& o) {
   if (const std::string limits = limits_of(o); !limits.empty()) add(limits);
   if (o.required) add("required");
   if (o.repeat) add("may be repeated");
-  for (const auto& c : o.conflicts) add("not with --" + c);
-  for (const auto& n : o.needs) add("needs --" + n);
+  for (const auto& c : o.conflicts) add("not with " + option_text(c));
+  for (const auto& n : o.needs) add("needs " + option_text(n));
   return out;
 }
 

@@ -80,7 +80,10 @@ std::string manifest_source(Invocation& call) {
     if (texts.empty()) call.state->arguments[operand.name].given = false;
     return name;
   }
-  const bool operands = std::ranges::any_of(program.operands, [&](const Option& o) { return call.given(o.name); });
+  // Where a manifest is required, repeated operands say what else to read (poses), not what to work on.
+  const bool operands = std::ranges::any_of(program.operands, [&](const Option& o) {
+    return call.given(o.name) && !(program.reads == Reads::required && o.repeat);
+  });
   const bool standalone = std::ranges::any_of(program.standalone, [&](const std::string& o) { return call.given(o); });
   if (operands || standalone) return {};
   if (input_may_come()) return "-";

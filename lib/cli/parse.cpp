@@ -69,10 +69,10 @@ void check_company(const Invocation::State& state) {
     if (!a.given) continue;
     for (const auto& other : a.option->conflicts)
       if (const auto found = state.arguments.find(other); found != state.arguments.end() && found->second.given)
-        throw Error(Exit::usage, "--" + name, "cannot stand beside --" + other, "give one of them");
+        throw Error(Exit::usage, option_text(name), "cannot stand beside " + option_text(other), "give one of them");
     for (const auto& other : a.option->needs)
       if (const auto found = state.arguments.find(other); found == state.arguments.end() || !found->second.given)
-        throw Error(Exit::usage, "--" + name, "needs --" + other);
+        throw Error(Exit::usage, option_text(name), "needs " + option_text(other));
   }
 }
 

@@ -46,7 +46,8 @@ struct Option {
 };
 
 // How the manifest enters: from -i FILE, else from an operand that ends in .json, else from standard input where that
-// is a pipe, a socket or a file and neither operands nor a `standalone` option are given; an empty one is no manifest.
+// is a pipe, a socket or a file and neither operands (repeated ones beside a required manifest apart) nor a
+// `standalone` option are given; an empty one is no manifest.
 // So a program that has been told what to work on never waits for a pipe that nobody writes to. none: never; required:
 // its absence is an error.
 enum class Reads { none, optional, required };

@@ -17,9 +17,10 @@ std::vector<std::unique_ptr<Problem>> problems_of(const manifest::Document& docu
   if (has_hand_eye(document))
     for (RobotInput& input : robot_inputs(document)) problems.push_back(robot_problem(std::move(input)));
   if (problems.empty())
-    throw Error(Exit::data, manifest::place(document, ""),
-                "has nothing to explain: no table of board corners, no mounting on a robot, no recorded images of objects",
-                "calibrate with calib-charuco or handeye, or describe images with file and camera, and objects");
+    throw Error(
+        Exit::data, manifest::place(document, ""),
+        "has nothing to explain: no table of board corners, no mounting on a robot, no recorded images of objects",
+        "calibrate with calib-charuco or handeye, or describe images with file and camera, and objects");
   return problems;
 }
 

@@ -28,10 +28,12 @@ std::vector<std::size_t> draw_test_groups(std::size_t groups, std::uint64_t seed
 }
 
 void set_aside_groups(const std::vector<std::size_t>& test_groups, System& system) {
-  std::erase_if(system.groups, [&](std::size_t g) { return std::binary_search(test_groups.begin(), test_groups.end(), g); });
+  std::erase_if(system.groups,
+                [&](std::size_t g) { return std::binary_search(test_groups.begin(), test_groups.end(), g); });
 }
 
-// Whether there is a mismatch is asked of all groups: it chooses nothing, and the groups set aside judge names, not this.
+// Whether there is a mismatch is asked of all groups: it chooses nothing, and the groups set aside judge names, not
+// this.
 double mismatch_p(const System& all, const std::vector<double>& start, Options options) {
   options.dummies = 0;
   const Race race(all, options);
@@ -115,10 +117,12 @@ void final_fit(const System& system, const Race& race, const Selection& selectio
                    [&](const Compensation& a, const Compensation& b) { return shift(a) > shift(b); });
 }
 
-// The scores on groups that no choice has seen; with few groups, the cross-validation that the choice was made with, by full refits.
+// The scores on groups that no choice has seen; with few groups, the cross-validation that the choice was made with, by
+// full refits.
 void final_scores(const System& all, const System& chosen_on, const Selection& s, Explanation& e) {
   const auto score = [&](const Model& m) {
-    return (e.test_groups.empty() ? held_out_by_refit(all, m.fit) : unseen_groups(chosen_on, m.fit, e.test_groups)).score();
+    return (e.test_groups.empty() ? held_out_by_refit(all, m.fit) : unseen_groups(chosen_on, m.fit, e.test_groups))
+        .score();
   };
   e.held_out_before = score(s.base);
   e.held_out_after = s.model.candidates.empty() ? e.held_out_before : score(s.model);
@@ -216,7 +220,8 @@ Explanation explain(const Problem& problem, const Options& options) {
   locate_groups(all, e);
   for (LocatedCondition& located : e.conditions) {
     const auto& conditions = problem.observations().conditions;
-    const auto found = std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return c.name == located.name; });
+    const auto found =
+        std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return c.name == located.name; });
     located.curve = residual_curve(all, static_cast<std::size_t>(found - conditions.begin()), e.residual_before,
                                    e.residual_after, 12);
   }

@@ -1,8 +1,9 @@
-// The engine of `explain`: from a problem to an explanation, by the steps noise, fair refit, isolability, null test, location,
-// naming on held-out groups, equivalents, final judgement on groups that were never opened.
+// The engine of `explain`: from a problem to an explanation, by the steps noise, fair refit, isolability, null test,
+// location, naming on held-out groups, equivalents, final judgement on groups that were never opened.
 //
-// It knows no physics. Rules it keeps: nothing is named without a significant mismatch; nothing below `matters`; no name for what
-// a dummy does as well, what sits at its bound, what helps no unseen group; equals are reported as equals.
+// It knows no physics. Rules it keeps: nothing is named without a significant mismatch; nothing below `matters`; no
+// name for what a dummy does as well, what sits at its bound, what helps no unseen group; equals are reported as
+// equals.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -24,8 +25,9 @@ struct Options {
 
 Explanation explain(const Problem& problem, const Options& options);
 
-// The first steps alone, noise, fair refit and the null test, exactly as explain() takes them: the chance of such structure in the
-// residuals of the base model where nothing was left out. A mismatch is there at the level alpha where it is at most alpha.
+// The first steps alone, noise, fair refit and the null test, exactly as explain() takes them: the chance of such
+// structure in the residuals of the base model where nothing was left out. A mismatch is there at the level alpha where
+// it is at most alpha.
 double null_test(const Problem& problem, const Options& options);
 
 }  // namespace gonio::explain

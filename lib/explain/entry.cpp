@@ -8,7 +8,9 @@ namespace {
 
 using manifest::Value;
 
-Value number(double v) { return std::isfinite(v) ? Value(v) : Value(); }
+Value number(double v) {
+  return std::isfinite(v) ? Value(v) : Value();
+}
 
 Value numbers(const std::vector<double>& values) {
   Value list = Value::array();
@@ -24,7 +26,9 @@ bool is_parameter(const std::string& full, const std::string& name) {
 }
 
 // One number, or a list with one for each target.
-Value gathered(const std::vector<double>& values) { return values.size() == 1 ? number(values[0]) : numbers(values); }
+Value gathered(const std::vector<double>& values) {
+  return values.size() == 1 ? number(values[0]) : numbers(values);
+}
 
 Value named_mechanism(const Problem& problem, const Explanation& e, std::size_t candidate) {
   const Candidate& c = problem.candidates()[candidate];
@@ -56,21 +60,24 @@ Value named_mechanism(const Problem& problem, const Explanation& e, std::size_t 
 Value located(const Explanation& e, const Illustration& illustration) {
   if (!e.significant || e.conditions.empty()) return {};
   const LocatedCondition& first = e.conditions[0];
-  Value result = Value::object({{"condition", first.name}, {"range", numbers({first.lower, first.upper})},
-                                {"unit", first.unit}, {"share", number(first.share)}});
+  Value result = Value::object({{"condition", first.name},
+                                {"range", numbers({first.lower, first.upper})},
+                                {"unit", first.unit},
+                                {"share", number(first.share)}});
   if (!illustration.masks.empty()) result["mask"] = illustration.masks[0];
   if (illustration.masks.size() > 1) result["masks"] = illustration.masks;
   if (!illustration.boxes.empty()) {
     Value boxes = Value::array();
     for (const Box& b : illustration.boxes)
-      boxes.push_back(Value::object({{"group", b.group}, {"x_px", b.x}, {"y_px", b.y}, {"width_px", b.width}, {"height_px", b.height}}));
+      boxes.push_back(Value::object(
+          {{"group", b.group}, {"x_px", b.x}, {"y_px", b.y}, {"width_px", b.width}, {"height_px", b.height}}));
     result["boxes"] = boxes;
   }
   if (!e.stage.empty()) result["stage"] = e.stage;
   Value conditions = Value::array(), groups = Value::array();
   for (const LocatedCondition& c : e.conditions)
-    conditions.push_back(Value::object({{"condition", c.name}, {"share", number(c.share)}, {"range", numbers({c.lower, c.upper})},
-                                        {"unit", c.unit}}));
+    conditions.push_back(Value::object(
+        {{"condition", c.name}, {"share", number(c.share)}, {"range", numbers({c.lower, c.upper})}, {"unit", c.unit}}));
   for (const LocatedGroup& g : e.groups)
     groups.push_back(Value::object(
         {{"group", g.name}, {"share", number(g.share)}, {"before", number(g.before)}, {"after", number(g.after)}}));
@@ -83,8 +90,11 @@ Value scoreboard(const Explanation& e) {
   Value list = Value::array();
   for (const Hypothesis& h : e.scoreboard) {
     const bool fitted = h.kind == Hypothesis::Kind::mechanisms;
-    Value entry = Value::object({{"hypothesis", h.name}, {"held_out", number(h.held_out)}, {"gain", number(h.gain)},
-                                 {"gain_sigma", number(h.gain_sigma)}, {"effect", number(h.effect)}});
+    Value entry = Value::object({{"hypothesis", h.name},
+                                 {"held_out", number(h.held_out)},
+                                 {"gain", number(h.gain)},
+                                 {"gain_sigma", number(h.gain_sigma)},
+                                 {"effect", number(h.effect)}});
     if (fitted) entry["p_neutral"] = number(h.wald_p);
     if (!h.refused.empty()) entry["refused"] = h.refused;
     list.push_back(entry);
@@ -100,7 +110,8 @@ Value isolability(const Problem& problem, const Explanation& e) {
     for (std::size_t k = 0; k < i.detection_limit.size(); ++k)
       limits[problem.parameters()[c.parameters[k]].name] = number(i.detection_limit[k]);
     for (const auto& [other, cosine] : i.look_alikes)
-      look_alikes.push_back(Value::object({{"mechanism", problem.candidates()[other].id()}, {"cosine", number(cosine)}}));
+      look_alikes.push_back(
+          Value::object({{"mechanism", problem.candidates()[other].id()}, {"cosine", number(cosine)}}));
     Value entry = Value::object({{"mechanism", c.id()}});
     if (!c.on.empty()) entry["on"] = c.on;
     entry["surviving_share"] = number(i.surviving_share);
@@ -115,8 +126,10 @@ Value isolability(const Problem& problem, const Explanation& e) {
 Value compensation(const Problem& problem, const Explanation& e) {
   Value list = Value::array();
   for (const Compensation& c : e.compensation)
-    list.push_back(Value::object({{"parameter", problem.parameters()[c.parameter].name}, {"before", number(c.before)},
-                                  {"after", number(c.after)}, {"sigma", number(c.sigma)}}));
+    list.push_back(Value::object({{"parameter", problem.parameters()[c.parameter].name},
+                                  {"before", number(c.before)},
+                                  {"after", number(c.after)},
+                                  {"sigma", number(c.sigma)}}));
   return list;
 }
 
@@ -136,18 +149,22 @@ Value entry_of(const Problem& problem, const Explanation& e, const Illustration&
   entry["not_told_apart"] = apart;
   entry["outside"] = e.outside.empty() ? Value() : Value(e.outside);
   entry["located"] = located(e, illustration);
-  entry["held_out"] = Value::object({{"before", number(e.held_out_before)},
-                                     {"after", number(e.held_out_after)},
-                                     {"unit", problem.unit()},
-                                     {"score", problem.score_name()},
-                                     {"how", e.test_groups.empty() ? "each group left out in turn" : "test groups opened once"},
-                                     {"test_groups", tests}});
+  entry["held_out"] =
+      Value::object({{"before", number(e.held_out_before)},
+                     {"after", number(e.held_out_after)},
+                     {"unit", problem.unit()},
+                     {"score", problem.score_name()},
+                     {"how", e.test_groups.empty() ? "each group left out in turn" : "test groups opened once"},
+                     {"test_groups", tests}});
   entry["fitted"] = Value::object({{"before", number(e.fitted_before)}, {"after", number(e.fitted_after)}});
-  entry["null_test"] = Value::object({{"p", number(e.global_p)}, {"significant", e.significant}, {"important", e.important},
+  entry["null_test"] = Value::object({{"p", number(e.global_p)},
+                                      {"significant", e.significant},
+                                      {"important", e.important},
                                       {"matters", number(e.matters)}});
-  entry["noise"] = Value::object({{"factor", number(e.noise_factor)},
-                                  {"blocks_set_aside", static_cast<std::int64_t>(e.outlier_blocks)}});
-  entry["dummies"] = Value::object({{"run", static_cast<std::int64_t>(e.dummies)}, {"passed_share", number(e.false_alarm)}});
+  entry["noise"] = Value::object(
+      {{"factor", number(e.noise_factor)}, {"blocks_set_aside", static_cast<std::int64_t>(e.outlier_blocks)}});
+  entry["dummies"] =
+      Value::object({{"run", static_cast<std::int64_t>(e.dummies)}, {"passed_share", number(e.false_alarm)}});
   entry["scoreboard"] = scoreboard(e);
   entry["isolability"] = isolability(problem, e);
   entry["compensation"] = compensation(problem, e);

@@ -19,7 +19,9 @@ bool doubtful(const Problem& problem, const Explanation& e) {
 }
 
 // The worse of two answers: a gate that failed outweighs a negative answer.
-Exit worse(Exit a, Exit b) { return static_cast<int>(a) > static_cast<int>(b) ? a : b; }
+Exit worse(Exit a, Exit b) {
+  return static_cast<int>(a) > static_cast<int>(b) ? a : b;
+}
 
 }  // namespace
 
@@ -51,7 +53,8 @@ std::string list_of_mechanisms() {
     text += m->id + "  (" + m->stage + ")\n    " + m->sentence + "\n    seen in:";
     for (std::size_t k = 0; k < m->conditions.size(); ++k) text += (k == 0 ? " " : ", ") + m->conditions[k];
     text += "\n";
-    for (const mechanism::Confusion& c : m->mistaken_for) text += "    mistaken for " + c.with + ": " + c.told_apart + "\n";
+    for (const mechanism::Confusion& c : m->mistaken_for)
+      text += "    mistaken for " + c.with + ": " + c.told_apart + "\n";
   }
   return text;
 }

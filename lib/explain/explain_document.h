@@ -1,4 +1,5 @@
-// From a manifest to an explained manifest: every domain is explained, its sections upgraded, its entry written, one page for all.
+// From a manifest to an explained manifest: every domain is explained, its sections upgraded, its entry written, one
+// page for all.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -14,8 +15,8 @@ struct ExplainRequest {
   std::filesystem::path out;   // folder for masks; empty: none are written
   std::filesystem::path page;  // report page; empty: none
 };
-// done: nothing is left out, or it is named. negative: a mismatch that matters and no physics for it. quality: the fit did not
-// converge, or a tenth of the observations had to be set aside.
+// done: nothing is left out, or it is named. negative: a mismatch that matters and no physics for it. quality: the fit
+// did not converge, or a tenth of the observations had to be set aside.
 Exit explain_document(manifest::Document& document, const ExplainRequest& request);
 
 // The mechanisms that explain knows: id, sentence, conditions, confusions. Plain text.

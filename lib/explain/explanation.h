@@ -1,5 +1,5 @@
-// What the engine found: numbers for the manifest's "explanations", for the report page and for the domain's upgrade of the
-// scene. Filled by explain(); read by everybody else.
+// What the engine found: numbers for the manifest's "explanations", for the report page and for the domain's upgrade of
+// the scene. Filled by explain(); read by everybody else.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace gonio::explain {
 
-// null: no mismatch beyond noise, or none that matters. named: one set of mechanisms repairs it. ambiguous: several do, equally.
-// unknown: there is a mismatch that matters and nothing in the library repairs it.
+// null: no mismatch beyond noise, or none that matters. named: one set of mechanisms repairs it. ambiguous: several do,
+// equally. unknown: there is a mismatch that matters and nothing in the library repairs it.
 enum class Verdict { null, named, ambiguous, unknown };
 std::string verdict_name(Verdict verdict);
 
@@ -22,75 +22,78 @@ struct Estimate {
   bool at_bound = false;
 };
 
-// One hypothesis in the race: candidates switched on together, or a dummy, or a free curve over one condition ("unknown").
+// One hypothesis in the race: candidates switched on together, or a dummy, or a free curve over one condition
+// ("unknown").
 struct Hypothesis {
   enum class Kind { base, mechanisms, dummy, free_curve };
   Kind kind = Kind::mechanisms;
   std::string name;
   std::vector<std::size_t> candidates;  // dummy: the one whose freedom it has
-  double held_out = 0;             // score on held-out groups, in the user's unit
-  double gain = 0, gain_sigma = 0; // fall of the held-out mean square in noise units against the model it extends, and the
-                                   // standard error of that over groups
-  double effect = 0;               // what --matters is held against
-  double wald_p = 1;               // of "all its parameters are neutral"
+  double held_out = 0;                  // score on held-out groups, in the user's unit
+  double gain = 0, gain_sigma = 0;  // fall of the held-out mean square in noise units against the model it extends, and
+                                    // the standard error of that over groups
+  double effect = 0;  // what --matters is held against
+  double wald_p = 1;  // of "all its parameters are neutral"
   std::vector<Estimate> parameters;
-  std::string refused;             // why it cannot be named; empty: it can
+  std::string refused;  // why it cannot be named; empty: it can
 };
 
 struct Isolability {
   std::size_t candidate = 0;
-  double surviving_share = 0;                    // of the signature's length, after free parameters are projected out
-  std::vector<double> detection_limit;           // per parameter: amplitude seen with 80 % power at the test's level
-  std::vector<std::pair<std::size_t, double>> look_alikes;  // other candidates with |cos| > 0.9 between the projected signatures
-  bool visible = true;                           // false: "these recordings cannot show it"
+  double surviving_share = 0;           // of the signature's length, after free parameters are projected out
+  std::vector<double> detection_limit;  // per parameter: amplitude seen with 80 % power at the test's level
+  std::vector<std::pair<std::size_t, double>>
+      look_alikes;      // other candidates with |cos| > 0.9 between the projected signatures
+  bool visible = true;  // false: "these recordings cannot show it"
 };
 
-// Residuals against one condition in bins of equal counts: the mean along the condition's direction, in `value_unit`, and its
-// standard error (over blocks).
+// Residuals against one condition in bins of equal counts: the mean along the condition's direction, in `value_unit`,
+// and its standard error (over blocks).
 struct Curve {
   std::string condition, unit, value_unit;
   std::vector<double> centre, before, after, sigma;
 };
 struct LocatedCondition {
   std::string name, unit, stage;
-  double share = 0;               // of the excess over noise that a smooth curve over this condition explains
-  double lower = 0, upper = 0;    // range that holds most of it
+  double share = 0;             // of the excess over noise that a smooth curve over this condition explains
+  double lower = 0, upper = 0;  // range that holds most of it
   Curve curve;
 };
 struct LocatedGroup {
   std::string name;
-  double share = 0;               // of the excess
-  double before = 0, after = 0;   // score in the user's unit
+  double share = 0;              // of the excess
+  double before = 0, after = 0;  // score in the user's unit
 };
 
-struct Compensation {             // a free parameter that the missing physics had bent
+struct Compensation {  // a free parameter that the missing physics had bent
   std::size_t parameter = 0;
   double before = 0, after = 0, sigma = 0;
 };
 
 struct Explanation {
   Verdict verdict = Verdict::null;
-  std::vector<std::size_t> named;                       // candidates, the most important first
-  std::vector<std::vector<std::size_t>> not_told_apart; // sets of candidates, each set an explanation as good as the winner
-  double global_p = 1;                                  // of the null test
+  std::vector<std::size_t> named;  // candidates, the most important first
+  std::vector<std::vector<std::size_t>>
+      not_told_apart;   // sets of candidates, each set an explanation as good as the winner
+  double global_p = 1;  // of the null test
   bool significant = false, important = false;
   double noise_factor = 1;
   std::size_t outlier_blocks = 0;
   double matters = 0.01;
 
-  std::vector<double> base_values;     // fair refit of the base model, all groups
-  std::vector<double> values;          // with the named mechanisms; equals base_values where nothing is named
-  std::vector<std::size_t> active;     // parameters that were free in the final fit
-  std::vector<double> sigma;           // one per parameter, zero where not free
-  std::vector<double> covariance;      // of `active`, row-major: sandwich over blocks
-  std::vector<Estimate> estimates;     // of the named mechanisms' parameters
+  std::vector<double> base_values;  // fair refit of the base model, all groups
+  std::vector<double> values;       // with the named mechanisms; equals base_values where nothing is named
+  std::vector<std::size_t> active;  // parameters that were free in the final fit
+  std::vector<double> sigma;        // one per parameter, zero where not free
+  std::vector<double> covariance;   // of `active`, row-major: sandwich over blocks
+  std::vector<Estimate> estimates;  // of the named mechanisms' parameters
   std::vector<double> residual_before, residual_after;  // y - f of all rows
 
-  double held_out_before = 0, held_out_after = 0;       // user's unit
-  double fitted_before = 0, fitted_after = 0;           // the same score on the groups that were fitted
-  bool converged = true;                                // of the final fit
-  std::vector<std::size_t> test_groups;                 // opened once at the end; empty: nested cross-validation over all
-  double false_alarm = 0;                               // share of dummies that would have passed for physics
+  double held_out_before = 0, held_out_after = 0;  // user's unit
+  double fitted_before = 0, fitted_after = 0;      // the same score on the groups that were fitted
+  bool converged = true;                           // of the final fit
+  std::vector<std::size_t> test_groups;            // opened once at the end; empty: nested cross-validation over all
+  double false_alarm = 0;                          // share of dummies that would have passed for physics
   std::size_t dummies = 0;
 
   std::vector<Hypothesis> scoreboard;  // best first
@@ -99,7 +102,7 @@ struct Explanation {
   std::vector<LocatedGroup> groups;          // largest share first
   std::vector<Compensation> compensation;    // largest shift in sigmas first
   std::string stage;
-  std::string outside;                 // condition in which structure remains that no mechanism repairs; empty: none
+  std::string outside;  // condition in which structure remains that no mechanism repairs; empty: none
   std::string sentence, next_measurement;
 };
 

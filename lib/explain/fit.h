@@ -1,4 +1,5 @@
-// Fits: bounded Levenberg-Marquardt over the groups in play, the covariance of its result, and scores on groups that it did not see.
+// Fits: bounded Levenberg-Marquardt over the groups in play, the covariance of its result, and scores on groups that it
+// did not see.
 #pragma once
 #include <vector>
 
@@ -8,23 +9,24 @@
 namespace gonio::explain {
 
 struct Fit {
-  std::vector<double> values;        // one per parameter of the problem
-  std::vector<std::size_t> active;   // what was free
-  std::vector<std::size_t> inner;    // those of them that ended inside their bounds
-  double cost = 0;                   // sum of whitened squares plus priors
+  std::vector<double> values;       // one per parameter of the problem
+  std::vector<std::size_t> active;  // what was free
+  std::vector<std::size_t> inner;   // those of them that ended inside their bounds
+  double cost = 0;                  // sum of whitened squares plus priors
   bool converged = false;
 };
-// Minimises the whitened sum of squares over `active`. Parameters that press against a bound are held there. Marquardt 1963 with
-// columns scaled to unit length; deterministic.
+// Minimises the whitened sum of squares over `active`. Parameters that press against a bound are held there. Marquardt
+// 1963 with columns scaled to unit length; deterministic.
 Fit fit(const System& system, std::vector<double> start, const std::vector<std::size_t>& active, int iterations = 60);
 
-// Covariance of a fit, H^-1 M H^-1 with M the sum over blocks of their squared scores (White 1980; Liang & Zeger 1986): honest under
-// any correlation inside a block and any mis-stated sigma. Where leaving out whole groups moves a parameter by more than that
-// explains (variance ratio beyond its 95 % point), the jackknife over groups stands instead.
+// Covariance of a fit, H^-1 M H^-1 with M the sum over blocks of their squared scores (White 1980; Liang & Zeger 1986):
+// honest under any correlation inside a block and any mis-stated sigma. Where leaving out whole groups moves a
+// parameter by more than that explains (variance ratio beyond its 95 % point), the jackknife over groups stands
+// instead.
 struct Uncertainty {
-  Eigen::MatrixXd covariance;        // of `parameters`
+  Eigen::MatrixXd covariance;  // of `parameters`
   std::vector<std::size_t> parameters;
-  std::vector<double> degrees;       // for Student's t: large, or groups - 1 where the jackknife rules
+  std::vector<double> degrees;  // for Student's t: large, or groups - 1 where the jackknife rules
 };
 Uncertainty uncertainty(const System& system, const Fit& fit);
 std::vector<Estimate> estimates(const System& system, const Fit& fit, const Uncertainty& uncertainty,
@@ -33,8 +35,8 @@ std::vector<Estimate> estimates(const System& system, const Fit& fit, const Unce
 double neutral_p(const System& system, const Fit& fit, const Uncertainty& uncertainty,
                  const std::vector<std::size_t>& parameters);
 
-// Sums of squares per group in play (in the order of System::groups), on rows whose group took no part in the shared parameters
-// and whose half took no part in the group's own nuisance.
+// Sums of squares per group in play (in the order of System::groups), on rows whose group took no part in the shared
+// parameters and whose half took no part in the group's own nuisance.
 struct HeldOut {
   std::vector<double> whitened, raw, norm;
   std::vector<double> rows;
@@ -43,7 +45,8 @@ struct HeldOut {
 // Leave one group out, by one Gauss-Newton step from the joint optimum, then judged with the real predictions.
 HeldOut held_out_by_step(const System& system, const Fit& fit);
 // The same for any subset of a linearisation's columns, judged linearly: `whitened` and `rows` only.
-HeldOut held_out_linear(const System& system, const Linearisation& linearisation, const std::vector<std::size_t>& columns);
+HeldOut held_out_linear(const System& system, const Linearisation& linearisation,
+                        const std::vector<std::size_t>& columns);
 // Leave one group out with a full fit each.
 HeldOut held_out_by_refit(const System& system, const Fit& fit);
 // Groups `unseen` under a fit of the groups in play: nuisance is fitted on halves, everything else stands.

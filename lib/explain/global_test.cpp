@@ -1,5 +1,6 @@
-// See global_test.h. Every look becomes a matrix W (blocks x directions) and degrees d such that |1'W|^2 ~ chi-square(d) under the
-// null: fixed numbers W = U V^-1/2 with V = U'U and d its rank; draws of one law W = U sqrt(tr V / tr V^2), d = (tr V)^2 / tr V^2.
+// See global_test.h. Every look becomes a matrix W (blocks x directions) and degrees d such that |1'W|^2 ~
+// chi-square(d) under the null: fixed numbers W = U V^-1/2 with V = U'U and d its rank; draws of one law W = U sqrt(tr
+// V / tr V^2), d = (tr V)^2 / tr V^2.
 #include "explain/global_test.h"
 
 #include <Eigen/Dense>

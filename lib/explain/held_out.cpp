@@ -1,7 +1,8 @@
 // See fit.h: scores on groups that a fit has not seen.
 //
-// A held-out group's shared parameters come from the other groups alone. Its nuisance (a board's pose) cannot: it is fitted on one
-// half of the group's blocks and judged on the other half, and the reverse, so that every row is judged once.
+// A held-out group's shared parameters come from the other groups alone. Its nuisance (a board's pose) cannot: it is
+// fitted on one half of the group's blocks and judged on the other half, and the reverse, so that every row is judged
+// once.
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -1,5 +1,5 @@
-// Isolability, judged before any residual is looked at: what of a mechanism's signature survives the free parameters, which
-// amplitude could be seen, and which mechanisms look alike in these very recordings.
+// Isolability, judged before any residual is looked at: what of a mechanism's signature survives the free parameters,
+// which amplitude could be seen, and which mechanisms look alike in these very recordings.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace gonio::explain {
 namespace {
 
-constexpr double look_alike = 0.9;      // |cos| beyond which two signatures cannot be told apart
+constexpr double look_alike = 0.9;  // |cos| beyond which two signatures cannot be told apart
 constexpr double invisible_share = 1e-3;
 
 // G^-1/2 on the range of G.
@@ -49,8 +49,8 @@ std::vector<Isolability> isolability(const System& system, const Projection& p, 
     for (std::size_t k = 0; k < own.size(); ++k) {
       const double length = p.surviving(own[k], own[k]);
       const Parameter& parameter = system.problem().parameters()[candidate.parameters[k]];
-      const double limit = length > 0 ? stats::detectable_z(level, 0.8) / std::sqrt(length)
-                                      : std::numeric_limits<double>::infinity();
+      const double limit =
+          length > 0 ? stats::detectable_z(level, 0.8) / std::sqrt(length) : std::numeric_limits<double>::infinity();
       entry.detection_limit.push_back(limit);
       const double reach = std::max(parameter.upper - parameter.neutral, parameter.neutral - parameter.lower);
       if (limit < reach && entry.surviving_share > invisible_share) entry.visible = true;

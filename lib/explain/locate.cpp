@@ -1,5 +1,5 @@
-// Where the mismatch is, in the conditions: how much of the excess over noise a smooth curve over each one explains, and over which
-// range.
+// Where the mismatch is, in the conditions: how much of the excess over noise a smooth curve over each one explains,
+// and over which range.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -57,8 +57,10 @@ void find_range(const Curve& curve, LocatedCondition& located) {
       break;
     }
   }
-  located.lower = best_first == 0 ? curve.centre.front() : 0.5 * (curve.centre[best_first - 1] + curve.centre[best_first]);
-  located.upper = best_last + 1 == n ? curve.centre.back() : 0.5 * (curve.centre[best_last] + curve.centre[best_last + 1]);
+  located.lower =
+      best_first == 0 ? curve.centre.front() : 0.5 * (curve.centre[best_first - 1] + curve.centre[best_first]);
+  located.upper =
+      best_last + 1 == n ? curve.centre.back() : 0.5 * (curve.centre[best_last] + curve.centre[best_last + 1]);
 }
 
 }  // namespace
@@ -69,7 +71,8 @@ Curve residual_curve(const System& system, std::size_t condition, const std::vec
   const Condition& c = o.conditions[condition];
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < o.rows(); ++i)
-    if (system.weight(i) > 0 && std::isfinite(c.values[i]) && (c.direction.empty() || c.direction[i] != 0)) rows.push_back(i);
+    if (system.weight(i) > 0 && std::isfinite(c.values[i]) && (c.direction.empty() || c.direction[i] != 0))
+      rows.push_back(i);
   std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return c.values[a] < c.values[b]; });
   Curve curve{c.name, c.unit, c.curve_unit, {}, {}, {}, {}};
   for (std::size_t b = 0; b < bins; ++b) {

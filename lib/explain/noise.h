@@ -8,8 +8,8 @@ struct NoiseFindings {
   double factor = 1;
   std::size_t outlier_blocks = 0;
 };
-// Fits the most flexible model (every mechanism at once), asks the domain for its local noise, and sets blocks beyond five noise
-// widths aside. Domains with a known noise are left as they are. Changes `system`.
+// Fits the most flexible model (every mechanism at once), asks the domain for its local noise, and sets blocks beyond
+// five noise widths aside. Domains with a known noise are left as they are. Changes `system`.
 NoiseFindings settle_noise(System& system, const std::vector<double>& start);
 
 }  // namespace gonio::explain

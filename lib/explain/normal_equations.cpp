@@ -1,5 +1,6 @@
-// See system.h. With H = [A B; B' C] for local and shared parameters, the shared ones solve (C - B' A^-1 B) s = c - B' A^-1 a, and
-// l = A^-1 (a - B s) group by group, since groups share no local parameter (Triggs et al. 2000, "Bundle Adjustment", section 6.1).
+// See system.h. With H = [A B; B' C] for local and shared parameters, the shared ones solve (C - B' A^-1 B) s = c - B'
+// A^-1 a, and l = A^-1 (a - B s) group by group, since groups share no local parameter (Triggs et al. 2000, "Bundle
+// Adjustment", section 6.1).
 #include <cmath>
 
 #include "explain/system.h"
@@ -12,7 +13,8 @@ constexpr double ridge = 1e-13;
 
 }  // namespace
 
-NormalEquations::Part NormalEquations::part_of(const GroupGram& gram, const std::vector<Eigen::Index>& place_in_subset) {
+NormalEquations::Part NormalEquations::part_of(const GroupGram& gram,
+                                               const std::vector<Eigen::Index>& place_in_subset) {
   Part p;
   std::vector<Eigen::Index> chosen;
   for (std::size_t k = 0; k < gram.columns.size(); ++k) {
@@ -61,7 +63,8 @@ NormalEquations::NormalEquations(const Linearisation& l, const std::vector<std::
   factor_.compute(reduced);
 }
 
-void NormalEquations::eliminate(const Part& p, const std::vector<Eigen::Index>& place_in_shared, Eigen::MatrixXd& reduced) {
+void NormalEquations::eliminate(const Part& p, const std::vector<Eigen::Index>& place_in_shared,
+                                Eigen::MatrixXd& reduced) {
   const Eigen::VectorXd scale = scale_(p.places);
   const Eigen::MatrixXd h = scale.asDiagonal() * p.gram * scale.asDiagonal();
   std::vector<Eigen::Index> in_local, in_shared, shared_places;

@@ -5,8 +5,8 @@
 
 namespace gonio::explain {
 
-// Central differences with step h = 1e-4 size: error h^2 f''' / 6 + rounding / h, both near 1e-8 of the change for smooth f. At a
-// bound the step leads inwards only.
+// Central differences with step h = 1e-4 size: error h^2 f''' / 6 + rounding / h, both near 1e-8 of the change for
+// smooth f. At a bound the step leads inwards only.
 void Problem::jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
                        std::span<double> derivatives) const {
   const std::size_t rows = observations_.first[group + 1] - observations_.first[group];
@@ -26,8 +26,12 @@ void Problem::jacobian(std::span<const double> values, std::size_t group, std::s
   }
 }
 
-std::optional<double> Problem::noise_factor(std::span<const double>) const { return std::nullopt; }
+std::optional<double> Problem::noise_factor(std::span<const double>) const {
+  return std::nullopt;
+}
 
-std::string Problem::remarks(const Explanation&) const { return {}; }
+std::string Problem::remarks(const Explanation&) const {
+  return {};
+}
 
 }  // namespace gonio::explain

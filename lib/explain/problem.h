@@ -1,13 +1,13 @@
-// What the engine of `explain` works on: observations y with noise, grouped into units of validation, known conditions x, and a
-// simulator f(x; parameters) whose optional terms (mechanisms) are parameters at their neutral values.
+// What the engine of `explain` works on: observations y with noise, grouped into units of validation, known conditions
+// x, and a simulator f(x; parameters) whose optional terms (mechanisms) are parameters at their neutral values.
 //
-// A domain (boards, images) derives from Problem, fills the tables in its constructor and predicts; everything statistical is the
-// engine's. ONE vector of parameters holds the free parameters of the base model, the nuisance parameters of single groups (a
-// board's pose, a light's gain) and the parameters of all candidate mechanisms. A mechanism that is not in play keeps its
-// neutral values, where the prediction is bit-identical to the base model's.
+// A domain (boards, images) derives from Problem, fills the tables in its constructor and predicts; everything
+// statistical is the engine's. ONE vector of parameters holds the free parameters of the base model, the nuisance
+// parameters of single groups (a board's pose, a light's gain) and the parameters of all candidate mechanisms. A
+// mechanism that is not in play keeps its neutral values, where the prediction is bit-identical to the base model's.
 //
-// Conventions: rows of one group are contiguous; groups, blocks and parameters are numbered from zero; SI units. predict() and
-// jacobian() are called from several threads at once and for whole groups.
+// Conventions: rows of one group are contiguous; groups, blocks and parameters are numbered from zero; SI units.
+// predict() and jacobian() are called from several threads at once and for whole groups.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -24,25 +24,25 @@
 namespace gonio::explain {
 
 // A quantity known for every row which may carry structure: "camera.image-radius", "surface.incidence".
-// `direction` says how the structure enters a row: residual = direction * curve(value). Empty: 1. Corners use it for the radial
-// (or out-of-board) direction in (u, v); images may use the prediction, so that the curve is a relative error.
-// Neither values nor directions may be computed from the observations they are held against (predictions serve): their noise
-// would explain itself.
+// `direction` says how the structure enters a row: residual = direction * curve(value). Empty: 1. Corners use it for
+// the radial (or out-of-board) direction in (u, v); images may use the prediction, so that the curve is a relative
+// error. Neither values nor directions may be computed from the observations they are held against (predictions serve):
+// their noise would explain itself.
 struct Condition {
   std::string name, unit;
-  std::string stage;               // of the simulator: lens, light, surface, transport, board, ...
-  std::vector<double> values;      // one per row; NaN: does not apply to this row
-  std::vector<double> direction;   // one per row, or empty
-  std::string curve_unit = "";     // of the curve: residual's unit over direction's: "px", "mm", "1"
+  std::string stage;              // of the simulator: lens, light, surface, transport, board, ...
+  std::vector<double> values;     // one per row; NaN: does not apply to this row
+  std::vector<double> direction;  // one per row, or empty
+  std::string curve_unit = "";    // of the curve: residual's unit over direction's: "px", "mm", "1"
 };
 
 struct Observations {
-  std::vector<double> value;          // y
-  std::vector<double> sigma;          // its noise, one standard deviation, > 0
-  std::vector<double> norm;           // the score in the user's unit is sqrt(sum (y - f)^2 / sum norm): 0.5 px^2 per coordinate
-                                      // gives the RMS in pixels, y^2 the relative RMSE
-  std::vector<std::uint32_t> block;   // rows whose noise may be correlated share a block (a corner; a tile of pixels); numbered
-                                      // over all groups, never straddling two groups
+  std::vector<double> value;  // y
+  std::vector<double> sigma;  // its noise, one standard deviation, > 0
+  std::vector<double> norm;   // the score in the user's unit is sqrt(sum (y - f)^2 / sum norm): 0.5 px^2 per coordinate
+                              // gives the RMS in pixels, y^2 the relative RMSE
+  std::vector<std::uint32_t> block;  // rows whose noise may be correlated share a block (a corner; a tile of pixels);
+                                     // numbered over all groups, never straddling two groups
   std::vector<std::size_t> first;     // group g holds rows first[g] .. first[g + 1] - 1; size groups + 1
   std::vector<std::string> group;     // names, as the user knows them: "left03"
   std::vector<Condition> conditions;  // the most telling ones suffice: ten or so
@@ -51,27 +51,27 @@ struct Observations {
 };
 
 struct Parameter {
-  std::string name, unit;   // "cameras/c/fx_px", "left03/translation_x_m", "lens.radial.k1"
-  double start = 0;         // where the fit begins. Mechanisms: start of the search when in play
-  double neutral = 0;       // mechanisms: where the term vanishes; it stands here when not in play
+  std::string name, unit;  // "cameras/c/fx_px", "left03/translation_x_m", "lens.radial.k1"
+  double start = 0;        // where the fit begins. Mechanisms: start of the search when in play
+  double neutral = 0;      // mechanisms: where the term vanishes; it stands here when not in play
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
-  double size = 1;          // typical size of a change, > 0: sets finite-difference steps (1e-4 size) and the damping's scale
+  double size = 1;  // typical size of a change, > 0: sets finite-difference steps (1e-4 size) and the damping's scale
   std::optional<double> prior_sigma;  // Gaussian prior about `start`
-  std::vector<std::size_t> groups;    // on which groups it acts; empty: all. One group: a nuisance that is refitted on one
-                                      // half of a held-out group's blocks and judged on the other half
+  std::vector<std::size_t> groups;    // on which groups it acts; empty: all. One group: a nuisance that is refitted on
+                                    // one half of a held-out group's blocks and judged on the other half
 };
 
 struct Candidate {
   const mechanism::Mechanism* mechanism = nullptr;
-  std::vector<std::string> on;             // targets: surfaces, lights, cameras, boards; empty: all there are
-  std::vector<std::size_t> parameters;     // places in Problem::parameters
+  std::vector<std::string> on;          // targets: surfaces, lights, cameras, boards; empty: all there are
+  std::vector<std::size_t> parameters;  // places in Problem::parameters
   // Candidates of one family are alternatives (one radius for all lights | one for each): at most one of them is named.
-  std::string family;                      // empty: the mechanism's id joined with `on`
+  std::string family;  // empty: the mechanism's id joined with `on`
   const std::string& id() const { return mechanism->id; }
 };
 
-// What `--matters` is a share of: the signal (rms of the effect over sqrt(sum norm), images) or the held-out score that the
-// mechanism removes (boards, where pixels have no natural scale).
+// What `--matters` is a share of: the signal (rms of the effect over sqrt(sum norm), images) or the held-out score that
+// the mechanism removes (boards, where pixels have no natural scale).
 enum class Importance { share_of_signal, share_of_residual };
 
 struct Explanation;  // explanation.h
@@ -101,21 +101,21 @@ class Problem {
   virtual std::string group_noun() const = 0;  // "board view", "image"
   virtual Importance importance() const = 0;
 
-  // Factor on the stated sigma, found from differences between neighbours that no smooth effect can reach. Nothing: the stated
-  // noise stands. `residual`: y - f for all rows after the most flexible fit.
+  // Factor on the stated sigma, found from differences between neighbours that no smooth effect can reach. Nothing: the
+  // stated noise stands. `residual`: y - f for all rows after the most flexible fit.
   virtual std::optional<double> noise_factor(std::span<const double> residual) const;
-  // Blocks beyond five noise widths under the most flexible fit are set aside and counted (mis-detected corners). Images say
-  // no: a highlight is an effect, not an outlier.
+  // Blocks beyond five noise widths under the most flexible fit are set aside and counted (mis-detected corners).
+  // Images say no: a highlight is an effect, not an outlier.
   virtual bool sets_outliers_aside() const { return false; }
 
   // What the domain has to say beside the verdict, in sentences; joins the explanation's own.
   virtual std::string remarks(const Explanation& explanation) const;
 
-  // The upgraded sections: mechanisms, cameras, boards, surfaces, lights, images with the fitted values and their sigmas.
-  // Called for every verdict; where nothing is named the fair refit of the base model is written.
+  // The upgraded sections: mechanisms, cameras, boards, surfaces, lights, images with the fitted values and their
+  // sigmas. Called for every verdict; where nothing is named the fair refit of the base model is written.
   virtual void apply(const Explanation& explanation, manifest::Document& document) const = 0;
-  // Pictures of where the mismatch is, before and after (PNG bytes for the page), and, where `out` is given, mask files entered in
-  // the document; returns what the engine puts into "located".
+  // Pictures of where the mismatch is, before and after (PNG bytes for the page), and, where `out` is given, mask files
+  // entered in the document; returns what the engine puts into "located".
   virtual Illustration illustrate(const Explanation& explanation, const std::filesystem::path& out,
                                   manifest::Document& document) const = 0;
 

@@ -141,7 +141,8 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
   h.wald_p = 0;
   for (const std::size_t c : added)
     h.wald_p = std::max(h.wald_p, neutral_p(system_, after.fit, u, system_.problem().candidates()[c].parameters));
-  // A free hand in every group beats physics that all groups share: dummies are held against mechanisms of their own kind.
+  // A free hand in every group beats physics that all groups share: dummies are held against mechanisms of their own
+  // kind.
   const bool grouped = has_numbers_of_groups(system_, added);
   std::ptrdiff_t peers = 0, rivals = 0;
   for (const Hypothesis& dummy : dummies) {
@@ -149,14 +150,18 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
     ++peers;
     rivals += dummy.gain > h.gain + h.gain_sigma;
   }
-  const auto at_bound = std::find_if(h.parameters.begin(), h.parameters.end(), [](const Estimate& e) { return e.at_bound; });
-  // Numbers of single groups soak up any misfit, so that their being away from neutral proves nothing: held-out groups alone speak.
+  const auto at_bound =
+      std::find_if(h.parameters.begin(), h.parameters.end(), [](const Estimate& e) { return e.at_bound; });
+  // Numbers of single groups soak up any misfit, so that their being away from neutral proves nothing: held-out groups
+  // alone speak.
   const double freedom = static_cast<double>(system_.groups.size()) - 1;
-  const bool by_chance = grouped && !(h.gain_sigma > 0 && stats::student_upper(h.gain / h.gain_sigma, freedom) <= options_.level);
+  const bool by_chance =
+      grouped && !(h.gain_sigma > 0 && stats::student_upper(h.gain / h.gain_sigma, freedom) <= options_.level);
   if (!(h.gain > h.gain_sigma))
     h.refused = "does not lower the held-out score beyond its standard error";
   else if (by_chance)
-    h.refused = "has a number for every " + system_.problem().group_noun() + ", and too few of them agree that it helps";
+    h.refused =
+        "has a number for every " + system_.problem().group_noun() + ", and too few of them agree that it helps";
   else if (10 * rivals > peers)
     h.refused = "dummies without physics do better";
   else if (stats::sidak(h.wald_p, static_cast<double>(looks)) > options_.level)

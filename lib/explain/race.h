@@ -1,5 +1,5 @@
-// The race of hypotheses: every model is a set of candidates switched on together with the free parameters, fitted on the groups in
-// play and scored on held-out groups; dummies and free curves run against them.
+// The race of hypotheses: every model is a set of candidates switched on together with the free parameters, fitted on
+// the groups in play and scored on held-out groups; dummies and free curves run against them.
 #pragma once
 #include <optional>
 #include <string>
@@ -46,13 +46,14 @@ class Race {
   std::vector<std::size_t> allowed_, free_;
 };
 
-// The state of knowledge about one model: what structure its residuals still hold, and what free curves and dummies could repair.
+// The state of knowledge about one model: what structure its residuals still hold, and what free curves and dummies
+// could repair.
 struct Remainder {
   double global_p = 1;
   std::vector<LocatedCondition> conditions;  // the most telling first
   std::vector<Isolability> isolability;
-  std::vector<Hypothesis> curves, dummies;   // largest gain first
-  double false_alarm = 0;                    // share of dummies that would have been named
+  std::vector<Hypothesis> curves, dummies;  // largest gain first
+  double false_alarm = 0;                   // share of dummies that would have been named
 };
 Remainder remainder(const Race& race, const Model& model, const Options& options);
 

@@ -1,4 +1,5 @@
-// See race.h: what is left in the residuals of a model. The null test, location, free curves and dummies all share one projection.
+// See race.h: what is left in the residuals of a model. The null test, location, free curves and dummies all share one
+// projection.
 #include <algorithm>
 #include <cmath>
 
@@ -77,7 +78,8 @@ Remainder remainder(const Race& race, const Model& model, const Options& options
       looks.push_back({std::move(scores.families[s]), of_single_groups(system, structures.list[s])});
   }
   r.global_p = global_p(looks, scores.blocks, scores.inflation, options.draws, options.seed);
-  const stats::SignFlipResult dummy_test = stats::sign_flip_test(dummy, scores.blocks, scores.inflation, 1, options.seed);
+  const stats::SignFlipResult dummy_test =
+      stats::sign_flip_test(dummy, scores.blocks, scores.inflation, 1, options.seed);
 
   r.isolability = isolability(system, p, structures, options.level);
   r.conditions = locate(system, p, structures);

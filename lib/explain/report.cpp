@@ -12,7 +12,9 @@ namespace {
 
 using report::Page;
 
-std::string spelled(const std::string& unit) { return unit == "1" ? "" : unit; }
+std::string spelled(const std::string& unit) {
+  return unit == "1" ? "" : unit;
+}
 std::string percent(double share) {  // two digits, and no exponents
   if (std::abs(share) < 1e-4) return share == 0 ? "0 %" : "< 0.01 %";
   return printed(100 * share, std::abs(share) >= 0.995 ? 3 : 2) + " %";
@@ -32,8 +34,9 @@ std::string name_of(const Problem& problem, std::size_t candidate) {
 
 void key_numbers(Page& page, const Problem& problem, const Explanation& e) {
   const std::string unit = spelled(problem.unit());
-  const std::string how = e.test_groups.empty() ? "each " + problem.group_noun() + " left out in turn"
-                                                : std::to_string(e.test_groups.size()) + " " + problem.group_noun() + "s opened once";
+  const std::string how = e.test_groups.empty()
+                              ? "each " + problem.group_noun() + " left out in turn"
+                              : std::to_string(e.test_groups.size()) + " " + problem.group_noun() + "s opened once";
   std::vector<report::KeyNumber> numbers = {
       {problem.score_name() + ", base model", printed(e.held_out_before), unit, how, report::Tone::neutral}};
   if (!e.named.empty())
@@ -47,8 +50,9 @@ void key_numbers(Page& page, const Problem& problem, const Explanation& e) {
 
 void parameters(Page& page, const Problem& problem, const Explanation& e) {
   if (e.estimates.empty()) return;
-  report::TableText table{
-      "What was fitted", {{"parameter", "", false}, {"value", ""}, {"95 % interval", "", false}, {"unit", "", false}}, {}};
+  report::TableText table{"What was fitted",
+                          {{"parameter", "", false}, {"value", ""}, {"95 % interval", "", false}, {"unit", "", false}},
+                          {}};
   for (const Estimate& x : e.estimates)
     table.rows.push_back({problem.parameters()[x.parameter].name, printed(x.value, 4),
                           printed(x.lower_95) + " to " + printed(x.upper_95), problem.parameters()[x.parameter].unit});
@@ -65,7 +69,8 @@ void where(Page& page, const Problem& problem, const Explanation& e, const Illus
   strip.label = "share of the excess";
   strip.rows = {""};
   for (const std::string& name : problem.observations().group) {
-    const auto g = std::find_if(e.groups.begin(), e.groups.end(), [&](const LocatedGroup& x) { return x.name == name; });
+    const auto g =
+        std::find_if(e.groups.begin(), e.groups.end(), [&](const LocatedGroup& x) { return x.name == name; });
     strip.columns.push_back(name);
     strip.values.push_back(g == e.groups.end() ? 0 : g->share);
   }
@@ -75,17 +80,19 @@ void where(Page& page, const Problem& problem, const Explanation& e, const Illus
 report::Plot curve_plot(const LocatedCondition& c, bool named) {
   report::Plot plot;
   plot.title = "Residual over " + c.name;
-  plot.caption = "A free curve over it explains " + percent(c.share) + " of the excess; most of it between " + printed(c.lower, 2) +
-                 " and " + printed(c.upper, 2) + " " + spelled(c.unit) + ".";
+  plot.caption = "A free curve over it explains " + percent(c.share) + " of the excess; most of it between " +
+                 printed(c.lower, 2) + " and " + printed(c.upper, 2) + " " + spelled(c.unit) + ".";
   plot.x_label = c.name + (spelled(c.unit).empty() ? "" : " / " + c.unit);
   plot.y_label = "mean residual" + (spelled(c.curve.value_unit).empty() ? "" : " / " + c.curve.value_unit);
   plot.zero_y = true;
-  report::Series before{report::Series::Kind::points, "base model", c.curve.centre, c.curve.before, c.curve.sigma, {}, 0};
+  report::Series before{
+      report::Series::Kind::points, "base model", c.curve.centre, c.curve.before, c.curve.sigma, {}, 0};
   report::Series line{report::Series::Kind::line, "", c.curve.centre, c.curve.before, {}, {}, 0};
   plot.series = {line, before};
   if (!named) return plot;
   plot.series.push_back({report::Series::Kind::line, "", c.curve.centre, c.curve.after, {}, {}, 1});
-  plot.series.push_back({report::Series::Kind::points, "with the named physics", c.curve.centre, c.curve.after, c.curve.sigma, {}, 1});
+  plot.series.push_back(
+      {report::Series::Kind::points, "with the named physics", c.curve.centre, c.curve.after, c.curve.sigma, {}, 1});
   return plot;
 }
 
@@ -110,11 +117,14 @@ void scoreboard(Page& page, const Problem& problem, const Explanation& e) {
                           {}};
   for (const Hypothesis& h : e.scoreboard) {
     const bool mechanisms = h.kind == Hypothesis::Kind::mechanisms;
-    const bool named = mechanisms && h.refused.empty() && std::all_of(h.candidates.begin(), h.candidates.end(), [&](std::size_t c) {
-      return std::find(e.named.begin(), e.named.end(), c) != e.named.end();
-    });
-    const std::string answer =
-        !mechanisms ? "for comparison" : named ? "yes" : h.refused.empty() ? "could be" : "no: " + h.refused;
+    const bool named =
+        mechanisms && h.refused.empty() && std::all_of(h.candidates.begin(), h.candidates.end(), [&](std::size_t c) {
+          return std::find(e.named.begin(), e.named.end(), c) != e.named.end();
+        });
+    const std::string answer = !mechanisms         ? "for comparison"
+                               : named             ? "yes"
+                               : h.refused.empty() ? "could be"
+                                                   : "no: " + h.refused;
     const std::string gained = printed(h.gain) + " ± " + printed(h.gain_sigma, 2);
     table.rows.push_back({h.name, printed(h.held_out), gained, percent(h.effect), answer});
   }
@@ -123,7 +133,9 @@ void scoreboard(Page& page, const Problem& problem, const Explanation& e) {
 
 void isolability(Page& page, const Problem& problem, const Explanation& e) {
   report::TableText table{"What these recordings could show at all",
-                          {{"mechanism", "", false}, {"survives the free parameters", ""}, {"smallest amplitude seen", "", false},
+                          {{"mechanism", "", false},
+                           {"survives the free parameters", ""},
+                           {"smallest amplitude seen", "", false},
                            {"looks like", "", false}},
                           {}};
   for (const Isolability& i : e.isolability) {
@@ -136,7 +148,8 @@ void isolability(Page& page, const Problem& problem, const Explanation& e) {
     }
     for (const auto& [other, cosine] : i.look_alikes)
       alike += (alike.empty() ? "" : ", ") + problem.candidates()[other].id() + " (" + printed(cosine, 2) + ")";
-    table.rows.push_back({name_of(problem, i.candidate), percent(i.surviving_share), i.visible ? limits : "cannot be seen", alike});
+    table.rows.push_back(
+        {name_of(problem, i.candidate), percent(i.surviving_share), i.visible ? limits : "cannot be seen", alike});
   }
   page.table(table);
 }
@@ -145,11 +158,12 @@ void compensation(Page& page, const Problem& problem, const Explanation& e) {
   if (e.compensation.empty()) return;
   page.section("What the missing physics had bent");
   page.paragraph("Free parameters of the base model before and after the named physics was put in.");
-  report::TableText table{"", {{"parameter", "", false}, {"before", ""}, {"after", ""}, {"sigma", ""}, {"unit", "", false}}, {}};
+  report::TableText table{
+      "", {{"parameter", "", false}, {"before", ""}, {"after", ""}, {"sigma", ""}, {"unit", "", false}}, {}};
   for (std::size_t k = 0; k < std::min<std::size_t>(12, e.compensation.size()); ++k) {
     const Compensation& c = e.compensation[k];
-    table.rows.push_back({problem.parameters()[c.parameter].name, printed(c.before, 5), printed(c.after, 5), printed(c.sigma, 2),
-                          problem.parameters()[c.parameter].unit});
+    table.rows.push_back({problem.parameters()[c.parameter].name, printed(c.before, 5), printed(c.after, 5),
+                          printed(c.sigma, 2), problem.parameters()[c.parameter].unit});
   }
   page.table(table);
 }
@@ -180,13 +194,15 @@ std::string report_page(const std::string& name, const std::vector<ReportPart>& 
   Verdict worst = Verdict::null;
   for (const ReportPart& p : parts) {
     headline += (headline.empty() ? "" : " ") + p.explanation->sentence;
-    lead += (lead.empty() ? "" : "; ") + std::to_string(p.problem->observations().groups()) + " " + p.problem->group_noun() + "s, " +
-            std::to_string(p.problem->observations().rows()) + " observations";
+    lead += (lead.empty() ? "" : "; ") + std::to_string(p.problem->observations().groups()) + " " +
+            p.problem->group_noun() + "s, " + std::to_string(p.problem->observations().rows()) + " observations";
     worst = std::max(worst, p.explanation->verdict);
   }
   Page page("explain: " + name, headline, name + ": " + lead, tone_of(worst));
   for (const ReportPart& p : parts) part(page, p);
-  page.footer("Written by gonio explain. Scores are of groups that the fit did not see; intervals hold under correlation inside blocks.");
+  page.footer(
+      "Written by gonio explain. Scores are of groups that the fit did not see; intervals hold under correlation "
+      "inside blocks.");
   return page.html();
 }
 

@@ -7,8 +7,8 @@
 namespace gonio::explain {
 namespace {
 
-constexpr std::size_t most_effects = 4;    // more at once than these recordings could carry
-constexpr std::size_t pair_partners = 4;   // the best singles, from which pairs are formed where no single one passes
+constexpr std::size_t most_effects = 4;   // more at once than these recordings could carry
+constexpr std::size_t pair_partners = 4;  // the best singles, from which pairs are formed where no single one passes
 
 struct Runner {
   Model model;
@@ -37,7 +37,8 @@ void sort_runners(std::vector<Runner>& runners) {
 }
 
 // Where no single mechanism can be named, two together might.
-void add_pairs(const Race& race, const Model& model, const Remainder& left, std::size_t looks, std::vector<Runner>& runners) {
+void add_pairs(const Race& race, const Model& model, const Remainder& left, std::size_t looks,
+               std::vector<Runner>& runners) {
   const std::size_t singles = std::min(runners.size(), pair_partners);
   std::vector<std::vector<std::size_t>> pairs;
   for (std::size_t a = 0; a < singles; ++a)
@@ -83,8 +84,8 @@ void eliminate(const Race& race, const Options& options, Model& model) {
   }
 }
 
-// Is `other` as good as `best`? Within two standard errors of the paired difference over groups, and not by the groups' spread
-// alone: it must also reach half of what the best one gained over `before`.
+// Is `other` as good as `best`? Within two standard errors of the paired difference over groups, and not by the groups'
+// spread alone: it must also reach half of what the best one gained over `before`.
 bool as_good(const Model& before, const Model& best, const Model& other) {
   const Gain apart = gain(other.held_out, best.held_out);
   const Gain of_best = gain(before.held_out, best.held_out), of_other = gain(before.held_out, other.held_out);
@@ -124,9 +125,11 @@ Selection select(const Race& race, const Options& options, const std::vector<dou
     std::vector<Runner> runners = run_round(race, s.model, s.after);
     for (const Runner& r : runners) {
       s.scoreboard.push_back(r.hypothesis);
-      if (!s.model.candidates.empty()) s.scoreboard.back().name = race.name_of(s.model.candidates) + " + " + r.hypothesis.name;
+      if (!s.model.candidates.empty())
+        s.scoreboard.back().name = race.name_of(s.model.candidates) + " + " + r.hypothesis.name;
     }
-    const auto winner = std::find_if(runners.begin(), runners.end(), [](const Runner& r) { return r.hypothesis.refused.empty(); });
+    const auto winner =
+        std::find_if(runners.begin(), runners.end(), [](const Runner& r) { return r.hypothesis.refused.empty(); });
     if (winner == runners.end()) break;
     s.model = std::move(winner->model);
     s.after = remainder(race, s.model, options);

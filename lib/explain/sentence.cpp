@@ -46,14 +46,15 @@ std::string plain_sentence(const Problem& problem, const Explanation& e) {
   if (e.verdict == Verdict::unknown) {
     const std::string where = !e.outside.empty() ? e.outside : e.conditions.empty() ? "" : e.conditions[0].name;
     return "There is a mismatch that matters" + (where.empty() ? "" : ", structured over " + where) +
-           ", and no physics in the library repairs it on unseen " + problem.group_noun() + "s (" + problem.score_name() + " " +
-           with_unit(e.held_out_before, problem.unit()) + ").";
+           ", and no physics in the library repairs it on unseen " + problem.group_noun() + "s (" +
+           problem.score_name() + " " + with_unit(e.held_out_before, problem.unit()) + ").";
   }
   if (e.significant)
-    return "A mismatch beyond noise is there, but nothing that would repair it matters (under " + printed(100 * e.matters) +
-           " %); no physics is named (" + problem.score_name() + " " + with_unit(e.held_out_before, problem.unit()) + ").";
-  return "No mismatch beyond noise (p = " + printed(e.global_p, 2) + "); no physics is named (" + problem.score_name() + " " +
-         with_unit(e.held_out_before, problem.unit()) + ").";
+    return "A mismatch beyond noise is there, but nothing that would repair it matters (under " +
+           printed(100 * e.matters) + " %); no physics is named (" + problem.score_name() + " " +
+           with_unit(e.held_out_before, problem.unit()) + ").";
+  return "No mismatch beyond noise (p = " + printed(e.global_p, 2) + "); no physics is named (" + problem.score_name() +
+         " " + with_unit(e.held_out_before, problem.unit()) + ").";
 }
 
 // The measurement that tells two mechanisms apart, from either one's declaration.
@@ -63,12 +64,15 @@ std::string told_apart(const mechanism::Mechanism& a, const std::string& b) {
   return "";
 }
 
-std::string conditions_of(const mechanism::Mechanism& m) { return m.conditions.empty() ? "" : " (" + m.conditions[0] + ")"; }
+std::string conditions_of(const mechanism::Mechanism& m) {
+  return m.conditions.empty() ? "" : " (" + m.conditions[0] + ")";
+}
 
 std::string measurement(const Problem& problem, const Explanation& e) {
   for (const std::vector<std::size_t>& set : e.not_told_apart)
     for (std::size_t k = 1; k < set.size(); ++k) {
-      const mechanism::Mechanism &a = *problem.candidates()[set[0]].mechanism, &b = *problem.candidates()[set[k]].mechanism;
+      const mechanism::Mechanism &a = *problem.candidates()[set[0]].mechanism,
+                                 &b = *problem.candidates()[set[k]].mechanism;
       std::string how = told_apart(a, b.id);
       if (how.empty()) how = told_apart(b, a.id);
       if (how.empty() && !a.mistaken_for.empty()) how = a.mistaken_for[0].told_apart;
@@ -81,8 +85,8 @@ std::string measurement(const Problem& problem, const Explanation& e) {
   }
   for (const Isolability& i : e.isolability)
     if (!i.visible && e.verdict != Verdict::named)
-      return "These recordings cannot show " + problem.candidates()[i.candidate].id() +
-             "; vary its conditions" + conditions_of(*problem.candidates()[i.candidate].mechanism) + " to look for it.";
+      return "These recordings cannot show " + problem.candidates()[i.candidate].id() + "; vary its conditions" +
+             conditions_of(*problem.candidates()[i.candidate].mechanism) + " to look for it.";
   if (e.verdict == Verdict::unknown && !e.conditions.empty())
     return "Record more " + problem.group_noun() + "s that vary " + e.conditions[0].name + ".";
   return "";

@@ -51,7 +51,8 @@ void Structures::add_dummy(const System& system, std::size_t candidate, std::siz
   if (conditions == 0) return;
   Random random(seed, 0x64756d6d79u + number);
   const std::vector<std::size_t>& parameters = problem.candidates()[candidate].parameters;
-  list.push_back({Structure::Kind::dummy, number, "dummy-" + std::to_string(number + 1), extras.size(), parameters.size(), candidate});
+  list.push_back({Structure::Kind::dummy, number, "dummy-" + std::to_string(number + 1), extras.size(),
+                  parameters.size(), candidate});
   for (const std::size_t p : parameters) {
     ExtraColumn column;
     column.groups = problem.parameters()[p].groups;

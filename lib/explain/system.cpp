@@ -30,8 +30,7 @@ System::System(const Problem& problem, std::uint64_t seed) : problem_(problem) {
   for (std::size_t g = 0; g < o.groups(); ++g) groups.push_back(g);
   aside_.assign(o.rows(), 0);
   half_.resize(o.rows());
-  for (std::size_t i = 0; i < o.rows(); ++i)
-    half_[i] = static_cast<char>(split_mix(split_mix(seed) ^ o.block[i]) & 1);
+  for (std::size_t i = 0; i < o.rows(); ++i) half_[i] = static_cast<char>(split_mix(split_mix(seed) ^ o.block[i]) & 1);
   weight_.resize(o.rows());
   set_noise_factor(1);
 }
@@ -50,9 +49,9 @@ void System::set_aside(std::size_t block) {
 
 std::size_t System::used_rows(std::size_t group) const {
   const Observations& o = observations();
-  return static_cast<std::size_t>(
-      std::count_if(weight_.begin() + static_cast<std::ptrdiff_t>(o.first[group]),
-                    weight_.begin() + static_cast<std::ptrdiff_t>(o.first[group + 1]), [](double w) { return w > 0; }));
+  return static_cast<std::size_t>(std::count_if(weight_.begin() + static_cast<std::ptrdiff_t>(o.first[group]),
+                                                weight_.begin() + static_cast<std::ptrdiff_t>(o.first[group + 1]),
+                                                [](double w) { return w > 0; }));
 }
 
 bool System::touches(std::size_t parameter, std::size_t group) const {
@@ -118,7 +117,8 @@ Eigen::MatrixXd System::jacobian(std::span<const double> values, std::size_t gro
 Eigen::MatrixXd System::extra(std::span<const ExtraColumn* const> columns, std::size_t group) const {
   const Observations& o = observations();
   const std::size_t first = o.first[group], rows = o.first[group + 1] - first;
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns.size()));
+  Eigen::MatrixXd result =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns.size()));
   for (std::size_t c = 0; c < columns.size(); ++c) {
     for (const ExtraColumn::Part& part : columns[c]->parts) {
       const std::vector<double>& knots = part.basis->knots;
@@ -126,7 +126,8 @@ Eigen::MatrixXd System::extra(std::span<const ExtraColumn* const> columns, std::
       for (std::size_t i = first; i < first + rows; ++i) {
         const double x = condition.values[i];
         if (!(weight_[i] > 0) || !std::isfinite(x)) continue;
-        const auto above = std::clamp(std::upper_bound(knots.begin(), knots.end(), x), knots.begin() + 1, knots.end() - 1);
+        const auto above =
+            std::clamp(std::upper_bound(knots.begin(), knots.end(), x), knots.begin() + 1, knots.end() - 1);
         const auto k = static_cast<std::size_t>(above - knots.begin());
         const double t = std::clamp((x - knots[k - 1]) / (knots[k] - knots[k - 1]), 0.0, 1.0);
         const double curve = (1 - t) * part.coefficients[k - 1] + t * part.coefficients[k];
@@ -149,7 +150,8 @@ std::vector<double> System::raw_residual(std::span<const double> values) const {
 }
 
 Eigen::MatrixXd group_columns(const System& system, const Linearisation& l, std::span<const ExtraColumn> extras,
-                              std::span<const Signature> signatures, std::size_t group, std::vector<std::size_t>& columns) {
+                              std::span<const Signature> signatures, std::size_t group,
+                              std::vector<std::size_t>& columns) {
   std::vector<std::size_t> own;
   std::vector<std::vector<std::size_t>> shifted(signatures.size());
   std::vector<const ExtraColumn*> extra_columns;
@@ -182,8 +184,8 @@ Eigen::MatrixXd group_columns(const System& system, const Linearisation& l, std:
 
 namespace {
 
-// Curves that free parameters imitate to better than a hundredth of their length get no say: a weak pull to zero on extra
-// columns, this share of their squared length.
+// Curves that free parameters imitate to better than a hundredth of their length get no say: a weak pull to zero on
+// extra columns, this share of their squared length.
 constexpr double least_survivor = 1e-4;
 
 GroupGram group_gram(const System& system, const Linearisation& l, std::span<const ExtraColumn> extras,

@@ -1,11 +1,11 @@
-// A problem made ready for linear algebra: whitened residuals (y - f) / sigma, their derivatives, and the small Gram matrices of
-// single groups from which every fit, fold, projection and score test of the engine is computed.
+// A problem made ready for linear algebra: whitened residuals (y - f) / sigma, their derivatives, and the small Gram
+// matrices of single groups from which every fit, fold, projection and score test of the engine is computed.
 //
-// Besides parameters there are extra columns: curves over conditions that no simulator knows (free curves, dummies). They enter
-// linearly and only through their Gram matrices.
+// Besides parameters there are extra columns: curves over conditions that no simulator knows (free curves, dummies).
+// They enter linearly and only through their Gram matrices.
 //
-// Each group's blocks are dealt into two halves. A held-out group's nuisance parameters are fitted on one half and judged on the
-// other, and the reverse.
+// Each group's blocks are dealt into two halves. A held-out group's nuisance parameters are fitted on one half and
+// judged on the other, and the reverse.
 //
 // Eigen stays within lib/explain: this header is private to it.
 #pragma once
@@ -62,7 +62,8 @@ class System {
   // Whitened residuals of one group.
   Eigen::VectorXd residual(std::span<const double> values, std::size_t group) const;
   // Whitened derivatives of f, one column per entry of `columns`.
-  Eigen::MatrixXd jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns) const;
+  Eigen::MatrixXd jacobian(std::span<const double> values, std::size_t group,
+                           std::span<const std::size_t> columns) const;
   Eigen::MatrixXd extra(std::span<const ExtraColumn* const> columns, std::size_t group) const;
   // y - f for every row of every group, in play or not.
   std::vector<double> raw_residual(std::span<const double> values) const;
@@ -83,10 +84,10 @@ struct GroupGram {
 };
 struct LinearColumn {
   static constexpr std::size_t everywhere = static_cast<std::size_t>(-1);
-  std::size_t parameter = everywhere;  // place in Problem::parameters, or
-  std::size_t signature = everywhere;  // differentiated at the point of this signature
-  std::size_t extra = everywhere;      // place among the extra columns
-  std::size_t local = everywhere;      // the only group it acts on
+  std::size_t parameter = everywhere;          // place in Problem::parameters, or
+  std::size_t signature = everywhere;          // differentiated at the point of this signature
+  std::size_t extra = everywhere;              // place among the extra columns
+  std::size_t local = everywhere;              // the only group it acts on
   double prior_precision = 0, prior_pull = 0;  // 1 / sigma^2 and (start - value) / sigma^2
 };
 struct Linearisation {
@@ -95,8 +96,8 @@ struct Linearisation {
   std::vector<LinearColumn> columns;  // the parameters in the order given, then the extra columns
   std::vector<GroupGram> grams;       // one per group in play
 };
-// Derivatives taken at another point than the residuals: a mechanism whose slope vanishes at its neutral value shows its
-// signature where its search starts.
+// Derivatives taken at another point than the residuals: a mechanism whose slope vanishes at its neutral value shows
+// its signature where its search starts.
 struct Signature {
   std::vector<double> values;
   std::vector<std::size_t> parameters;
@@ -105,19 +106,21 @@ struct Signature {
 Linearisation linearise(const System& system, std::span<const double> values, std::span<const std::size_t> parameters,
                         std::span<const ExtraColumn> extras = {}, std::span<const Signature> signatures = {});
 
-// The whitened columns of one group themselves, [columns, residual]; `columns` receives their places in the linearisation.
+// The whitened columns of one group themselves, [columns, residual]; `columns` receives their places in the
+// linearisation.
 Eigen::MatrixXd group_columns(const System& system, const Linearisation& l, std::span<const ExtraColumn> extras,
-                              std::span<const Signature> signatures, std::size_t group, std::vector<std::size_t>& columns);
+                              std::span<const Signature> signatures, std::size_t group,
+                              std::vector<std::size_t>& columns);
 
-// (J'J + priors) x = rhs over a subset of columns, without one group, damped. Nuisance of single groups is eliminated group by
-// group (Schur complement); columns are scaled to unit length, so that units do not matter; directions without information
-// (gauge freedoms such as albedo times intensity, a held-out group's nuisance) get no step.
+// (J'J + priors) x = rhs over a subset of columns, without one group, damped. Nuisance of single groups is eliminated
+// group by group (Schur complement); columns are scaled to unit length, so that units do not matter; directions without
+// information (gauge freedoms such as albedo times intensity, a held-out group's nuisance) get no step.
 class NormalEquations {
  public:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
-  NormalEquations(const Linearisation& linearisation, const std::vector<std::size_t>& columns, std::size_t without = none,
-                  double damping = 0);
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& rhs) const;  // rows in the order of `columns`
+  NormalEquations(const Linearisation& linearisation, const std::vector<std::size_t>& columns,
+                  std::size_t without = none, double damping = 0);
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& rhs) const;       // rows in the order of `columns`
   const Eigen::VectorXd& gradient() const { return gradient_; }  // J'r + prior pull
   const Eigen::VectorXd& diagonal() const { return diagonal_; }
 
@@ -125,7 +128,7 @@ class NormalEquations {
   struct Local {
     std::vector<Eigen::Index> places;  // in `columns`
     Eigen::LDLT<Eigen::MatrixXd> factor;
-    Eigen::MatrixXd coupling;          // local x shared, scaled
+    Eigen::MatrixXd coupling;  // local x shared, scaled
   };
   struct Part {                        // one group's share, restricted to the subset
     std::vector<Eigen::Index> places;  // in `columns`

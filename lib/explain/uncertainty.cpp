@@ -30,8 +30,9 @@ Eigen::MatrixXd block_scores(const System& system, const Fit& fit) {
     const Eigen::VectorXd r = system.residual(fit.values, group);
     std::map<std::uint32_t, Eigen::VectorXd> blocks;
     for (Eigen::Index i = 0; i < r.size(); ++i) {
-      auto& u = blocks.try_emplace(o.block[o.first[group] + static_cast<std::size_t>(i)], Eigen::VectorXd::Zero(j.cols()))
-                    .first->second;
+      auto& u =
+          blocks.try_emplace(o.block[o.first[group] + static_cast<std::size_t>(i)], Eigen::VectorXd::Zero(j.cols()))
+              .first->second;
       u += j.row(i).transpose() * r[i];
     }
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(j.cols(), j.cols());
@@ -44,7 +45,8 @@ Eigen::MatrixXd block_scores(const System& system, const Fit& fit) {
   return total;
 }
 
-// Variance of each parameter from leaving out one group at a time (one Gauss-Newton step each); zero where it is not shared.
+// Variance of each parameter from leaving out one group at a time (one Gauss-Newton step each); zero where it is not
+// shared.
 Eigen::VectorXd jackknife(const System& system, const Linearisation& l, const std::vector<std::size_t>& columns) {
   const auto n = static_cast<Eigen::Index>(columns.size());
   const auto groups = static_cast<Eigen::Index>(l.grams.size());
@@ -118,7 +120,8 @@ std::vector<Estimate> estimates(const System& system, const Fit& fit, const Unce
   return result;
 }
 
-double neutral_p(const System& system, const Fit& fit, const Uncertainty& u, const std::vector<std::size_t>& parameters) {
+double neutral_p(const System& system, const Fit& fit, const Uncertainty& u,
+                 const std::vector<std::size_t>& parameters) {
   std::vector<Eigen::Index> places;
   std::vector<double> distance;
   for (const std::size_t p : parameters) {

@@ -66,8 +66,8 @@ std::uint32_t crc32(std::string_view bytes) {
   std::size_t i = 0;
   for (; i + 8 <= bytes.size(); i += 8) {
     c ^= byte(i) | byte(i + 1) << 8 | byte(i + 2) << 16 | byte(i + 3) << 24;
-    c = crc_tables[7][c & 255] ^ crc_tables[6][(c >> 8) & 255] ^ crc_tables[5][(c >> 16) & 255] ^ crc_tables[4][c >> 24] ^
-        crc_tables[3][byte(i + 4)] ^ crc_tables[2][byte(i + 5)] ^ crc_tables[1][byte(i + 6)] ^
+    c = crc_tables[7][c & 255] ^ crc_tables[6][(c >> 8) & 255] ^ crc_tables[5][(c >> 16) & 255] ^
+        crc_tables[4][c >> 24] ^ crc_tables[3][byte(i + 4)] ^ crc_tables[2][byte(i + 5)] ^ crc_tables[1][byte(i + 6)] ^
         crc_tables[0][byte(i + 7)];
   }
   for (; i < bytes.size(); ++i) c = crc_tables[0][(c ^ byte(i)) & 255] ^ (c >> 8);

@@ -91,7 +91,8 @@ TEST(CornerBias, CharucoInTheLegacyLayout) {
   expect_unbiased(BoardKind::charuco, true);
 }
 
-// A grid of corners on a white sheet of which a part is covered: what is left is as exact, and nothing else is invented.
+// A grid of corners on a white sheet of which a part is covered: what is left is as exact, and nothing else is
+// invented.
 TEST(CornerBias, CoveredCornersAreLeftOut) {
   const Board board = board_of(BoardKind::charuco, false, 22);
   const BoardPose pose = pose_at(board, {0.1, 0.2, 0.3}, focal * board.square_m / 24);

@@ -62,9 +62,9 @@ TEST(PartialBoards, APlainBoardMustBeSeenWhole) {
   EXPECT_THAT(detection.problem, testing::HasSubstr("whole"));
 }
 
-// A plain board that is mirrored looks like one that is not whenever half a turn or a quarter turn makes up for it. With
-// an odd number of squares one way and an even number the other, its colours say which corner is the first, but a mirror
-// image is the same board seen turned over: nothing in it tells. Markers do.
+// A plain board that is mirrored looks like one that is not whenever half a turn or a quarter turn makes up for it.
+// With an odd number of squares one way and an even number the other, its colours say which corner is the first, but a
+// mirror image is the same board seen turned over: nothing in it tells. Markers do.
 TEST(PartialBoards, AMirroredCharucoBoardIsNotFound) {
   const Board board = charuco();
   const BoardPose pose = pose_at(board, {0.25, -0.2, 0.3}, 0.42);
@@ -80,7 +80,8 @@ TEST(PartialBoards, AMirroredCharucoBoardIsNotFound) {
 TEST(PartialBoards, TwoBoardsInOnePictureKeepTheirOwnCorners) {
   const Board first{BoardKind::charuco, 4, 4, 0.02, 0.015, "5X5_100", {}};
   const Board second{BoardKind::charuco, 4, 4, 0.02, 0.015, "4X4_100", {}};
-  const BoardPose left = pose_at(first, {0.2, 0.2, 0.1}, 0.33, {-1.6, 0}), right = pose_at(second, {-0.2, 0.3, 0}, 0.33, {1.6, 0});
+  const BoardPose left = pose_at(first, {0.2, 0.2, 0.1}, 0.33, {-1.6, 0}),
+                  right = pose_at(second, {-0.2, 0.3, 0}, 0.33, {1.6, 0});
   const Exposure exposure{0.7, 0.01, 8, 5};
   const io::Image a = photograph(first, lens, left, width, height, exposure);
   const io::Image b = photograph(second, lens, right, width, height, exposure);
@@ -111,13 +112,16 @@ std::string dictionary_text(const char* opening, const char* line, const char* c
   return text + closing;
 }
 std::string yaml(int first, int count) {
-  return dictionary_text(("%YAML:1.0\n---\nnmarkers: " + std::to_string(count) + "\nmarkersize: 4\n").c_str(), "marker_%d: \"%s\"\n", "", first, count);
+  return dictionary_text(("%YAML:1.0\n---\nnmarkers: " + std::to_string(count) + "\nmarkersize: 4\n").c_str(),
+                         "marker_%d: \"%s\"\n", "", first, count);
 }
 
 TEST(OwnDictionary, YamlAndJsonSayTheSame) {
   const OwnDictionary a = parse_dictionary(yaml(3, 12), "a", "t");
-  const OwnDictionary b = parse_dictionary(
-      dictionary_text("{\"nmarkers\": 12, \"markersize\": 4, ", "\"marker_%d\": \"%s\", ", "\"maxCorrectionBits\": 0}", 3, 12), "b", "t");
+  const OwnDictionary b =
+      parse_dictionary(dictionary_text("{\"nmarkers\": 12, \"markersize\": 4, ", "\"marker_%d\": \"%s\", ",
+                                       "\"maxCorrectionBits\": 0}", 3, 12),
+                       "b", "t");
   EXPECT_EQ(a.white, b.white);
   EXPECT_EQ(a.white.size(), 12U);
   EXPECT_GE(a.distance, 3);
@@ -144,7 +148,8 @@ TEST(OwnDictionary, WhatMakesNoDictionaryIsRefused) {
   EXPECT_THAT(refusal(head + "marker_0: 110000012\nmarker_1: 101010010\n"), testing::HasSubstr("not 9 digits"));
   EXPECT_THAT(refusal(head + "marker_0: 110000010\nmarker_1: 110000010\n"), testing::HasSubstr("are the same"));
   EXPECT_THAT(refusal(head + "marker_0: 110000010\nmarker_1: 001101000\n"), testing::HasSubstr("but for a turn"));
-  EXPECT_THAT(refusal(head + "marker_0: 010101010\nmarker_1: 101010010\n"), testing::HasSubstr("looks the same when turned"));
+  EXPECT_THAT(refusal(head + "marker_0: 010101010\nmarker_1: 101010010\n"),
+              testing::HasSubstr("looks the same when turned"));
 }
 
 TEST(OwnDictionary, ABoardWithItIsDrawnAndFoundAndOthersAreNot) {

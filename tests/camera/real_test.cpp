@@ -35,8 +35,13 @@ Words call(Words options, const std::vector<std::string>& files) {
   return words;
 }
 
-manifest::Document document_of(const tests::Ended& ended) {
-  EXPECT_EQ(ended.status, 0) << ended.err;
+// `status`: 2 where halves of the views are known to disagree: realsense's paper board, kuka_3's bent one taken for
+// flat.
+manifest::Document document_of(const tests::Ended& ended, int status = 0) {
+  EXPECT_EQ(ended.status, status) << ended.err;
+  if (status == 2) {
+    EXPECT_THAT(ended.err, testing::HasSubstr("calibrations from either half of the views differ"));
+  }
   return manifest::parse_document(ended.out, "out", ".", {.allow_outside = true});
 }
 
@@ -72,7 +77,7 @@ TEST(RealPhotographs, LeftCheckerboard) {
 TEST(RealPhotographs, RealsenseCharuco) {
   GONIO_NEEDS_DATA("calibration/charuco_realsense_mit");
   const auto document =
-      document_of(tests::run(call(charuco_mit, pictures("calibration/charuco_realsense_mit", "calib"))));
+      document_of(tests::run(call(charuco_mit, pictures("calibration/charuco_realsense_mit", "calib"))), 2);
   const manifest::Camera& camera = document.cameras.at("camera");
   EXPECT_LE(camera.rms_px.value(), 0.57);
   EXPECT_NEAR(camera.fx_px.scalar(), 898.2, 4);
@@ -96,6 +101,7 @@ struct Recording {
   const char* prefix;
   Words board;
   double rms_px;  // the peer's
+  int status = 0;
 };
 
 // Root mean squares no worse than OpenCV's on the same pictures, as SOURCE.md beside them says, and 2 %.
@@ -103,18 +109,32 @@ TEST(RealPhotographs, FitNoWorseThanThePeersDo) {
   const Recording recordings[] = {
       {"calibration/opencv_stereo_checkerboard", "left", checkerboard, 0.195420},
       {"calibration/opencv_stereo_checkerboard", "right", checkerboard, 0.207020},
-      {"calibration/charuco_realsense_mit", "calib", charuco_mit, 0.560841},
-      {"calibration/charuco_flir_left", "",
-       {"--charuco", "25x18", "--square", "7.5mm", "--marker", "5.6mm", "--dictionary", "5X5_1000"}, 0.167663},
-      {"handeye/rwhe_kuka_3/images", "",
-       {"--charuco", "12x9", "--square", "60mm", "--marker", "46mm", "--dictionary", "5X5_1000"}, 0.141752},
+      {"calibration/charuco_realsense_mit", "calib", charuco_mit, 0.560841, 2},
+      {"calibration/charuco_flir_left",
+       "",
+       {"--charuco", "25x18", "--square", "7.5mm", "--marker", "5.6mm", "--dictionary", "5X5_1000"},
+       0.167663},
+      {"handeye/rwhe_kuka_3/images",
+       "",
+       {"--charuco", "12x9", "--square", "60mm", "--marker", "46mm", "--dictionary", "5X5_1000"},
+       0.141752,
+       2},
       {"handeye/st_handeye_calib_a", "", {"--checkerboard", "11x9", "--square", "20.2mm"}, 0.299009}};
   for (const Recording& r : recordings) {
     GONIO_NEEDS_DATA(r.folder);
     const manifest::Camera camera =
-        document_of(tests::run(call(r.board, pictures(r.folder, r.prefix)))).cameras.at("camera");
+        document_of(tests::run(call(r.board, pictures(r.folder, r.prefix))), r.status).cameras.at("camera");
     EXPECT_LE(camera.rms_px.value(), 1.02 * r.rms_px) << r.folder << " " << r.prefix;
   }
+}
+
+// The bend that disagreed is fitted: kuka_3's halves then agree.
+TEST(RealPhotographs, KukaHalvesAgreeOnceTheBoardMayBend) {
+  GONIO_NEEDS_DATA("handeye/rwhe_kuka_3/images");
+  const Words board{"--charuco", "12x9",         "--square", "60mm",        "--marker",
+                    "46mm",      "--dictionary", "5X5_1000", "--board-warp"};
+  const auto document = document_of(tests::run(call(board, pictures("handeye/rwhe_kuka_3/images", ""))));
+  EXPECT_TRUE(document.cameras.at("camera").quality.value().halves_agree.value());
 }
 
 // The thesis's case: two cameras held together. Peer: |T| = 83.206 mm, rvec (0.006836, 0.003888, -0.003755) of
@@ -142,8 +162,8 @@ TEST(RealPhotographs, StereoPair) {
   EXPECT_EQ(document.images[0].shot, document.images[13].shot);
   // A second pass holds the lenses: the same rig, known better, and the cameras to the byte.
   write_file(folder / "rig.json", ended.out);
-  const auto second = document_of(tests::run(
-      {"calib-charuco", "-i", "rig.json", "--allow-outside", "--fix", "intrinsics"}, folder.path()));
+  const auto second = document_of(
+      tests::run({"calib-charuco", "-i", "rig.json", "--allow-outside", "--fix", "intrinsics"}, folder.path()));
   const auto& again = second.rigs.at("rig").cameras[1].rig_from_camera;
   EXPECT_EQ(second.cameras.at("left").fx_px, document.cameras.at("left").fx_px);
   EXPECT_EQ(second.cameras.at("right").sigma, document.cameras.at("right").sigma);

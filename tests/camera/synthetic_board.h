@@ -81,9 +81,9 @@ struct Lens {
 };
 
 struct Exposure {
-  double blur_px = 0;   // standard deviation of the lens's point spread
-  double noise = 0;     // standard deviation of the sensor's, full scale 1
-  int side = 8;         // samples along one side of a pixel
+  double blur_px = 0;  // standard deviation of the lens's point spread
+  double noise = 0;    // standard deviation of the sensor's, full scale 1
+  int side = 8;        // samples along one side of a pixel
   std::uint64_t seed = 1;
 };
 

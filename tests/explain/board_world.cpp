@@ -1,4 +1,5 @@
-// See board_world.h. The lens acts on (t cos, t sin) of the ray's angle; the board's arc keeps its length, as paper does.
+// See board_world.h. The lens acts on (t cos, t sin) of the ray's angle; the board's arc keeps its length, as paper
+// does.
 #include "explain/board_world.h"
 
 #include <algorithm>
@@ -12,8 +13,12 @@ namespace {
 
 using V3 = std::array<double, 3>;
 using M3 = std::array<V3, 3>;
-double normal(std::mt19937_64& g) { return std::normal_distribution<double>()(g); }
-double between(std::mt19937_64& g, double a, double b) { return std::uniform_real_distribution<double>(a, b)(g); }
+double normal(std::mt19937_64& g) {
+  return std::normal_distribution<double>()(g);
+}
+double between(std::mt19937_64& g, double a, double b) {
+  return std::uniform_real_distribution<double>(a, b)(g);
+}
 
 M3 product(const M3& a, const M3& b) {
   M3 c{};
@@ -29,7 +34,8 @@ M3 turn(int axis, double angle) {
   return {{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
 }
 
-// A strip of half length h whose middle stands `sag` above its ends, bent to an arc: where a point at s ends up (along, height).
+// A strip of half length h whose middle stands `sag` above its ends, bent to an arc: where a point at s ends up (along,
+// height).
 std::array<double, 2> on_arc(double s, double h, double sag) {
   if (sag == 0) return {s, 0};
   const double radius = (h * h + sag * sag) / (2 * sag), angle = s / radius;
@@ -37,7 +43,9 @@ std::array<double, 2> on_arc(double s, double h, double sag) {
 }
 
 // From the first corner to the board's middle.
-V3 middle_of(const CaseDesign& d) { return {0.5 * (d.columns - 1) * d.square_m, 0.5 * (d.rows - 1) * d.square_m, 0}; }
+V3 middle_of(const CaseDesign& d) {
+  return {0.5 * (d.columns - 1) * d.square_m, 0.5 * (d.rows - 1) * d.square_m, 0};
+}
 
 V3 on_board(int column, int row, const BoardTruth& b, const CaseDesign& d) {
   const double half_x = middle_of(d)[0], half_y = middle_of(d)[1];
@@ -65,20 +73,20 @@ struct View {
 };
 View random_view(const CaseTruth& truth, const CaseDesign& d, std::mt19937_64& g) {
   View v;
-  v.rotation = product(turn(2, between(g, -0.4, 0.4)), product(turn(1, between(g, -0.6, 0.6)), turn(0, between(g, -0.6, 0.6))));
+  v.rotation =
+      product(turn(2, between(g, -0.4, 0.4)), product(turn(1, between(g, -0.6, 0.6)), turn(0, between(g, -0.6, 0.6))));
   const double z = between(g, 0.28, 0.5);
   const V3 middle = {between(g, -0.22, 0.22) * z, between(g, -0.15, 0.15) * z, z};
   const V3 half = middle_of(d);
-  for (std::size_t i = 0; i < 3; ++i)
-    v.origin[i] = middle[i] - v.rotation[i][0] * half[0] - v.rotation[i][1] * half[1];
+  for (std::size_t i = 0; i < 3; ++i) v.origin[i] = middle[i] - v.rotation[i][0] * half[0] - v.rotation[i][1] * half[1];
   if (truth.rolling_px == 0) return v;
   const double way = truth.rolling_px * z / d.focal_px, towards = between(g, 0, 2 * std::acos(-1.0));
   v.velocity = {way * std::cos(towards), way * std::sin(towards), 0};
   return v;
 }
 
-// Where a point of the board (in the camera's axes, from the board's origin) is seen. Its row is read when it is read: the moment
-// is found by stepping, as the shutter does, not from a formula.
+// Where a point of the board (in the camera's axes, from the board's origin) is seen. Its row is read when it is read:
+// the moment is found by stepping, as the shutter does, not from a formula.
 std::array<double, 2> seen_at(const V3& point, const View& view, const CaseTruth& truth, const CaseDesign& d) {
   std::array<double, 2> pixel{};
   double moment = 0;
@@ -86,7 +94,8 @@ std::array<double, 2> seen_at(const V3& point, const View& view, const CaseTruth
     V3 c = point;
     for (std::size_t i = 0; i < 3; ++i) c[i] += view.origin[i] + moment * view.velocity[i];
     const auto image_point = through_lens(c[0] / c[2], c[1] / c[2], truth.lens);
-    pixel = {d.focal_px * image_point[0] + 0.5 * d.width_px + 2, d.focal_px * 1.001 * image_point[1] + 0.5 * d.height_px - 2};
+    pixel = {d.focal_px * image_point[0] + 0.5 * d.width_px + 2,
+             d.focal_px * 1.001 * image_point[1] + 0.5 * d.height_px - 2};
     moment = (pixel[1] + 0.5) / d.height_px - 0.5;
   }
   return pixel;
@@ -99,8 +108,8 @@ void print(std::string& text, const char* format, auto... values) {
 }
 
 // The corner table's rows of one view, or nothing where the board leaves the picture.
-std::string corner_rows(const View& view, const CaseTruth& truth, const CaseDesign& d, double noise_px, const std::string& image,
-                        std::mt19937_64& g) {
+std::string corner_rows(const View& view, const CaseTruth& truth, const CaseDesign& d, double noise_px,
+                        const std::string& image, std::mt19937_64& g) {
   std::string text;
   const double obliqueness = 1 / std::max(0.3, std::abs(view.rotation[2][2]));
   for (int row = 0; row < d.rows; ++row)
@@ -115,8 +124,8 @@ std::string corner_rows(const View& view, const CaseTruth& truth, const CaseDesi
       const double sigma = noise_px * (0.8 + 0.2 * obliqueness), misplaced = between(g, 0, 1) < d.misplaced ? 8 : 0;
       u += sigma * normal(g) + misplaced * normal(g);
       v += sigma * normal(g) + misplaced * normal(g);
-      print(text, "%s[\"%s\",%d,%.6f,%.6f,%.5f,%.5f,0.1]", text.empty() ? "" : ",", image.c_str(), row * d.columns + column,
-            column * d.square_m, row * d.square_m, u, v);
+      print(text, "%s[\"%s\",%d,%.6f,%.6f,%.5f,%.5f,0.1]", text.empty() ? "" : ",", image.c_str(),
+            row * d.columns + column, column * d.square_m, row * d.square_m, u, v);
     }
   return text;
 }
@@ -136,8 +145,8 @@ BoardCase board_case(const std::string& name, const CaseTruth& truth, std::size_
     table += (made == 0 ? "" : ",") + corners;
     // What a first calibration hands over: poses that are a little off.
     const M3 r = product(turn(0, 0.004 * normal(g)), product(turn(1, 0.004 * normal(g)), view.rotation));
-    print(images, "%s{\"id\":\"%s\",\"camera\":\"c\",\"board\":\"b\",\"camera_from_board\":{\"matrix\":[", made == 0 ? "" : ",",
-          id.c_str());
+    print(images, "%s{\"id\":\"%s\",\"camera\":\"c\",\"board\":\"b\",\"camera_from_board\":{\"matrix\":[",
+          made == 0 ? "" : ",", id.c_str());
     for (std::size_t i = 0; i < 3; ++i)
       print(images, "[%.15g,%.15g,%.15g,%.9g],", r[i][0], r[i][1], r[i][2], view.origin[i] * (1 + 0.002 * normal(g)));
     images += "[0,0,0,1]]}}";
@@ -146,16 +155,18 @@ BoardCase board_case(const std::string& name, const CaseTruth& truth, std::size_
   BoardCase result{name, "", truth};
   print(result.manifest,
         "{\"gonio\":1,\"boards\":{\"b\":{\"kind\":\"checkerboard\",\"inner_corners\":[%d,%d],\"square_m\":%g}},"
-        "\"cameras\":{\"c\":{\"model\":\"%s\",\"width_px\":%d,\"height_px\":%d,\"fx_px\":%g,\"fy_px\":%g,\"cx_px\":%g,\"cy_px\":%g%s}},"
+        "\"cameras\":{\"c\":{\"model\":\"%s\",\"width_px\":%d,\"height_px\":%d,\"fx_px\":%g,\"fy_px\":%g,\"cx_px\":%g,"
+        "\"cy_px\":%g%s}},"
         "\"images\":[",
-        design.columns, design.rows, design.square_m, design.knows_lens ? "radial-tangential" : "pinhole", design.width_px,
-        design.height_px, 1.01 * design.focal_px, 1.01 * design.focal_px, 0.5 * design.width_px, 0.5 * design.height_px,
-        design.knows_lens ? ",\"distortion\":{\"k1\":0,\"k2\":0,\"p1\":0,\"p2\":0}" : "");
-  result.manifest += images +
-                     "],\"tables\":{\"corners\":{\"model\":\"camera\",\"camera\":\"c\",\"board\":\"b\",\"columns\":{\"image\":\"\","
-                     "\"corner\":\"1\",\"board_x_m\":\"m\",\"board_y_m\":\"m\",\"u_px\":\"px\",\"v_px\":\"px\",\"sigma_px\":\"px\"},"
-                     "\"observed\":[\"u_px\",\"v_px\"],\"sigma\":[\"sigma_px\"],\"rows\":[" +
-                     table + "]}}}\n";
+        design.columns, design.rows, design.square_m, design.knows_lens ? "radial-tangential" : "pinhole",
+        design.width_px, design.height_px, 1.01 * design.focal_px, 1.01 * design.focal_px, 0.5 * design.width_px,
+        0.5 * design.height_px, design.knows_lens ? ",\"distortion\":{\"k1\":0,\"k2\":0,\"p1\":0,\"p2\":0}" : "");
+  result.manifest +=
+      images +
+      "],\"tables\":{\"corners\":{\"model\":\"camera\",\"camera\":\"c\",\"board\":\"b\",\"columns\":{\"image\":\"\","
+      "\"corner\":\"1\",\"board_x_m\":\"m\",\"board_y_m\":\"m\",\"u_px\":\"px\",\"v_px\":\"px\",\"sigma_px\":\"px\"},"
+      "\"observed\":[\"u_px\",\"v_px\"],\"sigma\":[\"sigma_px\"],\"rows\":[" +
+      table + "]}}}\n";
   return result;
 }
 

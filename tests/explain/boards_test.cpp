@@ -1,6 +1,4 @@
 // explain on board corners: the whole pipe on real photographs as a person would run it, and the domain's derivatives.
-#include "explain/boards/boards_problem.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "data.h"
+#include "explain/boards/boards_problem.h"
 #include "explain/engine.h"
 #include "manifest/value.h"
 #include "process.h"
@@ -32,15 +31,17 @@ std::vector<std::string> names(const Value& document) {
   return result;
 }
 
-// Six photographs of a large ChArUco board, calibrated as if it were flat: what is left is the board's shape, on views that the fit
-// did not see. The camera is at rest: whatever else those few views hold, no motion is named for it.
+// Six photographs of a large ChArUco board, calibrated as if it were flat: what is left is the board's shape, on views
+// that the fit did not see. The camera is at rest: whatever else those few views hold, no motion is named for it.
 TEST(ExplainBoards, ABoardThatIsNotFlatIsNamedOnHeldOutViews) {
   GONIO_NEEDS_DATA("handeye/rwhe_kuka_3/images");
   const gonio::tests::ScratchFolder folder;
-  std::vector<std::string> words = {"calib-charuco", "--charuco", "12x9", "--square", "60mm", "--marker", "46mm",
-                                    "--dictionary", "5X5_250", "--model", "radial-tangential"};
+  std::vector<std::string> words = {"calib-charuco",    "--charuco", "12x9",         "--square", "60mm",
+                                    "--marker",         "46mm",      "--dictionary", "5X5_250",  "--model",
+                                    "radial-tangential"};
   const std::size_t options = words.size();
-  for (const auto& entry : std::filesystem::directory_iterator(data("handeye/rwhe_kuka_3/images"))) words.push_back(entry.path());
+  for (const auto& entry : std::filesystem::directory_iterator(data("handeye/rwhe_kuka_3/images")))
+    words.push_back(entry.path());
   std::sort(words.begin() + static_cast<std::ptrdiff_t>(options), words.end());
   ASSERT_EQ(words.size(), options + 6);
   const auto calibrated = run(words, folder.path());
@@ -60,7 +61,8 @@ TEST(ExplainBoards, ABoardThatIsNotFlatIsNamedOnHeldOutViews) {
 Value explained(const std::string& model, const std::filesystem::path& folder) {
   std::vector<std::string> words = {"calib-charuco", "--checkerboard", "9x6", "--square", "25mm", "--model", model};
   for (const auto& entry : std::filesystem::directory_iterator(data("calibration/opencv_stereo_checkerboard")))
-    if (entry.path().filename().string().starts_with("left") && entry.path().extension() == ".jpg") words.push_back(entry.path());
+    if (entry.path().filename().string().starts_with("left") && entry.path().extension() == ".jpg")
+      words.push_back(entry.path());
   std::sort(words.begin() + 7, words.end());
   const auto calibrated = run(words, folder);
   EXPECT_TRUE(calibrated.status == 0 || calibrated.status == 2) << calibrated.err;
@@ -115,7 +117,8 @@ BoardsInput small_rig() {
     view.image = "view" + std::to_string(v);
     view.camera_from_board.rotation = quaternion_of_rotation_vector({0.3 * v - 0.2, 0.25, 0.1 * v});
     view.camera_from_board.translation_m = {-0.04, -0.03 + 0.01 * v, 0.4};
-    for (int k = 0; k < 12; ++k) view.corners.push_back({{0.03 * (k % 4), 0.03 * (k / 4)}, {300.0 + k, 200.0 + 2 * k}, 0.1});
+    for (int k = 0; k < 12; ++k)
+      view.corners.push_back({{0.03 * (k % 4), 0.03 * (k / 4)}, {300.0 + k, 200.0 + 2 * k}, 0.1});
     input.views.push_back(view);
   }
   return input;
@@ -158,7 +161,8 @@ TEST(ExplainBoards, RefusalsNameThePlaceAndTheRemedy) {
   const auto nothing = run({"explain"}, {}, head + "}");
   EXPECT_EQ(nothing.status, 65) << nothing.err;
   EXPECT_NE(nothing.err.find("nothing to explain"), std::string::npos) << nothing.err;
-  const std::string table = R"(,"tables":{"t":{"model":"camera","camera":"c","board":"b","columns":{"image":"","corner":"1","board_x_m":"m",
+  const std::string table =
+      R"(,"tables":{"t":{"model":"camera","camera":"c","board":"b","columns":{"image":"","corner":"1","board_x_m":"m",
     "board_y_m":"m","u_px":"px","v_px":"px","sigma_px":"px"},"observed":["u_px","v_px"],"sigma":["sigma_px"],
     "rows":[["a",0,0,0,100,100,0.1]]}}})";
   const auto no_pose = run({"explain"}, {}, head + table);

@@ -1,5 +1,5 @@
-// The engine on linear problems whose truth is known. Statistical claims use fixed seeds; the stated false-alarm rate of a test is the
-// chance that a correct engine would fail it for fresh seeds.
+// The engine on linear problems whose truth is known. Statistical claims use fixed seeds; the stated false-alarm rate
+// of a test is the chance that a correct engine would fail it for fresh seeds.
 #include "explain/engine.h"
 
 #include <gtest/gtest.h>

@@ -1,13 +1,13 @@
-// Designs on which explain's null test must see what was left out: 20 views, 0.1 px noise, and an amplitude that a user would not
-// notice in the residuals' RMS.
+// Designs on which explain's null test must see what was left out: 20 views, 0.1 px noise, and an amplitude that a user
+// would not notice in the residuals' RMS.
 #pragma once
 #include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "explain/boards/boards_problem.h"
 #include "explain/board_world.h"
+#include "explain/boards/boards_problem.h"
 #include "explain/engine.h"
 #include "manifest/document.h"
 
@@ -21,8 +21,8 @@ struct LeftOut {
 };
 
 inline std::vector<LeftOut> left_out_cases() {
-  LeftOut nothing{"nothing left out", {}, false}, k3{"unmodelled k3 = 0.2", {}, true}, warp{"board warp 0.1 mm", {}, true},
-      rolling{"rolling shutter, rows displaced by up to 0.3 px", {}, true},
+  LeftOut nothing{"nothing left out", {}, false}, k3{"unmodelled k3 = 0.2", {}, true},
+      warp{"board warp 0.1 mm", {}, true}, rolling{"rolling shutter, rows displaced by up to 0.3 px", {}, true},
       half_as_fast{"rolling shutter, 0.3 px from the first row to the last", {}, true, 0.75};
   k3.truth.lens.k3 = 0.2;
   warp.truth.board.sag_x_m = 1e-4;

@@ -1,5 +1,6 @@
-// The null test on board corners: it sees unmodelled k3, a bent board and a rolling shutter, and nothing where nothing is; the
-// program names the rolling shutter and shows it on held-out views. scripts/proofs/explain-residual-test has the full runs.
+// The null test on board corners: it sees unmodelled k3, a bent board and a rolling shutter, and nothing where nothing
+// is; the program names the rolling shutter and shows it on held-out views. scripts/proofs/explain-residual-test has
+// the full runs.
 #include <gtest/gtest.h>
 
 #include "explain/explanation.h"
@@ -8,7 +9,8 @@
 namespace gonio::prove {
 namespace {
 
-// Ten runs of each. With 90 % power fewer than 7 are found by chance in 1.3 % of seeds; at 5 % false alarms more than 3 in 0.1 %.
+// Ten runs of each. With 90 % power fewer than 7 are found by chance in 1.3 % of seeds; at 5 % false alarms more than 3
+// in 0.1 %.
 TEST(ResidualTest, SeesWhatWasLeftOutAndNothingElse) {
   constexpr int runs = 10;
   for (const LeftOut& what : left_out_cases()) {

@@ -1,5 +1,5 @@
-// A small linear problem whose truth is known: y = offset_g + slope x + sum_k p_k s_k(x, z) + noise, with an offset per group as
-// nuisance. Mechanisms are written here so that the engine is tested without any simulator.
+// A small linear problem whose truth is known: y = offset_g + slope x + sum_k p_k s_k(x, z) + noise, with an offset per
+// group as nuisance. Mechanisms are written here so that the engine is tested without any simulator.
 #pragma once
 #include <cmath>
 #include <functional>
@@ -20,9 +20,9 @@ struct ToyEffect {
 class ToyProblem : public Problem {
  public:
   struct Truth {
-    std::vector<double> amplitudes;                          // one per effect
-    std::function<double(double x, double z)> outside;       // physics that no effect describes
-    double noise = 0.1, block_noise = 0;                     // white, and common to the rows of a block
+    std::vector<double> amplitudes;                     // one per effect
+    std::function<double(double x, double z)> outside;  // physics that no effect describes
+    double noise = 0.1, block_noise = 0;                // white, and common to the rows of a block
   };
   ToyProblem(std::vector<ToyEffect> effects, const Truth& truth, std::uint64_t seed, std::size_t groups = 10,
              std::size_t blocks = 20, std::size_t rows_of_a_block = 2)
@@ -69,7 +69,9 @@ class ToyProblem : public Problem {
   std::string group_noun() const override { return "group"; }
   Importance importance() const override { return Importance::share_of_residual; }
   void apply(const Explanation&, manifest::Document&) const override {}
-  Illustration illustrate(const Explanation&, const std::filesystem::path&, manifest::Document&) const override { return {}; }
+  Illustration illustrate(const Explanation&, const std::filesystem::path&, manifest::Document&) const override {
+    return {};
+  }
 
  private:
   void declare(std::size_t groups) {

@@ -1,5 +1,6 @@
-// scripts/proofs/explain-boards: sealed cases of the boards domain through the program itself, and one table: found, named, how
-// much, intervals, unseen effects, false alarms. The case's manifest is all that explain is given; the truth stays in this process.
+// scripts/proofs/explain-boards: sealed cases of the boards domain through the program itself, and one table: found,
+// named, how much, intervals, unseen effects, false alarms. The case's manifest is all that explain is given; the truth
+// stays in this process.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -31,7 +32,8 @@ struct Answer {
 Answer ask(const BoardCase& sealed, const std::filesystem::path& folder) {
   const std::filesystem::path in = folder / (sealed.name + ".json"), out = folder / (sealed.name + ".out.json");
   write_file(in, sealed.manifest);
-  const std::string command = std::string(GONIO_BIN) + "/explain --threads 1 --log-level quiet -i " + in.string() + " -o " + out.string();
+  const std::string command =
+      std::string(GONIO_BIN) + "/explain --threads 1 --log-level quiet -i " + in.string() + " -o " + out.string();
   const int status = std::system(command.c_str());
   Answer answer;
   answer.ran = WIFEXITED(status) && WEXITSTATUS(status) <= 2;
@@ -39,7 +41,8 @@ Answer ask(const BoardCase& sealed, const std::filesystem::path& folder) {
   const Value document = manifest::parse_json(read_file(out), out.string());
   answer.entry = document.find("explanations")->as_array().at(0);
   answer.verdict = answer.entry.find("verdict")->as_string();
-  for (const Value& n : answer.entry.find("named")->as_array()) answer.named.push_back(n.find("mechanism")->as_string());
+  for (const Value& n : answer.entry.find("named")->as_array())
+    answer.named.push_back(n.find("mechanism")->as_string());
   answer.reported = answer.named;
   for (const Value& set : answer.entry.find("not_told_apart")->as_array())
     for (const Value& id : set.as_array()) answer.reported.push_back(id.as_string());
@@ -78,7 +81,8 @@ void enter(const BoardCase& sealed, const Answer& answer, Row& row) {
     return std::find(list.begin(), list.end(), id) != list.end();
   };
   row.wrong += std::any_of(named.begin(), named.end(), [&](const std::string& id) { return !has(truth.effects, id); });
-  row.reported += std::all_of(truth.effects.begin(), truth.effects.end(), [&](const std::string& id) { return has(answer.reported, id); });
+  row.reported += std::all_of(truth.effects.begin(), truth.effects.end(),
+                              [&](const std::string& id) { return has(answer.reported, id); });
   for (const Value& n : answer.entry.find("named")->as_array()) {
     if (!has(truth.effects, n.find("mechanism")->as_string())) continue;
     for (const auto& [parameter, value] : n.find("parameters")->as_object()) {
@@ -93,7 +97,8 @@ void enter(const BoardCase& sealed, const Answer& answer, Row& row) {
 }
 
 std::string kind_of(const CaseTruth& t) {
-  if (t.outside) return t.wave_px > 0 ? "outside the library: periodic sensor error" : "outside the library: stretched print";
+  if (t.outside)
+    return t.wave_px > 0 ? "outside the library: periodic sensor error" : "outside the library: stretched print";
   if (t.effects.empty()) return "nothing left out";
   std::string kind;
   for (const std::string& e : t.effects) kind += (kind.empty() ? "" : " + ") + e;
@@ -103,8 +108,8 @@ std::string kind_of(const CaseTruth& t) {
 bool print_claim(const char* name, int successes, int trials, double required, bool at_most) {
   const double share = trials > 0 ? static_cast<double>(successes) / trials : 0;
   const bool met = at_most ? share <= required : share >= required;
-  std::printf("explain-boards %s: measured %d of %d (%.1f %%) required %s %.0f %%%s\n", name, successes, trials, 100 * share,
-              at_most ? "<=" : ">=", 100 * required, met ? "" : "  NOT MET");
+  std::printf("explain-boards %s: measured %d of %d (%.1f %%) required %s %.0f %%%s\n", name, successes, trials,
+              100 * share, at_most ? "<=" : ">=", 100 * required, met ? "" : "  NOT MET");
   return met;
 }
 
@@ -131,16 +136,18 @@ int prove(std::size_t repeats) {
       ++failed;
   }
   Row all, effects, nothing, outside;
-  std::printf("%-46s %5s %6s %6s %9s %6s %8s %10s %9s\n", "effect", "cases", "found", "named", "in answer", "wrong", "unknown",
-              "med. error", "coverage");
+  std::printf("%-46s %5s %6s %6s %9s %6s %8s %10s %9s\n", "effect", "cases", "found", "named", "in answer", "wrong",
+              "unknown", "med. error", "coverage");
   for (const auto& [kind, row] : rows) {
-    std::printf("%-46s %5d %6d %6d %9d %6d %8d ", kind.c_str(), row.cases, row.found, row.exact, row.reported, row.wrong, row.unknown);
+    std::printf("%-46s %5d %6d %6d %9d %6d %8d ", kind.c_str(), row.cases, row.found, row.exact, row.reported,
+                row.wrong, row.unknown);
     if (row.errors.empty())
       std::printf("%10s %9s\n", "-", "-");
     else
       std::printf("%8.1f %% %5d/%d\n", 100 * stats::median(row.errors), row.covered, row.intervals);
     Row& sum = kind == "nothing left out" ? nothing : kind.starts_with("outside") ? outside : effects;
-    sum.cases += row.cases, sum.found += row.found, sum.exact += row.exact, sum.reported += row.reported, sum.wrong += row.wrong;
+    sum.cases += row.cases, sum.found += row.found, sum.exact += row.exact, sum.reported += row.reported,
+        sum.wrong += row.wrong;
     sum.intervals += row.intervals, sum.covered += row.covered;
     sum.errors.insert(sum.errors.end(), row.errors.begin(), row.errors.end());
   }
@@ -151,7 +158,8 @@ int prove(std::size_t repeats) {
   met &= print_claim("present, in the answer", effects.reported, effects.cases, 0.95, false);
   met &= print_claim("outside the library, named as known", outside.wrong, outside.cases, 0.05, true);
   met &= print_claim("95 % intervals cover", effects.covered, effects.intervals, 0.9, false);
-  std::printf("explain-boards median error of parameters: measured %.1f %% required <= 10 %%\n", 100 * stats::median(effects.errors));
+  std::printf("explain-boards median error of parameters: measured %.1f %% required <= 10 %%\n",
+              100 * stats::median(effects.errors));
   met &= stats::median(effects.errors) <= 0.1;
   return met ? 0 : 1;
 }

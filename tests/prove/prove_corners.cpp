@@ -1,5 +1,5 @@
-// scripts/proofs/calib-corners: corners in supersampled photographs against the truth, over boards, lenses, sizes of squares
-// and blurs; and whole calibrations from photographs, whose focal lengths must lie within their intervals.
+// scripts/proofs/calib-corners: corners in supersampled photographs against the truth, over boards, lenses, sizes of
+// squares and blurs; and whole calibrations from photographs, whose focal lengths must lie within their intervals.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -33,7 +33,12 @@ double worst_bias(const Case& what) {
   for (std::size_t l = 0; l < 3; ++l) {
     for (const double square_px : {20.0, 45.0, 100.0}) {
       for (const double blur_px : {0.5, 1.0, 1.5}) {
-        const int columns = square_px < 30 ? 13 : square_px < 60 ? 8 : 4, rows = square_px < 30 ? 10 : square_px < 60 ? 6 : 4;
+        const int columns = square_px < 30   ? 13
+                            : square_px < 60 ? 8
+                                             : 4,
+                  rows = square_px < 30   ? 10
+                         : square_px < 60 ? 6
+                                          : 4;
         Board board{what.kind, columns, rows - rows % 2 + 1, 0.03, 0, "", {}};
         if (what.kind == BoardKind::charuco) {
           board.marker_m = 0.022;
@@ -52,8 +57,8 @@ double worst_bias(const Case& what) {
           }
         }
         if (n < least_corners) {  // too few to know a mean to hundredths of a pixel
-          std::printf("corners, %s: lens %zu, squares of %.0f px, blur %.1f px: %d corners found, not judged\n", what.name, l,
-                      square_px, blur_px, n);
+          std::printf("corners, %s: lens %zu, squares of %.0f px, blur %.1f px: %d corners found, not judged\n",
+                      what.name, l, square_px, blur_px, n);
           continue;
         }
         worst = std::max({worst, std::abs(sum.x / n), std::abs(sum.y / n)});
@@ -69,13 +74,16 @@ double focal_error_sigmas(std::uint64_t seed, const std::string& folder) {
   const Lens lens{640, 642, 322.3, 236.8, -0.2, 0.08, 0.0005, -0.0004, 0};
   const Board board{BoardKind::charuco, 10, 7, 0.025, 0.018, "4X4_100", {}};
   Random random(seed);
-  std::string command = GONIO_BIN "/calib-charuco --log-level error --charuco 11x8 --square 25mm --marker 18mm --dictionary 4X4_100";
+  std::string command =
+      GONIO_BIN "/calib-charuco --log-level error --charuco 11x8 --square 25mm --marker 18mm --dictionary 4X4_100";
   for (int view = 0; view < 20; ++view) {
     const double tilt = random.uniform(0.1, 0.7), azimuth = random.uniform(0, 6.283);
-    const BoardPose pose = pose_at(board, {tilt * std::cos(azimuth), tilt * std::sin(azimuth), random.uniform(-0.5, 0.5)},
-                                   random.uniform(0.3, 0.45), {random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3)});
+    const BoardPose pose =
+        pose_at(board, {tilt * std::cos(azimuth), tilt * std::sin(azimuth), random.uniform(-0.5, 0.5)},
+                random.uniform(0.3, 0.45), {random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3)});
     const std::string file = folder + "/v" + std::to_string(view) + ".png";
-    io::write_picture(file, photograph(board, lens, pose, width, height, {0.8, 0.01, 6, seed * 100 + static_cast<unsigned>(view)}));
+    io::write_picture(
+        file, photograph(board, lens, pose, width, height, {0.8, 0.01, 6, seed * 100 + static_cast<unsigned>(view)}));
     command += " " + file;
   }
   const std::string out = folder + "/camera.json";
@@ -87,7 +95,8 @@ double focal_error_sigmas(std::uint64_t seed, const std::string& folder) {
 
 bool prove(int repeats) {
   bool good = true;
-  for (const Case& what : {Case{"checkerboard", BoardKind::checkerboard, false}, Case{"ChArUco, current layout", BoardKind::charuco, false},
+  for (const Case& what : {Case{"checkerboard", BoardKind::checkerboard, false},
+                           Case{"ChArUco, current layout", BoardKind::charuco, false},
                            Case{"ChArUco, legacy layout", BoardKind::charuco, true}}) {
     const double worst = worst_bias(what);
     std::printf("corner bias, %s: measured %.4f px required < %.2f px\n", what.name, worst, required_bias_px);
@@ -103,8 +112,9 @@ bool prove(int repeats) {
   }
   std::filesystem::remove_all(folder);
   // Chance leaves the largest of a handful of normal numbers below 3.5 in more than 99 % of cases.
-  std::printf("focal length from 20 photographs, %d times: measured %.2f sigmas rms, %.2f at most, required < 3.5 at most\n", repeats,
-              std::sqrt(sum / repeats), largest);
+  std::printf(
+      "focal length from 20 photographs, %d times: measured %.2f sigmas rms, %.2f at most, required < 3.5 at most\n",
+      repeats, std::sqrt(sum / repeats), largest);
   return good && largest < 3.5;
 }
 

@@ -1,4 +1,5 @@
-// How often 95 % intervals of the projection and of the focal length hold the truth, over calibrations of fresh views and noise.
+// How often 95 % intervals of the projection and of the focal length hold the truth, over calibrations of fresh views
+// and noise.
 #pragma once
 #include <vector>
 
@@ -16,7 +17,8 @@ struct Covered {
   int apart = 0, halved = 0;                          // halves called apart at 5 %, of those that could be judged
 };
 
-// One calibration: where the projection of world points goes when its frame is brought onto the true one, against what the law says.
+// One calibration: where the projection of world points goes when its frame is brought onto the true one, against what
+// the law says.
 inline Covered covered_by(std::uint64_t seed, bool with_halves) {
   Random random(seed, 3);
   const std::vector<BoardPose> poses = world_poses(12, random);

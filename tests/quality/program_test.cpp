@@ -36,9 +36,10 @@ constexpr const char* checkerboard_set = "calibration/opencv_stereo_checkerboard
 TEST(QualityOfACalibration, IsSaidInNumbersMapsAndAPage) {
   GONIO_NEEDS_DATA(checkerboard_set);
   const gonio::tests::ScratchFolder folder;
-  const auto ended = run(call({"--checkerboard", "9x6", "--square", "25mm", "--distance", "0.3m", "--distance", "1m", "--out", "o"},
-                              pictures(checkerboard_set, "left")),
-                         folder.path());
+  const auto ended =
+      run(call({"--checkerboard", "9x6", "--square", "25mm", "--distance", "0.3m", "--distance", "1m", "--out", "o"},
+               pictures(checkerboard_set, "left")),
+          folder.path());
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, testing::HasSubstr("This calibration predicts within"));
   const auto document = manifest::parse_document(ended.out, "out", folder.path(), {.allow_outside = true});

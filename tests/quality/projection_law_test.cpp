@@ -9,8 +9,8 @@
 namespace gonio::camera::tests {
 namespace {
 
-// 40 calibrations of 24 points each; within one calibration the points are far from independent. 500 runs (scripts/proofs) must lie
-// within 93 to 97 %; the mean over 40 runs has a standard error of 2 to 3 %.
+// 40 calibrations of 24 points each; within one calibration the points are far from independent. 500 runs
+// (scripts/proofs) must lie within 93 to 97 %; the mean over 40 runs has a standard error of 2 to 3 %.
 TEST(ProjectionLaw, IntervalsHoldTheTruth) {
   const Covered c = covered(40, false);
   EXPECT_GT(c.ellipse, 0.88 * c.points);
@@ -18,8 +18,8 @@ TEST(ProjectionLaw, IntervalsHoldTheTruth) {
   EXPECT_GT(c.focal, 0.87 * c.focals);
 }
 
-// The same views with fresh noise, forty times: the spread of the aligned projections is the law's covariance, which carries the
-// poses' share too.
+// The same views with fresh noise, forty times: the spread of the aligned projections is the law's covariance, which
+// carries the poses' share too.
 TEST(ProjectionLaw, AgreesWithTheSpreadOfRepeatedCalibrations) {
   constexpr int runs = 60;
   Random random(5);
@@ -37,7 +37,8 @@ TEST(ProjectionLaw, AgreesWithTheSpreadOfRepeatedCalibrations) {
     const auto motion = aligned(truth, found);
     const ProjectionLaw law(made.result());
     for (int p = 0; p < 3; ++p) {
-      const Vec2 d = project(made.calibration.cameras[0].lens, motion * points[p]).value() - project(world_lens(), points[p]).value();
+      const Vec2 d = project(made.calibration.cameras[0].lens, motion * points[p]).value() -
+                     project(world_lens(), points[p]).value();
       sum[p] += dot(d, d) / runs;
       expected[p] += law.at(points[p]).value().trace() / runs;
     }

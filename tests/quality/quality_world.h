@@ -10,7 +10,9 @@ namespace gonio::camera::tests {
 
 constexpr int width = 1280, height = 960;
 
-inline Board world_board() { return {BoardKind::checkerboard, 9, 6, 0.03, 0, "", {}}; }
+inline Board world_board() {
+  return {BoardKind::checkerboard, 9, 6, 0.03, 0, "", {}};
+}
 inline Intrinsics world_lens() {
   Intrinsics lens{1100, 1102, 645, 470, {}};
   lens.distortion[LensTerm::k1] = -0.2;
@@ -24,13 +26,15 @@ inline std::vector<BoardPose> world_poses(int count, Random& random) {
   std::vector<BoardPose> list;
   for (int i = 0; i < count; ++i) {
     const double azimuth = 2 * pi * (i + random.uniform()) / count, tilt = random.uniform(0.35, 0.65);
-    list.push_back(pose_at(world_board(), {tilt * std::cos(azimuth), tilt * std::sin(azimuth), random.uniform(-0.5, 0.5)},
+    list.push_back(pose_at(world_board(),
+                           {tilt * std::cos(azimuth), tilt * std::sin(azimuth), random.uniform(-0.5, 0.5)},
                            random.uniform(0.4, 0.6), {random.uniform(-0.9, 0.9), random.uniform(-0.9, 0.9)}));
   }
   return list;
 }
 
-inline std::vector<View> world_views(const std::vector<BoardPose>& poses, double noise_px, Random& random, const BoardWarp& warp = {}) {
+inline std::vector<View> world_views(const std::vector<BoardPose>& poses, double noise_px, Random& random,
+                                     const BoardWarp& warp = {}) {
   std::vector<View> views;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     View view;

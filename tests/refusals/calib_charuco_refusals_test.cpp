@@ -133,7 +133,8 @@ TEST_F(CalibCharuco, DictionariesOfOnesOwn) {
 
 TEST_F(CalibCharuco, ManifestsWithLooseEnds) {
   const std::string boards =
-      R"("boards": {"b": {"kind": "charuco", "squares": [7, 5], "square_m": 0.03, "marker_m": 0.022, "dictionary": "4X4_50"}})";
+      R"("boards": {"b": {"kind": "charuco", "squares": [7, 5], "square_m": 0.03, "marker_m": 0.022, )"
+      R"("dictionary": "4X4_50"}})";
   const auto manifest = [&](const std::string& rest) {
     write_file(path("m.json"), R"({"gonio": 1, "files": {"f": {"path": "v0.png"}}, )" + boards + ", " + rest + "}");
     return Words{"-i", "m.json"};

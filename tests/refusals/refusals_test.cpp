@@ -228,12 +228,14 @@ TEST_F(Refusals, AClosedPipe) {
   EXPECT_EQ(closed.status, 74) << closed.err;
 }
 
-// Waits until a process has installed its handlers (SigCgt of proc(5)): before that a signal is not the program's to answer.
+// Waits until a process has installed its handlers (SigCgt of proc(5)): before that a signal is not the program's to
+// answer.
 bool handles_signals(pid_t id) {
   for (int tries = 0; tries < 3000; ++tries, ::usleep(10000)) {
     std::ifstream status("/proc/" + std::to_string(id) + "/status");
     for (std::string line; std::getline(status, line);)
-      if (line.starts_with("SigCgt:") && (std::stoull(line.substr(7), nullptr, 16) >> (SIGTERM - 1) & 1) != 0) return true;
+      if (line.starts_with("SigCgt:") && (std::stoull(line.substr(7), nullptr, 16) >> (SIGTERM - 1) & 1) != 0)
+        return true;
   }
   return false;
 }

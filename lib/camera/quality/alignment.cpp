@@ -9,7 +9,9 @@ namespace {
 
 constexpr int most_steps = 30;
 
-Eigen::Vector3d vector_of(Vec3 v) { return {v.x, v.y, v.z}; }
+Eigen::Vector3d vector_of(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
 
 }  // namespace
 
@@ -32,8 +34,8 @@ Rigid<frame::Camera, frame::Camera> aligned(const std::vector<Vec3>& from, const
   return {quaternion_of(rotation), {t.x(), t.y(), t.z()}};
 }
 
-BoardPose pose_under(const View& view, const Board& board, const Intrinsics& lens, const BoardWarp& warp, BoardPose pose,
-                     double loss_px) {
+BoardPose pose_under(const View& view, const Board& board, const Intrinsics& lens, const BoardWarp& warp,
+                     BoardPose pose, double loss_px) {
   std::array<std::array<double, BoardColumn::count>, 2> j{};
   for (int step = 0; step < most_steps; ++step) {
     Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
@@ -57,7 +59,8 @@ BoardPose pose_under(const View& view, const Board& board, const Intrinsics& len
   return pose;
 }
 
-void append_points(const View& view, const Board& board, const BoardWarp& warp, const BoardPose& pose, std::vector<Vec3>& points) {
+void append_points(const View& view, const Board& board, const BoardWarp& warp, const BoardPose& pose,
+                   std::vector<Vec3>& points) {
   const BoardExtent extent = board.extent();
   const std::array sag{warp.sag_x_m, warp.sag_y_m};
   for (const Corner& corner : view.corners) {

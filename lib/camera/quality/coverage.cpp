@@ -10,7 +10,9 @@ namespace {
 
 constexpr int grid_side = 64;
 
-double turn(Vec2 a, Vec2 b, Vec2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
+double turn(Vec2 a, Vec2 b, Vec2 c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
 
 std::vector<Vec2> hull(std::vector<Vec2> points) {
   std::ranges::sort(points, [](Vec2 a, Vec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
@@ -47,7 +49,8 @@ Coverage coverage_of(const CameraResult& camera) {
     const std::vector<Vec2> outline = hull(std::move(pixels));
     for (int j = 0; j < coverage.grid.rows; ++j)
       for (int i = 0; i < coverage.grid.columns; ++i)
-        coverage.views[static_cast<std::size_t>(j * coverage.grid.columns + i)] += inside(outline, coverage.grid.pixel(i, j));
+        coverage.views[static_cast<std::size_t>(j * coverage.grid.columns + i)] +=
+            inside(outline, coverage.grid.pixel(i, j));
   }
   const auto reached = std::ranges::count_if(coverage.views, [](int n) { return n > 0; });
   coverage.share = static_cast<double>(reached) / static_cast<double>(coverage.views.size());
@@ -59,7 +62,8 @@ io::Image picture_of(const Coverage& coverage) {
   const double most = std::max(1, *std::ranges::max_element(coverage.views));
   for (std::size_t k = 0; k < coverage.views.size(); ++k) {
     const int views = coverage.views[k];
-    const report::Colour colour = views == 0 ? report::Colour{1, 1, 1} : report::magnitude_colour(1 - 0.85 * views / most);
+    const report::Colour colour =
+        views == 0 ? report::Colour{1, 1, 1} : report::magnitude_colour(1 - 0.85 * views / most);
     std::copy(colour.begin(), colour.end(), image.data.begin() + static_cast<std::ptrdiff_t>(3 * k));
   }
   return image;

@@ -1,4 +1,5 @@
-// Which part of the image the corners reach: cells whose middle lies within the outline (convex hull) of some view's corners.
+// Which part of the image the corners reach: cells whose middle lies within the outline (convex hull) of some view's
+// corners.
 #pragma once
 #include <vector>
 

@@ -80,7 +80,8 @@ double chance_of_pixels(double mean_square, const Eigen::MatrixXd& covariance, c
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
   const Eigen::MatrixXd root =
       unit.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
-  const Eigen::VectorXd weights = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(root.transpose() * w * root).eigenvalues();
+  const Eigen::VectorXd weights =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(root.transpose() * w * root).eigenvalues();
   Random random(1, 0x68616c66u);
   std::size_t above = 0;
   for (std::size_t n = 0; n < draws; ++n) {
@@ -99,8 +100,8 @@ struct Difference {
   double mean_square = 0;
   Eigen::MatrixXd w;
 };
-Difference difference_of(const Calibration& a, const Calibration& b, const CameraResult& whole, const std::vector<double>& distances_m,
-                         Halves& result) {
+Difference difference_of(const Calibration& a, const Calibration& b, const CameraResult& whole,
+                         const std::vector<double>& distances_m, Halves& result) {
   const auto motion = aligned(points_under(a, whole), points_under(b, whole));
   const ProjectionLaw law(whole);
   const CameraModel camera(a.cameras[0].lens, whole.width_px(), whole.height_px());
@@ -138,7 +139,8 @@ Halves compare_halves(const CameraResult& camera, const std::vector<double>& dis
   const Alone alone(camera);
   std::map<std::size_t, std::size_t> shots;  // in the order of the views
   std::vector<View> views[2];
-  for (const View& view : alone.views) views[shots.try_emplace(view.shot, shots.size()).first->second % 2].push_back(view);
+  for (const View& view : alone.views)
+    views[shots.try_emplace(view.shot, shots.size()).first->second % 2].push_back(view);
   if (shots.size() < 2 * least_views) {
     result.refused =
         std::to_string(shots.size()) + " views are too few to halve (at least " + std::to_string(2 * least_views) + ")";

@@ -54,8 +54,10 @@ struct CandidateView {
   std::size_t place = 0, tilt = 0;
   double distance_m = 0;
   Eigen::MatrixXd information{};  // about the shared numbers; empty: cannot be seen
-  Eigen::MatrixXd by_shared{};  // what they do to the right-hand side of the rigid motion's least squares, through this pose
-  Matrix6 by_noise = Matrix6::Zero(), normal = Matrix6::Zero();  // and the noise of its corners; and what the view adds to the matrix
+  Eigen::MatrixXd
+      by_shared{};  // what they do to the right-hand side of the rigid motion's least squares, through this pose
+  Matrix6 by_noise = Matrix6::Zero(),
+          normal = Matrix6::Zero();  // and the noise of its corners; and what the view adds to the matrix
 };
 
 // Distances that the session has shown to be possible, and one at which the board fills half of the picture's width.
@@ -82,7 +84,8 @@ BoardPose pose_of(const Board& board, Vec3 direction, double distance_m, const T
   return pose;
 }
 
-void fill_information(const CameraResult& camera, std::size_t place, const std::vector<Direction>& columns, CandidateView& candidate) {
+void fill_information(const CameraResult& camera, std::size_t place, const std::vector<Direction>& columns,
+                      CandidateView& candidate) {
   const Board& board = camera.setup.boards[place].board;
   const BoardWarp& warp = camera.calibration.boards[place].warp;
   std::vector<Vec2> points;
@@ -113,7 +116,8 @@ std::vector<CandidateView> candidates(const CameraResult& camera, std::size_t bo
   std::vector<CandidateView> result;
   for (const double distance : candidate_distances(camera, board))
     for (std::size_t place = 0; place < places.size(); ++place) {
-      const Vec3 direction = model.ray({places[place].x * (camera.width_px() - 1), places[place].y * (camera.height_px() - 1)}).direction;
+      const Vec3 direction =
+          model.ray({places[place].x * (camera.width_px() - 1), places[place].y * (camera.height_px() - 1)}).direction;
       for (std::size_t tilt = 0; tilt < tilts.size(); ++tilt)
         result.push_back({pose_of(board, direction, distance, tilts[tilt]), place, tilt, distance});
     }
@@ -123,8 +127,8 @@ std::vector<CandidateView> candidates(const CameraResult& camera, std::size_t bo
   return result;
 }
 
-// Mean over the image and the distances of [P_s P_T]' [P_s P_T], P_s and P_T the pixel's derivatives by the shared numbers and by
-// the rigid motion alone.
+// Mean over the image and the distances of [P_s P_T]' [P_s P_T], P_s and P_T the pixel's derivatives by the shared
+// numbers and by the rigid motion alone.
 Eigen::MatrixXd target_of(const ProjectionLaw& law, const CameraResult& camera, const std::vector<double>& distances) {
   const auto k = static_cast<Eigen::Index>(camera.calibration.shared.size());
   Eigen::MatrixXd target = Eigen::MatrixXd::Zero(k + 6, k + 6);
@@ -177,14 +181,16 @@ double mean_sigma(const Eigen::MatrixXd& target, const LinearLaw& law) {
 
 std::string sentence_of(const CandidateView& v, double before, double after) {
   char text[320];
-  std::snprintf(text, sizeof text, "the board %s of the picture at %.2g m, %s: lowers the projection's mean sigma from %.2g to %.2g px",
+  std::snprintf(text, sizeof text,
+                "the board %s of the picture at %.2g m, %s: lowers the projection's mean sigma from %.2g to %.2g px",
                 places[v.place].words, v.distance_m, tilts[v.tilt].words, before, after);
   return text;
 }
 
 }  // namespace
 
-std::vector<NextView> next_views(const CameraResult& camera, const std::vector<double>& distances_m, std::size_t count) {
+std::vector<NextView> next_views(const CameraResult& camera, const std::vector<double>& distances_m,
+                                 std::size_t count) {
   std::vector<NextView> result;
   if (camera.calibration.covariance.empty()) return result;
   std::vector<int> seen(camera.setup.boards.size());

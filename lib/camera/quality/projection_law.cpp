@@ -32,10 +32,12 @@ Matrix36 moves(Vec3 arm) {
   return k;
 }
 
-Eigen::Matrix3d crossing(Vec3 v) { return Eigen::Matrix3d{{0, -v.z, v.y}, {v.z, 0, -v.x}, {-v.y, v.x, 0}}; }
+Eigen::Matrix3d crossing(Vec3 v) {
+  return Eigen::Matrix3d{{0, -v.z, v.y}, {v.z, 0, -v.x}, {-v.y, v.x, 0}};
+}
 
-// How a view's camera_from_board follows the shared numbers, and its covariance at given ones: the placement's, turned into the
-// camera's frame, and the camera's own motion in its rig.
+// How a view's camera_from_board follows the shared numbers, and its covariance at given ones: the placement's, turned
+// into the camera's frame, and the camera's own motion in its rig.
 struct PoseLaw {
   Eigen::MatrixXd slope;  // 6 x shared
   Matrix6 own;
@@ -56,7 +58,8 @@ PoseLaw pose_law(const CameraResult& camera, std::size_t view) {
   Eigen::Index next = 0;
   for (Eigen::Index p = 0; p < k; ++p) {
     const SharedParameter& shared = c.shared[static_cast<std::size_t>(p)];
-    if (shared.kind == SharedParameter::Kind::rig && shared.of == camera.camera) law.slope.col(p) += by_camera.col(next++);
+    if (shared.kind == SharedParameter::Kind::rig && shared.of == camera.camera)
+      law.slope.col(p) += by_camera.col(next++);
   }
   return law;
 }
@@ -80,8 +83,11 @@ double radius_95(const PixelCovariance& c) {
 
 std::vector<Direction> directions(const CameraResult& camera, std::size_t board) {
   const std::vector<SharedParameter>& shared = camera.calibration.shared;
-  const auto is_lens = [&](const SharedParameter& p) { return p.kind == SharedParameter::Kind::lens && p.of == camera.camera; };
-  const bool aspect_held = std::ranges::none_of(shared, [&](const SharedParameter& p) { return is_lens(p) && p.name == "fy_px"; });
+  const auto is_lens = [&](const SharedParameter& p) {
+    return p.kind == SharedParameter::Kind::lens && p.of == camera.camera;
+  };
+  const bool aspect_held =
+      std::ranges::none_of(shared, [&](const SharedParameter& p) { return is_lens(p) && p.name == "fy_px"; });
   std::vector<Direction> result;
   for (const SharedParameter& p : shared) {
     Direction& direction = result.emplace_back();
@@ -100,14 +106,16 @@ std::vector<Direction> directions(const CameraResult& camera, std::size_t board)
   return result;
 }
 
-void add_warp(const std::vector<SharedParameter>& shared, std::size_t board, const AlignmentPart& part, Eigen::MatrixXd& by_shared) {
+void add_warp(const std::vector<SharedParameter>& shared, std::size_t board, const AlignmentPart& part,
+              Eigen::MatrixXd& by_shared) {
   for (std::size_t p = 0; p < shared.size(); ++p) {
     if (shared[p].kind != SharedParameter::Kind::board || shared[p].of != board) continue;
     by_shared.col(static_cast<Eigen::Index>(p)) += part.by_warp.col(shared[p].name == "sag_y_m" ? 1 : 0);
   }
 }
 
-AlignmentPart alignment_part(const Board& board, const BoardPose& pose, const BoardWarp& warp, const std::vector<Vec2>& points) {
+AlignmentPart alignment_part(const Board& board, const BoardPose& pose, const BoardWarp& warp,
+                             const std::vector<Vec2>& points) {
   const BoardExtent extent = board.extent();
   const std::array sag{warp.sag_x_m, warp.sag_y_m};
   const std::array<double, 2> one_x{1, 0}, one_y{0, 1};
@@ -145,7 +153,8 @@ ViewEquations view_equations(const Intrinsics& lens, const BoardPose& pose, cons
   return e;
 }
 
-bool pixel_derivatives(const Intrinsics& lens, const LinearLaw& law, Vec3 point, bool infinitely_far, PixelDerivatives& d) {
+bool pixel_derivatives(const Intrinsics& lens, const LinearLaw& law, Vec3 point, bool infinitely_far,
+                       PixelDerivatives& d) {
   Jacobian j{};
   Vec2 pixel;
   const Vec3 at = infinitely_far ? point * (1 / norm(point)) : point;

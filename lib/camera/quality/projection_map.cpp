@@ -69,7 +69,8 @@ std::pair<double, double> radius_range(const std::vector<ProjectionMap>& maps) {
 io::Image picture_of(const ProjectionMap& map, double lower_px, double upper_px) {
   io::Image image(map.grid.columns, map.grid.rows, {"R", "G", "B"});
   for (std::size_t k = 0; k < map.radius_px.size(); ++k) {
-    const report::Colour colour = report::magnitude_colour(std::log(map.radius_px[k] / lower_px) / std::log(upper_px / lower_px));
+    const report::Colour colour =
+        report::magnitude_colour(std::log(map.radius_px[k] / lower_px) / std::log(upper_px / lower_px));
     std::copy(colour.begin(), colour.end(), image.data.begin() + static_cast<std::ptrdiff_t>(3 * k));
   }
   return image;

@@ -24,7 +24,8 @@ struct ProjectionMap {
   double within_px = 0;                     // largest radius over 95 % of the image
   double mean_variance = 0;                 // px^2, of both coordinates together
 };
-ProjectionMap projection_map(const ProjectionLaw& law, const CameraResult& camera, double distance_m, int longer_side = 160);
+ProjectionMap projection_map(const ProjectionLaw& law, const CameraResult& camera, double distance_m,
+                             int longer_side = 160);
 
 // Channels sigma_u, sigma_v, radius_95, all px; one value a cell.
 io::Image values_of(const ProjectionMap& map);

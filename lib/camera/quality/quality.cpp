@@ -26,9 +26,10 @@ std::string at_distances(const std::vector<ProjectionMap>& maps) {
 
 std::string verdict_of(const Quality& q) {
   std::string text = format("This calibration predicts within %.2g px at 95 %% over 95 %% of the image", q.within_px) +
-                     at_distances(q.maps) + ", as far as the noise of its corners goes";
+                     at_distances(q.maps);
   if (!q.halves.refused.empty()) return text + "; whether its model holds is not tested: " + q.halves.refused + ".";
-  const std::string figures = format(" (%.2g px, %.2g px expected, p = %.2g)", q.halves.differ_px, q.halves.expected_px, q.halves.p);
+  const std::string figures =
+      format(" (%.2g px, %.2g px expected, p = %.2g)", q.halves.differ_px, q.halves.expected_px, q.halves.p);
   return text + (q.halves.agree ? "; halves of the views agree" + figures + "."
                                 : "; but halves of the views differ by more than their uncertainty" + figures + ".");
 }
@@ -39,7 +40,8 @@ std::vector<double> usual_distances(const CameraResult& camera) {
   std::vector<double> seen;
   for (std::size_t v = 0; v < camera.views.size(); ++v) {
     const Vec2 middle = camera.board(v).extent().middle_m;
-    if (camera.uses(v)) seen.push_back(norm(camera.calibration.views[v].camera_from_board * Vec3{middle.x, middle.y, 0}));
+    if (camera.uses(v))
+      seen.push_back(norm(camera.calibration.views[v].camera_from_board * Vec3{middle.x, middle.y, 0}));
   }
   if (seen.empty()) return {};
   const double median = stats::median(seen);
@@ -63,8 +65,10 @@ std::optional<Quality> judge_quality(const CameraResult& camera, std::vector<dou
 }
 
 std::string disagreement(const Halves& h) {
-  return format("calibrations from either half of the views differ by %.2g px over the image where %.2g px are expected (p = %.1g)",
-                h.differ_px, h.expected_px, h.p) +
+  return format(
+             "calibrations from either half of the views differ by %.2g px over the image where %.2g px are expected "
+             "(p = %.1g)",
+             h.differ_px, h.expected_px, h.p) +
          ": something is not modelled; try --board-warp or --model auto, and ask explain";
 }
 

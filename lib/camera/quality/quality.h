@@ -1,5 +1,6 @@
-// The answer to "how good is this calibration?": what it predicts within over the image, whether halves of the views agree, what
-// part of the image they reach, and what to photograph next; numbers, one sentence, and the manifest's `quality`.
+// The answer to "how good is this calibration?": what it predicts within over the image, whether halves of the views
+// agree, what part of the image they reach, and what to photograph next; numbers, one sentence, and the manifest's
+// `quality`.
 #pragma once
 #include <optional>
 #include <string>

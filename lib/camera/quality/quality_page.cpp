@@ -60,7 +60,8 @@ report::Plot radial_plot(const Residuals& r) {
   line.x = points.x, line.y = points.y;
   report::Plot plot;
   plot.title = "Residuals along the image radius";
-  plot.caption = "Means over bins of equal counts with their standard errors. What the lens model cannot follow shows as a curve.";
+  plot.caption =
+      "Means over bins of equal counts with their standard errors. What the lens model cannot follow shows as a curve.";
   plot.x_label = "distance from the principal point / px";
   plot.y_label = "mean residual outwards / px";
   plot.zero_y = true;
@@ -71,16 +72,17 @@ report::Plot radial_plot(const Residuals& r) {
 void key_numbers(Page& page, const CameraResult& camera, const Quality& q) {
   const CalibratedCamera& c = camera.calibration.cameras[camera.camera];
   const bool tested = q.halves.refused.empty();
-  std::vector<report::KeyNumber> numbers = {
-      {"predicts within, at 95 % over 95 % of the image", number_text(q.within_px, 2), "px", "noise of the corners only",
-       report::Tone::neutral}};
+  std::vector<report::KeyNumber> numbers = {{"predicts within, at 95 % over 95 % of the image",
+                                             number_text(q.within_px, 2), "px", "noise of the corners only",
+                                             report::Tone::neutral}};
   if (tested)
     numbers.push_back({"halves of the views differ by", number_text(q.halves.differ_px, 2), "px",
                        number_text(q.halves.expected_px, 2) + " px expected, p = " + number_text(q.halves.p, 2),
                        q.halves.agree ? report::Tone::good : report::Tone::bad});
   numbers.push_back({"corners miss by (rms)", number_text(c.rms_px, 3), "px",
                      "noise of a coordinate " + number_text(c.noise_px, 2) + " px", report::Tone::neutral});
-  numbers.push_back({"of the image is reached by boards", report::percent_text(q.coverage.share, 0), "", "", report::Tone::neutral});
+  numbers.push_back(
+      {"of the image is reached by boards", report::percent_text(q.coverage.share, 0), "", "", report::Tone::neutral});
   page.key_numbers(numbers);
 }
 
@@ -97,21 +99,24 @@ void numbers(Page& page, const CameraResult& camera) {
   report::TableText table{"Fitted numbers", {{"parameter", "", false}, {"value", ""}, {"sigma", ""}}, {}};
   for (std::size_t k = 0; k < c.shared.size(); ++k) {
     const SharedParameter& p = c.shared[k];
-    if (p.kind == SharedParameter::Kind::rig || (p.kind == SharedParameter::Kind::lens && p.of != camera.camera)) continue;
+    if (p.kind == SharedParameter::Kind::rig || (p.kind == SharedParameter::Kind::lens && p.of != camera.camera))
+      continue;
     const bool board = p.kind == SharedParameter::Kind::board;
     const BoardWarp warp = board ? c.boards[p.of].warp : BoardWarp{};
     const double value = !board ? value_of(camera.lens(), p.name) : p.name == "sag_x_m" ? warp.sag_x_m : warp.sag_y_m;
     const double sigma = std::sqrt(c.covariance[k * c.shared.size() + k]);
-    table.rows.push_back({board ? camera.setup.boards[p.of].name + ": " + p.name : p.name, report::value_for_sigma(value, sigma),
-                          report::sigma_text(value, sigma)});
+    table.rows.push_back({board ? camera.setup.boards[p.of].name + ": " + p.name : p.name,
+                          report::value_for_sigma(value, sigma), report::sigma_text(value, sigma)});
   }
   page.table(table);
 }
 
 void prediction(Page& page, const Quality& q) {
   page.section("Where it predicts well");
-  page.paragraph("How far the predicted pixel of a point that is fixed in the world may be off (95 % radius), when the calibration is "
-                 "repeated with other noise.");
+  page.paragraph(
+      "How far the predicted pixel of a point that is fixed in the world may be off (95 % radius), when the "
+      "calibration is "
+      "repeated with other noise.");
   const auto [lower, upper] = radius_range(q.maps);
   std::vector<report::Figure> figures;
   for (const ProjectionMap& map : q.maps) {
@@ -125,7 +130,8 @@ void prediction(Page& page, const Quality& q) {
   report::Figure coverage;
   coverage.png = io::encode_png(picture_of(q.coverage));
   coverage.title = "Reached by boards";
-  coverage.caption = "The darker, the more views; white: none. " + report::percent_text(q.coverage.share, 0) + " of the image.";
+  coverage.caption =
+      "The darker, the more views; white: none. " + report::percent_text(q.coverage.share, 0) + " of the image.";
   coverage.width_px = q.coverage.grid.columns;
   figures.push_back(coverage);
   page.figures(figures);
@@ -141,9 +147,12 @@ void halves(Page& page, const CameraResult& camera, const Halves& h) {
     page.paragraph("Not tested: " + h.refused + ".");
     return;
   }
-  page.paragraph("Every other view calibrates one camera, the rest another; the arrows are the difference of their predictions after "
-                 "the rigid motion between their frames. Differences beyond what the corners' noise lets expect mean that the model "
-                 "lacks something, or that single views are wrong.");
+  page.paragraph(
+      "Every other view calibrates one camera, the rest another; the arrows are the difference of their predictions "
+      "after "
+      "the rigid motion between their frames. Differences beyond what the corners' noise lets expect mean that the "
+      "model "
+      "lacks something, or that single views are wrong.");
   std::vector<Vec2> at;
   for (int j = 0; j < h.grid.rows; ++j)
     for (int i = 0; i < h.grid.columns; ++i) at.push_back(h.grid.pixel(i, j));
@@ -151,7 +160,8 @@ void halves(Page& page, const CameraResult& camera, const Halves& h) {
   report::Figure figure;
   figure.svg = arrows(camera.width_px(), camera.height_px(), at, h.difference_px, scale);
   figure.title = "One half against the other, " + number_text(scale, 3) + " times enlarged";
-  figure.caption = "Root mean square " + number_text(h.differ_px, 2) + " px; expected " + number_text(h.expected_px, 2) + " px.";
+  figure.caption =
+      "Root mean square " + number_text(h.differ_px, 2) + " px; expected " + number_text(h.expected_px, 2) + " px.";
   page.figures({figure});
 }
 
@@ -172,7 +182,12 @@ void views(Page& page, const CameraResult& camera) {
   const Calibration& c = camera.calibration;
   report::HeatStrip strip{"Misses per view", "", "rms / px", {}, {"rms"}, {}};
   report::TableText table{"",
-                          {{"view", "", false}, {"corners", ""}, {"rms", "px"}, {"weight", ""}, {"tilt", "deg"}, {"distance", "m"},
+                          {{"view", "", false},
+                           {"corners", ""},
+                           {"rms", "px"},
+                           {"weight", ""},
+                           {"tilt", "deg"},
+                           {"distance", "m"},
                            {"note", "", false}},
                           {}};
   for (std::size_t v = 0; v < camera.views.size(); ++v) {
@@ -181,10 +196,12 @@ void views(Page& page, const CameraResult& camera) {
     const Vec2 middle = camera.board(v).extent().middle_m;
     strip.columns.push_back(camera.views[v].name);
     strip.values.push_back(view.rms_px);
-    const Vec3 at = view.camera_from_board * Vec3{middle.x, middle.y, 0}, normal = view.camera_from_board.rotate({0, 0, 1});
+    const Vec3 at = view.camera_from_board * Vec3{middle.x, middle.y, 0},
+               normal = view.camera_from_board.rotate({0, 0, 1});
     const double tilt = std::acos(std::clamp(dot(at, normal) / std::max(norm(at), 1e-12), -1.0, 1.0)) * 180 / pi;
-    table.rows.push_back({camera.views[v].name, std::to_string(camera.views[v].corners.size()), number_text(view.rms_px, 3),
-                          number_text(view.weight, 2), number_text(tilt, 2), number_text(norm(at), 3), view.note});
+    table.rows.push_back({camera.views[v].name, std::to_string(camera.views[v].corners.size()),
+                          number_text(view.rms_px, 3), number_text(view.weight, 2), number_text(tilt, 2),
+                          number_text(norm(at), 3), view.note});
   }
   page.heat_strip(strip);
   page.table(table);
@@ -201,7 +218,8 @@ double arrow_scale(int width_px, const std::vector<Vec2>& arrow_px) {
   return wanted < 2 * decade ? decade : wanted < 5 * decade ? 2 * decade : 5 * decade;
 }
 
-std::string arrows(int width_px, int height_px, const std::vector<Vec2>& at, const std::vector<Vec2>& arrow_px, double scale) {
+std::string arrows(int width_px, int height_px, const std::vector<Vec2>& at, const std::vector<Vec2>& arrow_px,
+                   double scale) {
   std::string dots, lines;
   const double dot = 0.002 * width_px;
   char text[160];
@@ -213,11 +231,12 @@ std::string arrows(int width_px, int height_px, const std::vector<Vec2>& at, con
     std::snprintf(text, sizeof text, "M%.1f %.1fL%.1f %.1f", at[k].x, at[k].y, to.x, to.y);
     lines += text;
   }
-  std::snprintf(text, sizeof text, "<svg viewBox=\"%.0f %.0f %.0f %.0f\" role=\"img\" ", -0.02 * width_px, -0.02 * width_px,
-                1.04 * width_px, height_px + 0.04 * width_px);
+  std::snprintf(text, sizeof text, "<svg viewBox=\"%.0f %.0f %.0f %.0f\" role=\"img\" ", -0.02 * width_px,
+                -0.02 * width_px, 1.04 * width_px, height_px + 0.04 * width_px);
   std::string svg = text;
   svg += "style=\"background:#fff;min-width:min(40rem,85vw)\">";
-  std::snprintf(text, sizeof text, "<rect x=\"-0.5\" y=\"-0.5\" width=\"%d\" height=\"%d\" fill=\"none\" stroke=\"#888\" ", width_px,
+  std::snprintf(text, sizeof text,
+                "<rect x=\"-0.5\" y=\"-0.5\" width=\"%d\" height=\"%d\" fill=\"none\" stroke=\"#888\" ", width_px,
                 height_px);
   svg += text;
   std::snprintf(text, sizeof text, "stroke-width=\"%.1f\"/><g fill=\"#999\">", 0.5 * dot);
@@ -234,7 +253,9 @@ std::string calibration_page(const CameraResult& camera, const Quality& quality)
   Page page("calib-charuco: " + setup.name, quality.verdict,
             setup.name + ": model " + setup.model + ", " + std::to_string(used) + " views, " +
                 std::to_string(camera.calibration.cameras[camera.camera].corners) + " corners",
-            !h.refused.empty() ? report::Tone::neutral : h.agree ? report::Tone::good : report::Tone::bad);
+            !h.refused.empty() ? report::Tone::neutral
+            : h.agree          ? report::Tone::good
+                               : report::Tone::bad);
   page.section("How good it is");
   key_numbers(page, camera, quality);
   if (!camera.calibration.complaints.empty()) page.list(camera.calibration.complaints);

@@ -1,5 +1,5 @@
-// Conditions of board corners, each with the direction in (u, v) along which its physics would act: lens terms along the image
-// radius, a bent board along what a height above the board does to the pixel.
+// Conditions of board corners, each with the direction in (u, v) along which its physics would act: lens terms along
+// the image radius, a bent board along what a height above the board does to the pixel.
 #include <cmath>
 
 #include "explain/boards/boards_outcome.h"
@@ -17,8 +17,9 @@ std::vector<Condition> board_conditions() {
           {"board.y", "half board", "board", {}, {}, "mm"}};
 }
 
-void append_conditions(const BoardsInput::Camera& camera, const BoardsInput::Board& board, const BoardsInput::View& view,
-                       const BoardsInput::Corner& corner, std::vector<Condition>& conditions) {
+void append_conditions(const BoardsInput::Camera& camera, const BoardsInput::Board& board,
+                       const BoardsInput::View& view, const BoardsInput::Corner& corner,
+                       std::vector<Condition>& conditions) {
   const camera::Intrinsics& k = camera.intrinsics;
   // The predicted pixel: with the detected one, its noise would be condition and residual at once.
   Vec2 pixel = corner.pixel;

@@ -11,18 +11,22 @@ namespace {
 
 constexpr std::size_t fewest_views = 3;
 
-bool is_corner_table(const manifest::Table& table) { return table.model == "camera"; }
+bool is_corner_table(const manifest::Table& table) {
+  return table.model == "camera";
+}
 
 BoardsInput::Camera camera_input(const manifest::Document& document, const std::string& name) {
   const std::string place = manifest::place(document, "/cameras/" + name);
   const auto found = document.cameras.find(name);
-  if (found == document.cameras.end()) throw Error(Exit::data, place, "is not described", "calibrate first: calib-charuco");
+  if (found == document.cameras.end())
+    throw Error(Exit::data, place, "is not described", "calibrate first: calib-charuco");
   BoardsInput::Camera camera;
   camera.name = name;
   camera.intrinsics = camera::intrinsics_of(found->second, place);
   camera.width_px = found->second.width_px;
   camera.height_px = found->second.height_px;
-  for (const auto& [term, value] : found->second.distortion) camera.terms.push_back(camera::distortion_index(term, place));
+  for (const auto& [term, value] : found->second.distortion)
+    camera.terms.push_back(camera::distortion_index(term, place));
   std::sort(camera.terms.begin(), camera.terms.end());
   return camera;
 }
@@ -30,7 +34,8 @@ BoardsInput::Camera camera_input(const manifest::Document& document, const std::
 BoardsInput::Board board_input(const manifest::Document& document, const std::string& name) {
   const std::string place = manifest::place(document, "/boards/" + name);
   const auto found = document.boards.find(name);
-  if (found == document.boards.end()) throw Error(Exit::data, place, "is not described", "calibrate first: calib-charuco");
+  if (found == document.boards.end())
+    throw Error(Exit::data, place, "is not described", "calibrate first: calib-charuco");
   BoardsInput::Board board;
   board.name = name;
   board.square_m = found->second.square_m;
@@ -81,7 +86,8 @@ void add_table(const manifest::Document& document, const std::string& name, Boar
 }  // namespace
 
 bool has_boards(const manifest::Document& document) {
-  return std::any_of(document.tables.begin(), document.tables.end(), [](const auto& t) { return is_corner_table(t.second); });
+  return std::any_of(document.tables.begin(), document.tables.end(),
+                     [](const auto& t) { return is_corner_table(t.second); });
 }
 
 BoardsInput boards_input(const manifest::Document& document) {
@@ -90,8 +96,9 @@ BoardsInput boards_input(const manifest::Document& document) {
     if (is_corner_table(table)) add_table(document, name, input);
   if (input.views.size() < fewest_views)
     throw Error(Exit::data, manifest::place(document, "/tables"),
-                "has corners of " + std::to_string(input.views.size()) + " board views, and explain leaves views out to judge (at least " +
-                    std::to_string(fewest_views) + ")",
+                "has corners of " + std::to_string(input.views.size()) +
+                    " board views, and explain leaves views out to judge (at least " + std::to_string(fewest_views) +
+                    ")",
                 "photograph the board from more directions");
   return input;
 }

@@ -1,4 +1,5 @@
-// Residual vectors of all corners over the image, before and after: what a person looks at first. Inline SVG, no scripts.
+// Residual vectors of all corners over the image, before and after: what a person looks at first. Inline SVG, no
+// scripts.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,8 +17,8 @@ void print_line(std::string& svg, Vec2 from, Vec2 to) {
 }
 
 // Arrows `scale` times the residual, in the frame of the image.
-std::string vectors(const BoardsInput& input, std::size_t camera, const Observations& o, const std::vector<double>& residual,
-                    double scale, const char* colour) {
+std::string vectors(const BoardsInput& input, std::size_t camera, const Observations& o,
+                    const std::vector<double>& residual, double scale, const char* colour) {
   const BoardsInput::Camera& c = input.cameras[camera];
   char head[256];
   std::snprintf(head, sizeof head,

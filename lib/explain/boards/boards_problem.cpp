@@ -20,7 +20,8 @@ constexpr std::array<const char*, 4> intrinsic_names = {"fx_px", "fy_px", "cx_px
 constexpr std::array<const char*, 6> pose_names = {"rotation_x_rad",  "rotation_y_rad",  "rotation_z_rad",
                                                    "translation_x_m", "translation_y_m", "translation_z_m"};
 
-// Left Jacobian of SO(3): exp([w + dw]x) = exp([J dw]x) exp([w]x); Barfoot, State Estimation for Robotics, equation 7.77.
+// Left Jacobian of SO(3): exp([w + dw]x) = exp([J dw]x) exp([w]x); Barfoot, State Estimation for Robotics,
+// equation 7.77.
 Mat3 left_jacobian(Vec3 w) {
   const double angle = norm(w), a2 = angle * angle;
   const double a = angle > 1e-4 ? (1 - std::cos(angle)) / a2 : 0.5 - a2 / 24;
@@ -37,7 +38,8 @@ class BoardsProblem : public Problem {
     for (std::size_t c = 0; c < input_.cameras.size(); ++c) declare_camera(c);
     for (std::size_t b = 0; b < input_.boards.size(); ++b) declare_board(b);
     for (std::size_t v = 0; v < input_.views.size(); ++v) declare_view(v);
-    for (const char* id : {"lens.radial", "lens.rational", "lens.tangential", "lens.thin-prism", "lens.fisheye"}) declare_lens(id);
+    for (const char* id : {"lens.radial", "lens.rational", "lens.tangential", "lens.thin-prism", "lens.fisheye"})
+      declare_lens(id);
     declare_warp();
     declare_rolling_shutter();
     observe();
@@ -55,7 +57,8 @@ class BoardsProblem : public Problem {
     const BoardsInput::View& view = input_.views[group];
     for (std::size_t i = 0; i < view.corners.size(); ++i) {
       Vec2 pixel{0, 0};
-      const bool seen = predict_moving(s.intrinsics, s.pose, s.extent, s.warp, s.readout, view.corners[i].board_m, pixel);
+      const bool seen =
+          predict_moving(s.intrinsics, s.pose, s.extent, s.warp, s.readout, view.corners[i].board_m, pixel);
       prediction[2 * i] = seen ? pixel.x : infinity;
       prediction[2 * i + 1] = seen ? pixel.y : infinity;
     }
@@ -73,21 +76,24 @@ class BoardsProblem : public Problem {
       predict_moving(s.intrinsics, s.pose, s.extent, s.warp, s.readout, view.corners[i].board_m, pixel, j);
       for (std::size_t axis = 0; axis < 2; ++axis) {
         std::array<double, MovingColumn::count>& d = j[axis];
-        const std::array<double, 3> w = {d[BoardColumn::rotation], d[BoardColumn::rotation + 1], d[BoardColumn::rotation + 2]};
+        const std::array<double, 3> w = {d[BoardColumn::rotation], d[BoardColumn::rotation + 1],
+                                         d[BoardColumn::rotation + 2]};
         for (int k = 0; k < 3; ++k)
-          d[BoardColumn::rotation + static_cast<std::size_t>(k)] = w[0] * turn(0, k) + w[1] * turn(1, k) + w[2] * turn(2, k);
+          d[BoardColumn::rotation + static_cast<std::size_t>(k)] =
+              w[0] * turn(0, k) + w[1] * turn(1, k) + w[2] * turn(2, k);
         for (std::size_t k = 0; k < columns.size(); ++k) {
           const Role& role = roles_[columns[k]];
           const bool own = (role.camera == none || role.camera == view.camera) &&
-                           (role.board == none || role.board == view.board) && (role.view == none || role.view == group);
+                           (role.board == none || role.board == view.board) &&
+                           (role.view == none || role.view == group);
           derivatives[k * rows + 2 * i + axis] = own ? d[role.column] : 0;
         }
       }
     }
   }
 
-  // Second differences along the board's rows and columns remove everything that a lens or a bent board can do over three
-  // neighbouring corners; what remains has 6 times the variance of a corner (1 + 4 + 1).
+  // Second differences along the board's rows and columns remove everything that a lens or a bent board can do over
+  // three neighbouring corners; what remains has 6 times the variance of a corner (1 + 4 + 1).
   std::optional<double> noise_factor(std::span<const double> residual) const override {
     std::vector<double> differences;
     std::size_t row = 0;
@@ -103,8 +109,9 @@ class BoardsProblem : public Problem {
           const std::size_t a = find(view.corners[i].board_m - step), b = find(view.corners[i].board_m + step);
           if (a == none || b == none) continue;
           for (std::size_t axis = 0; axis < 2; ++axis)
-            differences.push_back((residual[row + 2 * a + axis] - 2 * residual[row + 2 * i + axis] + residual[row + 2 * b + axis]) /
-                                  (std::sqrt(6.0) * view.corners[i].sigma_px));
+            differences.push_back(
+                (residual[row + 2 * a + axis] - 2 * residual[row + 2 * i + axis] + residual[row + 2 * b + axis]) /
+                (std::sqrt(6.0) * view.corners[i].sigma_px));
         }
       row += 2 * view.corners.size();
     }
@@ -133,7 +140,8 @@ class BoardsProblem : public Problem {
   Scene scene(std::span<const double> values, std::size_t group) const {
     const BoardsInput::View& view = input_.views[group];
     const BoardsInput::Camera& camera = input_.cameras[view.camera];
-    Scene s{camera.intrinsics, {}, input_.boards[view.board].extent, input_.boards[view.board].warp, {}, {camera.height_px, {}}};
+    Scene s{camera.intrinsics,     {}, input_.boards[view.board].extent, input_.boards[view.board].warp, {},
+            {camera.height_px, {}}};
     std::array<double, 6> change{};
     for (std::size_t p = 0; p < roles_.size(); ++p) {
       const Role& r = roles_[p];
@@ -145,7 +153,8 @@ class BoardsProblem : public Problem {
         if (r.column == 1) s.intrinsics.fy_px = values[p];
         if (r.column == 2) s.intrinsics.cx_px = values[p];
         if (r.column == 3) s.intrinsics.cy_px = values[p];
-        if (r.column >= BoardColumn::distortion) s.intrinsics.distortion[r.column - BoardColumn::distortion] = values[p];
+        if (r.column >= BoardColumn::distortion)
+          s.intrinsics.distortion[r.column - BoardColumn::distortion] = values[p];
       }
       if (r.board == view.board) (r.column == BoardColumn::warp ? s.warp.sag_x_m : s.warp.sag_y_m) = values[p];
     }
@@ -178,12 +187,20 @@ class BoardsProblem : public Problem {
     const std::string prefix = "cameras/" + own.name + "/";
     for (std::size_t i = 0; i < 4; ++i) {
       const double lower = i < 2 ? 0.2 * start[i] : -infinity, upper = i < 2 ? 5 * start[i] : infinity;
-      base_.push_back(declare({prefix + intrinsic_names[i], "px", start[i], start[i], lower, upper, 1, {}, groups_of_camera(c)},
-                              {c, none, none, i}));
+      base_.push_back(
+          declare({prefix + intrinsic_names[i], "px", start[i], start[i], lower, upper, 1, {}, groups_of_camera(c)},
+                  {c, none, none, i}));
     }
     for (const std::size_t t : own.terms)
-      base_.push_back(declare({prefix + std::string(camera::distortion_names[t]), "1", k.distortion[t], k.distortion[t],
-                               -infinity, infinity, 0.01, {}, groups_of_camera(c)},
+      base_.push_back(declare({prefix + std::string(camera::distortion_names[t]),
+                               "1",
+                               k.distortion[t],
+                               k.distortion[t],
+                               -infinity,
+                               infinity,
+                               0.01,
+                               {},
+                               groups_of_camera(c)},
                               {c, none, none, BoardColumn::distortion + t}));
   }
 
@@ -192,22 +209,24 @@ class BoardsProblem : public Problem {
     const camera::BoardWarp& warp = input_.boards[b].warp;
     const auto groups = groups_where([&](const BoardsInput::View& v) { return v.board == b; });
     const std::string prefix = "boards/" + input_.boards[b].name + "/";
-    base_.push_back(declare({prefix + "sag_x_m", "m", warp.sag_x_m, warp.sag_x_m, -infinity, infinity, 1e-4, {}, groups},
-                            {none, b, none, BoardColumn::warp}));
-    base_.push_back(declare({prefix + "sag_y_m", "m", warp.sag_y_m, warp.sag_y_m, -infinity, infinity, 1e-4, {}, groups},
-                            {none, b, none, BoardColumn::warp + 1}));
+    base_.push_back(
+        declare({prefix + "sag_x_m", "m", warp.sag_x_m, warp.sag_x_m, -infinity, infinity, 1e-4, {}, groups},
+                {none, b, none, BoardColumn::warp}));
+    base_.push_back(
+        declare({prefix + "sag_y_m", "m", warp.sag_y_m, warp.sag_y_m, -infinity, infinity, 1e-4, {}, groups},
+                {none, b, none, BoardColumn::warp + 1}));
   }
 
   void declare_view(std::size_t v) {
     for (std::size_t i = 0; i < 6; ++i)
-      base_.push_back(declare({input_.views[v].image + "/" + pose_names[i], i < 3 ? "rad" : "m", 0, 0, -infinity, infinity, 1e-3,
-                               {}, {v}},
-                              {none, none, v, BoardColumn::rotation + i}));
+      base_.push_back(declare(
+          {input_.views[v].image + "/" + pose_names[i], i < 3 ? "rad" : "m", 0, 0, -infinity, infinity, 1e-3, {}, {v}},
+          {none, none, v, BoardColumn::rotation + i}));
   }
 
-  // lens.rational and lens.fisheye say how lens.radial falls short: over a moderate field all three bow lines alike, and
-  // the plain one is to be named first. An equidistant lens has neither of them: its term is at the end of the range, and
-  // the denominators have faded.
+  // lens.rational and lens.fisheye say how lens.radial falls short: over a moderate field all three bow lines alike,
+  // and the plain one is to be named first. An equidistant lens has neither of them: its term is at the end of the
+  // range, and the denominators have faded.
   static bool describes_radius(const BoardsInput::Camera& camera, const mechanism::Parameter& p, std::size_t term) {
     const std::array<double, camera::distortion_terms>& lens = camera.intrinsics.distortion;
     const bool radial = std::find(camera.terms.begin(), camera.terms.end(), camera::LensTerm::k1) != camera.terms.end();
@@ -229,9 +248,9 @@ class BoardsProblem : public Problem {
         if (finer && !describes_radius(own, p, term)) continue;
         lacking = true;
         const std::string prefix = input_.cameras.size() > 1 ? "cameras/" + own.name + "/" : id + ".";
-        candidate.parameters.push_back(declare(
-            {prefix + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, 0.01, {}, groups_of_camera(c)},
-            {c, none, none, BoardColumn::distortion + term}));
+        candidate.parameters.push_back(
+            declare({prefix + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, 0.01, {}, groups_of_camera(c)},
+                    {c, none, none, BoardColumn::distortion + term}));
       }
       if (lacking) candidate.on.push_back(own.name);
     }
@@ -249,8 +268,9 @@ class BoardsProblem : public Problem {
       for (std::size_t k = 0; k < 2; ++k) {
         const mechanism::Parameter& p = m->parameters.at(k);
         const std::string prefix = input_.boards.size() > 1 ? "boards/" + input_.boards[b].name + "/" : "board.warp.";
-        candidate.parameters.push_back(declare({prefix + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, 1e-4, {}, groups},
-                                               {none, b, none, BoardColumn::warp + k}));
+        candidate.parameters.push_back(
+            declare({prefix + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, 1e-4, {}, groups},
+                    {none, b, none, BoardColumn::warp + k}));
       }
     }
     if (!candidate.parameters.empty()) candidates_.push_back(std::move(candidate));
@@ -299,6 +319,8 @@ class BoardsProblem : public Problem {
 
 }  // namespace
 
-std::unique_ptr<Problem> boards_problem(BoardsInput input) { return std::make_unique<BoardsProblem>(std::move(input)); }
+std::unique_ptr<Problem> boards_problem(BoardsInput input) {
+  return std::make_unique<BoardsProblem>(std::move(input));
+}
 
 }  // namespace gonio::explain

@@ -1,9 +1,10 @@
-// Board corners as a problem for the engine. Observations: u and v of every detected corner (px), one group per board view, one
-// block per corner. Free in the base model: the intrinsics and lens terms which the camera section gives, and six numbers of pose
-// for every view as its nuisance. Hypotheses: lens terms that the camera section lacks, and the board's warp.
+// Board corners as a problem for the engine. Observations: u and v of every detected corner (px), one group per board
+// view, one block per corner. Free in the base model: the intrinsics and lens terms which the camera section gives, and
+// six numbers of pose for every view as its nuisance. Hypotheses: lens terms that the camera section lacks, and the
+// board's warp.
 //
-// Frames: board (x along columns, y down the rows, z away from the viewer), camera (x right, y down, z forward); metres, pixels.
-// The forward model is camera/board_projection.h: what calib-charuco fits is what is explained here.
+// Frames: board (x along columns, y down the rows, z away from the viewer), camera (x right, y down, z forward);
+// metres, pixels. The forward model is camera/board_projection.h: what calib-charuco fits is what is explained here.
 #pragma once
 #include <memory>
 #include <string>
@@ -26,7 +27,7 @@ struct BoardsInput {
     double square_m = 0;
     camera::BoardExtent extent;
     camera::BoardWarp warp;
-    bool warped = false;             // the base model has the warp already
+    bool warped = false;  // the base model has the warp already
   };
   struct Corner {
     Vec2 board_m, pixel;
@@ -43,8 +44,8 @@ struct BoardsInput {
   std::vector<View> views;
 };
 
-// Corner tables (model "camera") with their cameras, boards and images. Error(data) in words where one of them is missing, or
-// where there are fewer than three views.
+// Corner tables (model "camera") with their cameras, boards and images. Error(data) in words where one of them is
+// missing, or where there are fewer than three views.
 bool has_boards(const manifest::Document& document);
 BoardsInput boards_input(const manifest::Document& document);
 

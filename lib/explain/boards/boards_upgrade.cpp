@@ -1,5 +1,5 @@
-// The upgraded sections of the boards domain: a camera whose model has the named lens terms, a board with its warp, refitted poses;
-// every fitted number with its uncertainty.
+// The upgraded sections of the boards domain: a camera whose model has the named lens terms, a board with its warp,
+// refitted poses; every fitted number with its uncertainty.
 #include <algorithm>
 #include <cmath>
 
@@ -28,8 +28,8 @@ double rms(const BoardsInput& input, const Observations& o, const Explanation& e
   return corners > 0 ? std::sqrt(sum / static_cast<double>(corners)) : 0;
 }
 
-void upgrade_camera(const Problem& problem, const BoardsInput& input, std::size_t c, const std::vector<BoardRole>& roles,
-                    const Explanation& e, manifest::Camera& section) {
+void upgrade_camera(const Problem& problem, const BoardsInput& input, std::size_t c,
+                    const std::vector<BoardRole>& roles, const Explanation& e, manifest::Camera& section) {
   camera::Intrinsics k = input.cameras[c].intrinsics;
   std::array<double, 4> pinhole = {k.fx_px, k.fy_px, k.cx_px, k.cy_px};
   std::vector<std::string> order;
@@ -44,7 +44,8 @@ void upgrade_camera(const Problem& problem, const BoardsInput& input, std::size_
     if (lens && active != e.active.end()) terms.add(column - BoardColumn::distortion);
     (lens ? k.distortion[column - BoardColumn::distortion] : pinhole[column]) = e.values[p];
     const std::string& full = problem.parameters()[p].name;
-    const std::string name = full.substr(full.find_last_of(lens && full.find('/') == std::string::npos ? '.' : '/') + 1);
+    const std::string name =
+        full.substr(full.find_last_of(lens && full.find('/') == std::string::npos ? '.' : '/') + 1);
     if (active == e.active.end()) continue;
     section.sigma[name] = {e.sigma[p]};
     order.push_back(name);
@@ -91,7 +92,8 @@ void upgrade_boards(const Problem& problem, const BoardsInput& input, const std:
     section.rms_px = rms(input, o, e, [&](std::size_t v) { return input.views[v].camera == c; });
   }
   for (std::size_t p = 0; p < roles.size(); ++p) {
-    if (roles[p].board == none || !(input.boards[roles[p].board].warped || is_named(problem, e, "board.warp"))) continue;
+    if (roles[p].board == none || !(input.boards[roles[p].board].warped || is_named(problem, e, "board.warp")))
+      continue;
     manifest::Board& section = document.boards.at(input.boards[roles[p].board].name);
     const std::string axis = roles[p].column == BoardColumn::warp ? "x_m" : "y_m";
     section.warp[axis] = manifest::Parameter(e.values[p]);

@@ -1,5 +1,5 @@
-// See rolling_shutter.h. With P the projection at the pose of the corner's own row and P,t its derivative by the shift, the row's
-// equation differentiates to
+// See rolling_shutter.h. With P the projection at the pose of the corner's own row and P,t its derivative by the shift,
+// the row's equation differentiates to
 //   dv (1 - P_v,t . m / h) = dP_v + tau P_v,t . dm,   du = dP_u + tau P_u,t . dm + (P_u,t . m / h) dv.
 #include "explain/boards/rolling_shutter.h"
 
@@ -13,7 +13,9 @@ using camera::BoardColumn;
 constexpr int most_iterations = 50;
 constexpr double settled_px = 1e-10;
 
-double readouts(double row, int height_px) { return (row - 0.5 * (height_px - 1)) / height_px; }
+double readouts(double row, int height_px) {
+  return (row - 0.5 * (height_px - 1)) / height_px;
+}
 
 camera::BoardPose shifted(camera::BoardPose pose, double tau, Vec2 motion) {
   pose.translation_m = pose.translation_m + Vec3{tau * motion.x, tau * motion.y, 0};
@@ -22,8 +24,9 @@ camera::BoardPose shifted(camera::BoardPose pose, double tau, Vec2 motion) {
 
 }  // namespace
 
-bool predict_moving(const camera::Intrinsics& intrinsics, const camera::BoardPose& pose, const camera::BoardExtent& extent,
-                    const camera::BoardWarp& warp, const Readout& readout, Vec2 at, Vec2& pixel) {
+bool predict_moving(const camera::Intrinsics& intrinsics, const camera::BoardPose& pose,
+                    const camera::BoardExtent& extent, const camera::BoardWarp& warp, const Readout& readout, Vec2 at,
+                    Vec2& pixel) {
   if (!camera::predict(intrinsics, pose, extent, warp, at, pixel)) return false;
   if (readout.motion_m.x == 0 && readout.motion_m.y == 0) return true;
   for (int i = 0; i < most_iterations; ++i) {
@@ -35,8 +38,9 @@ bool predict_moving(const camera::Intrinsics& intrinsics, const camera::BoardPos
   return false;
 }
 
-bool predict_moving(const camera::Intrinsics& intrinsics, const camera::BoardPose& pose, const camera::BoardExtent& extent,
-                    const camera::BoardWarp& warp, const Readout& readout, Vec2 at, Vec2& pixel, MovingJacobian& jacobian) {
+bool predict_moving(const camera::Intrinsics& intrinsics, const camera::BoardPose& pose,
+                    const camera::BoardExtent& extent, const camera::BoardWarp& warp, const Readout& readout, Vec2 at,
+                    Vec2& pixel, MovingJacobian& jacobian) {
   jacobian = {};
   if (!predict_moving(intrinsics, pose, extent, warp, readout, at, pixel)) return false;
   const double tau = readouts(pixel.y, readout.height_px);
