@@ -73,7 +73,7 @@ void key_numbers(Page& page, const CameraResult& camera, const Quality& q) {
   const CalibratedCamera& c = camera.calibration.cameras[camera.camera];
   const bool tested = q.halves.refused.empty();
   std::vector<report::KeyNumber> numbers = {{"predicts within, at 95 % over 95 % of the image",
-                                             number_text(q.within_px, 2), "px", "noise of the corners only",
+                                             number_text(q.within_px, 2), "px", "widened by how photographs scatter",
                                              report::Tone::neutral}};
   if (tested)
     numbers.push_back({"halves of the views differ by", number_text(q.halves.differ_px, 2), "px",
