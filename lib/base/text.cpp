@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cstdarg>
+#include <cstdio>
 #include <numeric>
 #include <vector>
 
@@ -13,6 +15,18 @@ std::string shortest_text(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value == 0 ? 0.0 : value).ptr;
   return {text.data(), end};
+}
+
+std::string format(const char* pattern, ...) {
+  va_list values, again;
+  va_start(values, pattern);
+  va_copy(again, values);
+  const int length = std::vsnprintf(nullptr, 0, pattern, values);
+  va_end(values);
+  std::string text(length > 0 ? static_cast<std::size_t>(length) : 0, '\0');
+  std::vsnprintf(text.data(), text.size() + 1, pattern, again);
+  va_end(again);
+  return text;
 }
 
 std::string file_stem(std::string_view id) {

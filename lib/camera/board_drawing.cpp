@@ -7,10 +7,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "io/picture.h"
 
 namespace gonio::camera {
@@ -19,12 +19,6 @@ namespace {
 constexpr double least_margin_mm = 5, fit_margin_mm = 12, caption_mm = 3;
 constexpr double mm_per_inch = 25.4, points_per_inch = 72;
 constexpr double most_pixels = 4e8;
-
-std::string format(const char* pattern, double a, double b = 0, double c = 0, double d = 0) {
-  std::array<char, 256> text{};
-  std::snprintf(text.data(), text.size(), pattern, a, b, c, d);
-  return text.data();
-}
 
 std::string caption_of(const Board& board) {
   const std::string square = format("square %.10g mm", 1e3 * board.square_m);

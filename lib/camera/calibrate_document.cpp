@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 #include "base/progress.h"
+#include "base/text.h"
 #include "camera/calibrate_document_session.h"
 #include "camera/detection_failure.h"
 #include "camera/model_choice.h"
@@ -17,13 +17,6 @@ namespace {
 
 constexpr std::size_t most_named = 5;  // corners and views that a message lists
 constexpr double worth_telling = 2;    // variance between shots over the noise of corners
-
-template <class... Numbers>
-std::string format(const char* pattern, Numbers... numbers) {
-  char text[300];
-  std::snprintf(text, sizeof text, pattern, numbers...);
-  return text;
-}
 
 // What the manifest knows of a camera, as a start and for what is held.
 CameraSetup camera_setup(const Session& session, std::size_t index, const CalibrationRequest& request,

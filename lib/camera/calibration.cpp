@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
+#include "base/text.h"
 #include "camera/bundle_adjustment.h"
 
 namespace gonio::camera {
@@ -20,12 +20,6 @@ constexpr double suspicious = 2.5, hopeless = 6;  // noise of a view over the me
 constexpr std::size_t few_views = 6;              // too few to call one of them the odd one out
 constexpr int weighing_rounds = 4;
 constexpr double largest_precision = 9;  // and its inverse: no view outweighs another by more than 81
-
-std::string format(const char* pattern, double a, double b) {
-  char text[256];
-  std::snprintf(text, sizeof text, pattern, a, b);
-  return text;
-}
 
 double median(std::vector<double> v) {
   if (v.empty()) return 0;

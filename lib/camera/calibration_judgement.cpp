@@ -12,8 +12,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/text.h"
 #include "camera/bundle_adjustment.h"
 
 namespace gonio::camera {
@@ -30,12 +30,6 @@ constexpr double significant = 12;      // chi-square of two sags over two: one 
 constexpr double telling_share = 0.25;  // of the squared residuals, for the board to be to blame
 constexpr double worth_saying = 1e-3;
 constexpr double rms_limit_px = 3;
-
-std::string format(const char* pattern, double a, double b = 0, double c = 0, double d = 0) {
-  char text[400];
-  std::snprintf(text, sizeof text, pattern, a, b, c, d);
-  return text;
-}
 
 // Changes of the shared parameters that are free, in their order.
 struct SagEffects {

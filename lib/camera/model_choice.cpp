@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "base/text.h"
 
 namespace gonio::camera {
 namespace {
@@ -16,12 +16,6 @@ namespace {
 constexpr std::size_t most_folds = 5, least_views = 6;
 constexpr double outlier_sigmas = 6;  // a corner counts no more than this
 constexpr std::size_t least_corners = 6;
-
-std::string format(const char* pattern, auto... values) {
-  char text[300];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
 
 // The lenses fitted without the held-out shots, held for these; every held-out view keeps a pose of its own.
 CalibrationSetup held(const CalibrationSetup& setup, const Calibration& fit) {

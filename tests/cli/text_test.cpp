@@ -27,5 +27,12 @@ TEST(Text, EditDistances) {
   EXPECT_EQ(edit_distance("treads", "threads"), 1u);
 }
 
+TEST(Text, FormatsAnyLength) {
+  const std::string name(1000, 'x');
+  EXPECT_EQ(format("camera %s: %.2f px, %d corners", name.c_str(), 0.126, 7),
+            "camera " + name + ": 0.13 px, 7 corners");
+  EXPECT_EQ(format("%s", ""), "");
+}
+
 }  // namespace
 }  // namespace gonio

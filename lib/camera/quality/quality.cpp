@@ -3,19 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/text.h"
 #include "stats/intervals.h"
 
 namespace gonio::camera {
 namespace {
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[320];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
 
 std::string at_distances(const std::vector<ProjectionMap>& maps) {
   std::string text;
