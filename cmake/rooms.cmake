@@ -30,12 +30,15 @@ endfunction()
 function(gonio_finish_library)
   file(GLOB mechanism_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/*/mechanisms/*.cpp)
   file(GLOB surface_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/surface/models/*.cpp)
+  file(GLOB law_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/surface/laws/*.cpp)
   file(GLOB light_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/light/models/*.cpp)
   gonio_registry(${GONIO_GENERATED}/mechanisms.cpp Mechanism mechanism/mechanism.h
     "std::span<const gonio::mechanism::Mechanism* const> gonio::mechanism::all_mechanisms()" gonio::mechanism
     ${mechanism_files})
   gonio_registry(${GONIO_GENERATED}/surfaces.cpp Model surface/surface.h
     "std::span<const gonio::surface::Model* const> gonio::surface::all_models()" gonio::surface ${surface_files})
+  gonio_registry(${GONIO_GENERATED}/laws.cpp Law surface/law.h
+    "std::span<const gonio::surface::Law* const> gonio::surface::all_laws()" gonio::surface ${law_files})
   gonio_registry(${GONIO_GENERATED}/lights.cpp Model light/light.h
     "std::span<const gonio::light::Model* const> gonio::light::all_models()" gonio::light ${light_files})
   set(objects "")
@@ -44,7 +47,7 @@ function(gonio_finish_library)
   endforeach()
   set(registries ${GONIO_GENERATED}/mechanisms.cpp)
   if(EXISTS ${CMAKE_SOURCE_DIR}/lib/surface/surface.h)
-    list(APPEND registries ${GONIO_GENERATED}/surfaces.cpp)
+    list(APPEND registries ${GONIO_GENERATED}/surfaces.cpp ${GONIO_GENERATED}/laws.cpp)
   endif()
   if(EXISTS ${CMAKE_SOURCE_DIR}/lib/light/light.h)
     list(APPEND registries ${GONIO_GENERATED}/lights.cpp)

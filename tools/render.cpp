@@ -87,7 +87,7 @@ scene::Scene scene_of(cli::Invocation& call) {
     const auto [mechanism, use] = scene::parse_mechanism(text, "--with");
     seen.mechanisms[mechanism->id] = use;
   }
-  return scene::build_scene(seen, [&](const std::filesystem::path& path) { call.note_input(path); });
+  return scene::build_scene(seen, {.on_file = [&](const std::filesystem::path& path) { call.note_input(path); }});
 }
 
 void check(cli::Invocation& call) {
@@ -115,9 +115,9 @@ Exit run(cli::Invocation& call) {
   const scene::Scene scene = scene_of(call);
   const RayCaster caster(scene.instances);
   const Options options{.spp = static_cast<int>(call.integer("spp")),
-                        .max_bounces = static_cast<int>(call.integer("max-bounces")),
                         .seed = call.seed,
-                        .geometry = call.text("aov") == "on" && !call.flag("record")};
+                        .geometry = call.text("aov") == "on" && !call.flag("record"),
+                        .transport = {.max_bounces = static_cast<int>(call.integer("max-bounces"))}};
   for (std::size_t k = 0; k < images.size(); ++k) {
     const manifest::ImageEntry& image = call.document.images[images[k]];
     io::Image picture = gonio::render::render(scene, images[k], caster, options);

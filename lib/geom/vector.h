@@ -14,8 +14,12 @@ struct Vec2 {
   constexpr Vec2 operator*(double s) const { return {x * s, y * s}; }
   constexpr bool operator==(const Vec2&) const = default;
 };
-constexpr double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
-inline double norm(Vec2 a) { return std::sqrt(dot(a, a)); }
+constexpr double dot(Vec2 a, Vec2 b) {
+  return a.x * b.x + a.y * b.y;
+}
+inline double norm(Vec2 a) {
+  return std::sqrt(dot(a, a));
+}
 
 struct Vec3 {
   double x = 0, y = 0, z = 0;
@@ -31,14 +35,30 @@ struct Vec3 {
   constexpr double operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
   constexpr bool operator==(const Vec3&) const = default;
 };
-constexpr Vec3 operator*(double s, Vec3 v) { return v * s; }
-constexpr double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-constexpr Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
-inline Vec3 normalized(Vec3 a) { return a / norm(a); }
-constexpr double max_component(Vec3 a) { return a.x > a.y ? (a.x > a.z ? a.x : a.z) : (a.y > a.z ? a.y : a.z); }
-constexpr double mean(Vec3 a) { return (a.x + a.y + a.z) / 3; }
-inline bool is_finite(Vec3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+constexpr Vec3 operator*(double s, Vec3 v) {
+  return v * s;
+}
+constexpr double dot(Vec3 a, Vec3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+constexpr Vec3 cross(Vec3 a, Vec3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double norm(Vec3 a) {
+  return std::sqrt(dot(a, a));
+}
+inline Vec3 normalized(Vec3 a) {
+  return a / norm(a);
+}
+constexpr double max_component(Vec3 a) {
+  return a.x > a.y ? (a.x > a.z ? a.x : a.z) : (a.y > a.z ? a.y : a.z);
+}
+constexpr double mean(Vec3 a) {
+  return (a.x + a.y + a.z) / 3;
+}
+inline bool is_finite(Vec3 a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 
 using Rgb = Vec3;  // linear, in the scene's radiometric unit
 
@@ -70,6 +90,7 @@ struct Basis {
     t = {1.0 + sign * n.x * n.x * a, sign * c, -sign * n.x};
     b = {c, sign + n.y * n.y * a, -n.y};
   }
+  Basis(Vec3 unit_normal, Vec3 unit_tangent) : t(unit_tangent), b(cross(unit_normal, unit_tangent)), n(unit_normal) {}
   Vec3 to_local(Vec3 v) const { return {dot(v, t), dot(v, b), dot(v, n)}; }
   Vec3 to_world(Vec3 v) const { return t * v.x + b * v.y + n * v.z; }
 };

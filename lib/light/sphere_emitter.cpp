@@ -102,7 +102,7 @@ SphereLamp::SphereLamp(std::string id, std::string sentence, std::string source,
                             .lower = 0,
                             .meaning = std::move(radius_meaning)}}} {}
 
-std::unique_ptr<Emitter> SphereLamp::prepare(const manifest::Parameters& parameters, std::shared_ptr<const io::Image>,
+std::unique_ptr<Emitter> SphereLamp::prepare(const manifest::Parameters& parameters, const Attachment&,
                                              const std::string& place) const {
   const auto values = manifest::values_of(info_, parameters, place);  // in the order above
   return sphere_emitter(values[0], values[1], values[2].x);

@@ -18,7 +18,7 @@ class SphereLamp : public Model {
   SphereLamp(std::string id, std::string sentence, std::string source, std::string position_meaning,
              std::optional<double> radius_preset, std::string radius_meaning);
   const manifest::ModelInfo& info() const final { return info_; }
-  std::unique_ptr<Emitter> prepare(const manifest::Parameters& parameters, std::shared_ptr<const io::Image> picture,
+  std::unique_ptr<Emitter> prepare(const manifest::Parameters& parameters, const Attachment& file,
                                    const std::string& place) const final;
 
  private:

@@ -190,9 +190,15 @@ void check_references(const Document& d) {
     if (!mesh.file.empty() + mesh.sphere_radius_m.has_value() + mesh.plane_size_m.has_value() != 1)
       throw Error(Exit::data, at, "needs exactly one of \"file\", \"sphere\", \"plane\"");
   }
-  for (const auto& [name, surface] : d.surfaces)
+  for (const auto& [name, surface] : d.surfaces) {
+    const std::string at = place(d, "/surfaces/" + name);
     for (const auto& [parameter, file] : surface.textures)
-      must_exist(d.files, "files", file, place(d, "/surfaces/" + name + "/textures/" + parameter));
+      must_exist(d.files, "files", file, at + "/textures/" + parameter);
+    for (const auto& [parameter, file] : surface.spectra)
+      must_exist(d.files, "files", file, at + "/spectra/" + parameter);
+    must_exist(d.files, "files", surface.file, at + "/file");
+    must_exist(d.surfaces, "surfaces", surface.base, at + "/base");
+  }
   for (const auto& [name, light] : d.lights)
     must_exist(d.files, "files", light.file, place(d, "/lights/" + name + "/file"));
   for (const auto& [name, table] : d.tables) {

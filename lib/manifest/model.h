@@ -1,6 +1,6 @@
-// Registered models of surfaces, lights and cameras, as the manifest sees them: names, units, bounds, defaults. One file per
-// model declares its ModelInfo beside its equations; the build gathers them (cmake/registry.cmake), and reading, validation,
-// schemas and man pages walk the list. The functions are defined in generated sources.
+// Registered models of surfaces, lights and cameras, as the manifest sees them: names, units, bounds, defaults. One
+// file per model declares its ModelInfo beside its equations; the build gathers them (cmake/registry.cmake), and
+// reading, validation, schemas and man pages walk the list. The functions are defined in generated sources.
 #pragma once
 #include <limits>
 #include <optional>
@@ -13,25 +13,28 @@
 namespace gonio::manifest {
 
 struct ParameterInfo {
-  std::string name;     // as in JSON, unit included: "radius_m"
-  std::string unit;     // "m", "rad", "1", "W/sr", "px", ...
-  int components = 1;   // 1, or 3 for RGB or a vector; an RGB parameter also takes one number for all three
+  std::string name;    // as in JSON, unit included: "radius_m"
+  std::string unit;    // "m", "rad", "1", "W/sr", "px", ...
+  int components = 1;  // 1, or 3 for RGB or a vector; an RGB parameter also takes one number for all three
   bool rgb = false;
   std::optional<double> preset;  // value when left out; nullopt: required
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
   std::string meaning;
 };
-enum class Family { surface, light };
+enum class Family { surface, light, law };
+enum class Attachment { none, picture, table };  // the file that a model needs: pixels, or a table that it reads itself
 struct ModelInfo {
   Family family;
   std::string id;        // "diffuse", "point", ...
   std::string sentence;  // what it is, in one plain sentence
   std::string source;    // paper, equation
   std::vector<ParameterInfo> parameters;
-  bool takes_file = false;  // lights: a lat-long picture
+  Attachment attachment = Attachment::none;
+  std::string attachment_meaning{};  // what the file holds
+  bool takes_base = false;           // surfaces: lies on another surface, `base`
 };
 
-std::span<const ModelInfo* const> models(Family family);           // sorted by id
+std::span<const ModelInfo* const> models(Family family);            // sorted by id
 const ModelInfo* find_model(Family family, const std::string& id);  // null pointer where there is none
 
 // Values in the order of model.parameters, presets filled in, a single number spread over all three components.

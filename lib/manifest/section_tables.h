@@ -67,6 +67,7 @@ GONIO_RECORD(AcceptanceResult, acceptance_fields);
     static Value write(const TYPE& member);                         \
     static Value schema();                                          \
   }
+GONIO_REGISTERED(LawUse);
 GONIO_REGISTERED(Surface);
 GONIO_REGISTERED(Light);
 GONIO_REGISTERED(MechanismUse);

@@ -49,7 +49,8 @@ const std::vector<Field<Board>>& board_fields() {
       field("warp", &Board::warp, "m", "board.warp: sag_x_m and sag_y_m of the middle against the edges"),
       sigma_field(&Board::sigma),
       field("dictionary_file", &Board::dictionary_file, "", "charuco: file id of a dictionary of one's own"),
-      field("flatness_m", &Board::flatness_m, "m", "estimated peak to valley height over the corners").range(0, infinite)};
+      field("flatness_m", &Board::flatness_m, "m", "estimated peak to valley height over the corners")
+          .range(0, infinite)};
   return table;
 }
 
@@ -69,7 +70,10 @@ const std::vector<Field<Camera>>& camera_fields() {
       field("rms_px", &Camera::rms_px, "px", "root mean square of the reprojection error of the fit")
           .range(0, infinite),
       field("covariance", &Camera::covariance, "", "of the fit: {\"order\": [names], \"values\": [[...]]}"),
-      field("quality", &Camera::quality, "", "how well it predicts pixels")};
+      field("quality", &Camera::quality, "", "how well it predicts pixels"),
+      field("mosaic", &Camera::mosaic, "",
+            "filters over the pixels; polarizers: [90 45; 135 0] degrees, rows from the top")
+          .one_of({"RGGB", "GRBG", "GBRG", "BGGR", "polarizers"})};
   return table;
 }
 
@@ -102,7 +106,8 @@ const std::vector<Field<ImageEntry>>& image_fields() {
       field("group", &ImageEntry::group, "", "recordings that belong together are held out together"),
       field("shot", &ImageEntry::shot, "", "images of a rig's cameras taken at the same moment share it"),
       field("robot", &ImageEntry::robot, "", "name of the robot that held the tool"),
-      field("base_from_tool", &ImageEntry::base_from_tool, "", "takes tool to robot base coordinates, as the controller said"),
+      field("base_from_tool", &ImageEntry::base_from_tool, "",
+            "takes tool to robot base coordinates, as the controller said"),
       field("joints_rad", &ImageEntry::joints_rad, "rad", "joint angles of the robot"),
       field("boards", &ImageEntry::boards, "", "instead of board, where it shows several: one entry each")};
   return table;
@@ -151,7 +156,10 @@ const std::vector<Field<Object>>& object_fields() {
                                                 field("mesh", &Object::mesh, "", "name of its mesh").needed(),
                                                 field("surface", &Object::surface, "", "name of its surface").needed(),
                                                 field("world_from_object", &Object::world_from_object, "",
-                                                      "takes object to world coordinates; left out: identity")};
+                                                      "takes object to world coordinates; left out: identity"),
+                                                field("priority", &Object::priority, "",
+                                                      "where objects that let light through overlap, the highest one "
+                                                      "fills the space; default 0")};
   return table;
 }
 
@@ -184,7 +192,11 @@ const std::vector<Field<Rendering>>& rendering_fields() {
       field("image", &Rendering::image, "", "id of the image that was simulated").needed(),
       field("file", &Rendering::file, "", "file id of the EXR").needed(),
       field("spp", &Rendering::spp, "", "samples per pixel").range(1, 1e9),
-      field("seed", &Rendering::seed, "", "of the random numbers")};
+      field("seed", &Rendering::seed, "", "of the random numbers"),
+      field("samples", &Rendering::samples, "", "[A, B]: holds samples A to B - 1 of every pixel; left out: all"),
+      field("relative_error", &Rendering::relative_error, "", "estimated, of the mean pixel").range(0, infinite),
+      field("wavelengths_m", &Rendering::wavelengths_m, "m", "of spectral renderings: centres of the bins"),
+      field("files", &Rendering::files, "", "further pictures by kind; file ids")};
   return table;
 }
 
@@ -195,10 +207,12 @@ const std::vector<Field<Comparison>>& comparison_fields() {
       field("rmse", &Comparison::rmse, "", "root mean square difference, in the recording's unit"),
       field("relative_rmse", &Comparison::relative_rmse, "", "rmse over the root mean square of the recording"),
       field("ssim", &Comparison::ssim, "", "mean structural similarity (Wang et al. 2004)"),
-      field("log10_error", &Comparison::log10_error, "", "mean of log10 |difference|, floor 1e-4 of the recording's rms"),
+      field("log10_error", &Comparison::log10_error, "",
+            "mean of log10 |difference|, floor 1e-4 of the recording's rms"),
       field("z_rms", &Comparison::z_rms, "", "root mean square of difference over its standard deviation"),
       field("z_above_3", &Comparison::z_above_3, "", "share of samples more than three standard deviations off"),
-      field("not_finite", &Comparison::not_finite, "", "pixels with a NaN or an infinity; every measure is then left out"),
+      field("not_finite", &Comparison::not_finite, "",
+            "pixels with a NaN or an infinity; every measure is then left out"),
       field("pixels", &Comparison::pixels, "", "pixels that counted"),
       sigma_field(&Comparison::sigma),
       field("files", &Comparison::files, "", "file ids of what was written beside it")};
@@ -215,6 +229,38 @@ void check_parameter(const ParameterInfo& info, const Value& raw, const Paramete
     throw Error(Exit::data, place,
                 "has " + std::to_string(n) + " numbers, " + std::to_string(info.components) + " are needed");
   check_range(raw, info.lower, info.upper, info.unit, place);
+}
+
+}  // namespace
+
+namespace {
+
+using Names = std::map<std::string, std::string>;
+
+// The members of a surface beside its model's parameters. False: `key` is none of them.
+bool read_variation(Surface& out, const std::string& key, const Value& member, const ModelInfo& info,
+                    const std::string& at) {
+  if (key == "textures")
+    out.textures = Codec<Names>::read(member, at);
+  else if (key == "spectra")
+    out.spectra = Codec<Names>::read(member, at);
+  else if (key == "vertices")
+    out.vertices = Codec<Names>::read(member, at);
+  else if (key == "labels")
+    out.labels = Codec<std::map<std::string, Parameters>>::read(member, at);
+  else if (key == "laws")
+    out.laws = Codec<std::map<std::string, LawUse>>::read(member, at);
+  else if (key == "base" && info.takes_base)
+    out.base = Codec<std::string>::read(member, at);
+  else
+    return false;
+  return true;
+}
+
+// Says the manifest by other means than a number what `parameter` is?
+bool varying(const Surface& s, const std::string& parameter) {
+  return s.textures.contains(parameter) || s.spectra.contains(parameter) || s.vertices.contains(parameter) ||
+         s.labels.contains(parameter) || s.laws.contains(parameter);
 }
 
 }  // namespace
@@ -241,17 +287,11 @@ Record read_modelled(Family family, const Value& v, const std::string& place) {
                                             : Codec<std::vector<double>>::read(value, at + "/" + name);
       continue;
     }
-    if constexpr (requires { out.textures; }) {
-      if (key == "textures") {
-        out.textures = Codec<std::map<std::string, std::string>>::read(member, at);
-        continue;
-      }
-    }
-    if constexpr (requires { out.file; }) {
-      if (key == "file" && info->takes_file) {
-        out.file = Codec<std::string>::read(member, at);
-        continue;
-      }
+    if constexpr (std::is_same_v<Record, Surface>)
+      if (read_variation(out, key, member, *info, at)) continue;
+    if (key == "file" && info->attachment != Attachment::none) {
+      out.file = Codec<std::string>::read(member, at);
+      continue;
     }
     const auto found = std::ranges::find(info->parameters, key, &ParameterInfo::name);
     if (found == info->parameters.end()) {
@@ -263,9 +303,9 @@ Record read_modelled(Family family, const Value& v, const std::string& place) {
     check_parameter(*found, member, out.parameters[key], at);
   }
   for (const auto& p : info->parameters) {
-    bool textured = false;
-    if constexpr (requires { out.textures; }) textured = out.textures.contains(p.name);
-    if (!p.preset && !out.parameters.contains(p.name) && !textured) missing_key(p.name, p.meaning, place);
+    bool varies = false;
+    if constexpr (std::is_same_v<Record, Surface>) varies = varying(out, p.name);
+    if (!p.preset && !out.parameters.contains(p.name) && !varies) missing_key(p.name, p.meaning, place);
   }
   return out;
 }
@@ -289,7 +329,16 @@ void write_parameters(const Parameters& parameters, const Sigmas& sigma, Value& 
 Value Codec<Surface>::write(const Surface& m) {
   Value out = Value::object({{"model", m.model}});
   write_parameters(m.parameters, m.sigma, out);
-  for (const auto& [parameter, file] : m.textures) out["textures"][parameter] = file;
+  if (!m.file.empty()) out["file"] = m.file;
+  if (!m.base.empty()) out["base"] = m.base;
+  const auto write = [&out]<class Map>(const char* key, const Map& map) {
+    if (!map.empty()) out[key] = Codec<Map>::write(map);
+  };
+  write("textures", m.textures);
+  write("spectra", m.spectra);
+  write("vertices", m.vertices);
+  write("labels", m.labels);
+  write("laws", m.laws);
   return out;
 }
 Value Codec<Light>::write(const Light& m) {
@@ -311,8 +360,13 @@ Value modelled_schema(Family family) {
       properties[p.name] = std::move(s);
     }
     properties["sigma"] = Value::object();
-    if (family == Family::surface) properties["textures"] = Codec<std::map<std::string, std::string>>::schema();
-    if (model->takes_file) properties["file"] = Codec<std::string>::schema();
+    if (family == Family::surface) {
+      for (const char* key : {"textures", "spectra", "vertices"}) properties[key] = Codec<Names>::schema();
+      properties["labels"] = Codec<std::map<std::string, Parameters>>::schema();
+      properties["laws"] = Codec<std::map<std::string, LawUse>>::schema();
+    }
+    if (model->attachment != Attachment::none) properties["file"] = Codec<std::string>::schema();
+    if (model->takes_base) properties["base"] = Codec<std::string>::schema();
     alternatives.push_back(Value::object({{"title", model->id},
                                           {"description", model->sentence},
                                           {"type", "object"},
@@ -329,6 +383,54 @@ Value Codec<Surface>::schema() {
 }
 Value Codec<Light>::schema() {
   return modelled_schema(Family::light);
+}
+
+// {"law": NAME, PARAMETER: NUMBER, ...}: the shape of a model whose id is called "law".
+LawUse Codec<LawUse>::read(const Value& v, const std::string& place) {
+  expect_object(v, place);
+  LawUse out;
+  const Value* name = v.find("law");
+  if (name == nullptr) missing_key("law", "the name of the law", place);
+  out.law = Codec<std::string>::read(*name, place + "/law");
+  const ModelInfo* info = find_model(Family::law, out.law);
+  if (info == nullptr) {
+    std::vector<std::string> known;
+    for (const ModelInfo* m : models(Family::law)) known.push_back(m->id);
+    check_choice(Value(out.law), known, place + "/law");
+    throw Error(Exit::data, place + "/law", "is \"" + out.law + "\", which no law of this build is called");
+  }
+  for (const auto& [key, member] : v.as_object()) {
+    if (key == "law" || key.starts_with("x-")) continue;
+    const auto found = std::ranges::find(info->parameters, key, &ParameterInfo::name);
+    if (found == info->parameters.end()) {
+      std::vector<std::string> known{"law"};
+      for (const auto& p : info->parameters) known.push_back(p.name);
+      unknown_key(key, known, place);
+    }
+    out.parameters[key] = Codec<Parameter>::read(member, place + "/" + key);
+    check_parameter(*found, member, out.parameters[key], place + "/" + key);
+  }
+  return out;
+}
+Value Codec<LawUse>::write(const LawUse& m) {
+  Value out = Value::object({{"law", m.law}});
+  write_parameters(m.parameters, {}, out);
+  return out;
+}
+Value Codec<LawUse>::schema() {
+  Value alternatives = Value::array();
+  for (const ModelInfo* law : models(Family::law)) {
+    Value properties = Value::object({{"law", Value::object({{"const", law->id}})}});
+    for (const auto& p : law->parameters) properties[p.name] = Codec<Parameter>::schema();
+    alternatives.push_back(Value::object({{"title", law->id},
+                                          {"description", law->sentence},
+                                          {"type", "object"},
+                                          {"properties", std::move(properties)},
+                                          {"patternProperties", Value::object({{"^x-", Value::object()}})},
+                                          {"required", Value(Value::Array{"law"})},
+                                          {"additionalProperties", false}}));
+  }
+  return models(Family::law).empty() ? Value::object() : Value::object({{"oneOf", std::move(alternatives)}});
 }
 
 MechanismUse Codec<MechanismUse>::read(const Value& v, const std::string& place) {

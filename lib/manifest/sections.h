@@ -78,7 +78,7 @@ struct Board {                     // "boards"
 struct CameraQuality {
   std::optional<double> predicts_within_px;  // at 95 %, over the image at the distances below; expected of this fit
   std::vector<double> distances_m;
-  std::optional<double> halves_differ_px;    // root mean square over the image of the two halves' predictions' difference
+  std::optional<double> halves_differ_px;  // root mean square over the image of the two halves' predictions' difference
   std::optional<double> halves_expected_px;  // what their covariances expect of it
   std::optional<bool> halves_agree;
   std::optional<double> coverage;            // share of the image that corners reach, 0 .. 1
@@ -95,6 +95,8 @@ struct Camera {                   // "cameras"
   std::optional<double> rms_px;
   Value covariance;  // {"order": [...], "values": [[...]]} or null
   std::optional<CameraQuality> quality;
+  std::string
+      mosaic{};  // colour filters over the pixels: "RGGB", "GRBG", "GBRG", "BGGR"; or "polarizers", [90 45; 135 0]
 };
 struct RigMember {
   std::string camera;
@@ -139,21 +141,34 @@ struct Mesh {  // "meshes": a PLY file or an analytic shape
   std::string normals;  // "smooth" (default: the file's, else averaged by area and angle) | "flat"
 };
 // "surfaces" and "lights": a registered model and its parameters, validated against the registry (manifest/model.h).
+struct LawUse {  // how a parameter varies over an object: a registered law (surface/law.h) and its parameters
+  std::string law;
+  Parameters parameters;
+};
 struct Surface {
   std::string model = "diffuse";
   Parameters parameters;
   std::map<std::string, std::string> textures;  // parameter -> file id
   Sigmas sigma;
+  std::string file{};  // models that read a table (MERL): file id
+  std::string base{};  // models that lie on another surface: its name
+  std::map<std::string, std::string>
+      spectra{};  // parameter -> file id: refractiveindex.info YAML, or CSV over wavelength
+  std::map<std::string, std::string>
+      vertices{};  // parameter -> property of the mesh's vertices (of R, G, B: x for x_r...)
+  std::map<std::string, std::map<std::string, Parameter>> labels{};  // parameter -> face label -> value
+  std::map<std::string, LawUse> laws{};                              // parameter -> how it varies over the object
 };
 struct Light {
   std::string model = "point";
   Parameters parameters;
-  std::string file;  // lat-long environment: file id
+  std::string file;  // picture or table of models that have one: file id
   Sigmas sigma;
 };
 struct Object {  // "objects"
   std::string id, mesh, surface;
   std::optional<Pose<frame::World, frame::Object>> world_from_object;
+  std::optional<int> priority{};  // where objects that let light through overlap, the highest one fills the space
 };
 struct Table {  // "tables": one row per observation, in a CSV file or inline
   std::string file;
@@ -174,6 +189,10 @@ struct Rendering {  // "renderings"
   std::string image, file;
   std::optional<int> spp;
   std::optional<std::uint64_t> seed;
+  std::vector<int> samples{};                  // [A, B]: the share of samples A to B - 1 of each pixel; left out: all
+  std::optional<double> relative_error{};      // estimated, of the mean pixel
+  std::vector<double> wavelengths_m{};         // spectral renderings: centres of the bins
+  std::map<std::string, std::string> files{};  // further pictures by kind: "stokes", "mosaic", ... -> file id
 };
 struct Comparison {  // "comparisons"
   std::string image;
@@ -187,10 +206,10 @@ struct Comparison {  // "comparisons"
 struct DhRow {  // standard Denavit-Hartenberg: T = Rz(theta) Tz(d) Tx(a) Rx(alpha)
   double a_m = 0, d_m = 0, alpha_rad = 0, theta_rad = 0;
 };
-struct Robot {               // "robots"
-  std::string model;         // a known arm (robot/kinematics.h), or "dh" with `dh`
-  std::vector<DhRow> dh;     // instead of the model's nominal values
-  std::string calibration;   // file id of a UR controller's calibration.conf: deltas on the nominal values
+struct Robot {              // "robots"
+  std::string model;        // a known arm (robot/kinematics.h), or "dh" with `dh`
+  std::vector<DhRow> dh;    // instead of the model's nominal values
+  std::string calibration;  // file id of a UR controller's calibration.conf: deltas on the nominal values
 };
 struct HeldOut {  // of images that the fit did not see
   std::optional<double> rms_px, translation_m, rotation_rad;
@@ -211,13 +230,13 @@ struct Mounting {
   std::optional<Pose<frame::World, frame::Base>> world_from_base;
   std::vector<double> light_in_tool_m;
   Sigmas sigma;
-  std::string method;                                           // closed form and refinement
-  std::optional<double> corner_px, robot_m, robot_rad;          // estimated noise, one coordinate
-  std::optional<double> scatter_m, scatter_rad, rms_px;         // of the fit
+  std::string method;                                    // closed form and refinement
+  std::optional<double> corner_px, robot_m, robot_rad;   // estimated noise, one coordinate
+  std::optional<double> scatter_m, scatter_rad, rms_px;  // of the fit
   std::optional<HeldOut> held_out;
   std::optional<ScatterParts> parts;
-  Value covariance;                                             // {"order": [...], "values": [[...]]} or null
-  std::vector<std::string> unobservable, outliers, next;        // directions; image ids; poses to add, in words
+  Value covariance;                                       // {"order": [...], "values": [[...]]} or null
+  std::vector<std::string> unobservable, outliers, next;  // directions; image ids; poses to add, in words
 };
 struct LightPosition {  // "light_positions": where a light was while its robot stood at a pose
   std::string id, light, robot;
@@ -227,7 +246,7 @@ struct LightPosition {  // "light_positions": where a light was while its robot 
 struct AcceptanceResult {  // "acceptance": figures after VDI/VDE 2634 part 2 of an optical scanner
   std::string quantity;    // probing-form, probing-size, sphere-distance, flatness
   std::string file, unit;
-  double value = 0;                               // worst case, as the guideline asks
+  double value = 0;                                       // worst case, as the guideline asks
   std::optional<double> bias, sigma, limit, uncertainty;  // same unit
   std::optional<std::int64_t> count, rejected;
 };

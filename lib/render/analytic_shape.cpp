@@ -26,7 +26,7 @@ std::optional<AnalyticHit> meet_sphere(const AnalyticShape& sphere, const Analyt
   const Vec3 normal = normalized(ray.origin_m + ray.direction * distance - sphere.centre_m);
   const Vec3 local{dot(normal, sphere.x), dot(normal, sphere.y), dot(normal, sphere.z)};
   const Vec2 uv{0.5 + std::atan2(local.y, local.x) / (2 * pi), 1 - std::acos(std::clamp(local.z, -1.0, 1.0)) / pi};
-  return AnalyticHit{distance, sphere.centre_m + normal * sphere.radius_m, normal, uv};
+  return AnalyticHit{distance, sphere.centre_m + normal * sphere.radius_m, normal, uv, cross(sphere.z, normal)};
 }
 
 std::optional<AnalyticHit> meet_plane(const AnalyticShape& plane, const AnalyticRay& ray, bool leaves) {
@@ -40,7 +40,8 @@ std::optional<AnalyticHit> meet_plane(const AnalyticShape& plane, const Analytic
   return AnalyticHit{distance,
                      plane.centre_m + plane.x * x + plane.y * y,
                      plane.z,
-                     {0.5 + 0.5 * x / plane.half_x_m, 0.5 + 0.5 * y / plane.half_y_m}};
+                     {0.5 + 0.5 * x / plane.half_x_m, 0.5 + 0.5 * y / plane.half_y_m},
+                     plane.x};
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ struct AnalyticHit {
   double distance_m = 0;
   Vec3 position_m, normal;  // unit; outwards, or the plane's +z
   Vec2 uv;
+  Vec3 tangent;  // along growing u
 };
 
 // Empty where the instance is a mesh.

@@ -13,20 +13,17 @@
 
 #include "io/image.h"
 #include "render/film.h"
+#include "render/integrator.h"
 #include "render/ray_caster.h"
 #include "scene/scene.h"
 
 namespace gonio::render {
 
-// lights_only makes no use of directions that happen to meet a light; tests hold the two against each other.
-enum class Estimator { combined, lights_only };
-
 struct Options {
   int spp = 256;
-  int max_bounces = 128;
   std::uint64_t seed = 1;
   bool geometry = true;  // write the geometry channels too
-  Estimator estimator = Estimator::combined;
+  Transport transport;
 };
 
 // The simulated image of scene.views[view]; channels as in film.h: develop().

@@ -21,10 +21,11 @@ namespace {
 constexpr double lift = 1e-6;          // of a triangle's point along its normal, over half the meshes' extent
 constexpr double least_cosine = 1e-4;  // between shading normal and viewing ray
 
-struct WorldMesh {  // of one instance, in world coordinates; empty for analytic shapes
-  std::vector<Vec3> positions_m, normals;
-  std::vector<Vec2> texture;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+struct PlacedMesh {  // of one instance; null for analytic shapes. The mesh is shared, not copied: ten million triangles
+  std::shared_ptr<const mesh::Mesh> mesh;  // must fit
+  Mat3 world_from_object;
+  Vec3 origin_m;
+  Vec3 position(std::uint32_t vertex) const { return world_from_object * mesh->positions_m[vertex] + origin_m; }
 };
 
 struct Query {  // travels through Embree as its context
@@ -80,15 +81,16 @@ void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
     ray->tfar = -std::numeric_limits<float>::infinity();
 }
 
-WorldMesh in_world(const scene::Instance& instance) {
+PlacedMesh placed(const scene::Instance& instance) {
   const auto* shape = std::get_if<std::shared_ptr<const mesh::Mesh>>(&instance.shape);
-  if (!shape) return {};
-  const Mat3 rotation = matrix_of(instance.world_from_object.rotation);
-  const mesh::Mesh& mesh = **shape;
-  WorldMesh world{mesh.positions_m, mesh.normals, mesh.texture, mesh.triangles};
-  for (Vec3& p : world.positions_m) p = rotation * p + instance.world_from_object.translation_m;
-  for (Vec3& n : world.normals) n = rotation * n;
-  return world;
+  return {shape ? *shape : nullptr, matrix_of(instance.world_from_object.rotation),
+          instance.world_from_object.translation_m};
+}
+
+// Along growing u, where the triangle's texture coordinates say so.
+Vec3 tangent_of(Vec3 ab, Vec3 ac, Vec2 uv_ab, Vec2 uv_ac, Vec3 otherwise) {
+  const double area = uv_ab.x * uv_ac.y - uv_ab.y * uv_ac.x;
+  return area != 0 ? (ab * uv_ac.y - ac * uv_ab.y) / area : otherwise;
 }
 
 }  // namespace
@@ -98,7 +100,7 @@ struct RayCaster::Impl {
   Scene scene;
   Vec3 centre_m;
   double lift_m = 0;
-  std::vector<WorldMesh> meshes;
+  std::vector<PlacedMesh> meshes;
   std::vector<AnalyticShape> shapes;
   std::vector<std::uint32_t> surfaces;
 
@@ -109,7 +111,7 @@ struct RayCaster::Impl {
   void attach_shape(std::uint32_t instance);
   RTCRay float_ray(Vec3 origin_m, Vec3 direction, double distance_m) const;
   Vec3 start(const SurfacePoint& from) const;
-  bool is_mesh(std::uint32_t instance) const { return !meshes[instance].triangles.empty(); }
+  bool is_mesh(std::uint32_t instance) const { return meshes[instance].mesh != nullptr; }
   std::optional<SurfacePoint> closest(Query& query, Vec3 origin_m, Vec3 direction) const;
   SurfacePoint on_triangle(const RTCHit& hit, Vec3 origin_m, Vec3 direction) const;
 };
@@ -121,7 +123,7 @@ RayCaster::Impl::Impl(std::span<const scene::Instance> instances) {
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   for (const scene::Instance& instance : instances) {
     surfaces.push_back(static_cast<std::uint32_t>(instance.surface));
-    meshes.push_back(in_world(instance));
+    meshes.push_back(placed(instance));
   }
   place_centre();
   for (const scene::Instance& instance : instances) shapes.push_back(analytic_shape(instance, centre_m));
@@ -133,8 +135,9 @@ RayCaster::Impl::Impl(std::span<const scene::Instance> instances) {
 
 void RayCaster::Impl::place_centre() {
   Vec3 low{far_away, far_away, far_away}, high = -low;
-  for (const WorldMesh& mesh : meshes)
-    for (const Vec3 p : mesh.positions_m) {
+  for (const PlacedMesh& mesh : meshes)
+    for (std::uint32_t v = 0; mesh.mesh && v < mesh.mesh->positions_m.size(); ++v) {
+      const Vec3 p = mesh.position(v);
       low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
@@ -144,15 +147,16 @@ void RayCaster::Impl::place_centre() {
 }
 
 void RayCaster::Impl::attach_mesh(std::uint32_t instance) {
-  const WorldMesh& mesh = meshes[instance];
+  const PlacedMesh& placed_mesh = meshes[instance];
+  const mesh::Mesh& mesh = *placed_mesh.mesh;
   RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                3 * sizeof(float), mesh.positions_m.size()));
   auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
   if (!vertices || !indices) throw Error(Exit::internal, "Embree", "no memory for a mesh");
-  for (const Vec3 p : mesh.positions_m)
-    for (int axis = 0; axis < 3; ++axis) *vertices++ = static_cast<float>((p - centre_m)[axis]);
+  for (std::uint32_t v = 0; v < mesh.positions_m.size(); ++v)
+    for (int axis = 0; axis < 3; ++axis) *vertices++ = static_cast<float>((placed_mesh.position(v) - centre_m)[axis]);
   for (const auto& triangle : mesh.triangles) indices = std::copy(triangle.begin(), triangle.end(), indices);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene.get(), geometry, instance);
@@ -182,10 +186,11 @@ Vec3 RayCaster::Impl::start(const SurfacePoint& from) const {
 }
 
 SurfacePoint RayCaster::Impl::on_triangle(const RTCHit& hit, Vec3 origin_m, Vec3 direction) const {
-  const WorldMesh& mesh = meshes[hit.geomID];
+  const PlacedMesh& placed_mesh = meshes[hit.geomID];
+  const mesh::Mesh& mesh = *placed_mesh.mesh;
   const auto& triangle = mesh.triangles[hit.primID];
-  const Vec3 a = mesh.positions_m[triangle[0]], ab = mesh.positions_m[triangle[1]] - a,
-             ac = mesh.positions_m[triangle[2]] - a;
+  const Vec3 a = placed_mesh.position(triangle[0]), ab = placed_mesh.position(triangle[1]) - a,
+             ac = placed_mesh.position(triangle[2]) - a;
   const Vec3 area = cross(ab, ac);
   SurfacePoint point;
   point.distance_m = dot(area, a - origin_m) / dot(area, direction);
@@ -194,14 +199,24 @@ SurfacePoint RayCaster::Impl::on_triangle(const RTCHit& hit, Vec3 origin_m, Vec3
   const double scale = 1 / dot(area, area);
   const double v = std::clamp(dot(cross(arm, ac), area) * scale, 0.0, 1.0);
   const double w = std::clamp(dot(cross(ab, arm), area) * scale, 0.0, 1.0 - v), u = 1 - v - w;
+  point.triangle = hit.primID;
+  point.b1 = v;
+  point.b2 = w;
   point.geometric_normal = area / norm(area);
-  point.normal = mesh.normals.empty()
-                     ? point.geometric_normal
-                     : mesh.normals[triangle[0]] * u + mesh.normals[triangle[1]] * v + mesh.normals[triangle[2]] * w;
-  const double length = norm(point.normal);
-  point.normal = length > 0 ? point.normal / length : point.geometric_normal;
-  if (!mesh.texture.empty())
-    point.uv = mesh.texture[triangle[0]] * u + mesh.texture[triangle[1]] * v + mesh.texture[triangle[2]] * w;
+  point.normal = point.geometric_normal;
+  if (!mesh.normals.empty()) {
+    const Vec3 normal = placed_mesh.world_from_object *
+                        (mesh.normals[triangle[0]] * u + mesh.normals[triangle[1]] * v + mesh.normals[triangle[2]] * w);
+    const double length = norm(normal);
+    if (length > 0) point.normal = normal / length;
+  }
+  const Mat3& axes = placed_mesh.world_from_object;
+  point.tangent = {axes(0, 0), axes(1, 0), axes(2, 0)};
+  if (!mesh.texture.empty()) {
+    const Vec2 at = mesh.texture[triangle[0]], to_b = mesh.texture[triangle[1]], to_c = mesh.texture[triangle[2]];
+    point.uv = at * u + to_b * v + to_c * w;
+    point.tangent = tangent_of(ab, ac, to_b - at, to_c - at, point.tangent);
+  }
   return point;
 }
 
@@ -220,10 +235,12 @@ std::optional<SurfacePoint> RayCaster::Impl::closest(Query& query, Vec3 origin_m
     point.position_m = query.hit.position_m;
     point.geometric_normal = point.normal = query.hit.normal;
     point.uv = query.hit.uv;
+    point.tangent = query.hit.tangent;
   }
   point.instance = instance;
   point.surface = surfaces[instance];
-  if (dot(point.geometric_normal, direction) > 0) point.geometric_normal = -point.geometric_normal;
+  point.outside = !(dot(point.geometric_normal, direction) > 0);
+  if (!point.outside) point.geometric_normal = -point.geometric_normal;
   if (dot(point.normal, point.geometric_normal) < 0) point.normal = -point.normal;
   const double cosine = -dot(point.normal, direction);
   if (cosine < least_cosine) point.normal = normalized(point.normal - direction * (least_cosine - cosine));
@@ -254,6 +271,26 @@ bool RayCaster::occluded(const SurfacePoint& from, Vec3 direction, double distan
   RTCRay ray = impl_->float_ray(origin_m, direction, distance_m);
   rtcOccluded1(impl_->scene.get(), &query.context, &ray);
   return ray.tfar < 0;
+}
+
+bool RayCaster::blocked(Vec3 origin_m, Vec3 direction, double distance_m) const {
+  Query query{.context = {}, .ray = {origin_m, direction, {}}, .hit = {}};
+  rtcInitIntersectContext(&query.context);
+  RTCRay ray = impl_->float_ray(origin_m, direction, distance_m);
+  rtcOccluded1(impl_->scene.get(), &query.context, &ray);
+  return ray.tfar < 0;
+}
+
+std::vector<SurfacePoint> RayCaster::crossings(std::uint32_t instance, Vec3 origin_m, Vec3 direction,
+                                               double distance_m) const {
+  std::vector<SurfacePoint> found;
+  double walked = 0;
+  for (auto point = closest(origin_m, direction); point; point = closest_from(beyond(*point), direction)) {
+    walked += point->distance_m;
+    if (walked > distance_m) break;
+    if (point->instance == instance) found.push_back(*point);
+  }
+  return found;
 }
 
 }  // namespace gonio::render

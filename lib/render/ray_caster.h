@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "geom/vector.h"
 #include "scene/scene.h"
@@ -26,8 +27,20 @@ struct SurfacePoint {
   Vec3 position_m;
   Vec3 geometric_normal;  // unit, on the side that the ray came from
   Vec3 normal;  // for shading: interpolated on smooth meshes, same side; its angle to the ray is below 90 degrees
-  Vec2 uv;      // sphere: (azimuth / 2 pi, polar angle from -z / pi); plane: [0, 1]^2; mesh: the file's, else (0, 0)
+  bool outside = true;  // met from outside: geometric_normal is the outward one of a closed surface
+  Vec3 tangent;         // along growing u, else along the object's x axis; not unit, not perpendicular to the normal
+  std::uint32_t triangle = 0;  // of a mesh, and barycentric coordinates of its second and third vertex
+  double b1 = 0, b2 = 0;
+  Vec2 uv;  // sphere: (azimuth / 2 pi, polar angle from -z / pi); plane: [0, 1]^2; mesh: the file's, else (0, 0)
 };
+
+// The same point for rays that leave to the other side of the surface.
+inline SurfacePoint beyond(SurfacePoint point) {
+  point.geometric_normal = -point.geometric_normal;
+  point.normal = -point.normal;
+  point.outside = !point.outside;
+  return point;
+}
 
 class RayCaster {
  public:
@@ -42,6 +55,10 @@ class RayCaster {
   // Is there anything on the way from `from` along the unit `direction`, nearer than `distance_m`? Directions below the
   // geometric horizon are occluded by the surface itself.
   bool occluded(const SurfacePoint& from, Vec3 direction, double distance_m = far_away) const;
+  // The same for a point in free space.
+  bool blocked(Vec3 origin_m, Vec3 direction, double distance_m = far_away) const;
+  // All meetings with one instance on the way, nearest first.
+  std::vector<SurfacePoint> crossings(std::uint32_t instance, Vec3 origin_m, Vec3 direction, double distance_m) const;
 
  private:
   struct Impl;

@@ -42,9 +42,9 @@ Rgb Texture::at(Vec2 uv) const {
          (texel(*picture, i, j + 1) * (1 - s) + texel(*picture, i + 1, j + 1) * s) * t;
 }
 
-surface::Values Surface::values_at(Vec2 uv) const {
+surface::Values Surface::values_at(const Place& place) const {
   surface::Values here = values;
-  for (const Texture& texture : textures) here.v[texture.parameter] = texture.at(uv);
+  for (const Texture& texture : textures) here.v[texture.parameter] = texture.at(place.uv);
   return here;
 }
 
@@ -59,10 +59,12 @@ void refresh(Surface& surface, const std::string& place) {
       given[texture.name] = manifest::Parameter(std::clamp(0.5, info.lower, info.upper));
   }
   surface.values = surface::values_of(*surface.model, given, place);
+  surface.prepared = surface.model->prepare(surface.values, surface.file, place);
+  surface.values.prepared = surface.prepared.get();
 }
 
 void refresh(Light& light, const std::string& place) {
-  light.emitter = light.model->prepare(light.parameters, light.picture, place);
+  light.emitter = light.model->prepare(light.parameters, {light.picture, light.file}, place);
 }
 
 double vignetting(double falloff, int width_px, int height_px, Vec2 pixel) {

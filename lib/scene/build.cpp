@@ -15,11 +15,11 @@ namespace {
 
 class Builder {
  public:
-  Builder(const manifest::Document& document, const std::function<void(const std::filesystem::path&)>& on_file)
-      : document_(document), on_file_(on_file) {}
+  Builder(const manifest::Document& document, const Reading& reading) : document_(document), reading_(reading) {}
 
   Scene build() {
     Scene scene;
+    scene.bands = reading_.bands;
     add_surfaces(scene.appearance);
     add_lights(scene.appearance);
     add_instances(scene);
@@ -35,7 +35,7 @@ class Builder {
 
   std::filesystem::path file(const std::string& id, const std::string& pointer) const {
     const auto path = manifest::resolve(document_, id, pointer);
-    if (on_file_) on_file_(path);
+    if (reading_.on_file) reading_.on_file(path);
     return path;
   }
 
@@ -52,8 +52,10 @@ class Builder {
   void add_surfaces(Appearance& appearance) const {
     for (const auto& [id, entry] : document_.surfaces) {
       const std::string pointer = "/surfaces/" + id;
-      Surface surface{
-          .id = id, .model = surface::find(entry.model), .parameters = entry.parameters, .values = {}, .textures = {}};
+      Surface surface;
+      surface.id = id;
+      surface.model = surface::find(entry.model);
+      surface.parameters = entry.parameters;
       if (!surface.model) throw Error(Exit::data, at(pointer + "/model"), "no surface model \"" + entry.model + "\"");
       for (const auto& [parameter, file_id] : entry.textures) {
         const auto& known = surface.model->info().parameters;
@@ -62,18 +64,29 @@ class Builder {
         const bool colour = found != known.end() && found->rgb;
         surface.textures.push_back({parameter, picture(file_id, pointer + "/textures/" + parameter, colour)});
       }
+      if (!entry.file.empty()) surface.file = file(entry.file, pointer + "/file");
       refresh(surface, at(pointer));
       appearance.surfaces.push_back(std::move(surface));
+    }
+    for (Surface& surface : appearance.surfaces) {
+      const std::string& base = document_.surfaces.at(surface.id).base;
+      if (!base.empty()) surface.base = surface_index(appearance, base, "/surfaces/" + surface.id + "/base");
     }
   }
 
   void add_lights(Appearance& appearance) const {
     for (const auto& [id, entry] : document_.lights) {
       const std::string pointer = "/lights/" + id;
-      Light light{
-          .id = id, .model = light::find(entry.model), .parameters = entry.parameters, .picture = {}, .emitter = {}};
+      Light light;
+      light.id = id;
+      light.model = light::find(entry.model);
+      light.parameters = entry.parameters;
       if (!light.model) throw Error(Exit::data, at(pointer + "/model"), "no light model \"" + entry.model + "\"");
-      if (!entry.file.empty()) light.picture = picture(entry.file, pointer + "/file", true);
+      if (!entry.file.empty()) {
+        light.file = file(entry.file, pointer + "/file");
+        if (light.model->info().attachment == manifest::Attachment::picture)
+          light.picture = picture(entry.file, pointer + "/file", true);
+      }
       refresh(light, at(pointer));
       appearance.lights.push_back(std::move(light));
     }
@@ -115,8 +128,8 @@ class Builder {
     return mesh;
   }
 
-  std::size_t surface_index(const Scene& scene, const std::string& id, const std::string& pointer) const {
-    const auto& all = scene.appearance.surfaces;
+  std::size_t surface_index(const Appearance& appearance, const std::string& id, const std::string& pointer) const {
+    const auto& all = appearance.surfaces;
     const auto found = std::find_if(all.begin(), all.end(), [&](const Surface& s) { return s.id == id; });
     if (found == all.end()) throw Error(Exit::data, at(pointer), "no surface \"" + id + "\"", "name one of `surfaces`");
     return static_cast<std::size_t>(found - all.begin());
@@ -139,9 +152,9 @@ class Builder {
     for (std::size_t i = 0; i < document_.objects.size(); ++i) {
       const manifest::Object& object = document_.objects[i];
       const std::string pointer = "/objects/" + std::to_string(i);
-      scene.instances.push_back({object.id, shape(object.mesh),
-                                 pose(object.world_from_object, pointer + "/world_from_object"),
-                                 surface_index(scene, object.surface, pointer + "/surface")});
+      scene.instances.push_back(
+          {object.id, shape(object.mesh), pose(object.world_from_object, pointer + "/world_from_object"),
+           surface_index(scene.appearance, object.surface, pointer + "/surface"), object.priority.value_or(0)});
     }
   }
 
@@ -209,23 +222,25 @@ class Builder {
       const auto camera = cameras.find(image.camera);
       if (camera == cameras.end())
         throw Error(Exit::data, at(pointer + "/camera"), "no camera \"" + image.camera + "\"", "name one of `cameras`");
-      scene.views.push_back({image.id, camera::CameraModel(camera->second, at("/cameras/" + image.camera)),
+      scene.views.push_back({image.id,
+                             camera::CameraModel(camera->second, at("/cameras/" + image.camera)),
                              pose(image.world_from_camera, pointer + "/world_from_camera"),
                              lights_of(scene, image, pointer),
-                             image.gain && image.gain->given() ? image.gain->rgb() : Rgb{1, 1, 1}});
+                             image.gain && image.gain->given() ? image.gain->rgb() : Rgb{1, 1, 1},
+                             {},
+                             image.camera});
     }
   }
 
   const manifest::Document& document_;
-  const std::function<void(const std::filesystem::path&)>& on_file_;
+  const Reading& reading_;
   std::map<std::string, std::shared_ptr<const mesh::Mesh>> meshes_;
 };
 
 }  // namespace
 
-Scene build_scene(const manifest::Document& document,
-                  const std::function<void(const std::filesystem::path&)>& on_file) {
-  return Builder(document, on_file).build();
+Scene build_scene(const manifest::Document& document, const Reading& reading) {
+  return Builder(document, reading).build();
 }
 
 }  // namespace gonio::scene

@@ -59,7 +59,7 @@ void set_ambient(Appearance& appearance, const Amounts& amounts, const std::stri
     appearance.ambient = nullptr;
     return;
   }
-  appearance.ambient = light::find("uniform")->prepare({{"radiance", manifest::Parameter(amounts)}}, nullptr, place);
+  appearance.ambient = light::find("uniform")->prepare({{"radiance", manifest::Parameter(amounts)}}, {}, place);
 }
 void set_indirect(Appearance& appearance, const Amounts& amounts, const std::string&) {
   appearance.indirect_strength = amounts[0];

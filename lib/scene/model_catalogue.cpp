@@ -6,6 +6,7 @@
 
 #include "light/light.h"
 #include "manifest/model.h"
+#include "surface/law.h"
 #include "surface/surface.h"
 
 namespace gonio::manifest {
@@ -24,7 +25,13 @@ std::vector<const ModelInfo*> infos_of(const Models& all) {
 std::span<const ModelInfo* const> models(Family family) {
   static const auto surfaces = infos_of(surface::all_models());
   static const auto lights = infos_of(light::all_models());
-  return family == Family::surface ? surfaces : lights;
+  static const auto laws = infos_of(surface::all_laws());
+  switch (family) {
+    case Family::surface: return surfaces;
+    case Family::light: return lights;
+    case Family::law: break;
+  }
+  return laws;
 }
 
 const ModelInfo* find_model(Family family, const std::string& id) {

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "light/light.h"
 #include "manifest/document.h"
 #include "mesh/mesh.h"
+#include "optics/bands.h"
 #include "surface/surface.h"
 
 namespace gonio::scene {
@@ -37,6 +39,7 @@ struct Instance {  // an object of the manifest; number i in `instances` is id i
   Shape shape;
   Rigid<frame::World, frame::Object> world_from_object;
   std::size_t surface = 0;  // place in Appearance::surfaces
+  int priority = 0;         // of overlapping objects that let light through, the highest fills the space
 };
 
 struct Texture {
@@ -46,13 +49,26 @@ struct Texture {
   Rgb at(Vec2 uv) const;      // bilinear, repeating; v grows upwards
 };
 
+// Where on an object: what decides on a surface's parameters there. Object frame.
+struct Place {
+  Vec2 uv;
+  Vec3 position_m, normal;           // the unit shading normal, outwards
+  const mesh::Mesh* mesh = nullptr;  // null for analytic shapes
+  std::uint32_t triangle = 0;
+  double b1 = 0, b2 = 0;  // barycentric coordinates of the triangle's second and third vertex
+};
+
 struct Surface {
   std::string id;
   const surface::Model* model = nullptr;
   manifest::Parameters parameters;  // as in the manifest
   surface::Values values;           // derived from `parameters`
   std::vector<Texture> textures;
-  surface::Values values_at(Vec2 uv) const;
+  std::shared_ptr<const surface::Prepared> prepared;  // derived; values.prepared points to it
+  std::filesystem::path file;                         // of models that read a table
+  std::optional<std::size_t> base;                    // place in Appearance::surfaces of the surface beneath
+  bool varies() const { return !textures.empty(); }   // else `values` hold everywhere
+  surface::Values values_at(const Place& place) const;
 };
 
 struct Light {
@@ -60,6 +76,7 @@ struct Light {
   const light::Model* model = nullptr;
   manifest::Parameters parameters;
   std::shared_ptr<const io::Image> picture;
+  std::filesystem::path file;
   std::shared_ptr<const light::Emitter> emitter;  // derived from `parameters`
 };
 
@@ -71,25 +88,36 @@ struct Appearance {
   double vignetting_falloff = 0;  // optics.vignetting: pixel value *= 1 - falloff r^2
 };
 
+struct ThinLens {                             // optics.defocus; a radius of zero is a pinhole
+  double aperture_radius_m = 0, focus_m = 1;  // focus: distance along the axis of what is sharp
+};
+
 struct View {  // one image to be simulated
   std::string image;
   camera::CameraModel camera;
   Rigid<frame::World, frame::Camera> world_from_camera;
   std::vector<std::size_t> lights;  // that are on: places in Appearance::lights
   Rgb gain{1, 1, 1};
+  ThinLens lens;
+  std::string camera_name;
 };
 
 struct Scene {
   std::vector<Instance> instances;
   Appearance appearance;
   std::vector<View> views;  // one per image of the manifest, in its order
+  optics::Bands bands;      // what the three components of every Rgb stand for
   Vec3 centre_m;            // of the box around meshes and spheres (around planes, where there is nothing else)
 };
 
-// Reads meshes and textures, checks everything, applies the `mechanisms` section. `on_file` hears of every file that is
-// read. Error(data | no_input) at the place in the manifest. Without objects: Error(data).
-Scene build_scene(const manifest::Document& document,
-                  const std::function<void(const std::filesystem::path&)>& on_file = {});
+struct Reading {
+  std::function<void(const std::filesystem::path&)> on_file;  // hears of every file that is read
+  optics::Bands bands;
+  bool allow_open = false;  // meshes with holes may bound media
+};
+// Reads meshes and textures, checks everything, applies the `mechanisms` section. Error(data | no_input) at the place
+// in the manifest. Without objects: Error(data).
+Scene build_scene(const manifest::Document& document, const Reading& reading = {});
 
 // Derives Surface::values and Light::emitter anew from model and parameters; `place` for messages.
 void refresh(Surface& surface, const std::string& place);

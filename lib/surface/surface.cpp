@@ -3,11 +3,19 @@
 
 #include <algorithm>
 
+#include "surface/law.h"
+
 namespace gonio::surface {
 
 const Model* find(const std::string& id) {
   const auto all = all_models();
   const auto found = std::find_if(all.begin(), all.end(), [&](const Model* m) { return m->info().id == id; });
+  return found == all.end() ? nullptr : *found;
+}
+
+const Law* find_law(const std::string& id) {
+  const auto all = all_laws();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Law* law) { return law->info().id == id; });
   return found == all.end() ? nullptr : *found;
 }
 

@@ -1,32 +1,65 @@
 // Surfaces: how light that arrives at a point leaves it again. A model is one file in models/.
 //
-// Directions are unit vectors in the local frame whose +z is the shading normal n, away from the surface: `wo` to the
-// eye, `wi` to the light. Models here reflect: below the horizon (z <= 0) all is zero. evaluate() is the BRDF in 1/sr,
-// WITHOUT the cosine. sample() draws wi with the density that pdf() states (per steradian).
+// Directions are unit vectors in the local frame whose +z is the shading normal on the eye's side: `wo` to the eye
+// (z > 0), `wi` to where the light comes from. +x is the surface's tangent, turned by the parameter azimuth_rad where a
+// model has one. wi.z > 0: reflection; wi.z < 0: light from beyond the interface, which only models that transmit() let
+// through. evaluate() is the BRDF or BTDF in 1/sr for radiance, WITHOUT the cosine |wi.z|; a BTDF contains the factor
+// (index on wo's side / index beyond)^2 by which radiance changes (Walter et al. 2007, equation 21). sample() draws wi
+// with the density that pdf() states (per steradian).
 //
-// Conditions that every model meets, and a test checks: reciprocity f(wo, wi) = f(wi, wo); energy: the cosine-weighted
-// integral is <= 1 for albedo <= 1; sample and pdf agree (chi-square); albedo() is the integral where it claims so.
+// Perfectly smooth lobes are deltas: evaluate() and pdf() leave them out; sample() returns them with `delta` set, their
+// weight divided by the probability of having chosen them.
+//
+// Conditions that every model meets, and a test checks: reciprocity f(wo, wi) / eta_o^2 = f(wi, wo) / eta_i^2; energy:
+// what is reflected and transmitted is <= 1 (radiance over eta^2) for albedo <= 1; sample and pdf agree (chi-square);
+// albedo() is the reflectance where it claims so.
 #pragma once
 #include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "geom/vector.h"
 #include "manifest/model.h"
+#include "optics/mueller.h"
+#include "surface/medium.h"
 
 namespace gonio::surface {
 
+class Model;
+class Subsurface;
+struct Layer;
+
+// What a model reads or builds once per surface (tables, sampling distributions); see Model::prepare().
+struct Prepared {
+  virtual ~Prepared() = default;
+};
+
 // Parameter values at one point, in the order of info().parameters; scalars are spread over all three components.
 struct Values {
-  std::array<Rgb, 8> v{};
+  std::array<Rgb, 12> v{};
+  // Index beyond the interface over the index on wo's side, per band. The path tracer sets it at every vertex from the
+  // media that meet there; only models that transmit() read it.
+  Rgb eta{1, 1, 1};
+  int hero = 0;                        // the band by which directions of refraction are drawn, where they differ
+  const Prepared* prepared = nullptr;  // from prepare(); the scene owns it
+  const Layer* base = nullptr;         // the surface beneath, for models that take one (`base` in the manifest)
   const Rgb& rgb(std::size_t i) const { return v[i]; }
   double scalar(std::size_t i) const { return v[i].x; }
+};
+struct Layer {
+  const Model* model = nullptr;
+  Values values;
 };
 
 struct Sample {
   Vec3 wi;
-  Rgb weight;      // f * cos / pdf; zero where the path ends
-  double pdf = 0;  // per steradian; 0 for failure
+  Rgb weight;      // f * |cos| / pdf; zero where the path ends
+  double pdf = 0;  // per steradian; for a delta the probability of the lobe; 0 for failure
+  bool delta = false;
+  bool below = false;  // the light comes by way of subsurface(): wi is only the direction of a refracted ray inwards
 };
 
 class Model {
@@ -38,6 +71,23 @@ class Model {
   virtual double pdf(const Values& values, Vec3 wo, Vec3 wi) const = 0;
   // Directional-hemispherical reflectance towards wo (an approximation where the file says so).
   virtual Rgb albedo(const Values& values, Vec3 wo) const = 0;
+
+  // Light also passes to the other side: an interface to the medium that interior() states.
+  virtual bool transmits() const { return false; }
+  virtual std::optional<Medium> interior(const Values&) const { return {}; }  // of models that transmit
+  // Null where light leaves where it entered.
+  virtual const Subsurface* subsurface(const Values&) const { return nullptr; }
+  // Mueller matrices per band of scattering from wi to wo, divided by their (0, 0) element: evaluate(), or the weight
+  // of a delta sample, times this is the polarized law. Frames: optics/mueller.h.
+  virtual optics::MuellerRgb mueller(const Values&, Vec3 /*wo*/, Vec3 /*wi*/) const {
+    return {optics::Mueller::depolarizer(), optics::Mueller::depolarizer(), optics::Mueller::depolarizer()};
+  }
+  // Called once per surface with its uniform values; `file` is the surface's file where info().attachment says that it
+  // has one, else empty. Error(data) at `place` or at the file.
+  virtual std::shared_ptr<const Prepared> prepare(const Values&, const std::filesystem::path& /*file*/,
+                                                  const std::string& /*place*/) const {
+    return nullptr;
+  }
 };
 
 std::span<const Model* const> all_models();  // generated

@@ -44,7 +44,8 @@ inline std::vector<LightCase> light_cases(int each, std::uint64_t seed) {
   for (const light::Model* model : light::all_models())
     for (int k = 0; k < each; ++k) {
       auto parameters = draw_parameters(model->info(), random);
-      auto emitter = model->prepare(parameters, model->info().takes_file ? test_surround() : nullptr, "p");
+      auto emitter = model->prepare(
+          parameters, {model->info().attachment == manifest::Attachment::picture ? test_surround() : nullptr, {}}, "p");
       cases.push_back({model->info().id + " drawn " + std::to_string(k), std::move(parameters), std::move(emitter)});
     }
   return cases;

@@ -11,7 +11,7 @@ namespace gonio::tests {
 namespace {
 
 std::unique_ptr<light::Emitter> prepared(const manifest::Light& light) {
-  return light::find(light.model)->prepare(light.parameters, nullptr, "p");
+  return light::find(light.model)->prepare(light.parameters, {}, "p");
 }
 manifest::Light lamp(Vec3 position_m, Rgb watt_per_sr, std::optional<double> radius_m = {}) {
   manifest::Light light;
@@ -21,7 +21,7 @@ manifest::Light lamp(Vec3 position_m, Rgb watt_per_sr, std::optional<double> rad
   return light;
 }
 std::unique_ptr<light::Emitter> surround(std::shared_ptr<const io::Image> picture, double rotation_rad = 0) {
-  return light::find("lat-long")->prepare({{"rotation_rad", rotation_rad}}, std::move(picture), "p");
+  return light::find("lat-long")->prepare({{"rotation_rad", rotation_rad}}, {std::move(picture), {}}, "p");
 }
 Vec3 tilted(double degrees) {
   return {std::sin(degrees * pi / 180), 0, std::cos(degrees * pi / 180)};
@@ -97,8 +97,7 @@ TEST(DirectionalLight, IrradianceOnAFacingPlane) {
 }
 
 TEST(UniformLight, IrradianceIsPiTimesRadiance) {
-  const auto emitter =
-      light::find("uniform")->prepare({{"radiance", std::vector<double>{0.1, 0.2, 0.3}}}, nullptr, "p");
+  const auto emitter = light::find("uniform")->prepare({{"radiance", std::vector<double>{0.1, 0.2, 0.3}}}, {}, "p");
   EXPECT_NEAR(irradiance_by_sampling(*emitter, {1, 2, 3}, tilted(33)).y, 0.2 * pi, 1e-4);
   EXPECT_TRUE(emitter->infinite());
 }

@@ -109,14 +109,14 @@ TEST(EveryLight, IsFiniteAtTheCornersOfItsRandomNumbers) {
 TEST(EveryLight, RefusesWhatIsNotItsOwn) {
   Random random(20);
   for (const light::Model* model : light::all_models()) {
-    const auto picture = model->info().takes_file ? test_surround() : nullptr;
+    const auto picture = model->info().attachment == manifest::Attachment::picture ? test_surround() : nullptr;
     auto unknown = draw_parameters(model->info(), random), wrong_count = unknown;
     unknown["colour_of_magic"] = 1.0;
-    EXPECT_THROW(model->prepare(unknown, picture, "p"), std::runtime_error);
+    EXPECT_THROW(model->prepare(unknown, {picture, {}}, "p"), std::runtime_error);
     wrong_count.begin()->second.value = {0.5, 0.5};
-    EXPECT_THROW(model->prepare(wrong_count, picture, "p"), std::runtime_error);
-    if (!model->info().takes_file) continue;
-    EXPECT_THROW(model->prepare(draw_parameters(model->info(), random), nullptr, "p"), std::runtime_error);
+    EXPECT_THROW(model->prepare(wrong_count, {picture, {}}, "p"), std::runtime_error);
+    if (model->info().attachment != manifest::Attachment::picture) continue;
+    EXPECT_THROW(model->prepare(draw_parameters(model->info(), random), {}, "p"), std::runtime_error);
   }
 }
 

@@ -58,7 +58,7 @@ TEST(ClosedForm, SphereLightAboveAndAcrossTheHorizon) {
       const Rgb truth = light::sphere_irradiance({1, 1, 1}, {0, 0, c.height_m}, 0.1, {c.x, 0, 0}, {0, 0, 1});
       if (f0 == 0) expect_value(found, 0.6 / pi * truth.x, 1e-5);
       const MeanAndError other =
-          mean_of(render_view(scene, {.spp = 4096, .seed = 5, .estimator = Estimator::lights_only}));
+          mean_of(render_view(scene, {.spp = 4096, .seed = 5, .transport = {.estimator = Estimator::lights_only}}));
       EXPECT_NEAR(found.mean, other.mean, z_limit * std::hypot(found.sigma, other.sigma) + 1e-7 * found.mean);
     }
 }
@@ -133,7 +133,7 @@ TEST(ClosedForm, OneInterreflection) {
       const double square = dot(arm, arm);
       irradiance += 0.8 / pi * arm.z * arm.y / (square * square) * (0.04 / (n * n));
     }
-  const MeanAndError found = mean_of(render_view(scene, {.spp = 4096, .max_bounces = 2}));
+  const MeanAndError found = mean_of(render_view(scene, {.spp = 4096, .transport = {.max_bounces = 2}}));
   expect_value(found, 0.5 / pi * irradiance, 1e-4);
 }
 

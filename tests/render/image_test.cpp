@@ -65,7 +65,7 @@ TEST(Settings, IndirectStrengthScalesWhatWasScatteredTwice) {
   auto scene = ball_on_table().look_down(0, 0, 0.4, 16).scene();
   const auto render_at = [&](double strength, int bounces) {
     scene.appearance.indirect_strength = strength;
-    return render_view(scene, {.spp = 64, .max_bounces = bounces, .seed = 3, .geometry = false});
+    return render_view(scene, {.spp = 64, .seed = 3, .geometry = false, .transport = {.max_bounces = bounces}});
   };
   const io::Image full = render_at(1, 128), none = render_at(0, 128), half = render_at(0.5, 128),
                   single = render_at(1, 1);

@@ -42,7 +42,8 @@ class Practice {
   std::vector<Block> blocks(const std::vector<std::size_t>& views, int spp, std::uint64_t seed) const {
     std::vector<Block> all;
     for (const std::size_t v : views) {
-      const io::Image picture = render::render(scene_, v, caster_, {.spp = spp, .max_bounces = 9, .seed = seed});
+      const io::Image picture =
+          render::render(scene_, v, caster_, {.spp = spp, .seed = seed, .transport = {.max_bounces = 9}});
       const int visibility = picture.channel("visibility." + document_.images[v].light.at(0)),
                 id = picture.channel("id");
       for (int y = 0; y + side <= picture.height; y += side)

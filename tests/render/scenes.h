@@ -12,11 +12,10 @@ namespace gonio::tests {
 class SceneBuilder {
  public:
   std::size_t surface(const std::string& model, const manifest::Parameters& parameters) {
-    scene::Surface surface{.id = "s" + std::to_string(scene_.appearance.surfaces.size()),
-                           .model = surface::find(model),
-                           .parameters = parameters,
-                           .values = {},
-                           .textures = {}};
+    scene::Surface surface;
+    surface.id = "s" + std::to_string(scene_.appearance.surfaces.size());
+    surface.model = surface::find(model);
+    surface.parameters = parameters;
     scene::refresh(surface, "test");
     scene_.appearance.surfaces.push_back(surface);
     return scene_.appearance.surfaces.size() - 1;
@@ -24,11 +23,10 @@ class SceneBuilder {
   std::size_t diffuse(double albedo) { return surface("diffuse", {{"albedo", albedo}}); }
 
   SceneBuilder& light(const std::string& model, const manifest::Parameters& parameters) {
-    scene::Light light{.id = "l" + std::to_string(scene_.appearance.lights.size()),
-                       .model = light::find(model),
-                       .parameters = parameters,
-                       .picture = {},
-                       .emitter = {}};
+    scene::Light light;
+    light.id = "l" + std::to_string(scene_.appearance.lights.size());
+    light.model = light::find(model);
+    light.parameters = parameters;
     scene::refresh(light, "test");
     scene_.appearance.lights.push_back(light);
     return *this;
@@ -46,7 +44,10 @@ class SceneBuilder {
     scene_.views.push_back({"view",
                             camera::CameraModel(camera, "test"),
                             {quaternion_of_rotation_vector(rotation_vector), position_m},
-                            lights});
+                            lights,
+                            {1, 1, 1},
+                            {},
+                            "camera"});
     return *this;
   }
   // Looks down at the point (x, y, 0) from `height_m`; the picture spans `extent_m`.

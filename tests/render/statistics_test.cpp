@@ -98,7 +98,7 @@ TEST(Variance, ExplainsTheDifferenceOfTwoSeeds) {
 TEST(Estimators, AgreeWithEachOther) {
   const auto scene = busy_scene();
   const io::Image a = render_view(scene, {.spp = 256, .seed = 1});
-  const io::Image b = render_view(scene, {.spp = 1024, .seed = 2, .estimator = Estimator::lights_only});
+  const io::Image b = render_view(scene, {.spp = 1024, .seed = 2, .transport = {.estimator = Estimator::lights_only}});
   const auto mean_a = tests::mean_of(a), mean_b = tests::mean_of(b);
   EXPECT_NEAR(mean_a.mean, mean_b.mean, 4.5 * std::hypot(mean_a.sigma, mean_b.sigma));
 }
@@ -121,9 +121,10 @@ TEST(Strata, ReduceTheNoiseOfPenumbras) {
   builder.object(scene::Plane{0.2, 2}, builder.diffuse(0), {-0.1, 0, 0.2});
   builder.light("sphere", {{"position_m", std::vector<double>{0, 0, 0.5}}, {"watt_per_sr", 1.0}, {"radius_m", 0.05}});
   const auto scene = builder.look_down(0.0, 0, 0.02, 8, 0.1).scene();  // below the edge, across the penumbra
-  const double fine = tests::mean_of(render_view(scene, {.spp = 1024, .max_bounces = 1})).sigma;  // 8 x 8 strata
+  const double fine =
+      tests::mean_of(render_view(scene, {.spp = 1024, .transport = {.max_bounces = 1}})).sigma;  // 8 x 8 strata
   const double coarse =
-      tests::mean_of(render_view(scene, {.spp = 16, .max_bounces = 1})).sigma / 8;  // none; per sample
+      tests::mean_of(render_view(scene, {.spp = 16, .transport = {.max_bounces = 1}})).sigma / 8;  // none; per sample
   EXPECT_LT(fine, 0.5 * coarse);
 }
 

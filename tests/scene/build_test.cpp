@@ -85,9 +85,9 @@ TEST(Build, TexturesAreBilinearAndLinear) {
       std::string(text).replace(text.find("\"cameras\""), 0, R"("files": {"t": {"path": "t.exr"}}, )");
   const Scene scene = scene_of(with_file, folder.path());
   const Surface& clay = scene.appearance.surfaces[0];
-  EXPECT_NEAR(clay.values_at({0.25, 0.5}).rgb(0).x, 0.2, 1e-6);
-  EXPECT_NEAR(clay.values_at({0.75, 0.5}).rgb(0).x, 0.6, 1e-6);
-  EXPECT_NEAR(clay.values_at({0.5, 0.3}).rgb(0).y, 0.3, 1e-6);
+  EXPECT_NEAR(clay.values_at({.uv = {0.25, 0.5}}).rgb(0).x, 0.2, 1e-6);
+  EXPECT_NEAR(clay.values_at({.uv = {0.75, 0.5}}).rgb(0).x, 0.6, 1e-6);
+  EXPECT_NEAR(clay.values_at({.uv = {0.5, 0.3}}).rgb(0).y, 0.3, 1e-6);
 }
 
 TEST(Build, TellsWhichFilesItReads) {
@@ -100,7 +100,7 @@ TEST(Build, TellsWhichFilesItReads) {
   text.replace(text.find("\"cameras\""), 0, R"("files": {"m": {"path": "m.ply"}}, )");
   std::vector<std::string> names;
   build_scene(manifest::parse_document(text, "s.json", folder.path()),
-              [&](const std::filesystem::path& path) { names.push_back(path.filename().string()); });
+              {.on_file = [&](const std::filesystem::path& path) { names.push_back(path.filename().string()); }});
   EXPECT_THAT(names, ElementsAre("m.ply"));
   mesh.triangles = {{0, 0, 1}};
   io::write_ply(folder / "m.ply", mesh);

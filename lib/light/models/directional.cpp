@@ -46,7 +46,7 @@ class DirectionalModel final : public Model {
     };
     return info;
   }
-  std::unique_ptr<Emitter> prepare(const manifest::Parameters& parameters, std::shared_ptr<const io::Image>,
+  std::unique_ptr<Emitter> prepare(const manifest::Parameters& parameters, const Attachment&,
                                    const std::string& place) const override {
     const auto values = manifest::values_of(info(), parameters, place);
     const double length = norm(values[towards_index]);

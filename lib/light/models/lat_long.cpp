@@ -147,15 +147,16 @@ class LatLongModel final : public Model {
               .lower = -2 * pi,
               .upper = 2 * pi,
               .meaning = "turn about +z, counter-clockwise seen from above; at 0 the picture's centre looks along +x"}},
-        .takes_file = true,
+        .attachment = manifest::Attachment::picture,
+        .attachment_meaning = "the picture, latitude-longitude",
     };
     return info;
   }
-  std::unique_ptr<Emitter> prepare(const manifest::Parameters& parameters, std::shared_ptr<const io::Image> picture,
+  std::unique_ptr<Emitter> prepare(const manifest::Parameters& parameters, const Attachment& file,
                                    const std::string& place) const override {
-    check(picture.get(), place);
+    check(file.picture.get(), place);
     const auto values = manifest::values_of(info(), parameters, place);
-    return std::make_unique<LatLong>(std::move(picture), values[scale_index], values[rotation_index].x);
+    return std::make_unique<LatLong>(file.picture, values[scale_index], values[rotation_index].x);
   }
 };
 

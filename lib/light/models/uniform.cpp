@@ -44,7 +44,7 @@ class UniformModel final : public Model {
     };
     return info;
   }
-  std::unique_ptr<Emitter> prepare(const manifest::Parameters& parameters, std::shared_ptr<const io::Image>,
+  std::unique_ptr<Emitter> prepare(const manifest::Parameters& parameters, const Attachment&,
                                    const std::string& place) const override {
     return std::make_unique<Uniform>(manifest::values_of(info(), parameters, place)[0]);
   }

@@ -1,0 +1,60 @@
+// The random numbers of one camera path. Low-discrepancy over the samples of one pass of a pixel: every pair of
+// dimensions is a Sobol' (0,2)-sequence of its own, Owen-scrambled and shuffled by hashes (Burley 2020, "Practical
+// Hash-based Owen Scrambling", JCGT 9(4); Laine & Karras 2011 with the constants of Vegdahl 2021). Unlimited in
+// dimensions. Passes and pixels are scrambled independently of each other, so that the scatter of passes measures the
+// error of their mean. The numbers of a sample depend on nothing but (seed, pixel, pass, index).
+#pragma once
+#include <cstdint>
+
+#include "base/random.h"
+#include "geom/vector.h"
+
+namespace gonio::render {
+
+class Sampler {
+ public:
+  // `stream`: of this pixel in this pass; `index`: of the sample within the pass.
+  Sampler(std::uint64_t seed, std::uint64_t stream, std::uint32_t index)
+      : key_(split_mix(split_mix(seed) ^ stream)), index_(reversed(index)) {}
+
+  double uniform() { return two().x; }
+  Vec2 two() {
+    const std::uint64_t hash = split_mix(key_ + ++dimension_);
+    const auto low = static_cast<std::uint32_t>(hash), high = static_cast<std::uint32_t>(hash >> 32);
+    const std::uint32_t shuffled = reversed(scrambled(index_, low));
+    // The first dimension is van der Corput's: the reversal of its reversed bits is the index itself.
+    return {unit(reversed(scrambled(shuffled, high))),
+            unit(reversed(scrambled(reversed(second(shuffled)), high * 0x9e3779b9u + low)))};
+  }
+
+ private:
+  static double unit(std::uint32_t x) { return (x + 0.5) * 0x1p-32; }  // in (0, 1)
+  static std::uint32_t reversed(std::uint32_t x) {
+    x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+    x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+    x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+    return __builtin_bswap32(x);
+  }
+  // Owen's nested uniform scrambling of a number whose bits are reversed.
+  static std::uint32_t scrambled(std::uint32_t x, std::uint32_t key) {
+    x ^= x * 0x3d20adeau;
+    x += key;
+    x *= (key >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+  }
+  // Second dimension of Sobol's sequence.
+  static std::uint32_t second(std::uint32_t index) {
+    std::uint32_t result = 0;
+    for (std::uint32_t v = 1u << 31; index != 0; index >>= 1, v ^= v >> 1)
+      if (index & 1u) result ^= v;
+    return result;
+  }
+
+  std::uint64_t key_;
+  std::uint32_t index_;  // reversed
+  std::uint64_t dimension_ = 0;
+};
+
+}  // namespace gonio::render

@@ -1,0 +1,36 @@
+#include "render/vertex.h"
+
+namespace gonio::render {
+
+Basis shading_frame(const SurfacePoint& point) {
+  const Vec3 along = point.tangent - point.normal * dot(point.tangent, point.normal);
+  const double length = norm(along);
+  return length > 1e-6 * norm(point.tangent) && length > 0 ? Basis(point.normal, along / length) : Basis(point.normal);
+}
+
+scene::Place place_of(const SurfacePoint& point, const scene::Instance& instance) {
+  const Mat3 to_object = transposed(matrix_of(instance.world_from_object.rotation));
+  const auto* mesh = std::get_if<std::shared_ptr<const mesh::Mesh>>(&instance.shape);
+  return {point.uv,
+          to_object * (point.position_m - instance.world_from_object.translation_m),
+          to_object * (point.outside ? point.normal : -point.normal),
+          mesh ? mesh->get() : nullptr,
+          point.triangle,
+          point.b1,
+          point.b2};
+}
+
+surface::Values values_at(const scene::Scene& scene, const SurfacePoint& point, surface::Layer& base) {
+  const scene::Surface& surface = scene.appearance.surfaces[point.surface];
+  const auto here = [&](const scene::Surface& s) {
+    return s.varies() ? s.values_at(place_of(point, scene.instances[point.instance])) : s.values;
+  };
+  surface::Values values = here(surface);
+  if (!surface.base) return values;
+  const scene::Surface& beneath = scene.appearance.surfaces[*surface.base];
+  base = {beneath.model, here(beneath)};
+  values.base = &base;
+  return values;
+}
+
+}  // namespace gonio::render
