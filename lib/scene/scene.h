@@ -112,7 +112,7 @@ struct Scene {
 
 struct Reading {
   std::function<void(const std::filesystem::path&)> on_file;  // hears of every file that is read
-  optics::Bands bands;
+  optics::Bands bands{};
   bool allow_open = false;  // meshes with holes may bound media
 };
 // Reads meshes and textures, checks everything, applies the `mechanisms` section. Error(data | no_input) at the place
