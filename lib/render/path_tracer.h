@@ -23,7 +23,7 @@ struct Options {
   int spp = 256;
   std::uint64_t seed = 1;
   bool geometry = true;  // write the geometry channels too
-  Transport transport;
+  Transport transport{};
 };
 
 // The simulated image of scene.views[view]; channels as in film.h: develop().
