@@ -87,7 +87,9 @@ scene::Scene scene_of(cli::Invocation& call) {
     const auto [mechanism, use] = scene::parse_mechanism(text, "--with");
     seen.mechanisms[mechanism->id] = use;
   }
-  return scene::build_scene(seen, {.on_file = [&](const std::filesystem::path& path) { call.note_input(path); }});
+  scene::Reading reading;
+  reading.on_file = [&](const std::filesystem::path& path) { call.note_input(path); };
+  return scene::build_scene(seen, reading);
 }
 
 void check(cli::Invocation& call) {
