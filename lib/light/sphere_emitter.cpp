@@ -4,10 +4,16 @@
 //            (Shirley, Wang & Zimmerman 1996, section 3.2.1): pdf = 1 / (2 pi (1 - cos(s)))
 // With 1 - cos(s) = sin^2(s) / (1 + cos(s)), weight = L / pdf = 2 I / (d^2 (1 + cos(s))), which tends to the point's
 // without cancellation as R goes to 0. The shell shines outwards: a point inside receives nothing from it.
+//
+// emit(): the power of both is 4 pi I. A photon of the point leaves in any direction alike, density 1 / (4 pi); one of
+// the sphere leaves anywhere on the shell, density 1 / (4 pi R^2), cosine-distributed about the normal, density
+// cos / pi: flux = L cos / (density product) = 4 pi I. Every photon carries the power itself.
 #include "light/sphere_emitter.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "light/warp.h"
 
 namespace gonio::light {
 namespace {
@@ -23,6 +29,9 @@ class Point final : public Emitter {
     return {arm / distance, distance, watt_per_sr_ / square, 0, true, true};
   }
   Hit hit(Vec3, Vec3) const override { return {}; }
+  Emission emit(Vec2, Vec2 u_direction) const override {
+    return {position_m_, on_sphere(u_direction), watt_per_sr_ * (4 * pi), true};
+  }
 
  private:
   Vec3 position_m_;
@@ -59,6 +68,12 @@ class Sphere final : public Emitter {
     const double depth = radius_m_ * radius_m_ - dot(across, across);
     if (!(room > 0) || along <= 0 || depth < 0) return {};
     return {along - std::sqrt(depth), radiance_, density(square, std::sqrt(room / square))};
+  }
+
+  Emission emit(Vec2 u_position, Vec2 u_direction) const override {
+    const Vec3 normal = on_sphere(u_position);
+    return {position_m_ + normal * radius_m_, Basis(normal).to_world(on_lobe(u_direction, 1)), watt_per_sr_ * (4 * pi),
+            true};
   }
 
  private:

@@ -17,34 +17,13 @@
 #include <vector>
 
 #include "base/error.h"
+#include "light/distribution.h"
 #include "light/light.h"
 
 namespace gonio::light {
 namespace {
 
 enum : std::size_t { scale_index, rotation_index };
-
-// Running sums of non-negative weights, the first 0 and the last 1.
-struct Distribution {
-  std::vector<double> cumulative;
-  double total = 0;
-  explicit Distribution(const std::vector<double>& weights) : cumulative(weights.size() + 1) {
-    for (std::size_t i = 0; i < weights.size(); ++i) cumulative[i + 1] = cumulative[i] + weights[i];
-    total = cumulative.back();
-    for (std::size_t i = 0; i < cumulative.size(); ++i)
-      cumulative[i] = total > 0 ? cumulative[i] / total : static_cast<double>(i) / static_cast<double>(weights.size());
-    cumulative.back() = 1;
-  }
-  double share(std::size_t i) const { return cumulative[i + 1] - cumulative[i]; }
-  // Index drawn by `u`, which is replaced by its position inside the interval.
-  std::size_t draw(double& u) const {
-    const auto above = std::upper_bound(cumulative.begin(), cumulative.end(), u);
-    const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
-        above - cumulative.begin() - 1, 0, static_cast<std::ptrdiff_t>(cumulative.size()) - 2));
-    u = share(i) > 0 ? std::clamp((u - cumulative[i]) / share(i), 0.0, 1.0) : 0.5;
-    return i;
-  }
-};
 
 class LatLong final : public Emitter {
  public:
