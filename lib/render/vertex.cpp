@@ -33,4 +33,31 @@ surface::Values values_at(const scene::Scene& scene, const SurfacePoint& point, 
   return values;
 }
 
+Vertex::Vertex(const scene::Scene& scene, const SurfacePoint& at, Vec3 to_eye,
+               const std::optional<InterfaceHere>& interface_here)
+    : point(at),
+      model(scene.appearance.surfaces[at.surface].model),
+      values(values_of(scene, interface_here)),
+      frame(shading_frame(at)),
+      wo(frame.to_local(to_eye)) {}
+
+// Most surfaces are the same everywhere and bound no medium: theirs are used in place.
+const surface::Values& Vertex::values_of(const scene::Scene& scene,
+                                         const std::optional<InterfaceHere>& interface_here) {
+  const scene::Surface& surface = scene.appearance.surfaces[point.surface];
+  if (!surface.varies() && !surface.base && !interface_here) return surface.values;
+  if (surface.base) {
+    own_ = values_at(scene, point, base_.emplace());
+  } else if (surface.varies()) {
+    own_ = surface.values_at(place_of(point, scene.instances[point.instance]));
+  } else {
+    own_ = surface.values;
+  }
+  if (interface_here) {
+    own_->eta = interface_here->eta;
+    own_->hero = interface_here->hero;
+  }
+  return *own_;
+}
+
 }  // namespace gonio::render

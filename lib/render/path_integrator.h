@@ -1,0 +1,38 @@
+// The integrator of one carrier (carrier.h). Instantiated once per carrier, in a source of its own.
+#pragma once
+#include <algorithm>
+#include <iterator>
+
+#include "render/path_loop.h"
+
+namespace gonio::render {
+
+template <class Carrier>
+class PathIntegrator final : public Integrator {
+ public:
+  PathIntegrator(const scene::Scene& scene, std::size_t view, const RayCaster& caster, const Transport& transport)
+      : setting_(scene, view, caster, transport), loop_(setting_) {}
+
+  std::vector<std::string> planes() const override {
+    std::vector<std::string> names = {""};
+    std::ranges::copy(Carrier::planes(), std::back_inserter(names));
+    std::ranges::copy(setting_.light_planes(), std::back_inserter(names));
+    return names;
+  }
+  std::size_t lights() const override { return setting_.emitters.size(); }
+  void trace(Vec2 pixel, Sampler& sampler, std::span<Rgb> planes, Noticed& noticed) const override {
+    loop_.trace(pixel, sampler, planes, noticed);
+  }
+  PixelGeometry geometry(int x, int y, const Noticed& noticed) const override {
+    return setting_.geometry(x, y, noticed);
+  }
+
+ private:
+  PathSetting setting_;
+  PathLoop<Carrier> loop_;
+};
+
+std::unique_ptr<Integrator> unpolarized_integrator(const scene::Scene& scene, std::size_t view, const RayCaster& caster,
+                                                   const Transport& transport);
+
+}  // namespace gonio::render

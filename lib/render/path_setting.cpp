@@ -1,0 +1,67 @@
+#include "render/path_setting.h"
+
+#include <cmath>
+
+namespace gonio::render {
+
+PathSetting::PathSetting(const scene::Scene& the_scene, std::size_t number, const RayCaster& the_caster,
+                         const Transport& the_transport)
+    : scene(the_scene),
+      view(the_scene.views[number]),
+      caster(the_caster),
+      transport(the_transport),
+      rotation(matrix_of(view.world_from_camera.rotation)),
+      media(the_scene, the_caster) {
+  for (const std::size_t light : view.lights) emitters.push_back(scene.appearance.lights[light].emitter.get());
+  named = emitters.size();
+  if (scene.appearance.ambient) emitters.push_back(scene.appearance.ambient.get());
+  for (const scene::Surface& surface : scene.appearance.surfaces) transmits.push_back(surface.model->transmits());
+  if (media.any()) camera_inside = media.around(view.world_from_camera.translation_m);
+}
+
+std::pair<Vec3, Vec3> PathSetting::world_ray(Vec2 pixel) const {
+  const camera::Ray ray = view.camera.ray(pixel);
+  return {rotation * ray.origin_m + view.world_from_camera.translation_m, rotation * ray.direction};
+}
+
+Rgb PathSetting::scale(Vec2 pixel) const {
+  return view.gain *
+         scene::vignetting(scene.appearance.vignetting_falloff, view.camera.width_px(), view.camera.height_px(), pixel);
+}
+
+std::vector<std::string> PathSetting::light_planes() const {
+  if (!transport.per_light) return {};
+  std::vector<std::string> names;
+  for (const std::size_t light : view.lights) names.push_back("light." + scene.appearance.lights[light].id);
+  if (scene.appearance.ambient) names.push_back("light.ambient");
+  return names;
+}
+
+Rgb PathSetting::clear(const SurfacePoint* from, Vec3 origin_m, const Inside& inside, Vec3 direction,
+                       double distance_m) const {
+  if (media.any()) return media.clear(from, origin_m, inside, direction, distance_m);
+  const bool dark =
+      from ? caster.occluded(*from, direction, distance_m) : caster.blocked(origin_m, direction, distance_m);
+  return dark ? Rgb{} : Rgb{1, 1, 1};
+}
+
+PixelGeometry PathSetting::geometry(int x, int y, const Noticed& noticed) const {
+  PixelGeometry geometry;
+  geometry.distance_m.resize(named);
+  geometry.visibility.resize(named);
+  for (std::size_t i = 0; i < named && noticed.met > 0; ++i)
+    geometry.visibility[i] = static_cast<double>(noticed.seen[i]) / noticed.met;
+  const auto [origin_m, direction] = world_ray({static_cast<double>(x), static_cast<double>(y)});
+  const auto point = caster.closest(origin_m, direction);
+  if (!point) return geometry;
+  geometry.position_m = point->position_m;
+  geometry.normal = point->normal;
+  geometry.id = static_cast<int>(point->instance) + 1;
+  for (std::size_t i = 0; i < named; ++i) {
+    const light::Sample sample = emitters[i]->sample(point->position_m, {0, 0});
+    if (sample.valid && std::isfinite(sample.distance_m)) geometry.distance_m[i] = sample.distance_m;
+  }
+  return geometry;
+}
+
+}  // namespace gonio::render
