@@ -229,6 +229,8 @@ class Builder {
                              image.gain && image.gain->given() ? image.gain->rgb() : Rgb{1, 1, 1},
                              {},
                              image.camera});
+      for (const auto& [id, use] : document_.mechanisms)
+        apply_mechanism(scene.views.back(), *mechanism::find_mechanism(id), use, at("/mechanisms/" + id));
     }
   }
 

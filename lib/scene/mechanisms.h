@@ -5,9 +5,12 @@
 // Mechanisms of surfaces and lights set the parameters of the same names. Where the target's model does not have them,
 // the smallest registered model takes its place that has all parameters of the present one and the mechanism's: diffuse
 // becomes coated-diffuse, point becomes sphere. No list says so; a new model is found by its parameters. A target to
-// whose model the parameters are not optional (the f0 of a metal) is one that the mechanism cannot apply to. Mechanisms
-// of boards do not change scenes; those of cameras replace terms of the distortion.
+// whose model the parameters are not optional (the f0 of a metal) is one that the mechanism cannot apply to. A model
+// that reads a file gives way to none that would not read it. Mechanisms of boards do not change scenes. Of cameras,
+// those of the stage "lens" replace terms of the distortion and optics.defocus gives views a lens; what happens behind
+// the lens is the matter of render/sensor_chain.h.
 #pragma once
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +36,17 @@ void apply_mechanism(Appearance& appearance, const mechanism::Mechanism& mechani
 // The camera's part: lens.* replace the distortion terms of the same names; others leave the camera as it is.
 void apply_mechanism(manifest::Camera& camera, const std::string& name, const mechanism::Mechanism& mechanism,
                      const manifest::MechanismUse& use, const std::string& place);
+
+// What a mechanism of cameras amounts to for the camera `name`, one number per parameter in its order; nothing where it
+// is not meant or neutral. Error(data) at `place` also for values beyond the parameters' bounds (but for the lens'
+// terms, which fits may take anywhere).
+std::optional<std::vector<double>> camera_amounts(const mechanism::Mechanism& mechanism,
+                                                  const manifest::MechanismUse& use, const std::string& name,
+                                                  const std::string& place);
+
+// The view's part: optics.defocus; others leave it as it is.
+void apply_mechanism(View& view, const mechanism::Mechanism& mechanism, const manifest::MechanismUse& use,
+                     const std::string& place);
 
 // "surface.interface:f0=0.05,alpha=0.15,on=bunny,on=cup" as typed on a command line. Error(usage) at `place`.
 std::pair<const mechanism::Mechanism*, manifest::MechanismUse> parse_mechanism(const std::string& text,

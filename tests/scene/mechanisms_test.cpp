@@ -144,6 +144,26 @@ TEST(Cameras, LensTermsReplaceTheDistortion) {
   EXPECT_EQ(camera.model, "thin-prism");
 }
 
+TEST(Views, DefocusGivesALensToTheCamerasItNames) {
+  View view{.image = "i",
+            .camera = {{}, 8, 8},
+            .world_from_camera = {},
+            .lights = {},
+            .gain = {1, 1, 1},
+            .lens = {},
+            .camera_name = "c"};
+  const manifest::Parameters wide = {{"aperture_radius_m", 0.01}, {"focus_m", 0.7}};
+  apply_mechanism(view, mechanism_of("optics.defocus"), use(wide, {"another"}), "here");
+  EXPECT_EQ(view.lens.aperture_radius_m, 0);
+  apply_mechanism(view, mechanism_of("optics.defocus"), use({{"focus_m", 1.0}}), "here");
+  EXPECT_EQ(view.lens.aperture_radius_m, 0);
+  apply_mechanism(view, mechanism_of("optics.defocus"), use(wide), "here");
+  EXPECT_EQ(view.lens.aperture_radius_m, 0.01);
+  EXPECT_EQ(view.lens.focus_m, 0.7);
+  EXPECT_THROW(apply_mechanism(view, mechanism_of("optics.defocus"), use({{"aperture_radius_m", -1.0}}), "here"),
+               Error);
+}
+
 std::string problem_of(const std::string& id, const MechanismUse& what) {
   Appearance a = appearance();
   try {

@@ -1,0 +1,29 @@
+// optics.veiling-glare: light strays inside the lens. Equation: render/sensor_chain.h, step 1.
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+
+const Mechanism& optics_veiling_glare() {
+  static const Mechanism declaration{
+      .id = "optics.veiling-glare",
+      .sentence = "Light strays between lens and sensor and lies over the whole picture as a veil.",
+      .equation = "v += share mean(v), the mean over the picture, channel by channel",
+      .source = "ISO 9358:1994, veiling glare index; Talvala et al. 2007 (uniform part)",
+      .stage = "optics",
+      .target = Target::camera,
+      .domains = {},
+      .parameters = {{.name = "share",
+                      .unit = "1",
+                      .neutral = 0,
+                      .lower = 0,
+                      .upper = 0.2,
+                      .start = 0.02,
+                      .meaning = "share of the picture's mean that is added to every pixel"}},
+      .conditions = {"image.radiance", "image.mean"},
+      .mistaken_for = {{.with = "light.ambient", .told_apart = "mask the bright areas"},
+                       {.with = "sensor.black-offset", .told_apart = "mask the bright areas: an offset stays"}},
+  };
+  return declaration;
+}
+
+}  // namespace gonio::mechanism

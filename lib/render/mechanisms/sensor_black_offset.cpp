@@ -1,0 +1,29 @@
+// sensor.black-offset: readings without light. Equation: render/sensor_chain.h, step 8.
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+
+const Mechanism& sensor_black_offset() {
+  static const Mechanism declaration{
+      .id = "sensor.black-offset",
+      .sentence = "The sensor reads more than zero in the dark.",
+      .equation = "v += offset",
+      .source = "EMVA Standard 1288, release 4.0, dark signal",
+      .stage = "sensor",
+      .target = Target::camera,
+      .domains = {},
+      .parameters = {{.name = "offset",
+                      .unit = "W/(m^2 sr)",
+                      .neutral = 0,
+                      .lower = -1000,
+                      .upper = 1000,
+                      .start = 0.01,
+                      .meaning = "reading in the dark, in the unit of the picture"}},
+      .conditions = {"image.radiance"},
+      .mistaken_for = {{.with = "light.ambient", .told_apart = "lens cap, or the same scene at two exposures"},
+                       {.with = "optics.veiling-glare", .told_apart = "lens cap"}},
+  };
+  return declaration;
+}
+
+}  // namespace gonio::mechanism

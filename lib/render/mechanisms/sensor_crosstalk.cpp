@@ -1,0 +1,29 @@
+// sensor.crosstalk: bands leak into each other. Equation: render/sensor_chain.h, step 2.
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+
+const Mechanism& sensor_crosstalk() {
+  static const Mechanism declaration{
+      .id = "sensor.crosstalk",
+      .sentence = "Colour filters and neighbouring pixels let some of the other colours through.",
+      .equation = "(R, G, B)' = M (R, G, B), M = 1 - 2 share on the diagonal and share elsewhere",
+      .source = "Hirakawa 2008, Cross-talk explained (symmetric, without the spatial part)",
+      .stage = "sensor",
+      .target = Target::camera,
+      .domains = {},
+      .parameters = {{.name = "share",
+                      .unit = "1",
+                      .neutral = 0,
+                      .lower = 0,
+                      .upper = 0.2,
+                      .start = 0.03,
+                      .meaning = "share of each other band in a band's reading"}},
+      .conditions = {"image.hue", "image.edge-distance"},
+      .mistaken_for = {{.with = "dispersion", .told_apart = "light of one colour"},
+                       {.with = "surface albedo", .told_apart = "light of one colour"}},
+  };
+  return declaration;
+}
+
+}  // namespace gonio::mechanism

@@ -1,0 +1,43 @@
+// sensor.row-pattern: flicker under a rolling shutter. Equation: render/sensor_chain.h, step 7.
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+
+const Mechanism& sensor_row_pattern() {
+  static const Mechanism declaration{
+      .id = "sensor.row-pattern",
+      .sentence = "Lamps flicker while the rows are read one after the other, and the picture shows bands.",
+      .equation = "v *= 1 + amplitude sin(2 pi row / period_px + phase_rad)",
+      .source = "first harmonic of mains flicker; Sheinin, Schechner & Kutulakos 2017",
+      .stage = "sensor",
+      .target = Target::camera,
+      .domains = {},
+      .parameters = {{.name = "amplitude",
+                      .unit = "1",
+                      .neutral = 0,
+                      .lower = 0,
+                      .upper = 0.5,
+                      .start = 0.05,
+                      .meaning = "half the swing over the mean"},
+                     {.name = "period_px",
+                      .unit = "px",
+                      .neutral = 100,
+                      .lower = 2,
+                      .upper = 100000.0,
+                      .start = 100,
+                      .meaning = "rows from band to band: 1 / (2 mains frequency) over the time from row to row"},
+                     {.name = "phase_rad",
+                      .unit = "rad",
+                      .neutral = 0,
+                      .lower = -6.283185307179586,
+                      .upper = 6.283185307179586,
+                      .start = 0,
+                      .meaning = "phase at row 0; changes from picture to picture"}},
+      .conditions = {"camera.image-y"},
+      .mistaken_for = {{.with = "texture", .told_apart = "lamps on direct current"},
+                       {.with = "light.lobe", .told_apart = "lamps on direct current"}},
+  };
+  return declaration;
+}
+
+}  // namespace gonio::mechanism

@@ -1,0 +1,29 @@
+// sensor.saturation: readings have a largest value. Equation: render/sensor_chain.h, step 10.
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+
+const Mechanism& sensor_saturation() {
+  static const Mechanism declaration{
+      .id = "sensor.saturation",
+      .sentence = "The sensor reads no more than its full scale, whatever light arrives.",
+      .equation = "v = min(v, full_scale); full_scale 0: no limit",
+      .source = "EMVA Standard 1288, release 4.0, saturation capacity",
+      .stage = "sensor",
+      .target = Target::camera,
+      .domains = {},
+      .parameters = {{.name = "full_scale",
+                      .unit = "W/(m^2 sr)",
+                      .neutral = 0,
+                      .lower = 1e-09,
+                      .upper = 1000000000.0,
+                      .start = 1,
+                      .meaning = "largest reading, in the unit of the picture"}},
+      .conditions = {"image.radiance"},
+      .mistaken_for = {{.with = "sensor.non-linearity", .told_apart = "shorter exposure"},
+                       {.with = "surface.specular", .told_apart = "shorter exposure"}},
+  };
+  return declaration;
+}
+
+}  // namespace gonio::mechanism

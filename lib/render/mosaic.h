@@ -1,0 +1,35 @@
+// Filters over single pixels: colour filter arrays and the polarizers of a polarization camera. Super-pixels are 2 x 2
+// and begin at pixel (0, 0), so that rows and columns of even number carry the first filter of each pair.
+//
+//   RGGB:  R G    GRBG:  G R    GBRG:  G B    BGGR:  B G    polarizers, degrees:   90  45
+//          G B           B G           R G           G R                          135   0
+#pragma once
+#include <string>
+
+#include "io/image.h"
+
+namespace gonio::render {
+
+// "RGGB", "GRBG", "GBRG" or "BGGR".
+bool is_bayer(const std::string& mosaic);
+
+// One channel Y: of each pixel's R, G, B that which its filter passes. Error(data) for other names than the above, and
+// for pictures without R, G, B.
+io::Image bayer_mosaic(const io::Image& picture, const std::string& mosaic);
+
+// Behind an ideal linear polarizer whose axis stands at `angle_rad` from the x of the Stokes vector's frame towards y:
+// the first component of the polarizer's Mueller matrix times s, (s0 + s1 cos 2a + s2 sin 2a) / 2 (Collett 2005,
+// equation 4-42).
+double behind_polarizer(double s0, double s1, double s2, double angle_rad);
+
+// Axis over a pixel, rad.
+double polarizer_angle(int x, int y);
+
+// Channels R, G, B of s0 and s1.R ... s2.B to R, G, B behind the polarizers: what a sensor of each band would record.
+// Error(usage) for pictures without Stokes planes.
+io::Image polarizer_mosaic(const io::Image& picture);
+
+// Rec. 709 luminance of R, G, B as one channel Y: what stands in for the reading of a sensor without colour filters.
+io::Image luminance(const io::Image& picture);
+
+}  // namespace gonio::render

@@ -1,0 +1,149 @@
+#include "render/sensor_chain.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "geom/vector.h"
+#include "render/image_seed.h"
+#include "render/mosaic.h"
+#include "scene/mechanisms.h"
+
+namespace gonio::render {
+namespace {
+
+using Links = std::vector<double Sensor::*>;  // one per parameter of the mechanism, in its order
+
+const std::map<std::string, Links>& links() {
+  static const std::map<std::string, Links> all = {
+      {"optics.veiling-glare", {&Sensor::glare_share}},
+      {"sensor.crosstalk", {&Sensor::crosstalk_share}},
+      {"sensor.prnu", {&Sensor::prnu_sigma}},
+      {"sensor.non-linearity", {&Sensor::quadratic, &Sensor::reference}},
+      {"sensor.row-pattern", {&Sensor::row_amplitude, &Sensor::row_period_px, &Sensor::row_phase_rad}},
+      {"sensor.black-offset", {&Sensor::black_offset}},
+      {"sensor.saturation", {&Sensor::full_scale}}};
+  return all;
+}
+
+// Knuth's product of uniforms; beyond 50 expected events the rounded normal, whose third moment differs by less than a
+// seventh.
+double poisson(double expected, Random& random) {
+  if (!(expected > 0)) return 0;
+  if (expected > 50) return std::max(0.0, std::round(expected + std::sqrt(expected) * random.normal()));
+  double product = random.uniform();
+  int events = 0;
+  for (const double limit = std::exp(-expected); product > limit; ++events) product *= random.uniform();
+  return events;
+}
+
+io::Image colours(const io::Image& rendered, const std::string& prefix = "") {
+  io::Image result(rendered.width, rendered.height, {prefix + "R", prefix + "G", prefix + "B"});
+  for (int c = 0; c < 3; ++c) {
+    const int from = rendered.channel(result.channels[static_cast<std::size_t>(c)]);
+    if (from < 0)
+      throw Error(Exit::data, "picture",
+                  "has no channel " + result.channels[static_cast<std::size_t>(c)] + " to record",
+                  prefix.empty() ? "render in RGB" : "add --stokes");
+    for (int y = 0; y < result.height; ++y)
+      for (int x = 0; x < result.width; ++x) result.at(x, y, c) = rendered.at(x, y, from);
+  }
+  return result;
+}
+
+void add_glare(io::Image& image, double share) {
+  const std::size_t channels = image.channels.size();
+  std::vector<double> sums(channels);
+  for (std::size_t i = 0; i < image.data.size(); ++i) sums[i % channels] += image.data[i];
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    image.data[i] += static_cast<float>(share * sums[i % channels] / static_cast<double>(image.pixels()));
+}
+
+void mix(io::Image& image, double share) {
+  for (std::size_t i = 0; i + 2 < image.data.size(); i += 3) {
+    const double sum = double{image.data[i]} + image.data[i + 1] + image.data[i + 2];
+    for (std::size_t c = 0; c < 3; ++c)
+      image.data[i + c] = static_cast<float>((1 - 3 * share) * image.data[i + c] + share * sum);
+  }
+}
+
+// What optics and filters do, linear in all bands: Stokes planes are treated as the radiance is.
+io::Image through_optics(const io::Image& rendered, const Sensor& sensor, const std::string& prefix) {
+  io::Image image = colours(rendered, prefix);
+  if (sensor.glare_share != 0) add_glare(image, sensor.glare_share);
+  if (sensor.crosstalk_share != 0) mix(image, sensor.crosstalk_share);
+  return image;
+}
+
+io::Image joined(const std::array<io::Image, 3>& parts) {
+  io::Image result(parts[0].width, parts[0].height, {"R", "G", "B", "s1.R", "s1.G", "s1.B", "s2.R", "s2.G", "s2.B"});
+  for (std::size_t i = 0; i < result.pixels(); ++i)
+    for (std::size_t p = 0; p < 3; ++p)
+      for (std::size_t c = 0; c < 3; ++c) result.data[9 * i + 3 * p + c] = parts[p].data[3 * i + c];
+  return result;
+}
+
+io::Image behind_filters(const io::Image& rendered, const Sensor& sensor) {
+  io::Image image = through_optics(rendered, sensor, "");
+  if (sensor.mosaic.empty()) return image;
+  if (sensor.mosaic != "polarizers") return bayer_mosaic(image, sensor.mosaic);
+  return luminance(polarizer_mosaic(
+      joined({std::move(image), through_optics(rendered, sensor, "s1."), through_optics(rendered, sensor, "s2.")})));
+}
+
+// One reading; `fixed` belongs to the pixel of this camera, `random` to this picture.
+double reading(double v, const Sensor& sensor, int row, Random& fixed, Random& random) {
+  if (sensor.prnu_sigma != 0) v *= 1 + sensor.prnu_sigma * fixed.normal();
+  if (sensor.noise.gain > 0) v = poisson(v * sensor.noise.gain, random) / sensor.noise.gain;
+  if (sensor.quadratic != 0) v *= 1 + sensor.quadratic * v / sensor.reference;
+  if (sensor.row_amplitude != 0)
+    v *= 1 + sensor.row_amplitude * std::sin(2 * pi * row / sensor.row_period_px + sensor.row_phase_rad);
+  v += sensor.black_offset + sensor.noise.read * random.normal();
+  return sensor.full_scale > 0 ? std::min(v, sensor.full_scale) : v;
+}
+
+}  // namespace
+
+bool in_sensor_chain(const mechanism::Mechanism& mechanism) {
+  return links().contains(mechanism.id);
+}
+
+Sensor sensor_of(const manifest::Document& document, std::size_t image) {
+  const manifest::ImageEntry& entry = document.images.at(image);
+  Sensor sensor;
+  sensor.camera = entry.camera;
+  if (const auto camera = document.cameras.find(entry.camera); camera != document.cameras.end())
+    sensor.mosaic = camera->second.mosaic;
+  if (entry.noise) sensor.noise = *entry.noise;
+  for (const auto& [id, use] : document.mechanisms) {
+    const auto link = links().find(id);
+    if (link == links().end()) continue;
+    const auto amounts = scene::camera_amounts(*mechanism::find_mechanism(id), use, entry.camera,
+                                               manifest::place(document, "/mechanisms/" + id));
+    if (!amounts) continue;
+    for (std::size_t i = 0; i < amounts->size(); ++i) sensor.*link->second[i] = (*amounts)[i];
+  }
+  return sensor;
+}
+
+io::Image recorded(const io::Image& rendered, const Sensor& sensor, const std::string& image_id, std::uint64_t seed) {
+  const std::uint64_t own_seed = seed_of(seed ^ 0x73656e736f72u, image_id);  // not the numbers that made the rendering
+  const std::uint64_t camera_seed = seed_of(0x70726e75u, sensor.camera);
+  io::Image image = behind_filters(rendered, sensor);
+  const int channels = static_cast<int>(image.channels.size());
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint64_t pixel =
+          static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(image.width) + static_cast<std::uint64_t>(x);
+      Random random(own_seed, pixel), fixed(camera_seed, pixel);
+      for (int c = 0; c < channels; ++c)
+        image.at(x, y, c) = static_cast<float>(reading(image.at(x, y, c), sensor, y, fixed, random));
+    }
+  return image;
+}
+
+}  // namespace gonio::render

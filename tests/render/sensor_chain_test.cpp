@@ -1,0 +1,136 @@
+// The links of a camera's chain, one by one; |z| < 4.5 where there is noise.
+#include "render/sensor_chain.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "geom/vector.h"
+
+namespace gonio::render {
+namespace {
+
+using mechanism::Mechanism;
+using mechanism::Target;
+
+io::Image picture_of(int width, int height, std::uint64_t seed) {
+  io::Image picture(width, height, {"R", "G", "B", "variance.R"});
+  Random random(seed);
+  for (float& v : picture.data) v = static_cast<float>(random.uniform(0.1, 2));
+  return picture;
+}
+
+manifest::Document document_with(const std::map<std::string, manifest::MechanismUse>& mechanisms) {
+  manifest::Document document;
+  document.cameras["cam"].mosaic = "";
+  manifest::ImageEntry image;
+  image.id = "view";
+  image.camera = "cam";
+  document.images.push_back(image);
+  document.mechanisms = mechanisms;
+  return document;
+}
+manifest::MechanismUse use(const manifest::Parameters& parameters, const std::vector<std::string>& on = {}) {
+  return {.on = on, .parameters = parameters, .sigma = {}};
+}
+io::Image recorded_with(const io::Image& picture, const std::map<std::string, manifest::MechanismUse>& mechanisms) {
+  return recorded(picture, sensor_of(document_with(mechanisms), 0), "view", 7);
+}
+
+// Walks the registry: what is declared for cameras behind the lens is known, and vanishes where it says so.
+TEST(SensorChain, EveryLinkVanishesAtNeutralAndActsOtherwise) {
+  const io::Image picture = picture_of(12, 9, 1);
+  const io::Image plain = recorded_with(picture, {});
+  for (int y = 0; y < 9; ++y)
+    for (int x = 0; x < 12; ++x)
+      for (int c = 0; c < 3; ++c) ASSERT_EQ(plain.at(x, y, c), picture.at(x, y, c));
+  int count = 0;
+  for (const Mechanism* m : mechanism::all_mechanisms()) {
+    const bool ours = m->target == Target::camera && m->stage != "lens" && m->domains.empty();
+    EXPECT_EQ(in_sensor_chain(*m), ours && m->id != "optics.defocus") << m->id;
+    if (!in_sensor_chain(*m)) continue;
+    ++count;
+    manifest::Parameters neutral, other;
+    for (const auto& p : m->parameters) {
+      neutral[p.name] = p.neutral;
+      other[p.name] = p.start;
+    }
+    EXPECT_EQ(recorded_with(picture, {{m->id, use(neutral)}}).data, plain.data) << m->id;
+    EXPECT_EQ(recorded_with(picture, {{m->id, use({})}}).data, plain.data) << m->id;
+    EXPECT_EQ(recorded_with(picture, {{m->id, use(other, {"another"})}}).data, plain.data) << m->id;
+    EXPECT_NE(recorded_with(picture, {{m->id, use(other)}}).data, plain.data) << m->id;
+    other.begin()->second.value[0] = 1e12;
+    EXPECT_THROW(recorded_with(picture, {{m->id, use(other)}}), Error) << m->id;
+  }
+  EXPECT_GE(count, 7);
+}
+
+TEST(SensorChain, LinksDoWhatTheirEquationsSay) {
+  const io::Image picture = picture_of(40, 30, 2);
+  std::array<double, 3> mean{};
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 40; ++x)
+      for (int c = 0; c < 3; ++c) mean[c] += picture.at(x, y, c) / 1200.0;
+  const auto value = [&](const std::string& id, const manifest::Parameters& parameters, int c) {
+    return recorded_with(picture, {{id, use(parameters)}}).at(11, 7, c);
+  };
+  const double r = picture.at(11, 7, 0), g = picture.at(11, 7, 1), b = picture.at(11, 7, 2);
+  EXPECT_NEAR(value("optics.veiling-glare", {{"share", 0.1}}, 1), g + 0.1 * mean[1], 1e-6);
+  EXPECT_NEAR(value("sensor.crosstalk", {{"share", 0.1}}, 2), 0.8 * b + 0.1 * (r + g), 1e-6);
+  EXPECT_NEAR(value("sensor.non-linearity", {{"quadratic", -0.2}, {"reference", 2.0}}, 0), r * (1 - 0.1 * r), 1e-6);
+  EXPECT_NEAR(value("sensor.row-pattern", {{"amplitude", 0.2}, {"period_px", 28.0}, {"phase_rad", 0.0}}, 0), 1.2 * r,
+              1e-6);
+  EXPECT_NEAR(value("sensor.black-offset", {{"offset", -0.3}}, 0), r - 0.3, 1e-6);
+  EXPECT_NEAR(value("sensor.saturation", {{"full_scale", 0.05}}, 0), 0.05, 1e-7);
+  EXPECT_NEAR(value("sensor.saturation", {{"full_scale", 5.0}}, 0), r, 1e-7);
+}
+
+TEST(SensorChain, PrnuIsTheSameInEveryPictureOfACameraAndNoiseIsNot) {
+  io::Image flat(200, 200, {"R", "G", "B"});
+  for (float& v : flat.data) v = 1;
+  Sensor sensor;
+  sensor.camera = "a";
+  sensor.prnu_sigma = 0.02;
+  const io::Image one = recorded(flat, sensor, "one", 1), two = recorded(flat, sensor, "two", 1);
+  EXPECT_EQ(one.data, two.data);
+  double square = 0;
+  for (const float v : one.data) square += (v - 1.0) * (v - 1.0);
+  const auto n = static_cast<double>(one.data.size());
+  EXPECT_NEAR(square / n / 4e-4, 1, 4.5 * std::sqrt(2 / n));
+  sensor.camera = "b";
+  EXPECT_NE(recorded(flat, sensor, "one", 1).data, one.data);
+  sensor.prnu_sigma = 0;
+  sensor.noise = {.gain = 1000, .read = 0.01};
+  EXPECT_NE(recorded(flat, sensor, "one", 1).data, recorded(flat, sensor, "two", 1).data);
+}
+
+// Photon noise goes with what the filter passes; offset and full scale come after it.
+TEST(SensorChain, NoiseBehindAMosaicAndBeforeOffsetAndSaturation) {
+  io::Image flat(256, 256, {"R", "G", "B"});
+  for (std::size_t i = 0; i < flat.data.size(); ++i) flat.data[i] = 0.2f * static_cast<float>(1 + i % 3);
+  Sensor sensor;
+  sensor.mosaic = "GRBG";
+  sensor.noise = {.gain = 500, .read = 0.01};
+  sensor.black_offset = 0.1;
+  const io::Image raw = recorded(flat, sensor, "raw", 3);
+  ASSERT_THAT(raw.channels, testing::ElementsAre("Y"));
+  const std::array<double, 4> level = {0.4, 0.2, 0.6, 0.4};
+  for (int f = 0; f < 4; ++f) {
+    double sum = 0, square = 0;
+    constexpr double n = 128 * 128;
+    for (int y = f / 2; y < 256; y += 2)
+      for (int x = f % 2; x < 256; x += 2) sum += raw.at(x, y, 0);
+    const double mean = sum / n, variance = level[f] / 500 + 1e-4;
+    for (int y = f / 2; y < 256; y += 2)
+      for (int x = f % 2; x < 256; x += 2) square += std::pow(raw.at(x, y, 0) - mean, 2);
+    EXPECT_NEAR(mean, level[f] + 0.1, 4.5 * std::sqrt(variance / n)) << f;
+    EXPECT_NEAR(square / n / variance, 1, 4.5 * std::sqrt(2 / n) + 0.005) << f;
+  }
+  sensor.full_scale = 0.5;
+  const io::Image clipped = recorded(flat, sensor, "raw", 3);
+  for (const float v : clipped.data) ASSERT_LE(v, 0.5f);
+}
+
+}  // namespace
+}  // namespace gonio::render
