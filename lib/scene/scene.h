@@ -52,7 +52,7 @@ struct Texture {
 // Where on an object: what decides on a surface's parameters there. Object frame.
 struct Place {
   Vec2 uv;
-  Vec3 position_m, normal;           // the unit shading normal, outwards
+  Vec3 position_m{}, normal{};           // the unit shading normal, outwards
   const mesh::Mesh* mesh = nullptr;  // null for analytic shapes
   std::uint32_t triangle = 0;
   double b1 = 0, b2 = 0;  // barycentric coordinates of the triangle's second and third vertex
@@ -64,10 +64,10 @@ struct Surface {
   manifest::Parameters parameters;  // as in the manifest
   surface::Values values;           // derived from `parameters`
   std::vector<Texture> textures;
-  std::shared_ptr<const surface::Prepared> prepared;  // derived; values.prepared points to it
-  std::filesystem::path file;                         // of models that read a table
-  std::optional<std::size_t> base;                    // place in Appearance::surfaces of the surface beneath
-  bool varies() const { return !textures.empty(); }   // else `values` hold everywhere
+  std::shared_ptr<const surface::Prepared> prepared{};  // derived; values.prepared points to it
+  std::filesystem::path file{};                         // of models that read a table
+  std::optional<std::size_t> base{};                    // place in Appearance::surfaces of the surface beneath
+  bool varies() const { return !textures.empty(); }     // else `values` hold everywhere
   surface::Values values_at(const Place& place) const;
 };
 
@@ -76,7 +76,7 @@ struct Light {
   const light::Model* model = nullptr;
   manifest::Parameters parameters;
   std::shared_ptr<const io::Image> picture;
-  std::filesystem::path file;
+  std::filesystem::path file{};
   std::shared_ptr<const light::Emitter> emitter;  // derived from `parameters`
 };
 
