@@ -1,6 +1,6 @@
 // PLY meshes (Turk 1994, "The PLY Polygon File Format"). Own code, because coordinates must keep their double
-// precision. What it does not do: colours, triangle strips, edges; elements and properties that it does not know are
-// skipped.
+// precision. What it does not do: triangle strips, edges; elements and properties that it does not know and nobody
+// asked for are skipped.
 #include "io/ply.h"
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "io/picture.h"
 #include "io/ply_header.h"
 
 namespace gonio::io {
@@ -123,8 +124,27 @@ int vertex_slot(const std::string& name) {
   return -1;
 }
 
-void read_vertices(const PlyElement& element, Values& values, TriangleMesh& mesh) {
+// Places in `wish.properties` that a vertex property fills (a name may be wished for once).
+std::vector<int> wished_slots(const PlyElement& element, const PlyWish& wish) {
   std::vector<int> slots;
+  for (const auto& p : element.properties) {
+    const auto found = std::find(wish.properties.begin(), wish.properties.end(), p.name);
+    slots.push_back(p.count_type || found == wish.properties.end() ? -1
+                                                                   : static_cast<int>(found - wish.properties.begin()));
+  }
+  return slots;
+}
+
+float kept(const PlyProperty& property, double value) {
+  if (property.type != PlyScalar::uint8) return static_cast<float>(value);
+  const auto share = static_cast<float>(value / 255);
+  const bool colour = property.name == "red" || property.name == "green" || property.name == "blue";
+  return colour ? linear_from_srgb(share) : share;
+}
+
+void read_vertices(const PlyElement& element, const PlyWish& wish, Values& values, TriangleMesh& mesh) {
+  std::vector<int> slots;
+  const std::vector<int> wished = wished_slots(element, wish);
   std::array<bool, 8> present{};
   for (const auto& p : element.properties) {
     slots.push_back(p.count_type ? -1 : vertex_slot(p.name));
@@ -133,18 +153,24 @@ void read_vertices(const PlyElement& element, Values& values, TriangleMesh& mesh
   if (!present[0] || !present[1] || !present[2]) values.refuse("lacks x, y or z");
   const bool normals = present[3] && present[4] && present[5], texture = present[6] && present[7];
   mesh.positions_m.reserve(element.count);
+  if (normals) mesh.normals.reserve(element.count);
+  if (texture) mesh.texture.reserve(element.count);
+  mesh.properties.resize(wish.properties.size());
+  for (const int slot : wished)
+    if (slot >= 0) mesh.properties[static_cast<std::size_t>(slot)].reserve(element.count);
   for (std::uint64_t row = 0; row < element.count; ++row) {
     values.enter_row(row);
     std::array<double, 8> v{};
     for (std::size_t i = 0; i < slots.size(); ++i) {
       const auto& p = element.properties[i];
-      if (slots[i] < 0) {
+      if (slots[i] < 0 && wished[i] < 0) {
         skip(p, values);
         continue;
       }
       const double value = values.next(p.type);
       if (!std::isfinite(value)) values.refuse("has " + Values::shown(value) + " for " + p.name);
-      v[static_cast<std::size_t>(slots[i])] = value;
+      if (slots[i] >= 0) v[static_cast<std::size_t>(slots[i])] = value;
+      if (wished[i] >= 0) mesh.properties[static_cast<std::size_t>(wished[i])].push_back(kept(p, value));
     }
     mesh.positions_m.push_back({v[0], v[1], v[2]});
     if (normals) mesh.normals.push_back({v[3], v[4], v[5]});
@@ -168,22 +194,39 @@ void read_polygon(const PlyProperty& property, std::uint64_t vertices, Values& v
   }
 }
 
-void read_faces(const PlyElement& element, std::uint64_t vertices, Values& values, TriangleMesh& mesh) {
-  bool known = false;
+std::int32_t label(const PlyProperty& property, Values& values) {
+  const double value = values.next(property.type);
+  if (!(std::abs(value) <= 0x7fffffff) || value != std::floor(value))
+    values.refuse("has the label " + Values::shown(value) + ", which is no integer of 32 bits");
+  return static_cast<std::int32_t>(value);
+}
+
+void read_faces(const PlyElement& element, std::uint64_t vertices, const PlyWish& wish, Values& values,
+                TriangleMesh& mesh) {
+  bool known = false, labelled = false;
   const auto is_polygon = [](const PlyProperty& p) {
     return p.count_type && (p.name == "vertex_indices" || p.name == "vertex_index");
   };
-  for (const auto& p : element.properties) known = known || is_polygon(p);
+  const auto is_label = [&](const PlyProperty& p) { return wish.labels && !p.count_type && p.name == "label"; };
+  for (const auto& p : element.properties) {
+    known = known || is_polygon(p);
+    labelled = labelled || is_label(p);
+  }
   if (!known) values.refuse("lacks the list vertex_indices");
   mesh.triangles.reserve(element.count);
+  if (labelled) mesh.labels.reserve(element.count);
   for (std::uint64_t row = 0; row < element.count; ++row) {
     values.enter_row(row);
+    std::int32_t of_face = 0;
     for (const auto& p : element.properties) {
       if (is_polygon(p))
         read_polygon(p, vertices, values, mesh);
+      else if (is_label(p))
+        of_face = label(p, values);
       else
         skip(p, values);
     }
+    if (labelled) mesh.labels.resize(mesh.triangles.size(), of_face);
   }
 }
 
@@ -194,22 +237,25 @@ void append(std::string& bytes, T value) {
   bytes.append(raw.data(), raw.size());
 }
 
-std::string header_of(const TriangleMesh& mesh) {
+std::string header_of(const TriangleMesh& mesh, const PlyWish& wish) {
   std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.positions_m.size()) +
                      "\nproperty double x\nproperty double y\nproperty double z\n";
   if (!mesh.normals.empty()) text += "property double nx\nproperty double ny\nproperty double nz\n";
   if (!mesh.texture.empty()) text += "property double s\nproperty double t\n";
-  return text + "element face " + std::to_string(mesh.triangles.size()) +
-         "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (std::size_t i = 0; i < mesh.properties.size(); ++i)
+    if (!mesh.properties[i].empty()) text += "property float " + wish.properties.at(i) + "\n";
+  text += "element face " + std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\n";
+  if (!mesh.labels.empty()) text += "property int label\n";
+  return text + "end_header\n";
 }
 
 }  // namespace
 
-TriangleMesh read_ply(const std::filesystem::path& path) {
-  return parse_ply(read_file(path), path.string());
+TriangleMesh read_ply(const std::filesystem::path& path, const PlyWish& wish) {
+  return parse_ply(read_file(path), path.string(), wish);
 }
 
-TriangleMesh parse_ply(std::string_view file, const std::string& place) {
+TriangleMesh parse_ply(std::string_view file, const std::string& place, const PlyWish& wish) {
   const PlyHeader header = read_ply_header(file, place);
   std::uint64_t vertices = 0;
   for (const auto& element : header.elements)
@@ -221,9 +267,9 @@ TriangleMesh parse_ply(std::string_view file, const std::string& place) {
     values.enter(element);
     values.enter_row(0);
     if (element.name == "vertex" && mesh.positions_m.empty()) {
-      read_vertices(element, values, mesh);
+      read_vertices(element, wish, values, mesh);
     } else if (element.name == "face") {
-      read_faces(element, vertices, values, mesh);
+      read_faces(element, vertices, wish, values, mesh);
     } else if (!element.properties.empty()) {
       for (std::uint64_t row = 0; row < element.count; ++row) {
         values.enter_row(row);
@@ -234,20 +280,24 @@ TriangleMesh parse_ply(std::string_view file, const std::string& place) {
   return mesh;
 }
 
-void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh) {
-  std::string bytes = header_of(mesh);
+void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, const PlyWish& wish) {
+  std::string bytes = header_of(mesh, wish);
   bytes.reserve(bytes.size() + mesh.positions_m.size() * 64 + mesh.triangles.size() * 13);
   for (std::size_t i = 0; i < mesh.positions_m.size(); ++i) {
     for (int k = 0; k < 3; ++k) append(bytes, mesh.positions_m[i][k]);
     if (!mesh.normals.empty())
       for (int k = 0; k < 3; ++k) append(bytes, mesh.normals.at(i)[k]);
-    if (mesh.texture.empty()) continue;
-    append(bytes, mesh.texture.at(i).x);
-    append(bytes, mesh.texture.at(i).y);
+    if (!mesh.texture.empty()) {
+      append(bytes, mesh.texture.at(i).x);
+      append(bytes, mesh.texture.at(i).y);
+    }
+    for (const auto& property : mesh.properties)
+      if (!property.empty()) append(bytes, property.at(i));
   }
-  for (const auto& triangle : mesh.triangles) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     append(bytes, std::uint8_t{3});
-    for (const auto index : triangle) append(bytes, static_cast<std::int32_t>(index));
+    for (const auto index : mesh.triangles[t]) append(bytes, static_cast<std::int32_t>(index));
+    if (!mesh.labels.empty()) append(bytes, mesh.labels.at(t));
   }
   write_file(path, bytes);
 }

@@ -51,6 +51,19 @@ std::vector<Vec3> unit_normals(const io::TriangleMesh& raw) {
   return normals;
 }
 
+// Leaves out triangles without area, and their labels.
+void drop_flat(io::TriangleMesh& raw) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < raw.triangles.size(); ++i) {
+    if (!(norm(doubled_area(raw.positions_m, raw.triangles[i])) > 0)) continue;
+    raw.triangles[kept] = raw.triangles[i];
+    if (!raw.labels.empty()) raw.labels[kept] = raw.labels[i];
+    ++kept;
+  }
+  raw.triangles.resize(kept);
+  if (!raw.labels.empty()) raw.labels.resize(kept);
+}
+
 }  // namespace
 
 std::vector<Vec3> averaged_normals(const std::vector<Vec3>& positions_m, const std::vector<Triangle>& triangles) {
@@ -75,7 +88,7 @@ Mesh prepare(io::TriangleMesh raw, Shading shading, const std::string& place, st
   check_finite(raw.normals, "normal", place);
   check_indices(raw, place);
   const std::size_t before = raw.triangles.size();
-  std::erase_if(raw.triangles, [&](const Triangle& t) { return !(norm(doubled_area(raw.positions_m, t)) > 0); });
+  drop_flat(raw);
   if (dropped) *dropped = before - raw.triangles.size();
   if (raw.triangles.empty())
     throw Error(Exit::data, place,
@@ -87,6 +100,8 @@ Mesh prepare(io::TriangleMesh raw, Shading shading, const std::string& place, st
   mesh.positions_m = std::move(raw.positions_m);
   mesh.texture = std::move(raw.texture);
   mesh.triangles = std::move(raw.triangles);
+  mesh.properties = std::move(raw.properties);
+  mesh.labels = std::move(raw.labels);
   return mesh;
 }
 

@@ -22,6 +22,9 @@ struct Mesh {
   std::vector<Vec3> normals;  // unit, one per vertex; empty: flat
   std::vector<Vec2> texture;  // one per vertex, or empty
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::vector<float>> properties;  // of the vertices, as they were asked for; empty: not in the file
+  std::vector<std::int32_t> labels;            // one per triangle, or empty
+  std::vector<float> mean_curvature_per_m;     // one per vertex where somebody asked: mesh/curvature.h
 };
 
 // Error(data) at `place` where nothing with an area is left, or where a coordinate is not finite. Triangles without

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
+#include "scene/variation.h"
 
 namespace gonio::scene {
 namespace {
@@ -16,11 +17,16 @@ Rgb texel(const io::Image& picture, int x, int y) {
   return {pixel[0], pixel[1], pixel[2]};
 }
 
-std::size_t place_of(const manifest::ModelInfo& info, const Texture& texture, const std::string& place) {
+std::size_t place_of(const manifest::ModelInfo& info, const std::string& name, const std::string& place) {
   for (std::size_t i = 0; i < info.parameters.size(); ++i)
-    if (info.parameters[i].name == texture.name) return i;
-  throw Error(Exit::data, place + "/textures/" + texture.name, "model \"" + info.id + "\" has no such parameter",
-              "texture one of its parameters");
+    if (info.parameters[i].name == name) return i;
+  throw Error(Exit::data, place + "/" + name, "model \"" + info.id + "\" has no such parameter",
+              "let one of its parameters vary");
+}
+
+// A parameter that varies needs no value of its own; any legal one stands in.
+void stand_in(manifest::Parameter& given, const manifest::ParameterInfo& info) {
+  if (!given.given()) given = manifest::Parameter(info.preset.value_or(std::clamp(0.5, info.lower, info.upper)));
 }
 
 void check_texels(const manifest::ParameterInfo& info, const io::Image& picture, const std::string& place) {
@@ -45,18 +51,21 @@ Rgb Texture::at(Vec2 uv) const {
 surface::Values Surface::values_at(const Place& place) const {
   surface::Values here = values;
   for (const Texture& texture : textures) here.v[texture.parameter] = texture.at(place.uv);
+  for (const Varying& it : varying) here.v[it.parameter] = it.rule->at(place);
   return here;
 }
 
 void refresh(Surface& surface, const std::string& place) {
   manifest::Parameters given = surface.parameters;
   for (Texture& texture : surface.textures) {
-    texture.parameter = place_of(surface.model->info(), texture, place);
+    texture.parameter = place_of(surface.model->info(), texture.name, place + "/textures");
     const manifest::ParameterInfo& info = surface.model->info().parameters[texture.parameter];
     check_texels(info, *texture.picture, place + "/textures/" + texture.name);
-    // A textured parameter needs no value of its own; any legal one stands in.
-    if (!given[texture.name].given())
-      given[texture.name] = manifest::Parameter(std::clamp(0.5, info.lower, info.upper));
+    stand_in(given[texture.name], info);
+  }
+  for (Varying& varying : surface.varying) {
+    varying.parameter = place_of(surface.model->info(), varying.name, place);
+    stand_in(given[varying.name], surface.model->info().parameters[varying.parameter]);
   }
   surface.values = surface::values_of(*surface.model, given, place);
   surface.prepared = surface.model->prepare(surface.values, surface.file, place);

@@ -7,8 +7,10 @@
 #include "base/progress.h"
 #include "io/picture.h"
 #include "io/ply.h"
+#include "mesh/curvature.h"
 #include "scene/mechanisms.h"
 #include "scene/scene.h"
+#include "scene/variation.h"
 
 namespace gonio::scene {
 namespace {
@@ -20,6 +22,7 @@ class Builder {
   Scene build() {
     Scene scene;
     scene.bands = reading_.bands;
+    for (const auto& [id, entry] : document_.surfaces) extend(wish_, entry);
     add_surfaces(scene.appearance);
     add_lights(scene.appearance);
     add_instances(scene);
@@ -65,6 +68,7 @@ class Builder {
         surface.textures.push_back({parameter, picture(file_id, pointer + "/textures/" + parameter, colour)});
       }
       if (!entry.file.empty()) surface.file = file(entry.file, pointer + "/file");
+      surface.varying = rules_of(entry, *surface.model, wish_, at(pointer));
       refresh(surface, at(pointer));
       appearance.surfaces.push_back(std::move(surface));
     }
@@ -114,18 +118,39 @@ class Builder {
     }
     if (mesh.file.empty()) throw Error(Exit::data, at(pointer), "neither file nor sphere nor plane", "name a PLY file");
     auto& known = meshes_[id];
-    if (!known) known = read_mesh(mesh, pointer);
+    if (!known) known = read_mesh(mesh, wish_of(id), pointer);
     return known;
   }
 
-  std::shared_ptr<const mesh::Mesh> read_mesh(const manifest::Mesh& entry, const std::string& pointer) const {
+  // What the surfaces of the objects that show mesh `id` want of it. Properties keep their numbers.
+  Wish wish_of(const std::string& id) const {
+    Wish wanted;
+    for (const manifest::Object& object : document_.objects)
+      if (object.mesh == id)
+        if (const auto outer = document_.surfaces.find(object.surface); outer != document_.surfaces.end()) {
+          extend(wanted, outer->second);
+          if (const auto beneath = document_.surfaces.find(outer->second.base); beneath != document_.surfaces.end())
+            extend(wanted, beneath->second);
+        }
+    Wish numbered = wish_;
+    for (std::string& name : numbered.ply.properties)
+      if (std::find(wanted.ply.properties.begin(), wanted.ply.properties.end(), name) == wanted.ply.properties.end())
+        name.clear();
+    numbered.ply.labels = wanted.ply.labels;
+    numbered.curvature = wanted.curvature;
+    return numbered;
+  }
+
+  std::shared_ptr<const mesh::Mesh> read_mesh(const manifest::Mesh& entry, const Wish& wish,
+                                              const std::string& pointer) const {
     const auto path = file(entry.file, pointer + "/file");
     const auto shading = entry.normals == "flat" ? mesh::Shading::flat : mesh::Shading::smooth;
     std::size_t dropped = 0;
-    auto mesh = std::make_shared<const mesh::Mesh>(mesh::prepare(io::read_ply(path), shading, path.string(), &dropped));
+    mesh::Mesh mesh = mesh::prepare(io::read_ply(path, wish.ply), shading, path.string(), &dropped);
+    if (wish.curvature) mesh.mean_curvature_per_m = mesh::mean_curvature_per_m(mesh);
     if (dropped > 0)
       log(LogLevel::warning, path.string() + ": " + std::to_string(dropped) + " triangles without area left out");
-    return mesh;
+    return std::make_shared<const mesh::Mesh>(std::move(mesh));
   }
 
   std::size_t surface_index(const Appearance& appearance, const std::string& id, const std::string& pointer) const {
@@ -155,6 +180,9 @@ class Builder {
       scene.instances.push_back(
           {object.id, shape(object.mesh), pose(object.world_from_object, pointer + "/world_from_object"),
            surface_index(scene.appearance, object.surface, pointer + "/surface"), object.priority.value_or(0)});
+      const Surface& outer = scene.appearance.surfaces[scene.instances.back().surface];
+      check_fit(outer, scene.instances.back().shape, at(pointer));
+      if (outer.base) check_fit(scene.appearance.surfaces[*outer.base], scene.instances.back().shape, at(pointer));
     }
   }
 
@@ -236,6 +264,7 @@ class Builder {
 
   const manifest::Document& document_;
   const Reading& reading_;
+  Wish wish_;
   std::map<std::string, std::shared_ptr<const mesh::Mesh>> meshes_;
 };
 

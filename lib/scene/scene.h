@@ -51,33 +51,41 @@ struct Texture {
 
 // Where on an object: what decides on a surface's parameters there. Object frame.
 struct Place {
-  Vec2 uv;
-  Vec3 position_m{}, normal{};           // the unit shading normal, outwards
+  Vec2 uv{};
+  Vec3 position_m{}, normal{};       // the unit shading normal, outwards
   const mesh::Mesh* mesh = nullptr;  // null for analytic shapes
   std::uint32_t triangle = 0;
   double b1 = 0, b2 = 0;  // barycentric coordinates of the triangle's second and third vertex
 };
 
+class Rule;  // scene/variation.h
+struct Varying {
+  std::string name;  // of the parameter that it replaces
+  std::shared_ptr<const Rule> rule;
+  std::size_t parameter = 0;  // derived: place in the model's parameters
+};
+
 struct Surface {
-  std::string id;
+  std::string id{};
   const surface::Model* model = nullptr;
-  manifest::Parameters parameters;  // as in the manifest
-  surface::Values values;           // derived from `parameters`
-  std::vector<Texture> textures;
+  manifest::Parameters parameters{};  // as in the manifest
+  surface::Values values{};           // derived from `parameters`
+  std::vector<Texture> textures{};
+  std::vector<Varying> varying{};                       // per vertex, per face label, by a law
   std::shared_ptr<const surface::Prepared> prepared{};  // derived; values.prepared points to it
   std::filesystem::path file{};                         // of models that read a table
   std::optional<std::size_t> base{};                    // place in Appearance::surfaces of the surface beneath
-  bool varies() const { return !textures.empty(); }     // else `values` hold everywhere
+  bool varies() const { return !textures.empty() || !varying.empty(); }  // else `values` hold everywhere
   surface::Values values_at(const Place& place) const;
 };
 
 struct Light {
-  std::string id;
+  std::string id{};
   const light::Model* model = nullptr;
-  manifest::Parameters parameters;
-  std::shared_ptr<const io::Image> picture;
+  manifest::Parameters parameters{};
+  std::shared_ptr<const io::Image> picture{};
   std::filesystem::path file{};
-  std::shared_ptr<const light::Emitter> emitter;  // derived from `parameters`
+  std::shared_ptr<const light::Emitter> emitter{};  // derived from `parameters`
 };
 
 struct Appearance {

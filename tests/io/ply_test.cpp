@@ -53,6 +53,58 @@ TEST(Ply, RoundTripKeepsEveryBit) {
     }
 }
 
+TEST(Ply, PropertiesAndLabelsThatWereAskedFor) {
+  const tests::ScratchFolder folder;
+  TriangleMesh mesh = random_mesh(50, 60, true, true);
+  const PlyWish wish{.properties = {"roughness", "heat"}, .labels = true};
+  mesh.properties.resize(2);
+  Random random(3);
+  for (int i = 0; i < 50; ++i)
+    for (auto& property : mesh.properties) property.push_back(static_cast<float>(random.normal()));
+  for (int i = 0; i < 60; ++i) mesh.labels.push_back(static_cast<std::int32_t>(random.below(9)) - 4);
+  write_ply(folder / "a.ply", mesh, wish);
+  const TriangleMesh back = read_ply(folder / "a.ply", wish);
+  EXPECT_EQ(back.properties, mesh.properties);
+  EXPECT_EQ(back.labels, mesh.labels);
+  EXPECT_EQ(back.texture, mesh.texture);
+  const TriangleMesh plain = read_ply(folder / "a.ply");
+  EXPECT_TRUE(plain.properties.empty() && plain.labels.empty());
+  EXPECT_EQ(plain.triangles, mesh.triangles);
+  const TriangleMesh other = read_ply(folder / "a.ply", {.properties = {"cold", "heat"}});
+  EXPECT_TRUE(other.properties[0].empty());
+  EXPECT_EQ(other.properties[1], mesh.properties[1]);
+}
+
+constexpr std::string_view coloured =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "property uchar red\nproperty uchar wear\nproperty float heat\n"
+    "element face 2\nproperty int label\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0 0 0 1.5\n1 0 0 255 51 2.5\n1 1 0 128 255 3.5\n0 1 0 10 0 4.5\n"
+    "7 4 0 1 2 3\n-2 3 0 1 2\n";
+
+// The sRGB code 128 is 0.21586 linear (IEC 61966-2-1).
+TEST(Ply, BytesAreSharesAndColoursLinear) {
+  const TriangleMesh mesh = parse_ply(coloured, "mesh.ply", {.properties = {"red", "wear", "heat"}, .labels = true});
+  EXPECT_EQ(mesh.properties[0][1], 1);
+  EXPECT_NEAR(mesh.properties[0][2], 0.21586, 1e-5);
+  EXPECT_FLOAT_EQ(mesh.properties[1][1], 0.2f);
+  EXPECT_EQ(mesh.properties[2], (std::vector<float>{1.5f, 2.5f, 3.5f, 4.5f}));
+  EXPECT_EQ(mesh.labels, (std::vector<std::int32_t>{7, 7, -2}));  // both halves of the square carry its label
+}
+
+TEST(Ply, LabelsAreIntegers) {
+  std::string text(coloured);
+  text.replace(text.find("int label"), 9, "float label");
+  text.replace(text.rfind("-2 3"), 2, "0.5");
+  try {
+    parse_ply(text, "mesh.ply", {.properties = {}, .labels = true});
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("face 1 of 2 has the label 0.5"));
+  }
+  EXPECT_EQ(parse_ply(text, "mesh.ply").triangles.size(), 3u);  // nobody asked
+}
+
 TEST(Ply, TruncationIsRefusedEverywhere) {
   const tests::ScratchFolder folder;
   write_ply(folder / "a.ply", random_mesh(100, 150, true, false));

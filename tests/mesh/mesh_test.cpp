@@ -95,6 +95,9 @@ TEST(Prepare, LeavesOutTrianglesWithoutArea) {
   std::size_t dropped = 0;
   EXPECT_EQ(prepare(raw, Shading::smooth, "mesh.ply", &dropped).triangles.size(), 2u);
   EXPECT_EQ(dropped, 2u);
+  raw.labels = {1, 2, 3, 4};
+  std::swap(raw.triangles[0], raw.triangles[3]);
+  EXPECT_EQ(prepare(raw, Shading::smooth, "mesh.ply").labels, (std::vector<std::int32_t>{2, 4}));
 }
 
 TEST(Prepare, RefusesInWords) {
