@@ -82,7 +82,7 @@ std::string manifest_source(Invocation& call) {
   }
   // Where a manifest is required, repeated operands say what else to read (poses), not what to work on.
   const bool operands = std::ranges::any_of(program.operands, [&](const Option& o) {
-    return call.given(o.name) && !(program.reads == Reads::required && o.repeat);
+    return call.given(o.name) && o.type != Type::choice && !(program.reads == Reads::required && o.repeat);
   });
   const bool standalone = std::ranges::any_of(program.standalone, [&](const std::string& o) { return call.given(o); });
   if (operands || standalone) return {};

@@ -107,7 +107,11 @@ void parse_arguments(Invocation::State& state, int argc, char** argv) {
   for (const Option& o : program.operands) {
     Argument& a = state.arguments[o.name];
     a.option = &o;
-    app.add_option(o.name, a.texts)->expected(0, o.repeat ? CLI::detail::expected_max_vector_size : 1);
+    // Of several operands each takes its own word; only a repeated one takes the rest.
+    if (o.repeat)
+      app.add_option(o.name, a.texts)->expected(0, CLI::detail::expected_max_vector_size);
+    else
+      app.add_option(o.name, a.texts)->expected(1)->allow_extra_args(false);
   }
   // Before CLI11 sees them: it would take an unknown option's value for an operand and complain about that one.
   for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {

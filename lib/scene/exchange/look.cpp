@@ -1,0 +1,157 @@
+// Surfaces as other renderers see them (scene/exchange/look.h).
+//
+// Diffuse reflectance of a dipole (Jensen et al. 2001, equation 6):
+//   Rd = alpha' / 2 (1 + exp(-4/3 A s)) exp(-s),  s = sqrt(3 (1 - alpha')),  A = (1 + Fdr) / (1 - Fdr)
+//   Fdr = -1.440 / eta^2 + 0.710 / eta + 0.668 + 0.0636 eta
+// Oren & Nayar's matte (surface/oren_nayar.h) is A (1 + B / A s / t), s = wi.wo - wiz woz and t = max(wiz, woz) for
+// s > 0; for s < 0 it is A.
+#include "scene/exchange/look.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "surface/oren_nayar.h"
+
+namespace gonio::scene {
+namespace {
+
+// A surface's values by the names of its parameters.
+class Named {
+ public:
+  explicit Named(const Surface& surface) : surface_(surface) {}
+  bool has(std::string_view name) const { return index(name) >= 0; }
+  Rgb rgb(std::string_view name, Rgb otherwise = {}) const {
+    const int i = index(name);
+    return i >= 0 ? surface_.values.rgb(static_cast<std::size_t>(i)) : otherwise;
+  }
+  double scalar(std::string_view name, double otherwise = 0) const {
+    return rgb(name, {otherwise, otherwise, otherwise}).x;
+  }
+
+ private:
+  int index(std::string_view name) const {
+    const auto& all = surface_.model->info().parameters;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (all[i].name == name) return static_cast<int>(i);
+    return -1;
+  }
+  const Surface& surface_;
+};
+
+double index_of_f0(double f0) {
+  const double r = std::sqrt(std::clamp(f0, 0.0, 0.999));
+  return (1 + r) / (1 - r);
+}
+
+Rgb reflectance_of_metal(Rgb eta, Rgb k) {
+  const auto one = [](double n, double kk) { return ((n - 1) * (n - 1) + kk * kk) / ((n + 1) * (n + 1) + kk * kk); };
+  return {one(eta.x, k.x), one(eta.y, k.y), one(eta.z, k.z)};
+}
+
+double dipole_reflectance(double sigma_a, double sigma_s_reduced, double eta) {
+  const double sigma_t = sigma_a + sigma_s_reduced;
+  if (!(sigma_t > 0)) return 0;
+  const double alpha = sigma_s_reduced / sigma_t, s = std::sqrt(3 * (1 - alpha));
+  const double fdr = -1.440 / (eta * eta) + 0.710 / eta + 0.668 + 0.0636 * eta, a = (1 + fdr) / (1 - fdr);
+  return alpha / 2 * (1 + std::exp(-4.0 / 3 * a * s)) * std::exp(-s);
+}
+
+void add_roughness(Look& look, const Named& named, const surface::Model& model) {
+  const double both = named.scalar("alpha");
+  look.alpha_x = named.scalar("alpha_x", both);
+  look.alpha_y = named.scalar("alpha_y", look.alpha_x);
+  look.azimuth_rad = named.scalar("azimuth_rad");
+  look.beckmann = model.info().id.find("beckmann") != std::string::npos || named.scalar("beckmann") > 0;
+}
+
+void make_translucent(Look& look, const Named& named) {
+  look.kind = Look::Kind::translucent;
+  const auto band = [&](double sigma_a, double sigma_s, double g, double eta, double& colour, double& length) {
+    const double reduced = sigma_s * (1 - g), sigma_t = sigma_a + reduced;
+    colour = dipole_reflectance(sigma_a, reduced, eta);
+    length = 1 / std::sqrt(std::max(3 * sigma_a * sigma_t, 1e-12 * sigma_t * sigma_t + 1e-30));
+  };
+  surface::Medium& medium = look.medium;
+  medium.eta = named.rgb("eta", {1.3, 1.3, 1.3});
+  medium.sigma_a_per_m = named.rgb("sigma_a_per_m");
+  medium.sigma_s_per_m = named.rgb("sigma_s_per_m", named.rgb("sigma_s_reduced_per_m"));
+  medium.g = named.rgb("g");
+  look.eta = mean(medium.eta);
+  band(medium.sigma_a_per_m.x, medium.sigma_s_per_m.x, medium.g.x, medium.eta.x, look.colour.x,
+       look.diffuse_length_m.x);
+  band(medium.sigma_a_per_m.y, medium.sigma_s_per_m.y, medium.g.y, medium.eta.y, look.colour.y,
+       look.diffuse_length_m.y);
+  band(medium.sigma_a_per_m.z, medium.sigma_s_per_m.z, medium.g.z, medium.eta.z, look.colour.z,
+       look.diffuse_length_m.z);
+}
+
+void make_metal(Look& look, const Named& named) {
+  look.kind = Look::Kind::metal;
+  look.complex_index = named.has("k");
+  look.metal_eta = named.rgb("eta");
+  look.metal_k = named.rgb("k");
+  look.colour = look.complex_index ? reflectance_of_metal(look.metal_eta, look.metal_k) : named.rgb("f0");
+}
+
+void make_matte(Look& look, const Named& named) {
+  look.colour = named.rgb("albedo");
+  look.sigma_rad = named.scalar("sigma_rad");
+  const double f0 = named.scalar("f0");
+  const bool interface = f0 > 0 || (named.has("eta") && named.scalar("eta") > 1);
+  look.kind = interface ? Look::Kind::coated : Look::Kind::matte;
+  look.eta = named.has("f0") ? index_of_f0(f0) : named.scalar("eta", 1);
+}
+
+void lose(std::vector<Loss>& losses, const std::string& pointer, std::string what, std::string instead) {
+  losses.push_back({pointer, std::move(what), std::move(instead)});
+}
+
+// Of glass and translucent bodies, whose Rgb indices one number must stand for.
+void check_dispersion(const Look& look, const std::string& pointer, std::vector<Loss>& losses) {
+  if (look.medium.disperses()) lose(losses, pointer, "an index per band (dispersion)", "their mean");
+}
+
+}  // namespace
+
+RoughMatte rough_matte(double sigma_rad) {
+  const surface::OrenNayar law(sigma_rad);
+  const Vec3 up{0, 0, 1}, tilted{std::sqrt(0.5), 0, std::sqrt(0.5)};
+  const double a = law.shape(up, up);  // s = 0
+  // wi = wo = tilted: s = 1/2, t = sqrt(1/2)
+  return {a, (law.shape(tilted, tilted) / a - 1) * std::sqrt(2.0)};
+}
+
+Look look_of(const Surface& surface, const std::string& pointer, std::vector<Loss>& losses) {
+  const Named named(surface);
+  const surface::Model& model = *surface.model;
+  Look look;
+  add_roughness(look, named, model);
+  const auto colour_parameter = [&] { return named.has("albedo") ? "albedo" : "f0"; };
+  if (model.subsurface(surface.values)) {
+    make_translucent(look, named);
+    check_dispersion(look, pointer, losses);
+  } else if (const auto inside = model.interior(surface.values); model.transmits() && inside) {
+    look.kind = Look::Kind::glass;
+    look.medium = *inside;
+    look.eta = mean(inside->eta);
+    check_dispersion(look, pointer, losses);
+  } else if (named.has("albedo") && !surface.base) {
+    make_matte(look, named);
+  } else if ((named.has("eta") && named.has("k")) || (named.has("f0") && !surface.base)) {
+    make_metal(look, named);
+  } else {
+    look = {};
+    look.colour = model.albedo(surface.values, {std::sqrt(0.5), 0, std::sqrt(0.5)});
+    lose(losses, pointer + "/model", "the surface model \"" + model.info().id + "\"",
+         "a matte with its albedo at 45 degrees");
+  }
+  for (const Texture& texture : surface.textures) {
+    if (texture.name == colour_parameter() || texture.name == "alpha")
+      look.textures[texture.name] = &texture;
+    else
+      lose(losses, pointer + "/textures/" + texture.name, "a texture of " + texture.name, "the parameter's one value");
+  }
+  return look;
+}
+
+}  // namespace gonio::scene
