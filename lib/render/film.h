@@ -1,8 +1,4 @@
-// The film: per pixel the mean of its samples and the variance of that mean, and the geometry that the pixel sees.
-//
-// Samples come in replicates: each is a full set of side * side strata over the pixel (and over each light), drawn
-// independently of the others. The mean of a pixel is the mean of its replicates; the variance of the mean is their
-// sample variance over their number, which is unbiased although samples within a replicate are not independent.
+// From sums over passes to a picture with named channels.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,13 +8,7 @@
 
 namespace gonio::render {
 
-struct SamplePlan {
-  int side = 1;        // strata per axis
-  int replicates = 2;  // independent sets of side^2 samples, at least 2
-  int spp() const { return side * side * replicates; }
-};
-// At least `spp` samples: 16 replicates or more where spp allows, strata up to 8 x 8.
-SamplePlan sample_plan(int spp);
+class PassSums;
 
 struct PixelGeometry {      // of the ray through the pixel's centre, but visibility: share of all samples' shadow rays
   Vec3 position_m, normal;  // world frame; zero where nothing is met
@@ -27,13 +17,15 @@ struct PixelGeometry {      // of the ray through the pixel's centre, but visibi
   std::vector<double> visibility;  // of each light that is on, 0 .. 1
 };
 
-struct Pixel {
-  Rgb mean, variance;  // of the mean
-  PixelGeometry geometry;
-};
+// Channels of a plane as the integrator names it: "" is R, G, B; "light.NAME" is light.NAME.R, ...; a spectral plane is
+// named by its three channels with blanks between them, of which a "-" is none.
+std::vector<std::string> plane_channels(const std::string& plane);
 
-// R, G, B, variance.R/G/B, and with `geometry`: id, position.X/Y/Z, normal.X/Y/Z, distance.LIGHT, visibility.LIGHT.
-io::Image develop(int width_px, int height_px, const std::vector<Pixel>& pixels, const std::vector<std::string>& lights,
-                  bool geometry);
+// R, G, B, variance.R/G/B; then the other planes, variance.s1.R ... for Stokes vectors. Where `geometry` has channels
+// (layers.h), they follow, with visibility.LIGHT and mask.A from the sums.
+io::Image develop(const PassSums& sums, const io::Image& geometry);
+
+// Of a picture by develop(): what `geometry` was.
+io::Image geometry_of(const io::Image& picture);
 
 }  // namespace gonio::render

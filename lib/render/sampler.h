@@ -24,7 +24,7 @@ class Sampler {
     const std::uint32_t shuffled = reversed(scrambled(index_, low));
     // The first dimension is van der Corput's: the reversal of its reversed bits is the index itself.
     return {unit(reversed(scrambled(shuffled, high))),
-            unit(reversed(scrambled(reversed(second(shuffled)), high * 0x9e3779b9u + low)))};
+            unit(reversed(scrambled(reversed_second(shuffled), high * 0x9e3779b9u + low)))};
   }
 
  private:
@@ -44,12 +44,15 @@ class Sampler {
     x ^= x * 0x53a22864u;
     return x;
   }
-  // Second dimension of Sobol's sequence.
-  static std::uint32_t second(std::uint32_t index) {
-    std::uint32_t result = 0;
-    for (std::uint32_t v = 1u << 31; index != 0; index >>= 1, v ^= v >> 1)
-      if (index & 1u) result ^= v;
-    return result;
+  // Second dimension of Sobol's sequence, bits reversed. Bit k of the index contributes (1 + x)^k, a polynomial over
+  // GF(2); of it bit j is odd where j's bits are a subset of k's (Lucas 1878). So bit j of the result is the sum over
+  // all supersets of j, found bit by bit of j and k: five steps for 32 bits.
+  static std::uint32_t reversed_second(std::uint32_t index) {
+    index ^= (index >> 1) & 0x55555555u;
+    index ^= (index >> 2) & 0x33333333u;
+    index ^= (index >> 4) & 0x0f0f0f0fu;
+    index ^= (index >> 8) & 0x00ff00ffu;
+    return index ^ ((index >> 16) & 0x0000ffffu);
   }
 
   std::uint64_t key_;

@@ -3,7 +3,7 @@
 
 #include "base/parallel.h"
 #include "light/irradiance.h"
-#include "render/strata.h"
+#include "render/stopping.h"
 #include "scenes.h"
 
 namespace gonio::render {
@@ -28,30 +28,17 @@ scene::Scene busy_scene() {
 }
 
 TEST(SamplePlan, CoversWhatWasAskedFor) {
-  for (int spp = 2; spp <= 5000; ++spp) {
+  for (int spp = 1; spp <= 5000; ++spp) {
     const SamplePlan plan = sample_plan(spp);
     EXPECT_GE(plan.spp(), spp);
-    EXPECT_LT(plan.spp(), spp + plan.side * plan.side + 1);
-    EXPECT_GE(plan.replicates, 2);
-    EXPECT_LE(plan.side, 8);
+    EXPECT_LT(plan.spp(), spp + plan.samples_per_pass + 1);
+    EXPECT_GE(plan.passes, 2);
+    EXPECT_EQ(plan.samples_per_pass & (plan.samples_per_pass - 1), 0);
+    EXPECT_LE(plan.samples_per_pass, 64);
   }
-  EXPECT_EQ(sample_plan(256).side, 4);
-  EXPECT_EQ(sample_plan(256).replicates, 16);
-}
-
-TEST(Strata, EveryDimensionVisitsEveryCellOnce) {
-  Strata strata(5, 3);
-  Random random(1);
-  strata.shuffle(random);
-  for (std::size_t dimension = 0; dimension < 3; ++dimension) {
-    std::vector<int> visits(25);
-    for (std::size_t sample = 0; sample < 25; ++sample) {
-      const Vec2 u = strata.draw(dimension, sample, random);
-      ASSERT_TRUE(u.x > 0 && u.x < 1 && u.y > 0 && u.y < 1);
-      ++visits[static_cast<std::size_t>(static_cast<int>(u.y * 5) * 5 + static_cast<int>(u.x * 5))];
-    }
-    for (const int n : visits) EXPECT_EQ(n, 1);
-  }
+  EXPECT_EQ(sample_plan(256).samples_per_pass, 16);
+  EXPECT_EQ(sample_plan(256).passes, 16);
+  EXPECT_EQ(sample_plan(1000).spp(), 1024);  // 32 passes of 32
 }
 
 // Mean stated variance against the variance among independent seeds, pixel by pixel; 40 seeds of 576 pixels: the
@@ -115,16 +102,16 @@ TEST(Determinism, SameBytesWhateverTheNumberOfThreads) {
   EXPECT_NE(render_view(scene, {.spp = 16, .seed = 8}).data, one.data);
 }
 
-TEST(Strata, ReduceTheNoiseOfPenumbras) {
+TEST(Passes, ReduceTheNoiseOfPenumbras) {
   SceneBuilder builder;
   builder.object(scene::Plane{2, 2}, builder.diffuse(0.5));
   builder.object(scene::Plane{0.2, 2}, builder.diffuse(0), {-0.1, 0, 0.2});
   builder.light("sphere", {{"position_m", std::vector<double>{0, 0, 0.5}}, {"watt_per_sr", 1.0}, {"radius_m", 0.05}});
   const auto scene = builder.look_down(0.0, 0, 0.02, 8, 0.1).scene();  // below the edge, across the penumbra
   const double fine =
-      tests::mean_of(render_view(scene, {.spp = 1024, .transport = {.max_bounces = 1}})).sigma;  // 8 x 8 strata
-  const double coarse =
-      tests::mean_of(render_view(scene, {.spp = 16, .transport = {.max_bounces = 1}})).sigma / 8;  // none; per sample
+      tests::mean_of(render_view(scene, {.spp = 1024, .transport = {.max_bounces = 1}})).sigma;  // 64 samples a pass
+  const double coarse = tests::mean_of(render_view(scene, {.spp = 16, .transport = {.max_bounces = 1}})).sigma /
+                        8;  // one sample a pass; per sample
   EXPECT_LT(fine, 0.5 * coarse);
 }
 
