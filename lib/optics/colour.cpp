@@ -152,8 +152,8 @@ Rgb band_values(const std::function<double(double)>& spectrum, Range covered, co
 }
 
 Rgb band_values(const Spectrum& spectrum, const Bands& bands) {
-  return band_values([&](double wavelength_m) { return spectrum.at(wavelength_m); },
-                     {spectrum.first_m(), spectrum.last_m()}, bands, spectrum.place());
+  return band_values([&](double wavelength_m) { return spectrum.at(wavelength_m); }, spectrum.range(), bands,
+                     spectrum.place());
 }
 
 double upsampled(Rgb value, double wavelength_m) {

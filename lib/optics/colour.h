@@ -40,10 +40,6 @@ Rgb rgb_centres_m();  // of mass
 // cover all of the visible: beyond its ends the end's value holds; where that concerns more than `held_warning` of the
 // absolute weight of a colour it is logged, above `held_limit` it is Error(data).
 inline constexpr double held_warning = 0.05, held_limit = 0.5;
-struct Range {
-  double first_m, last_m;
-  bool operator==(const Range&) const = default;
-};
 Rgb band_values(const std::function<double(double)>& spectrum, Range covered, const Bands& bands,
                 const std::string& place);
 Rgb band_values(const Spectrum& spectrum, const Bands& bands);

@@ -237,6 +237,17 @@ double RefractiveIndex::k(double wavelength_m) const {
               "name a file that covers this wavelength, or give the parameter a number");
 }
 
+Range RefractiveIndex::range_n() const {
+  Range range{first_m(n_.front()), last_m(n_.front())};
+  for (const auto& part : n_) range = {std::min(range.first_m, first_m(part)), std::max(range.last_m, last_m(part))};
+  return range;
+}
+Range RefractiveIndex::range_k() const {
+  Range range = k_.front().range();
+  for (const Spectrum& part : k_)
+    range = {std::min(range.first_m, part.first_m()), std::max(range.last_m, part.last_m())};
+  return range;
+}
 bool RefractiveIndex::covers_n(double wavelength_m) const {
   return std::ranges::any_of(
       n_, [&](const auto& part) { return first_m(part) <= wavelength_m && wavelength_m <= last_m(part); });

@@ -40,6 +40,8 @@ class RefractiveIndex {
   bool states_k() const { return !k_.empty(); }
   bool covers_n(double wavelength_m) const;
   bool covers_k(double wavelength_m) const;
+  Range range_n() const;  // from the first to the last wavelength that is stated; of a file that states_n()
+  Range range_k() const;
   const std::string& place() const { return place_; }
 
  private:

@@ -7,6 +7,11 @@
 
 namespace gonio::optics {
 
+struct Range {
+  double first_m, last_m;
+  bool operator==(const Range&) const = default;
+};
+
 class Spectrum {
  public:
   // Wavelengths grow; one or more samples. Error(data) at `place` else, or for numbers that are not finite.
@@ -15,6 +20,7 @@ class Spectrum {
   double first_m() const { return wavelength_m_.front(); }
   double last_m() const { return wavelength_m_.back(); }
   bool covers(double wavelength_m) const { return wavelength_m >= first_m() && wavelength_m <= last_m(); }
+  Range range() const { return {first_m(), last_m()}; }
   double at(double wavelength_m) const;
   const std::string& place() const { return place_; }
 

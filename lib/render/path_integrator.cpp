@@ -5,6 +5,7 @@ namespace gonio::render {
 
 std::unique_ptr<Integrator> path_integrator(const scene::Scene& scene, std::size_t view, const RayCaster& caster,
                                             const Transport& transport) {
+  if (transport.stokes) return polarized_integrator(scene, view, caster, transport);
   return unpolarized_integrator(scene, view, caster, transport);
 }
 

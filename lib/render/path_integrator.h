@@ -34,5 +34,7 @@ class PathIntegrator final : public Integrator {
 
 std::unique_ptr<Integrator> unpolarized_integrator(const scene::Scene& scene, std::size_t view, const RayCaster& caster,
                                                    const Transport& transport);
+std::unique_ptr<Integrator> polarized_integrator(const scene::Scene& scene, std::size_t view, const RayCaster& caster,
+                                                 const Transport& transport);
 
 }  // namespace gonio::render

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
+#include "scene/spectra.h"
 #include "scene/variation.h"
 
 namespace gonio::scene {
@@ -56,7 +57,8 @@ surface::Values Surface::values_at(const Place& place) const {
 }
 
 void refresh(Surface& surface, const std::string& place) {
-  manifest::Parameters given = surface.parameters;
+  manifest::Parameters given = in_bands(surface.parameters, surface.model->info(), surface.bands);
+  for (const auto& [name, value] : surface.spectra) given[name] = manifest::Parameter(value);
   for (Texture& texture : surface.textures) {
     texture.parameter = place_of(surface.model->info(), texture.name, place + "/textures");
     const manifest::ParameterInfo& info = surface.model->info().parameters[texture.parameter];
@@ -73,7 +75,8 @@ void refresh(Surface& surface, const std::string& place) {
 }
 
 void refresh(Light& light, const std::string& place) {
-  light.emitter = light.model->prepare(light.parameters, {light.picture, light.file}, place);
+  light.emitter = light.model->prepare(in_bands(light.parameters, light.model->info(), light.bands),
+                                       {light.picture, light.file}, place);
 }
 
 double vignetting(double falloff, int width_px, int height_px, Vec2 pixel) {

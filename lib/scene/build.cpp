@@ -8,8 +8,10 @@
 #include "io/picture.h"
 #include "io/ply.h"
 #include "mesh/curvature.h"
+#include "optics/colour.h"
 #include "scene/mechanisms.h"
 #include "scene/scene.h"
+#include "scene/spectra.h"
 #include "scene/variation.h"
 
 namespace gonio::scene {
@@ -43,12 +45,14 @@ class Builder {
   }
 
   // Linear values: codes of 8/16-bit pictures are taken as sRGB where they stand for a colour.
-  std::shared_ptr<const io::Image> picture(const std::string& id, const std::string& pointer, bool colour) const {
+  std::shared_ptr<const io::Image> picture(const std::string& id, const std::string& pointer, bool colour, double lower,
+                                           double upper) const {
     const auto path = file(id, pointer);
     io::Image image = io::read_picture(path);
     if (image.pixels() == 0) throw Error(Exit::data, path.string(), "picture is empty");
     if (colour && path.extension() != ".exr")
       for (float& v : image.data) v = io::linear_from_srgb(v);
+    if (colour) image = in_bands(std::move(image), lower, upper, reading_.bands);
     return std::make_shared<const io::Image>(std::move(image));
   }
 
@@ -65,16 +69,29 @@ class Builder {
         const auto found =
             std::find_if(known.begin(), known.end(), [&, key = &parameter](const auto& p) { return p.name == *key; });
         const bool colour = found != known.end() && found->rgb;
-        surface.textures.push_back({parameter, picture(file_id, pointer + "/textures/" + parameter, colour)});
+        const auto [lower, upper] = colour ? std::pair(found->lower, found->upper) : std::pair(0.0, 0.0);
+        surface.textures.push_back(
+            {parameter, picture(file_id, pointer + "/textures/" + parameter, colour, lower, upper)});
       }
       if (!entry.file.empty()) surface.file = file(entry.file, pointer + "/file");
       surface.varying = rules_of(entry, *surface.model, wish_, at(pointer));
+      fill_bands(surface, entry, pointer);
       refresh(surface, at(pointer));
       appearance.surfaces.push_back(std::move(surface));
     }
     for (Surface& surface : appearance.surfaces) {
       const std::string& base = document_.surfaces.at(surface.id).base;
       if (!base.empty()) surface.base = surface_index(appearance, base, "/surfaces/" + surface.id + "/base");
+    }
+  }
+
+  void fill_bands(Surface& surface, const manifest::Surface& entry, const std::string& pointer) const {
+    surface.bands = reading_.bands;
+    in_bands(surface);
+    for (const auto& [parameter, file_id] : entry.spectra) {
+      const std::string place = pointer + "/spectra/" + parameter;
+      surface.spectra[parameter] =
+          spectrum_in_bands(file(file_id, place), surface.model->info(), parameter, reading_.bands, at(place));
     }
   }
 
@@ -89,8 +106,9 @@ class Builder {
       if (!entry.file.empty()) {
         light.file = file(entry.file, pointer + "/file");
         if (light.model->info().attachment == manifest::Attachment::picture)
-          light.picture = picture(entry.file, pointer + "/file", true);
+          light.picture = picture(entry.file, pointer + "/file", true, 0, std::numeric_limits<double>::infinity());
       }
+      light.bands = reading_.bands;
       refresh(light, at(pointer));
       appearance.lights.push_back(std::move(light));
     }
@@ -250,13 +268,14 @@ class Builder {
       const auto camera = cameras.find(image.camera);
       if (camera == cameras.end())
         throw Error(Exit::data, at(pointer + "/camera"), "no camera \"" + image.camera + "\"", "name one of `cameras`");
-      scene.views.push_back({image.id,
-                             camera::CameraModel(camera->second, at("/cameras/" + image.camera)),
-                             pose(image.world_from_camera, pointer + "/world_from_camera"),
-                             lights_of(scene, image, pointer),
-                             image.gain && image.gain->given() ? image.gain->rgb() : Rgb{1, 1, 1},
-                             {},
-                             image.camera});
+      scene.views.push_back(
+          {image.id,
+           camera::CameraModel(camera->second, at("/cameras/" + image.camera)),
+           pose(image.world_from_camera, pointer + "/world_from_camera"),
+           lights_of(scene, image, pointer),
+           optics::upsampled(image.gain && image.gain->given() ? image.gain->rgb() : Rgb{1, 1, 1}, reading_.bands),
+           {},
+           image.camera});
       for (const auto& [id, use] : document_.mechanisms)
         apply_mechanism(scene.views.back(), *mechanism::find_mechanism(id), use, at("/mechanisms/" + id));
     }

@@ -71,10 +71,12 @@ struct Surface {
   manifest::Parameters parameters{};  // as in the manifest
   surface::Values values{};           // derived from `parameters`
   std::vector<Texture> textures{};
-  std::vector<Varying> varying{};                       // per vertex, per face label, by a law
-  std::shared_ptr<const surface::Prepared> prepared{};  // derived; values.prepared points to it
-  std::filesystem::path file{};                         // of models that read a table
-  std::optional<std::size_t> base{};                    // place in Appearance::surfaces of the surface beneath
+  std::vector<Varying> varying{};                        // per vertex, per face label, by a law
+  std::map<std::string, std::vector<double>> spectra{};  // parameters that files state, in the bands
+  optics::Bands bands{};                                 // of `values`; `parameters` are RGB
+  std::shared_ptr<const surface::Prepared> prepared{};   // derived; values.prepared points to it
+  std::filesystem::path file{};                          // of models that read a table
+  std::optional<std::size_t> base{};                     // place in Appearance::surfaces of the surface beneath
   bool varies() const { return !textures.empty() || !varying.empty(); }  // else `values` hold everywhere
   surface::Values values_at(const Place& place) const;
 };
@@ -85,6 +87,7 @@ struct Light {
   manifest::Parameters parameters{};
   std::shared_ptr<const io::Image> picture{};
   std::filesystem::path file{};
+  optics::Bands bands{};                            // of the emitter; `parameters` are RGB
   std::shared_ptr<const light::Emitter> emitter{};  // derived from `parameters`
 };
 
