@@ -41,12 +41,13 @@ TEST(Sampler, EveryBlockOfAPowerOfTwoIsANet) {
 
 TEST(Sampler, NumbersLieInsideTheUnitInterval) {
   for (std::uint64_t stream = 0; stream < 2000; ++stream)
-    for (const Vec2 u : draw(1, stream, 1, 20)[0]) {
-      ASSERT_GT(u.x, 0);
-      ASSERT_LT(u.x, 1);
-      ASSERT_GT(u.y, 0);
-      ASSERT_LT(u.y, 1);
-    }
+    for (const auto& points : draw(1, stream, 2, 20))
+      for (const Vec2 u : points) {
+        ASSERT_GT(u.x, 0);
+        ASSERT_LT(u.x, 1);
+        ASSERT_GT(u.y, 0);
+        ASSERT_LT(u.y, 1);
+      }
 }
 
 // Single points over streams: chi-square in 16 x 16 cells, 255 degrees of freedom, of 20 dimensions. The largest of 20
@@ -115,7 +116,8 @@ TEST(Sampler, ConvergesFasterThanRandomNumbers) {
     double sum = 0;
     for (int stream = 0; stream < 400; ++stream) {
       double mean = 0;
-      for (const Vec2 u : draw(9, stream, count, 4)[3]) mean += integrand(u) / count;
+      const auto pairs = draw(9, stream, count, 4);
+      for (const Vec2 u : pairs[3]) mean += integrand(u) / count;
       sum += (mean - exact) * (mean - exact) / 400;
     }
     return std::sqrt(sum);
