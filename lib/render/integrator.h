@@ -23,8 +23,9 @@ enum class Estimator { combined, lights_only };
 struct Transport {  // what is simulated
   int max_bounces = 128;
   Estimator estimator = Estimator::combined;
-  bool per_light = false;  // a plane for each light
-  bool stokes = false;     // planes s1, s2, s3
+  bool per_light = false;   // a plane for each light
+  bool stokes = false;      // planes s1, s2, s3
+  bool from_lights = true;  // trace() leaves to trace_from_lights() what that finds
 };
 
 struct Noticed {                    // over the samples of a pixel

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "render/light_tracer.h"
 #include "render/path_loop.h"
 
 namespace gonio::render {
@@ -11,7 +12,9 @@ template <class Carrier>
 class PathIntegrator final : public Integrator {
  public:
   PathIntegrator(const scene::Scene& scene, std::size_t view, const RayCaster& caster, const Transport& transport)
-      : setting_(scene, view, caster, transport), loop_(setting_) {}
+      : setting_(scene, view, caster, transport), loop_(setting_) {
+    if (setting_.caustics) light_tracer_.emplace(setting_, *setting_.caustics, Carrier::planes().size());
+  }
 
   std::vector<std::string> planes() const override {
     std::vector<std::string> names = {""};
@@ -26,10 +29,15 @@ class PathIntegrator final : public Integrator {
   PixelGeometry geometry(int x, int y, const Noticed& noticed) const override {
     return setting_.geometry(x, y, noticed);
   }
+  bool traces_from_lights() const override { return light_tracer_.has_value(); }
+  void trace_from_lights(std::uint64_t seed, std::uint64_t first, std::uint64_t count, Splats& splats) const override {
+    if (light_tracer_) light_tracer_->trace(seed, first, count, splats);
+  }
 
  private:
   PathSetting setting_;
   PathLoop<Carrier> loop_;
+  std::optional<LightTracer> light_tracer_;
 };
 
 std::unique_ptr<Integrator> unpolarized_integrator(const scene::Scene& scene, std::size_t view, const RayCaster& caster,

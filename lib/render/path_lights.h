@@ -40,7 +40,7 @@ class PathLights {
       const light::Hit hit = setting_.emitters[i]->hit(path.origin_m, path.direction);
       const double way = hit.distance_m - walked;
       if (!(max_component(hit.radiance) > 0) || way < 0 || !(way < reach)) continue;
-      if (path.first && hit.distance_m > lamp_m) continue;
+      if (path.first ? hit.distance_m > lamp_m : left_to_lights(path, i)) continue;
       add(path,
           path.carrier.met(path.direction, hit.radiance * share(way) * heuristic(path, hit), *setting_.emitters[i]), i,
           path.scattered);
@@ -98,6 +98,10 @@ class PathLights {
   }
 
  private:
+  // Lamp, smooth interfaces, and a last event that the camera sees directly: see light_tracer.h.
+  bool left_to_lights(const Path<Carrier>& path, std::size_t emitter) const {
+    return path.alone && path.sees_spread && setting_.left_to_lights(emitter);
+  }
   bool counts_what_it_meets(const Path<Carrier>& path) const {
     return path.alone || setting_.transport.estimator == Estimator::combined;
   }

@@ -30,7 +30,7 @@ class PathLoop {
 
   // One path; what it finds is added to `planes`.
   void trace(Vec2 pixel, Sampler& sampler, std::span<Rgb> planes, Noticed& noticed) const {
-    const auto [origin_m, direction] = setting_.world_ray(pixel);
+    const auto [origin_m, direction] = setting_.rays.at(pixel, setting_.rays.uses_lens() ? sampler.two() : Vec2{});
     Path<Carrier> path{.carrier = Carrier::start(setting_.camera_x(), direction),
                        .origin_m = origin_m,
                        .direction = direction,
@@ -148,6 +148,7 @@ class PathLoop {
     path.direction = direction;
     path.density = next.pdf;
     path.alone = next.delta;
+    if (path.first) path.sees_spread = !next.delta;
     path.scattered += next.delta ? 0 : 1;
     if (is_off(path.scattered)) return false;
     return survives(path);
@@ -163,6 +164,7 @@ class PathLoop {
     path.direction = turn.direction;
     path.density = turn.density;
     path.alone = false;
+    if (path.first) path.sees_spread = true;
     ++path.scattered;
     if (is_off(path.scattered)) return false;
     return survives(path);

@@ -10,18 +10,19 @@ PathSetting::PathSetting(const scene::Scene& the_scene, std::size_t number, cons
       view(the_scene.views[number]),
       caster(the_caster),
       transport(the_transport),
-      rotation(matrix_of(view.world_from_camera.rotation)),
+      rays(view),
       media(the_scene, the_caster) {
   for (const std::size_t light : view.lights) emitters.push_back(scene.appearance.lights[light].emitter.get());
   named = emitters.size();
   if (scene.appearance.ambient) emitters.push_back(scene.appearance.ambient.get());
   for (const scene::Surface& surface : scene.appearance.surfaces) transmits.push_back(surface.model->transmits());
   if (media.any()) camera_inside = media.around(view.world_from_camera.translation_m);
+  if (transport.from_lights) caustics.emplace(scene, emitters);
+  if (caustics && !caustics->any()) caustics.reset();
 }
 
-std::pair<Vec3, Vec3> PathSetting::world_ray(Vec2 pixel) const {
-  const camera::Ray ray = view.camera.ray(pixel);
-  return {rotation * ray.origin_m + view.world_from_camera.translation_m, rotation * ray.direction};
+Vec3 PathSetting::camera_x() const {
+  return view.world_from_camera.rotate({1, 0, 0});
 }
 
 Rgb PathSetting::scale(Vec2 pixel) const {
@@ -51,7 +52,7 @@ PixelGeometry PathSetting::geometry(int x, int y, const Noticed& noticed) const 
   geometry.visibility.resize(named);
   for (std::size_t i = 0; i < named && noticed.met > 0; ++i)
     geometry.visibility[i] = static_cast<double>(noticed.seen[i]) / noticed.met;
-  const auto [origin_m, direction] = world_ray({static_cast<double>(x), static_cast<double>(y)});
+  const auto [origin_m, direction] = rays.principal({static_cast<double>(x), static_cast<double>(y)});
   const auto point = caster.closest(origin_m, direction);
   if (!point) return geometry;
   geometry.position_m = point->position_m;

@@ -1,9 +1,11 @@
 // What all paths of one view share, whatever they carry. World frame, metres.
 #pragma once
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "render/camera_ray.h"
+#include "render/caustic_sources.h"
 #include "render/integrator.h"
 #include "render/media.h"
 
@@ -12,8 +14,7 @@ namespace gonio::render {
 struct PathSetting {
   PathSetting(const scene::Scene& scene, std::size_t view, const RayCaster& caster, const Transport& transport);
 
-  std::pair<Vec3, Vec3> world_ray(Vec2 pixel) const;  // origin and unit direction
-  Vec3 camera_x() const { return {rotation(0, 0), rotation(1, 0), rotation(2, 0)}; }
+  Vec3 camera_x() const;
   Rgb scale(Vec2 pixel) const;  // of radiance to the picture's values
   // "light.NAME" of all emitters, where they have planes of their own.
   std::vector<std::string> light_planes() const;
@@ -25,12 +26,14 @@ struct PathSetting {
   const scene::View& view;
   const RayCaster& caster;
   Transport transport;
-  Mat3 rotation;                                // world_from_camera
+  CameraRays rays;
   std::vector<const light::Emitter*> emitters;  // the named ones first, then ambient
   std::size_t named = 0;
   std::vector<bool> transmits;  // of the surfaces
   Media media;
-  Inside camera_inside;  // what the camera's centre is in
+  Inside camera_inside;                    // what the camera's centre is in
+  std::optional<CausticSources> caustics;  // what is left to paths from the lights, where there is any
+  bool left_to_lights(std::size_t emitter) const { return caustics && caustics->traces(emitter); }
 };
 
 }  // namespace gonio::render

@@ -20,14 +20,15 @@ struct Path {
   std::span<Rgb> planes;
   Rgb scale;  // of radiance to the picture's values
   Noticed& noticed;
-  bool first = true;        // nothing has scattered yet
-  double density = 0;       // of having drawn the direction
-  bool alone = true;        // sampling the lights could not have found what the ray meets
-  int surfaces = 0;         // events at surfaces
-  int events = 0;           // all events
-  int scattered = 0;        // those that spread light: no smooth interfaces
-  int colour = -1;          // the one band that is left
-  double index_square = 1;  // here, over that at the camera
+  bool first = true;         // nothing has scattered yet
+  bool sees_spread = false;  // the first event was no smooth interface
+  double density = 0;        // of having drawn the direction
+  bool alone = true;         // sampling the lights could not have found what the ray meets
+  int surfaces = 0;          // events at surfaces
+  int events = 0;            // all events
+  int scattered = 0;         // those that spread light: no smooth interfaces
+  int colour = -1;           // the one band that is left
+  double index_square = 1;   // here, over that at the camera
 };
 
 // A surface that a path has met.
