@@ -260,7 +260,10 @@ std::optional<SurfacePoint> RayCaster::closest(Vec3 origin_m, Vec3 direction) co
 std::optional<SurfacePoint> RayCaster::closest_from(const SurfacePoint& from, Vec3 direction) const {
   const Vec3 origin_m = impl_->start(from);
   Query query{.context = {}, .ray = {origin_m, direction, from.geometric_normal}, .hit = {}, .from = from.instance};
-  return impl_->closest(query, origin_m, direction);
+  auto point = impl_->closest(query, origin_m, direction);
+  // From where the surface is, not from where the ray was lifted to: media attenuate over this distance.
+  if (point) point->distance_m = std::max(0.0, dot(point->position_m - from.position_m, direction));
+  return point;
 }
 
 bool RayCaster::occluded(const SurfacePoint& from, Vec3 direction, double distance_m) const {
