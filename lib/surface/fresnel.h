@@ -15,11 +15,13 @@ inline double eta_of_f0(double f0) {
   return (1 + r) / (1 - r);
 }
 
-// eta >= 1: from the thinner medium, so that there is no total reflection. Exactly zero for eta = 1.
+// eta: the index beyond over the index on this side. Total reflection is 1. Exactly zero for eta = 1.
 inline double fresnel_dielectric(double cosine, double eta) {
   if (eta == 1) return 0;
   const double c = std::clamp(cosine, 0.0, 1.0);
-  const double t = std::sqrt(1 - (1 - c * c) / (eta * eta));  // cosine inside, > 0 for eta > 1
+  const double t2 = 1 - (1 - c * c) / (eta * eta);  // squared cosine beyond
+  if (t2 <= 0) return 1;
+  const double t = std::sqrt(t2);
   const double s = (c - eta * t) / (c + eta * t), p = (eta * c - t) / (eta * c + t);
   return (s * s + p * p) / 2;
 }

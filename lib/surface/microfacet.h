@@ -20,6 +20,17 @@ inline Vec3 half_vector(Vec3 wo, Vec3 wi) {
   return square > 1e-280 ? sum / std::sqrt(square) : Vec3{0, 0, 1};
 }
 
+// Normal of unit roughness that `v` sees, a unit direction stretched to that roughness (Heitz 2018, listing 1).
+inline Vec3 ggx_visible_normal(Vec3 v, Vec2 u) {
+  const double across = std::hypot(v.x, v.y);
+  const Vec3 t1 = across > 0 ? Vec3{-v.y / across, v.x / across, 0} : Vec3{1, 0, 0};
+  const Vec3 t2 = cross(v, t1);
+  const double r = std::sqrt(u.x), phi = 2 * pi * u.y, s = (1 + v.z) / 2;
+  const double a = r * std::cos(phi);
+  const double b = (1 - s) * std::sqrt(std::max(0.0, 1 - a * a)) + s * r * std::sin(phi);
+  return t1 * a + t2 * b + v * std::sqrt(std::max(0.0, 1 - a * a - b * b));
+}
+
 class Ggx {
  public:
   explicit Ggx(double alpha) : alpha_(alpha), alpha2_(alpha * alpha) {}
@@ -40,14 +51,7 @@ class Ggx {
     return wi.z * (wo.z + so) / (wo.z * stretch(wi) + wi.z * so);
   }
   Vec3 visible_normal(Vec3 wo, Vec2 u) const {
-    const Vec3 v = normalized(Vec3{alpha_ * wo.x, alpha_ * wo.y, wo.z});
-    const double across = std::hypot(v.x, v.y);
-    const Vec3 t1 = across > 0 ? Vec3{-v.y / across, v.x / across, 0} : Vec3{1, 0, 0};
-    const Vec3 t2 = cross(v, t1);
-    const double r = std::sqrt(u.x), phi = 2 * pi * u.y, s = (1 + v.z) / 2;
-    const double a = r * std::cos(phi);
-    const double b = (1 - s) * std::sqrt(std::max(0.0, 1 - a * a)) + s * r * std::sin(phi);
-    const Vec3 n = t1 * a + t2 * b + v * std::sqrt(std::max(0.0, 1 - a * a - b * b));
+    const Vec3 n = ggx_visible_normal(normalized(Vec3{alpha_ * wo.x, alpha_ * wo.y, wo.z}), u);
     return normalized(Vec3{alpha_ * n.x, alpha_ * n.y, std::max(1e-12, n.z)});
   }
 

@@ -10,6 +10,10 @@
 // Perfectly smooth lobes are deltas: evaluate() and pdf() leave them out; sample() returns them with `delta` set, their
 // weight divided by the probability of having chosen them.
 //
+// Where eta differs between bands (dispersion), pdf() and the directions of sample() are those of the band `hero`, and
+// evaluate() is right for every band; a refracted delta carries only bands whose eta is the hero's. A path tracer keeps
+// the hero alone (times three once, chosen uniformly) from the first such refraction, or weighs pdf() of each hero.
+//
 // Conditions that every model meets, and a test checks: reciprocity f(wo, wi) / eta_o^2 = f(wi, wo) / eta_i^2; energy:
 // what is reflected and transmitted is <= 1 (radiance over eta^2) for albedo <= 1; sample and pdf agree (chi-square);
 // albedo() is the reflectance where it claims so.
@@ -44,6 +48,7 @@ struct Values {
   // media that meet there; only models that transmit() read it.
   Rgb eta{1, 1, 1};
   int hero = 0;                        // the band by which directions of refraction are drawn, where they differ
+  bool inside = false;                 // the eye is on the inner side, where azimuths turn the other way
   const Prepared* prepared = nullptr;  // from prepare(); the scene owns it
   const Layer* base = nullptr;         // the surface beneath, for models that take one (`base` in the manifest)
   const Rgb& rgb(std::size_t i) const { return v[i]; }
@@ -69,7 +74,8 @@ class Model {
   virtual Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const = 0;
   virtual Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const = 0;
   virtual double pdf(const Values& values, Vec3 wo, Vec3 wi) const = 0;
-  // Directional-hemispherical reflectance towards wo (an approximation where the file says so).
+  // Directional-hemispherical reflectance towards wo (an approximation where the file says so); of models that
+  // transmit() with the transmittance (radiance over eta^2).
   virtual Rgb albedo(const Values& values, Vec3 wo) const = 0;
 
   // Light also passes to the other side: an interface to the medium that interior() states.

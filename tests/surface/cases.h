@@ -1,6 +1,9 @@
-// Parameter values and directions for tests that walk the registry of surfaces: nothing here names a model.
+// Parameter values, surroundings and directions for tests that walk the registry of surfaces: nothing here names a
+// model.
 #pragma once
 #include <algorithm>
+#include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,10 +12,17 @@
 
 namespace gonio::tests {
 
+// A small file for models whose info().attachment says that they read one, written anew into a temporary folder; see
+// tables.cpp, where a model that needs one says how it is made.
+std::filesystem::path file_for(const manifest::ModelInfo& info);
+
 struct SurfaceCase {
   const surface::Model* model;
   surface::Values values;
   std::string name;
+  std::shared_ptr<const surface::Prepared> prepared{};  // what `values` points to
+  std::shared_ptr<const surface::Layer> base{};
+  std::shared_ptr<const SurfaceCase> beneath{};
 };
 
 // A value inside the bounds, denser towards the lower one, where lobes are narrow.
@@ -27,7 +37,7 @@ inline surface::Values draw_values(const surface::Model& model, Random& random) 
   std::size_t i = 0;
   for (const auto& info : model.info().parameters) {
     const double x = draw_value(info, random);
-    values.v[i++] = info.rgb ? Rgb{x, draw_value(info, random), draw_value(info, random)} : Rgb{x, x, x};
+    values.v[i++] = info.components == 3 ? Rgb{x, draw_value(info, random), draw_value(info, random)} : Rgb{x, x, x};
   }
   return values;
 }
@@ -42,24 +52,61 @@ inline surface::Values at_bound(const surface::Model& model, bool upper) {
   return values;
 }
 
-// All registered models: every parameter at its lower bound, at its upper bound, one at a time at either, and
-// `random_cases` drawn.
-inline std::vector<SurfaceCase> surface_cases(int random_cases, std::uint64_t seed) {
+// What the path tracer and the scene add to the values: the relative index of the media that meet, prepared tables, and
+// the surface beneath, which is one of the models that lie on none and let nothing through, taken in turn.
+inline SurfaceCase completed(SurfaceCase c, Random& random) {
+  if (c.model->transmits()) {
+    const double indices[] = {1.5, 1 / 1.5, 1.33, 1 / 2.4, 1.1, 2.4, 1 / 1.05};
+    const double eta = indices[random.below(7)];
+    c.values.eta = {eta, eta, eta};
+    c.values.inside = eta < 1;
+  }
+  if (c.model->info().takes_base) {
+    std::vector<const surface::Model*> bases;
+    for (const surface::Model* model : surface::all_models())
+      if (!model->info().takes_base && !model->transmits() && model->info().attachment == manifest::Attachment::none)
+        bases.push_back(model);
+    const surface::Model* model = bases[random.below(static_cast<std::uint32_t>(bases.size()))];
+    const auto beneath =
+        std::make_shared<SurfaceCase>(completed({model, draw_values(*model, random), model->info().id}, random));
+    c.name += " on " + model->info().id;
+    c.base = std::make_shared<surface::Layer>(surface::Layer{model, beneath->values});
+    c.beneath = beneath;
+    c.values.base = c.base.get();
+  }
+  const bool reads = c.model->info().attachment != manifest::Attachment::none;
+  c.prepared = c.model->prepare(c.values, reads ? file_for(c.model->info()) : std::filesystem::path{}, c.name);
+  c.values.prepared = c.prepared.get();
+  return c;
+}
+
+// Every parameter at its lower bound, at its upper bound, one at a time at either, and `random_cases` drawn.
+inline std::vector<SurfaceCase> cases_of(const surface::Model& model, int random_cases, std::uint64_t seed) {
   std::vector<SurfaceCase> cases;
   Random random(seed);
-  for (const surface::Model* model : surface::all_models()) {
-    const std::string id = model->info().id;
-    cases.push_back({model, at_bound(*model, false), id + " at lower bounds"});
-    cases.push_back({model, at_bound(*model, true), id + " at upper bounds"});
-    for (int k = 0; k < random_cases; ++k)
-      cases.push_back({model, draw_values(*model, random), id + " drawn " + std::to_string(k)});
-    for (std::size_t i = 0; i < model->info().parameters.size(); ++i) {
-      SurfaceCase mixed{model, draw_values(*model, random), id + " with low " + model->info().parameters[i].name};
-      const double low = model->info().parameters[i].lower;
-      mixed.values.v[i] = {low, low, low};
-      cases.push_back(mixed);
+  const std::string id = model.info().id;
+  const auto add = [&](const surface::Values& values, const std::string& name) {
+    cases.push_back(completed({&model, values, id + " " + name}, random));
+  };
+  add(at_bound(model, false), "at lower bounds");
+  add(at_bound(model, true), "at upper bounds");
+  for (int k = 0; k < random_cases; ++k) add(draw_values(model, random), "drawn " + std::to_string(k));
+  for (std::size_t i = 0; i < model.info().parameters.size(); ++i)
+    for (const bool upper : {false, true}) {
+      surface::Values mixed = draw_values(model, random);
+      const auto& info = model.info().parameters[i];
+      const double bound = upper ? info.upper : info.lower;
+      mixed.v[i] = {bound, bound, bound};
+      add(mixed, (upper ? "with high " : "with low ") + info.name);
     }
-  }
+  return cases;
+}
+
+// The same for all registered models.
+inline std::vector<SurfaceCase> surface_cases(int random_cases, std::uint64_t seed) {
+  std::vector<SurfaceCase> cases;
+  for (const surface::Model* model : surface::all_models())
+    for (SurfaceCase& c : cases_of(*model, random_cases, seed)) cases.push_back(std::move(c));
   return cases;
 }
 
@@ -74,12 +121,28 @@ inline Vec3 draw_direction(Random& random) {
   const double r = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * pi * random.uniform();
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
+// Either side where light passes through.
+inline Vec3 draw_incidence(const surface::Model& model, Random& random) {
+  const Vec3 w = draw_direction(random);
+  return model.transmits() && random.below(2) == 0 ? Vec3{w.x, w.y, -w.z} : w;
+}
+
+// The same surface seen from the other side: frames there have the same +x and opposite y and z.
+inline surface::Values from_beyond(surface::Values values) {
+  values.eta = {1 / values.eta.x, 1 / values.eta.y, 1 / values.eta.z};
+  values.inside = !values.inside;
+  return values;
+}
+inline Vec3 beyond_frame(Vec3 w) {
+  return {w.x, -w.y, -w.z};
+}
 
 struct Reflectance {
   Rgb mean, standard_error;
 };
 
-// Reflectance by the model's own sampler: the additive recurrence of Roberts 2018 (R3), eight times from random starts.
+// Reflectance by the model's own sampler, with the transmittance of models that transmit (radiance over eta^2, which is
+// power): the additive recurrence of Roberts 2018 (R3), eight times from random starts.
 inline Reflectance reflectance_by_sampling(const surface::Model& model, const surface::Values& values, Vec3 wo,
                                            int count = 5000) {
   constexpr int repeats = 8;
@@ -91,7 +154,8 @@ inline Reflectance reflectance_by_sampling(const surface::Model& model, const su
     Rgb one;
     for (int i = 0; i < count; ++i) {
       const Vec2 u{part(a + i * 0.8191725133961645), part(b + i * 0.6710436067037893)};
-      one += model.sample(values, wo, u, part(c + i * 0.5497004779019703)).weight;
+      const auto s = model.sample(values, wo, u, part(c + i * 0.5497004779019703));
+      if (s.pdf > 0) one += s.wi.z < 0 && !s.below ? s.weight * values.eta * values.eta : s.weight;
     }
     one = one / count;
     sum += one;

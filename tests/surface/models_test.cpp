@@ -1,4 +1,4 @@
-// What every registered surface must fulfil.
+// What every registered surface must fulfil: each test runs once per model.
 #include <gtest/gtest.h>
 
 #include "cases.h"
@@ -10,73 +10,127 @@ namespace {
 double largest(Rgb v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
+bool sound(Rgb v) {
+  return is_finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0;
+}
 
-TEST(EverySurface, DeclaresParametersWithBoundsAndMeaning) {
-  ASSERT_FALSE(surface::all_models().empty());
-  for (const surface::Model* model : surface::all_models()) {
-    EXPECT_EQ(surface::find(model->info().id), model);
-    EXPECT_FALSE(model->info().sentence.empty() || model->info().source.empty()) << model->info().id;
-    EXPECT_LE(model->info().parameters.size(), surface::Values{}.v.size());
-    for (const auto& p : model->info().parameters) {
-      EXPECT_FALSE(p.unit.empty() || p.meaning.empty()) << model->info().id << " " << p.name;
-      EXPECT_LT(p.lower, p.upper) << p.name;
-      EXPECT_TRUE(!p.preset || (*p.preset >= p.lower && *p.preset <= p.upper)) << p.name;
-    }
+class EverySurface : public testing::TestWithParam<const surface::Model*> {
+ protected:
+  static std::vector<SurfaceCase> cases(int random_cases, std::uint64_t seed) {
+    return cases_of(*GetParam(), random_cases, seed);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Registered, EverySurface,
+                         testing::ValuesIn(surface::all_models().begin(), surface::all_models().end()),
+                         [](const testing::TestParamInfo<const surface::Model*>& info) {
+                           std::string name = info.param->info().id;
+                           std::replace_if(
+                               name.begin(), name.end(), [](char c) { return !std::isalnum(c); }, '_');
+                           return name;
+                         });
+
+TEST_P(EverySurface, DeclaresParametersWithBoundsAndMeaning) {
+  const surface::Model* model = GetParam();
+  EXPECT_EQ(surface::find(model->info().id), model);
+  EXPECT_FALSE(model->info().sentence.empty() || model->info().source.empty());
+  EXPECT_LE(model->info().parameters.size(), surface::Values{}.v.size());
+  for (const auto& p : model->info().parameters) {
+    EXPECT_FALSE(p.unit.empty() || p.meaning.empty()) << p.name;
+    EXPECT_LT(p.lower, p.upper) << p.name;
+    EXPECT_TRUE(!p.preset || (*p.preset >= p.lower && *p.preset <= p.upper)) << p.name;
   }
   EXPECT_EQ(surface::find("no such model"), nullptr);
 }
 
-// False-alarm rate of the whole family: 1e-3.
-TEST(EverySurface, SamplerDrawsFromItsDensity) {
+// False-alarm rate over all models: 1e-3. Deltas are no part of the density: they count as failures here.
+TEST_P(EverySurface, SamplerDrawsFromItsDensity) {
   std::vector<Sampler> family;
-  for (const SurfaceCase& c : surface_cases(2, 101))
+  for (const SurfaceCase& c : cases(2, 101))
     for (const double zenith : {20.0, 86.0}) {
       const Vec3 wo = at_zenith(zenith);
       family.push_back({c.name + " seen at " + std::to_string(zenith),
                         [c, wo](Random& random) -> std::optional<Vec3> {
                           const Vec2 u{random.uniform(), random.uniform()};
                           const auto s = c.model->sample(c.values, wo, u, random.uniform());
-                          return s.pdf > 0 ? std::optional(s.wi) : std::nullopt;
+                          return s.pdf > 0 && !s.delta && !s.below ? std::optional(s.wi) : std::nullopt;
                         },
                         [c, wo](Vec3 wi) { return c.model->pdf(c.values, wo, wi); }});
     }
-  expect_samplers_match(family, 1e-3, 2026);
+  expect_samplers_match(family, 1e-3, 2026, family.size() * surface::all_models().size());
 }
 
-TEST(EverySurface, SampleStatesDensityAndWeight) {
+// A delta comes as often as its pdf says, and pdf() and evaluate() leave it out. Binomial, at six standard deviations.
+TEST_P(EverySurface, DeltasComeAsOftenAsTheySay) {
+  constexpr int count = 4000;
+  for (const SurfaceCase& c : cases(4, 107))
+    for (const double zenith : {20.0, 86.0}) {
+      const Vec3 wo = at_zenith(zenith);
+      struct Seen {
+        Vec3 wi;
+        double pdf;
+        int times;
+      };
+      std::vector<Seen> deltas;
+      Random random(12);
+      for (int k = 0; k < count; ++k) {
+        const Vec2 u{random.uniform(), random.uniform()};
+        const auto s = c.model->sample(c.values, wo, u, random.uniform());
+        if (!(s.pdf > 0) || !s.delta) continue;
+        ASSERT_LE(s.pdf, 1 + 1e-12) << c.name;
+        const auto same = std::find_if(deltas.begin(), deltas.end(), [&](const Seen& d) { return d.wi == s.wi; });
+        if (same == deltas.end())
+          deltas.push_back({s.wi, s.pdf, 1});
+        else
+          ++same->times;
+      }
+      ASSERT_LE(deltas.size(), 8u) << c.name << ": deltas are few, or they are none";
+      for (const Seen& d : deltas)
+        EXPECT_NEAR(d.times, count * d.pdf, 6 * std::sqrt(count * d.pdf * (1 - d.pdf)) + 1) << c.name;
+    }
+}
+
+TEST_P(EverySurface, SampleStatesDensityAndWeight) {
   Random random(5);
-  for (const SurfaceCase& c : surface_cases(6, 102))
+  for (const SurfaceCase& c : cases(6, 102))
     for (int k = 0; k < 2000; ++k) {
       const Vec3 wo = draw_direction(random);
       const Vec2 u{random.uniform(), random.uniform()};
       const auto s = c.model->sample(c.values, wo, u, random.uniform());
       if (s.pdf == 0) continue;
       ASSERT_NEAR(norm(s.wi), 1, 1e-12) << c.name;
-      ASSERT_GT(s.wi.z, 0) << c.name;
+      ASSERT_TRUE(sound(s.weight)) << c.name;
+      if (s.below) continue;
+      ASSERT_TRUE(s.wi.z > 0 || (c.model->transmits() && s.wi.z < 0)) << c.name;
+      if (s.delta) continue;
       ASSERT_NEAR(s.pdf / c.model->pdf(c.values, wo, s.wi), 1, 1e-9) << c.name;
-      const Rgb expected = c.model->evaluate(c.values, wo, s.wi) * (s.wi.z / s.pdf);
+      const Rgb expected = c.model->evaluate(c.values, wo, s.wi) * (std::abs(s.wi.z) / s.pdf);
       ASSERT_LE(largest(s.weight - expected), 1e-9 * (1 + largest(expected))) << c.name;
     }
 }
 
-TEST(EverySurface, IsReciprocal) {
+// f(wo, wi) / eta_o^2 = f(wi, wo) / eta_i^2; with eta = eta_i / eta_o: f(wo, wi) eta^2 = f(wi, wo).
+TEST_P(EverySurface, IsReciprocal) {
   Random random(6);
-  for (const SurfaceCase& c : surface_cases(8, 103))
+  for (const SurfaceCase& c : cases(8, 103))
     for (int k = 0; k < 2000; ++k) {
-      const Vec3 wo = draw_direction(random), wi = draw_direction(random);
-      const Rgb there = c.model->evaluate(c.values, wo, wi), back = c.model->evaluate(c.values, wi, wo);
-      ASSERT_LE(largest(there - back), 1e-9 * largest(there)) << c.name;
+      const Vec3 wo = draw_direction(random), wi = draw_incidence(*c.model, random);
+      const bool through = wi.z < 0;
+      const Rgb there = c.model->evaluate(c.values, wo, wi) * (through ? c.values.eta * c.values.eta : Rgb{1, 1, 1});
+      const Rgb back = through ? c.model->evaluate(from_beyond(c.values), beyond_frame(wi), beyond_frame(wo))
+                               : c.model->evaluate(c.values, wi, wo);
+      ASSERT_LE(largest(there - back), 1e-9 * largest(there)) << c.name << (through ? " through" : "");
     }
 }
 
-TEST(EverySurface, IsFiniteAndNeverNegative) {
+TEST_P(EverySurface, IsFiniteAndNeverNegative) {
   Random random(7);
-  const auto sound = [](Rgb v) { return is_finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0; };
-  for (const SurfaceCase& c : surface_cases(40, 104))
+  for (const SurfaceCase& c : cases(20, 104))
     for (int k = 0; k < 1000; ++k) {
-      const Vec3 wo = draw_direction(random), wi = draw_direction(random);
+      const Vec3 wo = draw_direction(random), wi = draw_incidence(*c.model, random);
       ASSERT_TRUE(sound(c.model->evaluate(c.values, wo, wi))) << c.name;
-      ASSERT_TRUE(sound(c.model->albedo(c.values, wo))) << c.name;
+      if (k % 20 == 0) {
+        ASSERT_TRUE(sound(c.model->albedo(c.values, wo))) << c.name;
+      }
       const double density = c.model->pdf(c.values, wo, wi);
       ASSERT_TRUE(std::isfinite(density) && density >= 0) << c.name;
       const Vec2 u{random.uniform(), random.uniform()};
@@ -84,52 +138,117 @@ TEST(EverySurface, IsFiniteAndNeverNegative) {
       ASSERT_TRUE(sound(s.weight) && std::isfinite(s.pdf) && s.pdf >= 0 && is_finite(s.wi)) << c.name;
       const Vec3 mirror{-wo.x, -wo.y, wo.z};  // the peak, where opposite grazing directions cancel
       ASSERT_TRUE(sound(c.model->evaluate(c.values, wo, mirror))) << c.name;
+      ASSERT_TRUE(sound(c.model->evaluate(c.values, wo, -wo))) << c.name;
     }
 }
 
-TEST(EverySurface, IsBlackBelowTheHorizon) {
-  for (const SurfaceCase& c : surface_cases(2, 105))
+TEST_P(EverySurface, IsBlackBelowTheHorizon) {
+  for (const SurfaceCase& c : cases(2, 105))
     for (const double z : {0.0, -1e-12, -0.5, -1.0}) {
       const Vec3 below{std::sqrt(1 - z * z), 0, z}, above = at_zenith(40);
-      EXPECT_EQ(largest(c.model->evaluate(c.values, above, below)), 0) << c.name;
       EXPECT_EQ(largest(c.model->evaluate(c.values, below, above)), 0) << c.name;
-      EXPECT_EQ(c.model->pdf(c.values, above, below), 0) << c.name;
       EXPECT_EQ(c.model->pdf(c.values, below, above), 0) << c.name;
       EXPECT_EQ(c.model->sample(c.values, below, {0.3, 0.4}, 0.5).pdf, 0) << c.name;
+      if (c.model->transmits() && z < 0) continue;
+      EXPECT_EQ(largest(c.model->evaluate(c.values, above, below)), 0) << c.name;
+      EXPECT_EQ(c.model->pdf(c.values, above, below), 0) << c.name;
     }
 }
 
-// Energy, and albedo() against the sampler. 3e-3 is the error of the tables of interface_albedo.h; six standard errors
-// of the estimate (Student's t of seven degrees: false alarms below 1e-3 each) come on top; 0.02 covers a rough base
-// under an interface, where albedo() says that it is an approximation.
-TEST(EverySurface, ReflectsNoMoreThanItReceives) {
-  for (const SurfaceCase& c : surface_cases(4, 106))
+// Error of the tables of interface_albedo.h and interface_loss.h: within 5e-3 but for anisotropic interfaces and those
+// between nearly equal indices, where lobes turn fast near the horizon.
+double table_error(double zenith) {
+  return zenith > 80 ? 0.03 : 0.01;
+}
+
+// Energy, and albedo() against the sampler. Six standard errors of the estimate (Student's t of seven degrees: false
+// alarms below 1e-3 each) come on top; 0.01 more covers a rough base under an interface, where albedo() says that it is
+// an approximation. Where light leaves elsewhere than it entered the weight is what enters.
+TEST_P(EverySurface, ReflectsNoMoreThanItReceives) {
+  for (const SurfaceCase& c : cases(4, 106))
     for (const double zenith : {0.0, 45.0, 75.0, 88.0}) {
       const Vec3 wo = at_zenith(zenith);
       const auto [reflected, error] = reflectance_by_sampling(*c.model, c.values, wo);
       const Rgb stated = c.model->albedo(c.values, wo);
-      EXPECT_LE(max_component(reflected), 1.003 + 6 * max_component(error)) << c.name << " at " << zenith;
+      EXPECT_LE(max_component(reflected), 1 + table_error(zenith) + 6 * max_component(error))
+          << c.name << " at " << zenith;
       EXPECT_LE(max_component(stated), 1 + 1e-3) << c.name << " at " << zenith;
-      EXPECT_LE(largest(reflected - stated), 0.02 + 6 * max_component(error)) << c.name << " at " << zenith;
+      if (c.model->subsurface(c.values)) continue;
+      EXPECT_LE(largest(reflected - stated), 0.01 + table_error(zenith) + 6 * max_component(error))
+          << c.name << " at " << zenith;
     }
 }
 
-TEST(EverySurface, RefusesWhatIsNotItsOwn) {
-  for (const surface::Model* model : surface::all_models()) {
-    manifest::Parameters parameters;
-    for (const auto& p : model->info().parameters) parameters[p.name] = p.lower;
-    const auto values = surface::values_of(*model, parameters, "s.json#/surfaces/s");
-    for (std::size_t i = 0; i < parameters.size(); ++i) EXPECT_EQ(values.scalar(i), model->info().parameters[i].lower);
-    auto unknown = parameters;
-    unknown["colour_of_magic"] = 1.0;
-    EXPECT_THROW(surface::values_of(*model, unknown, "p"), std::runtime_error);
-    auto beyond = parameters;
-    beyond.begin()->second.value = {1e9};
-    EXPECT_THROW(surface::values_of(*model, beyond, "p"), std::runtime_error);
-    auto wrong_count = parameters;
-    wrong_count.begin()->second.value = {0.5, 0.5};
-    EXPECT_THROW(surface::values_of(*model, wrong_count, "p"), std::runtime_error);
+// White furnace: a clear interface returns all light by one way or the other.
+TEST_P(EverySurface, ReturnsAllLightWhereItClaimsTo) {
+  const auto white = [](Rgb stated) { return stated == Rgb{1, 1, 1}; };
+  for (const SurfaceCase& c : cases(8, 108))
+    for (const double zenith : {0.0, 30.0, 60.0, 85.0}) {
+      const Vec3 wo = at_zenith(zenith);
+      if (!white(c.model->albedo(c.values, wo)) || c.model->subsurface(c.values)) continue;
+      const auto [reflected, error] = reflectance_by_sampling(*c.model, c.values, wo);
+      EXPECT_LE(largest(reflected - Rgb{1, 1, 1}), table_error(zenith) + 6 * max_component(error))
+          << c.name << " at " << zenith;
+    }
+}
+
+// Fits follow derivatives: central differences over h and h / 2 agree wherever a parameter lies inside its bounds. A
+// step would double the difference. Piecewise linear tables may have a kink between the two: one in fifty is let pass.
+TEST_P(EverySurface, ChangesSmoothlyWithItsParameters) {
+  Random random(9);
+  int checks = 0, kinks = 0;
+  for (int k = 0; k < 60; ++k) {
+    SurfaceCase c = completed({GetParam(), draw_values(*GetParam(), random), GetParam()->info().id}, random);
+    const Vec3 wo = at_zenith(80 * random.uniform(), 6 * random.uniform());
+    Vec3 wi = at_zenith(80 * random.uniform(), 6 * random.uniform());
+    if (c.model->transmits() && k % 2 == 1) wi.z = -wi.z;
+    const Rgb f = c.model->evaluate(c.values, wo, wi);
+    const auto& parameters = c.model->info().parameters;
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+      for (int component = 0; component < (parameters[i].components == 3 ? 3 : 1); ++component) {
+        const double x = c.values.v[i][component];
+        const double room = std::min({x - parameters[i].lower, parameters[i].upper - x, std::abs(x) + 1e-3});
+        const auto at = [&](double value) {
+          SurfaceCase moved = c;
+          Rgb& v = moved.values.v[i];
+          if (parameters[i].components == 1)
+            v = {value, value, value};
+          else
+            (component == 0 ? v.x : component == 1 ? v.y : v.z) = value;
+          if (c.prepared) {
+            const bool reads = c.model->info().attachment != manifest::Attachment::none;
+            moved.prepared = c.model->prepare(moved.values, reads ? file_for(c.model->info()) : "", c.name);
+            moved.values.prepared = moved.prepared.get();
+          }
+          return c.model->evaluate(moved.values, wo, wi);
+        };
+        const double h = 1e-4 * room;
+        if (!(h > 0)) continue;
+        const Rgb wide = (at(x + h) - at(x - h)) / (2 * h), narrow = (at(x + h / 2) - at(x - h / 2)) / h;
+        ASSERT_TRUE(is_finite(wide) && is_finite(narrow)) << parameters[i].name;
+        ++checks;
+        if (largest(wide - narrow) > 1e-4 * largest(narrow) + 1e-9 * largest(f) / h) ++kinks;
+      }
   }
+  EXPECT_LE(kinks, checks / 50) << "of " << checks;
+}
+
+TEST_P(EverySurface, RefusesWhatIsNotItsOwn) {
+  const surface::Model* model = GetParam();
+  manifest::Parameters parameters;
+  for (const auto& p : model->info().parameters) parameters[p.name] = p.lower;
+  const auto values = surface::values_of(*model, parameters, "s.json#/surfaces/s");
+  for (std::size_t i = 0; i < parameters.size(); ++i) EXPECT_EQ(values.scalar(i), model->info().parameters[i].lower);
+  auto unknown = parameters;
+  unknown["colour_of_magic"] = 1.0;
+  EXPECT_THROW(surface::values_of(*model, unknown, "p"), std::runtime_error);
+  if (parameters.empty()) return;
+  auto beyond = parameters;
+  beyond.begin()->second.value = {1e12};
+  EXPECT_THROW(surface::values_of(*model, beyond, "p"), std::runtime_error);
+  auto wrong_count = parameters;
+  wrong_count.begin()->second.value = {0.5, 0.5};
+  EXPECT_THROW(surface::values_of(*model, wrong_count, "p"), std::runtime_error);
 }
 
 }  // namespace

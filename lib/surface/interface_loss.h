@@ -1,0 +1,36 @@
+// What single scattering at a rough interface fails to return: light that meets a second facet.
+//   loss(w) = 1 - integral over the sphere of (reflected + transmitted power),   mean = integral of loss(w) wz / pi dw
+// seen from the side that `eta` (index beyond over index here) belongs to; or for facets that reflect all (a mirror).
+// Tabulated in blocks, each at first use (a millisecond; where roughness is anisotropic some twenty). Interpolation is
+// linear in sqrt(wz), sqrt(alpha), sqrt(|eta - 1| / (eta + 1)), log(alpha_v / alpha_u) and the cosine of the azimuth,
+// up to eta = 4 and 1 / 4, clamped beyond; `mean` is the exact integral of the interpolant, so that energy closes to
+// the error of the table (tests: EverySurface.ReturnsAllLightWhereItClaimsTo).
+#pragma once
+#include <array>
+
+#include "surface/slopes.h"
+
+namespace gonio::surface {
+
+struct LossTable;
+
+class InterfaceLoss {
+ public:
+  InterfaceLoss(Slopes kind, const Roughness& roughness, double eta);
+  static InterfaceLoss mirror(Slopes kind, const Roughness& roughness) { return {kind, roughness, 0}; }
+  // `w` in the frame of the facets' axes, on either side of the plane.
+  double towards(Vec3 w) const;
+  double mean() const { return mean_; }
+
+ private:
+  const LossTable* table_;
+  struct Corner {  // the block at a node of (index, anisotropy, alpha), and its share
+    const double* values;
+    double share;
+  };
+  std::array<Corner, 8> corners_;
+  std::size_t count_ = 0;  // of corners
+  double mean_ = 0;
+};
+
+}  // namespace gonio::surface
