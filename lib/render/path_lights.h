@@ -96,6 +96,12 @@ class PathLights {
     branch.depolarize(sample.direction, phase * sample.weight * clear * share);
     add(path, branch.met(sample.direction, {1, 1, 1}, *setting_.emitters[i]), i, path.scattered + 1);
   }
+  // Light of one emitter that a caller has sampled, in units of its weight.
+  void add_sampled(const Path<Carrier>& path, Vec3 direction, Rgb weight, std::size_t i) const {
+    Carrier branch = path.carrier;
+    branch.depolarize(direction, weight);
+    add(path, branch.met(direction, {1, 1, 1}, *setting_.emitters[i]), i, path.scattered + 1);
+  }
 
  private:
   // Lamp, smooth interfaces, and a last event that the camera sees directly: see light_tracer.h.

@@ -20,6 +20,7 @@
 #include <optional>
 
 #include "render/path_lights.h"
+#include "render/subsurface_straight.h"
 
 namespace gonio::render {
 
@@ -117,7 +118,12 @@ class PathLoop {
       if (path.colour < 0) here->hero = disperses ? static_cast<int>(3 * path.sampler.uniform()) : 0;
     }
     const Vertex vertex(setting_.scene, at, -path.direction, here);
-    const Meeting meeting{vertex, crossing ? &*crossing : nullptr, transmits, disperses ? here->hero : -1};
+    return scatter_at(path, {vertex, crossing ? &*crossing : nullptr, transmits, disperses ? here->hero : -1});
+  }
+
+  // Light of the lamps, and on.
+  bool scatter_at(Path<Carrier>& path, const Meeting& meeting) const {
+    const Vertex& vertex = meeting.vertex;
     if (!is_off(path.scattered + 1))
       for (std::size_t i = 0; i < setting_.emitters.size(); ++i) lights_.light_surface(path, meeting, i);
     const Vec2 u = path.sampler.two();
@@ -128,7 +134,7 @@ class PathLoop {
   // On along a direction that the surface has drawn. False: the path ends.
   bool leave(Path<Carrier>& path, const Meeting& meeting, const surface::Sample& next) const {
     const Vertex& vertex = meeting.vertex;
-    if (next.below) return false;  // light from beneath: the walk to its entry (subsurface_walk.h) continues here
+    if (next.below) return leave_below(path, vertex, next);
     const Vec3 direction = vertex.frame.to_world(next.wi);
     const bool through = next.wi.z < 0;
     const double side = dot(vertex.point.geometric_normal, direction);
@@ -152,6 +158,27 @@ class PathLoop {
     path.scattered += next.delta ? 0 : 1;
     if (is_off(path.scattered)) return false;
     return survives(path);
+  }
+
+  // Light that has come by way of the medium beneath the surface: it entered elsewhere on the same object.
+  bool leave_below(Path<Carrier>& path, const Vertex& exit, const surface::Sample& next) const {
+    const surface::Subsurface* beneath = exit.model->subsurface(exit.values);
+    if (!beneath) return false;
+    const Vec3 inward = exit.frame.to_world(next.wi);
+    path.carrier.depolarize(inward, next.weight);
+    path.first = false;
+    if (const surface::StraightLight* light = beneath->straight()) {
+      const auto fate = straight_.follow(path, exit, inward, *beneath, *light);
+      if (fate == StraightWalk<Carrier>::Fate::lost) return false;
+      if (fate == StraightWalk<Carrier>::Fate::onwards) return survives(path);
+    }
+    if (!(beneath->reach_m() > 0)) return false;
+    const auto point = draw_entry(setting_.caster, *beneath, exit.point, path.sampler);
+    if (!point) return false;
+    const EntryModel law(*beneath, *exit.model, exit.point, *point, path.sampler.two());
+    Vertex entry(setting_.scene, point->point, point->point.normal);
+    entry.model = &law;
+    return scatter_at(path, {entry, nullptr, false, -1});
   }
 
   bool scatter_in_medium(Path<Carrier>& path) const {
@@ -182,6 +209,7 @@ class PathLoop {
 
   const PathSetting& setting_;
   PathLights<Carrier> lights_{setting_};
+  StraightWalk<Carrier> straight_{setting_, lights_};
 };
 
 }  // namespace gonio::render

@@ -112,7 +112,7 @@ struct RayCaster::Impl {
   RTCRay float_ray(Vec3 origin_m, Vec3 direction, double distance_m) const;
   Vec3 start(const SurfacePoint& from) const;
   bool is_mesh(std::uint32_t instance) const { return meshes[instance].mesh != nullptr; }
-  std::optional<SurfacePoint> closest(Query& query, Vec3 origin_m, Vec3 direction) const;
+  std::optional<SurfacePoint> closest(Query& query, Vec3 origin_m, Vec3 direction, double distance_m = far_away) const;
   SurfacePoint on_triangle(const RTCHit& hit, Vec3 origin_m, Vec3 direction) const;
 };
 
@@ -220,8 +220,9 @@ SurfacePoint RayCaster::Impl::on_triangle(const RTCHit& hit, Vec3 origin_m, Vec3
   return point;
 }
 
-std::optional<SurfacePoint> RayCaster::Impl::closest(Query& query, Vec3 origin_m, Vec3 direction) const {
-  RTCRayHit ray_hit{float_ray(origin_m, direction, far_away), {}};
+std::optional<SurfacePoint> RayCaster::Impl::closest(Query& query, Vec3 origin_m, Vec3 direction,
+                                                     double distance_m) const {
+  RTCRayHit ray_hit{float_ray(origin_m, direction, distance_m), {}};
   ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcInitIntersectContext(&query.context);
   rtcIntersect1(scene.get(), &query.context, &ray_hit);
@@ -287,11 +288,21 @@ bool RayCaster::blocked(Vec3 origin_m, Vec3 direction, double distance_m) const 
 std::vector<SurfacePoint> RayCaster::crossings(std::uint32_t instance, Vec3 origin_m, Vec3 direction,
                                                double distance_m) const {
   std::vector<SurfacePoint> found;
+  const auto next = [&](const SurfacePoint* from, double left_m) {
+    Query query{.context = {},
+                .ray = {origin_m, direction, from ? from->geometric_normal : Vec3{}},
+                .hit = {},
+                .from = from ? from->instance : Query::none};
+    query.ray.origin_m = from ? impl_->start(*from) : origin_m;
+    return impl_->closest(query, query.ray.origin_m, direction, left_m);
+  };
   double walked = 0;
-  for (auto point = closest(origin_m, direction); point; point = closest_from(beyond(*point), direction)) {
+  for (auto point = next(nullptr, distance_m); point;) {
     walked += point->distance_m;
     if (walked > distance_m) break;
     if (point->instance == instance) found.push_back(*point);
+    const SurfacePoint other_side = beyond(*point);
+    point = next(&other_side, distance_m - walked);
   }
   return found;
 }
