@@ -26,6 +26,17 @@ inline double fresnel_dielectric(double cosine, double eta) {
   return (s * s + p * p) / 2;
 }
 
+// Reflectance of a smooth interface to diffuse light from outside, 2 integral of F(c) c dc; eta >= 1. Duntley 1942, as
+// in Egan & Hilgeman 1979, "Optical Properties of Inhomogeneous Materials", appendix.
+inline double fresnel_dielectric_mean(double eta) {
+  constexpr double near = 1.001;  // the closed form cancels below
+  if (eta < near) return eta > 1 ? fresnel_dielectric_mean(near) * (eta - 1) / (near - 1) : 0;
+  const double n = eta, n2 = n * n, n4 = n2 * n2, p = n2 + 1, m = n2 - 1;
+  return 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) +
+         n2 * m * m / (p * p * p) * std::log((n - 1) / (n + 1)) - 2 * n2 * n * (n2 + 2 * n - 1) / (p * (n4 - 1)) +
+         8 * n4 * (n4 + 1) / (p * (n4 - 1) * (n4 - 1)) * std::log(n);
+}
+
 // Complex index eta + i k.
 inline double fresnel_metal(double cosine, double eta, double k) {
   const double c = std::clamp(cosine, 0.0, 1.0), c2 = c * c, s2 = 1 - c2;

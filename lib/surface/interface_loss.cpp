@@ -47,7 +47,7 @@ struct Grid {
     return row < indices ? above : 1 / above;
   }
 };
-constexpr Grid isotropic_grid{41, 1, 25, 1, 20, 32, 12}, anisotropic_grid{33, 9, 25, 9, 20, 24, 18};
+constexpr Grid isotropic_grid{41, 1, 25, 1, 20, 32, 12}, anisotropic_grid{29, 9, 25, 9, 20, 20, 14};
 
 struct Node {
   Vec2 u;

@@ -62,16 +62,17 @@ inline SurfaceCase completed(SurfaceCase c, Random& random) {
     c.values.inside = eta < 1;
   }
   if (c.model->info().takes_base) {
-    std::vector<const surface::Model*> bases;
-    for (const surface::Model* model : surface::all_models())
-      if (!model->info().takes_base && !model->transmits() && model->info().attachment == manifest::Attachment::none)
-        bases.push_back(model);
-    const surface::Model* model = bases[random.below(static_cast<std::uint32_t>(bases.size()))];
-    const auto beneath =
-        std::make_shared<SurfaceCase>(completed({model, draw_values(*model, random), model->info().id}, random));
-    c.name += " on " + model->info().id;
-    c.base = std::make_shared<surface::Layer>(surface::Layer{model, beneath->values});
-    c.beneath = beneath;
+    std::vector<std::shared_ptr<const SurfaceCase>> bases;
+    for (const surface::Model* model : surface::all_models()) {
+      if (model->info().takes_base || model->transmits() || model->info().attachment != manifest::Attachment::none)
+        continue;
+      const auto base = std::make_shared<const SurfaceCase>(
+          completed({model, draw_values(*model, random), model->info().id}, random));
+      if (!model->subsurface(base->values)) bases.push_back(base);
+    }
+    c.beneath = bases.at(random.below(static_cast<std::uint32_t>(bases.size())));
+    c.name += " on " + c.beneath->name;
+    c.base = std::make_shared<surface::Layer>(surface::Layer{c.beneath->model, c.beneath->values});
     c.values.base = c.base.get();
   }
   const bool reads = c.model->info().attachment != manifest::Attachment::none;

@@ -57,6 +57,18 @@ TEST(Fresnel, MetalAtNormalIncidence) {
   EXPECT_NEAR(surface::fresnel_metal(1, eta, k), expected, 1e-12);
 }
 
+TEST(Fresnel, MeanOverDiffuseLight) {
+  for (const double eta : {1.0005, 1.01, 1.33, 1.5, 2.5}) {
+    double sum = 0;
+    constexpr int n = 200000;  // 2 c dc = d(c^2), denser towards grazing: c = v^3
+    for (int i = 0; i < n; ++i) {
+      const double v = (i + 0.5) / n, c = v * v * v;
+      sum += 2 * c * 3 * v * v / n * surface::fresnel_dielectric(c, eta);
+    }
+    EXPECT_NEAR(surface::fresnel_dielectric_mean(eta), sum, 2e-6) << eta;
+  }
+}
+
 TEST(Microfacets, CoverTheirPlaneOnce) {
   for (const double alpha : {0.02, 0.1, 0.5, 1.0}) {
     const Ggx ggx(alpha);
@@ -160,6 +172,88 @@ TEST(CoatedDiffuse, TendsToDiffuseAsTheInterfaceFades) {
   for (const double zenith : {0.0, 40.0, 70.0})
     EXPECT_NEAR(coated.evaluate(faint, at_zenith(zenith), at_zenith(30, 2)).x,
                 diffuse.evaluate(faint, at_zenith(zenith), at_zenith(30, 2)).x, 1e-5);
+}
+
+// Bases for a coat, held together with it.
+struct Coated {
+  surface::Layer base;
+  surface::Values values;
+  Coated(const char* base_id, surface::Values below, std::initializer_list<Rgb> coat)
+      : base{surface::find(base_id), below}, values(tests::values(coat)) {
+    values.base = &base;
+  }
+  Coated(const Coated&) = delete;
+};
+
+// Over a Lambertian base the general coat sums the same series as the closed form, up to its fixed samples.
+TEST(RoughCoat, OverMatteBaseIsInterfacedDiffuse) {
+  const surface::Model &coat = *surface::find("rough-coat"), &closed = *surface::find("interfaced-diffuse");
+  for (const double albedo : {0.1, 0.5, 0.9})
+    for (const double alpha : {0.0, 0.1, 0.5}) {
+      const Coated over("diffuse", values({grey(albedo), grey(0)}), {grey(1.5), grey(alpha), grey(0), grey(0)});
+      const auto same = values({grey(albedo), grey(1.5), grey(alpha)});
+      for (const double zenith : {5.0, 45.0, 75.0}) {
+        const double one = coat.evaluate(over.values, at_zenith(zenith), at_zenith(30, 2)).x;
+        const double other = closed.evaluate(same, at_zenith(zenith), at_zenith(30, 2)).x;
+        EXPECT_NEAR(one, other, 0.01 * other) << albedo << " " << alpha << " " << zenith;
+      }
+    }
+}
+
+TEST(RoughCoat, WithoutCoatIsTheBaseToTheLastBit) {
+  const surface::Model &coat = *surface::find("rough-coat"), &metal = *surface::find("metal");
+  const Coated over("metal", values({Rgb{0.9, 0.6, 0.4}, grey(0.3)}), {grey(1), grey(0.2), grey(0), grey(0.001)});
+  Random random(8);
+  for (int k = 0; k < 1000; ++k) {
+    const Vec3 wo = draw_direction(random), wi = draw_direction(random);
+    const Vec2 u{random.uniform(), random.uniform()};
+    EXPECT_EQ(coat.evaluate(over.values, wo, wi), metal.evaluate(over.base.values, wo, wi));
+    EXPECT_EQ(coat.pdf(over.values, wo, wi), metal.pdf(over.base.values, wo, wi));
+    EXPECT_EQ(coat.sample(over.values, wo, u, 0.3).weight, metal.sample(over.base.values, wo, u, 0.3).weight);
+  }
+}
+
+// A smooth coat over a mirror of reflectance r: F + (1 - F)^2 r sum of (F r)^n, here with the light that is trapped in
+// the mirror's direction sent out diffusely, and absorption by Bouguer's law on both ways.
+TEST(RoughCoat, OverAMirrorReflectsTheSeries) {
+  const surface::Model& coat = *surface::find("rough-coat");
+  const double depth = 0.3;
+  for (const double zenith : {0.0, 40.0, 70.0}) {
+    const Coated over("metal", values({grey(1), grey(0.02)}), {grey(1.5), grey(0), grey(300), grey(depth / 300)});
+    const Vec3 wo = at_zenith(zenith);
+    const double f = surface::fresnel_dielectric(wo.z, 1.5), inside = std::sqrt(1 - (1 - wo.z * wo.z) / 2.25);
+    const double a = std::exp(-depth / inside), once = f + (1 - f) * (1 - f) * a * a;
+    const double all = once + (1 - f) * (1 - f) * a * a * f * a * a / (1 - f * a * a);
+    const auto [reflected, error] = reflectance_by_sampling(coat, over.values, wo);
+    EXPECT_GT(reflected.x, once - 6e-3 - 6 * error.x) << zenith;
+    EXPECT_LT(reflected.x, all + 6e-3 + 6 * error.x) << zenith;
+  }
+}
+
+// What the interface does to a base: darker where albedo is low, nothing lost where it is white.
+TEST(InterfacedDiffuse, DarkensAsSaundersonSays) {
+  const surface::Model& plastic = *surface::find("interfaced-diffuse");
+  const double k1 = surface::fresnel_dielectric_mean(1.5), k2 = 1 - (1 - k1) / 2.25;
+  for (const double albedo : {0.05, 0.5, 1.0}) {
+    const auto smooth = values({grey(albedo), grey(1.5), grey(0)});
+    double mean =
+        0;  // over diffuse light: k1 + (1 - k1) (1 - k2) albedo / (1 - k2 albedo), Saunderson 1942, equation 1
+    constexpr int n = 2000;
+    for (int i = 0; i < n; ++i) {
+      const double c = std::sqrt((i + 0.5) / n);
+      mean += plastic.albedo(smooth, {std::sqrt(1 - c * c), 0, c}).x / n;
+    }
+    EXPECT_NEAR(mean, k1 + (1 - k1) * (1 - k2) * albedo / (1 - k2 * albedo), 1e-4) << albedo;
+  }
+}
+
+TEST(InterfacedDiffuse, WithoutInterfaceIsDiffuse) {
+  const surface::Model &plastic = *surface::find("interfaced-diffuse"), &diffuse = *surface::find("diffuse");
+  const Rgb albedo{0.2, 0.5, 0.9};
+  const Rgb there = plastic.evaluate(values({albedo, grey(1), grey(0.3)}), at_zenith(50), at_zenith(20, 3));
+  const Rgb expected = diffuse.evaluate(values({albedo, grey(0)}), at_zenith(50), at_zenith(20, 3));
+  EXPECT_NEAR(there.x, expected.x, 1e-15);
+  EXPECT_NEAR(there.z, expected.z, 1e-15);
 }
 
 // White furnace: what goes in comes out, whatever the roughness, up to the tables' error.

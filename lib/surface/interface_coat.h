@@ -1,0 +1,76 @@
+// The clear interface over another material (varnish, glaze, binder): what it reflects at its outside and lets through.
+//   E(w)  share that one facet reflects, from surface/interface_albedo.h; exact Fresnel where it is smooth, and between
+//         the two below alpha = 0.02
+//   T(w) = 1 - E(w) goes through: light that meets several facets is taken as transmitted, as most of it is
+// Seen from inside, at the refracted direction w', as much goes through (Helmholtz), nothing beyond the critical angle:
+// diffuse light inside is reflected by 1 - (1 - E_mean) / eta^2, whatever the roughness.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "surface/fresnel.h"
+#include "surface/hemisphere.h"
+#include "surface/interface_albedo.h"
+#include "surface/microfacet.h"
+#include "surface/slopes.h"
+
+namespace gonio::surface {
+
+inline constexpr double max_coat_eta = 2.6;  // f0 = 0.198, within the tables
+
+class CoatInterface {
+ public:
+  CoatInterface(double eta, double alpha)
+      : eta_(eta), f0_((eta - 1) * (eta - 1) / ((eta + 1) * (eta + 1))), alpha_(alpha) {}
+
+  double eta() const { return eta_; }
+  bool smooth() const { return alpha_ < smooth_alpha; }
+  double reflects(double cosine) const {
+    if (eta_ == 1) return 0;
+    if (alpha_ >= min_alpha) return dielectric_albedo(cosine, alpha_, f0_);
+    return toward_smooth(fresnel_dielectric(cosine, eta_), [&] { return dielectric_albedo(cosine, min_alpha, f0_); });
+  }
+  double reflects_mean() const {
+    if (eta_ == 1) return 0;
+    if (alpha_ >= min_alpha) return dielectric_albedo_mean(alpha_, f0_);
+    return toward_smooth(fresnel_dielectric_mean(eta_), [&] { return dielectric_albedo_mean(min_alpha, f0_); });
+  }
+  double reflects_mean_inside() const { return 1 - (1 - reflects_mean()) / (eta_ * eta_); }
+  double passes(double cosine) const { return 1 - reflects(cosine); }
+  double passes_from_inside(double cosine) const {
+    const double out2 = 1 - eta_ * eta_ * (1 - cosine * cosine);
+    return out2 > 0 ? passes(std::sqrt(out2)) : 0;
+  }
+
+  Vec3 inwards(Vec3 w) const {
+    if (eta_ == 1) return w;
+    return Vec3{w.x, w.y, std::sqrt((eta_ - 1) * (eta_ + 1) + w.z * w.z)} / eta_;
+  }
+  // The zero vector where there is total reflection.
+  Vec3 outwards(Vec3 w) const {
+    const double out2 = 1 - eta_ * eta_ * (1 - w.z * w.z);
+    return out2 > 0 ? Vec3{w.x * eta_, w.y * eta_, std::sqrt(out2)} : Vec3{};
+  }
+
+  // The lobe of a rough interface.
+  double gloss(Vec3 wo, Vec3 wi) const {
+    if (smooth() || eta_ == 1) return 0;
+    const Vec3 h = half_vector(wo, wi);
+    return fresnel_dielectric(dot(wo, h), eta_) * Ggx(alpha_).lobe(wo, wi, h);
+  }
+  double gloss_pdf(Vec3 wo, Vec3 wi) const { return smooth() ? 0 : Ggx(alpha_).pdf(wo, half_vector(wo, wi)); }
+  // Smooth: the mirrored direction.
+  Vec3 gloss_direction(Vec3 wo, Vec2 u) const {
+    return smooth() ? Vec3{-wo.x, -wo.y, wo.z} : mirrored(wo, Ggx(alpha_).visible_normal(wo, u));
+  }
+
+ private:
+  template <class Rough>
+  double toward_smooth(double smooth_value, const Rough& rough_value) const {
+    if (smooth()) return smooth_value;
+    return smooth_value + (rough_value() - smooth_value) * (alpha_ / min_alpha);
+  }
+  double eta_, f0_, alpha_;
+};
+
+}  // namespace gonio::surface
