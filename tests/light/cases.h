@@ -1,5 +1,8 @@
 // Lights of every registered model with drawn parameters: nothing here names a model.
 #pragma once
+#include <gtest/gtest.h>
+
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,14 +41,24 @@ inline manifest::Parameters draw_parameters(const manifest::ModelInfo& info, Ran
   return parameters;
 }
 
+// What a model reads: the picture above, or the file of tests/light/attachments whose stem is the model's id.
+inline light::Attachment attachment_of(const manifest::ModelInfo& info) {
+  if (info.attachment == manifest::Attachment::none) return {};
+  if (info.attachment == manifest::Attachment::picture) return {test_surround(), {}};
+  const auto folder = std::filesystem::path(GONIO_SOURCE) / "tests" / "light" / "attachments";
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().stem() == info.id) return {nullptr, entry.path()};
+  ADD_FAILURE() << "tests/light/attachments has no file for " << info.id;
+  return {};
+}
+
 inline std::vector<LightCase> light_cases(int each, std::uint64_t seed) {
   std::vector<LightCase> cases;
   Random random(seed);
   for (const light::Model* model : light::all_models())
     for (int k = 0; k < each; ++k) {
       auto parameters = draw_parameters(model->info(), random);
-      auto emitter = model->prepare(
-          parameters, {model->info().attachment == manifest::Attachment::picture ? test_surround() : nullptr, {}}, "p");
+      auto emitter = model->prepare(parameters, attachment_of(model->info()), "p");
       cases.push_back({model->info().id + " drawn " + std::to_string(k), std::move(parameters), std::move(emitter)});
     }
   return cases;

@@ -16,8 +16,8 @@
 #include <cmath>
 #include <vector>
 
-#include "base/error.h"
 #include "light/distribution.h"
+#include "light/emitting_picture.h"
 #include "light/light.h"
 
 namespace gonio::light {
@@ -27,19 +27,19 @@ enum : std::size_t { scale_index, rotation_index };
 
 class LatLong final : public Emitter {
  public:
-  LatLong(std::shared_ptr<const io::Image> picture, Rgb scale, double rotation_rad)
-      : picture_(std::move(picture)), scale_(scale), rotation_rad_(rotation_rad), rows_(row_weights()) {}
+  LatLong(EmittingPicture picture, double rotation_rad)
+      : picture_(std::move(picture)), rotation_rad_(rotation_rad), cells_(weights(), picture_.columns()) {}
 
   Sample sample(Vec3, Vec2 u) const override {
-    const std::size_t y = rows_.draw(u.x), x = columns_[y].draw(u.y);
+    const auto [y, x, inside] = cells_.draw(u);
     const double top = edge_cosine(y), bottom = edge_cosine(y + 1);
-    const double z = top + (bottom - top) * u.x, r = std::sqrt(std::max(0.0, 1 - z * z));
-    const double phi = rotation_rad_ + pi - 2 * pi * (static_cast<double>(x) + u.y) / width();
+    const double z = top + (bottom - top) * inside.y, r = std::sqrt(std::max(0.0, 1 - z * z));
+    const double phi = rotation_rad_ + pi - 2 * pi * (static_cast<double>(x) + inside.x) / width();
     const double density = pdf(x, y);
     if (!(density > 0)) return {};
     return {{r * std::cos(phi), r * std::sin(phi), z},
             std::numeric_limits<double>::infinity(),
-            radiance(x, y) / density,
+            picture_.radiance(x, y) / density,
             density,
             false,
             true};
@@ -50,58 +50,29 @@ class LatLong final : public Emitter {
     const double theta = std::acos(std::clamp(direction.z, -1.0, 1.0));
     const std::size_t x = std::min(static_cast<std::size_t>(turns * width()), columns() - 1);
     const std::size_t y = std::min(static_cast<std::size_t>(theta / pi * height()), rows() - 1);
-    return {std::numeric_limits<double>::infinity(), radiance(x, y), pdf(x, y)};
+    return {std::numeric_limits<double>::infinity(), picture_.radiance(x, y), pdf(x, y)};
   }
   bool infinite() const override { return true; }
 
  private:
-  std::size_t columns() const { return static_cast<std::size_t>(picture_->width); }
-  std::size_t rows() const { return static_cast<std::size_t>(picture_->height); }
-  double width() const { return picture_->width; }
-  double height() const { return picture_->height; }
+  std::size_t columns() const { return picture_.columns(); }
+  std::size_t rows() const { return picture_.rows(); }
+  double width() const { return static_cast<double>(columns()); }
+  double height() const { return static_cast<double>(rows()); }
   double edge_cosine(std::size_t row) const { return std::cos(pi * static_cast<double>(row) / height()); }
   double solid_angle(std::size_t row) const { return 2 * pi / width() * (edge_cosine(row) - edge_cosine(row + 1)); }
-  double pdf(std::size_t x, std::size_t y) const { return rows_.share(y) * columns_[y].share(x) / solid_angle(y); }
-
-  Rgb radiance(std::size_t x, std::size_t y) const {
-    const std::size_t channels = picture_->channels.size();
-    const float* pixel = picture_->data.data() + (y * columns() + x) * channels;
-    return channels >= 3 ? Rgb{pixel[0], pixel[1], pixel[2]} * scale_ : scale_ * double{pixel[0]};
-  }
-  double importance(std::size_t x, std::size_t y) const {  // Rec. 709 luminance
-    const Rgb value = radiance(x, y);
-    const double luminance = 0.2126 * value.x + 0.7152 * value.y + 0.0722 * value.z;
-    return luminance > 0 ? luminance : mean(value);
-  }
-  std::vector<double> row_weights() {
-    std::vector<double> weights(rows()), row(columns());
-    columns_.reserve(rows());
-    for (std::size_t y = 0; y < rows(); ++y) {
-      for (std::size_t x = 0; x < columns(); ++x) row[x] = importance(x, y);
-      columns_.emplace_back(row);
-      weights[y] = columns_.back().total * solid_angle(y);
-    }
-    return weights;
+  double pdf(std::size_t x, std::size_t y) const { return cells_.share(y, x) / solid_angle(y); }
+  std::vector<double> weights() const {
+    std::vector<double> all;
+    for (std::size_t y = 0; y < rows(); ++y)
+      for (std::size_t x = 0; x < columns(); ++x) all.push_back(picture_.importance(x, y) * solid_angle(y));
+    return all;
   }
 
-  std::shared_ptr<const io::Image> picture_;
-  Rgb scale_;
+  EmittingPicture picture_;
   double rotation_rad_;
-  std::vector<Distribution> columns_;
-  Distribution rows_;
+  Distribution2 cells_;
 };
-
-void check(const io::Image* picture, const std::string& place) {
-  if (!picture)
-    throw Error(Exit::data, place, "environment without a picture", "name a latitude-longitude picture as \"file\"");
-  const auto& names = picture->channels;
-  const bool rgb = names.size() >= 3 && names[0] == "R" && names[1] == "G" && names[2] == "B";
-  if (picture->pixels() == 0 || !(rgb || names.size() == 1))
-    throw Error(Exit::data, place + "/file", "picture without channels R, G, B or Y", "convert it to linear RGB");
-  for (const float v : picture->data)
-    if (!(v >= 0) || !std::isfinite(v))
-      throw Error(Exit::data, place + "/file", "radiance is negative or not finite", "repair the picture");
-}
 
 class LatLongModel final : public Model {
  public:
@@ -133,9 +104,8 @@ class LatLongModel final : public Model {
   }
   std::unique_ptr<Emitter> prepare(const manifest::Parameters& parameters, const Attachment& file,
                                    const std::string& place) const override {
-    check(file.picture.get(), place);
     const auto values = manifest::values_of(info(), parameters, place);
-    return std::make_unique<LatLong>(file.picture, values[scale_index], values[rotation_index].x);
+    return std::make_unique<LatLong>(EmittingPicture(file, values[scale_index], place), values[rotation_index].x);
   }
 };
 
