@@ -67,7 +67,7 @@ class DipoleInterface {
     const Vec3 h = facet(wo, u);
     if (u_lobe >= share) {
       const double weight = (1 - reflects(wo.z)) / (1 - share);
-      return {refracted_inwards(wo, h, eta_), {weight, weight, weight}, 1 - share, true, true};
+      return {refracted_inwards(wo, h, eta_), {weight, weight, weight}, 1 - share, smooth(), true};
     }
     const Vec3 wi = mirrored(wo, h);
     if (wi.z <= 0) return {};
