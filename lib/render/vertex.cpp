@@ -56,6 +56,7 @@ const surface::Values& Vertex::values_of(const scene::Scene& scene,
   if (interface_here) {
     own_->eta = interface_here->eta;
     own_->hero = interface_here->hero;
+    own_->inside = !point.outside;
   }
   return *own_;
 }
