@@ -87,6 +87,20 @@ class DielectricLobe {
     });
   }
 
+  // Share of evaluate() that met one facet alone, per band.
+  Rgb share_of_one_facet(Vec3 wi) const {
+    const bool through = wi.z < 0;
+    const double facet = through ? 0 : facets_.reflection(wo_, wi, half_vector(wo_, wi), seen_);
+    const Vec3 there = facets_.in_axes(wi);
+    return per_band(eta_, [&](double eta) {
+      if (matched(eta)) return 1.0;
+      const double once =
+          through ? transmitted_once(wi, eta) : facet * fresnel_dielectric(dot(wo_, half_vector(wo_, wi)), eta);
+      const double more = through ? sheet(eta).transmitted(there) : sheet(eta).reflected(there);
+      return once + more > 0 ? once / (once + more) : 0;
+    });
+  }
+
   double pdf(Vec3 wi) const {
     if (wi.z == 0 || matched(hero_)) return 0;
     const double diffuse = sheet_.lost * (wi.z > 0 ? sheet_.back : 1 - sheet_.back) * std::abs(wi.z) / pi;

@@ -3,6 +3,7 @@
 // Values::eta, which the media on both sides make; the parameters say what is inside.
 #pragma once
 #include "surface/dielectric_lobe.h"
+#include "surface/polarization.h"
 
 namespace gonio::surface {
 
@@ -20,6 +21,15 @@ class DielectricModel : public Model {
   }
   double pdf(const Values& values, Vec3 wo, Vec3 wi) const override {
     return wo.z <= 0 || roughness(values).smooth() ? 0 : lobe(values, wo).pdf(wi);
+  }
+  // Light that met several facets is unpolarized.
+  optics::MuellerRgb mueller(const Values& values, Vec3 wo, Vec3 wi) const override {
+    const Rgb once = roughness(values).smooth() ? Rgb{1, 1, 1} : lobe(values, wo).share_of_one_facet(wi);
+    optics::MuellerRgb result;
+    for (int i = 0; i < 3; ++i)
+      result[static_cast<std::size_t>(i)] =
+          mixed(dielectric_facet(values.eta[i], wo, wi), optics::Mueller::depolarizer(), once[i]);
+    return result;
   }
   Rgb albedo(const Values&, Vec3 wo) const override { return wo.z > 0 ? Rgb{1, 1, 1} : Rgb{}; }
   bool transmits() const override { return true; }

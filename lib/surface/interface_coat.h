@@ -59,6 +59,8 @@ class CoatInterface {
     return fresnel_dielectric(dot(wo, h), eta_) * Ggx(alpha_).lobe(wo, wi, h);
   }
   double gloss_pdf(Vec3 wo, Vec3 wi) const { return smooth() ? 0 : Ggx(alpha_).pdf(wo, half_vector(wo, wi)); }
+  // Of a smooth interface: is wi where it mirrors wo, and so where its delta goes?
+  bool mirrors(Vec3 wo, Vec3 wi) const { return smooth() && norm(wi - Vec3{-wo.x, -wo.y, wo.z}) < 1e-9; }
   // Smooth: the mirrored direction.
   Vec3 gloss_direction(Vec3 wo, Vec2 u) const {
     return smooth() ? Vec3{-wo.x, -wo.y, wo.z} : mirrored(wo, Ggx(alpha_).visible_normal(wo, u));

@@ -9,6 +9,7 @@
 #include "surface/hemisphere.h"
 #include "surface/interface_albedo.h"
 #include "surface/microfacet.h"
+#include "surface/polarization.h"
 #include "surface/surface.h"
 
 namespace gonio::surface {
@@ -30,6 +31,13 @@ class MetalLobe {
   Rgb evaluate(const Fresnel& fresnel, Vec3 wi) const {
     const Vec3 h = half_vector(wo_, wi);
     return fresnel(dot(wo_, h)) * ggx_.lobe(wo_, wi, h) + more_ * ((1 - mirror_albedo(wi.z, alpha_)) / pi);
+  }
+  // Share of evaluate() that met one facet alone, per colour.
+  template <class Fresnel>
+  Rgb share_of_one_facet(const Fresnel& fresnel, Vec3 wi) const {
+    const Vec3 h = half_vector(wo_, wi);
+    const Rgb once = fresnel(dot(wo_, h)) * ggx_.lobe(wo_, wi, h), all = evaluate(fresnel, wi);
+    return {share_of(once.x, all.x), share_of(once.y, all.y), share_of(once.z, all.z)};
   }
   double pdf(Vec3 wi) const { return share_ * ggx_.pdf(wo_, half_vector(wo_, wi)) + (1 - share_) * cosine_density(wi); }
   template <class Fresnel>
@@ -66,8 +74,9 @@ class MetalLobe {
   Rgb more_;
 };
 
-// A model that is one such lobe: `Optics` says, for a surface's values, `lobe(values, wo)` and `fresnel(values)`, which
-// takes a cosine to a colour.
+// A model that is one such lobe: `Optics` says, for a surface's values, `lobe(values, wo)`, `fresnel(values)`, which
+// takes a cosine to a colour, and `index(values, band)`, the complex index that polarizes. Light that met several
+// facets is unpolarized.
 template <class Optics>
 class MetalModel : public Model {
  public:
@@ -79,6 +88,15 @@ class MetalModel : public Model {
   }
   double pdf(const Values& values, Vec3 wo, Vec3 wi) const override {
     return wo.z > 0 && wi.z > 0 ? Optics::lobe(values, wo).pdf(wi) : 0;
+  }
+  optics::MuellerRgb mueller(const Values& values, Vec3 wo, Vec3 wi) const override {
+    const Rgb once = Optics::lobe(values, wo).share_of_one_facet(Optics::fresnel(values), wi);
+    const double cosine = dot(wo, half_vector(wo, wi));
+    optics::MuellerRgb result;
+    for (int i = 0; i < 3; ++i)
+      result[static_cast<std::size_t>(i)] =
+          mixed(reflected_by(cosine, Optics::index(values, i)), optics::Mueller::depolarizer(), once[i]);
+    return result;
   }
 };
 

@@ -4,13 +4,14 @@
 // directional reflectance (surface/interface_albedo.h). Kelemen & Szirmay-Kalos 2001: reciprocal, and a white
 // Lambertian base reflects all light. `albedo` is the base as seen through the interface, internal reflections
 // included: what a photograph with crossed polarizers shows. At f0 = 0 the interface vanishes, and evaluate, sample and
-// pdf are those of `diffuse` to the last bit. albedo() is exact for sigma_rad = 0 up to the tables' error; for a rough
-// base the base's part is scaled by its reflectance.
+// pdf are those of `diffuse` to the last bit. The base loses polarization (surface/polarization.h). albedo() is exact
+// for sigma_rad = 0 up to the tables' error; for a rough base the base's part is scaled by its reflectance.
 #include "surface/fresnel.h"
 #include "surface/hemisphere.h"
 #include "surface/interface_albedo.h"
 #include "surface/microfacet.h"
 #include "surface/oren_nayar.h"
+#include "surface/polarization.h"
 #include "surface/surface.h"
 
 namespace gonio::surface {
@@ -107,6 +108,16 @@ class CoatedDiffuse final : public Model {
     const Coat coat(values, wo);
     const double share = coat.share(values.rgb(albedo_index));
     return share * Ggx(coat.alpha).pdf(wo, half_vector(wo, wi)) + (1 - share) * cosine_density(wi);
+  }
+
+  optics::MuellerRgb mueller(const Values& values, Vec3 wo, Vec3 wi) const override {
+    if (values.scalar(f0_index) <= 0) return Model::mueller(values, wo, wi);
+    const Coat coat(values, wo);
+    const Rgb base = values.rgb(albedo_index) * (OrenNayar(values.scalar(sigma_index)).shape(wo, wi) / pi);
+    const Rgb all = together(coat, base, wo, wi), gloss = together(coat, {}, wo, wi);
+    const optics::Mueller facet = dielectric_facet(coat.eta, wo, wi), beneath = matte_beneath(coat.eta, wo, wi);
+    return {mixed(facet, beneath, share_of(gloss.x, all.x)), mixed(facet, beneath, share_of(gloss.y, all.y)),
+            mixed(facet, beneath, share_of(gloss.z, all.z))};
   }
 
   Rgb albedo(const Values& values, Vec3 wo) const override {

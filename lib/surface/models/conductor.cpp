@@ -30,6 +30,9 @@ struct Optics {
   static MetalLobe lobe(const Values& values, Vec3 wo) {
     return {values.scalar(alpha_index), fresnel_mean(values.rgb(eta_index), values.rgb(k_index)), wo};
   }
+  static optics::Complex index(const Values& values, int band) {
+    return {values.rgb(eta_index)[band], values.rgb(k_index)[band]};
+  }
   static auto fresnel(const Values& values) {
     return
         [eta = values.rgb(eta_index), k = values.rgb(k_index)](double cosine) { return fresnel_rgb(cosine, eta, k); };

@@ -7,9 +7,10 @@
 // T(wi) albedo (1 - R) / (1 - albedo R), as 2 integral of T cos = eta^2 (1 - R): a white base returns all light,
 // exactly. Saunderson 1942; Wolff 1994 for smooth interfaces. Unlike `coated-diffuse`, whose albedo is that of the base
 // as seen through its interface, `albedo` here is the base's own, as it would be measured without the interface: a coat
-// of varnish darkens it and deepens its colour, the more the lower the albedo. At eta = 1 it is `diffuse`. albedo() is
-// exact up to the tables' error.
+// of varnish darkens it and deepens its colour, the more the lower the albedo. At eta = 1 it is `diffuse`. The base
+// loses polarization (surface/polarization.h). albedo() is exact up to the tables' error.
 #include "surface/interface_coat.h"
+#include "surface/polarization.h"
 #include "surface/surface.h"
 
 namespace gonio::surface {
@@ -95,6 +96,18 @@ class InterfacedDiffuse final : public Model {
   }
   double pdf(const Values& values, Vec3 wo, Vec3 wi) const override {
     return wo.z > 0 && wi.z > 0 ? Interfaced(values, wo).pdf(wo, wi) : 0;
+  }
+  optics::MuellerRgb mueller(const Values& values, Vec3 wo, Vec3 wi) const override {
+    const double eta = values.scalar(eta_index);
+    if (eta == 1) return Model::mueller(values, wo, wi);
+    const Interfaced here(values, wo);
+    const double gloss = here.interface.gloss(wo, wi);
+    const Rgb all = here.evaluate(wo, wi);
+    const optics::Mueller facet = dielectric_facet(eta, wo, wi), matte = matte_beneath(eta, wo, wi);
+    const auto band = [&](double f) {
+      return mixed(facet, matte, here.interface.mirrors(wo, wi) ? 1 : share_of(gloss, f));
+    };
+    return {band(all.x), band(all.y), band(all.z)};
   }
   Rgb albedo(const Values& values, Vec3 wo) const override {
     if (wo.z <= 0) return {};

@@ -1,6 +1,7 @@
 // Rough metal whose colour is stated as its reflectance at normal incidence.
 // GGX with Schlick's Fresnel factor, F = f0 + (1 - f0) (1 - wi.h)^5, and multiple scattering between facets
 // (surface/metal_lobe.h). F_mean = f0 + (1 - f0) / 21 exactly. albedo() is exact up to the tables' error.
+// Polarization is that of the index 1 + i k, k = 2 sqrt(f0 / (1 - f0)): a colour does not state one.
 // For measured indices, and the dip before grazing incidence that Schlick's formula lacks, see `conductor`.
 #include "surface/fresnel.h"
 #include "surface/metal_lobe.h"
@@ -14,6 +15,11 @@ struct Optics {
   static MetalLobe lobe(const Values& values, Vec3 wo) {
     const Rgb f0 = values.rgb(f0_index);
     return {values.scalar(alpha_index), f0 + (Rgb{1, 1, 1} - f0) / 21, wo};
+  }
+  // Of the indices with this f0 the one whose real part is 1, as those of bright metals roughly are.
+  static optics::Complex index(const Values& values, int band) {
+    const double f0 = std::clamp(values.rgb(f0_index)[band], 1e-6, 0.9999);
+    return {1, 2 * std::sqrt(f0 / (1 - f0))};
   }
   static auto fresnel(const Values& values) {
     return [f0 = values.rgb(f0_index)](double cosine) { return fresnel_schlick(cosine, f0); };

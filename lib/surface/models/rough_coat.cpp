@@ -7,7 +7,9 @@
 // absorption it is the base to the last bit. The interface's roughness blurs the gloss alone: light is refracted as by
 // a smooth one, so that what a rough coat blurs of a sharp base stays sharp. The term of trapped light rests on a fixed
 // sample of the base (1 % of it). albedo() has the same error. The base must let no light through.
+// Polarization: the base's matrix between two refractions (surface/polarization.h); trapped light has lost it.
 #include "surface/interface_trap.h"
+#include "surface/polarization.h"
 
 namespace gonio::surface {
 namespace {
@@ -43,12 +45,43 @@ struct Coat {
   Rgb albedo() const {
     return Rgb{reflected, reflected, reflected} + passed * (trap.escapes(wo_inside.z) + returned_later());
   }
-  Rgb evaluate(Vec3 wi) const {
+  // What evaluate() consists of.
+  struct Parts {
+    double gloss;
+    Rgb at_once, later;
+  };
+  Parts parts(Vec3 wi) const {
     const Vec3 inside = interface.inwards(wi);
     const Rgb often = trap.trapped(wo_inside.z) * trap.trapped(inside.z) * trap.gain() / pi;
-    const Rgb beneath = base.model->evaluate(base.values, wo_inside, inside) + often;
-    const double gloss = interface.gloss(wo, wi), eta2 = interface.eta() * interface.eta();
-    return Rgb{gloss, gloss, gloss} + passed * passes(wi, inside) * beneath / eta2;
+    const Rgb through = passed * passes(wi, inside) / (interface.eta() * interface.eta());
+    return {interface.gloss(wo, wi), through * base.model->evaluate(base.values, wo_inside, inside), through * often};
+  }
+  Rgb evaluate(Vec3 wi) const {
+    const Parts p = parts(wi);
+    return Rgb{p.gloss, p.gloss, p.gloss} + (p.at_once + p.later);
+  }
+  // Of deltas in this direction, their weights times their probabilities; the base draws its own first.
+  std::optional<Parts> mirrored(Vec3 wi) const {
+    if (norm(wi - Vec3{-wo.x, -wo.y, wo.z}) > 1e-9) return {};
+    const Vec3 inside = interface.inwards(wi);
+    const Sample s = base.model->sample(base.values, wo_inside, {0.5, 0.5}, 0);
+    const bool both = s.delta && norm(s.wi - inside) < 1e-9;
+    if (!both && !interface.smooth()) return {};
+    return Parts{interface.smooth() ? reflected : 0, both ? passed * passes(wi, inside) * s.weight * s.pdf : Rgb{}, {}};
+  }
+  optics::MuellerRgb mueller(Vec3 wi) const {
+    const double eta = interface.eta();
+    const Vec3 inside = interface.inwards(wi);
+    const Parts p = mirrored(wi).value_or(parts(wi));
+    const optics::Mueller facet = dielectric_facet(eta, wo, wi), matte = matte_beneath(eta, wo, wi);
+    optics::MuellerRgb result = base.model->mueller(base.values, wo_inside, inside);
+    for (int i = 0; i < 3; ++i) {
+      optics::Mueller& m = result[static_cast<std::size_t>(i)];
+      const double below = p.at_once[i] + p.later[i];
+      m = mixed(beneath(m, eta, wo, wo_inside, wi, inside), matte, share_of(p.at_once[i], below));
+      m = mixed(facet, m, share_of(p.gloss, p.gloss + below));
+    }
+    return result;
   }
   double pdf(Vec3 wi) const {
     const Vec3 inside = interface.inwards(wi);
@@ -137,6 +170,10 @@ class RoughCoat final : public Model {
     if (wo.z <= 0 || wi.z <= 0) return 0;
     if (absent(values)) return values.base->model->pdf(values.base->values, wo, wi);
     return Coat(values, wo).pdf(wi);
+  }
+  optics::MuellerRgb mueller(const Values& values, Vec3 wo, Vec3 wi) const override {
+    if (absent(values)) return values.base->model->mueller(values.base->values, wo, wi);
+    return Coat(values, wo).mueller(wi);
   }
   Rgb albedo(const Values& values, Vec3 wo) const override {
     if (wo.z <= 0) return {};
