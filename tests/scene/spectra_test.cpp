@@ -37,7 +37,8 @@ class Spectra : public testing::Test {
         R"({"gonio": 1, "files": {"glass": {"path": "glass.yml"}, "metal": {"path": "metal.yml"},
           "paint": {"path": "paint.csv"}, "short": {"path": "short.csv"}, "bright": {"path": "bright.csv"},
           "texture": {"path": "texture.exr"}},
-         "cameras": {"c": {"model": "pinhole", "width_px": 2, "height_px": 2, "fx_px": 2, "fy_px": 2, "cx_px": 0.5, "cy_px": 0.5}},
+         "cameras": {"c": {"model": "pinhole", "width_px": 2, "height_px": 2, "fx_px": 2, "fy_px": 2,
+                         "cx_px": 0.5, "cy_px": 0.5}},
          "meshes": {"ball": {"sphere": {"radius_m": 0.05}}}, "surfaces": {"it": )" +
         surface +
         R"(}, "lights": {"a": {"model": "point", "position_m": [0, 0, 1], "watt_per_sr": [1, 2, 4]}},
