@@ -40,12 +40,15 @@ inline double beckmann_visible_slope(double cosine, double sine, double u) {
   return x;
 }
 
-// `v`: the direction of the eye, stretched to unit roughness and normalized.
-inline Vec3 beckmann_visible_normal(Vec3 v, Vec2 u) {
+// The normal of slopes x along v's projection and y across it; `v`: the direction of the eye, stretched to unit
+// roughness and normalized.
+inline Vec3 beckmann_normal(Vec3 v, double x, double y) {
   const double sine = std::hypot(v.x, v.y);
   const Vec2 along = sine > 0 ? Vec2{v.x / sine, v.y / sine} : Vec2{1, 0};
-  const double x = beckmann_visible_slope(v.z, sine, u.x), y = beckmann_visible_slope(1, 0, u.y);
   return normalized(Vec3{-x * along.x + y * along.y, -x * along.y - y * along.x, 1});
+}
+inline Vec3 beckmann_visible_normal(Vec3 v, Vec2 u) {
+  return beckmann_normal(v, beckmann_visible_slope(v.z, std::hypot(v.x, v.y), u.x), beckmann_visible_slope(1, 0, u.y));
 }
 
 }  // namespace gonio::surface

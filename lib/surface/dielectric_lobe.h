@@ -130,8 +130,8 @@ class DielectricLobe {
     InterfaceLoss here, beyond;
     double eta, lost, back;  // back: share that returns to wo's side
     Sheet(const Roughness& roughness, double relative, Vec3 wo)
-        : here(kind, roughness, relative),
-          beyond(kind, roughness, 1 / relative),
+        : here(InterfaceLoss::of(kind, roughness, relative)),
+          beyond(InterfaceLoss::of(kind, roughness, 1 / relative)),
           eta(relative),
           lost(here.towards(wo)),
           back(here.mean() / (here.mean() + eta * eta * beyond.mean())) {

@@ -2,8 +2,11 @@
 // random numbers: deterministic, without noise.
 #include "surface/interface_loss.h"
 
+#include <bit>
+#include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "surface/fresnel.h"
@@ -49,17 +52,18 @@ struct Grid {
 };
 constexpr Grid isotropic_grid{41, 1, 25, 1, 20, 32, 12}, anisotropic_grid{29, 9, 25, 9, 20, 20, 14};
 
-struct Node {
-  Vec2 u;
-  double share;
-};
-// Finer where far slopes are drawn. Half of the circle where the other is its mirror image.
+// Nodes of the two random numbers, finer where far slopes are drawn; half of the circle where the other is its mirror
+// image.
 template <Slopes kind>
-Node grid_node(const Grid& grid, int i, int j) {
+Vec2 grid_number(const Grid& grid, int i, int j) {
   const double v = (i + 0.5) / grid.radii, angle = (j + 0.5) / grid.angles * (grid.isotropic() ? 0.5 : 1);
-  const double each = 1.0 / (grid.radii * grid.angles);
-  if constexpr (kind == Slopes::ggx) return {{1 - v * v * v, angle - 0.25 + (angle < 0.25)}, 3 * v * v * each};
-  return {{v * v * (3 - 2 * v), angle}, 6 * v * (1 - v) * each};
+  if constexpr (kind == Slopes::ggx) return {1 - v * v * v, angle - 0.25 + (angle < 0.25)};
+  return {v * v * (3 - 2 * v), angle};
+}
+template <Slopes kind>
+double grid_share(const Grid& grid, int i) {
+  const double v = (i + 0.5) / grid.radii, each = 1.0 / (grid.radii * grid.angles);
+  return (kind == Slopes::ggx ? 3 * v * v : 6 * v * (1 - v)) * each;
 }
 
 // Power that a direction gets back by way of one facet; eta 0: the mirror.
@@ -86,12 +90,14 @@ struct LossBlock {  // of one index, anisotropy and alpha
 struct LossTable {
   Slopes kind;
   Grid grid;
-  std::vector<double> weights;
+  std::vector<double> weights, across;  // of entries in a mean; Beckmann slopes across the eye's direction
   std::unique_ptr<LossBlock[]> blocks;
 
   LossTable(Slopes slopes, const Grid& g)
       : kind(slopes), grid(g), blocks(std::make_unique<LossBlock[]>(g.rows() * g.anisotropies * g.alphas)) {
     set_weights();
+    for (int j = 0; j < grid.angles; ++j)
+      across.push_back(beckmann_visible_slope(1, 0, grid_number<Slopes::beckmann>(grid, 0, j).y));
   }
 
   const LossBlock& block(std::size_t row, std::size_t anisotropy, std::size_t alpha) const {
@@ -114,15 +120,21 @@ struct LossTable {
   double entry(const Roughness& roughness, double eta, std::size_t i) const {
     const Facets<slopes> facets(roughness);
     const double z = std::max(1e-6, grid.cosine(i % grid.cosines));  // the limit at the horizon
-    const double r = std::sqrt(1 - z * z), along = grid.azimuth_cosine(i / grid.cosines);
-    const Vec3 wo{r * along, r * std::sqrt(1 - along * along), z};
+    const double r = std::sqrt(1 - z * z), cosine = grid.azimuth_cosine(i / grid.cosines);
+    const Vec3 wo{r * cosine, r * std::sqrt(1 - cosine * cosine), z};
     const double seen = facets.area_seen(wo);
+    const Vec3 v = facets.stretched(wo);
+    const double sine = std::hypot(v.x, v.y);
     double sum = 0;
-    for (int a = 0; a < grid.radii; ++a)
+    for (int a = 0; a < grid.radii; ++a) {
+      const double along = grid_number<slopes>(grid, a, 0).x, share = grid_share<slopes>(grid, a);
+      const double slope = slopes == Slopes::beckmann ? beckmann_visible_slope(v.z, sine, along) : 0;
       for (int b = 0; b < grid.angles; ++b) {
-        const Node node = grid_node<slopes>(grid, a, b);
-        sum += node.share * returned(facets, wo, seen, facets.visible_normal(wo, node.u), eta);
+        const Vec3 unit = slopes == Slopes::ggx ? ggx_visible_normal(v, grid_number<slopes>(grid, a, b))
+                                                : beckmann_normal(v, slope, across[static_cast<std::size_t>(b)]);
+        sum += share * returned(facets, wo, seen, facets.facet_of(unit), eta);
       }
+    }
     return std::clamp(1 - sum, 0.0, 1.0);
   }
 
@@ -179,6 +191,24 @@ InterfaceLoss::InterfaceLoss(Slopes kind, const Roughness& roughness, double eta
     corners_[count_++] = {block.values.data(), share};
     mean_ += share * block.mean;
   }
+}
+
+InterfaceLoss InterfaceLoss::of(Slopes kind, const Roughness& roughness, double eta) {
+  struct Slot {
+    double alpha, anisotropy, eta;
+    Slopes kind;
+    InterfaceLoss loss;
+  };
+  constexpr std::size_t slots = 16;
+  thread_local std::array<std::optional<Slot>, slots> remembered;
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  const std::uint64_t mix =
+      (bits(roughness.alpha) ^ 3 * bits(roughness.anisotropy) ^ 5 * bits(eta)) * 0x9e3779b97f4a7c15u;
+  std::optional<Slot>& slot = remembered[mix >> 60];
+  if (!slot || slot->alpha != roughness.alpha || slot->anisotropy != roughness.anisotropy || slot->eta != eta ||
+      slot->kind != kind)
+    slot = Slot{roughness.alpha, roughness.anisotropy, eta, kind, {kind, roughness, eta}};
+  return slot->loss;
 }
 
 double InterfaceLoss::towards(Vec3 w) const {

@@ -17,7 +17,9 @@ struct LossTable;
 class InterfaceLoss {
  public:
   InterfaceLoss(Slopes kind, const Roughness& roughness, double eta);
-  static InterfaceLoss mirror(Slopes kind, const Roughness& roughness) { return {kind, roughness, 0}; }
+  // The same, remembered by each thread for the last few interfaces: paths meet them again and again.
+  static InterfaceLoss of(Slopes kind, const Roughness& roughness, double eta);
+  static InterfaceLoss mirror(Slopes kind, const Roughness& roughness) { return of(kind, roughness, 0); }
   // `w` in the frame of the facets' axes, on either side of the plane.
   double towards(Vec3 w) const;
   double mean() const { return mean_; }
@@ -25,8 +27,8 @@ class InterfaceLoss {
  private:
   const LossTable* table_;
   struct Corner {  // the block at a node of (index, anisotropy, alpha), and its share
-    const double* values;
-    double share;
+    const double* values = nullptr;
+    double share = 0;
   };
   std::array<Corner, 8> corners_;
   std::size_t count_ = 0;  // of corners

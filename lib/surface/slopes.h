@@ -98,11 +98,17 @@ class Facets {
   double transmission_weight(Vec3 wi) const { return std::abs(wi.z) / area_seen(wi); }
 
   Vec3 visible_normal(Vec3 wo, Vec2 u) const {
-    const Vec2 t = turned(wo);
-    const Vec3 v = normalized(Vec3{alpha_u_ * t.x, alpha_v_ * t.y, wo.z});
-    const Vec3 n = kind == Slopes::ggx ? ggx_visible_normal(v, u) : beckmann_visible_normal(v, u);
-    const double a = alpha_u_ * n.x, b = alpha_v_ * n.y;
-    return normalized(Vec3{cos_ * a - sin_ * b, sin_ * a + cos_ * b, std::max(1e-12, n.z)});
+    const Vec3 v = stretched(wo);
+    return facet_of(kind == Slopes::ggx ? ggx_visible_normal(v, u) : beckmann_visible_normal(v, u));
+  }
+  // Direction in the frame of u and v where both roughnesses are one, and the facet of a unit normal there.
+  Vec3 stretched(Vec3 w) const {
+    const Vec2 t = turned(w);
+    return normalized(Vec3{alpha_u_ * t.x, alpha_v_ * t.y, w.z});
+  }
+  Vec3 facet_of(Vec3 unit) const {
+    const double a = alpha_u_ * unit.x, b = alpha_v_ * unit.y;
+    return normalized(Vec3{cos_ * a - sin_ * b, sin_ * a + cos_ * b, std::max(1e-12, unit.z)});
   }
 
   // In the frame of u and v.

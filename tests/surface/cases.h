@@ -81,8 +81,10 @@ inline SurfaceCase completed(SurfaceCase c, Random& random) {
   return c;
 }
 
-// Every parameter at its lower bound, at its upper bound, one at a time at either, and `random_cases` drawn.
+// All parameters at their lower bounds, all at their upper ones, and four cases through which every parameter passes
+// its lower and its upper bound while most others are drawn inside; then `random_cases` drawn.
 inline std::vector<SurfaceCase> cases_of(const surface::Model& model, int random_cases, std::uint64_t seed) {
+  constexpr std::size_t mixed_cases = 4;
   std::vector<SurfaceCase> cases;
   Random random(seed);
   const std::string id = model.info().id;
@@ -92,14 +94,19 @@ inline std::vector<SurfaceCase> cases_of(const surface::Model& model, int random
   add(at_bound(model, false), "at lower bounds");
   add(at_bound(model, true), "at upper bounds");
   for (int k = 0; k < random_cases; ++k) add(draw_values(model, random), "drawn " + std::to_string(k));
-  for (std::size_t i = 0; i < model.info().parameters.size(); ++i)
-    for (const bool upper : {false, true}) {
-      surface::Values mixed = draw_values(model, random);
+  for (std::size_t k = 0; k < std::min(mixed_cases, model.info().parameters.size() + 1); ++k) {
+    surface::Values mixed = draw_values(model, random);
+    std::string name = "mixed";
+    for (std::size_t i = 0; i < model.info().parameters.size(); ++i) {
       const auto& info = model.info().parameters[i];
-      const double bound = upper ? info.upper : info.lower;
+      const std::size_t turn = (i + k) % mixed_cases;
+      if (turn > 1) continue;
+      const double bound = turn == 0 ? info.lower : info.upper;
       mixed.v[i] = {bound, bound, bound};
-      add(mixed, (upper ? "with high " : "with low ") + info.name);
+      name += (turn == 0 ? " low " : " high ") + info.name;
     }
+    add(mixed, name);
+  }
   return cases;
 }
 
@@ -145,7 +152,7 @@ struct Reflectance {
 // Reflectance by the model's own sampler, with the transmittance of models that transmit (radiance over eta^2, which is
 // power): the additive recurrence of Roberts 2018 (R3), eight times from random starts.
 inline Reflectance reflectance_by_sampling(const surface::Model& model, const surface::Values& values, Vec3 wo,
-                                           int count = 5000) {
+                                           int count = 2500) {
   constexpr int repeats = 8;
   const auto part = [](double x) { return x - std::floor(x); };
   Random random(99);
