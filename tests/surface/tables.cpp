@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "cases.h"
+#include "data.h"
+#include "merl_tables.h"
 
 namespace gonio::tests {
 namespace {
@@ -11,7 +13,12 @@ namespace {
 using Writer = void (*)(const std::filesystem::path&);
 
 const std::map<std::string, Writer>& writers() {  // model id -> writer
-  static const std::map<std::string, Writer> all = {};
+  static const std::map<std::string, Writer> all = {
+      {"merl",
+       [](const std::filesystem::path& path) {
+         io::write_merl(path, varnish_table({16, 12, 16}, 0.3));
+       }},
+  };
   return all;
 }
 
@@ -20,8 +27,9 @@ const std::map<std::string, Writer>& writers() {  // model id -> writer
 std::filesystem::path file_for(const manifest::ModelInfo& info) {
   const auto found = writers().find(info.id);
   if (found == writers().end()) throw std::runtime_error("tests/surface/tables.cpp has no file for " + info.id);
-  const auto path = std::filesystem::temp_directory_path() / ("gonio-surface-" + info.id);
-  found->second(path);
+  static const ScratchFolder folder;
+  const auto path = folder / info.id;
+  if (!std::filesystem::exists(path)) found->second(path);
   return path;
 }
 
