@@ -9,6 +9,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
 
 #include <algorithm>
 #include <cstring>
@@ -114,11 +115,11 @@ Image decode(const std::string& bytes, const std::string& place) {
   return image;
 }
 
-}  // namespace
-
-Image decode_exr(const std::string& bytes, const std::string& place) {
+// What the library throws becomes an error of the file.
+template <class Read>
+auto guarded(const std::string& place, const Read& read) {
   try {
-    return decode(bytes, place);
+    return read();
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -129,9 +130,27 @@ Image decode_exr(const std::string& bytes, const std::string& place) {
   }
 }
 
-std::string encode_exr(const Image& image) {
+}  // namespace
+
+Image decode_exr(const std::string& bytes, const std::string& place) {
+  return guarded(place, [&] { return decode(bytes, place); });
+}
+
+ExrAttributes exr_attributes(const std::string& bytes, const std::string& place) {
+  return guarded(place, [&] {
+    MemoryInput stream(bytes);
+    const Imf::InputFile file(stream, 0);
+    ExrAttributes texts;
+    for (auto a = file.header().begin(); a != file.header().end(); ++a)
+      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute())) texts[a.name()] = text->value();
+    return texts;
+  });
+}
+
+std::string encode_exr(const Image& image, const ExrAttributes& attributes) {
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
+  for (const auto& [name, text] : attributes) header.insert(name, Imf::StringAttribute(text));
   const std::size_t x_stride = image.channels.size() * sizeof(float);
   const std::size_t y_stride = x_stride * static_cast<std::size_t>(image.width);
   Imf::FrameBuffer frame;
