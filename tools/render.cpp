@@ -1,13 +1,7 @@
 // render: the photographs that a scene would give, path traced to EXR with variance and geometry.
-#include "base/text.h"
 #include "cli/program.h"
-#include "io/picture.h"
-#include "render/entries.h"
-#include "render/path_tracer.h"
-#include "render/preview.h"
+#include "render/session_call.h"
 #include "render/specimen.h"
-#include "render/virtual_sensor.h"
-#include "scene/mechanisms.h"
 
 namespace gonio::tools::render {
 namespace {
@@ -25,16 +19,54 @@ cli::Program describe() {
   cli::Program program;
   program.name = "render";
   program.sentence = "simulate photographs of a scene by path tracing";
-  program.synopsis = {"[OPTION]... --out DIR [scene.json]", "--specimen NAME [--out DIR]"};
-  program.operands = {{.name = "SCENE", .type = Type::input_file, .help = "Manifest with the scene; ends in .json."}};
+  program.synopsis = {"[OPTION]... --out DIR [scene.json]", "--merge --out DIR [scene.json] SHARE.exr...",
+                      "--specimen NAME [--out DIR]"};
+  program.operands = {{.name = "FILE",
+                       .type = Type::input_file,
+                       .help = "Manifest with the scene, which ends in .json; with --merge, shares of pictures.",
+                       .repeat = true}};
   program.options = {
       {.name = "image", .type = Type::text, .help = "Simulate this image only.", .metavar = "ID", .repeat = true},
       {.name = "spp",
        .type = Type::integer,
-       .help = "Samples per pixel, at least 2; rounded up to complete strata.",
+       .help = "Samples per pixel, at least 2; rounded up to complete passes. With --time or --noise: at most.",
        .preset = "256",
        .lower = 1,
        .upper = 1 << 20},
+      {.name = "time",
+       .type = Type::quantity,
+       .help = "Stop after this time, once the pass is complete; per image.",
+       .dimension = Dimension::time,
+       .lower = 0,
+       .conflicts = {"samples"}},
+      {.name = "noise",
+       .type = Type::quantity,
+       .help = "Stop when the estimated relative error of the picture is this small; 1% is usual.",
+       .dimension = Dimension::ratio,
+       .lower = 1e-6,
+       .upper = 1,
+       .conflicts = {"samples"}},
+      {.name = "samples",
+       .type = Type::text,
+       .help = "Render a share: samples A to B - 1 of the --spp of each pixel. Keeps ID.sums for --merge.",
+       .metavar = "A:B",
+       .conflicts = {"record"}},
+      {.name = "merge",
+       .type = Type::flag,
+       .help = "Join shares into the very picture that one run over all their samples gives.",
+       .conflicts = {"samples", "time", "noise", "spp", "record", "specimen", "resume"},
+       .needs = {"out"}},
+      {.name = "sums",
+       .type = Type::flag,
+       .help = "Keep the exact sums beside each picture, for --merge.",
+       .conflicts = {"record"},
+       .needs = {"out"}},
+      {.name = "checkpoint",
+       .type = Type::quantity,
+       .help = "Write what is done so far this often, for --resume; never more than a twentieth of the time.",
+       .preset = "10s",
+       .dimension = Dimension::time,
+       .lower = 0},
       {.name = "max-bounces",
        .type = Type::integer,
        .help = "Longest path, in scattering events.",
@@ -43,9 +75,16 @@ cli::Program describe() {
        .upper = 10000},
       {.name = "aov",
        .type = Type::choice,
-       .help = "Write position, normal, id, distance and visibility of lights, too.",
+       .help = "Write position, normal, depth, id, mask, distance and visibility of lights, too.",
        .preset = "on",
        .choices = {"on", "off"}},
+      {.name = "per-light", .type = Type::flag, .help = "Write the light of each lamp as a layer, too."},
+      {.name = "stokes", .type = Type::flag, .help = "Follow polarization; write the Stokes vectors' s1, s2, s3, too."},
+      {.name = "wavelengths",
+       .type = Type::text,
+       .help = "Write spectral channels, too: N wavelengths from A to B, such as 400nm:700nm:31.",
+       .metavar = "A:B:N"},
+      {.name = "allow-open", .type = Type::flag, .help = "Let meshes with holes bound glass and liquids."},
       {.name = "with",
        .type = Type::text,
        .help = "Switch on this mechanism for the pictures alone: ID:PARAMETER=VALUE,...,on=NAME. The manifest that is "
@@ -67,43 +106,28 @@ cli::Program describe() {
        .choices = specimen_names()},
   };
   program.standalone = {"specimen"};
-  program.takes_out = program.takes_seed = true;
+  program.takes_out = program.takes_seed = program.takes_resume = true;
   program.sections_read = {"files", "cameras", "images", "meshes", "surfaces", "lights", "objects", "mechanisms"};
   program.sections_written = {"files", "images", "renderings"};
   program.files = {{"ID.exr",
                     "R, G, B radiance; variance.R/G/B of the pixel's mean; id (object's place + 1), position.X/Y/Z, "
-                    "normal.X/Y/Z (world, m); distance.LIGHT (m), visibility.LIGHT (0 to 1)"},
+                    "normal.X/Y/Z (world, m), depth.Z (m along the camera's axis), mask.A (share of samples that met a "
+                    "surface), back_normal.X/Y/Z (of objects that let light through); distance.LIGHT (m), "
+                    "visibility.LIGHT (0 to 1); light.LIGHT.R/G/B with --per-light; s1.R to s3.B and their variance "
+                    "with --stokes; S0.550,0nm with --wavelengths"},
+                   {"ID.sums", "--samples, --sums: exact sums for --merge"},
+                   {"ID.checkpoint", "while the work goes on"},
+                   {"ID-mosaic.exr",
+                    "--stokes, of cameras whose mosaic is \"polarizers\": R, G, B of every pixel behind "
+                    "its polarizer, super-pixel [90 45; 135 0] degrees"},
                    {"ID.png", "--preview"}};
+  program.exits = {{Exit::quality, "A picture is noisier than --noise asks for; --spp or --time ended first."}};
   program.references = {"Kajiya, The rendering equation, SIGGRAPH 1986",
                         "Veach, Robust Monte Carlo methods for light transport simulation, 1997",
-                        "Wald et al., Embree, ACM TOG 33(4), 2014"};
+                        "Wald et al., Embree, ACM TOG 33(4), 2014",
+                        "Fichet et al., An OpenEXR layout for spectral images, JCGT 10(3), 2021"};
   program.see_also = {"compare(1)", "explain(1)", "gonio-manifest(5)", "gonio-conventions(7)"};
   return program;
-}
-
-scene::Scene scene_of(cli::Invocation& call) {
-  manifest::Document seen = call.document;
-  for (const std::string& text : call.texts("with")) {
-    const auto [mechanism, use] = scene::parse_mechanism(text, "--with");
-    seen.mechanisms[mechanism->id] = use;
-  }
-  scene::Reading reading;
-  reading.on_file = [&](const std::filesystem::path& path) { call.note_input(path); };
-  return scene::build_scene(seen, reading);
-}
-
-void check(cli::Invocation& call) {
-  if (call.given("specimen")) return;
-  if (!call.texts("SCENE").empty())
-    throw Error(Exit::usage, call.text("SCENE"), "is no manifest by its name",
-                "give a file that ends in .json, or use -i");
-  if (!call.has_document) throw Error(Exit::no_input, "render", "has no scene", "name one: render scene.json --out r");
-  if (call.out.empty()) throw Error(Exit::usage, "--out", "is missing", "name the folder for the pictures");
-  for (const std::size_t i : chosen_images(call.document, call.texts("image")))
-    if (call.flag("record") && !call.document.images[i].noise)
-      throw Error(Exit::data, manifest::place(call.document, "/images/" + std::to_string(i)),
-                  "states no noise to record with", "add \"noise\": {\"gain\", \"read\"}");
-  if (call.flag("check")) scene_of(call);
 }
 
 Exit run(cli::Invocation& call) {
@@ -111,28 +135,7 @@ Exit run(cli::Invocation& call) {
     call.document = specimen(call.text("specimen"), call.out);
     return Exit::done;
   }
-  const auto images = chosen_images(call.document, call.texts("image"));
-  std::vector<std::filesystem::path> paths;  // asked for before the work begins: an existing file is an error at once
-  for (const std::size_t i : images) paths.push_back(call.output_path(file_stem(call.document.images[i].id) + ".exr"));
-  const scene::Scene scene = scene_of(call);
-  const RayCaster caster(scene.instances);
-  const Options options{.spp = static_cast<int>(call.integer("spp")),
-                        .seed = call.seed,
-                        .geometry = call.text("aov") == "on" && !call.flag("record"),
-                        .transport = {.max_bounces = static_cast<int>(call.integer("max-bounces"))}};
-  for (std::size_t k = 0; k < images.size(); ++k) {
-    const manifest::ImageEntry& image = call.document.images[images[k]];
-    io::Image picture = gonio::render::render(scene, images[k], caster, options);
-    if (call.flag("record")) picture = recorded(picture, *image.noise, image.id, call.seed);
-    io::write_picture(paths[k], picture);
-    if (call.flag("preview")) io::write_picture(call.output_path(file_stem(image.id) + ".png"), preview(picture));
-    if (call.flag("record"))
-      enter_recording(call.document, images[k], paths[k]);
-    else
-      enter_rendering(call.document, images[k], paths[k], sample_plan(options.spp).spp(), call.seed);
-  }
-  if (call.flag("record")) forget_free_values(call.document);
-  return Exit::done;
+  return call.flag("merge") ? merge(call) : render_images(call);
 }
 
 }  // namespace
@@ -140,7 +143,7 @@ Exit run(cli::Invocation& call) {
 const cli::Program& gonio_program() {
   static const cli::Program program = [] {
     cli::Program p = describe();
-    p.check = check;
+    p.check = check_call;
     p.run = run;
     return p;
   }();

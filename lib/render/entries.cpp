@@ -1,6 +1,7 @@
 #include "render/entries.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 
@@ -28,14 +29,25 @@ std::vector<std::size_t> chosen_images(const manifest::Document& document, const
   return chosen;
 }
 
-void enter_rendering(manifest::Document& document, std::size_t image, const std::filesystem::path& path, int spp,
-                     std::uint64_t seed) {
+void enter_rendering(manifest::Document& document, std::size_t image, const std::filesystem::path& path,
+                     const Facts& facts, const std::vector<double>& wavelengths_m,
+                     const std::map<std::string, std::filesystem::path>& beside) {
   const std::string& id = document.images[image].id;
   const std::string file = manifest::add_file(document, path, "rendering-" + id);
   auto& all = document.renderings;
   const auto earlier = std::find_if(all.begin(), all.end(), [&](const auto& r) { return r.image == id; });
   manifest::Rendering& entry = earlier != all.end() ? *earlier : all.emplace_back();
-  entry = {.image = id, .file = file, .spp = spp, .seed = seed};
+  entry = {};
+  entry.image = id;
+  entry.file = file;
+  entry.spp = static_cast<int>(facts.samples());
+  entry.seed = facts.seed;
+  if (std::isfinite(facts.relative_error)) entry.relative_error = facts.relative_error;
+  entry.wavelengths_m = wavelengths_m;
+  if (beside.contains("sums"))
+    entry.samples = {static_cast<int>(facts.first_sample), static_cast<int>(facts.end_sample)};
+  for (const auto& [kind, file_beside] : beside)
+    entry.files[kind] = manifest::add_file(document, file_beside, kind + "-" + id);
 }
 
 void enter_recording(manifest::Document& document, std::size_t image, const std::filesystem::path& path) {

@@ -2,10 +2,12 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "manifest/document.h"
+#include "render/session.h"
 
 namespace gonio::render {
 
@@ -13,9 +15,11 @@ namespace gonio::render {
 // Error(data) where nothing is left.
 std::vector<std::size_t> chosen_images(const manifest::Document& document, const std::vector<std::string>& ids);
 
-// `path` becomes the image's rendering, in place of an earlier one.
-void enter_rendering(manifest::Document& document, std::size_t image, const std::filesystem::path& path, int spp,
-                     std::uint64_t seed);
+// `path` becomes the image's rendering, in place of an earlier one. `beside`: further files by kind; with "sums" it may
+// be a share, and says of which samples.
+void enter_rendering(manifest::Document& document, std::size_t image, const std::filesystem::path& path,
+                     const Facts& facts, const std::vector<double>& wavelengths_m,
+                     const std::map<std::string, std::filesystem::path>& beside);
 // `path` becomes the image's own file, a linear recording.
 void enter_recording(manifest::Document& document, std::size_t image, const std::filesystem::path& path);
 

@@ -9,9 +9,10 @@ namespace gonio::render {
 io::Image preview(const io::Image& linear) {
   io::Image image(linear.width, linear.height, {"R", "G", "B"});
   std::vector<float> largest(linear.pixels());
+  const std::size_t colours = std::min<std::size_t>(linear.channels.size(), 3);  // a mosaic has one
   for (std::size_t i = 0; i < linear.pixels(); ++i)
     for (std::size_t c = 0; c < 3; ++c) {
-      const float v = linear.data[i * linear.channels.size() + c];
+      const float v = linear.data[i * linear.channels.size() + std::min(c, colours - 1)];
       image.data[3 * i + c] = v;
       largest[i] = std::max(largest[i], v);
     }

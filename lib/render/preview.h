@@ -4,7 +4,8 @@
 
 namespace gonio::render {
 
-// Channels R, G, B of a linear picture in sRGB, scaled so that the 99th percentile of the largest channel is white.
+// The first three channels of a linear picture (R, G, B; or Y three times) in sRGB, scaled so that the 99th percentile
+// of the largest channel is white.
 io::Image preview(const io::Image& linear);
 
 }  // namespace gonio::render

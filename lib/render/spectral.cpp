@@ -6,12 +6,18 @@
 #include "base/error.h"
 #include "base/quantity.h"
 #include "base/text.h"
+#include "render/film.h"
 
 namespace gonio::render {
 namespace {
 
 constexpr double shortest_m = 1e-7, longest_m = 1e-4;
 constexpr int most_bins = 1000;
+
+// A tenth of a picometre: what channels' names tell apart.
+double rounded(double wavelength_m) {
+  return std::round(wavelength_m * 1e13) / 1e13;
+}
 
 [[noreturn]] void refuse(const std::string& text, const std::string& place, const std::string& why) {
   throw Error(Exit::usage, place, "\"" + text + "\" " + why, "write FIRST:LAST:COUNT, such as 400nm:700nm:31");
@@ -120,7 +126,7 @@ std::vector<double> parse_wavelengths(const std::string& text, const std::string
     refuse(text, place, "has no sensible number of bins");
   std::vector<double> wavelengths_m;
   for (int i = 0; i < static_cast<int>(count); ++i)
-    wavelengths_m.push_back(count > 1 ? first + (last - first) * i / (count - 1) : first);
+    wavelengths_m.push_back(rounded(count > 1 ? first + (last - first) * i / (count - 1) : first));
   return wavelengths_m;
 }
 
@@ -141,6 +147,17 @@ std::string spectral_channel(int stokes, double wavelength_m) {
   if (text.find('.') == std::string::npos) text += ".0";
   std::replace(text.begin(), text.end(), '.', ',');
   return "S" + std::to_string(stokes) + "." + text + "nm";
+}
+
+std::vector<double> wavelengths_of(const std::vector<std::string>& planes) {
+  std::vector<double> wavelengths_m;
+  for (const std::string& plane : planes)
+    for (std::string channel : plane_channels(plane)) {
+      if (!channel.starts_with("S0.")) continue;
+      std::replace(channel.begin(), channel.end(), ',', '.');
+      wavelengths_m.push_back(rounded(parse_quantity(channel.substr(3), Dimension::length, plane)));
+    }
+  return wavelengths_m;
 }
 
 std::unique_ptr<Integrator> with_spectrum(std::unique_ptr<Integrator> colour,

@@ -21,6 +21,8 @@ std::vector<double> parse_wavelengths(const std::string& text, const std::string
 std::vector<optics::Bands> spectral_bands(const std::vector<double>& wavelengths_m);
 
 std::string spectral_channel(int stokes, double wavelength_m);
+// Wavelengths of the channels "S0..." among those of these planes (film.h: plane_channels()); in their order.
+std::vector<double> wavelengths_of(const std::vector<std::string>& planes);
 
 // Traces `colour` and then each of `spectral`, one for each of spectral_bands(), with the same random numbers.
 std::unique_ptr<Integrator> with_spectrum(std::unique_ptr<Integrator> colour,
