@@ -1,10 +1,12 @@
 // scene: scenes for and from other renderers, and what is wrong with them (scene/exchange/exchange.h, scene/checks.h).
+#include <algorithm>
 #include <iostream>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/progress.h"
 #include "cli/program.h"
+#include "scene/checks.h"
 #include "scene/exchange/exchange.h"
 
 namespace gonio::tools::scene {
@@ -27,10 +29,11 @@ std::vector<std::pair<std::string, std::string>> written_files() {
   return files;
 }
 
-scenes::Scene scene_of(cli::Invocation& call) {
-  return scenes::build_scene(call.document,
-                             {.on_file = [&](const std::filesystem::path& path) { call.note_input(path); },
-                              .allow_open = call.flag("allow-open")});
+scenes::Reading reading_of(cli::Invocation& call) {
+  scenes::Reading reading;
+  reading.on_file = [&call](const std::filesystem::path& path) { call.note_input(path); };
+  reading.allow_open = call.flag("allow-open");
+  return reading;
 }
 
 void write_files(cli::Invocation& call, const std::vector<scenes::ExchangedFile>& files) {
@@ -53,9 +56,27 @@ Exit tell(const cli::Invocation& call, const std::vector<scenes::Loss>& losses, 
 
 Exit export_to(cli::Invocation& call) {
   const scenes::Exchange& exchange = *scenes::find_exchange(call.text("to"));
-  const scenes::Exported exported = scenes::export_scene(scene_of(call), exchange);
+  const scenes::Exported exported =
+      scenes::export_scene(scenes::build_scene(call.document, reading_of(call)), exchange);
   write_files(call, exported.files);
   return tell(call, exported.losses, manifest::place(call.document, ""), std::string(exchange.name()));
+}
+
+// On standard output, one line for each thing that is wrong or risky.
+Exit check_it(cli::Invocation& call) {
+  call.writes_document = false;
+  std::vector<std::string> lines;
+  const auto tell_once = [&lines](std::string line) {
+    if (std::ranges::find(lines, line) == lines.end()) lines.push_back(std::move(line));
+  };
+  scenes::Reading reading = reading_of(call);
+  reading.allow_open = true;  // open meshes are found, among the others
+  reading.on_warning = tell_once;
+  for (const scenes::Finding& f : scenes::check_scene(scenes::build_scene(call.document, reading)))
+    tell_once(manifest::place(call.document, f.pointer) + ": " + f.what + ": " + f.consequence);
+  for (const std::string& line : lines) std::cout << line << "\n";
+  std::cout << std::flush;
+  return lines.empty() ? Exit::done : Exit::negative;
 }
 
 Exit import_from(cli::Invocation& call) {
@@ -88,7 +109,7 @@ void check(cli::Invocation& call) {
 
 Exit run(cli::Invocation& call) {
   const std::string& command = call.text("COMMAND");
-  return command == "export" ? export_to(call) : import_from(call);
+  return command == "export" ? export_to(call) : command == "import" ? import_from(call) : check_it(call);
 }
 
 }  // namespace
@@ -97,7 +118,8 @@ const cli::Program& gonio_program() {
   static const cli::Program program{
       .name = "scene",
       .sentence = "hand scenes to other renderers, take theirs, and say what is wrong with one",
-      .synopsis = {"export --to FORMAT --out DIR [OPTION]... [scene.json]", "import FILE --out DIR [OPTION]..."},
+      .synopsis = {"export --to FORMAT --out DIR [OPTION]... [scene.json]", "import FILE --out DIR [OPTION]...",
+                   "check [OPTION]... [scene.json]"},
       .options = {{.name = "to", .type = Type::choice, .help = "Program to write for.", .choices = format_names()},
                   {.name = "strict",
                    .type = Type::flag,
@@ -108,17 +130,18 @@ const cli::Program& gonio_program() {
       .operands = {{.name = "COMMAND",
                     .type = Type::choice,
                     .help = "What to do.",
-                    .choices = {"export", "import"},
-                    .required = true},
+                    .preset = "check",
+                    .choices = {"check", "export", "import"}},
                    {.name = "FILE",
                     .type = Type::input_file,
-                    .help = "export: the manifest; import: the file to read.",
+                    .help = "check, export: the manifest; import: the file to read.",
                     .repeat = true}},
       .takes_out = true,
       .sections_read = {"cameras", "files", "images", "lights", "mechanisms", "meshes", "objects", "surfaces"},
       .sections_written = {"cameras", "files", "images", "lights", "meshes", "objects", "surfaces"},
       .files = written_files(),
-      .exits = {{Exit::quality, "with --strict: written, but something did not come through"}},
+      .exits = {{Exit::negative, "check found something"},
+                {Exit::quality, "with --strict: written, but something did not come through"}},
       .references = {"Pharr, Jakob & Humphreys, Physically based rendering, 4th edition, 2023.",
                      "Khronos Group, glTF 2.0 specification, 2021."},
       .see_also = {"render(1)", "camera-export(1)", "gonio-conventions(7)", "gonio-manifest(5)"},

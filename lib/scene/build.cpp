@@ -9,6 +9,7 @@
 #include "io/ply.h"
 #include "mesh/curvature.h"
 #include "optics/colour.h"
+#include "scene/checks.h"
 #include "scene/mechanisms.h"
 #include "scene/scene.h"
 #include "scene/spectra.h"
@@ -32,11 +33,20 @@ class Builder {
     std::map<std::string, manifest::Camera> cameras = document_.cameras;
     apply_mechanisms(scene, cameras);
     add_views(scene, cameras);
+    if (!reading_.allow_open) require_closed(scene, [this](const std::string& pointer) { return at(pointer); });
+    for (const Finding& f : check_lights(scene)) warn(at(f.pointer) + ": " + f.what + ": " + f.consequence);
     return scene;
   }
 
  private:
   std::string at(const std::string& pointer) const { return manifest::place(document_, pointer); }
+
+  void warn(const std::string& message) const {
+    if (reading_.on_warning)
+      reading_.on_warning(message);
+    else
+      log(LogLevel::warning, message);
+  }
 
   std::filesystem::path file(const std::string& id, const std::string& pointer) const {
     const auto path = manifest::resolve(document_, id, pointer);
@@ -167,7 +177,8 @@ class Builder {
     mesh::Mesh mesh = mesh::prepare(io::read_ply(path, wish.ply), shading, path.string(), &dropped);
     if (wish.curvature) mesh.mean_curvature_per_m = mesh::mean_curvature_per_m(mesh);
     if (dropped > 0)
-      log(LogLevel::warning, path.string() + ": " + std::to_string(dropped) + " triangles without area left out");
+      warn(path.string() + ": " + std::to_string(dropped) + " of " + std::to_string(dropped + mesh.triangles.size()) +
+           " triangles have no area and are left out; where they closed a gap there is a hole now");
     return std::make_shared<const mesh::Mesh>(std::move(mesh));
   }
 

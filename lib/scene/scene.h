@@ -125,6 +125,7 @@ struct Reading {
   std::function<void(const std::filesystem::path&)> on_file;  // hears of every file that is read
   optics::Bands bands{};
   bool allow_open = false;  // meshes with holes may bound media
+  std::function<void(const std::string&)> on_warning{};  // hears what is odd about files; else it is logged
 };
 // Reads meshes and textures, checks everything, applies the `mechanisms` section. Error(data | no_input) at the place
 // in the manifest. Without objects: Error(data).

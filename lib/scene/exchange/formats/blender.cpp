@@ -61,8 +61,10 @@ class Writer {
     numbers["images"] = images();
     std::string text = manifest::print_json(numbers);
     for (std::size_t at = 0; (at = text.find('\'', at)) != std::string::npos;) text.replace(at, 1, "\\u0027");
-    out_.files.insert(out_.files.begin(),
-                      {"scene.py", std::string(blender_script_head) + text + std::string(blender_script_tail)});
+    text = std::string(blender_script_head) + text;
+    text += blender_script_building;
+    text += blender_script_rendering;
+    out_.files.insert(out_.files.begin(), {"scene.py", text});
     return std::move(out_);
   }
 
