@@ -35,6 +35,14 @@ void surfaces_lose(const Scene& scene, std::vector<Loss>& losses) {
   }
 }
 
+// A format that writes a file for each image meets the same camera and the same light several times.
+void drop_repeated(std::vector<Loss>& losses) {
+  std::vector<Loss> once;
+  for (Loss& loss : losses)
+    if (std::ranges::find(once, loss) == once.end()) once.push_back(std::move(loss));
+  losses = std::move(once);
+}
+
 }  // namespace
 
 Imported Exchange::read(const std::filesystem::path& path) const {
@@ -68,6 +76,7 @@ Exported export_scene(const Scene& scene, const Exchange& exchange) {
   if (scene.appearance.vignetting_falloff != 0)
     exported.losses.push_back({"/mechanisms/optics.vignetting", "vignetting", "corners as bright as the middle"});
   if (!scene.bands.rgb) exported.losses.push_back({"/", "three wavelengths", "them as red, green and blue"});
+  drop_repeated(exported.losses);
   return exported;
 }
 

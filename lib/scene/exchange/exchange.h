@@ -18,6 +18,7 @@ namespace gonio::scene {
 struct Loss {
   std::string pointer;  // JSON pointer into the manifest (export), or where in the foreign file (import)
   std::string what, instead;
+  bool operator==(const Loss&) const = default;
 };
 struct ExchangedFile {
   std::string name, content;  // name: relative, folders with /

@@ -41,12 +41,52 @@ void surround(Lamp& lamp, const Named& named, const Light& light) {
   }
 }
 
-void place(Lamp& lamp, const Named& named) {
+constexpr double small_m = 1e-3;  // radius of a disc that stands for a point with an aim
+
+// Lamps that shine to one side of a plane across `direction`; radiance I / area.
+void aim(Lamp& lamp, const Named& named, std::vector<Loss>& losses) {
+  const std::string pointer = "/lights/" + lamp.id;
+  const auto lose = [&](const char* what, const char* instead) { losses.push_back({pointer, what, instead}); };
+  lamp.axis = normalized(named.vector("direction"));
+  lamp.x = Basis(lamp.axis).t;
+  if (const Vec3 side = cross(named.vector("up"), lamp.axis); norm(side) > 1e-9) lamp.x = normalized(side);
+  const double exponent = named.scalar("exponent", 1);
+  if (named.has("outer_rad")) {
+    lamp.kind = Lamp::Kind::spot;
+    lamp.outer_rad = named.scalar("outer_rad");
+    lamp.inner_rad = lamp.outer_rad * named.scalar("inner_share");
+    if (lamp.radius_m > 0) lose("a spot lamp with an extent", "a point");
+    if (exponent != 0) lose("a lobe of the cosine's power within the cone", "the same intensity within the cone");
+    return;
+  }
+  const bool rectangle = named.has("width_m");
+  lamp.kind = rectangle ? Lamp::Kind::rectangle : Lamp::Kind::disc;
+  lamp.size_x_m = named.scalar("width_m");
+  lamp.size_y_m = named.scalar("height_m");
+  if (!rectangle && !(lamp.radius_m > 0)) {
+    lamp.radius_m = small_m;
+    lose("a point that shines to one side", "a disc of 1 mm");
+  }
+  lamp.value = lamp.value / (rectangle ? lamp.size_x_m * lamp.size_y_m : pi * lamp.radius_m * lamp.radius_m);
+  if (exponent != 1) lose("a lobe of the cosine's power", "the same radiance in all directions in front of it");
+}
+
+void place(Lamp& lamp, const Named& named, const Light& light, std::vector<Loss>& losses) {
   lamp.position_m = named.vector("position_m");
   lamp.value = named.vector("watt_per_sr");
   lamp.radius_m = named.scalar("radius_m");
+  const bool file = light.model->info().attachment != manifest::Attachment::none;
+  if (named.has("direction") && !file) {
+    aim(lamp, named, losses);
+    return;
+  }
   lamp.kind = lamp.radius_m > 0 ? Lamp::Kind::ball : Lamp::Kind::point;
   if (lamp.radius_m > 0) lamp.value = lamp.value / (pi * lamp.radius_m * lamp.radius_m);
+  if (!named.has("watt_per_sr"))
+    losses.push_back({"/lights/" + light.id, "the light model \"" + light.model->info().id + "\"", "no light from it"});
+  else if (file || named.has("direction"))
+    losses.push_back({"/lights/" + light.id, "the light model \"" + light.model->info().id + "\"",
+                      "its stated intensity, equally in all directions"});
 }
 
 }  // namespace
@@ -70,11 +110,7 @@ Lamp lamp_of(const Light& light, std::vector<Loss>& losses) {
     lamp.axis = normalized(named.vector("towards"));
     lamp.value = named.vector("watt_per_m2");
   } else {
-    place(lamp, named);
-    const std::string& id = light.model->info().id;
-    if (id != "point" && id != "sphere")
-      losses.push_back({"/lights/" + light.id + "/model", "the light model \"" + id + "\"",
-                        "a lamp of the same intensity that shines equally in all directions"});
+    place(lamp, named, light, losses);
   }
   return lamp;
 }

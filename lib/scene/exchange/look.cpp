@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surface/fresnel.h"
 #include "surface/oren_nayar.h"
 
 namespace gonio::scene {
@@ -59,7 +60,7 @@ double dipole_reflectance(double sigma_a, double sigma_s_reduced, double eta) {
 void add_roughness(Look& look, const Named& named, const surface::Model& model) {
   const double both = named.scalar("alpha");
   look.alpha_x = named.scalar("alpha_x", both);
-  look.alpha_y = named.scalar("alpha_y", look.alpha_x);
+  look.alpha_y = named.scalar("alpha_y", look.alpha_x * (1 - 0.9 * named.scalar("anisotropy")));
   look.azimuth_rad = named.scalar("azimuth_rad");
   look.beckmann = model.info().id.find("beckmann") != std::string::npos || named.scalar("beckmann") > 0;
 }
@@ -119,6 +120,17 @@ RoughMatte rough_matte(double sigma_rad) {
   const double a = law.shape(up, up);  // s = 0
   // wi = wo = tilted: s = 1/2, t = sqrt(1/2)
   return {a, (law.shape(tilted, tilted) / a - 1) * std::sqrt(2.0)};
+}
+
+// 1 - (1 - F_ext) / eta^2 with F_ext = 2 integral of F(c) c dc, by the midpoint rule.
+double mean_internal_reflectance(double eta) {
+  constexpr int steps = 2000;
+  double outside = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double c = (i + 0.5) / steps;
+    outside += 2 * surface::fresnel_dielectric(c, eta) * c / steps;
+  }
+  return 1 - (1 - outside) / (eta * eta);
 }
 
 Look look_of(const Surface& surface, const std::string& pointer, std::vector<Loss>& losses) {

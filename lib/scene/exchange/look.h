@@ -38,4 +38,7 @@ struct RoughMatte {
 };
 RoughMatte rough_matte(double sigma_rad);
 
+// Share of diffuse light that an interface of index eta throws back into the denser side.
+double mean_internal_reflectance(double eta);
+
 }  // namespace gonio::scene
