@@ -34,9 +34,13 @@ Between wrapped(double x, std::size_t count) {
   return {low, low + 1 == count ? 0 : low + 1, static_cast<float>(c - static_cast<double>(low))};
 }
 
+double across_of(Vec3 w) {
+  return std::sqrt(w.x * w.x + w.y * w.y);
+}
+
 // The horizontal direction of w, +x where it has none.
 Vec2 bearing(Vec3 w) {
-  const double across = std::hypot(w.x, w.y);
+  const double across = across_of(w);
   return across > 0 ? Vec2{w.x / across, w.y / across} : Vec2{1, 0};
 }
 
@@ -44,7 +48,7 @@ Vec2 bearing(Vec3 w) {
 double azimuth_from(Vec3 wo, Vec3 h) {
   const Vec2 along = bearing(wo);
   const double x = along.x * h.x + along.y * h.y, y = along.x * h.y - along.y * h.x;
-  return x == 0 && y == 0 ? 0 : std::atan2(y, x);
+  return y < 0 ? -arc(-y, x) : arc(y, x);
 }
 
 // Where `u` falls into cumulative shares of `count` cells; the remainder is stretched over the cell.
@@ -134,7 +138,7 @@ Rgb MeasuredTable::evaluate(Vec3 wo, Vec3 wi) const {
 }
 
 std::size_t MeasuredTable::zenith_of(Vec3 wo) {
-  const double angle = std::atan2(std::hypot(wo.x, wo.y), wo.z);
+  const double angle = arc(across_of(wo), wo.z);
   return std::min(static_cast<std::size_t>(angle * (2 / pi) * zeniths), zeniths - 1);
 }
 
@@ -184,28 +188,34 @@ void MeasuredTable::check(const std::string& place) const {
   log(LogLevel::warning, place + ": " + problem + ": pictures will be too bright there; `scale` makes it darker");
 }
 
-double MeasuredTable::half_vector_density(std::size_t zenith, Vec3 wo, Vec3 h) const {
-  const double angle = std::acos(std::clamp(h.z, 0.0, 1.0));
-  const auto guess = static_cast<double>(rings_) * std::sqrt(angle * (2 / pi));
-  const std::size_t ring = std::min(static_cast<std::size_t>(guess), rings_ - 1);
-  const double turn = azimuth_from(wo, h) / (2 * pi) + 0.5;
-  const std::size_t column = std::min(static_cast<std::size_t>(std::max(0.0, turn) * columns), columns - 1);
+double MeasuredTable::density_in(std::size_t zenith, std::size_t ring, std::size_t column) const {
   const float *row = row_of(zenith), *cell = cells_of(zenith, ring);
   const double mass =
       static_cast<double>(row[ring + 1] - row[ring]) * static_cast<double>(cell[column + 1] - cell[column]);
   return mass / ((ring_cosine_[ring] - ring_cosine_[ring + 1]) * 2 * pi / columns);
 }
 
+double MeasuredTable::half_vector_density(Vec3 wo, Vec3 h) const {
+  const auto guess = static_cast<double>(rings_) * std::sqrt(arc(across_of(h), h.z) * (2 / pi));
+  const std::size_t ring = std::min(static_cast<std::size_t>(guess), rings_ - 1);
+  const double turn = azimuth_from(wo, h) / (2 * pi) + 0.5;
+  const std::size_t column = std::min(static_cast<std::size_t>(std::max(0.0, turn) * columns), columns - 1);
+  return density_in(zenith_of(wo), ring, column);
+}
+
 double MeasuredTable::pdf(Vec3 wo, Vec3 wi) const {
   if (wo.z <= 0 || wi.z <= 0) return 0;
   const Vec3 h = half_vector(wo, wi);
   const double cosine = dot(wo, h);
-  const double lobe = cosine > 0 ? half_vector_density(zenith_of(wo), wo, h) / (4 * cosine) : 0;
+  const double lobe = cosine > 0 ? half_vector_density(wo, h) / (4 * cosine) : 0;
   return lobe_share * lobe + (1 - lobe_share) * cosine_density(wi);
 }
 
-Vec3 MeasuredTable::sample(Vec3 wo, Vec2 u, double u_lobe) const {
-  if (u_lobe >= lobe_share) return cosine_direction(u);
+MeasuredTable::Drawn MeasuredTable::sample(Vec3 wo, Vec2 u, double u_lobe) const {
+  if (u_lobe >= lobe_share) {
+    const Vec3 wi = cosine_direction(u);
+    return {wi, pdf(wo, wi)};
+  }
   const std::size_t zenith = zenith_of(wo), ring = draw(row_of(zenith), rings_, u.x),
                     column = draw(cells_of(zenith, ring), columns, u.y);
   const double z = ring_cosine_[ring] + (ring_cosine_[ring + 1] - ring_cosine_[ring]) * u.x;
@@ -213,12 +223,15 @@ Vec3 MeasuredTable::sample(Vec3 wo, Vec2 u, double u_lobe) const {
   const double across = std::sqrt(std::max(0.0, 1 - z * z));
   const Vec2 along = bearing(wo);
   const double c = std::cos(phi), s = std::sin(phi);
-  return mirrored(wo, {across * (along.x * c - along.y * s), across * (along.y * c + along.x * s), z});
+  const Vec3 h{across * (along.x * c - along.y * s), across * (along.y * c + along.x * s), z}, wi = mirrored(wo, h);
+  const double cosine = dot(wo, h);
+  if (wi.z <= 0 || !(cosine > 0)) return {wi, 0};
+  return {wi, lobe_share * density_in(zenith, ring, column) / (4 * cosine) + (1 - lobe_share) * cosine_density(wi)};
 }
 
 Rgb MeasuredTable::albedo(Vec3 wo) const {
   if (wo.z <= 0) return {};
-  const double angle = std::atan2(std::hypot(wo.x, wo.y), wo.z);
+  const double angle = arc(across_of(wo), wo.z);
   const Between at = clamped(angle * (2 / pi) * zeniths, zeniths);
   return albedo_[at.low] + (albedo_[at.high] - albedo_[at.low]) * static_cast<double>(at.share);
 }

@@ -29,7 +29,11 @@ class MeasuredTable final : public Prepared {
   MeasuredTable(io::MerlTable table, const std::string& place);
 
   Rgb evaluate(Vec3 wo, Vec3 wi) const;
-  Vec3 sample(Vec3 wo, Vec2 u, double u_lobe) const;  // may lie below the horizon
+  struct Drawn {
+    Vec3 wi;
+    double pdf = 0;  // 0 below the horizon
+  };
+  Drawn sample(Vec3 wo, Vec2 u, double u_lobe) const;
   double pdf(Vec3 wo, Vec3 wi) const;
   Rgb albedo(Vec3 wo) const;
   Rgb albedo_mean() const { return mean_; }  // bihemispherical
@@ -48,7 +52,8 @@ class MeasuredTable final : public Prepared {
   const float* cells_of(std::size_t zenith, std::size_t ring) const {
     return cells_.data() + (zenith * rings_ + ring) * (columns + 1);
   }
-  double half_vector_density(std::size_t zenith, Vec3 wo, Vec3 h) const;
+  double density_in(std::size_t zenith, std::size_t ring, std::size_t column) const;
+  double half_vector_density(Vec3 wo, Vec3 h) const;
 
   io::MerlTable table_;
   std::size_t rings_;

@@ -39,10 +39,7 @@ class Merl final : public Model {
   }
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
     if (wo.z <= 0) return {};
-    const MeasuredTable& table = table_of(values);
-    const Vec3 wi = table.sample(wo, u, u_lobe);
-    if (wi.z <= 0) return {};
-    const double density = table.pdf(wo, wi);
+    const auto [wi, density] = table_of(values).sample(wo, u, u_lobe);
     if (!(density > 0)) return {};
     return {wi, evaluate(values, wo, wi) * (wi.z / density), density};
   }
