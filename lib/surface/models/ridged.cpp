@@ -1,0 +1,139 @@
+// Parallel micro-ridges, as milled into moulds to make a surface change its brightness when it is turned.
+//   f = (F(wi.h) + (1 - F(wi.h))^2 rho_d / pi) cos(theta_r) G Gs D_m(h) / (4 (wi.n) (wo.n))
+// Luongo et al. 2017, "Modeling the anisotropic reflectance of a surface with microstructure engineered to obtain
+// visible contrast after rotation", equations 2 to 6, with the masking G and the density of normals of
+// surface/ridges.h, where it is said how and why they differ from the published ones. F is Fresnel's factor for the
+// complex index eta + i k. The second term stands for light that entered and came back: as published, it leaves about
+// the mirror direction, like the first, and carries at most rho_d / pi of what entered. h is the half vector.
+// Reciprocal; reflects at most what arrives. albedo() is a sum over 512 visible normals.
+#include "surface/fresnel.h"
+#include "surface/interface_albedo.h"
+#include "surface/ridges.h"
+#include "surface/surface.h"
+
+namespace gonio::surface {
+namespace {
+
+enum : std::size_t { ridge_index, alpha_u_index, alpha_v_index, eta_index, k_index, rho_index, azimuth_index };
+
+Ridges ridges_of(const Values& values) {
+  return {values.scalar(ridge_index), values.scalar(alpha_u_index), values.scalar(alpha_v_index),
+          values.scalar(azimuth_index)};
+}
+
+// What a facet reflects about its mirror direction, at this cosine to its normal.
+Rgb reflected(const Values& values, double cosine) {
+  const Rgb eta = values.rgb(eta_index), k = values.rgb(k_index), rho = values.rgb(rho_index);
+  const auto band = [cosine](double n, double extinction, double diffuse) {
+    const double f = fresnel_metal(cosine, n, extinction), enters = 1 - f;
+    return f + enters * enters * diffuse / pi;
+  };
+  return {band(eta.x, k.x, rho.x), band(eta.y, k.y, rho.y), band(eta.z, k.z, rho.z)};
+}
+
+class Ridged final : public Model {
+ public:
+  const manifest::ModelInfo& info() const override {
+    static const manifest::ModelInfo info{
+        .family = manifest::Family::surface,
+        .id = "ridged",
+        .sentence = "Parallel micro-ridges of a saw's profile with rough facets.",
+        .source = "Luongo et al. 2017, equations 2-6; Heitz 2014",
+        .parameters = {{.name = "ridge_rad",
+                        .unit = "rad",
+                        .preset = {},
+                        .lower = 0,
+                        .upper = 1.2,
+                        .meaning = "ridge angle: tilt of the long facets, towards the tangent turned by 90 degrees"},
+                       {.name = "alpha_u",
+                        .unit = "1",
+                        .preset = 0.1,
+                        .lower = min_alpha,
+                        .upper = max_alpha,
+                        .meaning = "Beckmann roughness of the facets along the ridges"},
+                       {.name = "alpha_v",
+                        .unit = "1",
+                        .preset = 0.1,
+                        .lower = min_alpha,
+                        .upper = max_alpha,
+                        .meaning = "Beckmann roughness of the facets across the ridges"},
+                       {.name = "eta",
+                        .unit = "1",
+                        .components = 3,
+                        .rgb = true,
+                        .preset = 1.5,
+                        .lower = 0.01,
+                        .upper = 20,
+                        .meaning = "real part of the index at red, green and blue"},
+                       {.name = "k",
+                        .unit = "1",
+                        .components = 3,
+                        .rgb = true,
+                        .preset = 0,
+                        .lower = 0,
+                        .upper = 30,
+                        .meaning = "extinction coefficient at red, green and blue"},
+                       {.name = "rho_d",
+                        .unit = "1",
+                        .components = 3,
+                        .rgb = true,
+                        .preset = 0,
+                        .lower = 0,
+                        .upper = 1,
+                        .meaning = "diffuse reflectance of the material beneath the facets"},
+                       {.name = "azimuth_rad",
+                        .unit = "rad",
+                        .preset = 0,
+                        .lower = -pi,
+                        .upper = pi,
+                        .meaning = "turns the ridges about the normal; at 0 they run along the tangent"}},
+    };
+    return info;
+  }
+
+  Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
+    if (wo.z <= 0 || wi.z <= 0) return {};
+    const Ridges ridges = ridges_of(values);
+    const Vec3 wof = ridges.to_facet(wo), wif = ridges.to_facet(wi);
+    if (wof.z <= 0 || wif.z <= 0) return {};
+    return reflected(values, dot(wof, half_vector(wof, wif))) * ridges.lobe(wo, wi, wof, wif);
+  }
+
+  Sample sample(const Values& values, Vec3 wo, Vec2 u, double /*u_lobe*/) const override {
+    if (wo.z <= 0) return {};
+    const Ridges ridges = ridges_of(values);
+    const Vec3 wof = ridges.to_facet(wo);
+    if (wof.z <= 0) return {};
+    const Vec3 wi = ridges.from_facet(mirrored(wof, ridges.visible_normal(wof, u))), wif = ridges.to_facet(wi);
+    if (wi.z <= 0 || wif.z <= 0) return {};
+    const double density = ridges.pdf(wof, wif);
+    if (!(density > 0)) return {};
+    const Rgb f = reflected(values, dot(wof, half_vector(wof, wif))) * ridges.lobe(wo, wi, wof, wif);
+    return {wi, f * (wi.z / density), density};
+  }
+
+  double pdf(const Values& values, Vec3 wo, Vec3 wi) const override {
+    if (wo.z <= 0 || wi.z <= 0) return 0;
+    const Ridges ridges = ridges_of(values);
+    const Vec3 wof = ridges.to_facet(wo), wif = ridges.to_facet(wi);
+    return wof.z > 0 && wif.z > 0 ? ridges.pdf(wof, wif) : 0;
+  }
+
+  Rgb albedo(const Values& values, Vec3 wo) const override {
+    constexpr int count = 512;
+    const auto part = [](double x) { return x - std::floor(x); };
+    Rgb sum;
+    for (int i = 0; i < count; ++i)  // Roberts 2018, two dimensions
+      sum += sample(values, wo, {part(0.5 + i * 0.7548776662466927), part(0.5 + i * 0.5698402909980532)}, 0).weight;
+    return sum / count;
+  }
+};
+
+}  // namespace
+
+const Model& ridged() {
+  static const Ridged model;
+  return model;
+}
+
+}  // namespace gonio::surface
