@@ -2,13 +2,15 @@
 // World frame, metres.
 //
 // Entry points are drawn as King, Kulla, Conty & Fascione 2013, "BSSRDF importance sampling": one of three axes (the
-// exit's normal with probability 1/2, two tangents with 1/4 each), one of three bands, a distance r on the plane across
-// the axis (surface::Subsurface), and one of the N points where a line along the axis meets the object within the
-// reach. All ways of having found a point y are counted (balance heuristic):
-//   density per area(y) = sum over axes of  p_axis |n_g(y).axis| mean over bands of density(r_axis(y)),   weight N / it
-// At the entry the path is at an ordinary vertex with the law f = S_d(y, w12(wi); x) T(wi) N / density, whose
-// directions are drawn by their cosine: lights, interreflection and everything else go on from there as they would
-// anywhere.
+// exit's normal with probability 0.7, two tangents with 0.15 each), one of three bands, a distance r on the plane
+// across the axis (surface::Subsurface), and one of the points where a line along the axis meets the object within the
+// reach, with chances q in proportion to the square root of the density at the straight distance |y - x|: the far side
+// of a body is met as often as the near one and sends little, but it may be the lit one. All ways of having found a
+// point y are counted (balance heuristic):
+//   density per area(y) = sum over axes of  p_axis |n_g(y).axis| mean over bands of density(r_axis(y)),
+//   weight = 1 / (q density)
+// At the entry the path is at an ordinary vertex with the law f = S_d(y, w12(wi); x) T(wi) weight, whose directions are
+// drawn by their cosine: lights, interreflection and everything else go on from there as they would anywhere.
 #pragma once
 #include <optional>
 
@@ -21,7 +23,7 @@ namespace gonio::render {
 
 struct EntryPoint {
   SurfacePoint point;   // on the same side of the surface as the exit
-  double per_area = 0;  // N / density, m^2
+  double per_area = 0;  // the weight, m^2
 };
 std::optional<EntryPoint> draw_entry(const RayCaster& caster, const surface::Subsurface& beneath,
                                      const SurfacePoint& exit, Sampler& sampler);

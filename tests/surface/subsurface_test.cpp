@@ -4,51 +4,12 @@
 #include <algorithm>
 
 #include "cases.h"
-#include "subsurface_photons.h"
-#include "surface/dipole_model.h"
+#include "subsurface_half_space.h"
 
 namespace gonio::tests {
 namespace {
 
-using surface::DipoleSubsurface;
 using surface::InteriorFresnel;
-using surface::SubsurfaceEntry;
-
-Rgb grey(double x) {
-  return {x, x, x};
-}
-
-struct Built {  // a model in one medium
-  const surface::Model* model;
-  surface::Values values;
-  std::shared_ptr<const surface::Prepared> prepared;
-  Built(const char* id, const HalfSpace& m, double alpha = 0) : model(surface::find(id)) {
-    values.v = {grey(m.eta), grey(alpha), grey(m.sigma_a), grey(m.sigma_s), grey(m.g)};
-    prepared = model->prepare(values, {}, "test");
-    values.prepared = prepared.get();
-  }
-  const DipoleSubsurface& beneath() const { return static_cast<const DipoleSubsurface&>(*prepared); }
-  // Exitance per flux that enters at the origin along `inward`.
-  double exitance(Vec3 inward, Vec3 exit) const {
-    const double passes = InteriorFresnel(values.v[0].x).transmits_in;
-    return pi * passes * beneath().evaluate({{}, {0, 0, 1}, inward}, exit, {0, 0, 1}).x;
-  }
-  // The same over the ring between two radii.
-  double ring(Vec3 inward, double inner, double outer) const {
-    constexpr int radii = 40, angles = 24;
-    double sum = 0;
-    for (int k = 0; k < radii; ++k)
-      for (int a = 0; a < angles; ++a) {
-        const double r = inner + (outer - inner) * (k + 0.5) / radii, phi = 2 * pi * (a + 0.5) / angles;
-        sum += exitance(inward, {r * std::cos(phi), r * std::sin(phi), 0}) * r;
-      }
-    return sum * 2 * pi * (outer - inner) / (radii * angles);
-  }
-};
-
-Vec3 inwards(double cosine, double eta) {
-  return surface::refracted_inwards({std::sqrt(1 - cosine * cosine), 0, cosine}, {0, 0, 1}, eta);
-}
 
 // The fits of d'Eon & Irving 2011 to the moments of Fresnel's equations within the medium, 2 C_1 and 3 C_2.
 TEST(Subsurface, FresnelMomentsAreThoseOfThePublishedFits) {
@@ -230,26 +191,6 @@ TEST(Subsurface, SamplesShareTheLightBetweenInterfaceAndMedium) {
         EXPECT_NEAR(below, 1 - e, 4e-3) << id << " " << alpha << " " << zenith;
       }
     }
-}
-
-struct Photographed {  // what photons say, per flux that enters
-  double whole = 0, sigma = 0;
-  std::vector<double> rings;
-};
-Photographed photographed(const HalfSpace& m, double cosine, const std::vector<double>& edges, int count) {
-  Photons photons(m, 31);
-  Photographed result{0, 0, std::vector<double>(edges.size() - 1)};
-  double squares = 0;
-  for (int i = 0; i < count; ++i) {
-    const Escape escape = photons.trace(inwards(cosine, m.eta));
-    result.whole += escape.weight / count;
-    squares += escape.weight * escape.weight / count;
-    const double r = std::hypot(escape.position.x, escape.position.y);
-    for (std::size_t b = 0; b + 1 < edges.size(); ++b)
-      if (r >= edges[b] && r < edges[b + 1]) result.rings[b] += escape.weight / count;
-  }
-  result.sigma = std::sqrt((squares - result.whole * result.whole) / count);
-  return result;
 }
 
 // The whole reflectance of a half space: the dipole's closed form within 4 % of photons where it scatters well.
