@@ -12,4 +12,7 @@ Vec3 turned(Vec3 towards, double tilt_x_rad, double tilt_y_rad);
 // A position turned about `centre_m` in the same way; its distance from the centre stays.
 Vec3 turned_about(Vec3 position_m, double tilt_x_rad, double tilt_y_rad, Vec3 centre_m);
 
+// A direction that belongs to the lamp at `position_m`, carried along as turned_about() moves it.
+Vec3 turned_with(Vec3 direction, Vec3 position_m, double tilt_x_rad, double tilt_y_rad, Vec3 centre_m);
+
 }  // namespace gonio::light

@@ -53,7 +53,10 @@ bool neutral(const Mechanism& mechanism, const Amounts& amounts) {
 
 // What has no parameter of a model to set.
 using SceneEdit = void (*)(Appearance&, const Amounts&, const std::string& place);
-using LightEdit = void (*)(Light&, const Amounts&, Vec3 centre_m);
+struct LightEdit {
+  bool (*applies)(const Light&, const Mechanism&);
+  void (*edit)(Light&, const Mechanism&, const Amounts&, Vec3 centre_m, const std::string& place);
+};
 
 void set_ambient(Appearance& appearance, const Amounts& amounts, const std::string& place) {
   if (amounts == Amounts{0, 0, 0}) {
@@ -68,27 +71,11 @@ void set_indirect(Appearance& appearance, const Amounts& amounts, const std::str
 void set_vignetting(Appearance& appearance, const Amounts& amounts, const std::string&) {
   appearance.vignetting_falloff = amounts[0];
 }
-void turn(Light& light, const Amounts& amounts, Vec3 centre_m) {
-  const auto components = [](Vec3 v) { return std::vector<double>{v.x, v.y, v.z}; };
-  if (const auto towards = light.parameters.find("towards"); towards != light.parameters.end()) {
-    const Vec3 given = towards->second.vector();
-    towards->second.value = components(light::turned(normalized(given), amounts[0], amounts[1]) * norm(given));
-  } else if (const auto position = light.parameters.find("position_m"); position != light.parameters.end()) {
-    position->second.value =
-        components(light::turned_about(position->second.vector(), amounts[0], amounts[1], centre_m));
-  }
-}
-
 const std::map<std::string, SceneEdit>& scene_edits() {
   static const std::map<std::string, SceneEdit> edits = {
       {"light.ambient", set_ambient}, {"optics.vignetting", set_vignetting}, {"transport.indirect", set_indirect}};
   return edits;
 }
-const std::map<std::string, LightEdit>& light_edits() {
-  static const std::map<std::string, LightEdit> edits = {{"light.direction", turn}};
-  return edits;
-}
-
 const manifest::ParameterInfo* find_parameter(const manifest::ModelInfo& info, const std::string& name) {
   for (const manifest::ParameterInfo& p : info.parameters)
     if (p.name == name) return &p;
@@ -106,7 +93,7 @@ bool can_express(const manifest::ModelInfo& info, const Mechanism& mechanism) {
 bool includes(const manifest::ModelInfo& large, const manifest::ModelInfo& small) {
   return std::all_of(small.parameters.begin(), small.parameters.end(), [&](const manifest::ParameterInfo& p) {
     const manifest::ParameterInfo* found = find_parameter(large, p.name);
-    return found && found->components == p.components;
+    return found && found->components == p.components && (found->preset || !p.preset);
   });
 }
 
@@ -135,15 +122,60 @@ const light::Model* model_for(const Light& l, const Mechanism& m) {
   return model_for(l.model, light::all_models(), m);
 }
 
-bool can_turn(const Light& light) {
+std::vector<double> components(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+
+bool can_turn(const Light& light, const Mechanism&) {
   return find_parameter(light.model->info(), "towards") || find_parameter(light.model->info(), "position_m");
+}
+// Lamps that face somewhere are turned with their place, as if they hung from the scene's centre.
+void turn(Light& light, const Mechanism&, const Amounts& amounts, Vec3 centre_m, const std::string&) {
+  if (const auto towards = light.parameters.find("towards"); towards != light.parameters.end()) {
+    const Vec3 given = towards->second.vector();
+    towards->second.value = components(light::turned(normalized(given), amounts[0], amounts[1]) * norm(given));
+  } else if (const auto position = light.parameters.find("position_m"); position != light.parameters.end()) {
+    const Vec3 from = position->second.vector();
+    position->second.value = components(light::turned_about(from, amounts[0], amounts[1], centre_m));
+    for (const char* name : {"direction", "up"})
+      if (const auto axis = light.parameters.find(name); axis != light.parameters.end() && axis->second.given())
+        axis->second.value =
+            components(light::turned_with(axis->second.vector(), from, amounts[0], amounts[1], centre_m));
+  }
+}
+
+bool can_narrow(const Light& light, const Mechanism& mechanism) {
+  return find_parameter(light.model->info(), "position_m") && model_for(light, mechanism);
+}
+// light.lobe: adds to the exponent of the lamp; one that has none shone equally all round, and now faces the centre.
+void narrow(Light& light, const Mechanism& mechanism, const Amounts& amounts, Vec3 centre_m, const std::string& place) {
+  const manifest::ParameterInfo* own = find_parameter(light.model->info(), "exponent");
+  light.model = model_for(light, mechanism);
+  manifest::Parameter& exponent = light.parameters["exponent"];
+  exponent = manifest::Parameter((exponent.given() ? exponent.scalar() : own ? *own->preset : 0) + amounts[0]);
+  manifest::Parameter& direction = light.parameters["direction"];
+  if (direction.given()) return;
+  const Vec3 axis = centre_m - light.parameters.at("position_m").vector();
+  if (!(norm(axis) > 0))
+    throw Error(Exit::data, place_of(place, "on"),
+                "\"" + light.id + "\" stands in the scene's centre and faces nowhere",
+                "give it a model with a direction");
+  direction = manifest::Parameter(components(axis));
+}
+
+const std::map<std::string, LightEdit>& light_edits() {
+  static const std::map<std::string, LightEdit> edits = {{"light.direction", {can_turn, turn}},
+                                                         {"light.lobe", {can_narrow, narrow}}};
+  return edits;
 }
 
 bool can_apply(const Surface& surface, const Mechanism& mechanism) {
   return model_for(surface, mechanism) != nullptr;
 }
 bool can_apply(const Light& light, const Mechanism& mechanism) {
-  return light_edits().contains(mechanism.id) ? can_turn(light) : model_for(light, mechanism) != nullptr;
+  const auto special = light_edits().find(mechanism.id);
+  return special != light_edits().end() ? special->second.applies(light, mechanism)
+                                        : model_for(light, mechanism) != nullptr;
 }
 
 template <class Thing>
@@ -160,7 +192,7 @@ void edit(Surface& surface, const Mechanism& mechanism, const Amounts& amounts, 
 void edit(Light& light, const Mechanism& mechanism, const Amounts& amounts, Vec3 centre_m, const std::string& place) {
   const auto special = light_edits().find(mechanism.id);
   if (special == light_edits().end()) return set_parameters(light, mechanism, amounts, place);
-  special->second(light, amounts, centre_m);
+  special->second.edit(light, mechanism, amounts, centre_m, place);
   refresh(light, place);
 }
 

@@ -6,9 +6,10 @@
 // the smallest registered model takes its place that has all parameters of the present one and the mechanism's: diffuse
 // becomes coated-diffuse, point becomes sphere. No list says so; a new model is found by its parameters. A target to
 // whose model the parameters are not optional (the f0 of a metal) is one that the mechanism cannot apply to. A model
-// that reads a file gives way to none that would not read it. Mechanisms of boards do not change scenes. Of cameras,
-// those of the stage "lens" replace terms of the distortion and optics.defocus gives views a lens; what happens behind
-// the lens is the matter of render/sensor_chain.h.
+// that reads a file gives way to none that would not read it. light.direction and light.lobe turn and narrow what is
+// there. Mechanisms of boards do not change scenes. Of cameras, those of the stage "lens" replace terms of the
+// distortion and optics.defocus gives views a lens; what happens behind the lens is the matter of
+// render/sensor_chain.h.
 #pragma once
 #include <optional>
 #include <string>

@@ -130,6 +130,70 @@ TEST(Direction, TurnsPositionsAboutTheCentreAndKeepsTheDistance) {
   EXPECT_NEAR(std::acos(sun.z), 0.2, 1e-12);
 }
 
+Vec3 vector_at(const Light& light, const std::string& name) {
+  return light.parameters.at(name).vector();
+}
+
+TEST(Direction, CarriesTheAimOfALampAlong) {
+  Appearance a;
+  const std::vector<double> place{0.3, 0, 0.5};
+  a.lights = {light_of("panel", "rectangle",
+                       {{"position_m", place},
+                        {"direction", std::vector<double>{-0.3, 0, -0.4}},
+                        {"up", std::vector<double>{0, 1, 0}},
+                        {"width_m", 0.1},
+                        {"height_m", 0.2},
+                        {"watt_per_sr", 1.0}})};
+  const Vec3 centre{0, 0, 0.1};
+  apply_mechanism(a, mechanism_of("light.direction"), use({{"tilt_x_rad", 0.1}, {"tilt_y_rad", -0.2}}), centre, "here");
+  const Light& panel = a.lights[0];
+  const Vec3 aim = vector_at(panel, "direction"), arm = centre - vector_at(panel, "position_m");
+  EXPECT_NEAR(norm(cross(normalized(aim), normalized(arm))), 0, 1e-12);  // still looks at the centre
+  EXPECT_NEAR(dot(aim, vector_at(panel, "up")), 0, 1e-12);
+  EXPECT_GT(norm(vector_at(panel, "position_m") - Vec3{0.3, 0, 0.5}), 0.05);
+}
+
+TEST(Lobe, NarrowsLampsThatFaceSomewhereAndAimsThoseThatDoNot) {
+  const std::vector<double> place{0, 0, 0.5};
+  Appearance a;
+  a.lights = {light_of("bare", "point", {{"position_m", place}, {"watt_per_sr", 2.0}}),
+              light_of("diode", "led",
+                       {{"position_m", place}, {"watt_per_sr", 2.0}, {"direction", std::vector<double>{0, 0, -1}}}),
+              light_of("globe", "sphere", {{"position_m", place}, {"watt_per_sr", 2.0}, {"radius_m", 0.1}}),
+              light_of("sun", "directional", {{"towards", std::vector<double>{0, 0, 2}}, {"watt_per_m2", 1.0}})};
+  const Mechanism& lobe = mechanism_of("light.lobe");
+  EXPECT_THAT(mechanism_targets(a, lobe), ElementsAre("bare", "diode", "globe"));
+  EXPECT_TRUE(applies_to_scenes(lobe));
+  const std::vector<Vec3> before = numbers_of(a);
+  apply_mechanism(a, lobe, use({{"exponent", 0.0}}), {}, "here");
+  EXPECT_EQ(numbers_of(a), before);
+  const Vec3 point{0.3, 0, 0};
+  const Rgb bare = a.lights[0].emitter->sample(point, {}).weight, diode = a.lights[1].emitter->sample(point, {}).weight;
+  apply_mechanism(a, lobe, use({{"exponent", 1.5}}), {}, "here");
+  const double fade = std::pow(0.5 / std::hypot(0.3, 0.5), 1.5);
+  EXPECT_NEAR(a.lights[0].emitter->sample(point, {}).weight.x, bare.x * fade, 1e-12);
+  EXPECT_NEAR(a.lights[1].emitter->sample(point, {}).weight.x, diode.x * fade, 1e-12);
+  EXPECT_EQ(a.lights[0].model->info().id, "led");
+  EXPECT_EQ(a.lights[1].parameters.at("exponent").scalar(), 2.5);
+  EXPECT_EQ(a.lights[2].parameters.at("radius_m").scalar(), 0.1);
+  EXPECT_THROW(apply_mechanism(a, lobe, use({{"exponent", 1.0}}, {"sun"}), {}, "here"), Error);
+}
+
+TEST(Lobe, MeasuredLobesKeepTheirFile) {
+  Appearance a;
+  Light light{.id = "measured",
+              .model = light::find("lobe-table"),
+              .parameters = {{"position_m", std::vector<double>{0, 0, 1}},
+                             {"watt_per_sr", 1.0},
+                             {"direction", std::vector<double>{0, 0, -1}}}};
+  light.file = std::filesystem::path(GONIO_SOURCE) / "tests/light/attachments/lobe-table.csv";
+  refresh(light, "here");
+  a.lights = {light};
+  EXPECT_THAT(mechanism_targets(a, mechanism_of("light.lobe")), ElementsAre());
+  EXPECT_THAT(mechanism_targets(a, mechanism_of("light.finite-size")), ElementsAre());
+  EXPECT_THAT(mechanism_targets(a, mechanism_of("light.direction")), ElementsAre("measured"));
+}
+
 TEST(Cameras, LensTermsReplaceTheDistortion) {
   manifest::Camera camera;
   camera.distortion = {{"k1", -0.1}, {"p1", 0.01}};
