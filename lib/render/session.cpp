@@ -31,6 +31,15 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// The ids of a file in the manifest.
+std::string names_of(const manifest::Document& document, const fs::path& path) {
+  std::string names;
+  std::error_code failure;
+  for (const auto& [id, file] : document.files)
+    if (fs::equivalent(document.folder / file.path, path, failure)) names += " " + id;
+  return names;
+}
+
 // Of everything that the pixels depend on, but for the image, the seed and the samples, which are said apart.
 std::string hash_of(manifest::Document document, const std::set<fs::path>& files, const SessionOptions& options) {
   document.renderings.clear();
@@ -39,9 +48,9 @@ std::string hash_of(manifest::Document document, const std::set<fs::path>& files
   document.provenance = manifest::Value::object();
   document.original = {};  // digits as typed, x-* keys
   for (manifest::ImageEntry& image : document.images) image.file.clear(), image.mask.clear();
+  // Of files that were read the names matter by which the scene calls them, and their contents; not their places.
   std::set<std::string> contents;
-  for (const fs::path& file : files) contents.insert(sha256_of_file(file));
-  // The list of files names recordings, too; of a file that matters the content is in `contents`.
+  for (const fs::path& file : files) contents.insert(sha256_of_file(file) + names_of(document, file));
   document.files.clear();
   std::string text = manifest::content_id(document) + " " GONIO_VERSION;
   for (const std::string& content : contents) text += " " + content;
@@ -108,6 +117,9 @@ PassSums Session::start(const PictureIdentity& identity, const fs::path& checkpo
     const SumsHeader header = read_sums_header(checkpoint);
     if (!(header.identity == identity) || header.first_pass != range_.first)
       throw Error(Exit::data, checkpoint.string(), "belongs to another scene or call", "--force begins anew");
+    if (header.first_pass + header.passes > range_.end)
+      throw Error(Exit::data, checkpoint.string(), "holds more samples than are asked for",
+                  "raise --spp, or begin anew with --force");
     spent_s = header.spent_s;
     return read_sums(checkpoint);
   }
@@ -146,10 +158,10 @@ Rendered Session::render(std::size_t view, const fs::path& path) const {
 std::optional<Facts> Session::finished(std::size_t view, const fs::path& path) const {
   if (!options_.resume || options_.force || !fs::exists(path) || fs::exists(checkpoint_path(path))) return {};
   const auto facts = facts_in(io::exr_attributes(read_file(path), path.string()));
-  const bool open = options_.time_s || options_.relative_error;
   const auto n = std::int64_t{range_.samples_per_pass};
-  if (!facts || facts->scene != hash_ || facts->seed != options_.seed || facts->first_sample != range_.first * n ||
-      (!open && facts->end_sample != range_.end * n))
+  const bool reached = facts && (facts->end_sample == range_.end * n || options_.time_s ||
+                                 (options_.relative_error && facts->relative_error <= *options_.relative_error));
+  if (!reached || facts->scene != hash_ || facts->seed != options_.seed || facts->first_sample != range_.first * n)
     throw Error(Exit::cannot_create, path.string(),
                 "is not the picture of " + scene_.views[view].image + " that this call makes", "--force replaces it");
   return facts;
