@@ -87,6 +87,7 @@ class Builder {
       surface.varying = rules_of(entry, *surface.model, wish_, at(pointer));
       fill_bands(surface, entry, pointer);
       refresh(surface, at(pointer));
+      check_inside(surface, at(pointer));
       appearance.surfaces.push_back(std::move(surface));
     }
     for (Surface& surface : appearance.surfaces) {

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "surface/law.h"
+#include "surface/subsurface.h"
 
 namespace gonio::scene {
 namespace {
@@ -186,6 +187,29 @@ class ByLaw final : public Rule {
   double lower_, upper_;
 };
 
+// What a surface says of the inside of its object.
+std::vector<double> inside_of(const Surface& surface, surface::Values values) {
+  std::vector<double> stated;
+  const auto add = [&](const surface::Medium& medium) {
+    for (const Rgb& v : {medium.eta, medium.sigma_a_per_m, medium.sigma_s_per_m, medium.g})
+      stated.insert(stated.end(), {v.x, v.y, v.z});
+  };
+  if (surface.model->transmits())
+    if (const auto medium = surface.model->interior(values)) add(*medium);
+  if (!surface.model->subsurface(values)) return stated;
+  const auto prepared = surface.model->prepare(values, surface.file, {});
+  values.prepared = prepared.get();
+  const surface::Subsurface* beneath = surface.model->subsurface(values);
+  if (!beneath) return stated;
+  stated.insert(stated.end(), {beneath->eta(), beneath->reach_m()});
+  for (int band = 0; band < 3; ++band) stated.push_back(beneath->sample_distance(band, 0.5));
+  if (const surface::StraightLight* straight = beneath->straight()) {
+    add(straight->medium);
+    stated.push_back(straight->single);
+  }
+  return stated;
+}
+
 }  // namespace
 
 void extend(Wish& wish, const manifest::Surface& entry) {
@@ -225,6 +249,21 @@ std::vector<Varying> rules_of(const manifest::Surface& entry, const surface::Mod
       return std::make_shared<const ByLaw>(*law, info, here);
     });
   return rules;
+}
+
+void check_inside(const Surface& surface, const std::string& place) {
+  const auto check = [&](std::size_t parameter) {
+    const ParameterInfo& info = surface.model->info().parameters[parameter];
+    surface::Values low = surface.values, high = surface.values;
+    const double quarter = (info.upper - info.lower) / 4, a = info.lower + quarter, b = info.upper - quarter;
+    low.v[parameter] = {a, a, a};
+    high.v[parameter] = {b, b, b};
+    if (inside_of(surface, low) != inside_of(surface, high))
+      throw Error(Exit::data, place, info.name + " belongs to the inside of an object, which is the same everywhere",
+                  "give one value, or make objects of its parts");
+  };
+  for (const Texture& texture : surface.textures) check(texture.parameter);
+  for (const Varying& varying : surface.varying) check(varying.parameter);
 }
 
 void check_fit(const Surface& surface, const Shape& shape, const std::string& place) {

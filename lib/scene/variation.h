@@ -41,4 +41,8 @@ std::vector<Varying> rules_of(const manifest::Surface& entry, const surface::Mod
 // Where a shape cannot carry the surface: Error(data) at `place`, the object's.
 void check_fit(const Surface& surface, const Shape& shape, const std::string& place);
 
+// Parameters of what is inside an object - of its medium, or of light beneath its surface - hold for all of it. Error
+// (data) at `place`, the surface's, where one of them varies.
+void check_inside(const Surface& surface, const std::string& place);
+
 }  // namespace gonio::scene

@@ -185,8 +185,7 @@ class Sinusoidal final : public Model {
     if (steepest > steepest_pattern && !place.empty())
       log(LogLevel::warning, place + ": the pattern's slope " + std::to_string(steepest) + " is taken as " +
                                  std::to_string(steepest_pattern) + "; light between its walls is left out");
-    const double width = pattern_of(values).least_width();
-    return std::isfinite(width) ? std::make_shared<const PatternTable>(width) : nullptr;  // not where textures state it
+    return std::make_shared<const PatternTable>(pattern_of(values).least_width());
   }
 };
 
