@@ -135,6 +135,7 @@ Rendered Session::render(std::size_t view, const fs::path& path) const {
   const fs::path checkpoint = checkpoint_path(path);
   double spent_s = 0;
   PassSums sums = start(identity, checkpoint, spent_s);
+  const io::Image geometry = options_.geometry ? geometry_layers(scene_, view, *caster_, *paths) : io::Image();
   Checkpoints checkpoints(checkpoint, options_.checkpoint_s, spent_s);
   Watch watch;
   watch.spent_s = spent_s;
@@ -147,10 +148,7 @@ Rendered Session::render(std::size_t view, const fs::path& path) const {
     throw Error(Exit::try_again, identity.image, "was interrupted by a signal",
                 "--resume goes on from " + checkpoint.string());
   }
-  Rendered rendered{
-      .picture = develop(sums, options_.geometry ? geometry_layers(scene_, view, *caster_, *paths) : io::Image()),
-      .sums = {},
-      .facts = facts_of(sums)};
+  Rendered rendered{.picture = develop(sums, geometry), .sums = {}, .facts = facts_of(sums)};
   rendered.sums = std::move(sums);
   return rendered;
 }

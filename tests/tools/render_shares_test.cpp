@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "data.h"
 #include "io/picture.h"
+#include "io/ply.h"
 #include "manifest/document.h"
 #include "process.h"
 #include "render/share.h"
@@ -175,6 +176,26 @@ TEST_F(RenderShares, WhatIsFinishedIsNotRenderedAgain) {
   EXPECT_EQ(second.renderings.size(), 2u);
   refused({"s.json", "--spp", "4", "--seed", "2", "--out", "r", "--resume"}, 73, "--force replaces it");
   refused({"s.json", "--spp", "4", "--out", "r"}, 73, "--force");
+}
+
+// A pane of two triangles has no inside.
+TEST_F(RenderShares, OpenMeshesOfGlassOnlyWhereTheyAreAllowed) {
+  io::TriangleMesh pane;
+  pane.positions_m = {{-0.1, -0.1, 0}, {0.1, -0.1, 0}, {0.1, 0.1, 0}, {-0.1, 0.1, 0}};
+  pane.triangles = {{0, 1, 2}, {0, 2, 3}};
+  io::write_ply(folder_ / "pane.ply", pane);
+  manifest::Document open = manifest::read_document(folder_ / "s.json");
+  open.files["pane"] = {"pane.ply", {}, ""};
+  open.meshes["ball"] = {};
+  open.meshes["ball"].file = "pane";
+  open.surfaces["ball"] = {};
+  open.surfaces["ball"].model = "dielectric";
+  open.surfaces["ball"].parameters["eta"] = 1.5;
+  write_file(folder_ / "open.json", manifest::print_document(open, folder_.path()));
+  refused({"open.json", "--spp", "2", "--out", "r"}, 65, "--allow-open");
+  const Ended allowed = render({"open.json", "--spp", "2", "--out", "r", "--allow-open"});
+  EXPECT_EQ(allowed.status, 0) << allowed.err;
+  EXPECT_TRUE(fs::exists(folder_ / "r/two.exr"));
 }
 
 TEST_F(RenderShares, NoiseAndTimeEndTheWork) {

@@ -33,7 +33,8 @@ class RenderSpectra : public testing::Test {
   Ended render(const std::string& surface, const std::string& out) {
     write_file(folder_ / "s.json", R"({"gonio": 1,
       "files": {"bk7": {"path": "bk7.yml"}, "metal": {"path": "metal.yml"}},
-      "cameras": {"c": {"model": "orthographic", "width_px": 1, "height_px": 1, "px_per_m": 1e5, "cx_px": 0, "cy_px": 0}},
+      "cameras": {"c": {"model": "orthographic", "width_px": 1, "height_px": 1, "px_per_m": 1e5,
+                        "cx_px": 0, "cy_px": 0}},
       "meshes": {"ball": {"sphere": {"radius_m": 1}}}, "surfaces": {"it": )" +
                                        surface +
                                        R"(}, "lights": {"a": {"model": "uniform", "radiance": 1}},
