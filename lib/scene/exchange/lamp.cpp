@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/aimed.h"
+
 namespace gonio::scene {
 namespace {
 
@@ -47,9 +49,9 @@ constexpr double small_m = 1e-3;  // radius of a disc that stands for a point wi
 void aim(Lamp& lamp, const Named& named, std::vector<Loss>& losses) {
   const std::string pointer = "/lights/" + lamp.id;
   const auto lose = [&](const char* what, const char* instead) { losses.push_back({pointer, what, instead}); };
-  lamp.axis = normalized(named.vector("direction"));
-  lamp.x = Basis(lamp.axis).t;
-  if (const Vec3 side = cross(named.vector("up"), lamp.axis); norm(side) > 1e-9) lamp.x = normalized(side);
+  const Basis frame = light::lamp_frame(named.vector("direction"), named.vector("up"), pointer);
+  lamp.axis = frame.n;
+  lamp.x = frame.t;
   const double exponent = named.scalar("exponent", 1);
   if (named.has("outer_rad")) {
     lamp.kind = Lamp::Kind::spot;
@@ -69,6 +71,25 @@ void aim(Lamp& lamp, const Named& named, std::vector<Loss>& losses) {
   }
   lamp.value = lamp.value / (rectangle ? lamp.size_x_m * lamp.size_y_m : pi * lamp.radius_m * lamp.radius_m);
   if (exponent != 1) lose("a lobe of the cosine's power", "the same radiance in all directions in front of it");
+}
+
+Rgb mean_pixel(const io::Image& picture) {
+  Rgb sum;
+  const std::size_t channels = picture.channels.size();
+  for (std::size_t i = 0; i < picture.pixels(); ++i) {
+    const float* pixel = picture.data.data() + i * channels;
+    sum += channels < 3 ? Rgb{pixel[0], pixel[0], pixel[0]} : Rgb{pixel[0], pixel[1], pixel[2]};
+  }
+  return sum / static_cast<double>(picture.pixels());
+}
+
+// A screen: an even rectangle of its picture's mean.
+void shine_evenly(Lamp& lamp, const Named& named, const io::Image& picture, std::vector<Loss>& losses) {
+  lamp.position_m = named.vector("position_m");
+  lamp.value =
+      mean_pixel(picture) * named.vector("scale", {1, 1, 1}) * (named.scalar("width_m") * named.scalar("height_m"));
+  aim(lamp, named, losses);
+  losses.push_back({"/lights/" + lamp.id, "the picture and polarization of a screen", "an even rectangle of its mean"});
 }
 
 void place(Lamp& lamp, const Named& named, const Light& light, std::vector<Loss>& losses) {
@@ -91,6 +112,13 @@ void place(Lamp& lamp, const Named& named, const Light& light, std::vector<Loss>
 
 }  // namespace
 
+Quaternion Lamp::turn() const {
+  const Vec3 z = kind == Kind::directional ? axis : -axis;
+  const Vec3 across = kind == Kind::directional ? Basis(z).t : x;
+  const Vec3 y = cross(z, across);
+  return quaternion_of(Mat3{{across.x, y.x, z.x, across.y, y.y, z.y, across.z, y.z, z.z}});
+}
+
 Lamp ambient_lamp(const light::Emitter& ambient) {
   Lamp lamp;
   lamp.kind = Lamp::Kind::uniform;
@@ -109,6 +137,8 @@ Lamp lamp_of(const Light& light, std::vector<Loss>& losses) {
     lamp.kind = Lamp::Kind::directional;
     lamp.axis = normalized(named.vector("towards"));
     lamp.value = named.vector("watt_per_m2");
+  } else if (light.picture && named.has("width_m")) {
+    shine_evenly(lamp, named, *light.picture, losses);
   } else {
     place(lamp, named, light, losses);
   }

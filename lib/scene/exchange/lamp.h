@@ -21,6 +21,7 @@ struct Lamp {
   double inner_rad = 0, outer_rad = 0;       // spot: full within, nothing beyond
   double rotation_rad = 0;                   // picture
   std::shared_ptr<const io::Image> picture;  // linear
+  Quaternion turn() const;                   // takes -z to where it shines, and x along its first side
   bool infinite() const { return kind == Kind::uniform || kind == Kind::picture; }
 };
 

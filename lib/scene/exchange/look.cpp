@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "surface/fresnel.h"
 #include "surface/oren_nayar.h"
@@ -97,10 +98,33 @@ void make_metal(Look& look, const Named& named) {
 void make_matte(Look& look, const Named& named) {
   look.colour = named.rgb("albedo");
   look.sigma_rad = named.scalar("sigma_rad");
+  look.own_albedo = named.has("eta");  // interfaced-diffuse states the base itself, coated-diffuse what is seen of it
   const double f0 = named.scalar("f0");
-  const bool interface = f0 > 0 || (named.has("eta") && named.scalar("eta") > 1);
+  const bool interface = f0 > 0 || (look.own_albedo && named.scalar("eta") > 1);
   look.kind = interface ? Look::Kind::coated : Look::Kind::matte;
   look.eta = named.has("f0") ? index_of_f0(f0) : named.scalar("eta", 1);
+  if (look.own_albedo) look.colour = albedo_through(look.colour, mean_internal_reflectance(look.eta));
+}
+
+// Models whose parameters say more than a look can hold are none of those below.
+bool says_more(const manifest::ModelInfo& info) {
+  static const std::set<std::string_view> known = {"albedo",
+                                                   "alpha",
+                                                   "alpha_x",
+                                                   "alpha_y",
+                                                   "anisotropy",
+                                                   "azimuth_rad",
+                                                   "eta",
+                                                   "f0",
+                                                   "g",
+                                                   "k",
+                                                   "sigma_a_per_m",
+                                                   "sigma_s_per_m",
+                                                   "sigma_s_reduced_per_m",
+                                                   "sigma_rad",
+                                                   "thickness_m",
+                                                   "single_scattering"};
+  return std::ranges::any_of(info.parameters, [](const auto& p) { return !known.contains(p.name); });
 }
 
 void lose(std::vector<Loss>& losses, const std::string& pointer, std::string what, std::string instead) {
@@ -110,6 +134,48 @@ void lose(std::vector<Loss>& losses, const std::string& pointer, std::string wha
 // Of glass and translucent bodies, whose Rgb indices one number must stand for.
 void check_dispersion(const Look& look, const std::string& pointer, std::vector<Loss>& losses) {
   if (look.medium.disperses()) lose(losses, pointer, "an index per band (dispersion)", "their mean");
+}
+
+// A matte with the surface's albedo.
+void make_unlike(Look& look, const Appearance& appearance, const Surface& surface, std::vector<Loss>& losses) {
+  surface::Values values = surface.values;
+  surface::Layer base;
+  if (surface.base) {
+    const Surface& beneath = appearance.surfaces[*surface.base];
+    base = {beneath.model, beneath.values};
+    values.base = &base;
+  }
+  look = {};
+  look.colour = surface.model->albedo(values, {std::sqrt(0.5), 0, std::sqrt(0.5)});
+  lose(losses, "/surfaces/" + surface.id + "/model", "the surface model \"" + surface.model->info().id + "\"",
+       "a matte with its albedo at 45 degrees");
+}
+
+// A coat over `base`. Over a matte it is an interface to it; light passes an absorbing coat twice.
+void make_coat(Look& look, const Named& named, const Look& base, const std::string& pointer,
+               std::vector<Loss>& losses) {
+  const double eta = named.scalar("eta", 1), alpha = look.alpha_x;
+  const Rgb depth = named.rgb("sigma_a_per_m") * named.scalar("thickness_m");
+  look = base;
+  if (max_component(depth) > 0) {
+    const Rgb passed{std::exp(-2 * depth.x), std::exp(-2 * depth.y), std::exp(-2 * depth.z)};
+    lose(losses, pointer + "/sigma_a_per_m", "absorption within a coat", "a base darker by it, as seen straight on");
+    look.colour *= passed;
+    look.complex_index = false;
+  }
+  if (!(eta > 1)) return;
+  if (base.kind == Look::Kind::matte) {
+    look.kind = Look::Kind::coated;
+    look.own_albedo = true;
+    look.eta = eta;
+    look.alpha_x = look.alpha_y = alpha;
+    look.colour = albedo_through(look.colour, mean_internal_reflectance(eta));
+  } else if (base.kind == Look::Kind::metal && base.coat_eta == 0) {
+    look.coat_eta = eta;
+    look.coat_alpha = alpha;
+  } else {
+    lose(losses, pointer + "/base", "a coat over such a surface", "the surface beneath alone");
+  }
 }
 
 }  // namespace
@@ -133,13 +199,17 @@ double mean_internal_reflectance(double eta) {
   return 1 - (1 - outside) / (eta * eta);
 }
 
-Look look_of(const Surface& surface, const std::string& pointer, std::vector<Loss>& losses) {
+Look look_of(const Appearance& appearance, const Surface& surface, std::vector<Loss>& losses) {
   const Named named(surface);
   const surface::Model& model = *surface.model;
+  const std::string pointer = "/surfaces/" + surface.id;
   Look look;
   add_roughness(look, named, model);
-  const auto colour_parameter = [&] { return named.has("albedo") ? "albedo" : "f0"; };
-  if (model.subsurface(surface.values)) {
+  if (says_more(model.info())) {
+    make_unlike(look, appearance, surface, losses);
+  } else if (surface.base) {
+    make_coat(look, named, look_of(appearance, appearance.surfaces[*surface.base], losses), pointer, losses);
+  } else if (model.subsurface(surface.values)) {
     make_translucent(look, named);
     check_dispersion(look, pointer, losses);
   } else if (const auto inside = model.interior(surface.values); model.transmits() && inside) {
@@ -147,18 +217,16 @@ Look look_of(const Surface& surface, const std::string& pointer, std::vector<Los
     look.medium = *inside;
     look.eta = mean(inside->eta);
     check_dispersion(look, pointer, losses);
-  } else if (named.has("albedo") && !surface.base) {
+  } else if (named.has("albedo")) {
     make_matte(look, named);
-  } else if ((named.has("eta") && named.has("k")) || (named.has("f0") && !surface.base)) {
+  } else if ((named.has("eta") && named.has("k")) || named.has("f0")) {
     make_metal(look, named);
   } else {
-    look = {};
-    look.colour = model.albedo(surface.values, {std::sqrt(0.5), 0, std::sqrt(0.5)});
-    lose(losses, pointer + "/model", "the surface model \"" + model.info().id + "\"",
-         "a matte with its albedo at 45 degrees");
+    make_unlike(look, appearance, surface, losses);
   }
+  const std::string colour = named.has("albedo") ? "albedo" : "f0";
   for (const Texture& texture : surface.textures) {
-    if (texture.name == colour_parameter() || texture.name == "alpha")
+    if (texture.name == colour || (texture.name == "alpha" && look.coat_eta == 0))
       look.textures[texture.name] = &texture;
     else
       lose(losses, pointer + "/textures/" + texture.name, "a texture of " + texture.name, "the parameter's one value");

@@ -94,7 +94,7 @@ class Writer {
 
   Value material(const Surface& surface) {
     const std::string pointer = "/surfaces/" + surface.id;
-    const Look look = look_of(surface, pointer, out_.losses);
+    const Look look = look_of(scene_.appearance, surface, out_.losses);
     static constexpr std::array<const char*, 5> kinds = {"matte", "coated", "metal", "glass", "translucent"};
     const RoughMatte rough = rough_matte(look.sigma_rad);
     const double scale = rough.scale * (1 + (0.5 - 2 / (3 * pi)) * rough.ratio);
@@ -104,6 +104,8 @@ class Writer {
                                  {"scale", scale},
                                  {"oren_nayar", rough.ratio},
                                  {"ior", look.eta},
+                                 {"coat_ior", look.coat_eta},
+                                 {"coat_alpha", look.coat_alpha},
                                  {"alpha", look.alpha()},
                                  {"beckmann", look.beckmann},
                                  {"anisotropic", anisotropic(look)},
@@ -134,6 +136,10 @@ class Writer {
     if (look.kind == Look::Kind::coated)
       lose(pointer, "a base that loses what its interface reflects, on the way in and out",
            "a mix of base and gloss by the Fresnel factor of the view alone");
+    if (look.own_albedo && look.textures.contains("albedo"))
+      lose(pointer + "/textures/albedo", "an albedo beneath the interface", "it as that seen through it, brighter");
+    if (look.coat_eta > 0)
+      lose(pointer, "light between a coat and its base", "a mix of base and gloss by the Fresnel factor of the view");
     if (look.kind == Look::Kind::metal && look.complex_index)
       lose(pointer, "the Fresnel factor of a complex index",
            "Schlick's rise from the same reflectance at normal incidence");
@@ -174,9 +180,9 @@ class Writer {
     return all;
   }
 
-  static Quaternion turn_to_minus_z(Vec3 axis, Vec3 x) {  // columns x, y, z = -axis
-    const Vec3 z = -axis, y = cross(z, x);
-    return quaternion_of(Mat3{{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z}});
+  // The cosines between which the light fades, as a share of those within the cone.
+  static double spot_blend(const Lamp& lamp) {
+    return (std::cos(lamp.inner_rad) - std::cos(lamp.outer_rad)) / (1 - std::cos(lamp.outer_rad));
   }
 
   Value lamp_entry(const Lamp& lamp) {
@@ -194,17 +200,17 @@ class Writer {
              {"shape", disc ? "DISK" : "RECTANGLE"},
              {"power", list(lamp.value * (pi * area))},
              {"position", list(lamp.position_m)},
-             {"rotation", list(turn_to_minus_z(lamp.axis, lamp.x))},
+             {"rotation", list(lamp.turn())},
              {"size", disc ? list({2 * lamp.radius_m, 2 * lamp.radius_m}) : list({lamp.size_x_m, lamp.size_y_m})}});
       }
       case Kind::spot:
         return Value::object({{"kind", "SPOT"},
                               {"power", list(lamp.value * (4 * pi))},
                               {"position", list(lamp.position_m)},
-                              {"rotation", list(turn_to_minus_z(lamp.axis, lamp.x))},
+                              {"rotation", list(lamp.turn())},
                               {"radius", lamp.radius_m},
                               {"spot_size", 2 * lamp.outer_rad},
-                              {"spot_blend", 0}});
+                              {"spot_blend", spot_blend(lamp)}});
       default: {
         const double intensity = lamp.kind == Kind::ball ? area : 1;
         return Value::object({{"kind", "POINT"},

@@ -88,7 +88,7 @@ class Writer {
   std::string surfaces() {
     std::string text;
     for (const Surface& surface : scene_.appearance.surfaces) {
-      const Look look = look_of(surface, "/surfaces/" + surface.id, out_.losses);
+      const Look look = look_of(scene_.appearance, surface, out_.losses);
       text += "  " + bsdf(look, surface) + "\n";
       if (look.kind == Look::Kind::glass || look.kind == Look::Kind::translucent)
         if (look.medium.absorbs() || look.medium.scatters()) {
@@ -138,17 +138,15 @@ class Writer {
   template <class Two>
   std::string coated(const Look& look, const Surface& surface, const Two& two) {
     const double inside = mean_internal_reflectance(look.eta);
-    const auto base = [&](double a) { return a / (1 - inside + a * inside); };
     const std::string pointer = "/surfaces/" + surface.id;
-    if (look.textures.contains("albedo"))
+    if (!look.own_albedo && look.textures.contains("albedo"))
       lose(pointer + "/textures/albedo", "an albedo as seen through the interface", "it as the albedo beneath, darker");
     if (look.sigma_rad > 0) lose(pointer + "/sigma_rad", "a rough matte base", "Lambert's law");
     lose(pointer, "energy that facets return by scattering twice", "a coat and base within about a percent");
-    return two("roughplastic", colour(look, "diffuse_reflectance", "albedo",
-                                      {base(look.colour.x), base(look.colour.y), base(look.colour.z)}, surface) +
-                                   number("int_ior", look.eta) + number("ext_ior", 1) +
-                                   item("boolean", "nonlinear", "true") + distribution(look) +
-                                   number("alpha", std::max(look.alpha(), 1e-3)));
+    return two("roughplastic",
+               colour(look, "diffuse_reflectance", "albedo", albedo_beneath(look.colour, inside), surface) +
+                   number("int_ior", look.eta) + number("ext_ior", 1) + item("boolean", "nonlinear", "true") +
+                   distribution(look) + number("alpha", std::max(look.alpha(), 1e-3)));
   }
 
   template <class Two>
@@ -161,6 +159,7 @@ class Writer {
       optics = item("string", "material", "none") + colour(look, "specular_reflectance", "f0", look.colour, surface);
     }
     if (rough) lose(pointer, "light that facets scatter twice", "a rough metal that loses it");
+    if (look.coat_eta > 0) lose(pointer + "/base", "a coat over metal", "the metal alone");
     return two(rough ? "roughconductor" : "conductor", optics + (rough ? roughness(look, surface) : ""));
   }
 

@@ -122,7 +122,7 @@ class Writer {
     std::string text;
     for (const Surface& surface : scene_.appearance.surfaces) {
       const std::string pointer = "/surfaces/" + surface.id;
-      const Look look = look_of(surface, pointer, out_.losses);
+      const Look look = look_of(scene_.appearance, surface, out_.losses);
       std::string before;
       const std::string body = material(look, surface, before);
       text += before + "MakeNamedMaterial " + quoted(surface.id) + body + "\n";
@@ -156,13 +156,7 @@ class Writer {
         if (look.sigma_rad > 0) lose(pointer + "/sigma_rad", "a rough matte", "Lambert's law");
         return words("string type", "diffuse") + colour(look, "reflectance", "albedo", look.colour, surface, before);
       case Look::Kind::coated: return coated(look, surface, before);
-      case Look::Kind::metal:
-        lose(pointer, "light that facets scatter twice", "a rough metal that loses it");
-        if (!look.complex_index)
-          lose(pointer, "Schlick's rise towards grazing angles", "that of a conductor of the same reflectance");
-        return words("string type", "conductor") + roughness(look, surface, before) +
-               (look.complex_index ? rgb("eta", look.metal_eta) + rgb("k", look.metal_k)
-                                   : colour(look, "reflectance", "f0", look.colour, surface, before));
+      case Look::Kind::metal: return metal(look, surface, before);
       case Look::Kind::translucent:
         lose(pointer, "this dipole", "pbrt's photon beam diffusion of the same medium");
         return words("string type", "subsurface") + rgb("sigma_a", look.medium.sigma_a_per_m) +
@@ -174,17 +168,31 @@ class Writer {
     return words("string type", "dielectric") + number("eta", look.eta) + roughness(look, surface, before);
   }
 
+  std::string metal(const Look& look, const Surface& surface, std::string& before) {
+    const std::string pointer = "/surfaces/" + surface.id;
+    lose(pointer, "light that facets scatter twice", "a rough metal that loses it");
+    if (!look.complex_index)
+      lose(pointer, "Schlick's rise towards grazing angles", "that of a conductor of the same reflectance");
+    const bool coat = look.coat_eta > 0;
+    const std::string optics = look.complex_index ? rgb(coat ? "conductor.eta" : "eta", look.metal_eta) +
+                                                        rgb(coat ? "conductor.k" : "k", look.metal_k)
+                                                  : colour(look, "reflectance", "f0", look.colour, surface, before);
+    if (!coat) return words("string type", "conductor") + roughness(look, surface, before) + optics;
+    lose(pointer, "a coat and base in closed form", "random paths between the layers, within about a percent");
+    return words("string type", "coatedconductor") + optics + number("conductor.uroughness", look.alpha_x) +
+           number("conductor.vroughness", look.alpha_y) + number("interface.roughness", look.coat_alpha) +
+           number("interface.eta", look.coat_eta) + number("thickness", 1e-6) + " \"bool remaproughness\" [ false ]";
+  }
+
   std::string coated(const Look& look, const Surface& surface, std::string& before) {
     const double inside = mean_internal_reflectance(look.eta);
-    const auto base = [&](double a) { return a / (1 - inside + a * inside); };
     const std::string pointer = "/surfaces/" + surface.id;
-    if (look.textures.contains("albedo"))
+    if (!look.own_albedo && look.textures.contains("albedo"))
       lose(pointer + "/textures/albedo", "an albedo as seen through the interface", "it as the albedo beneath, darker");
     if (look.sigma_rad > 0) lose(pointer + "/sigma_rad", "a rough matte base", "Lambert's law");
     lose(pointer, "a coat and base in closed form", "random paths between the layers, within about a percent");
     return words("string type", "coateddiffuse") +
-           colour(look, "reflectance", "albedo", {base(look.colour.x), base(look.colour.y), base(look.colour.z)},
-                  surface, before) +
+           colour(look, "reflectance", "albedo", albedo_beneath(look.colour, inside), surface, before) +
            number("eta", look.eta) + number("thickness", 1e-6) + roughness(look, surface, before);
   }
 
