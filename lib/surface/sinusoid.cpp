@@ -9,6 +9,12 @@ namespace {
 
 constexpr double flattest_pattern = 1e-4;
 
+// Cubic of t in [0, 1] by values and derivatives at its ends.
+double hermite(Vec2 low, Vec2 high, double t) {
+  const double u = 1 - t;
+  return u * u * ((1 + 2 * t) * low.x + t * low.y) + t * t * ((1 + 2 * u) * high.x - u * high.y);
+}
+
 // The share of a period of cos that a direction of relative cotangent m sees. Heading to larger xi, its tangent touches
 // the near side of the crest at 0; backwards from there it meets the far side of the crest at -2 pi. It lies below that
 // crest, and highest above the profile at the other point of the same slope.
@@ -42,13 +48,27 @@ struct Shares {
   }
 };
 
-// E[(mean + spread N)^+] of a normal N.
-double positive_part(double mean, double spread) {
-  if (mean > 6 * spread) return mean;
-  if (mean < -6 * spread) return 0;
-  const double x = mean / spread;
-  return mean * 0.5 * std::erfc(-x / std::sqrt(2.0)) + spread * std::exp(-x * x / 2) / std::sqrt(2 * pi);
-}
+// E[(x + N)^+] of a normal N: value and derivative at sixteenths, cubic between; error below 2e-8.
+class PositivePart {
+ public:
+  PositivePart() {
+    for (int i = 0; i <= 2 * reach * per_unit; ++i) {
+      const double x = static_cast<double>(i) / per_unit - reach, below = std::erfc(-x / std::sqrt(2.0)) / 2;
+      knots_.push_back({x * below + std::exp(-x * x / 2) / std::sqrt(2 * pi), below / per_unit});
+    }
+  }
+  double at(double x) const {
+    if (x >= reach) return x;
+    if (!(x > -reach)) return 0;
+    const double place = (x + reach) * per_unit;
+    const auto i = static_cast<std::size_t>(place);
+    return hermite(knots_[i], knots_[i + 1], place - static_cast<double>(i));
+  }
+
+ private:
+  static constexpr int reach = 6, per_unit = 16;
+  std::vector<Vec2> knots_;
+};
 
 double midpoint_sine(int i, int count) {
   return std::sin(((i + 0.5) / count - 0.5) * pi);
@@ -104,9 +124,7 @@ double BlurredSine::at(double x) const {
   const double place = std::abs(x) * steps_per_unit_;
   const auto i = static_cast<std::size_t>(place);
   if (!(place < static_cast<double>(knots_.size() - 1))) return 0;
-  const double t = place - static_cast<double>(i), u = 1 - t;
-  const Vec2 low = knots_[i], high = knots_[i + 1];
-  return u * u * ((1 + 2 * t) * low.x + t * low.y) + t * t * ((1 + 2 * u) * high.x - u * high.y);
+  return hermite(knots_[i], knots_[i + 1], place - static_cast<double>(i));
 }
 
 Sinusoid::Sinusoid(double slope_u, double slope_v, double alpha, double azimuth_rad, const BlurredSine* table)
@@ -159,16 +177,18 @@ double Sinusoid::published_masking(Vec3 w) const {
 }
 
 double Sinusoid::area_seen(Vec3 w) const {
+  static const PositivePart positive;
   const Vec3 t = turned(w);
   const double of_s = (b_ * t.y + a_ * t.x) / 2, of_t = (b_ * t.y - a_ * t.x) / 2;
   const double spread = alpha_ * std::sqrt((t.x * t.x + t.y * t.y) / 2);
-  if (w.z - std::abs(of_s) - std::abs(of_t) > 6 * spread) return w.z;
+  if (w.z - std::abs(of_s) - std::abs(of_t) >= 6 * spread) return w.z;
   const auto& over_s = Midpoints::of(std::abs(of_s), spread).sine;
   const auto& over_t = Midpoints::of(std::abs(of_t), spread).sine;
+  const double z = w.z / spread, s = of_s / spread, u = of_t / spread;
   double sum = 0;
-  for (const double s : over_s)
-    for (const double u : over_t) sum += positive_part(w.z - of_s * s - of_t * u, spread);
-  return sum / static_cast<double>(over_s.size() * over_t.size());
+  for (const double a : over_s)
+    for (const double b : over_t) sum += positive.at(z - s * a - u * b);
+  return spread * sum / static_cast<double>(over_s.size() * over_t.size());
 }
 
 double Sinusoid::masking(Vec3 wo, Vec3 wi, double projections) const {
