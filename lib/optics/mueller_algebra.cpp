@@ -75,6 +75,14 @@ Mueller element_turned_by(const Mueller& a, double angle) {
   return frame_turned_by(-angle) * a * frame_turned_by(angle);
 }
 
+Mueller reversed(const Mueller& a) {
+  Mueller result;
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      result(row, column) = (row == 2) == (column == 2) ? a(column, row) : -a(column, row);
+  return result;
+}
+
 Mueller mueller_of(Complex x, Complex y) {
   const double xx = std::norm(x), yy = std::norm(y);
   const Complex xy = x * std::conj(y);

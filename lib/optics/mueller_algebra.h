@@ -24,6 +24,10 @@ Mueller frame_change(Vec3 d, Vec3 from_x, Vec3 to_x);
 // `a` between frames before and after that are both turned by `angle`: an element turned by it.
 Mueller element_turned_by(const Mueller& a, double angle);
 
+// The same element for light that goes the same way back, in frames with the same x and so with opposite y: Q a' Q,
+// Q = diag(1, 1, -1, 1). Perrin 1942; van de Hulst 1957, section 5.22.
+Mueller reversed(const Mueller& a);
+
 // Of the field's map Ex -> x Ex, Ey -> y Ey, not normalised:
 // s0' +- s1' = |x|^2, |y|^2 (s0 +- s1);  s2' + i s3' = x y* (s2 + i s3).
 Mueller mueller_of(Complex x, Complex y);

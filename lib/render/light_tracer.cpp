@@ -56,6 +56,7 @@ std::optional<PhotonPath> LightTracer::start(Sampler& sampler) const {
   path.origin_m = photon.origin_m;
   path.direction = photon.direction;
   path.inside = around_[photon.emitter];
+  if (setting_.transport.stokes) path.stokes.emplace(*setting_.emitters[photon.emitter], photon.direction);
   return path;
 }
 
@@ -123,6 +124,7 @@ bool LightTracer::scatter_at_surface(PhotonPath& path, Sampler& sampler, double 
   const double side = dot(at.geometric_normal, direction);
   if (through ? !(side < 0 && transmits) : !(side > 0)) return false;
   path.flux *= next.weight * (ratio * std::abs(side) / std::abs(next.wi.z));
+  if (path.stokes) path.flux *= path.stokes->scatter(vertex, next.wi);
   if (through && crossing) {
     const Rgb eta = crossing->eta;
     path.flux *= eta * eta;
@@ -148,11 +150,12 @@ bool LightTracer::scatter_in_medium(PhotonPath& path, Sampler& sampler, double s
   if (seen) {
     const Rgb clear = setting_.clear(nullptr, path.origin_m, path.inside, seen->to_camera, seen->distance_m);
     const Rgb phase = flight.phase(dot(path.direction, seen->to_camera));
-    add(path, *seen, path.flux * phase * clear * (seen->sight.pixels_per_m2 * share), *splats);
+    add(path, *seen, path.flux * phase * clear * (seen->sight.pixels_per_m2 * share), nullptr, *splats);
   }
   const auto turn = flight.turn(path.direction, u);
   path.flux *= turn.weight;
   path.direction = turn.direction;
+  if (path.stokes) path.stokes->depolarize(path.direction);
   ++path.spread;
   return true;
 }
@@ -190,13 +193,21 @@ void LightTracer::connect_surface(const PhotonPath& path, const Vertex& vertex, 
   if (!(max_component(clear) > 0)) return;
   const double cosine = std::abs(dot(vertex.point.geometric_normal, seen->to_camera));
   const double factor = shading_ratio(vertex, path.direction) * cosine * seen->sight.pixels_per_m2 * share;
-  add(path, *seen, path.flux * f * clear * factor, splats);
+  if (!path.stokes) return add(path, *seen, path.flux * f * clear * factor, nullptr, splats);
+  PhotonStokes towards = *path.stokes;
+  const Rgb more = towards.scatter(vertex, wi);
+  add(path, *seen, path.flux * f * clear * more * factor, &towards, splats);
 }
 
-void LightTracer::add(const PhotonPath& path, const View& view, Rgb value, Splats& splats) const {
+void LightTracer::add(const PhotonPath& path, const View& view, Rgb value, const PhotonStokes* stokes,
+                      Splats& splats) const {
   const double strength = path.spread > 0 ? setting_.scene.appearance.indirect_strength : 1;
   const Rgb scaled = value * setting_.scale(view.sight.pixel) * strength;
   splats.add(view.sight.pixel, 0, scaled);
+  if (stokes) {
+    const std::array<Rgb, 3> seen = stokes->seen(view.to_camera, setting_.camera_x());
+    for (std::size_t i = 0; i < 3; ++i) splats.add(view.sight.pixel, i + 1, scaled * seen[i]);
+  }
   if (setting_.transport.per_light) splats.add(view.sight.pixel, 1 + extra_planes_ + path.emitter, scaled);
 }
 

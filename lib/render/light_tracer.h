@@ -9,7 +9,8 @@
 //
 // Flux is carried, not radiance: a transmission weighs (index beyond / index here)^2 times its weight for radiance, and
 // shading normals the ratio |cos(wi, Ns) cos(wo, Ng)| / |cos(wi, Ng) cos(wo, Ns)| (Veach 1997, equation 5.19), wi the
-// side of the lamp. Photons are unpolarized; they add to the radiance and to the planes of their lamps.
+// side of the lamp. They add to the radiance and to the planes of their lamps; with transport.stokes they carry their
+// polarization (photon_stokes.h) and add to s1, s2 and s3.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "render/caustic_sources.h"
 #include "render/free_flight.h"
 #include "render/path_setting.h"
+#include "render/photon_stokes.h"
 #include "render/sampler.h"
 #include "render/vertex.h"
 
@@ -31,6 +33,7 @@ struct PhotonPath {
   std::optional<SurfacePoint> left;  // the surface that it leaves; after travelling what it has met
   int colour = -1;                   // the one band that is left
   int smooth = 0, spread = 0;        // events so far
+  std::optional<PhotonStokes> stokes{};
 };
 
 class LightTracer {
@@ -59,7 +62,7 @@ class LightTracer {
   bool scatter_in_medium(PhotonPath& path, Sampler& sampler, double share, Splats* splats) const;
   void connect_surface(const PhotonPath& path, const Vertex& vertex, const Crossing* crossing, Vec2 lens_u,
                        double share, Splats& splats) const;
-  void add(const PhotonPath& path, const View& view, Rgb value, Splats& splats) const;
+  void add(const PhotonPath& path, const View& view, Rgb value, const PhotonStokes* stokes, Splats& splats) const;
 
   const PathSetting& setting_;
   const CausticSources& sources_;

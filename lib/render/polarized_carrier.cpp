@@ -5,10 +5,14 @@ namespace gonio::render {
 using optics::Mueller;
 using optics::Stokes;
 
-Polarized Polarized::start(Vec3 camera_x, Vec3 direction) {
+Vec3 polarization_axis(Vec3 camera_x, Vec3 direction) {
   const Vec3 across = camera_x - direction * dot(camera_x, direction);
   const double length = norm(across);
-  return length > 1e-9 ? Polarized(across / length) : Polarized(Basis(direction).t);
+  return length > 1e-9 ? across / length : Basis(direction).t;
+}
+
+Polarized Polarized::start(Vec3 camera_x, Vec3 direction) {
+  return Polarized(polarization_axis(camera_x, direction));
 }
 
 void Polarized::scatter(const Vertex& vertex, Vec3 wi, Rgb weight) {

@@ -19,6 +19,9 @@
 
 namespace gonio::render {
 
+// The camera's x axis as light along `direction` has it, either way.
+Vec3 polarization_axis(Vec3 camera_x, Vec3 direction);
+
 class Polarized {
  public:
   using Value = std::array<Rgb, 4>;  // s0 ... s3
