@@ -30,7 +30,7 @@ class RenderSpectra : public testing::Test {
                "DATA:\n  - type: tabulated nk\n    data: |\n        0.3 0.4 2\n        0.8 0.9 7\n");
   }
   // A ball of this surface under uniform radiance, its middle in one pixel.
-  Ended render(const std::string& surface, const std::string& out) {
+  Ended render(const std::string& surface, const std::string& out, const Process::Words& more = {}) {
     write_file(folder_ / "s.json", R"({"gonio": 1,
       "files": {"bk7": {"path": "bk7.yml"}, "metal": {"path": "metal.yml"}},
       "cameras": {"c": {"model": "orthographic", "width_px": 1, "height_px": 1, "px_per_m": 1e5,
@@ -41,7 +41,9 @@ class RenderSpectra : public testing::Test {
       "objects": [{"id": "ball", "mesh": "ball", "surface": "it",
                    "world_from_object": {"rotation": [1, 0, 0, 0], "translation_m": [0, 0, 3]}}],
       "images": [{"id": "i", "camera": "c"}]})");
-    return run({"render", "s.json", "--spp", "16384", "--out", out}, folder_.path());
+    Process::Words words = {"render", "s.json", "--spp", "16384", "--out", out};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words, folder_.path());
   }
   std::array<double, 3> pixel(const std::string& surface, const std::string& out) {
     const Ended ended = render(surface, out);
@@ -74,6 +76,23 @@ TEST_F(RenderSpectra, MetalByItsTable) {
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_NEAR(by_file[c], by_numbers[c], 1e-7) << c;
     EXPECT_NEAR(by_file[c], expected[c], 2e-3) << c;
+  }
+}
+
+// Bins of wavelengths beside the colours, polarization included: at normal incidence there is none.
+TEST_F(RenderSpectra, BinsOfWavelengths) {
+  const Ended ended = render(R"({"model": "conductor", "alpha": 0.02, "spectra": {"eta": "metal", "k": "metal"}})", "a",
+                             {"--wavelengths", "450nm:650nm:3", "--stokes"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const io::Image picture = io::read_picture(folder_ / "a/i.exr");
+  for (const double nm : {450.0, 550.0, 650.0}) {
+    const double share = (nm - 300) / 500, n = 0.4 + 0.5 * share, k = 2 + 5 * share;
+    const std::string bin = format("%.0f,0nm", nm);
+    ASSERT_GE(picture.channel("S0." + bin), 0) << bin;
+    ASSERT_GE(picture.channel("S1." + bin), 0) << bin;
+    EXPECT_NEAR(picture.at(0, 0, picture.channel("S0." + bin)),
+                ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k), 2e-3);
+    EXPECT_NEAR(picture.at(0, 0, picture.channel("S1." + bin)), 0, 2e-3);
   }
 }
 

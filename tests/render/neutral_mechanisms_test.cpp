@@ -1,0 +1,98 @@
+// From the manifest to the recorded picture: whatever mechanism is switched on at its neutral values changes no bit of
+// it, and each changes something at others. Walks the registry: light and surfaces, lens, vignetting, defocus, glare,
+// crosstalk, responses, offsets and saturation.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "manifest/document.h"
+#include "mechanism/mechanism.h"
+#include "render/path_tracer.h"
+#include "render/sensor_chain.h"
+
+namespace gonio::render {
+namespace {
+
+using mechanism::Mechanism;
+using mechanism::Target;
+
+manifest::Document document(const std::string& camera = "") {
+  const std::string text =
+      R"({"gonio": 1, "cameras": {"c": {"model": "pinhole", "width_px": 12, "height_px": 10, "fx_px": 12, "fy_px": 12,
+                                        "cx_px": 5.5, "cy_px": 4.5)" +
+      camera + R"(}},
+         "meshes": {"ball": {"sphere": {"radius_m": 0.1}}, "floor": {"plane": {"size_m": [2, 2]}}},
+         "surfaces": {"clay": {"model": "diffuse", "albedo": [0.6, 0.5, 0.3]}},
+         "lights": {"lamp": {"model": "point", "position_m": [0.3, 0.2, 0], "watt_per_sr": [3, 2, 4]}},
+         "objects": [{"id": "ball", "mesh": "ball", "surface": "clay",
+                      "world_from_object": {"rotation": [1, 0, 0, 0], "translation_m": [0, 0, 0.5]}},
+                     {"id": "floor", "mesh": "floor", "surface": "clay",
+                      "world_from_object": {"rotation": [0, 1, 0, 0], "translation_m": [0, 0, 0.7]}}],
+         "images": [{"id": "i", "camera": "c"}]})";
+  return manifest::parse_document(text, "s.json", {});
+}
+
+std::vector<float> photograph(const manifest::Document& document) {
+  const scene::Scene scene = scene::build_scene(document);
+  const RayCaster caster(scene.instances);
+  const io::Image rendered = render(scene, 0, caster, {.spp = 8, .geometry = false});
+  return recorded(rendered, sensor_of(document, 0), "i", 3).data;
+}
+
+bool concerns_pictures(const Mechanism& m) {
+  const auto is_for = [&](const char* domain) { return std::ranges::find(m.domains, domain) != m.domains.end(); };
+  const bool lens = m.stage == "lens" && m.target == Target::camera;
+  return lens || !(is_for("boards") || is_for("robot"));
+}
+
+manifest::MechanismUse use(const Mechanism& m, bool neutral) {
+  manifest::MechanismUse use;
+  for (const auto& p : m.parameters)
+    use.parameters[p.name] = neutral ? p.neutral : p.start != p.neutral ? p.start : 0.5 * (p.start + p.upper);
+  return use;
+}
+
+TEST(NeutralMechanisms, ChangeNoBitOfThePhotograph) {
+  const std::vector<float> plain = photograph(document());
+  int count = 0;
+  for (const Mechanism* m : mechanism::all_mechanisms()) {
+    if (!concerns_pictures(*m)) continue;
+    manifest::Document neutral = document(), other = document();
+    neutral.mechanisms[m->id] = use(*m, true);
+    other.mechanisms[m->id] = use(*m, false);
+    ++count;
+    if (m->id == "transport.indirect") {  // neutral is a simulation without it; a scene that says nothing has it
+      EXPECT_NE(photograph(neutral), plain);
+      continue;
+    }
+    EXPECT_EQ(photograph(neutral), plain) << m->id;
+    EXPECT_NE(photograph(other), plain) << m->id;
+  }
+  EXPECT_GE(count, 18);
+}
+
+// No noise and no filters unless the image and the camera state them; then they act.
+TEST(NeutralMechanisms, NoiseAndMosaicAreOffUnlessStated) {
+  const manifest::Document plain = document();
+  const scene::Scene scene = scene::build_scene(plain);
+  const RayCaster caster(scene.instances);
+  const io::Image rendered = render(scene, 0, caster, {.spp = 8, .geometry = false, .transport = {.stokes = true}});
+  const auto sensed = [&](const manifest::Document& d) { return recorded(rendered, sensor_of(d, 0), "i", 3); };
+  const io::Image ideal = sensed(plain);
+  for (int y = 0; y < ideal.height; ++y)
+    for (int x = 0; x < ideal.width; ++x)
+      for (int c = 0; c < 3; ++c)
+        ASSERT_EQ(ideal.at(x, y, c), rendered.at(x, y, rendered.channel(std::string(1, "RGB"[c]))));
+  manifest::Document silent = plain, noisy = plain;
+  silent.images[0].noise = manifest::Noise{};
+  EXPECT_EQ(sensed(silent).data, ideal.data);
+  noisy.images[0].noise = manifest::Noise{.gain = 1000, .read = 0.01};
+  EXPECT_NE(sensed(noisy).data, ideal.data);
+  for (const char* mosaic : {"RGGB", "polarizers"}) {
+    const io::Image raw = sensed(document(std::string(R"(, "mosaic": ")") + mosaic + "\""));
+    ASSERT_EQ(raw.channels, (std::vector<std::string>{"Y"})) << mosaic;
+  }
+}
+
+}  // namespace
+}  // namespace gonio::render
