@@ -122,19 +122,21 @@ Rgb MeasuredTable::evaluate(Vec3 wo, Vec3 wi) const {
   const Between d = clamped(static_cast<double>(tilts) * at.theta_d * (2 / pi), tilts);
   const Between p = wrapped(static_cast<double>(turns) * at.phi_d / pi, turns);
   const float* data = table_.brdf_per_sr.data();
-  float sum[3] = {0, 0, 0};
+  float red = 0, green = 0, blue = 0;
   const auto add = [&](std::size_t i, std::size_t j, float weight) {
     const float* row = data + 3 * ((i * tilts + j) * turns);
     const float* low = row + 3 * p.low;
     const float* high = row + 3 * p.high;
     const float wl = weight * (1 - p.share), wh = weight * p.share;
-    for (int band = 0; band < 3; ++band) sum[band] += wl * low[band] + wh * high[band];
+    red += wl * low[0] + wh * high[0];
+    green += wl * low[1] + wh * high[1];
+    blue += wl * low[2] + wh * high[2];
   };
   add(h.low, d.low, (1 - h.share) * (1 - d.share));
   add(h.low, d.high, (1 - h.share) * d.share);
   add(h.high, d.low, h.share * (1 - d.share));
   add(h.high, d.high, h.share * d.share);
-  return {sum[0], sum[1], sum[2]};
+  return {red, green, blue};
 }
 
 std::size_t MeasuredTable::zenith_of(Vec3 wo) {

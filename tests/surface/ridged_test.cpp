@@ -260,6 +260,20 @@ TEST(Ridged, LightFromBeneathFollowsItsFormula) {
   EXPECT_GT(seen, 200);
 }
 
+// A clear facet at Brewster's angle lets nothing through that is polarized in the plane of incidence; light from
+// beneath the facets is not polarized.
+TEST(Ridged, FacetsPolarize) {
+  const surface::Model& model = *surface::find("ridged");
+  surface::Values values = values_of({0.2, 0.1, 0.1}, 1.5);
+  const double brewster = std::atan(1.5);
+  const Vec3 wo{std::sin(brewster), 0, std::cos(brewster)}, wi{-wo.x, 0, wo.z};
+  const auto clear = model.mueller(values, wo, wi)[0];
+  EXPECT_NEAR(clear(1, 0), 1, 1e-9);
+  values.v[5] = {1, 1, 1};
+  const double f = reflects(1.5, wo.z);
+  EXPECT_NEAR(model.mueller(values, wo, wi)[0](1, 0), f / (f + (1 - f) * (1 - f) / pi), 1e-9);
+}
+
 TEST(Ridged, WithoutRidgesIsAFlatRoughSurface) {
   const surface::Model& model = *surface::find("ridged");
   const surface::Values values = values_of({0, 0.2, 0.2});

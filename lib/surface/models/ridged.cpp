@@ -6,8 +6,8 @@
 // complex index eta + i k. The second term stands for light that entered and came back: as published, it leaves about
 // the mirror direction, like the first, and carries at most rho_d / pi of what entered. h is the half vector.
 // Reciprocal; reflects at most what arrives. albedo() is a sum over 512 visible normals.
-#include "surface/fresnel.h"
 #include "surface/interface_albedo.h"
+#include "surface/ridge_facets.h"
 #include "surface/ridges.h"
 #include "surface/surface.h"
 
@@ -21,14 +21,8 @@ Ridges ridges_of(const Values& values) {
           values.scalar(azimuth_index)};
 }
 
-// What a facet reflects about its mirror direction, at this cosine to its normal.
-Rgb reflected(const Values& values, double cosine) {
-  const Rgb eta = values.rgb(eta_index), k = values.rgb(k_index), rho = values.rgb(rho_index);
-  const auto band = [cosine](double n, double extinction, double diffuse) {
-    const double f = fresnel_metal(cosine, n, extinction), enters = 1 - f;
-    return f + enters * enters * diffuse / pi;
-  };
-  return {band(eta.x, k.x, rho.x), band(eta.y, k.y, rho.y), band(eta.z, k.z, rho.z)};
+FacetMaterial material_of(const Values& values) {
+  return {values.rgb(eta_index), values.rgb(k_index), values.rgb(rho_index)};
 }
 
 class Ridged final : public Model {
@@ -39,54 +33,31 @@ class Ridged final : public Model {
         .id = "ridged",
         .sentence = "Parallel micro-ridges of a saw's profile with rough facets.",
         .source = "Luongo et al. 2017, equations 2-6; Heitz 2014",
-        .parameters = {{.name = "ridge_rad",
-                        .unit = "rad",
-                        .preset = {},
-                        .lower = 0,
-                        .upper = 1.2,
-                        .meaning = "ridge angle: tilt of the long facets, towards the tangent turned by 90 degrees"},
-                       {.name = "alpha_u",
-                        .unit = "1",
-                        .preset = 0.1,
-                        .lower = min_alpha,
-                        .upper = max_alpha,
-                        .meaning = "Beckmann roughness of the facets along the ridges"},
-                       {.name = "alpha_v",
-                        .unit = "1",
-                        .preset = 0.1,
-                        .lower = min_alpha,
-                        .upper = max_alpha,
-                        .meaning = "Beckmann roughness of the facets across the ridges"},
-                       {.name = "eta",
-                        .unit = "1",
-                        .components = 3,
-                        .rgb = true,
-                        .preset = 1.5,
-                        .lower = 0.01,
-                        .upper = 20,
-                        .meaning = "real part of the index at red, green and blue"},
-                       {.name = "k",
-                        .unit = "1",
-                        .components = 3,
-                        .rgb = true,
-                        .preset = 0,
-                        .lower = 0,
-                        .upper = 30,
-                        .meaning = "extinction coefficient at red, green and blue"},
-                       {.name = "rho_d",
-                        .unit = "1",
-                        .components = 3,
-                        .rgb = true,
-                        .preset = 0,
-                        .lower = 0,
-                        .upper = 1,
-                        .meaning = "diffuse reflectance of the material beneath the facets"},
-                       {.name = "azimuth_rad",
-                        .unit = "rad",
-                        .preset = 0,
-                        .lower = -pi,
-                        .upper = pi,
-                        .meaning = "turns the ridges about the normal; at 0 they run along the tangent"}},
+        .parameters = with_facet_material(
+            {{.name = "ridge_rad",
+              .unit = "rad",
+              .preset = {},
+              .lower = 0,
+              .upper = 1.2,
+              .meaning = "ridge angle: tilt of the long facets, towards the tangent turned by 90 degrees"},
+             {.name = "alpha_u",
+              .unit = "1",
+              .preset = 0.1,
+              .lower = min_alpha,
+              .upper = max_alpha,
+              .meaning = "Beckmann roughness of the facets along the ridges"},
+             {.name = "alpha_v",
+              .unit = "1",
+              .preset = 0.1,
+              .lower = min_alpha,
+              .upper = max_alpha,
+              .meaning = "Beckmann roughness of the facets across the ridges"}},
+            {{.name = "azimuth_rad",
+              .unit = "rad",
+              .preset = 0,
+              .lower = -pi,
+              .upper = pi,
+              .meaning = "turns the ridges about the normal; at 0 they run along the tangent"}}),
     };
     return info;
   }
@@ -96,7 +67,7 @@ class Ridged final : public Model {
     const Ridges ridges = ridges_of(values);
     const Vec3 wof = ridges.to_facet(wo), wif = ridges.to_facet(wi);
     if (wof.z <= 0 || wif.z <= 0) return {};
-    return reflected(values, dot(wof, half_vector(wof, wif))) * ridges.lobe(wo, wi, wof, wif);
+    return material_of(values).reflects(dot(wof, half_vector(wof, wif))) * ridges.lobe(wo, wi, wof, wif);
   }
 
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double /*u_lobe*/) const override {
@@ -108,7 +79,7 @@ class Ridged final : public Model {
     if (wi.z <= 0 || wif.z <= 0) return {};
     const double density = ridges.pdf(wof, wif);
     if (!(density > 0)) return {};
-    const Rgb f = reflected(values, dot(wof, half_vector(wof, wif))) * ridges.lobe(wo, wi, wof, wif);
+    const Rgb f = material_of(values).reflects(dot(wof, half_vector(wof, wif))) * ridges.lobe(wo, wi, wof, wif);
     return {wi, f * (wi.z / density), density};
   }
 
@@ -117,6 +88,10 @@ class Ridged final : public Model {
     const Ridges ridges = ridges_of(values);
     const Vec3 wof = ridges.to_facet(wo), wif = ridges.to_facet(wi);
     return wof.z > 0 && wif.z > 0 ? ridges.pdf(wof, wif) : 0;
+  }
+
+  optics::MuellerRgb mueller(const Values& values, Vec3 wo, Vec3 wi) const override {
+    return material_of(values).mueller(dot(wo, half_vector(wo, wi)));
   }
 
   Rgb albedo(const Values& values, Vec3 wo) const override {

@@ -10,9 +10,9 @@
 #include <cmath>
 
 #include "base/progress.h"
-#include "surface/fresnel.h"
 #include "surface/interface_albedo.h"
 #include "surface/microfacet.h"
+#include "surface/ridge_facets.h"
 #include "surface/sinusoid.h"
 #include "surface/surface.h"
 
@@ -47,13 +47,8 @@ Sinusoid pattern_of(const Values& values) {
           table ? &table->blurred : nullptr};
 }
 
-Rgb reflected(const Values& values, double cosine) {
-  const Rgb eta = values.rgb(eta_index), k = values.rgb(k_index), rho = values.rgb(rho_index);
-  const auto band = [cosine](double n, double extinction, double diffuse) {
-    const double f = fresnel_metal(cosine, n, extinction), enters = 1 - f;
-    return f + enters * enters * diffuse / pi;
-  };
-  return {band(eta.x, k.x, rho.x), band(eta.y, k.y, rho.y), band(eta.z, k.z, rho.z)};
+FacetMaterial material_of(const Values& values) {
+  return {values.rgb(eta_index), values.rgb(k_index), values.rgb(rho_index)};
 }
 
 // The fourth random number is made of the third one's digits.
@@ -70,67 +65,43 @@ class Sinusoidal final : public Model {
         .id = "sinusoidal",
         .sentence = "A two-dimensional sinusoidal micro-structure with rough facets.",
         .source = "Luongo et al. 2020, appendix B; Heitz 2014",
-        .parameters = {{.name = "amplitude_m",
-                        .unit = "m",
-                        .preset = {},
-                        .lower = 0,
-                        .upper = 1e-3,
-                        .meaning = "height of the crests over the mean plane"},
-                       {.name = "wavelength_u_m",
-                        .unit = "m",
-                        .preset = {},
-                        .lower = 1e-6,
-                        .upper = 1e-2,
-                        .meaning = "wavelength along the tangent"},
-                       {.name = "wavelength_v_m",
-                        .unit = "m",
-                        .preset = {},
-                        .lower = 1e-6,
-                        .upper = 1e-2,
-                        .meaning = "wavelength across the tangent"},
-                       {.name = "alpha",
-                        .unit = "1",
-                        .preset = 0.1,
-                        .lower = min_alpha,
-                        .upper = max_alpha,
-                        .meaning = "Beckmann roughness on top of the pattern"},
-                       {.name = "eta",
-                        .unit = "1",
-                        .components = 3,
-                        .rgb = true,
-                        .preset = 1.5,
-                        .lower = 0.01,
-                        .upper = 20,
-                        .meaning = "real part of the index at red, green and blue"},
-                       {.name = "k",
-                        .unit = "1",
-                        .components = 3,
-                        .rgb = true,
-                        .preset = 0,
-                        .lower = 0,
-                        .upper = 30,
-                        .meaning = "extinction coefficient at red, green and blue"},
-                       {.name = "rho_d",
-                        .unit = "1",
-                        .components = 3,
-                        .rgb = true,
-                        .preset = 0,
-                        .lower = 0,
-                        .upper = 1,
-                        .meaning = "diffuse reflectance of the material beneath the facets"},
-                       {.name = "azimuth_rad",
-                        .unit = "rad",
-                        .preset = 0,
-                        .lower = -pi,
-                        .upper = pi,
-                        .meaning = "turns the pattern about the normal; at 0 its u runs along the tangent"},
-                       {.name = "projections",
-                        .unit = "1",
-                        .preset = 0,
-                        .lower = 0,
-                        .upper = 1,
-                        .meaning =
-                            "0: masking derived from the pattern's slopes; 1: the published product of projections"}},
+        .parameters = with_facet_material(
+            {{.name = "amplitude_m",
+              .unit = "m",
+              .preset = {},
+              .lower = 0,
+              .upper = 1e-3,
+              .meaning = "height of the crests over the mean plane"},
+             {.name = "wavelength_u_m",
+              .unit = "m",
+              .preset = {},
+              .lower = 1e-6,
+              .upper = 1e-2,
+              .meaning = "wavelength along the tangent"},
+             {.name = "wavelength_v_m",
+              .unit = "m",
+              .preset = {},
+              .lower = 1e-6,
+              .upper = 1e-2,
+              .meaning = "wavelength across the tangent"},
+             {.name = "alpha",
+              .unit = "1",
+              .preset = 0.1,
+              .lower = min_alpha,
+              .upper = max_alpha,
+              .meaning = "Beckmann roughness on top of the pattern"}},
+            {{.name = "azimuth_rad",
+              .unit = "rad",
+              .preset = 0,
+              .lower = -pi,
+              .upper = pi,
+              .meaning = "turns the pattern about the normal; at 0 its u runs along the tangent"},
+             {.name = "projections",
+              .unit = "1",
+              .preset = 0,
+              .lower = 0,
+              .upper = 1,
+              .meaning = "0: masking derived from the pattern's slopes; 1: the published product of projections"}}),
     };
     return info;
   }
@@ -139,7 +110,7 @@ class Sinusoidal final : public Model {
     if (wo.z <= 0 || wi.z <= 0) return {};
     const Sinusoid pattern = pattern_of(values);
     const Vec3 h = half_vector(wo, wi);
-    return reflected(values, dot(wo, h)) * pattern.lobe(wo, wi, h, values.scalar(projections_index));
+    return material_of(values).reflects(dot(wo, h)) * pattern.lobe(wo, wi, h, values.scalar(projections_index));
   }
 
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
@@ -151,7 +122,7 @@ class Sinusoidal final : public Model {
     const double cosine = dot(wo, h), density = pattern.density_of_normals(h) * h.z / (4 * cosine);
     if (!(cosine > 0 && density > 0)) return {};
     const double masked = pattern.masking(wo, wi, values.scalar(projections_index));
-    return {wi, reflected(values, cosine) * (masked * wi.z * cosine / h.z), density};
+    return {wi, material_of(values).reflects(cosine) * (masked * wi.z * cosine / h.z), density};
   }
 
   double pdf(const Values& values, Vec3 wo, Vec3 wi) const override {
@@ -159,6 +130,10 @@ class Sinusoidal final : public Model {
     const Vec3 h = half_vector(wo, wi);
     const double cosine = dot(wo, h);
     return cosine > 0 ? pattern_of(values).density_of_normals(h) * h.z / (4 * cosine) : 0;
+  }
+
+  optics::MuellerRgb mueller(const Values& values, Vec3 wo, Vec3 wi) const override {
+    return material_of(values).mueller(dot(wo, half_vector(wo, wi)));
   }
 
   Rgb albedo(const Values& values, Vec3 wo) const override {
@@ -173,7 +148,7 @@ class Sinusoidal final : public Model {
       const Vec3 wi = mirrored(wo, h);
       const double cosine = dot(wo, h);
       if (wi.z > 0 && cosine > 0)
-        sum += reflected(values, cosine) *
+        sum += material_of(values).reflects(cosine) *
                (pattern.masking(wo, wi, values.scalar(projections_index)) * wi.z * cosine / h.z);
     }
     return sum / count;
