@@ -88,6 +88,27 @@ struct Sampler {
 inline constexpr std::size_t chi_rows = 20, chi_columns = 24;
 inline constexpr double chi_samples = 60000;
 
+// Of counts against what was expected; bins that expect fewer than five are pooled.
+inline double pearson_p(const std::vector<double>& seen, const std::vector<double>& expected, const std::string& name) {
+  double chi2 = 0, pooled_seen = 0, pooled_expected = 0, bins = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (expected[i] < 5) {
+      pooled_seen += seen[i];
+      pooled_expected += expected[i];
+      continue;
+    }
+    chi2 += (seen[i] - expected[i]) * (seen[i] - expected[i]) / expected[i];
+    ++bins;
+  }
+  if (pooled_expected >= 5) {
+    chi2 += (pooled_seen - pooled_expected) * (pooled_seen - pooled_expected) / pooled_expected;
+    ++bins;
+  } else {  // Poisson: far more than expected where next to nothing should be
+    EXPECT_LE(pooled_seen, pooled_expected + 6 * std::sqrt(pooled_expected + 1) + 6) << name;
+  }
+  return bins > 1 ? chi_square_tail(chi2, bins - 1) : 1;
+}
+
 // The p-value of one sampler.
 inline double chi_square_p(const Sampler& sampler, std::uint64_t seed) {
   std::vector<double> seen(chi_rows * chi_columns + 1), expected(seen.size());
@@ -132,23 +153,7 @@ inline double chi_square_p(const Sampler& sampler, std::uint64_t seed) {
     }
   EXPECT_LE(mass, 1 + 1e-5 * chi_rows * chi_columns) << sampler.name << ": the density integrates to more than one";
   expected.back() = std::max(0.0, 1 - mass) * chi_samples;
-  double chi2 = 0, pooled_seen = 0, pooled_expected = 0, bins = 0;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (expected[i] < 5) {
-      pooled_seen += seen[i];
-      pooled_expected += expected[i];
-      continue;
-    }
-    chi2 += (seen[i] - expected[i]) * (seen[i] - expected[i]) / expected[i];
-    ++bins;
-  }
-  if (pooled_expected >= 5) {
-    chi2 += (pooled_seen - pooled_expected) * (pooled_seen - pooled_expected) / pooled_expected;
-    ++bins;
-  } else {  // Poisson: far more than expected where next to nothing should be
-    EXPECT_LE(pooled_seen, pooled_expected + 6 * std::sqrt(pooled_expected + 1) + 6) << sampler.name;
-  }
-  return bins > 1 ? chi_square_tail(chi2, bins - 1) : 1;
+  return pearson_p(seen, expected, sampler.name);
 }
 
 // `members`: how many tests the whole family has, where these are a part of it.

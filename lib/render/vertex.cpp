@@ -41,11 +41,11 @@ Vertex::Vertex(const scene::Scene& scene, const SurfacePoint& at, Vec3 to_eye,
       frame(shading_frame(at)),
       wo(frame.to_local(to_eye)) {}
 
-// Most surfaces are the same everywhere and bound no medium: theirs are used in place.
+// Most surfaces are the same everywhere, bound no medium and are seen from outside: theirs are used in place.
 const surface::Values& Vertex::values_of(const scene::Scene& scene,
                                          const std::optional<InterfaceHere>& interface_here) {
   const scene::Surface& surface = scene.appearance.surfaces[point.surface];
-  if (!surface.varies() && !surface.base && !interface_here) return surface.values;
+  if (!surface.varies() && !surface.base && !interface_here && point.outside) return surface.values;
   if (surface.base) {
     own_ = values_at(scene, point, base_.emplace());
   } else if (surface.varies()) {
@@ -56,8 +56,9 @@ const surface::Values& Vertex::values_of(const scene::Scene& scene,
   if (interface_here) {
     own_->eta = interface_here->eta;
     own_->hero = interface_here->hero;
-    own_->inside = !point.outside;
   }
+  own_->inside = !point.outside;
+  if (surface.base) base_->values.inside = own_->inside;
   return *own_;
 }
 

@@ -74,7 +74,7 @@ class DielectricLobe {
   Rgb evaluate(Vec3 wi) const {
     if (wi.z > 0) {
       const Vec3 h = half_vector(wo_, wi);
-      const double facet = facets_.reflection(wo_, wi, h, seen_), cosine = dot(wo_, h);
+      const double facet = facets_.reflection(wo_, wi, h, seen_), cosine = half_cosine(wo_, wi);
       return per_band(eta_, [&](double eta) {
         if (matched(eta)) return 0.0;
         return facet * fresnel_dielectric(cosine, eta) + sheet(eta).reflected(facets_.in_axes(wi));
@@ -94,8 +94,7 @@ class DielectricLobe {
     const Vec3 there = facets_.in_axes(wi);
     return per_band(eta_, [&](double eta) {
       if (matched(eta)) return 1.0;
-      const double once =
-          through ? transmitted_once(wi, eta) : facet * fresnel_dielectric(dot(wo_, half_vector(wo_, wi)), eta);
+      const double once = through ? transmitted_once(wi, eta) : facet * fresnel_dielectric(half_cosine(wo_, wi), eta);
       const double more = through ? sheet(eta).transmitted(there) : sheet(eta).reflected(there);
       return once + more > 0 ? once / (once + more) : 0;
     });

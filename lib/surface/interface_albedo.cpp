@@ -14,7 +14,6 @@ namespace gonio::surface {
 namespace {
 
 constexpr std::size_t cosines = 49, alphas = 32, indices = 17;
-constexpr std::size_t mirror = indices, rise = indices + 1, layers = indices + 2;
 constexpr int grid_radius = 40, grid_angle = 16;
 
 double cosine_at(std::size_t i) {
@@ -54,10 +53,10 @@ double between(double low, double high, double share) {
 
 class Table {
  public:
-  Table() : values_(layers * alphas * cosines), means_(layers * alphas) {
+  Table() : values_(indices * alphas * cosines), means_(indices * alphas) {
     for (std::size_t a = 0; a < alphas; ++a) {
       for (std::size_t c = 0; c < cosines; ++c) fill(a, c);
-      for (std::size_t layer = 0; layer < layers; ++layer) means_[layer * alphas + a] = integral(layer, a);
+      for (std::size_t layer = 0; layer < indices; ++layer) means_[layer * alphas + a] = integral(layer, a);
     }
   }
   double value(std::size_t layer, Cell a, Cell c) const {
@@ -82,7 +81,7 @@ class Table {
     const Vec3 wo{std::sqrt(1 - z * z), 0, z};
     std::array<double, indices> eta{};
     for (std::size_t i = 0; i < indices; ++i) eta[i] = eta_of_f0(f0_at(i));
-    std::array<double, layers> sum{};
+    std::array<double, indices> sum{};
     for (int i = 0; i < grid_radius; ++i) {
       // The far slopes, drawn for u.x near one, lose most: u.x = 1 - v^3 resolves them.
       const double v = (i + 0.5) / grid_radius, share = 3 * v * v / (grid_radius * grid_angle);
@@ -92,11 +91,9 @@ class Table {
         if (wi.z <= 0) continue;
         const double weight = share * ggx.weight(wo, wi), cosine = dot(wo, h);
         for (std::size_t k = 0; k < indices; ++k) sum[k] += weight * fresnel_dielectric(cosine, eta[k]);
-        sum[mirror] += weight;
-        sum[rise] += weight * schlick_rise(cosine);
       }
     }
-    for (std::size_t layer = 0; layer < layers; ++layer) at(layer, a, c) = sum[layer];
+    for (std::size_t layer = 0; layer < indices; ++layer) at(layer, a, c) = sum[layer];
   }
 
   // 2 E cosine d(cosine) = 4 E t^3 dt, t = sqrt(cosine): in each cell a polynomial of degree 4, exact with three Gauss
@@ -132,14 +129,4 @@ double dielectric_albedo_mean(double alpha, double f0) {
   const Cell a = alpha_cell(alpha), f = f0_cell(f0);
   return between(table().mean(f.low, a), table().mean(f.low + 1, a), f.share);
 }
-double mirror_albedo(double cosine, double alpha) {
-  return table().value(mirror, alpha_cell(alpha), cosine_cell(cosine));
-}
-double mirror_albedo_mean(double alpha) {
-  return table().mean(mirror, alpha_cell(alpha));
-}
-double rise_albedo(double cosine, double alpha) {
-  return table().value(rise, alpha_cell(alpha), cosine_cell(cosine));
-}
-
 }  // namespace gonio::surface

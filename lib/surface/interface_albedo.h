@@ -1,10 +1,10 @@
-// Directional-hemispherical reflectance of single scattering from a GGX interface, tabulated once at first use.
+// Directional-hemispherical reflectance of single scattering from a GGX interface to a dielectric of given f0 (exact
+// Fresnel), tabulated once at first use.
 //   E(cosine) = integral of F D G2 / (4 wiz woz) wiz d(wi),   mean = 2 integral of E(cosine) cosine d(cosine)
-// for three Fresnel factors: a dielectric of given f0 (exact Fresnel), a perfect mirror (F = 1) and Schlick's rise
-// (1 - cos)^5. Layers of light beneath or between facets are scaled by what the interface lets pass, 1 - E (Kelemen &
-// Szirmay-Kalos 2001; Kulla & Conty 2017). Interpolation is linear in sqrt(cosine), log(alpha) and f0^(1/4); a `mean`
-// is the exact integral of the interpolant, so that energy closes to rounding. Error against direct quadrature: below
-// 2e-3, rms 5e-4 (f0 >= 0.001; 4e-3 below that).
+// Layers of light beneath are scaled by what the interface lets pass, 1 - E (Kelemen & Szirmay-Kalos 2001).
+// Interpolation is linear in sqrt(cosine), log(alpha) and f0^(1/4); a `mean` is the exact integral of the interpolant,
+// so that energy closes to rounding. Error against direct quadrature: below 2e-3, rms 5e-4 (f0 >= 0.001; 4e-3 below
+// that). What all facets of a mirror, or both sides of an interface, lose: surface/interface_loss.h.
 #pragma once
 
 namespace gonio::surface {
@@ -14,8 +14,5 @@ inline constexpr double min_alpha = 0.02, max_alpha = 1,
 
 double dielectric_albedo(double cosine, double alpha, double f0);  // exactly zero at f0 = 0
 double dielectric_albedo_mean(double alpha, double f0);
-double mirror_albedo(double cosine, double alpha);
-double mirror_albedo_mean(double alpha);
-double rise_albedo(double cosine, double alpha);
 
 }  // namespace gonio::surface

@@ -56,7 +56,7 @@ class CoatInterface {
   double gloss(Vec3 wo, Vec3 wi) const {
     if (smooth() || eta_ == 1) return 0;
     const Vec3 h = half_vector(wo, wi);
-    return fresnel_dielectric(dot(wo, h), eta_) * Ggx(alpha_).lobe(wo, wi, h);
+    return fresnel_dielectric(half_cosine(wo, wi), eta_) * Ggx(alpha_).lobe(wo, wi, h);
   }
   double gloss_pdf(Vec3 wo, Vec3 wi) const { return smooth() ? 0 : Ggx(alpha_).pdf(wo, half_vector(wo, wi)); }
   // Of a smooth interface: is wi where it mirrors wo, and so where its delta goes?

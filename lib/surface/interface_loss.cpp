@@ -11,6 +11,7 @@
 
 #include "surface/fresnel.h"
 #include "surface/refraction.h"
+#include "surface/slopes_grid.h"
 
 namespace gonio::surface {
 namespace {
@@ -52,20 +53,6 @@ struct Grid {
 };
 constexpr Grid isotropic_grid{41, 1, 25, 1, 20, 32, 12}, anisotropic_grid{29, 9, 25, 9, 20, 20, 14};
 
-// Nodes of the two random numbers, finer where far slopes are drawn; half of the circle where the other is its mirror
-// image.
-template <Slopes kind>
-Vec2 grid_number(const Grid& grid, int i, int j) {
-  const double v = (i + 0.5) / grid.radii, angle = (j + 0.5) / grid.angles * (grid.isotropic() ? 0.5 : 1);
-  if constexpr (kind == Slopes::ggx) return {1 - v * v * v, angle - 0.25 + (angle < 0.25)};
-  return {v * v * (3 - 2 * v), angle};
-}
-template <Slopes kind>
-double grid_share(const Grid& grid, int i) {
-  const double v = (i + 0.5) / grid.radii, each = 1.0 / (grid.radii * grid.angles);
-  return (kind == Slopes::ggx ? 3 * v * v : 6 * v * (1 - v)) * each;
-}
-
 // Power that a direction gets back by way of one facet; eta 0: the mirror.
 template <Slopes kind>
 double returned(const Facets<kind>& facets, Vec3 wo, double seen, Vec3 h, double eta) {
@@ -90,14 +77,16 @@ struct LossBlock {  // of one index, anisotropy and alpha
 struct LossTable {
   Slopes kind;
   Grid grid;
-  std::vector<double> weights, across;  // of entries in a mean; Beckmann slopes across the eye's direction
+  SlopesGrid normals;
+  std::vector<double> weights;  // of entries in a mean
   std::unique_ptr<LossBlock[]> blocks;
 
   LossTable(Slopes slopes, const Grid& g)
-      : kind(slopes), grid(g), blocks(std::make_unique<LossBlock[]>(g.rows() * g.anisotropies * g.alphas)) {
+      : kind(slopes),
+        grid(g),
+        normals(slopes, g.radii, g.angles, g.isotropic()),
+        blocks(std::make_unique<LossBlock[]>(g.rows() * g.anisotropies * g.alphas)) {
     set_weights();
-    for (int j = 0; j < grid.angles; ++j)
-      across.push_back(beckmann_visible_slope(1, 0, grid_number<Slopes::beckmann>(grid, 0, j).y));
   }
 
   const LossBlock& block(std::size_t row, std::size_t anisotropy, std::size_t alpha) const {
@@ -123,18 +112,8 @@ struct LossTable {
     const double r = std::sqrt(1 - z * z), cosine = grid.azimuth_cosine(i / grid.cosines);
     const Vec3 wo{r * cosine, r * std::sqrt(1 - cosine * cosine), z};
     const double seen = facets.area_seen(wo);
-    const Vec3 v = facets.stretched(wo);
-    const double sine = std::hypot(v.x, v.y);
     double sum = 0;
-    for (int a = 0; a < grid.radii; ++a) {
-      const double along = grid_number<slopes>(grid, a, 0).x, share = grid_share<slopes>(grid, a);
-      const double slope = slopes == Slopes::beckmann ? beckmann_visible_slope(v.z, sine, along) : 0;
-      for (int b = 0; b < grid.angles; ++b) {
-        const Vec3 unit = slopes == Slopes::ggx ? ggx_visible_normal(v, grid_number<slopes>(grid, a, b))
-                                                : beckmann_normal(v, slope, across[static_cast<std::size_t>(b)]);
-        sum += share * returned(facets, wo, seen, facets.facet_of(unit), eta);
-      }
-    }
+    normals.over(facets, wo, [&](Vec3 h, double share) { sum += share * returned(facets, wo, seen, h, eta); });
     return std::clamp(1 - sum, 0.0, 1.0);
   }
 

@@ -4,7 +4,9 @@
 // Tabulated in blocks, each at first use (a millisecond; where roughness is anisotropic some twenty). Interpolation is
 // linear in sqrt(wz), sqrt(alpha), sqrt(|eta - 1| / (eta + 1)), log(alpha_v / alpha_u) and the cosine of the azimuth,
 // up to eta = 4 and 1 / 4, clamped beyond; `mean` is the exact integral of the interpolant, so that energy closes to
-// the error of the table (tests: EverySurface.ReturnsAllLightWhereItClaimsTo).
+// the error of the table. That is, of mirrors, below 4e-3 (rms 1e-3), or 1e-2 where roughness is anisotropic; but for
+// alpha < 0.04, where the loss is that of the last few alphas before the horizon, 0.02 there and, below 0.002, up to
+// 0.08. Of dielectrics within 1e-2, near the horizon 3e-2 (tests: EverySurface.ReturnsAllLightWhereItClaimsTo).
 #pragma once
 #include <array>
 

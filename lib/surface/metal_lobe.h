@@ -1,102 +1,136 @@
-// The reflection of a rough metal: GGX single scattering, and what scatters between facets more than once.
-//   f = F(wi.h) D(h) G2 / (4 wiz woz)  +  F_more (1 - E(wi)) (1 - E(wo)) / (pi (1 - E_mean))
-//   F_more = F_mean^2 E_mean / (1 - F_mean (1 - E_mean))
-// E is the directional albedo of the lobe for F = 1 (surface/interface_albedo.h), F_mean the cosine-weighted mean of
-// the Fresnel factor. Kulla & Conty 2017, "Revisiting Physically Based Shading at Imageworks", pages 10-15. Reciprocal;
-// a mirror of any roughness (F = 1) reflects all light. Sampling picks between visible normals and a cosine-weighted
-// direction by reflected power.
+// The reflection of a metal: what one facet reflects (surface/slopes.h), and what meets several facets.
+//   f = F(wi.h) D(h) G2 / (4 wiz woz)  +  F_more L(wi) L(wo) / (pi L_mean)
+//   F_more = F_mean^2 (1 - L_mean) / (1 - F_mean L_mean)
+// L(w) is what one facet fails to return of a mirror's light, L_mean its cosine-weighted mean
+// (surface/interface_loss.h), F_mean the cosine-weighted mean of the Fresnel factor. Kulla & Conty 2017, "Revisiting
+// Physically Based Shading at Imageworks", pages 10-15. Reciprocal; a mirror of any roughness (F = 1) reflects all
+// light. Sampling picks between visible normals and a cosine-weighted direction by reflected power. Smooth below
+// alpha = 1e-4: then the lobe is a delta of the weight F(woz).
 #pragma once
 #include "surface/hemisphere.h"
-#include "surface/interface_albedo.h"
-#include "surface/microfacet.h"
+#include "surface/interface_loss.h"
 #include "surface/polarization.h"
+#include "surface/slopes_grid.h"
 #include "surface/surface.h"
 
 namespace gonio::surface {
 
+template <Slopes kind>
 class MetalLobe {
  public:
-  // `wo` above the horizon; `fresnel_mean` per colour.
-  MetalLobe(double alpha, Rgb fresnel_mean, Vec3 wo)
-      : ggx_(alpha), alpha_(alpha), wo_(wo), once_(mirror_albedo(wo.z, alpha)) {
-    const double all = mirror_albedo_mean(alpha), lost = 1 - all;
-    if (lost <= 0) return;
-    const auto more = [&](double f) { return f * f * all / (1 - f * lost); };
-    more_ = Rgb{more(fresnel_mean.x), more(fresnel_mean.y), more(fresnel_mean.z)} * ((1 - once_) / lost);
-    const double diffuse = mean(more_) * lost, direct = mean(fresnel_mean) * once_;
+  // `wo` above the horizon; `fresnel_mean` per band; not smooth. `inside`: Facets.
+  MetalLobe(const Roughness& roughness, bool inside, Rgb fresnel_mean, Vec3 wo)
+      : facets_(roughness, inside),
+        isotropic_(roughness.anisotropy == 0),
+        wo_(wo),
+        seen_(facets_.area_seen(wo)),
+        loss_(InterfaceLoss::mirror(kind, roughness)),
+        lost_(loss_.towards(facets_.in_axes(wo))) {
+    const double mean_lost = loss_.mean();
+    if (!(mean_lost > 0)) return;
+    const auto more = [&](double f) { return f * f * (1 - mean_lost) / (1 - f * mean_lost) * lost_; };
+    more_ = {more(fresnel_mean.x), more(fresnel_mean.y), more(fresnel_mean.z)};
+    const double diffuse = mean(more_), direct = mean(fresnel_mean) * (1 - lost_);
     share_ = diffuse + direct > 0 ? direct / (diffuse + direct) : 1;
   }
   // fresnel(cosine) -> Rgb
   template <class Fresnel>
   Rgb evaluate(const Fresnel& fresnel, Vec3 wi) const {
-    const Vec3 h = half_vector(wo_, wi);
-    return fresnel(dot(wo_, h)) * ggx_.lobe(wo_, wi, h) + more_ * ((1 - mirror_albedo(wi.z, alpha_)) / pi);
+    return once(fresnel, wi) + more(wi);
   }
-  // Share of evaluate() that met one facet alone, per colour.
+  // Share of evaluate() that met one facet alone, per band.
   template <class Fresnel>
   Rgb share_of_one_facet(const Fresnel& fresnel, Vec3 wi) const {
-    const Vec3 h = half_vector(wo_, wi);
-    const Rgb once = fresnel(dot(wo_, h)) * ggx_.lobe(wo_, wi, h), all = evaluate(fresnel, wi);
-    return {share_of(once.x, all.x), share_of(once.y, all.y), share_of(once.z, all.z)};
+    const Rgb single = once(fresnel, wi), all = single + more(wi);
+    return {share_of(single.x, all.x), share_of(single.y, all.y), share_of(single.z, all.z)};
   }
-  double pdf(Vec3 wi) const { return share_ * ggx_.pdf(wo_, half_vector(wo_, wi)) + (1 - share_) * cosine_density(wi); }
+  double pdf(Vec3 wi) const {
+    return share_ * facets_.reflection_pdf(half_vector(wo_, wi), seen_) + (1 - share_) * cosine_density(wi);
+  }
   template <class Fresnel>
   Sample sample(const Fresnel& fresnel, Vec2 u, double u_lobe) const {
-    const Vec3 wi = u_lobe < share_ ? mirrored(wo_, ggx_.visible_normal(wo_, u)) : cosine_direction(u);
+    const Vec3 wi = u_lobe < share_ ? mirrored(wo_, facets_.visible_normal(wo_, u)) : cosine_direction(u);
     if (wi.z <= 0) return {};
     const double density = pdf(wi);
     if (!(density > 0)) return {};
     return {wi, evaluate(fresnel, wi) * (wi.z / density), density};
   }
-  // Reflectance of the part that scatters once: a midpoint rule over visible normals, finer towards the far slopes.
+  // The mean Fresnel factor of the light that one facet returns, by quadrature over visible normals, and the rest.
   template <class Fresnel>
-  Rgb albedo_once(const Fresnel& fresnel) const {
-    constexpr int radii = 24, angles = 8;
+  Rgb albedo(const Fresnel& fresnel) const {
+    static const SlopesGrid half(kind, 24, 8, true), whole(kind, 24, 16, false);
     Rgb sum;
-    for (int i = 0; i < radii; ++i) {
-      const double v = (i + 0.5) / radii, share = 3 * v * v / (radii * angles);
-      for (int j = 0; j < angles; ++j) {  // half of the circle: the other is its mirror image
-        const Vec3 h = ggx_.visible_normal(wo_, {1 - v * v * v, 0.5 * (j + 0.5) / angles - 0.25});
-        const Vec3 wi = mirrored(wo_, h);
-        if (wi.z > 0) sum += fresnel(dot(wo_, h)) * (share * ggx_.weight(wo_, wi));
-      }
-    }
-    return sum;
+    double all = 0;
+    (isotropic_ ? half : whole).over(facets_, wo_, [&](Vec3 h, double share) {
+      const Vec3 wi = mirrored(wo_, h);
+      if (wi.z <= 0) return;
+      const double weight = share * facets_.reflection_weight(wo_, wi, seen_);
+      sum += fresnel(dot(wo_, h)) * weight;
+      all += weight;
+    });
+    return more_ + (all > 0 ? sum * ((1 - lost_) / all) : Rgb{});
   }
-  // Reflectance of the part that scatters more than once.
-  Rgb albedo_more() const { return more_ * (1 - mirror_albedo_mean(alpha_)); }
 
  private:
-  Ggx ggx_;
-  double alpha_;
+  template <class Fresnel>
+  Rgb once(const Fresnel& fresnel, Vec3 wi) const {
+    return fresnel(half_cosine(wo_, wi)) * facets_.reflection(wo_, wi, half_vector(wo_, wi), seen_);
+  }
+  Rgb more(Vec3 wi) const {
+    return loss_.mean() > 0 ? more_ * (loss_.towards(facets_.in_axes(wi)) / (pi * loss_.mean())) : Rgb{};
+  }
+
+  Facets<kind> facets_;
+  bool isotropic_;
   Vec3 wo_;
-  double once_, share_ = 1;
-  Rgb more_;
+  double seen_;
+  InterfaceLoss loss_;
+  double lost_;
+  double share_ = 1;
+  Rgb more_;  // reflectance of what scatters more than once
 };
 
-// A model that is one such lobe: `Optics` says, for a surface's values, `lobe(values, wo)`, `fresnel(values)`, which
-// takes a cosine to a colour, and `index(values, band)`, the complex index that polarizes. Light that met several
-// facets is unpolarized.
-template <class Optics>
+// A model that is one such lobe. `Optics` says, for a surface's values: `roughness(values)`, `fresnel(values)`, which
+// takes a cosine to a reflectance per band, its `fresnel_mean(values)`, and `index(values, band)`, the complex index
+// that polarizes. Light that met several facets is unpolarized.
+template <Slopes kind, class Optics>
 class MetalModel : public Model {
  public:
   Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
-    return wo.z > 0 && wi.z > 0 ? Optics::lobe(values, wo).evaluate(Optics::fresnel(values), wi) : Rgb{};
+    if (wo.z <= 0 || wi.z <= 0 || Optics::roughness(values).smooth()) return {};
+    return lobe(values, wo).evaluate(Optics::fresnel(values), wi);
   }
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
-    return wo.z > 0 ? Optics::lobe(values, wo).sample(Optics::fresnel(values), u, u_lobe) : Sample{};
+    if (wo.z <= 0) return {};
+    const auto fresnel = Optics::fresnel(values);
+    if (Optics::roughness(values).smooth())
+      return {.wi = {-wo.x, -wo.y, wo.z}, .weight = fresnel(wo.z), .pdf = 1, .delta = true};
+    return lobe(values, wo).sample(fresnel, u, u_lobe);
   }
   double pdf(const Values& values, Vec3 wo, Vec3 wi) const override {
-    return wo.z > 0 && wi.z > 0 ? Optics::lobe(values, wo).pdf(wi) : 0;
+    if (wo.z <= 0 || wi.z <= 0 || Optics::roughness(values).smooth()) return 0;
+    return lobe(values, wo).pdf(wi);
+  }
+  Rgb albedo(const Values& values, Vec3 wo) const override {
+    if (wo.z <= 0) return {};
+    const auto fresnel = Optics::fresnel(values);
+    return Optics::roughness(values).smooth() ? fresnel(wo.z) : lobe(values, wo).albedo(fresnel);
   }
   optics::MuellerRgb mueller(const Values& values, Vec3 wo, Vec3 wi) const override {
-    const Rgb once = Optics::lobe(values, wo).share_of_one_facet(Optics::fresnel(values), wi);
+    const Rgb once = Optics::roughness(values).smooth()
+                         ? Rgb{1, 1, 1}
+                         : lobe(values, wo).share_of_one_facet(Optics::fresnel(values), wi);
     const double cosine = dot(wo, half_vector(wo, wi));
     optics::MuellerRgb result;
     for (int i = 0; i < 3; ++i)
       result[static_cast<std::size_t>(i)] =
           mixed(reflected_by(cosine, Optics::index(values, i)), optics::Mueller::depolarizer(), once[i]);
     return result;
+  }
+
+ private:
+  static MetalLobe<kind> lobe(const Values& values, Vec3 wo) {
+    return {Optics::roughness(values), values.inside, Optics::fresnel_mean(values), wo};
   }
 };
 

@@ -20,6 +20,11 @@ inline Vec3 half_vector(Vec3 wo, Vec3 wi) {
   return square > 1e-280 ? sum / std::sqrt(square) : Vec3{0, 0, 1};
 }
 
+// Cosine of the angle between either of them and their half vector: the same for both to the last bit.
+inline double half_cosine(Vec3 wo, Vec3 wi) {
+  return norm(wo + wi) / 2;
+}
+
 // Normal of unit roughness that `v` sees, a unit direction stretched to that roughness (Heitz 2018, listing 1).
 inline Vec3 ggx_visible_normal(Vec3 v, Vec2 u) {
   const double across = std::hypot(v.x, v.y);

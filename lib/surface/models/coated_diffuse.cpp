@@ -131,7 +131,7 @@ class CoatedDiffuse final : public Model {
  private:
   static Rgb together(const Coat& coat, Rgb base, Vec3 wo, Vec3 wi) {
     const Vec3 h = half_vector(wo, wi);
-    const double gloss = fresnel_dielectric(dot(wo, h), coat.eta) * Ggx(coat.alpha).lobe(wo, wi, h);
+    const double gloss = fresnel_dielectric(half_cosine(wo, wi), coat.eta) * Ggx(coat.alpha).lobe(wo, wi, h);
     return Rgb{gloss, gloss, gloss} + base * coat.passes(wi);
   }
 };
