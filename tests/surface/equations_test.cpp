@@ -217,7 +217,7 @@ TEST(RoughCoat, OverAMirrorReflectsTheSeries) {
   const surface::Model& coat = *surface::find("rough-coat");
   const double depth = 0.3;
   for (const double zenith : {0.0, 40.0, 70.0}) {
-    const Coated over("metal", values({grey(1), grey(0.02)}), {grey(1.5), grey(0), grey(300), grey(depth / 300)});
+    const Coated over("metal", values({grey(1), grey(0)}), {grey(1.5), grey(0), grey(300), grey(depth / 300)});
     const Vec3 wo = at_zenith(zenith);
     const double f = surface::fresnel_dielectric(wo.z, 1.5), inside = std::sqrt(1 - (1 - wo.z * wo.z) / 2.25);
     const double a = std::exp(-depth / inside), once = f + (1 - f) * (1 - f) * a * a;
@@ -226,6 +226,20 @@ TEST(RoughCoat, OverAMirrorReflectsTheSeries) {
     EXPECT_GT(reflected.x, once - 6e-3 - 6 * error.x) << zenith;
     EXPECT_LT(reflected.x, all + 6e-3 + 6 * error.x) << zenith;
   }
+}
+
+// A white base of any kind under a coat that absorbs nothing: what goes in comes out.
+TEST(RoughCoat, OverWhiteMirrorsReturnsAllLight) {
+  const surface::Model& coat = *surface::find("rough-coat");
+  for (const auto& [alpha, anisotropy] : {std::pair{0.0, 0.0}, {0.1, 0.0}, {0.4, 0.0}, {0.8, 0.0}, {0.3, 0.8}})
+    for (const double eta : {1.5, 2.6})
+      for (const double zenith : {0.0, 45.0, 75.0}) {
+        const Coated over("conductor", values({grey(0.01), grey(30), grey(alpha), grey(anisotropy), grey(0.3)}),
+                          {grey(eta), grey(0.1), grey(0), grey(0)});
+        const auto [reflected, error] = reflectance_by_sampling(coat, over.values, at_zenith(zenith));
+        EXPECT_NEAR(reflected.x, 1, (anisotropy > 0 ? 0.06 : 0.05) + 6 * error.x)
+            << alpha << " " << anisotropy << " " << eta << " " << zenith;
+      }
 }
 
 // What the interface does to a base: darker where albedo is low, nothing lost where it is white.

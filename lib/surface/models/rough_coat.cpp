@@ -6,8 +6,9 @@
 // this is `interfaced-diffuse`. Reciprocal where the base is; returns no more than it receives; at eta = 1 without
 // absorption it is the base to the last bit. The interface's roughness blurs the gloss alone: light is refracted as by
 // a smooth one, so that what a rough coat blurs of a sharp base stays sharp. The term of trapped light rests on a fixed
-// sample of the base (1 % of it). albedo() has the same error. The base must let no light through.
-// Polarization: the base's matrix between two refractions (surface/polarization.h); trapped light has lost it.
+// sample of the base: energy and albedo() are exact to 3e-2, over anisotropic mirrors to 6e-2. The base must let no
+// light through. Polarization: the base's matrix between two refractions (surface/polarization.h); trapped light has
+// lost it.
 #include "surface/interface_trap.h"
 #include "surface/polarization.h"
 
@@ -35,15 +36,15 @@ struct Coat {
         wo_inside(interface.inwards(to_eye)),
         reflected(interface.reflects(wo.z)),
         passed(passes(wo, wo_inside)) {
-    const double at_once = mean(passed * trap.escapes(wo_inside.z)), later = mean(passed * returned_later());
+    const double at_once = mean(passed * trap.escapes(wo_inside)), later = mean(passed * returned_later());
     const double all = reflected + at_once + later;
     gloss_share = all > 0 ? reflected / all : 0;
     base_share = all > 0 ? at_once / all : 1;
   }
   Rgb passes(Vec3 w, Vec3 inside) const { return exp_of(depth * (-1 / inside.z)) * interface.passes(w.z); }
-  Rgb returned_later() const { return trap.trapped(wo_inside.z) * trap.leaves(); }
+  Rgb returned_later() const { return trap.trapped(wo_inside) * trap.leaves(); }
   Rgb albedo() const {
-    return Rgb{reflected, reflected, reflected} + passed * (trap.escapes(wo_inside.z) + returned_later());
+    return Rgb{reflected, reflected, reflected} + passed * (trap.escapes(wo_inside) + returned_later());
   }
   // What evaluate() consists of.
   struct Parts {
@@ -52,7 +53,7 @@ struct Coat {
   };
   Parts parts(Vec3 wi) const {
     const Vec3 inside = interface.inwards(wi);
-    const Rgb often = trap.trapped(wo_inside.z) * trap.trapped(inside.z) * trap.gain() / pi;
+    const Rgb often = trap.trapped(wo_inside) * trap.trapped(inside) * trap.gain() / pi;
     const Rgb through = passed * passes(wi, inside) / (interface.eta() * interface.eta());
     return {interface.gloss(wo, wi), through * base.model->evaluate(base.values, wo_inside, inside), through * often};
   }
