@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surface/polarization.h"
+
 namespace gonio::surface {
 namespace {
 
@@ -132,6 +134,11 @@ Sample DipoleModel::sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe)
 
 double DipoleModel::pdf(const Values& values, Vec3 wo, Vec3 wi) const {
   return wo.z > 0 && wi.z > 0 ? share(values, wo) * interface_of(values).lobe_pdf(wo, wi) : 0;
+}
+
+optics::MuellerRgb DipoleModel::mueller(const Values& values, Vec3 wo, Vec3 wi) const {
+  const optics::Mueller facet = dielectric_facet(values.scalar(dipole_eta), wo, wi);
+  return {facet, facet, facet};
 }
 
 Rgb DipoleModel::albedo(const Values& values, Vec3 wo) const {

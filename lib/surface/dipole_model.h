@@ -63,6 +63,8 @@ class DipoleModel : public Model {
   Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override;
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override;
   double pdf(const Values& values, Vec3 wo, Vec3 wi) const override;
+  // The interface's; what comes out of the medium is unpolarized.
+  optics::MuellerRgb mueller(const Values& values, Vec3 wo, Vec3 wi) const override;
   Rgb albedo(const Values& values, Vec3 wo) const override;
   const Subsurface* subsurface(const Values& values) const override;
   std::shared_ptr<const Prepared> prepare(const Values& values, const std::filesystem::path& file,

@@ -144,6 +144,7 @@ TEST(PolarizedRendering, RadianceOfOneScatteringIsTheUnpolarizedOne) {
       {"interfaced-diffuse", interfaced},
       {"metal", metal},
       {"conductor", {{"eta", 0.3}, {"k", 2.8}, {"alpha", 0.3}}},
+      {"ridged", {{"ridge_rad", 0.1}, {"alpha_u", 0.4}, {"alpha_v", 0.4}, {"rho_d", 0.3}}},
       {"rough-coat", {{"eta", 1.4}, {"alpha", 0.2}}}};
   for (const auto& [model, parameters] : surfaces) {
     SceneBuilder builder;
