@@ -15,47 +15,82 @@ namespace {
 using tests::rendered;
 using tests::small_scene;
 
-// Against a reference of 8192 samples, whose own variance is small and is taken off, over 12 seeds: the sum of the true
-// squared relative errors over that of the stated ones; its standard error from the seeds. And of all values, how many
-// lie within the 95 % limits of Student's t for the passes that each picture took; skewed samples cost a little.
-TEST(Noise, StatedErrorsAreTrueAndCoverTheTruth) {
-  constexpr double goal = 0.004;
-  constexpr int seeds = 12;
-  const auto document = small_scene();
-  const Rendered truth = rendered(document, {.seed = 77, .geometry = false, .spp = 8192});
-  const PassSums& exact = *truth.sums;
-  double sum_true = 0, sum_stated = 0;
-  std::vector<double> rest;  // of each seed, true - stated
+// Pictures under --noise against a reference with many samples, whose own variance is taken off.
+struct Held {
+  double ratio = 0,
+         ratio_error = 0;  // sum of the true squared relative errors over that of the stated ones, +- one sigma
+  double coverage = 0;  // share of values within the 95 % limits of Student's t for the passes that each picture took
+  double worst = 0;     // largest true relative error of a picture
+  double least_bound = 1;
+};
+
+struct Sums {
+  double is = 0, stated = 0;
   int covered = 0, all = 0;
+};
+
+// Of one picture, its red channel.
+Sums sums_of(const PassSums& picture, const PassSums& exact) {
+  const double limit = stats::student_quantile(0.975, picture.passes() - 1.0);
+  Sums sums;
+  for (std::size_t pixel = 0; pixel < exact.pixels(); ++pixel) {
+    const double y = exact.mean(pixel, 0).x, d = picture.mean(pixel, 0).x - y, v = picture.variance(pixel, 0).x,
+                 v_exact = exact.variance(pixel, 0).x;
+    if (!(y > 0)) continue;
+    sums.is += (d * d - v_exact) / (y * y), sums.stated += v / (y * y);
+    if (std::abs(d) <= limit * std::sqrt(v + v_exact)) ++sums.covered;
+    ++sums.all;
+  }
+  return sums;
+}
+
+Held hold(const manifest::Document& document, double goal, int reference_spp, std::uint64_t seeds) {
+  const Rendered truth = rendered(document, {.seed = 77, .geometry = false, .spp = reference_spp});
+  Held held;
+  Sums sum;
+  std::vector<double> rest;  // of each seed, true - stated
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     const Rendered picture = rendered(document, {.seed = seed, .geometry = false, .relative_error = goal});
     EXPECT_LE(picture.facts.relative_error, goal);
-    EXPECT_GT(picture.facts.relative_error, 0.9 * goal) << "later than it could";
-    const double limit = stats::student_quantile(0.975, picture.sums->passes() - 1.0);
-    double is = 0, stated = 0;
-    for (std::size_t pixel = 0; pixel < exact.pixels(); ++pixel) {
-      const double y = exact.mean(pixel, 0).x, d = picture.sums->mean(pixel, 0).x - y,
-                   v = picture.sums->variance(pixel, 0).x, v_exact = exact.variance(pixel, 0).x;
-      if (!(y > 0)) continue;
-      is += (d * d - v_exact) / (y * y), stated += v / (y * y);
-      if (std::abs(d) <= limit * std::sqrt(v + v_exact)) ++covered;
-      ++all;
-    }
-    EXPECT_NEAR(std::sqrt(stated / all * (seed + 1.0)) / picture.facts.relative_error, 1, 0.2) << "red as all channels";
-    sum_true += is, sum_stated += stated;
-    rest.push_back(is - stated);
+    held.least_bound = std::min(held.least_bound, estimate_error(*picture.sums).bound);
+    const Sums own = sums_of(*picture.sums, *truth.sums);
+    sum.is += own.is, sum.stated += own.stated, sum.covered += own.covered, sum.all += own.all;
+    rest.push_back(own.is - own.stated);
+    held.worst = std::max(held.worst, std::sqrt(std::max(0.0, own.is) / own.all));
   }
+  const auto n = static_cast<double>(seeds);
   double squares = 0;
-  const double mean_rest = (sum_true - sum_stated) / seeds;
-  for (const double r : rest) squares += (r - mean_rest) * (r - mean_rest);
-  const double ratio = sum_true / sum_stated, error = std::sqrt(squares * seeds / (seeds - 1)) / sum_stated;
-  const double coverage = covered / static_cast<double>(all);
-  RecordProperty("true_over_stated_variance", std::to_string(ratio) + " +- " + std::to_string(error));
-  RecordProperty("coverage_of_95_percent", std::to_string(coverage));
-  EXPECT_NEAR(ratio, 1, 4 * error + 0.01);
-  EXPECT_LT(error, 0.1);
-  EXPECT_GT(coverage, 0.925);
-  EXPECT_LT(coverage, 0.97);
+  for (const double r : rest) squares += std::pow(r - (sum.is - sum.stated) / n, 2);
+  held.ratio = sum.is / sum.stated;
+  held.ratio_error = std::sqrt(squares * n / (n - 1)) / sum.stated;
+  held.coverage = sum.covered / static_cast<double>(sum.all);
+  testing::Test::RecordProperty("true_over_stated_variance",
+                                std::to_string(held.ratio) + " +- " + std::to_string(held.ratio_error));
+  testing::Test::RecordProperty("coverage_of_95_percent", std::to_string(held.coverage));
+  testing::Test::RecordProperty("worst_over_goal", std::to_string(held.worst / goal));
+  return held;
+}
+
+// Skewed samples cost a little coverage.
+TEST(Noise, StatedErrorsAreTrueAndCoverTheTruth) {
+  const Held held = hold(small_scene(), 0.004, 8192, 12);
+  EXPECT_NEAR(held.ratio, 1, 4 * held.ratio_error + 0.01);
+  EXPECT_LT(held.ratio_error, 0.1);
+  EXPECT_GT(held.coverage, 0.925);
+  EXPECT_LT(held.coverage, 0.97);
+  EXPECT_LT(held.worst, 0.004);
+  EXPECT_GT(held.least_bound, 0.9 * 0.004) << "later than it could";
+}
+
+// Caustics: rare paths with much light, which few samples miss. In a picture of 216 pixels some of that remains: of ten
+// pictures the worst is 1.6 times as wrong as was asked for; without the bound and the neighbours it was 2.8 times, and
+// pictures stopped after anything between 64 and 2000 samples.
+TEST(Noise, StatedErrorsAreTrueWhereRarePathsCarryMuch) {
+  const Held held = hold(small_scene(tests::glass(), "[0.5, 0.3, 0.1]"), 0.12, 4096, 10);
+  EXPECT_NEAR(held.ratio, 1, 4 * held.ratio_error + 0.05);
+  EXPECT_LT(held.ratio_error, 0.25);
+  EXPECT_GT(held.coverage, 0.87);
+  EXPECT_LT(held.worst, 2 * 0.12);
 }
 
 TEST(Noise, FourTimesTheSamplesForHalfTheError) {
