@@ -36,6 +36,22 @@ struct Query {  // travels through Embree as its context
   static constexpr std::uint32_t none = RTC_INVALID_GEOMETRY_ID;
 };
 
+struct Marking {  // travels through Embree as its context
+  RTCIntersectContext context;
+  std::uint32_t instance;
+  std::vector<LineMark>* marks;
+};
+
+// Notes a triangle and goes on as if it had not been met.
+void note_mark(const RTCFilterFunctionNArguments* args) {
+  auto& marking = *reinterpret_cast<Marking*>(args->context);
+  const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
+  if (args->valid[0] != 0 && hit.geomID == marking.instance)
+    marking.marks->push_back(
+        {reinterpret_cast<const RTCRay*>(args->ray)->tfar, normalized(Vec3{hit.Ng_x, hit.Ng_y, hit.Ng_z}), hit.primID});
+  args->valid[0] = 0;
+}
+
 struct Release {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
@@ -63,7 +79,7 @@ std::optional<AnalyticHit> meet(const void* shape, const Query& query, unsigned 
 }
 
 void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
-  if (args->valid[0] == 0) return;
+  if (args->valid[0] == 0 || args->context->filter) return;  // marks are sought on meshes
   auto* ray_hit = reinterpret_cast<RTCRayHit*>(args->rayhit);
   Query* query = query_of(args->context);
   const auto hit = meet(args->geometryUserPtr, *query, args->geomID, ray_hit->ray.tfar);
@@ -114,13 +130,15 @@ struct RayCaster::Impl {
   bool is_mesh(std::uint32_t instance) const { return meshes[instance].mesh != nullptr; }
   std::optional<SurfacePoint> closest(Query& query, Vec3 origin_m, Vec3 direction, double distance_m = far_away) const;
   SurfacePoint on_triangle(const RTCHit& hit, Vec3 origin_m, Vec3 direction) const;
+  void finish(SurfacePoint& point, std::uint32_t instance, Vec3 direction) const;
 };
 
 RayCaster::Impl::Impl(std::span<const scene::Instance> instances) {
   if (!device)
     throw Error(Exit::internal, "Embree", "no device (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
   scene.reset(rtcNewScene(device.get()));
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(scene.get(),
+                   static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
   for (const scene::Instance& instance : instances) {
     surfaces.push_back(static_cast<std::uint32_t>(instance.surface));
     meshes.push_back(placed(instance));
@@ -238,6 +256,11 @@ std::optional<SurfacePoint> RayCaster::Impl::closest(Query& query, Vec3 origin_m
     point.uv = query.hit.uv;
     point.tangent = query.hit.tangent;
   }
+  finish(point, instance, direction);
+  return point;
+}
+
+void RayCaster::Impl::finish(SurfacePoint& point, std::uint32_t instance, Vec3 direction) const {
   point.instance = instance;
   point.surface = surfaces[instance];
   point.outside = !(dot(point.geometric_normal, direction) > 0);
@@ -245,7 +268,6 @@ std::optional<SurfacePoint> RayCaster::Impl::closest(Query& query, Vec3 origin_m
   if (dot(point.normal, point.geometric_normal) < 0) point.normal = -point.normal;
   const double cosine = -dot(point.normal, direction);
   if (cosine < least_cosine) point.normal = normalized(point.normal - direction * (least_cosine - cosine));
-  return point;
 }
 
 RayCaster::RayCaster(std::span<const scene::Instance> instances) : impl_(std::make_unique<Impl>(instances)) {}
@@ -305,6 +327,33 @@ std::vector<SurfacePoint> RayCaster::crossings(std::uint32_t instance, Vec3 orig
     point = next(&other_side, distance_m - walked);
   }
   return found;
+}
+
+void RayCaster::mark(std::uint32_t instance, Vec3 origin_m, Vec3 direction, double distance_m,
+                     std::vector<LineMark>& marks) const {
+  if (!impl_->is_mesh(instance)) {
+    std::uint32_t number = 0;
+    for (const SurfacePoint& point : crossings(instance, origin_m, direction, distance_m))
+      marks.push_back({dot(point.position_m - origin_m, direction), point.geometric_normal, number++});
+    return;
+  }
+  Marking marking{.context = {}, .instance = instance, .marks = &marks};
+  rtcInitIntersectContext(&marking.context);
+  marking.context.filter = note_mark;
+  RTCRayHit ray_hit{impl_->float_ray(origin_m, direction, distance_m), {}};
+  ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(impl_->scene.get(), &marking.context, &ray_hit);
+}
+
+SurfacePoint RayCaster::marked(std::uint32_t instance, Vec3 origin_m, Vec3 direction, double distance_m,
+                               const LineMark& mark) const {
+  if (!impl_->is_mesh(instance)) return crossings(instance, origin_m, direction, distance_m).at(mark.number);
+  RTCHit hit{};
+  hit.geomID = instance;
+  hit.primID = mark.number;
+  SurfacePoint point = impl_->on_triangle(hit, origin_m, direction);
+  impl_->finish(point, instance, direction);
+  return point;
 }
 
 }  // namespace gonio::render

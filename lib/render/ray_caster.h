@@ -42,6 +42,13 @@ inline SurfacePoint beyond(SurfacePoint point) {
   return point;
 }
 
+// Where a line meets one instance: enough to choose between such places.
+struct LineMark {
+  double distance_m = 0;  // single precision on meshes
+  Vec3 geometric_normal;  // unit, either sign
+  std::uint32_t number = 0;
+};
+
 class RayCaster {
  public:
   explicit RayCaster(std::span<const scene::Instance> instances);
@@ -59,6 +66,11 @@ class RayCaster {
   bool blocked(Vec3 origin_m, Vec3 direction, double distance_m = far_away) const;
   // All meetings with one instance on the way, nearest first.
   std::vector<SurfacePoint> crossings(std::uint32_t instance, Vec3 origin_m, Vec3 direction, double distance_m) const;
+  // The same places in one go and in no order, added to `marks`, and one of them worked out.
+  void mark(std::uint32_t instance, Vec3 origin_m, Vec3 direction, double distance_m,
+            std::vector<LineMark>& marks) const;
+  SurfacePoint marked(std::uint32_t instance, Vec3 origin_m, Vec3 direction, double distance_m,
+                      const LineMark& mark) const;
 
  private:
   struct Impl;

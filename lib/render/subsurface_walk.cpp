@@ -10,14 +10,7 @@
 namespace gonio::render {
 namespace {
 
-struct Axes {  // of the probes
-  std::array<Vec3, 3> along;
-  std::array<double, 3> chance{0.7, 0.15, 0.15};
-  explicit Axes(Vec3 normal) {
-    const Basis basis(normal);
-    along = {basis.n, basis.t, basis.b};
-  }
-};
+constexpr double side_lines = 0.6;  // along tangents, on average
 
 double mean_density(const surface::Subsurface& beneath, double distance_m) {
   double mean = 0;
@@ -25,37 +18,89 @@ double mean_density(const surface::Subsurface& beneath, double distance_m) {
   return mean;
 }
 
-double density_per_area(const surface::Subsurface& beneath, const Axes& axes, Vec3 arm, Vec3 normal) {
-  double density = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 axis = axes.along[k];
-    const double distance_m = norm(arm - axis * dot(arm, axis));
-    density += axes.chance[k] * std::abs(dot(normal, axis)) * mean_density(beneath, distance_m);
-  }
-  return density;
-}
+// How far to look along an axis, at a distance on the plane: farther than t with the chance 1 / sqrt(1 + (t / c)^2).
+class Span {
+ public:
+  explicit Span(double density) : scale_m_(std::sqrt(2 / (pi * density))) {}
+  double half_m(double u) const { return scale_m_ * std::sqrt(1 / (u * u) - 1); }
+  double chance(double t) const { return 1 / std::sqrt(1 + t * t / (scale_m_ * scale_m_)); }
 
-struct Chosen {
-  std::size_t place = 0;
-  double chance = 0;  // none of them is within the reach: 0
+ private:
+  double scale_m_;
 };
-Chosen choose(const surface::Subsurface& beneath, Vec3 exit_m, const std::vector<SurfacePoint>& met, double u) {
-  if (met.size() == 1) return {0, 1};
-  const auto share = [&](const SurfacePoint& p) {
-    return std::sqrt(mean_density(beneath, norm(p.position_m - exit_m)));
-  };
-  double sum = 0;
-  for (const SurfacePoint& p : met) sum += share(p);
-  double left = u * sum;
-  Chosen chosen;
-  for (std::size_t i = 0; i < met.size() && left >= 0; ++i) {
-    const double here = share(met[i]);
-    if (!(here > 0)) continue;
-    chosen = {i, here / sum};
-    left -= here;
+
+struct Line {
+  Vec3 origin_m, along;
+  double length_m = 0;
+};
+struct Candidate {
+  const Line* line = nullptr;
+  LineMark mark;
+  double per_area = 0;  // had it been the only one
+  double appeal = 0;    // density at the straight distance
+};
+
+class EntrySearch {
+ public:
+  EntrySearch(const RayCaster& caster, const surface::Subsurface& beneath, const SurfacePoint& exit)
+      : caster_(caster), beneath_(beneath), exit_(exit), axes_(exit.geometric_normal) {
+    marks_.reserve(8);
+    candidates_.reserve(8);
   }
-  return chosen;
-}
+
+  void look(Line& line, Vec3 axis, Vec2 disc, Vec2 rest) {
+    const double distance_m = beneath_.sample_distance(std::min(2, static_cast<int>(3 * rest.x)), disc.x);
+    const double phi = 2 * pi * disc.y, reach_m = beneath_.reach_m();
+    const Basis basis(axis);
+    const Span span(mean_density(beneath_, distance_m));
+    const double half_m =
+        std::min(span.half_m(rest.y), std::sqrt(std::max(0.0, (reach_m - distance_m) * (reach_m + distance_m))));
+    const Vec3 foot = (basis.t * std::cos(phi) + basis.b * std::sin(phi)) * distance_m;
+    line = {exit_.position_m + foot + axis * half_m, -axis, 2 * half_m};
+    marks_.clear();
+    caster_.mark(exit_.instance, line.origin_m, line.along, line.length_m, marks_);
+    for (const LineMark& mark : marks_) {
+      const double height_m = half_m - mark.distance_m;
+      const Vec3 arm = foot + axis * height_m;
+      const double appeal = mean_density(beneath_, norm(arm));
+      const double density = density_per_area(arm, mark.geometric_normal) * span.chance(height_m);
+      if (appeal > 0 && density > 0) candidates_.push_back({&line, mark, 1 / density, appeal});
+    }
+  }
+  Vec3 axis(int k) const { return k == 0 ? axes_.n : k == 1 ? axes_.t : axes_.b; }
+
+  std::optional<EntryPoint> choose(double u) const {
+    double sum = 0;
+    for (const Candidate& c : candidates_) sum += c.per_area * c.appeal;
+    double left = u * sum;
+    for (const Candidate& c : candidates_) {
+      left -= c.per_area * c.appeal;
+      if (left > 0 && &c != &candidates_.back()) continue;
+      const Line& line = *c.line;
+      const SurfacePoint met = caster_.marked(exit_.instance, line.origin_m, line.along, line.length_m, c.mark);
+      return EntryPoint{on_side_of(exit_, met), sum / c.appeal};
+    }
+    return {};
+  }
+
+ private:
+  double density_per_area(Vec3 arm, Vec3 normal) const {
+    double density = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double distance_m = norm(arm - axis(k) * dot(arm, axis(k)));
+      const double lines = k == 0 ? 1 : side_lines / 2;
+      density += lines * std::abs(dot(normal, axis(k))) * mean_density(beneath_, distance_m);
+    }
+    return density;
+  }
+
+  const RayCaster& caster_;
+  const surface::Subsurface& beneath_;
+  const SurfacePoint& exit_;
+  Basis axes_;
+  std::vector<LineMark> marks_;
+  std::vector<Candidate> candidates_;
+};
 
 }  // namespace
 
@@ -65,24 +110,15 @@ SurfacePoint on_side_of(const SurfacePoint& exit, const SurfacePoint& point) {
 
 std::optional<EntryPoint> draw_entry(const RayCaster& caster, const surface::Subsurface& beneath,
                                      const SurfacePoint& exit, Sampler& sampler) {
-  const Axes axes(exit.geometric_normal);
-  const Vec2 choice = sampler.two(), disc = sampler.two();
-  const double which = sampler.uniform();
-  const std::size_t k = choice.x < axes.chance[0] ? 0 : choice.x < axes.chance[0] + axes.chance[1] ? 1 : 2;
-  const Basis probe(axes.along[k]);
-  const double distance_m = beneath.sample_distance(std::min(2, static_cast<int>(3 * choice.y)), disc.x);
-  const double phi = 2 * pi * disc.y, reach_m = beneath.reach_m();
-  const double half_m = std::sqrt(std::max(0.0, (reach_m - distance_m) * (reach_m + distance_m)));
-  const Vec3 origin_m =
-      exit.position_m + (probe.t * std::cos(phi) + probe.b * std::sin(phi)) * distance_m + probe.n * half_m;
-  const auto met = caster.crossings(exit.instance, origin_m, -probe.n, 2 * half_m);
-  if (met.empty()) return {};
-  const Chosen chosen = choose(beneath, exit.position_m, met, which);
-  if (!(chosen.chance > 0)) return {};
-  const SurfacePoint point = on_side_of(exit, met[chosen.place]);
-  const double density = density_per_area(beneath, axes, point.position_m - exit.position_m, point.geometric_normal);
-  if (!(density > 0)) return {};
-  return EntryPoint{point, 1 / (chosen.chance * density)};
+  EntrySearch search(caster, beneath, exit);
+  std::array<Line, 2> lines;
+  const Vec2 choice = sampler.two(), disc = sampler.two(), rest = sampler.two();
+  search.look(lines[0], search.axis(0), disc, rest);
+  if (choice.x < side_lines) {
+    const Vec2 side_disc = sampler.two(), side_rest = sampler.two();
+    search.look(lines[1], search.axis(choice.x < side_lines / 2 ? 1 : 2), side_disc, side_rest);
+  }
+  return search.choose(choice.y);
 }
 
 Rgb EntryModel::evaluate(const surface::Values& values, Vec3, Vec3 wi) const {

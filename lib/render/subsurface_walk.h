@@ -1,16 +1,17 @@
 // Paths beneath translucent surfaces: from where the eye's ray met the surface to where light entered the same object.
 // World frame, metres.
 //
-// Entry points are drawn as King, Kulla, Conty & Fascione 2013, "BSSRDF importance sampling": one of three axes (the
-// exit's normal with probability 0.7, two tangents with 0.15 each), one of three bands, a distance r on the plane
-// across the axis (surface::Subsurface), and one of the points where a line along the axis meets the object within the
-// reach, with chances q in proportion to the square root of the density at the straight distance |y - x|: the far side
-// of a body is met as often as the near one and sends little, but it may be the lit one. All ways of having found a
-// point y are counted (balance heuristic):
-//   density per area(y) = sum over axes of  p_axis |n_g(y).axis| mean over bands of density(r_axis(y)),
-//   weight = 1 / (q density)
-// At the entry the path is at an ordinary vertex with the law f = S_d(y, w12(wi); x) T(wi) weight, whose directions are
-// drawn by their cosine: lights, interreflection and everything else go on from there as they would anywhere.
+// Entry points are drawn after King, Kulla, Conty & Fascione 2013, "BSSRDF importance sampling": by lines that run
+// along an axis, one along the exit's normal and 0.6 on average along two tangents, at a distance r on the plane across
+// it, drawn for one of three bands (surface::Subsurface). Every place where a line meets the object is found with a
+// chance that falls with its height t over the exit's plane, 1 / sqrt(1 + (t / c)^2), c^2 = 2 / (pi density(r)): a line
+// is followed no farther than drawn. All ways of finding a point y are counted (balance heuristic):
+//   w(y) = 1 / (chance(t) sum over axes of  lines_axis |n_g(y).axis| mean over bands of density(r_axis(y)))
+// One of the places is chosen, in proportion to w a, a the density at the straight distance |y - x|, and stands for
+// all: weight = sum of w a / a(y) (resampling: Talbot, Cline & Egbert 2005). Weights vary little: on a bunny 0.15 m
+// high with sigma_tr = 73, 190 and 371 1/m their mean square is 1.3 to 1.6 times the square of their mean. At the entry
+// the path is at an ordinary vertex with the law f = S_d(y, w12(wi); x) T(wi) weight, whose directions are drawn by
+// their cosine: lights, interreflection and everything else go on from there as they would anywhere.
 #pragma once
 #include <optional>
 

@@ -55,14 +55,20 @@ double DipoleDistances::sample(double u) const {
   return std::min(cut_m_, std::sqrt(std::max(0.0, (d - source.depth_m) * (d + source.depth_m))));
 }
 
+void DipoleDistances::cut(double reach_m) {
+  cut_m_ = reach_m;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Source& source = sources_[k];
+    strength_[k] = source.share > 0 ? source.share * source.depth_m / (2 * pi * (1 - tail(source, cut_m_))) : 0;
+  }
+}
+
 double DipoleDistances::density(double distance_m) const {
   if (distance_m > cut_m_) return 0;
   double sum = 0;
-  for (const Source& source : sources_) {
-    if (!(source.share > 0)) continue;
-    const double z = source.depth_m, d = std::hypot(distance_m, z);
-    sum += source.share * z * (1 + sigma_tr_ * d) * std::exp(-sigma_tr_ * (d - z)) /
-           (2 * pi * d * d * d * (1 - tail(source, cut_m_)));
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double z = sources_[k].depth_m, d2 = distance_m * distance_m + z * z, d = std::sqrt(d2);
+    if (strength_[k] > 0) sum += strength_[k] * (1 + sigma_tr_ * d) * std::exp(-sigma_tr_ * (d - z)) / (d2 * d);
   }
   return sum;
 }

@@ -16,18 +16,20 @@ class DipoleDistances {
     double depth_m = 0, share = 0;
   };
   DipoleDistances() = default;
-  DipoleDistances(std::array<Source, 2> sources, double sigma_tr_per_m)
-      : sources_(sources), sigma_tr_(sigma_tr_per_m) {}
+  DipoleDistances(std::array<Source, 2> sources, double sigma_tr_per_m) : sources_(sources), sigma_tr_(sigma_tr_per_m) {
+    cut(cut_m_);
+  }
 
   double tail(double distance_m) const;    // without cut-off
   double reach_m(double remaining) const;  // beyond which the tail is `remaining`
-  void cut(double reach_m) { cut_m_ = reach_m; }
+  void cut(double reach_m);
   double sample(double u) const;
   double density(double distance_m) const;
 
  private:
   double tail(const Source& source, double distance_m) const;
   std::array<Source, 2> sources_{};
+  std::array<double, 2> strength_{};  // share_k z_k / (2 pi), normalised
   double sigma_tr_ = 0, cut_m_ = 1e300;
 };
 
