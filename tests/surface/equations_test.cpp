@@ -259,6 +259,28 @@ TEST(InterfacedDiffuse, DarkensAsSaundersonSays) {
   }
 }
 
+// What goes in through the interface is what a rough dielectric of the same facets transmits; that sends some of the
+// light that meets several facets back, which the coat takes as transmitted.
+TEST(InterfacedDiffuse, PassesWhatTheRoughDielectricTransmits) {
+  const surface::Model &plastic = *surface::find("interfaced-diffuse"), &glass = *surface::find("dielectric");
+  for (const double alpha : {0.0, 0.1, 0.3})
+    for (const double zenith : {10.0, 45.0, 70.0}) {
+      const Vec3 wo = at_zenith(zenith);
+      surface::Values clear = values({grey(1.5), grey(alpha), grey(0), grey(0), grey(0), grey(0), grey(0)});
+      clear.eta = grey(1.5);
+      Random random(17);
+      double through = 0;
+      constexpr int count = 20000;
+      for (int k = 0; k < count; ++k) {
+        const auto s = glass.sample(clear, wo, {random.uniform(), random.uniform()}, random.uniform());
+        if (s.pdf > 0 && s.wi.z < 0) through += s.weight.x * 2.25 / count;
+      }
+      // Black inside: only the interface reflects.
+      const double passes = 1 - plastic.albedo(values({grey(0), grey(1.5), grey(alpha)}), wo).x;
+      EXPECT_NEAR(through, passes, 0.015) << alpha << " " << zenith;
+    }
+}
+
 TEST(InterfacedDiffuse, WithoutInterfaceIsDiffuse) {
   const surface::Model &plastic = *surface::find("interfaced-diffuse"), &diffuse = *surface::find("diffuse");
   const Rgb albedo{0.2, 0.5, 0.9};

@@ -1,5 +1,6 @@
-// Diffuse surface: Lambert's law, or Oren & Nayar 1994 (surface/oren_nayar.h) where sigma_rad > 0.
-// Sampling is cosine-weighted. albedo() is exact.
+// Diffuse surface: Lambert's law, f = albedo / pi, or the Oren-Nayar model (1994; surface/oren_nayar.h) where
+// sigma_rad > 0, scaled where its reflectance would exceed one. Reflects at most albedo; sampling is cosine-weighted;
+// albedo() is exact.
 #include "surface/hemisphere.h"
 #include "surface/oren_nayar.h"
 #include "surface/surface.h"
@@ -16,7 +17,8 @@ class Diffuse final : public Model {
         .family = manifest::Family::surface,
         .id = "diffuse",
         .sentence =
-            "A matte surface: the same radiance in all directions, or brighter towards the light where it is rough.",
+            "A matte surface: the same radiance in all directions, or brighter towards the light where it is rough "
+            "(the Oren-Nayar model).",
         .source = "Lambert 1760; Oren & Nayar 1994, equation 30 (scaled where its albedo would exceed 1)",
         .parameters = {{.name = "albedo",
                         .unit = "1",

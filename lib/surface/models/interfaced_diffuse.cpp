@@ -5,10 +5,12 @@
 //   f = F D G2 / (4 wiz woz)  +  T(wi) T(wo) albedo / (pi eta^2 (1 - albedo R))
 // 1 / eta^2: radiance spreads as it leaves. The hemispherical integral of the second term is
 // T(wi) albedo (1 - R) / (1 - albedo R), as 2 integral of T cos = eta^2 (1 - R): a white base returns all light,
-// exactly. Saunderson 1942; Wolff 1994 for smooth interfaces. Unlike `coated-diffuse`, whose albedo is that of the base
-// as seen through its interface, `albedo` here is the base's own, as it would be measured without the interface: a coat
-// of varnish darkens it and deepens its colour, the more the lower the albedo. At eta = 1 it is `diffuse`. The base
-// loses polarization (surface/polarization.h). albedo() is exact up to the tables' error.
+// exactly. Saunderson 1942; Wolff 1994 for smooth interfaces; Hannemose et al. 2020, section 4, of which this is the
+// "interfaced" model: through the rough interface, diffusely reflected, through it again. Unlike `coated-diffuse`,
+// whose albedo is that of the base as seen through its interface, `albedo` here is the base's own, as it would be
+// measured without the interface: a coat of varnish darkens it and deepens its colour, the more the lower the albedo.
+// At eta = 1 it is `diffuse`. The base loses polarization (surface/polarization.h). albedo() is exact up to the tables'
+// error.
 #include "surface/interface_coat.h"
 #include "surface/polarization.h"
 #include "surface/surface.h"
