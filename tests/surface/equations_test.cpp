@@ -121,6 +121,19 @@ TEST(OrenNayar, ReflectanceInClosedForm) {
     }
 }
 
+// White furnace: never more than arrives, all of it at sigma = 0; what rough grooves keep is the light between them.
+TEST(OrenNayar, NeverMakesLight) {
+  double least = 1;
+  for (double sigma = 0; sigma < pi / 2; sigma += 0.01)
+    for (double cosine = 0; cosine <= 1; cosine += 0.01) {
+      const double reflected = OrenNayar(sigma).reflectance(cosine);
+      ASSERT_LE(reflected, 1 + 1e-12) << sigma << " " << cosine;
+      least = std::min(least, reflected);
+    }
+  EXPECT_EQ(OrenNayar(0).reflectance(0.3), 1);
+  EXPECT_GT(least, 0.5);
+}
+
 TEST(InterfaceAlbedo, AgreesWithQuadratureBetweenItsNodes) {
   Random random(11);
   for (int k = 0; k < 200; ++k) {
