@@ -7,15 +7,15 @@
 
 namespace gonio::tests {
 
-inline std::string without(std::string text, const std::string& word, const std::string& other) {
-  for (auto at = text.find(word); at != std::string::npos; at = text.find(word)) text.replace(at, word.size(), other);
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from)) text.replace(at, from.size(), to);
   return text;
 }
 
 // `ball`: a surface. `tint`: the table's albedo at red, green and blue.
 inline manifest::Document small_scene(const std::string& ball = R"({"model": "diffuse", "albedo": [0.6, 0.6, 0.6]})",
                                       const std::string& tint = "[0.5, 0.5, 0.5]") {
-  const std::string text = without(without(R"({
+  const std::string text = replaced(replaced(R"({
  "gonio": 1,
  "cameras": {"c": {"model": "pinhole", "width_px": 18, "height_px": 12, "fx_px": 22, "fy_px": 22, "cx_px": 8.5,
    "cy_px": 5.5, "mosaic": "polarizers"}},
@@ -33,8 +33,8 @@ inline manifest::Document small_scene(const std::string& ball = R"({"model": "di
    {"id": "table", "mesh": "table", "surface": "table"}],
  "mechanisms": {"light.ambient": {"radiance_r": 0.2, "radiance_g": 0.2, "radiance_b": 0.2}}
 })",
-                                           "BALL", ball),
-                                   "TINT", tint);
+                                             "BALL", ball),
+                                    "TINT", tint);
   return manifest::parse_document(text, "small", ".");
 }
 
