@@ -88,6 +88,61 @@ TEST(ExchangeBlender, SunAndOrthographicCamera) {
   expect_radiances(1, [](Vec3) { return Rgb{3, 2, 1} * (1 / norm(Vec3{0.3, 0.2, 1})); });
 }
 
+// Irradiance of a plate that faces up, by a lattice of the lamp's own samples.
+Rgb irradiance(const light::Emitter& lamp, Vec3 p) {
+  constexpr int side = 24;
+  Rgb sum;
+  for (int i = 0; i < side * side; ++i) {
+    const light::Sample s = lamp.sample(p, {(i % side + 0.5) / side, (i / side + 0.5) / side});
+    if (s.valid && s.direction.z > 0) sum += s.weight * (s.direction.z / (s.delta ? 1 : side * side));
+    if (s.delta) return sum;
+  }
+  return sum;
+}
+
+// The mean over the plates; lamps with an extent leave noise in single pixels.
+TEST(ExchangeBlender, LampsThatFaceSomewhere) {
+  if (!blender_is_here()) GTEST_SKIP() << "blender is not installed";
+  Letter letter;
+  const manifest::Parameter at(std::vector<double>{0.1, -0.3, 0.9}), down(std::vector<double>{-0.1, 0.3, -0.9}),
+      one(1.0);
+  letter.document.lights = {
+      {"disc", {"disc", {{"position_m", at}, {"direction", down}, {"watt_per_sr", one}, {"radius_m", 0.1}}}},
+      {"panel",
+       {"rectangle",
+        {{"position_m", at}, {"direction", down}, {"width_m", 0.3}, {"height_m", 0.1}, {"watt_per_sr", 0.5}}}},
+      {"stage",
+       {"spot",
+        {{"position_m", at},
+         {"direction", down},
+         {"watt_per_sr", 2},
+         {"outer_rad", 0.35},
+         {"inner_share", 0.4},
+         {"exponent", 1}}}}};
+  letter.document.images.resize(1);
+  letter.document.images[0].light = {"disc", "panel", "stage"};
+  letter.enlarge_without_balls();
+  const View& view = letter.scene.views[0];
+  const io::Image picture = rendered(letter, view.image, 32);
+  double found = 0, expected = 0;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const auto look = [&](double dx, double dy) {
+        return seen(letter.scene, view, {x + dx, y + dy}, [](Vec3) { return Rgb{1, 1, 1}; });
+      };
+      if (!look(-1, -1).sure || !look(1, -1).sure || !look(-1, 1).sure || !look(1, 1).sure) continue;
+      const Seen here = seen(letter.scene, view, {double(x), double(y)}, [&](Vec3 p) {
+        Rgb sum;
+        for (const std::size_t i : view.lights) sum += irradiance(*letter.scene.appearance.lights[i].emitter, p);
+        return sum;
+      });
+      found += picture.at(x, y, 1);
+      expected += here.radiance.y * view.gain.y;
+    }
+  EXPECT_GT(expected, 0);
+  EXPECT_NEAR(found / expected, 1, 3e-3);
+}
+
 // The camera looks into the sky: every pixel within one texel shows that texel.
 TEST(ExchangeBlender, Surroundings) {
   if (!blender_is_here()) GTEST_SKIP() << "blender is not installed";

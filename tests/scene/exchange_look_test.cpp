@@ -1,4 +1,6 @@
 // Surfaces in the few terms that other renderers share.
+#include <algorithm>
+
 #include "exchange_cases.h"
 #include "scene/exchange/look.h"
 
@@ -25,6 +27,43 @@ TEST(ExchangeLook, SurfacesAreRecognisedByWhatTheyState) {
   EXPECT_NEAR(albedo_beneath(looks["coated wood \"&<'"].colour, mean_internal_reflectance(1.5)).x, 0.3, 1e-12);
   for (const char* exact : {"glass", "copper", "lacquer", "varnish", "gold", "paint"})
     EXPECT_TRUE(losses[exact].empty()) << exact << ": " << losses[exact].front().what;
+}
+
+// Values in the middle of their bounds for whatever a model wants to be told.
+manifest::Parameters plausible(const manifest::ModelInfo& info) {
+  manifest::Parameters all;
+  for (const manifest::ParameterInfo& p : info.parameters) {
+    if (p.preset) continue;
+    const double value = std::clamp(p.name == "watt_per_sr" || p.lower > 1 ? p.lower : 0.5, p.lower, p.upper);
+    all[p.name] = manifest::Parameter(std::vector<double>(static_cast<std::size_t>(p.components), value));
+  }
+  return all;
+}
+
+// Whatever surfaces are registered: each becomes a look with finite numbers, or is named as not expressible.
+TEST(ExchangeLook, EveryRegisteredSurfaceIsALookOrALoss) {
+  for (const surface::Model* model : surface::all_models()) {
+    if (model->info().attachment != manifest::Attachment::none) continue;
+    SCOPED_TRACE(model->info().id);
+    Appearance appearance;
+    appearance.surfaces.resize(2);
+    appearance.surfaces[0] = {.id = "base", .model = surface::find("diffuse"), .parameters = {{"albedo", 0.5}}};
+    appearance.surfaces[1] = {.id = "it", .model = model, .parameters = plausible(model->info())};
+    refresh(appearance.surfaces[0], "base");
+    refresh(appearance.surfaces[1], "it");
+    if (model->info().takes_base) appearance.surfaces[1].base = 0;
+    std::vector<Loss> losses;
+    const Look look = look_of(appearance, appearance.surfaces[1], losses);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_GE(look.colour[c], 0);
+      EXPECT_LE(look.colour[c], 1.01);
+    }
+    EXPECT_GE(look.eta, 1);
+    const bool foreign = std::ranges::any_of(model->info().parameters, [](const auto& p) {
+      return p.name.starts_with("ridge") || p.name.starts_with("wavelength") || p.name == "rho_d";
+    });
+    EXPECT_EQ(foreign, std::ranges::any_of(losses, [](const Loss& l) { return l.pointer == "/surfaces/it/model"; }));
+  }
 }
 
 }  // namespace

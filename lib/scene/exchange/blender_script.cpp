@@ -196,7 +196,7 @@ def with_coat(nodes, entry, below):
 def glass(nodes, entry):
     if abs(entry["ior"] - 1) < 1e-6:
         return nodes.add("ShaderNodeBsdfTransparent", Color=(1, 1, 1))
-    return nodes.add("ShaderNodeBsdfGlass", {"distribution": distribution(entry)}, Color=(1, 1, 1), IOR=entry["ior"],
+    return nodes.add("ShaderNodeBsdfGlass", {"distribution": distribution(entry, True)}, Color=(1, 1, 1), IOR=entry["ior"],
                      Roughness=roughness(nodes, entry))
 
 

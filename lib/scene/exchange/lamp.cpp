@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.h"
 #include "light/aimed.h"
 
 namespace gonio::scene {
@@ -58,7 +59,7 @@ void aim(Lamp& lamp, const Named& named, std::vector<Loss>& losses) {
     lamp.outer_rad = named.scalar("outer_rad");
     lamp.inner_rad = lamp.outer_rad * named.scalar("inner_share");
     if (lamp.radius_m > 0) lose("a spot lamp with an extent", "a point");
-    if (exponent != 0) lose("a lobe of the cosine's power within the cone", "the same intensity within the cone");
+    lamp.exponent = named.scalar("exponent");
     return;
   }
   const bool rectangle = named.has("width_m");
@@ -111,6 +112,13 @@ void place(Lamp& lamp, const Named& named, const Light& light, std::vector<Loss>
 }
 
 }  // namespace
+
+void lose_exponent(const Lamp& lamp, double has, std::vector<Loss>& losses) {
+  if (lamp.kind == Lamp::Kind::spot && lamp.exponent != has)
+    losses.push_back({"/lights/" + lamp.id,
+                      format("an intensity by the cosine's power %.3g within a cone", lamp.exponent),
+                      has == 0 ? "the same intensity within it" : "an intensity by the cosine"});
+}
 
 Quaternion Lamp::turn() const {
   const Vec3 z = kind == Kind::directional ? axis : -axis;

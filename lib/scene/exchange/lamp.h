@@ -19,6 +19,7 @@ struct Lamp {
   Vec3 x{1, 0, 0};     // rectangle: along its first side
   double radius_m = 0, size_x_m = 0, size_y_m = 0;
   double inner_rad = 0, outer_rad = 0;       // spot: full within, nothing beyond
+  double exponent = 0;                       // spot: of the cosine within
   double rotation_rad = 0;                   // picture
   std::shared_ptr<const io::Image> picture;  // linear
   Quaternion turn() const;                   // takes -z to where it shines, and x along its first side
@@ -26,6 +27,8 @@ struct Lamp {
 };
 
 Lamp lamp_of(const Light& light, std::vector<Loss>& losses);  // `losses` gains what the lamp lacks
-Lamp ambient_lamp(const light::Emitter& ambient);             // of the mechanism light.ambient
+// A loss where the cone of another program falls off by the cosine's power `has`, and the lamp's by another.
+void lose_exponent(const Lamp& lamp, double has, std::vector<Loss>& losses);
+Lamp ambient_lamp(const light::Emitter& ambient);  // of the mechanism light.ambient
 
 }  // namespace gonio::scene

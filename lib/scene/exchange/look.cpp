@@ -78,7 +78,7 @@ void make_translucent(Look& look, const Named& named) {
   medium.sigma_a_per_m = named.rgb("sigma_a_per_m");
   medium.sigma_s_per_m = named.rgb("sigma_s_per_m", named.rgb("sigma_s_reduced_per_m"));
   medium.g = named.rgb("g");
-  look.eta = mean(medium.eta);
+  look.eta = level(medium.eta);
   band(medium.sigma_a_per_m.x, medium.sigma_s_per_m.x, medium.g.x, medium.eta.x, look.colour.x,
        look.diffuse_length_m.x);
   band(medium.sigma_a_per_m.y, medium.sigma_s_per_m.y, medium.g.y, medium.eta.y, look.colour.y,
@@ -215,7 +215,7 @@ Look look_of(const Appearance& appearance, const Surface& surface, std::vector<L
   } else if (const auto inside = model.interior(surface.values); model.transmits() && inside) {
     look.kind = Look::Kind::glass;
     look.medium = *inside;
-    look.eta = mean(inside->eta);
+    look.eta = level(inside->eta);
     check_dispersion(look, pointer, losses);
   } else if (named.has("albedo")) {
     make_matte(look, named);

@@ -33,6 +33,11 @@ struct Look {
 // `losses` gains what follows from the look being simpler than the surface.
 Look look_of(const Appearance& appearance, const Surface& surface, std::vector<Loss>& losses);
 
+// One number for three bands: their own where they agree, else their mean.
+inline double level(Rgb v) {
+  return v.x == v.y && v.y == v.z ? v.x : mean(v);
+}
+
 // A roughness that reflects like Oren and Nayar's `sigma_rad`, as A (1 + ratio s / t): see look.cpp.
 struct RoughMatte {
   double scale = 1;  // A

@@ -6,7 +6,8 @@
 //   fx = lens / sensor_width times the width; shifts are of the window, in widths. Orthographic: ortho_scale is the
 //   window's width in metres.
 // - Point: of power P, I = P / (4 pi) and, for a ball, L = P / (4 pi^2 r^2), the radiance that has this intensity; area
-//   lamp: L = P / (pi A); sun: its strength is the irradiance on a facing plane.
+//   lamp: L = P / (4 A); spot: I = P / (4 pi) cos(theta) S, S as in light/models/spot.cpp; sun: its strength is the
+//   irradiance on a facing plane.
 // - Surroundings: the picture's centre looks along +x, its left quarter along +y: ours, turned by a mapping node.
 // - Roughness is the root of alpha. The diffuse node's roughness is Fujii's: a + b s / t with b / a = roughness and
 //   a = 1 / (pi + (pi / 2 - 2 / 3) roughness), also for s < 0, where Oren and Nayar's has none.
@@ -112,7 +113,7 @@ class Writer {
                                  {"anisotropic_rotation", look.azimuth_rad / (2 * pi)},
                                  {"sigma_a", list(look.medium.sigma_a_per_m)},
                                  {"sigma_s", list(look.medium.sigma_s_per_m)},
-                                 {"g", mean(look.medium.g)},
+                                 {"g", level(look.medium.g)},
                                  {"radius", list(look.diffuse_length_m)}});
     entry["textures"] = Value::object();
     for (const auto& [name, texture] : look.textures)
@@ -145,6 +146,9 @@ class Writer {
            "Schlick's rise from the same reflectance at normal incidence");
     if (look.kind == Look::Kind::metal && (!look.rough() || look.beckmann))
       lose(pointer, "a rise of reflectance towards grazing angles", "the reflectance at normal incidence, everywhere");
+    if (look.kind == Look::Kind::glass && (look.rough() || look.textures.contains("alpha")))
+      lose(pointer, "light that facets scatter twice, as from a matte sheet",
+           look.beckmann ? "a rough glass that loses it" : "a random walk over the facets");
     if (look.kind == Look::Kind::translucent)
       lose(pointer, "a dipole", "a random walk of the same diffuse reflectance and diffusion length");
     if (look.kind != Look::Kind::metal && look.alpha_x != look.alpha_y)
@@ -198,12 +202,13 @@ class Writer {
         return Value::object(
             {{"kind", "AREA"},
              {"shape", disc ? "DISK" : "RECTANGLE"},
-             {"power", list(lamp.value * (pi * area))},
+             {"power", list(lamp.value * (4 * area))},
              {"position", list(lamp.position_m)},
              {"rotation", list(lamp.turn())},
              {"size", disc ? list({2 * lamp.radius_m, 2 * lamp.radius_m}) : list({lamp.size_x_m, lamp.size_y_m})}});
       }
       case Kind::spot:
+        lose_exponent(lamp, 1, out_.losses);
         return Value::object({{"kind", "SPOT"},
                               {"power", list(lamp.value * (4 * pi))},
                               {"position", list(lamp.position_m)},

@@ -171,7 +171,7 @@ class Writer {
     if (g.x != g.y || g.y != g.z) lose("/surfaces/" + surface.id + "/g", "an asymmetry g per band", "their mean");
     return "<medium type=\"homogeneous\" id=\"" + escaped(surface.id) + "-inside\">" + rgb("sigma_t", sigma_t) +
            rgb("albedo", {share(s.x, sigma_t.x), share(s.y, sigma_t.y), share(s.z, sigma_t.z)}) +
-           "<phase type=\"hg\">" + number("g", mean(g)) + "</phase></medium>";
+           "<phase type=\"hg\">" + number("g", level(g)) + "</phase></medium>";
   }
 
   std::string shapes() {
@@ -283,6 +283,7 @@ class Writer {
       case Kind::rectangle:
         return "<shape type=\"rectangle\">" + to_world(facing(lamp, lamp.size_x_m / 2, lamp.size_y_m / 2)) + area;
       case Kind::spot:
+        lose_exponent(lamp, 0, out_.losses);
         lose("/lights/" + lamp.id, "a smooth edge of the cone", "one that falls off linearly with the angle");
         return "<emitter type=\"spot\">" + to_world(facing(lamp, 1, 1)) + rgb("intensity", lamp.value) +
                number("cutoff_angle", lamp.outer_rad * 180 / pi) + number("beam_width", lamp.inner_rad * 180 / pi) +

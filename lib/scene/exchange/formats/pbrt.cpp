@@ -131,7 +131,7 @@ class Writer {
       if (has_medium(look))
         text += "MakeNamedMedium " + quoted(surface.id) + words("string type", "homogeneous") +
                 rgb("sigma_a", look.medium.sigma_a_per_m) + rgb("sigma_s", look.medium.sigma_s_per_m) +
-                number("g", mean(look.medium.g)) + "\n";
+                number("g", level(look.medium.g)) + "\n";
       if (look.azimuth_rad != 0) lose(pointer + "/azimuth_rad", "a turned tangent", "the tangent of the mesh");
       if (look.beckmann) lose(pointer, "Beckmann's slopes", "those of GGX of the same roughness");
       looks_.push_back(look);
@@ -160,7 +160,7 @@ class Writer {
       case Look::Kind::translucent:
         lose(pointer, "this dipole", "pbrt's photon beam diffusion of the same medium");
         return words("string type", "subsurface") + rgb("sigma_a", look.medium.sigma_a_per_m) +
-               rgb("sigma_s", look.medium.sigma_s_per_m) + number("g", mean(look.medium.g)) + number("eta", look.eta) +
+               rgb("sigma_s", look.medium.sigma_s_per_m) + number("g", level(look.medium.g)) + number("eta", look.eta) +
                number("scale", 1) + roughness(look, surface, before);
       case Look::Kind::glass: break;
     }
@@ -252,6 +252,7 @@ class Writer {
                "1 0 ]\n"
                "AttributeEnd\n";
       case Kind::spot:
+        lose_exponent(lamp, 0, out_.losses);
         return "LightSource \"spot\"" + from(lamp.position_m) + to(lamp.position_m + lamp.axis) + rgb("I", value) +
                number("coneangle", lamp.outer_rad * 180 / pi) +
                number("conedeltaangle", (lamp.outer_rad - lamp.inner_rad) * 180 / pi) + "\n";

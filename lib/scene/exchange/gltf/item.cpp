@@ -52,7 +52,8 @@ Item Item::named(std::string_view list, const Item& index) const {
 }
 
 double Item::number() const {
-  if (!value().is_number() || !std::isfinite(value_->as_number())) refuse("is no finite number");
+  constexpr double largest = 1e30;  // so that products of a few stay finite
+  if (!value().is_number() || !(std::abs(value_->as_number()) <= largest)) refuse("is no number within 1e30");
   return value_->as_number();
 }
 

@@ -82,7 +82,7 @@ void MaterialReader::read_roughness(const Item& pbr, manifest::Surface& surface)
   io::Image alpha(codes.width, codes.height, {"Y"});
   for (std::size_t i = 0; i < alpha.pixels(); ++i) {
     const double share = roughness * codes.data[i * channels + (channels < 3 ? 0 : 1)];
-    alpha.data[i] = static_cast<float>(std::clamp(share * share, least, 1.0));
+    alpha.data[i] = static_cast<float>(std::clamp(share * share, least * (1 + 1e-6), 1.0));
   }
   const std::string file = "pictures/" + std::to_string(imported_.files.size()) + "-alpha.exr";
   imported_.files.push_back({file, io::encode_exr(alpha)});
@@ -118,7 +118,7 @@ void MaterialReader::read_glass(const Item& material, manifest::Surface& surface
   const double distance = volume["attenuationDistance"].number();
   if (!(distance > 0)) volume["attenuationDistance"].refuse("is not above 0");
   std::vector<double> sigma = volume["attenuationColor"].numbers(3, {1, 1, 1});
-  for (double& c : sigma) c = c >= 1 ? 0 : -std::log(std::max(c, 1e-12)) / distance;
+  for (double& c : sigma) c = c >= 1 ? 0 : std::min(-std::log(std::max(c, 1e-12)) / distance, 1e6);
   surface.parameters["sigma_a_per_m"] = manifest::Parameter(sigma);
 }
 
@@ -181,6 +181,9 @@ std::string MaterialReader::read(const Item& material) {
   }
   if (clear < 0.5 && strength > 0) lose(anisotropy, "anisotropic roughness of opaque surfaces", "an isotropic one");
   read_losses(material);
+  manifest::Parameters all = surface.parameters;
+  for (const auto& [parameter, file] : surface.textures) all[parameter] = 0.5;
+  manifest::values_of(*manifest::find_model(manifest::Family::surface, surface.model), all, material.place());
   const std::string name = free_name(material["name"].text(""));
   imported_.document.surfaces[name] = std::move(surface);
   return clear < 0.5 ? coat(material, name) : name;

@@ -135,9 +135,13 @@ class Reader {
     if (!walked_.insert(node.pointer()).second) index.refuse("names a node that stands elsewhere in the scene already");
     if (depth > 4096) index.refuse("lies more than 4096 nodes deep");
     const Motion motion = parent * motion_of(node);
+    if (!is_finite(motion.offset) || !std::isfinite(determinant(motion.linear)))
+      node.refuse("leads out of the range of numbers");
+    const Item light = node["extensions"]["KHR_lights_punctual"]["light"];
+    if ((node["camera"].there() || light.there()) && !(std::abs(determinant(motion.linear)) > 1e-30))
+      node.refuse("is scaled to nothing");
     if (node["mesh"].there()) read_objects(node, motion);
     if (node["camera"].there()) read_camera(node, motion);
-    const Item light = node["extensions"]["KHR_lights_punctual"]["light"];
     if (light.there()) read_lamp(node, light, motion);
     const Item children = node["children"];
     for (std::size_t i = 0; i < children.size(); ++i) walk(children[i], motion, depth + 1);
@@ -260,11 +264,11 @@ class Reader {
     const double tangent = orthographic ? 0 : std::tan(lens["yfov"].number() / 2);
     const double x = orthographic ? lens["xmag"].number() : tangent * lens["aspectRatio"].number(16.0 / 9);
     const double y = orthographic ? lens["ymag"].number() : tangent;
-    if (!(x > 0) || !(y > 0)) lens.refuse("sees nothing: its field has no extent");
+    if (!(x > 1e-9 && x < 1e9) || !(y > 1e-9 && y < 1e9)) lens.refuse("has no field that could be seen");
     if (!ours["height_px"].there()) lose(entry, "a camera without a number of pixels", "a picture 1080 px high");
     const std::uint64_t height = ours["height_px"].count(1080);
     const std::uint64_t width = ours["width_px"].count(
-        static_cast<std::uint64_t>(std::max(1.0, std::round(static_cast<double>(height) * x / y))));
+        static_cast<std::uint64_t>(std::clamp(std::round(static_cast<double>(height) * x / y), 1.0, 1e6)));
     if (height == 0 || width == 0 || height > 65536 || width > 65536) ours.refuse("is no size of a picture");
     camera.width_px = static_cast<int>(width);
     camera.height_px = static_cast<int>(height);
@@ -285,6 +289,7 @@ class Reader {
   void read_lamp(const Item& node, const Item& index, const Motion& motion) {
     const Item entry = source_.root()["extensions"]["KHR_lights_punctual"].named("lights", index);
     manifest::Light light = light_of(entry, motion);
+    manifest::values_of(*manifest::find_model(manifest::Family::light, light.model), light.parameters, entry.place());
     std::string name = node["name"].text("");
     if (name.empty()) name = entry["name"].text("");
     if (name.empty()) name = "light";

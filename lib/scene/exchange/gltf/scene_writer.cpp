@@ -259,6 +259,7 @@ class Writer {
     if (lamp.kind == Kind::spot || flat)
       entry["spot"] = Value::object({{"innerConeAngle", flat ? 0 : std::min(lamp.inner_rad, lamp.outer_rad * 0.999999)},
                                      {"outerConeAngle", flat ? pi / 2 : lamp.outer_rad}});
+    lose_exponent(lamp, 0, out_.losses);
     if (lamp.kind == Kind::spot) lose(pointer, "the smooth edge of a cone", "one that the other program chooses");
     if (flat) lose(pointer, "a flat lamp", "a spot of the same intensity on its axis");
     if (lamp.kind == Kind::ball) lose(pointer, "the extent of a lamp", "a point of the same intensity");
