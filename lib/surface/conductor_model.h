@@ -20,8 +20,18 @@ struct ConductorOptics {
                  fresnel_metal(cosine, eta.z, k.z)};
     };
   }
-  // 2 integral of F(c) c dc = integral of F(sqrt(t)) dt over [0, 1].
+  // Remembered by each thread for the last metal: it takes longer than the rest of the lobe.
   static Rgb fresnel_mean(const Values& values) {
+    struct Remembered {
+      Rgb eta, k, mean;
+    };
+    thread_local Remembered last;
+    if (last.eta != values.rgb(eta_index) || last.k != values.rgb(k_index))
+      last = {values.rgb(eta_index), values.rgb(k_index), fresnel_mean_by_quadrature(values)};
+    return last.mean;
+  }
+  // 2 integral of F(c) c dc = integral of F(sqrt(t)) dt over [0, 1].
+  static Rgb fresnel_mean_by_quadrature(const Values& values) {
     constexpr std::array<double, 5> node = {0.0469100770306680, 0.2307653449471585, 0.5, 0.7692346550528415,
                                             0.9530899229693320};
     constexpr std::array<double, 5> weight = {0.1184634425280945, 0.2393143352496832, 0.2844444444444444,
