@@ -9,7 +9,7 @@
 //   trapped))
 // Exact for a Lambertian base (then it sums the series albedo^n R^n), nothing for a mirror under a smooth coat.
 // Both integrals are tabulated, per azimuth where the base depends on it, with a break at the critical angle, and rest
-// on fixed samples of the base, scaled to its albedo: a coat over white mirrors returns all light to 3e-2, over
+// on fixed samples of the base, scaled to its albedo: a coat over white mirrors returns all light to 5e-2, over
 // strongly anisotropic ones to 6e-2 (test: RoughCoat.OverWhiteMirrorsReturnsAllLight).
 #pragma once
 #include <cstddef>
