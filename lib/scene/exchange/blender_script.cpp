@@ -151,10 +151,10 @@ def roughness(nodes, entry):
     return math.sqrt(value)
 
 
-def distribution(entry, several=False):
+def distribution(entry):
     if entry["alpha"] == 0 and "alpha" not in entry.get("textures", {}):
         return "SHARP"
-    return "BECKMANN" if entry["beckmann"] else "MULTI_GGX" if several else "GGX"
+    return "BECKMANN" if entry["beckmann"] else "GGX"
 
 
 def matte(nodes, entry):
@@ -196,8 +196,8 @@ def with_coat(nodes, entry, below):
 def glass(nodes, entry):
     if abs(entry["ior"] - 1) < 1e-6:
         return nodes.add("ShaderNodeBsdfTransparent", Color=(1, 1, 1))
-    return nodes.add("ShaderNodeBsdfGlass", {"distribution": distribution(entry, True)}, Color=(1, 1, 1), IOR=entry["ior"],
-                     Roughness=roughness(nodes, entry))
+    return nodes.add("ShaderNodeBsdfGlass", {"distribution": distribution(entry)}, Color=(1, 1, 1),
+                     IOR=entry["ior"], Roughness=roughness(nodes, entry))
 
 
 def inside(nodes, entry):

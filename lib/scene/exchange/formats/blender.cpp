@@ -9,6 +9,8 @@
 //   lamp: L = P / (4 A); spot: I = P / (4 pi) cos(theta) S, S as in light/models/spot.cpp; sun: its strength is the
 //   irradiance on a facing plane.
 // - Surroundings: the picture's centre looks along +x, its left quarter along +y: ours, turned by a mapping node.
+// - Rough glass: facets that scatter once. Cycles' other kind, MULTI_GGX, is even in even light, but takes a sixth off
+//   the light of lamps behind rough glass and of what it throws beyond, for which there is no name.
 // - Roughness is the root of alpha. The diffuse node's roughness is Fujii's: a + b s / t with b / a = roughness and
 //   a = 1 / (pi + (pi / 2 - 2 / 3) roughness), also for s < 0, where Oren and Nayar's has none.
 // - Absorption: density (1 - colour) = sigma_a; scattering: density colour = sigma_s.
@@ -147,8 +149,7 @@ class Writer {
     if (look.kind == Look::Kind::metal && (!look.rough() || look.beckmann))
       lose(pointer, "a rise of reflectance towards grazing angles", "the reflectance at normal incidence, everywhere");
     if (look.kind == Look::Kind::glass && (look.rough() || look.textures.contains("alpha")))
-      lose(pointer, "light that facets scatter twice, as from a matte sheet",
-           look.beckmann ? "a rough glass that loses it" : "a random walk over the facets");
+      lose(pointer, "light that facets scatter twice", "a rough glass that loses it");
     if (look.kind == Look::Kind::translucent)
       lose(pointer, "a dipole", "a random walk of the same diffuse reflectance and diffusion length");
     if (look.kind != Look::Kind::metal && look.alpha_x != look.alpha_y)
