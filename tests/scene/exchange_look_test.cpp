@@ -29,6 +29,26 @@ TEST(ExchangeLook, SurfacesAreRecognisedByWhatTheyState) {
     EXPECT_TRUE(losses[exact].empty()) << exact << ": " << losses[exact].front().what;
 }
 
+// A dipole is the random walk of its own reflectance: the closed form of Jensen et al. 2001 for that of light that
+// falls in everywhere, exp(-sigma_tr z) over both sources.
+TEST(ExchangeLook, DipolesKeepTheirReflectance) {
+  Appearance appearance;
+  appearance.surfaces.push_back(
+      {.id = "it",
+       .model = surface::find("dipole"),
+       .parameters = {{"eta", 1.0}, {"sigma_s_per_m", 1000.0}, {"sigma_a_per_m", std::vector<double>{1, 10, 100}}}});
+  refresh(appearance.surfaces[0], "it");
+  std::vector<Loss> losses;
+  const Look look = look_of(appearance, appearance.surfaces[0], losses);
+  EXPECT_EQ(look.kind, Look::Kind::translucent);
+  for (const int c : {0, 1, 2}) {
+    const double sigma_a = std::pow(10, c), sigma_t = sigma_a + 1000, albedo = 1000 / sigma_t;
+    const double root = std::sqrt(3 * (1 - albedo));  // z_r sigma_tr; the mirrored source lies 1 + 4/3 times as deep
+    EXPECT_NEAR(look.colour[c], albedo / 2 * (1 + std::exp(-4.0 / 3 * root)) * std::exp(-root), 0.02) << c;
+    EXPECT_NEAR(look.diffuse_length_m[c], 1 / std::sqrt(3 * sigma_a * sigma_t), 1e-12);
+  }
+}
+
 // Values in the middle of their bounds for whatever a model wants to be told.
 manifest::Parameters plausible(const manifest::ModelInfo& info) {
   manifest::Parameters all;

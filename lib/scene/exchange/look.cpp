@@ -1,8 +1,5 @@
 // Surfaces as other renderers see them (scene/exchange/look.h).
 //
-// Diffuse reflectance of a dipole (Jensen et al. 2001, equation 6):
-//   Rd = alpha' / 2 (1 + exp(-4/3 A s)) exp(-s),  s = sqrt(3 (1 - alpha')),  A = (1 + Fdr) / (1 - Fdr)
-//   Fdr = -1.440 / eta^2 + 0.710 / eta + 0.668 + 0.0636 eta
 // Oren & Nayar's matte (surface/oren_nayar.h) is A (1 + B / A s / t), s = wi.wo - wiz woz and t = max(wiz, woz) for
 // s > 0; for s < 0 it is A.
 #include "scene/exchange/look.h"
@@ -11,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "surface/dipole_model.h"
 #include "surface/fresnel.h"
 #include "surface/oren_nayar.h"
 
@@ -50,14 +48,6 @@ Rgb reflectance_of_metal(Rgb eta, Rgb k) {
   return {one(eta.x, k.x), one(eta.y, k.y), one(eta.z, k.z)};
 }
 
-double dipole_reflectance(double sigma_a, double sigma_s_reduced, double eta) {
-  const double sigma_t = sigma_a + sigma_s_reduced;
-  if (!(sigma_t > 0)) return 0;
-  const double alpha = sigma_s_reduced / sigma_t, s = std::sqrt(3 * (1 - alpha));
-  const double fdr = -1.440 / (eta * eta) + 0.710 / eta + 0.668 + 0.0636 * eta, a = (1 + fdr) / (1 - fdr);
-  return alpha / 2 * (1 + std::exp(-4.0 / 3 * a * s)) * std::exp(-s);
-}
-
 void add_roughness(Look& look, const Named& named, const surface::Model& model) {
   const double both = named.scalar("alpha");
   look.alpha_x = named.scalar("alpha_x", both);
@@ -66,25 +56,24 @@ void add_roughness(Look& look, const Named& named, const surface::Model& model) 
   look.beckmann = model.info().id.find("beckmann") != std::string::npos || named.scalar("beckmann") > 0;
 }
 
-void make_translucent(Look& look, const Named& named) {
+void make_translucent(Look& look, const Named& named, const surface::Subsurface& subsurface) {
   look.kind = Look::Kind::translucent;
-  const auto band = [&](double sigma_a, double sigma_s, double g, double eta, double& colour, double& length) {
-    const double reduced = sigma_s * (1 - g), sigma_t = sigma_a + reduced;
-    colour = dipole_reflectance(sigma_a, reduced, eta);
-    length = 1 / std::sqrt(std::max(3 * sigma_a * sigma_t, 1e-12 * sigma_t * sigma_t + 1e-30));
-  };
   surface::Medium& medium = look.medium;
   medium.eta = named.rgb("eta", {1.3, 1.3, 1.3});
   medium.sigma_a_per_m = named.rgb("sigma_a_per_m");
-  medium.sigma_s_per_m = named.rgb("sigma_s_per_m", named.rgb("sigma_s_reduced_per_m"));
+  medium.sigma_s_per_m = named.rgb("sigma_s_per_m");
   medium.g = named.rgb("g");
   look.eta = level(medium.eta);
-  band(medium.sigma_a_per_m.x, medium.sigma_s_per_m.x, medium.g.x, medium.eta.x, look.colour.x,
-       look.diffuse_length_m.x);
-  band(medium.sigma_a_per_m.y, medium.sigma_s_per_m.y, medium.g.y, medium.eta.y, look.colour.y,
-       look.diffuse_length_m.y);
-  band(medium.sigma_a_per_m.z, medium.sigma_s_per_m.z, medium.g.z, medium.eta.z, look.colour.z,
-       look.diffuse_length_m.z);
+  const auto length = [](double sigma_a, double sigma_s, double g) {
+    const double sigma_t = sigma_a + sigma_s * (1 - g);
+    return 1 / std::sqrt(std::max(3 * sigma_a * sigma_t, 1e-12 * sigma_t * sigma_t + 1e-30));
+  };
+  const Rgb &a = medium.sigma_a_per_m, &s = medium.sigma_s_per_m, &g = medium.g;
+  look.diffuse_length_m = {length(a.x, s.x, g.x), length(a.y, s.y, g.y), length(a.z, s.z, g.z)};
+  if (const auto* dipole = dynamic_cast<const surface::DipoleSubsurface*>(&subsurface)) {
+    const Rgb& r = dipole->diffuse_reflectance();
+    look.colour = {std::min(r.x, 1.0), std::min(r.y, 1.0), std::min(r.z, 1.0)};
+  }
 }
 
 void make_metal(Look& look, const Named& named) {
@@ -108,22 +97,9 @@ void make_matte(Look& look, const Named& named) {
 
 // Models whose parameters say more than a look can hold are none of those below.
 bool says_more(const manifest::ModelInfo& info) {
-  static const std::set<std::string_view> known = {"albedo",
-                                                   "alpha",
-                                                   "alpha_x",
-                                                   "alpha_y",
-                                                   "anisotropy",
-                                                   "azimuth_rad",
-                                                   "eta",
-                                                   "f0",
-                                                   "g",
-                                                   "k",
-                                                   "sigma_a_per_m",
-                                                   "sigma_s_per_m",
-                                                   "sigma_s_reduced_per_m",
-                                                   "sigma_rad",
-                                                   "thickness_m",
-                                                   "single_scattering"};
+  static const std::set<std::string_view> known = {
+      "albedo", "alpha",         "alpha_x",       "alpha_y",   "anisotropy",  "azimuth_rad",      "eta", "f0", "g",
+      "k",      "sigma_a_per_m", "sigma_s_per_m", "sigma_rad", "thickness_m", "single_scattering"};
   return std::ranges::any_of(info.parameters, [](const auto& p) { return !known.contains(p.name); });
 }
 
@@ -209,8 +185,8 @@ Look look_of(const Appearance& appearance, const Surface& surface, std::vector<L
     make_unlike(look, appearance, surface, losses);
   } else if (surface.base) {
     make_coat(look, named, look_of(appearance, appearance.surfaces[*surface.base], losses), pointer, losses);
-  } else if (model.subsurface(surface.values)) {
-    make_translucent(look, named);
+  } else if (const surface::Subsurface* subsurface = model.subsurface(surface.values)) {
+    make_translucent(look, named, *subsurface);
     check_dispersion(look, pointer, losses);
   } else if (const auto inside = model.interior(surface.values); model.transmits() && inside) {
     look.kind = Look::Kind::glass;

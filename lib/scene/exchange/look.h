@@ -13,8 +13,8 @@ namespace gonio::scene {
 struct Look {
   enum class Kind { matte, coated, metal, glass, translucent };
   Kind kind = Kind::matte;
-  Rgb colour{0.5, 0.5, 0.5};  // matte, coated: albedo; metal: reflectance at normal incidence; translucent: the same
-                              // that a dipole reflects diffusely, for light that falls in along the normal
+  Rgb colour{0.5, 0.5, 0.5};  // matte, coated: albedo; metal: reflectance at normal incidence; translucent: what
+                              // comes back of the light that enters
   double sigma_rad = 0;       // matte, coated: slope angle of the facets
   double eta = 1.5;           // coated, glass, translucent: index of the interface, mean of the bands
   double alpha_x = 0, alpha_y = 0, azimuth_rad = 0;  // GGX roughness; 0: smooth
