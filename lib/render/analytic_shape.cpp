@@ -8,7 +8,7 @@ namespace {
 
 // With a = c - o, b = a.d and q = a - b d, the distances are b -+ sqrt(r^2 - q.q): no cancellation for far or small
 // spheres (Haines et al. 2019, Ray Tracing Gems, chapter 7). For an origin on the sphere they are 0 and 2 b.
-std::optional<AnalyticHit> meet_sphere(const AnalyticShape& sphere, const AnalyticRay& ray, bool leaves) {
+std::optional<double> to_sphere(const AnalyticShape& sphere, const AnalyticRay& ray, bool leaves) {
   const Vec3 arm = sphere.centre_m - ray.origin_m;
   const double along = dot(arm, ray.direction);
   double distance;
@@ -23,25 +23,34 @@ std::optional<AnalyticHit> meet_sphere(const AnalyticShape& sphere, const Analyt
     distance = along - root > 0 ? along - root : along + root;
   }
   if (!(distance > 0)) return {};
-  const Vec3 normal = normalized(ray.origin_m + ray.direction * distance - sphere.centre_m);
-  const Vec3 local{dot(normal, sphere.x), dot(normal, sphere.y), dot(normal, sphere.z)};
-  const Vec2 uv{0.5 + std::atan2(local.y, local.x) / (2 * pi), 1 - std::acos(std::clamp(local.z, -1.0, 1.0)) / pi};
-  return AnalyticHit{distance, sphere.centre_m + normal * sphere.radius_m, normal, uv, cross(sphere.z, normal)};
+  return distance;
 }
 
-std::optional<AnalyticHit> meet_plane(const AnalyticShape& plane, const AnalyticRay& ray, bool leaves) {
+std::optional<double> to_plane(const AnalyticShape& plane, const AnalyticRay& ray, bool leaves) {
   const double slope = dot(plane.z, ray.direction);
   if (leaves || slope == 0) return {};
   const double distance = dot(plane.z, plane.centre_m - ray.origin_m) / slope;
   if (!(distance > 0) || !std::isfinite(distance)) return {};
   const Vec3 arm = ray.origin_m + ray.direction * distance - plane.centre_m;
+  if (std::abs(dot(arm, plane.x)) > plane.half_x_m || std::abs(dot(arm, plane.y)) > plane.half_y_m) return {};
+  return distance;
+}
+
+AnalyticHit on_sphere(const AnalyticShape& sphere, const AnalyticRay& ray, double distance_m) {
+  const Vec3 normal = normalized(ray.origin_m + ray.direction * distance_m - sphere.centre_m);
+  const Vec3 local{dot(normal, sphere.x), dot(normal, sphere.y), dot(normal, sphere.z)};
+  const Vec2 uv{0.5 + std::atan2(local.y, local.x) / (2 * pi), 1 - std::acos(std::clamp(local.z, -1.0, 1.0)) / pi};
+  return {distance_m, sphere.centre_m + normal * sphere.radius_m, normal, uv, cross(sphere.z, normal)};
+}
+
+AnalyticHit on_plane(const AnalyticShape& plane, const AnalyticRay& ray, double distance_m) {
+  const Vec3 arm = ray.origin_m + ray.direction * distance_m - plane.centre_m;
   const double x = dot(arm, plane.x), y = dot(arm, plane.y);
-  if (std::abs(x) > plane.half_x_m || std::abs(y) > plane.half_y_m) return {};
-  return AnalyticHit{distance,
-                     plane.centre_m + plane.x * x + plane.y * y,
-                     plane.z,
-                     {0.5 + 0.5 * x / plane.half_x_m, 0.5 + 0.5 * y / plane.half_y_m},
-                     plane.x};
+  return {distance_m,
+          plane.centre_m + plane.x * x + plane.y * y,
+          plane.z,
+          {0.5 + 0.5 * x / plane.half_x_m, 0.5 + 0.5 * y / plane.half_y_m},
+          plane.x};
 }
 
 }  // namespace
@@ -69,8 +78,12 @@ AnalyticShape analytic_shape(const scene::Instance& instance, Vec3 centre_m) {
   return shape;
 }
 
-std::optional<AnalyticHit> intersect(const AnalyticShape& shape, const AnalyticRay& ray, bool leaves) {
-  return shape.sphere ? meet_sphere(shape, ray, leaves) : meet_plane(shape, ray, leaves);
+std::optional<double> distance_to(const AnalyticShape& shape, const AnalyticRay& ray, bool leaves) {
+  return shape.sphere ? to_sphere(shape, ray, leaves) : to_plane(shape, ray, leaves);
+}
+
+AnalyticHit hit_at(const AnalyticShape& shape, const AnalyticRay& ray, double distance_m) {
+  return shape.sphere ? on_sphere(shape, ray, distance_m) : on_plane(shape, ray, distance_m);
 }
 
 }  // namespace gonio::render

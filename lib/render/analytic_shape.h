@@ -29,8 +29,10 @@ struct AnalyticHit {
 // Empty where the instance is a mesh.
 AnalyticShape analytic_shape(const scene::Instance& instance, Vec3 centre_m);
 
-// `leaves`: the ray's origin lies on this very shape, which it does not meet there again. A sphere that is left to its
-// inside is met at its far side.
-std::optional<AnalyticHit> intersect(const AnalyticShape& shape, const AnalyticRay& ray, bool leaves);
+// Distance along the ray. `leaves`: its origin lies on this very shape, which it does not meet there again. A sphere
+// that is left to its inside is met at its far side.
+std::optional<double> distance_to(const AnalyticShape& shape, const AnalyticRay& ray, bool leaves);
+// What is there, at a distance that distance_to() has found.
+AnalyticHit hit_at(const AnalyticShape& shape, const AnalyticRay& ray, double distance_m);
 
 }  // namespace gonio::render

@@ -26,11 +26,16 @@ struct Transport {  // what is simulated
   bool per_light = false;   // a plane for each light
   bool stokes = false;      // planes s1, s2, s3
   bool from_lights = true;  // trace() leaves to trace_from_lights() what that finds
+  bool adaptive = true;     // more samples where noise counts
 };
+
+class SampleMap;
 
 struct Noticed {                    // over the samples of a pixel
   std::vector<std::uint32_t> seen;  // unoccluded samples of each light at the first surface
   std::uint32_t met = 0;            // samples that met a surface
+  std::uint64_t events = 0;         // of scattering, in all samples: a measure of work
+  double near = 0;                  // what was found up to the first event, mean of the bands, sum over samples
 };
 
 // A sum over a picture that light-traced paths add to; safe from many threads, and the same whatever their number.
@@ -47,6 +52,9 @@ class Integrator {
   virtual std::size_t lights() const = 0;               // size of Noticed::seen
   virtual void trace(Vec2 pixel, Sampler& sampler, std::span<Rgb> planes, Noticed& noticed) const = 0;
   virtual PixelGeometry geometry(int x, int y, const Noticed& noticed) const = 0;
+  // How many samples a pass takes in each pixel, where not the same in all: `preset` is their mean. Not to be called
+  // from many threads.
+  virtual const SampleMap* sample_map(int /*preset*/) const { return nullptr; }
   // Light that only paths from the lights find (caustics of small lamps). One pass: `count` paths whose numbers are
   // `first` ...; adds estimates for the whole picture. False: there is no such light in this scene.
   virtual bool traces_from_lights() const { return false; }

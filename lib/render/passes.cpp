@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "render/image_seed.h"
 #include "render/pass_splats.h"
+#include "render/sample_map.h"
 
 namespace gonio::render {
 namespace {
@@ -23,6 +24,7 @@ class PassLoop {
       : integrator_(integrator),
         sums_(sums),
         what_(sums.identity()),
+        map_(integrator.sample_map(what_.samples_per_pass)),
         seed_(seed_of(what_.seed, what_.image)),
         planes_(what_.planes.size()) {}
 
@@ -66,16 +68,24 @@ class PassLoop {
   void trace(int x, int y, std::size_t pixel, std::uint32_t pass, std::vector<Rgb>& means, Noticed& noticed) const {
     const std::uint64_t stream = (static_cast<std::uint64_t>(pixel) << 24) + pass;
     std::fill(means.begin(), means.end(), Rgb{});
-    for (int sample = 0; sample < what_.samples_per_pass; ++sample) {
+    const int samples = map_ ? map_->samples(x, y) : what_.samples_per_pass;
+    const int noticing = std::min(samples, what_.samples_per_pass);
+    Noticed beyond = noticed;
+    for (int sample = 0; sample < samples; ++sample) {
       Sampler sampler(seed_, stream, static_cast<std::uint32_t>(sample));
-      integrator_.trace(Vec2{x - 0.5, y - 0.5} + sampler.two(), sampler, means, noticed);
+      integrator_.trace(Vec2{x - 0.5, y - 0.5} + sampler.two(), sampler, means, sample < noticing ? noticed : beyond);
     }
-    for (Rgb& mean : means) mean = mean / what_.samples_per_pass;
+    for (Rgb& mean : means) mean = mean / samples;
+    // Counts are those of a pass: of its first samples, or of fewer and multiplied.
+    const auto share = static_cast<std::uint32_t>(what_.samples_per_pass / noticing);
+    noticed.met *= share;
+    for (std::uint32_t& seen : noticed.seen) seen *= share;
   }
 
   const Integrator& integrator_;
   PassSums& sums_;
   const PictureIdentity& what_;
+  const SampleMap* map_;  // null: every pixel takes the same
   std::uint64_t seed_;
   std::size_t planes_;
 };

@@ -29,8 +29,8 @@ class PathLoop {
  public:
   explicit PathLoop(const PathSetting& setting) : setting_(setting) {}
 
-  // One path; what it finds is added to `planes`.
-  void trace(Vec2 pixel, Sampler& sampler, std::span<Rgb> planes, Noticed& noticed) const {
+  // One path; what it finds is added to `planes`. `onward`: see Path.
+  void trace(Vec2 pixel, double onward, Sampler& sampler, std::span<Rgb> planes, Noticed& noticed) const {
     const auto [origin_m, direction] = setting_.rays.at(pixel, setting_.rays.uses_lens() ? sampler.two() : Vec2{});
     Path<Carrier> path{.carrier = Carrier::start(setting_.camera_x(), direction),
                        .origin_m = origin_m,
@@ -40,20 +40,29 @@ class PathLoop {
                        .sampler = sampler,
                        .planes = planes,
                        .scale = setting_.scale(pixel),
-                       .noticed = noticed};
-    for (;;) {
-      const Fate fate = travel(path);
-      if (fate == Fate::lost) return;
-      if (path.first) ++noticed.met;
-      if (!(fate == Fate::medium ? scatter_in_medium(path) : scatter_at_surface(path))) return;
-      path.first = false;
-    }
+                       .noticed = noticed,
+                       .begin = planes[0],
+                       .onward = onward};
+    follow(path);
   }
 
  private:
-  static constexpr int roulette_from = 3;  // scattering events before paths may be ended at random
+  static constexpr int roulette_from = 3;           // scattering events before paths may be ended at random
+  static constexpr std::uint64_t work_beneath = 6;  // of a way beneath a surface, in events
 
   enum class Fate { lost, surface, medium };
+
+  void follow(Path<Carrier>& path) const {
+    for (;;) {
+      const Fate fate = travel(path);
+      if (fate == Fate::lost) break;
+      if (path.first) ++path.noticed.met;
+      if (!(fate == Fate::medium ? scatter_in_medium(path) : scatter_at_surface(path))) return;
+      path.first = false;
+    }
+    if (path.first) note_near(path);
+  }
+  static void note_near(const Path<Carrier>& path) { path.noticed.near += mean(path.planes[0] - path.begin); }
 
   // To the next event. Surfaces that are no interface are passed.
   Fate travel(Path<Carrier>& path) const {
@@ -99,12 +108,12 @@ class PathLoop {
     }
   }
 
-  // Nothing that was scattered so often is counted.
   bool is_off(int scattered) const { return scattered > 1 && setting_.scene.appearance.indirect_strength == 0; }
 
   bool scatter_at_surface(Path<Carrier>& path) const {
     if (path.surfaces++ >= setting_.transport.max_bounces) return false;
     ++path.events;
+    ++path.noticed.events;
     const SurfacePoint& at = *path.left;
     const bool transmits = setting_.transmits[at.surface];
     std::optional<Crossing> crossing;
@@ -123,12 +132,35 @@ class PathLoop {
 
   // Light of the lamps, and on.
   bool scatter_at(Path<Carrier>& path, const Meeting& meeting) const {
-    const Vertex& vertex = meeting.vertex;
-    if (!is_off(path.scattered + 1))
+    const bool answers =
+        path.first || setting_.spreads[meeting.vertex.point.surface];  // first: what the camera sees is counted
+    if (answers && !is_off(path.scattered + 1))
       for (std::size_t i = 0; i < setting_.emitters.size(); ++i) lights_.light_surface(path, meeting, i);
+    if (!path.first) return go_on(path, meeting);
+    note_near(path);
+    return path.onward == 1 ? go_on(path, meeting) : go_on_as_several(path, meeting);
+  }
+
+  bool go_on(Path<Carrier>& path, const Meeting& meeting) const {
+    const Vertex& vertex = meeting.vertex;
     const Vec2 u = path.sampler.two();
     const surface::Sample next = vertex.model->sample(vertex.values, vertex.wo, u, path.sampler.uniform());
     return next.pdf > 0 && leave(path, meeting, next);
+  }
+
+  // Several paths from the first surface (sample_map.h); all end here.
+  bool go_on_as_several(Path<Carrier>& path, const Meeting& meeting) const {
+    path.carrier.attenuate(Rgb{1, 1, 1} / path.onward);
+    const auto count = static_cast<std::uint32_t>(path.onward);
+    const Sampler whole = path.sampler;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      path.sampler = whole.part(k, count);
+      Path<Carrier> branch = path;
+      if (!go_on(branch, meeting)) continue;
+      branch.first = false;
+      follow(branch);
+    }
+    return false;
   }
 
   // On along a direction that the surface has drawn. False: the path ends.
@@ -164,6 +196,7 @@ class PathLoop {
   bool leave_below(Path<Carrier>& path, const Vertex& exit, const surface::Sample& next) const {
     const surface::Subsurface* beneath = exit.model->subsurface(exit.values);
     if (!beneath) return false;
+    path.noticed.events += work_beneath;
     const Vec3 inward = exit.frame.to_world(next.wi);
     path.carrier.depolarize(inward, next.weight);
     path.first = false;
@@ -183,9 +216,11 @@ class PathLoop {
 
   bool scatter_in_medium(Path<Carrier>& path) const {
     ++path.events;
+    ++path.noticed.events;
     const FreeFlight flight(*setting_.media.at(path.inside), path.carrier.power());
     if (!is_off(path.scattered + 1))
       for (std::size_t i = 0; i < setting_.emitters.size(); ++i) lights_.light_medium(path, flight, i);
+    if (path.first) note_near(path);
     const auto turn = flight.turn(path.direction, path.sampler.two());
     path.carrier.depolarize(turn.direction, turn.weight);
     path.direction = turn.direction;

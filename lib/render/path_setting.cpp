@@ -3,6 +3,25 @@
 #include <cmath>
 
 namespace gonio::render {
+namespace {
+
+// False where the surface has nothing but perfectly smooth lobes: no density along the mirrored direction, where a
+// rough lobe has its peak, nor along the normal and back, between whatever indices.
+bool may_spread(const scene::Surface& surface) {
+  if (surface.varies() || surface.base || !surface.model->transmits()) return true;
+  for (const double sine : {0.0, 0.3, 0.6, 0.9, 0.99}) {
+    const Vec3 wo{sine, 0, std::sqrt(1 - sine * sine)};
+    for (const Vec3 wi : {Vec3{-wo.x, 0, wo.z}, Vec3{0, 0, 1}, wo, Vec3{-wo.x, 0, -wo.z}, Vec3{0, 0, -1}})
+      for (const double eta : {1.5, 1 / 1.5}) {
+        surface::Values values = surface.values;
+        values.eta = {eta, eta, eta};
+        if (surface.model->pdf(values, wo, wi) > 0) return true;
+      }
+  }
+  return false;
+}
+
+}  // namespace
 
 PathSetting::PathSetting(const scene::Scene& the_scene, std::size_t number, const RayCaster& the_caster,
                          const Transport& the_transport)
@@ -11,18 +30,18 @@ PathSetting::PathSetting(const scene::Scene& the_scene, std::size_t number, cons
       caster(the_caster),
       transport(the_transport),
       rays(view),
+      x_axis(view.world_from_camera.rotate({1, 0, 0})),
       media(the_scene, the_caster) {
   for (const std::size_t light : view.lights) emitters.push_back(scene.appearance.lights[light].emitter.get());
   named = emitters.size();
   if (scene.appearance.ambient) emitters.push_back(scene.appearance.ambient.get());
-  for (const scene::Surface& surface : scene.appearance.surfaces) transmits.push_back(surface.model->transmits());
+  for (const scene::Surface& surface : scene.appearance.surfaces) {
+    transmits.push_back(surface.model->transmits());
+    spreads.push_back(may_spread(surface));
+  }
   if (media.any()) camera_inside = media.around(view.world_from_camera.translation_m);
   if (transport.from_lights) caustics.emplace(scene, emitters);
   if (caustics && !caustics->any()) caustics.reset();
-}
-
-Vec3 PathSetting::camera_x() const {
-  return view.world_from_camera.rotate({1, 0, 0});
 }
 
 Rgb PathSetting::scale(Vec2 pixel) const {

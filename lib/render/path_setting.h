@@ -14,7 +14,7 @@ namespace gonio::render {
 struct PathSetting {
   PathSetting(const scene::Scene& scene, std::size_t view, const RayCaster& caster, const Transport& transport);
 
-  Vec3 camera_x() const;
+  Vec3 camera_x() const { return x_axis; }
   Rgb scale(Vec2 pixel) const;  // of radiance to the picture's values
   // "light.NAME" of all emitters, where they have planes of their own.
   std::vector<std::string> light_planes() const;
@@ -27,9 +27,11 @@ struct PathSetting {
   const RayCaster& caster;
   Transport transport;
   CameraRays rays;
+  Vec3 x_axis;                                  // the picture's x axis in the world
   std::vector<const light::Emitter*> emitters;  // the named ones first, then ambient
   std::size_t named = 0;
   std::vector<bool> transmits;  // of the surfaces
+  std::vector<bool> spreads;    // of the surfaces: not smooth everywhere, so that sampled light may find its way
   Media media;
   Inside camera_inside;                    // what the camera's centre is in
   std::optional<CausticSources> caustics;  // what is left to paths from the lights, where there is any

@@ -20,6 +20,8 @@ struct Path {
   std::span<Rgb> planes;
   Rgb scale;  // of radiance to the picture's values
   Noticed& noticed;
+  Rgb begin;                 // planes[0] before this path
+  double onward = 1;         // paths that go on from the first event on a surface
   bool first = true;         // nothing has scattered yet
   bool sees_spread = false;  // the first event was no smooth interface
   double density = 0;        // of having drawn the direction

@@ -20,7 +20,9 @@ PictureIdentity picture_identity(const scene::Scene& scene, std::size_t view, co
 }
 
 io::Image render(const scene::Scene& scene, std::size_t view, const RayCaster& caster, const Options& options) {
-  const auto integrator = path_integrator(scene, view, caster, options.transport);
+  Transport transport = options.transport;
+  transport.adaptive = options.adaptive;
+  const auto integrator = path_integrator(scene, view, caster, transport);
   const SamplePlan plan = sample_plan(options.spp);
   PassSums sums(picture_identity(scene, view, *integrator, options.seed, plan.samples_per_pass));
   const auto passes = static_cast<std::uint32_t>(plan.passes);

@@ -22,7 +22,8 @@ namespace gonio::render {
 struct Options {
   int spp = 256;
   std::uint64_t seed = 1;
-  bool geometry = true;  // write the geometry channels too
+  bool geometry = true;   // write the geometry channels too
+  bool adaptive = false;  // overrides transport's: pictures that are compared draw the same numbers in every pixel
   Transport transport{};
 };
 

@@ -3,6 +3,9 @@
 // Embree sees coordinates relative to the centre of the meshes' box, so that its single precision is spent on their
 // extent, and the rays' own double-precision values through the query context. Triangles are hit again in double
 // precision by the plane that they span: t = n.(v0 - o) / n.d, barycentric coordinates from the areas at o + t d.
+//
+// A few analytic shapes are tried one by one, before Embree, which is not asked where the ray misses the box around all
+// that it holds; many are left to its tree.
 #include "render/ray_caster.h"
 
 #include <embree3/rtcore.h>
@@ -14,12 +17,14 @@
 
 #include "base/error.h"
 #include "render/analytic_shape.h"
+#include "render/ray_box.h"
 
 namespace gonio::render {
 namespace {
 
 constexpr double lift = 1e-6;          // of a triangle's point along its normal, over half the meshes' extent
 constexpr double least_cosine = 1e-4;  // between shading normal and viewing ray
+constexpr std::size_t few_shapes = 8;  // tried one by one
 
 struct PlacedMesh {  // of one instance; null for analytic shapes. The mesh is shared, not copied: ten million triangles
   std::shared_ptr<const mesh::Mesh> mesh;  // must fit
@@ -31,7 +36,6 @@ struct PlacedMesh {  // of one instance; null for analytic shapes. The mesh is s
 struct Query {  // travels through Embree as its context
   RTCIntersectContext context;
   AnalyticRay ray;
-  AnalyticHit hit;
   std::uint32_t from = none;
   static constexpr std::uint32_t none = RTC_INVALID_GEOMETRY_ID;
 };
@@ -72,20 +76,19 @@ void analytic_bounds(const RTCBoundsFunctionArguments* args) {
                      up(shape->high.x),  up(shape->high.y),  up(shape->high.z),  0};
 }
 
-std::optional<AnalyticHit> meet(const void* shape, const Query& query, unsigned geometry, float limit) {
-  const auto hit = intersect(*static_cast<const AnalyticShape*>(shape), query.ray, query.from == geometry);
-  if (!hit || !(static_cast<float>(hit->distance_m) < limit)) return {};
-  return hit;
+// Of a shape in Embree's tree, where it is nearer than `limit`.
+std::optional<float> reach(const void* shape, const Query& query, unsigned geometry, float limit) {
+  const auto distance = distance_to(*static_cast<const AnalyticShape*>(shape), query.ray, query.from == geometry);
+  if (!distance || !(static_cast<float>(*distance) < limit)) return {};
+  return static_cast<float>(*distance);
 }
 
 void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] == 0 || args->context->filter) return;  // marks are sought on meshes
   auto* ray_hit = reinterpret_cast<RTCRayHit*>(args->rayhit);
-  Query* query = query_of(args->context);
-  const auto hit = meet(args->geometryUserPtr, *query, args->geomID, ray_hit->ray.tfar);
-  if (!hit) return;
-  query->hit = *hit;
-  ray_hit->ray.tfar = static_cast<float>(hit->distance_m);
+  const auto distance = reach(args->geometryUserPtr, *query_of(args->context), args->geomID, ray_hit->ray.tfar);
+  if (!distance) return;
+  ray_hit->ray.tfar = *distance;
   ray_hit->hit.geomID = args->geomID;
   ray_hit->hit.primID = 0;
 }
@@ -93,7 +96,7 @@ void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
 void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
   if (args->valid[0] == 0) return;
   auto* ray = reinterpret_cast<RTCRay*>(args->ray);
-  if (meet(args->geometryUserPtr, *query_of(args->context), args->geomID, ray->tfar))
+  if (reach(args->geometryUserPtr, *query_of(args->context), args->geomID, ray->tfar))
     ray->tfar = -std::numeric_limits<float>::infinity();
 }
 
@@ -116,8 +119,10 @@ struct RayCaster::Impl {
   Scene scene;
   Vec3 centre_m;
   double lift_m = 0;
+  RayBox box;  // around what Embree holds, with room for its rounding to single precision
   std::vector<PlacedMesh> meshes;
-  std::vector<AnalyticShape> shapes;
+  std::vector<AnalyticShape> shapes;  // one per instance, those of meshes without meaning
+  std::vector<std::uint32_t> singly;  // instances that are tried one by one
   std::vector<std::uint32_t> surfaces;
 
   explicit Impl(std::span<const scene::Instance> instances);
@@ -128,8 +133,9 @@ struct RayCaster::Impl {
   RTCRay float_ray(Vec3 origin_m, Vec3 direction, double distance_m) const;
   Vec3 start(const SurfacePoint& from) const;
   bool is_mesh(std::uint32_t instance) const { return meshes[instance].mesh != nullptr; }
-  std::optional<SurfacePoint> closest(Query& query, Vec3 origin_m, Vec3 direction, double distance_m = far_away) const;
-  SurfacePoint on_triangle(const RTCHit& hit, Vec3 origin_m, Vec3 direction) const;
+  std::optional<SurfacePoint> closest(Query& query, double distance_m = far_away) const;
+  bool blocked(Query& query, double distance_m) const;
+  void on_triangle(const RTCHit& hit, Vec3 origin_m, Vec3 direction, SurfacePoint& point) const;
   void finish(SurfacePoint& point, std::uint32_t instance, Vec3 direction) const;
 };
 
@@ -145,23 +151,27 @@ RayCaster::Impl::Impl(std::span<const scene::Instance> instances) {
   }
   place_centre();
   for (const scene::Instance& instance : instances) shapes.push_back(analytic_shape(instance, centre_m));
-  for (std::uint32_t i = 0; i < instances.size(); ++i) is_mesh(i) ? attach_mesh(i) : attach_shape(i);
+  for (std::uint32_t i = 0; i < instances.size(); ++i)
+    if (!is_mesh(i)) singly.push_back(i);
+  if (singly.size() > few_shapes) singly.clear();
+  for (std::uint32_t i = 0; i < instances.size(); ++i)
+    if (is_mesh(i))
+      attach_mesh(i);
+    else if (singly.empty())
+      attach_shape(i);
+  if (!box.empty()) box.widen(1e-5 * max_component(box.high - box.low));
   rtcCommitScene(scene.get());
   if (const RTCError error = rtcGetDeviceError(device.get()); error != RTC_ERROR_NONE)
     throw Error(Exit::internal, "Embree", "scene cannot be built (error " + std::to_string(error) + ")");
 }
 
 void RayCaster::Impl::place_centre() {
-  Vec3 low{far_away, far_away, far_away}, high = -low;
   for (const PlacedMesh& mesh : meshes)
-    for (std::uint32_t v = 0; mesh.mesh && v < mesh.mesh->positions_m.size(); ++v) {
-      const Vec3 p = mesh.position(v);
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-  if (!(low.x <= high.x)) return;
-  centre_m = (low + high) * 0.5;
-  lift_m = lift * max_component((high - low) * 0.5);
+    for (std::uint32_t v = 0; mesh.mesh && v < mesh.mesh->positions_m.size(); ++v)
+      box.add(mesh.position(v), mesh.position(v));
+  if (box.empty()) return;
+  centre_m = (box.low + box.high) * 0.5;
+  lift_m = lift * max_component((box.high - box.low) * 0.5);
 }
 
 void RayCaster::Impl::attach_mesh(std::uint32_t instance) {
@@ -191,6 +201,7 @@ void RayCaster::Impl::attach_shape(std::uint32_t instance) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene.get(), geometry, instance);
   rtcReleaseGeometry(geometry);
+  box.add(shapes[instance].low + centre_m, shapes[instance].high + centre_m);
 }
 
 RTCRay RayCaster::Impl::float_ray(Vec3 origin_m, Vec3 direction, double distance_m) const {
@@ -203,14 +214,13 @@ Vec3 RayCaster::Impl::start(const SurfacePoint& from) const {
   return is_mesh(from.instance) ? from.position_m + from.geometric_normal * lift_m : from.position_m;
 }
 
-SurfacePoint RayCaster::Impl::on_triangle(const RTCHit& hit, Vec3 origin_m, Vec3 direction) const {
+void RayCaster::Impl::on_triangle(const RTCHit& hit, Vec3 origin_m, Vec3 direction, SurfacePoint& point) const {
   const PlacedMesh& placed_mesh = meshes[hit.geomID];
   const mesh::Mesh& mesh = *placed_mesh.mesh;
   const auto& triangle = mesh.triangles[hit.primID];
   const Vec3 a = placed_mesh.position(triangle[0]), ab = placed_mesh.position(triangle[1]) - a,
              ac = placed_mesh.position(triangle[2]) - a;
   const Vec3 area = cross(ab, ac);
-  SurfacePoint point;
   point.distance_m = dot(area, a - origin_m) / dot(area, direction);
   point.position_m = origin_m + direction * point.distance_m;
   const Vec3 arm = point.position_m - a;
@@ -235,29 +245,41 @@ SurfacePoint RayCaster::Impl::on_triangle(const RTCHit& hit, Vec3 origin_m, Vec3
     point.uv = at * u + to_b * v + to_c * w;
     point.tangent = tangent_of(ab, ac, to_b - at, to_c - at, point.tangent);
   }
-  return point;
 }
 
-std::optional<SurfacePoint> RayCaster::Impl::closest(Query& query, Vec3 origin_m, Vec3 direction,
-                                                     double distance_m) const {
-  RTCRayHit ray_hit{float_ray(origin_m, direction, distance_m), {}};
-  ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcInitIntersectContext(&query.context);
-  rtcIntersect1(scene.get(), &query.context, &ray_hit);
-  const std::uint32_t instance = ray_hit.hit.geomID;
-  if (instance == RTC_INVALID_GEOMETRY_ID) return {};
-  SurfacePoint point;
+std::optional<SurfacePoint> RayCaster::Impl::closest(Query& query, double distance_m) const {
+  const auto& [origin_m, direction, left_normal] = query.ray;
+  std::uint32_t instance = Query::none;
+  double nearest = distance_m;
+  for (const std::uint32_t i : singly)
+    if (const auto distance = distance_to(shapes[i], query.ray, query.from == i); distance && *distance < nearest) {
+      nearest = *distance;
+      instance = i;
+    }
+  RTCRayHit ray_hit;
+  if (box.met_by(origin_m, direction, nearest)) {
+    ray_hit.ray = float_ray(origin_m, direction, nearest);
+    ray_hit.hit.geomID = ray_hit.hit.instID[0] = Query::none;
+    rtcInitIntersectContext(&query.context);
+    rtcIntersect1(scene.get(), &query.context, &ray_hit);
+    if (ray_hit.hit.geomID != Query::none) instance = ray_hit.hit.geomID;
+  }
+  if (instance == Query::none) return {};
+  std::optional<SurfacePoint> found(std::in_place);
+  SurfacePoint& point = *found;
   if (is_mesh(instance)) {
-    point = on_triangle(ray_hit.hit, origin_m, direction);
+    on_triangle(ray_hit.hit, origin_m, direction, point);
   } else {
-    point.distance_m = query.hit.distance_m;
-    point.position_m = query.hit.position_m;
-    point.geometric_normal = point.normal = query.hit.normal;
-    point.uv = query.hit.uv;
-    point.tangent = query.hit.tangent;
+    if (singly.empty()) nearest = distance_to(shapes[instance], query.ray, query.from == instance).value_or(nearest);
+    const AnalyticHit hit = hit_at(shapes[instance], query.ray, nearest);
+    point.distance_m = hit.distance_m;
+    point.position_m = hit.position_m;
+    point.geometric_normal = point.normal = hit.normal;
+    point.uv = hit.uv;
+    point.tangent = hit.tangent;
   }
   finish(point, instance, direction);
-  return point;
+  return found;
 }
 
 void RayCaster::Impl::finish(SurfacePoint& point, std::uint32_t instance, Vec3 direction) const {
@@ -270,20 +292,30 @@ void RayCaster::Impl::finish(SurfacePoint& point, std::uint32_t instance, Vec3 d
   if (cosine < least_cosine) point.normal = normalized(point.normal - direction * (least_cosine - cosine));
 }
 
+bool RayCaster::Impl::blocked(Query& query, double distance_m) const {
+  for (const std::uint32_t i : singly)
+    if (const auto distance = distance_to(shapes[i], query.ray, query.from == i); distance && *distance < distance_m)
+      return true;
+  if (!box.met_by(query.ray.origin_m, query.ray.direction, distance_m)) return false;
+  rtcInitIntersectContext(&query.context);
+  RTCRay ray = float_ray(query.ray.origin_m, query.ray.direction, distance_m);
+  rtcOccluded1(scene.get(), &query.context, &ray);
+  return ray.tfar < 0;
+}
+
 RayCaster::RayCaster(std::span<const scene::Instance> instances) : impl_(std::make_unique<Impl>(instances)) {}
 RayCaster::~RayCaster() = default;
 RayCaster::RayCaster(RayCaster&&) noexcept = default;
 RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 
 std::optional<SurfacePoint> RayCaster::closest(Vec3 origin_m, Vec3 direction) const {
-  Query query{.context = {}, .ray = {origin_m, direction, {}}, .hit = {}};
-  return impl_->closest(query, origin_m, direction);
+  Query query{.context = {}, .ray = {origin_m, direction, {}}};
+  return impl_->closest(query);
 }
 
 std::optional<SurfacePoint> RayCaster::closest_from(const SurfacePoint& from, Vec3 direction) const {
-  const Vec3 origin_m = impl_->start(from);
-  Query query{.context = {}, .ray = {origin_m, direction, from.geometric_normal}, .hit = {}, .from = from.instance};
-  auto point = impl_->closest(query, origin_m, direction);
+  Query query{.context = {}, .ray = {impl_->start(from), direction, from.geometric_normal}, .from = from.instance};
+  auto point = impl_->closest(query);
   // From where the surface is, not from where the ray was lifted to: media attenuate over this distance.
   if (point) point->distance_m = std::max(0.0, dot(point->position_m - from.position_m, direction));
   return point;
@@ -291,20 +323,13 @@ std::optional<SurfacePoint> RayCaster::closest_from(const SurfacePoint& from, Ve
 
 bool RayCaster::occluded(const SurfacePoint& from, Vec3 direction, double distance_m) const {
   if (!(dot(from.geometric_normal, direction) > 0)) return true;
-  const Vec3 origin_m = impl_->start(from);
-  Query query{.context = {}, .ray = {origin_m, direction, from.geometric_normal}, .hit = {}, .from = from.instance};
-  rtcInitIntersectContext(&query.context);
-  RTCRay ray = impl_->float_ray(origin_m, direction, distance_m);
-  rtcOccluded1(impl_->scene.get(), &query.context, &ray);
-  return ray.tfar < 0;
+  Query query{.context = {}, .ray = {impl_->start(from), direction, from.geometric_normal}, .from = from.instance};
+  return impl_->blocked(query, distance_m);
 }
 
 bool RayCaster::blocked(Vec3 origin_m, Vec3 direction, double distance_m) const {
-  Query query{.context = {}, .ray = {origin_m, direction, {}}, .hit = {}};
-  rtcInitIntersectContext(&query.context);
-  RTCRay ray = impl_->float_ray(origin_m, direction, distance_m);
-  rtcOccluded1(impl_->scene.get(), &query.context, &ray);
-  return ray.tfar < 0;
+  Query query{.context = {}, .ray = {origin_m, direction, {}}};
+  return impl_->blocked(query, distance_m);
 }
 
 std::vector<SurfacePoint> RayCaster::crossings(std::uint32_t instance, Vec3 origin_m, Vec3 direction,
@@ -313,10 +338,9 @@ std::vector<SurfacePoint> RayCaster::crossings(std::uint32_t instance, Vec3 orig
   const auto next = [&](const SurfacePoint* from, double left_m) {
     Query query{.context = {},
                 .ray = {origin_m, direction, from ? from->geometric_normal : Vec3{}},
-                .hit = {},
                 .from = from ? from->instance : Query::none};
     query.ray.origin_m = from ? impl_->start(*from) : origin_m;
-    return impl_->closest(query, query.ray.origin_m, direction, left_m);
+    return impl_->closest(query, left_m);
   };
   double walked = 0;
   for (auto point = next(nullptr, distance_m); point;) {
@@ -351,7 +375,8 @@ SurfacePoint RayCaster::marked(std::uint32_t instance, Vec3 origin_m, Vec3 direc
   RTCHit hit{};
   hit.geomID = instance;
   hit.primID = mark.number;
-  SurfacePoint point = impl_->on_triangle(hit, origin_m, direction);
+  SurfacePoint point;
+  impl_->on_triangle(hit, origin_m, direction, point);
   impl_->finish(point, instance, direction);
   return point;
 }

@@ -17,17 +17,36 @@ class Sampler {
   Sampler(std::uint64_t seed, std::uint64_t stream, std::uint32_t index)
       : key_(split_mix(split_mix(seed) ^ stream)), index_(reversed(index)) {}
 
-  double uniform() { return two().x; }
+  // For `count` paths, a power of two, that share this one's beginning: the samples of all beginnings' parts together
+  // are as evenly spread as a pass of so many more.
+  Sampler part(std::uint32_t number, std::uint32_t count) const {
+    Sampler part = *this;
+    part.key_ = split_mix(key_ + dimension_ + 0x73706c6974u);
+    part.dimension_ = 0;
+    part.index_ = reversed(reversed(index_) * count + number);
+    return part;
+  }
+  double uniform() {
+    const Key key(key_ + ++dimension_);
+    return unit(reversed(scrambled(shuffled(key), key.high)));
+  }
   Vec2 two() {
-    const std::uint64_t hash = split_mix(key_ + ++dimension_);
-    const auto low = static_cast<std::uint32_t>(hash), high = static_cast<std::uint32_t>(hash >> 32);
-    const std::uint32_t shuffled = reversed(scrambled(index_, low));
+    const Key key(key_ + ++dimension_);
+    const std::uint32_t place = shuffled(key);
     // The first dimension is van der Corput's: the reversal of its reversed bits is the index itself.
-    return {unit(reversed(scrambled(shuffled, high))),
-            unit(reversed(scrambled(reversed_second(shuffled), high * 0x9e3779b9u + low)))};
+    return {unit(reversed(scrambled(place, key.high))),
+            unit(reversed(scrambled(reversed_second(place), key.high * 0x9e3779b9u + key.low)))};
   }
 
  private:
+  struct Key {  // of one pair of dimensions
+    explicit Key(std::uint64_t number) {
+      const std::uint64_t hash = split_mix(number);
+      low = static_cast<std::uint32_t>(hash), high = static_cast<std::uint32_t>(hash >> 32);
+    }
+    std::uint32_t low, high;
+  };
+  std::uint32_t shuffled(const Key& key) const { return reversed(scrambled(index_, key.low)); }
   static double unit(std::uint32_t x) { return (x + 0.5) * 0x1p-32; }  // in (0, 1)
   static std::uint32_t reversed(std::uint32_t x) {
     x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);

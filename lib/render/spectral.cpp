@@ -68,6 +68,7 @@ class SpectralIntegrator final : public Integrator {
   PixelGeometry geometry(int x, int y, const Noticed& noticed) const override {
     return colour_->geometry(x, y, noticed);
   }
+  const SampleMap* sample_map(int preset) const override { return colour_->sample_map(preset); }
   bool traces_from_lights() const override { return colour_->traces_from_lights(); }
   void trace_from_lights(std::uint64_t seed, std::uint64_t first, std::uint64_t count, Splats& splats) const override {
     colour_->trace_from_lights(seed, first, count, splats);

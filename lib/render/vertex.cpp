@@ -1,11 +1,14 @@
 #include "render/vertex.h"
 
+#include <cmath>
+
 namespace gonio::render {
 
 Basis shading_frame(const SurfacePoint& point) {
   const Vec3 along = point.tangent - point.normal * dot(point.tangent, point.normal);
-  const double length = norm(along);
-  return length > 1e-6 * norm(point.tangent) && length > 0 ? Basis(point.normal, along / length) : Basis(point.normal);
+  const double square = dot(along, along);
+  return square > 1e-12 * dot(point.tangent, point.tangent) ? Basis(point.normal, along * (1 / std::sqrt(square)))
+                                                            : Basis(point.normal);
 }
 
 scene::Place place_of(const SurfacePoint& point, const scene::Instance& instance) {

@@ -28,11 +28,14 @@ enum : std::size_t { scale_index, rotation_index };
 class LatLong final : public Emitter {
  public:
   LatLong(EmittingPicture picture, double rotation_rad)
-      : picture_(std::move(picture)), rotation_rad_(rotation_rad), cells_(weights(), picture_.columns()) {}
+      : picture_(std::move(picture)),
+        rotation_rad_(rotation_rad),
+        edges_(edge_cosines(picture_.rows())),
+        cells_(weights(), picture_.columns()) {}
 
   Sample sample(Vec3, Vec2 u) const override {
     const auto [y, x, inside] = cells_.draw(u);
-    const double top = edge_cosine(y), bottom = edge_cosine(y + 1);
+    const double top = edges_[y], bottom = edges_[y + 1];
     const double z = top + (bottom - top) * inside.y, r = std::sqrt(std::max(0.0, 1 - z * z));
     const double phi = rotation_rad_ + pi - 2 * pi * (static_cast<double>(x) + inside.x) / width();
     const double density = pdf(x, y);
@@ -59,8 +62,13 @@ class LatLong final : public Emitter {
   std::size_t rows() const { return picture_.rows(); }
   double width() const { return static_cast<double>(columns()); }
   double height() const { return static_cast<double>(rows()); }
-  double edge_cosine(std::size_t row) const { return std::cos(pi * static_cast<double>(row) / height()); }
-  double solid_angle(std::size_t row) const { return 2 * pi / width() * (edge_cosine(row) - edge_cosine(row + 1)); }
+  static std::vector<double> edge_cosines(std::size_t rows) {
+    std::vector<double> cosines;
+    for (std::size_t row = 0; row <= rows; ++row)
+      cosines.push_back(std::cos(pi * static_cast<double>(row) / static_cast<double>(rows)));
+    return cosines;
+  }
+  double solid_angle(std::size_t row) const { return 2 * pi / width() * (edges_[row] - edges_[row + 1]); }
   double pdf(std::size_t x, std::size_t y) const { return cells_.share(y, x) / solid_angle(y); }
   std::vector<double> weights() const {
     std::vector<double> all;
@@ -71,6 +79,7 @@ class LatLong final : public Emitter {
 
   EmittingPicture picture_;
   double rotation_rad_;
+  std::vector<double> edges_;  // cosines of the rows' edges
   Distribution2 cells_;
 };
 
