@@ -11,7 +11,9 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/ply.h"
+#include "render/looking_at.h"
 #include "render/specimen_board.h"
+#include "render/specimen_glass.h"
 
 namespace gonio::render {
 namespace {
@@ -102,19 +104,6 @@ void add_table(manifest::Document& document) {
   add_object(document, "table", "table", "table", {});
 }
 
-// Camera axes: x right, y down, z forward; the world's z is up in the picture.
-Rigid<frame::World, frame::Camera> looking_at(Vec3 position_m, Vec3 target_m) {
-  const Vec3 forward = normalized(target_m - position_m), right = normalized(cross(forward, {0, 0, 1}));
-  const Vec3 down = cross(forward, right);
-  Mat3 rotation;
-  for (int axis = 0; axis < 3; ++axis) {
-    rotation(axis, 0) = right[axis];
-    rotation(axis, 1) = down[axis];
-    rotation(axis, 2) = forward[axis];
-  }
-  return {quaternion_of(rotation), position_m};
-}
-
 void add_lamps(manifest::Document& document) {
   const std::vector<std::vector<double>> positions_m = {{0.24, -0.22, 0.40}, {-0.27, -0.18, 0.38}, {0.04, 0.06, 0.52}};
   for (std::size_t i = 0; i < positions_m.size(); ++i) {
@@ -168,19 +157,24 @@ void add_knot(manifest::Document& document, const std::filesystem::path& out) {
 const std::vector<Specimen>& specimens() {
   static const std::vector<Specimen> all = {{"knot", "a trefoil knot of a round tube on a table; writes knot.ply"},
                                             {"spheres", "two spheres on a table"},
+                                            {"glass",
+                                             "a glass bowl on a cloth under a sky; writes bowl.ply, cloth.exr "
+                                             "and sky.exr"},
                                             {"board", "a calibration board from twelve sides; writes board.png"}};
   return all;
 }
 
 manifest::Document specimen(const std::string& name, const std::filesystem::path& out) {
   if (name == "board") return board_specimen(out);
+  if (name == "glass") return glass_specimen(out);
   manifest::Document document;
   if (name == "knot")
     add_knot(document, out);
   else if (name == "spheres")
     add_spheres(document, out);
   else
-    throw Error(Exit::usage, "--specimen", "there is no specimen \"" + name + "\"", "choose knot, spheres or board");
+    throw Error(Exit::usage, "--specimen", "there is no specimen \"" + name + "\"",
+                "choose knot, spheres, glass or board");
   add_table(document);
   add_lamps(document);
   add_images(document);

@@ -1,0 +1,154 @@
+// The bowl's profile in the half plane (r, z), anticlockwise seen with r to the right and z up, so that the surface of
+// revolution looks outwards: the foot's disc, the outer quarter circle up to the rim, a half circle of the wall's
+// thickness over the rim, the inner quarter circle down to the axis.
+#include "render/specimen_glass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/atomic_file.h"
+#include "io/picture.h"
+#include "render/looking_at.h"
+
+namespace gonio::render {
+namespace {
+
+constexpr double bowl_radius_m = 0.06, bowl_wall_m = 0.005, cloth_m = 0.5;
+
+struct ProfilePoint {
+  double r, z;
+  Vec2 normal;  // (r, z), unit, out of the glass
+};
+
+std::vector<ProfilePoint> profile(double radius_m, double wall_m) {
+  constexpr int arc = 48, rim = 16;
+  const double foot = std::asin(0.45);  // polar angle, from -z, up to which the outer sphere is cut flat
+  const double lift = radius_m * std::cos(foot), inner = radius_m - wall_m;
+  std::vector<ProfilePoint> points;
+  for (int i = 1; i <= 8; ++i) points.push_back({radius_m * std::sin(foot) * i / 8, 0, {0, -1}});
+  for (int i = 1; i <= arc; ++i) {
+    const double a = foot + (pi / 2 - foot) * i / arc;
+    points.push_back({radius_m * std::sin(a), lift - radius_m * std::cos(a), {std::sin(a), -std::cos(a)}});
+  }
+  for (int i = 1; i < rim; ++i) {
+    const double a = pi * i / rim, middle = radius_m - wall_m / 2;
+    points.push_back({middle + wall_m / 2 * std::cos(a), lift + wall_m / 2 * std::sin(a), {std::cos(a), std::sin(a)}});
+  }
+  // The inside is a little shallower than a hemisphere, so that the bottom is thicker than the foot is deep.
+  const double depth = std::min(inner, lift - wall_m);
+  for (int i = arc; i >= 1; --i) {
+    const double a = pi / 2 * i / arc, r = inner * std::sin(a), down = depth * std::cos(a);
+    const Vec2 normal{-std::sin(a) * depth, std::cos(a) * inner};  // of the ellipse, towards the axis and up
+    points.push_back({r, lift - down, normal * (1 / norm(normal))});
+  }
+  return points;
+}
+
+io::Image cloth() {
+  constexpr int size = 256, threads = 32;
+  io::Image picture(size, size, {"R", "G", "B"});
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) {
+      const double u = x * threads / static_cast<double>(size), v = y * threads / static_cast<double>(size);
+      const bool warp = (static_cast<int>(u) + static_cast<int>(v)) % 2 == 0;  // plain weave
+      const double across = warp ? u - std::floor(u) : v - std::floor(v);
+      const double thread = 0.75 + 0.25 * std::sin(pi * across);
+      const bool blue = (warp ? static_cast<int>(u) : static_cast<int>(v)) % 8 < 2;
+      const Rgb colour = (blue ? Rgb{0.12, 0.20, 0.42} : Rgb{0.72, 0.68, 0.60}) * thread;
+      for (int c = 0; c < 3; ++c) picture.at(x, y, c) = static_cast<float>(colour[c]);
+    }
+  return picture;
+}
+
+// Radiance, W/(m^2 sr): a grey sky brighter towards the zenith, a dim floor, two windows.
+io::Image sky() {
+  constexpr int width = 256, height = 128;
+  io::Image picture(width, height, {"R", "G", "B"});
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const double elevation = 90 - 180 * (y + 0.5) / height, azimuth = 360 * (x + 0.5) / width;
+      Rgb radiance = elevation > 0 ? Rgb{0.25, 0.28, 0.32} * (0.5 + elevation / 90) : Rgb{0.08, 0.07, 0.06};
+      const bool tall = azimuth > 40 && azimuth < 75 && elevation > 15 && elevation < 60;
+      const bool wide = azimuth > 200 && azimuth < 260 && elevation > 25 && elevation < 45;
+      const bool bar = std::fmod(azimuth, 12) < 1.5;
+      if (tall && !bar) radiance = {9, 8.4, 7.5};
+      if (wide && !bar) radiance = {4, 4.6, 5.6};
+      for (int c = 0; c < 3; ++c) picture.at(x, y, c) = static_cast<float>(radiance[c]);
+    }
+  return picture;
+}
+
+manifest::ImageEntry view(const std::string& id, Vec3 position_m) {
+  manifest::ImageEntry image;
+  image.id = id;
+  image.camera = "camera";
+  static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
+      looking_at(position_m, {0, 0, 0.022});
+  image.noise = manifest::Noise{.gain = 16000, .read = 0.0005};
+  return image;
+}
+
+}  // namespace
+
+io::TriangleMesh bowl(double radius_m, double thickness_m, int sectors) {
+  const std::vector<ProfilePoint> points = profile(radius_m, thickness_m);
+  io::TriangleMesh mesh;
+  const auto count = static_cast<std::uint32_t>(points.size()), around = static_cast<std::uint32_t>(sectors);
+  for (const ProfilePoint& p : points)
+    for (std::uint32_t s = 0; s < around; ++s) {
+      const double phi = 2 * pi * s / sectors;
+      mesh.positions_m.push_back({p.r * std::cos(phi), p.r * std::sin(phi), p.z});
+      mesh.normals.push_back({p.normal.x * std::cos(phi), p.normal.x * std::sin(phi), p.normal.y});
+    }
+  const auto low = static_cast<std::uint32_t>(mesh.positions_m.size()), high = low + 1;
+  const double inner_bottom_m = points.back().z;
+  mesh.positions_m.push_back({0, 0, 0});
+  mesh.normals.push_back({0, 0, -1});
+  mesh.positions_m.push_back({0, 0, inner_bottom_m});
+  mesh.normals.push_back({0, 0, 1});
+  for (std::uint32_t s = 0; s < around; ++s) {
+    const std::uint32_t t = (s + 1) % around;
+    mesh.triangles.push_back({low, t, s});
+    for (std::uint32_t ring = 0; ring + 1 < count; ++ring) {
+      const std::uint32_t a = ring * around + s, b = ring * around + t, c = a + around, d = b + around;
+      mesh.triangles.push_back({a, b, d});
+      mesh.triangles.push_back({a, d, c});
+    }
+    mesh.triangles.push_back({high, (count - 1) * around + s, (count - 1) * around + t});
+  }
+  return mesh;
+}
+
+manifest::Document glass_specimen(const std::filesystem::path& out) {
+  make_folder(out);
+  io::write_ply(out / "bowl.ply", bowl(bowl_radius_m, bowl_wall_m, 192));
+  io::write_picture(out / "cloth.exr", cloth());
+  io::write_picture(out / "sky.exr", sky());
+  manifest::Document document;
+  document.meshes["bowl"].file = manifest::add_file(document, out / "bowl.ply", "bowl");
+  document.meshes["cloth"].plane_size_m = {cloth_m, cloth_m};
+  manifest::Surface& glass = document.surfaces["glass"];
+  glass.model = "dielectric";
+  glass.parameters = {{"eta", 1.52}, {"sigma_a_per_m", std::vector<double>{12, 3, 9}}};  // a green bottle's
+  document.surfaces["cloth"].textures["albedo"] = manifest::add_file(document, out / "cloth.exr", "cloth");
+  manifest::Light& sky_light = document.lights["sky"];
+  sky_light.model = "lat-long";
+  sky_light.file = manifest::add_file(document, out / "sky.exr", "sky");
+  const auto add = [&](const char* id, const char* surface, double z_m) {
+    manifest::Object object{.id = id, .mesh = id, .surface = surface, .world_from_object = {}};
+    object.world_from_object.emplace().translation_m = {0, 0, z_m};
+    document.objects.push_back(object);
+  };
+  add("cloth", "cloth", 0);
+  add("bowl", "glass", 0.0005);  // on the cloth's threads, not in them
+  manifest::Camera& camera = document.cameras["camera"];
+  camera.width_px = 320;
+  camera.height_px = 240;
+  camera.fx_px = camera.fy_px = 560;
+  camera.cx_px = 159.5;
+  camera.cy_px = 119.5;
+  document.images = {view("front", {0.02, -0.30, 0.16}), view("side", {0.26, -0.12, 0.22})};
+  return document;
+}
+
+}  // namespace gonio::render
