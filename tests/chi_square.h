@@ -118,11 +118,7 @@ inline double chi_square_p(const Sampler& sampler, std::uint64_t seed) {
   Random random(seed);
   for (int i = 0; i < chi_samples; ++i) {
     const auto w = sampler.draw(random);
-    if (!w) {
-      ++seen.back();
-      continue;
-    }
-    const Vec3 local = frame.to_local(*w);
+    const Vec3 local = w ? frame.to_local(*w) : Vec3{0, 0, -2};
     if (local.z < sampler.least_cosine) {
       ++seen.back();
       continue;

@@ -1,4 +1,5 @@
-// The field tables of the manifest's sections, and the codecs that follow from them. Defined in sections.cpp.
+// The field tables of the manifest's sections, and the codecs that follow from them. Defined in sections.cpp,
+// modelled.cpp and instrument_tables.cpp.
 #pragma once
 #include <vector>
 

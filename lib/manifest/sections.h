@@ -11,44 +11,10 @@
 #include <vector>
 
 #include "geom/rigid.h"
+#include "manifest/parameter.h"
 #include "manifest/value.h"
 
 namespace gonio::manifest {
-
-// A number or a short list of numbers which a fit may be allowed to move: `0.5`, `[0.5, 0.3, 0.2]` or
-// `{"value": 0.5, "free": true, "min": 0, "max": 1, "sigma": 0.1, "share": "name"}`. `sigma` is a prior's width. Free
-// parameters that bear the same `share` are one parameter.
-struct Parameter {
-  std::vector<double> value;
-  bool free = false;
-  std::optional<double> min, max, sigma;
-  std::string share;
-
-  Parameter() = default;
-  Parameter(double v) : value{v} {}
-  Parameter(std::vector<double> v) : value(std::move(v)) {}
-  bool given() const { return !value.empty(); }
-  double scalar() const { return value.at(0); }
-  Rgb rgb() const {
-    return value.size() == 3 ? Rgb{value[0], value[1], value[2]} : Rgb{value.at(0), value.at(0), value.at(0)};
-  }
-  Vec3 vector() const { return {value.at(0), value.at(1), value.at(2)}; }
-  bool operator==(const Parameter&) const = default;
-};
-using Parameters = std::map<std::string, Parameter>;
-using Sigmas = std::map<std::string, std::vector<double>>;  // one standard deviation beside a fitted value, same key
-
-struct PoseSigma {
-  std::vector<double> rotation_rad;   // 1 or 3 (x, y, z of a rotation vector applied on the left, in the `to` frame)
-  std::vector<double> translation_m;  // 1 or 3
-  bool operator==(const PoseSigma&) const = default;
-};
-// `{"rotation": [w,x,y,z], "translation_m": [x,y,z], "sigma": {...}}`; on input also `{"matrix": 4x4 row-major}`.
-template <class To, class From>
-struct Pose : Rigid<To, From> {
-  std::optional<PoseSigma> sigma;
-  bool operator==(const Pose&) const = default;
-};
 
 struct File {        // "files"
   std::string path;  // relative to the manifest's folder
@@ -95,8 +61,7 @@ struct Camera {                   // "cameras"
   std::optional<double> rms_px;
   Value covariance;  // {"order": [...], "values": [[...]]} or null
   std::optional<CameraQuality> quality;
-  std::string
-      mosaic{};  // colour filters over the pixels: "RGGB", "GRBG", "GBRG", "BGGR"; or "polarizers", [90 45; 135 0]
+  std::string mosaic{};  // filters over the pixels: "RGGB", "GRBG", "GBRG", "BGGR"; "polarizers": [90 45; 135 0]
 };
 struct RigMember {
   std::string camera;
@@ -140,22 +105,20 @@ struct Mesh {  // "meshes": a PLY file or an analytic shape
   std::optional<std::vector<double>> plane_size_m;  // {"plane": {"size_m": [x, y]}}, in its own xy plane, normal +z
   std::string normals;  // "smooth" (default: the file's, else averaged by area and angle) | "flat"
 };
-// "surfaces" and "lights": a registered model and its parameters, validated against the registry (manifest/model.h).
 struct LawUse {  // how a parameter varies over an object: a registered law (surface/law.h) and its parameters
   std::string law;
   Parameters parameters;
 };
+// "surfaces" and "lights": a registered model and its parameters, validated against the registry (manifest/model.h).
 struct Surface {
   std::string model = "diffuse";
   Parameters parameters;
   std::map<std::string, std::string> textures;  // parameter -> file id
   Sigmas sigma;
-  std::string file{};  // models that read a table (MERL): file id
-  std::string base{};  // models that lie on another surface: its name
-  std::map<std::string, std::string>
-      spectra{};  // parameter -> file id: refractiveindex.info YAML, or CSV over wavelength
-  std::map<std::string, std::string>
-      vertices{};  // parameter -> property of the mesh's vertices (of R, G, B: x for x_r...)
+  std::string file{};                             // models that read a table (MERL): file id
+  std::string base{};                             // models that lie on another surface: its name
+  std::map<std::string, std::string> spectra{};   // parameter -> file id: refractiveindex.info YAML, or CSV
+  std::map<std::string, std::string> vertices{};  // parameter -> the vertices' property (R, G, B: x for x_r...)
   std::map<std::string, std::map<std::string, Parameter>> labels{};  // parameter -> face label -> value
   std::map<std::string, LawUse> laws{};                              // parameter -> how it varies over the object
 };
