@@ -1,8 +1,7 @@
 // scripts/bench render: the same scenes through `render` and through Blender's Cycles.
 //
-//   bench-render scenes FOLDER BUNNY SKY   four manifests for the race of speed and five for the test of agreement,
-//   with
-//                                          what they need; BUNNY: a PLY file, SKY: a latitude-longitude EXR
+//   bench-render scenes FOLDER BUNNY SKY   manifests for the race of speed and for the test of agreement, with what
+//                                          they need; BUNNY: a PLY file, SKY: a latitude-longitude EXR
 //   bench-render grid TRIANGLES FOLDER     one scene of a wavy sheet with so many triangles
 //   bench-render timed COMMAND...          runs it; prints wall time s, processor time s, peak memory MiB
 //   bench-render error PICTURE REFERENCE   relative mean square error
@@ -26,12 +25,15 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "io/merl.h"
 #include "io/picture.h"
 #include "io/ply.h"
 #include "manifest/document.h"
 #include "render/looking_at.h"
 #include "render/specimen_glass.h"
 #include "stats/distributions.h"
+#include "surface/half_angle.h"
+#include "surface/surface.h"
 
 namespace gonio::bench {
 namespace {
@@ -109,6 +111,25 @@ Document ball(const std::string& model, manifest::Parameters parameters) {
   return document;
 }
 
+// A registered surface as a measured table in the file format of the MERL database.
+void write_table(const fs::path& path, const std::string& model, const manifest::Parameters& parameters) {
+  const surface::Model* law = surface::find(model);
+  const surface::Values values = surface::values_of(*law, parameters, "/surfaces/" + model);
+  io::MerlTable table{.bins = {90, 90, 180}, .brdf_per_sr = {}};
+  for (std::size_t h = 0; h < table.bins[0]; ++h)
+    for (std::size_t d = 0; d < table.bins[1]; ++d)
+      for (std::size_t p = 0; p < table.bins[2]; ++p) {
+        const double root = (static_cast<double>(h) + 0.5) / 90;
+        const surface::HalfAngles angles{root * root * pi / 2, (static_cast<double>(d) + 0.5) / 90 * pi / 2,
+                                         (static_cast<double>(p) + 0.5) / 180 * pi};
+        const auto [wo, wi] = surface::directions_of(angles);
+        const bool above = wo.z > 0 && wi.z > 0;
+        const Rgb brdf = above ? law->evaluate(values, wo, wi) : Rgb{-1, -1, -1};
+        for (const double f : {brdf.x, brdf.y, brdf.z}) table.brdf_per_sr.push_back(static_cast<float>(f));
+      }
+  io::write_merl(path, table);
+}
+
 void save(const Document& document, const fs::path& path) {
   write_file(path, manifest::print_document(document, path.parent_path()));
 }
@@ -127,11 +148,14 @@ void scenes(const fs::path& folder, const fs::path& mesh, const fs::path& sky) {
   race.lights.clear();
   add_sky(race, sky);
   save(race, folder / "race-bowl.json");
+  // The same metal as a table, and as the formula that filled it for the program that reads no tables.
+  const manifest::Parameters metal{{"f0", std::vector<double>{0.9, 0.6, 0.3}}, {"alpha", 0.2}};
+  write_table(folder / "metal.binary", "metal", metal);
   race = ball("merl", {});
   race.surfaces["ball"].file = manifest::add_file(race, folder / "metal.binary", "metal");
   add_lamp(race, 0.03);
   save(race, folder / "race-merl.json");
-  race = ball("metal", {{"f0", std::vector<double>{0.9, 0.6, 0.3}}, {"alpha", 0.2}});  // what the table holds
+  race = ball("metal", metal);
   add_lamp(race, 0.03);
   save(race, folder / "peer-merl.json");
 
