@@ -100,6 +100,10 @@ cli::Program describe() {
        .type = Type::flag,
        .help = "Write a PNG beside every picture, in sRGB, its 99th percentile white.",
        .needs = {"out"}},
+      {.name = "preview-layers",
+       .type = Type::flag,
+       .help = "Write a PNG of each other layer: depth, normals, Stokes vectors.",
+       .needs = {"out"}},
       {.name = "specimen",
        .type = Type::choice,
        .help = "Print the manifest of a built-in scene and end; meshes are written into --out.",
@@ -120,7 +124,10 @@ cli::Program describe() {
                    {"ID-mosaic.exr",
                     "--stokes, of cameras whose mosaic is \"polarizers\": R, G, B of every pixel behind "
                     "its polarizer, super-pixel [90 45; 135 0] degrees"},
-                   {"ID.png", "--preview"}};
+                   {"ID.png", "--preview"},
+                   {"ID-LAYER.png",
+                    "--preview-layers: depth (near dark, far bright), normal and back-normal (0.5 + 0.5 n; red, green, "
+                    "blue for the world's x, y, z), s1, s2, s3 (red positive, blue negative, one scale)"}};
   program.exits = {{Exit::quality, "A picture is noisier than --noise asks for; --spp or --time ended first."}};
   program.references = {"Kajiya, The rendering equation, SIGGRAPH 1986",
                         "Veach, Robust Monte Carlo methods for light transport simulation, 1997",

@@ -85,8 +85,8 @@ bool judge(const cli::Invocation& call, const std::string& image, const Facts& f
   return false;
 }
 
-struct Place {  // where the files of an image go
-  fs::path picture, preview;
+struct Place {                             // where the files of an image go
+  fs::path picture, preview, layers;       // layers: stem of their previews
   std::map<std::string, fs::path> beside;  // that the manifest names, by kind
 };
 
@@ -95,6 +95,7 @@ Place place_of(const cli::Invocation& call, const std::string& image, bool mosai
   Place place;
   place.picture = call.output_path(stem + ".exr");
   if (call.flag("preview")) place.preview = call.output_path(stem + ".png");
+  if (call.flag("preview-layers")) place.layers = call.output_path(stem);
   if (call.flag("sums") || call.given("samples")) place.beside["sums"] = call.output_path(stem + ".sums");
   if (mosaic) place.beside["mosaic"] = call.output_path(stem + "-mosaic.exr");
   return place;
@@ -115,6 +116,13 @@ void write(const Place& place, const Rendered& rendered) {
   write_file(place.picture, io::encode_exr(rendered.picture, attributes));  // last: where it stands, the others do
 }
 
+// From the finished picture, so that a resumed call makes them, too.
+void write_layers(const Place& place) {
+  if (place.layers.empty()) return;
+  for (const auto& [layer, picture] : layer_previews(io::read_picture(place.picture)))
+    io::write_picture(place.layers.string() + "-" + layer + ".png", picture);
+}
+
 class Images {
  public:
   explicit Images(cli::Invocation& call) : call_(call), seen_(seen_by(call)), session_(session_of(call)) {}
@@ -123,6 +131,7 @@ class Images {
   bool make(std::size_t image, const Place& place) {
     std::optional<Facts> facts = session_.finished(image, place.picture);
     if (!facts || !is_whole(place)) facts = render_anew(image, place);
+    write_layers(place);
     if (call_.flag("record"))
       enter_recording(call_.document, image, place.picture);
     else

@@ -43,6 +43,23 @@ TEST_F(Render, ASpecimenThroughAPipe) {
   EXPECT_EQ(ended.err, "");
 }
 
+// Also of a picture that was finished before they were asked for.
+TEST_F(Render, LayersAsPicturesToLookAt) {
+  const Ended specimen = render({"--specimen", "glass", "--out", "g"});
+  ASSERT_EQ(specimen.status, 0) << specimen.err;
+  const Process::Words words = {"--image", "front", "--spp", "2", "--out", "r", "--stokes"};
+  ASSERT_EQ(render(words, specimen.out).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "r/front-depth.png"));
+  Process::Words again = words;
+  again.insert(again.end(), {"--preview-layers", "--resume"});
+  ASSERT_EQ(render(again, specimen.out).status, 0);
+  for (const char* layer : {"s1", "s2", "s3", "depth", "normal", "back-normal"}) {
+    const auto file = folder_ / ("r/front-" + std::string(layer) + ".png");
+    ASSERT_TRUE(std::filesystem::exists(file)) << layer;
+    EXPECT_EQ(io::read_picture(file).width, io::read_picture(folder_ / "r/front.exr").width) << layer;
+  }
+}
+
 TEST_F(Render, AManifestInsideTheFolderThatOutMakes) {
   const Ended ended = render({"--specimen", "knot", "--out", "new/folder", "-o", "new/folder/scene.json"});
   EXPECT_EQ(ended.status, 0) << ended.err;
