@@ -1,3 +1,4 @@
+// What the layers of a rendering look like: which channels, which colours, which scale.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -28,7 +28,7 @@ TEST(Programs, AreThere) {
   std::set<std::string> names;
   for (const auto* program : cli::all_programs()) names.insert(program->name);
   EXPECT_THAT(names, testing::IsSupersetOf({"calib-charuco", "camera-export", "compare", "develop", "explain",
-                                            "handeye", "render", "vdi2634"}));
+                                            "handeye", "render", "scene", "vdi2634"}));
 }
 
 TEST(Programs, DescriptionsAreComplete) {

@@ -149,7 +149,8 @@ class Writer {
     if (look.kind == Look::Kind::metal && (!look.rough() || look.beckmann))
       lose(pointer, "a rise of reflectance towards grazing angles", "the reflectance at normal incidence, everywhere");
     if (look.kind == Look::Kind::glass && (look.rough() || look.textures.contains("alpha")))
-      lose(pointer, "light that facets scatter twice", "a rough glass that loses it");
+      lose(pointer, "light that facets scatter twice",
+           "a rough glass that loses it and mirrors by the Fresnel factor of the mean normal");
     if (look.kind == Look::Kind::translucent)
       lose(pointer, "a dipole", "a random walk of the same diffuse reflectance and diffusion length");
     if (look.kind != Look::Kind::metal && look.alpha_x != look.alpha_y)
