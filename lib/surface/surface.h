@@ -15,8 +15,8 @@
 // the hero alone (times three once, chosen uniformly) from the first such refraction, or weighs pdf() of each hero.
 //
 // Conditions that every model meets, and a test checks: reciprocity f(wo, wi) / eta_o^2 = f(wi, wo) / eta_i^2; energy:
-// what is reflected and transmitted is <= 1 (radiance over eta^2) for albedo <= 1, up to what a model's file says of its
-// tables; sample and pdf agree (chi-square); albedo() is the reflectance where it claims so.
+// what is reflected and transmitted is <= 1 (radiance over eta^2) for albedo <= 1, up to what a model's file says of
+// its tables; sample and pdf agree (chi-square); albedo() is the reflectance where it claims so.
 #pragma once
 #include <array>
 #include <filesystem>

@@ -169,9 +169,9 @@ void scenes(const fs::path& folder, const fs::path& mesh, const fs::path& sky) {
   agree("metal", ball("metal", {{"f0", std::vector<double>{0.9, 0.6, 0.3}}, {"alpha", 0.25}}), 0.03, false);
   agree("glass", ball("dielectric", {{"eta", 1.5}, {"alpha", 0.15}}), -1, true);
   agree("absorbing", ball("dielectric", {{"eta", 1.5}, {"sigma_a_per_m", std::vector<double>{20, 5, 12}}}), -1, true);
+  agree("frosted", ball("dielectric", {{"eta", 1.5}, {"alpha", 0.03}}), -1, true);
   agree("medium",
         ball("dielectric", {{"eta", 1.3},
-                            {"alpha", 0.3},
                             {"sigma_a_per_m", std::vector<double>{2, 5, 10}},
                             {"sigma_s_per_m", std::vector<double>{60, 80, 100}},
                             {"g", 0.4}}),
