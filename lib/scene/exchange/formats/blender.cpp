@@ -146,6 +146,9 @@ class Writer {
     if (look.kind == Look::Kind::metal && look.complex_index)
       lose(pointer, "the Fresnel factor of a complex index",
            "Schlick's rise from the same reflectance at normal incidence");
+    if (look.kind == Look::Kind::metal && look.rough() && !look.beckmann)
+      lose(pointer, "light of several facets that leaves evenly",
+           "the same light where such facets send it (Heitz et al. 2016)");
     if (look.kind == Look::Kind::metal && (!look.rough() || look.beckmann))
       lose(pointer, "a rise of reflectance towards grazing angles", "the reflectance at normal incidence, everywhere");
     if (look.kind == Look::Kind::glass && (look.rough() || look.textures.contains("alpha")))
