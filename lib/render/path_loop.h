@@ -13,7 +13,7 @@
 // path is refracted it goes on with that band alone, three times as strong. Light sampled through such an interface
 // likewise, so that both estimates of one band see the same densities.
 //
-// Roulette (Arvo & Kirk 1990) acts on the throughput of radiance over index^2: a path in glass is not thought weak.
+// Roulette (Arvo & Kirk 1990) acts on the root of the throughput over index^2: a path in glass is not thought weak.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -232,9 +232,9 @@ class PathLoop {
     return survives(path);
   }
 
-  // A path goes on with probability q and counts 1 / q.
+  // A path goes on with probability q and counts 1 / q. The root keeps paths that may yet meet something bright.
   static bool survives(Path<Carrier>& path) {
-    const double q = std::min(1.0, max_component(path.carrier.power()) * path.index_square);
+    const double q = std::min(1.0, std::sqrt(max_component(path.carrier.power()) * path.index_square));
     if (!(q > 0)) return false;
     if (path.events < roulette_from || q == 1) return true;
     if (path.sampler.uniform() >= q) return false;
