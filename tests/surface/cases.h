@@ -1,7 +1,10 @@
 // Parameter values, surroundings and directions for tests that walk the registry of surfaces: nothing here names a
 // model.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,9 +15,17 @@
 
 namespace gonio::tests {
 
-// A small file for models whose info().attachment says that they read one, written anew into a temporary folder; see
+// A small file for models whose info().attachment says that they read one, written once into a temporary folder; see
 // tables.cpp, where a model that needs one says how it is made.
 std::filesystem::path file_for(const manifest::ModelInfo& info);
+
+// Of a parameterized test over the registry: the model's id with underscores.
+inline std::string test_name(const testing::TestParamInfo<const surface::Model*>& info) {
+  std::string name = info.param->info().id;
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return !std::isalnum(c); }, '_');
+  return name;
+}
 
 struct SurfaceCase {
   const surface::Model* model;

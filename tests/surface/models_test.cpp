@@ -21,13 +21,7 @@ class EverySurface : public testing::TestWithParam<const surface::Model*> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Registered, EverySurface,
-                         testing::ValuesIn(surface::all_models().begin(), surface::all_models().end()),
-                         [](const testing::TestParamInfo<const surface::Model*>& info) {
-                           std::string name = info.param->info().id;
-                           std::replace_if(
-                               name.begin(), name.end(), [](char c) { return !std::isalnum(c); }, '_');
-                           return name;
-                         });
+                         testing::ValuesIn(surface::all_models().begin(), surface::all_models().end()), test_name);
 
 TEST_P(EverySurface, DeclaresParametersWithBoundsAndMeaning) {
   const surface::Model* model = GetParam();

@@ -80,13 +80,7 @@ void expect_same(const manifest::Surface& a, const manifest::Surface& b, const s
 
 class SurfaceInManifest : public testing::TestWithParam<const surface::Model*> {};
 INSTANTIATE_TEST_SUITE_P(Registered, SurfaceInManifest,
-                         testing::ValuesIn(surface::all_models().begin(), surface::all_models().end()),
-                         [](const testing::TestParamInfo<const surface::Model*>& info) {
-                           std::string name = info.param->info().id;
-                           std::replace_if(
-                               name.begin(), name.end(), [](char c) { return !std::isalnum(c); }, '_');
-                           return name;
-                         });
+                         testing::ValuesIn(surface::all_models().begin(), surface::all_models().end()), test_name);
 
 TEST_P(SurfaceInManifest, NumbersReadBackBitForBit) {
   const surface::Model& model = *GetParam();
