@@ -32,6 +32,7 @@ function(gonio_finish_library)
   file(GLOB surface_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/surface/models/*.cpp)
   file(GLOB law_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/surface/laws/*.cpp)
   file(GLOB light_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/light/models/*.cpp)
+  file(GLOB domain_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/explain/domains/*.cpp)
   file(GLOB exchange_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/scene/exchange/formats/*.cpp)
   gonio_registry(${GONIO_GENERATED}/mechanisms.cpp Mechanism mechanism/mechanism.h
     "std::span<const gonio::mechanism::Mechanism* const> gonio::mechanism::all_mechanisms()" gonio::mechanism
@@ -44,11 +45,23 @@ function(gonio_finish_library)
     "std::span<const gonio::light::Model* const> gonio::light::all_models()" gonio::light ${light_files})
   gonio_registry(${GONIO_GENERATED}/exchanges.cpp Exchange scene/exchange/exchange.h
     "std::span<const gonio::scene::Exchange* const> gonio::scene::all_exchanges()" gonio::scene ${exchange_files})
+  file(GLOB table_model_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/explain/tables/models/*.cpp)
+  file(GLOB table_term_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/explain/tables/terms/*.cpp)
+  gonio_registry(${GONIO_GENERATED}/table_models.cpp Model explain/tables/table_model.h
+    "std::span<const gonio::explain::tables::Model* const> gonio::explain::tables::all_models()"
+    gonio::explain::tables ${table_model_files})
+  gonio_registry(${GONIO_GENERATED}/table_terms.cpp Term explain/tables/table_model.h
+    "std::span<const gonio::explain::tables::Term* const> gonio::explain::tables::all_terms()"
+    gonio::explain::tables ${table_term_files})
+  gonio_registry(${GONIO_GENERATED}/domains.cpp Domain explain/domain.h
+    "std::span<const gonio::explain::Domain* const> gonio::explain::all_domains()" gonio::explain::domains
+    ${domain_files})
   set(objects "")
   foreach(room IN LISTS GONIO_ROOMS)
     list(APPEND objects $<TARGET_OBJECTS:${room}>)
   endforeach()
-  set(registries ${GONIO_GENERATED}/mechanisms.cpp)
+  set(registries ${GONIO_GENERATED}/mechanisms.cpp ${GONIO_GENERATED}/domains.cpp
+      ${GONIO_GENERATED}/table_models.cpp ${GONIO_GENERATED}/table_terms.cpp)
   if(EXISTS ${CMAKE_SOURCE_DIR}/lib/surface/surface.h)
     list(APPEND registries ${GONIO_GENERATED}/surfaces.cpp ${GONIO_GENERATED}/laws.cpp)
   endif()

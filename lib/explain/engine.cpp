@@ -139,7 +139,7 @@ const Hypothesis* structure_left(const Remainder& r, const Options& options) {
 void judge(const Selection& s, const Options& options, Explanation& e) {
   e.significant = s.before.global_p <= options.level;
   const Hypothesis* left = structure_left(s.after, options);
-  if (left != nullptr) e.outside = left->name;
+  if (left != nullptr) e.outside = Outside{.condition = left->name};
   if (s.model.candidates.empty()) {
     e.verdict = left != nullptr ? Verdict::unknown : Verdict::null;
     e.important = left != nullptr;

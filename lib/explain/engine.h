@@ -21,6 +21,7 @@ struct Options {
   int draws = 1999;                     // of the null distribution
   std::size_t dummies = 24;
   std::uint64_t seed = 1;
+  double budget_s = 0;  // 0: none; see ProblemOptions::budget_s
 };
 
 Explanation explain(const Problem& problem, const Options& options);

@@ -147,7 +147,7 @@ Value entry_of(const Problem& problem, const Explanation& e, const Illustration&
   Value entry = Value::object({{"domain", problem.domain()}, {"verdict", verdict_name(e.verdict)}});
   entry["named"] = named;
   entry["not_told_apart"] = apart;
-  entry["outside"] = e.outside.empty() ? Value() : Value(e.outside);
+  entry["outside"] = e.outside ? Value::object({{"condition", e.outside->condition}}) : Value();
   entry["located"] = located(e, illustration);
   entry["held_out"] =
       Value::object({{"before", number(e.held_out_before)},

@@ -32,8 +32,8 @@ struct Hypothesis {
   double held_out = 0;                  // score on held-out groups, in the user's unit
   double gain = 0, gain_sigma = 0;  // fall of the held-out mean square in noise units against the model it extends, and
                                     // the standard error of that over groups
-  double effect = 0;  // what --matters is held against
-  double wald_p = 1;  // of "all its parameters are neutral"
+  double effect = 0;                // what --matters is held against
+  double wald_p = 1;                // of "all its parameters are neutral"
   std::vector<Estimate> parameters;
   std::string refused;  // why it cannot be named; empty: it can
 };
@@ -57,6 +57,7 @@ struct LocatedCondition {
   std::string name, unit, stage;
   double share = 0;             // of the excess over noise that a smooth curve over this condition explains
   double lower = 0, upper = 0;  // range that holds most of it
+  double effect = 0;            // rms of the curve over that range, in `curve.value_unit`
   Curve curve;
 };
 struct LocatedGroup {
@@ -68,6 +69,28 @@ struct LocatedGroup {
 struct Compensation {  // a free parameter that the missing physics had bent
   std::size_t parameter = 0;
   double before = 0, after = 0, sigma = 0;
+};
+
+// Structure that no mechanism repairs, as a law: residual = direction * sum over terms of
+// coefficient * product of condition^power. Every coefficient has the unit that makes its term one of the residual.
+struct LawTerm {
+  double coefficient = 0, sigma = 0;
+  std::string unit;                                    // of the coefficient
+  std::vector<std::pair<std::string, double>> powers;  // condition -> power
+};
+struct Outside {
+  std::string condition{}, stage{};                // that carries it most
+  std::vector<LawTerm> terms{};                    // empty: none extrapolates
+  std::string law{};                               // in words: "residual = 0.31 m^-1 * light.distance * prediction"
+  double held_out_before = 0, held_out_after = 0;  // user's unit: the range that the fit never saw
+  std::string extrapolated{};                      // "light.distance beyond 0.8 m"
+};
+
+struct PlannedMeasurement {
+  std::string sentence;
+  manifest::Value setup;               // Proposal::setup
+  std::vector<std::size_t> separates;  // two candidates
+  double z = 0;                        // by how many standard errors it would part them
 };
 
 struct Explanation {
@@ -102,7 +125,9 @@ struct Explanation {
   std::vector<LocatedGroup> groups;          // largest share first
   std::vector<Compensation> compensation;    // largest shift in sigmas first
   std::string stage;
-  std::string outside;  // condition in which structure remains that no mechanism repairs; empty: none
+  std::optional<Outside> outside;        // structure that no mechanism repairs
+  std::vector<std::size_t> minor;        // hypotheses (places in `scoreboard`) that are there, but matter too little
+  std::vector<PlannedMeasurement> plan;  // the most telling first
   std::string sentence, next_measurement;
 };
 

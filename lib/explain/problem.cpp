@@ -34,4 +34,8 @@ std::string Problem::remarks(const Explanation&) const {
   return {};
 }
 
+ProposedRows Problem::propose(std::span<const double>, std::size_t) const {
+  return {};
+}
+
 }  // namespace gonio::explain

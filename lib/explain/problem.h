@@ -41,8 +41,8 @@ struct Observations {
   std::vector<double> sigma;  // its noise, one standard deviation, > 0
   std::vector<double> norm;   // the score in the user's unit is sqrt(sum (y - f)^2 / sum norm): 0.5 px^2 per coordinate
                               // gives the RMS in pixels, y^2 the relative RMSE
-  std::vector<std::uint32_t> block;  // rows whose noise may be correlated share a block (a corner; a tile of pixels);
-                                     // numbered over all groups, never straddling two groups
+  std::vector<std::uint32_t> block;   // rows whose noise may be correlated share a block (a corner; a tile of pixels);
+                                      // numbered over all groups, never straddling two groups
   std::vector<std::size_t> first;     // group g holds rows first[g] .. first[g + 1] - 1; size groups + 1
   std::vector<std::string> group;     // names, as the user knows them: "left03"
   std::vector<Condition> conditions;  // the most telling ones suffice: ten or so
@@ -58,7 +58,7 @@ struct Parameter {
   double size = 1;  // typical size of a change, > 0: sets finite-difference steps (1e-4 size) and the damping's scale
   std::optional<double> prior_sigma;  // Gaussian prior about `start`
   std::vector<std::size_t> groups;    // on which groups it acts; empty: all. One group: a nuisance that is refitted on
-                                    // one half of a held-out group's blocks and judged on the other half
+                                      // one half of a held-out group's blocks and judged on the other half
 };
 
 struct Candidate {
@@ -73,6 +73,16 @@ struct Candidate {
 // What `--matters` is a share of: the signal (rms of the effect over sqrt(sum norm), images) or the held-out score that
 // the mechanism removes (boards, where pixels have no natural scale).
 enum class Importance { share_of_signal, share_of_residual };
+
+// A measurement that could be taken next: one more group under conditions that the user can set.
+struct Proposal {
+  std::string sentence;   // "the third image again at 0.1 s"
+  manifest::Value setup;  // what to set, in the manifest's words: {"exposure_s": 0.1}, {"light": {"position_m": ...}}
+};
+struct ProposedRows {
+  std::vector<double> prediction, sigma;      // of the rows that it would give
+  std::vector<std::vector<double>> nuisance;  // derivatives, one column for each number that only this group would have
+};
 
 struct Explanation;  // explanation.h
 struct Illustration;
@@ -107,6 +117,13 @@ class Problem {
   // Blocks beyond five noise widths under the most flexible fit are set aside and counted (mis-detected corners).
   // Images say no: a highlight is an effect, not an outlier.
   virtual bool sets_outliers_aside() const { return false; }
+
+  // Measurements within the user's reach that could separate hypotheses: another range, exposure, light, turn, in an
+  // order that does not depend on the data. `values`: the fit about which they are planned. The engine predicts each
+  // under the competing hypotheses and recommends the one that separates them best for its cost (T-optimality, Atkinson
+  // & Fedorov, Biometrika 62, 1975).
+  virtual std::vector<Proposal> proposals() const { return {}; }
+  virtual ProposedRows propose(std::span<const double> values, std::size_t proposal) const;
 
   // What the domain has to say beside the verdict, in sentences; joins the explanation's own.
   virtual std::string remarks(const Explanation& explanation) const;

@@ -38,13 +38,13 @@ std::string named_sentence(const Problem& problem, const Explanation& e) {
     for (std::size_t k = 1; k < set.size(); ++k) text += (k == 1 ? " " : " or ") + problem.candidates()[set[k]].id();
     text += ": these recordings cannot tell them apart.";
   }
-  if (!e.outside.empty()) text += " Structure over " + e.outside + " remains that nothing in the library repairs.";
+  if (e.outside) text += " Structure over " + e.outside->condition + " remains that nothing in the library repairs.";
   return text;
 }
 
 std::string plain_sentence(const Problem& problem, const Explanation& e) {
   if (e.verdict == Verdict::unknown) {
-    const std::string where = !e.outside.empty() ? e.outside : e.conditions.empty() ? "" : e.conditions[0].name;
+    const std::string where = e.outside ? e.outside->condition : e.conditions.empty() ? "" : e.conditions[0].name;
     return "There is a mismatch that matters" + (where.empty() ? "" : ", structured over " + where) +
            ", and no physics in the library repairs it on unseen " + problem.group_noun() + "s (" +
            problem.score_name() + " " + with_unit(e.held_out_before, problem.unit()) + ").";

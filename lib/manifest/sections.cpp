@@ -93,6 +93,8 @@ const std::vector<Field<ImageEntry>>& image_fields() {
             return r.light.empty() ? Value() : r.light.size() == 1 ? Value(r.light[0]) : Value(r.light);
           }),
       field("exposure_s", &ImageEntry::exposure_s, "s", "exposure time").positive(),
+      field("time_s", &ImageEntry::time_s, "s", "when it was taken, counted from any moment common to all images"),
+      field("temperature_K", &ImageEntry::temperature_K, "K", "of the instrument at that moment").positive(),
       field("response", &ImageEntry::response, "", "linear, srgb, or a table [[code, linear], ...]"),
       field("mask", &ImageEntry::mask, "", "file id; pixels above 0.5 count"),
       field("board", &ImageEntry::board, "", "name of the board it shows"),
@@ -166,7 +168,8 @@ const std::vector<Field<Table>>& table_fields() {
   static const std::vector<Field<Table>> table{
       field("file", &Table::file, "", "file id of a CSV file with a header line"),
       field("rows", &Table::rows, "", "the rows themselves, [[...], ...], in the order of `columns`"),
-      field("model", &Table::model, "", "forward model that predicts it: camera"),
+      field("model", &Table::model, "",
+            "forward model that predicts it: camera, surface, sensor, light, volume, tracks or expression"),
       custom<Table>(
           "columns", "", "name to unit, in the file's order", Codec<std::map<std::string, std::string>>::schema(),
           [](Table& t, const Value& v, const std::string& place) {
@@ -182,7 +185,14 @@ const std::vector<Field<Table>>& table_fields() {
       field("observed", &Table::observed, "", "columns that were measured"),
       field("sigma", &Table::sigma, "", "columns with one standard deviation of them"),
       field("camera", &Table::camera, "", "model camera: name of the camera"),
-      field("board", &Table::board, "", "model camera: name of the board")};
+      field("board", &Table::board, "", "model camera: name of the board"),
+      field("surface", &Table::surface, "", "model surface: name of the surface"),
+      field("light", &Table::light, "", "model light: name of the light"),
+      field("group", &Table::group, "", "column whose equal values are held out together"),
+      field("block", &Table::block, "", "column whose equal values share their noise; left out: single rows"),
+      field("expression", &Table::expression, "", "model expression: a*cos(theta)+b over columns and parameters"),
+      field("parameters", &Table::parameters, "", "of the forward model"),
+      field("parameter_sigma", &Table::sigmas, "", "one standard deviation of fitted parameters, by name")};
   return table;
 }
 

@@ -84,6 +84,7 @@ struct ImageEntry {  // "images"
   std::optional<Pose<frame::World, frame::Camera>> world_from_camera;  // absent: the camera sits at the world's origin
   std::vector<std::string> light;  // one name or a list; empty: every light of the scene is on
   std::optional<double> exposure_s;
+  std::optional<double> time_s{}, temperature_K{};  // when it was taken, counted from any moment; of the instrument
   Value response;    // "linear" (default for EXR), "srgb", or a table [[code, linear], ...]
   std::string mask;  // file id: pixels > 0.5 count
   std::string board;
@@ -139,7 +140,13 @@ struct Table {  // "tables": one row per observation, in a CSV file or inline
   std::string model;                                         // forward model that predicts it: "camera", "surface", ...
   std::vector<std::pair<std::string, std::string>> columns;  // name -> unit, in the file's order
   std::vector<std::string> observed, sigma;
-  std::string camera, board;  // model "camera": whose corners these are
+  std::string camera, board;       // model "camera": whose corners these are
+  std::string surface{}, light{};  // models "surface", "light": what the base model believes
+  std::string group{};             // column whose equal values belong together: held out together
+  std::string block{};             // column whose equal values share their noise; left out: single rows
+  std::string expression{};        // model "expression": the forward model over columns and parameters
+  Parameters parameters{};         // of the forward model: expressions, gains
+  Sigmas sigmas{};                 // beside fitted parameters
 };
 // "mechanisms": optional physics that is switched on, by canonical id. `on` names the surfaces or lights it applies to
 // (empty: all it can apply to); a parameter is one number, or one per name in `on`.

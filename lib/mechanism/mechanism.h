@@ -28,6 +28,7 @@ enum class Target { scene, surface, light, camera, board };  // what one set of 
 struct Mechanism {
   std::string id;        // canonical: "lens.radial"
   std::string sentence;  // what it is, in one plain sentence
+  std::string typical;   // size met in practice, with its unit: "10-50 % at the picture's edge"
   std::string equation;  // in plain text, with the parameter names above
   std::string source;    // paper, equation number
   std::string stage;     // of the simulator: board, lens, optics, sensor, light, surface, transport, pose

@@ -7,6 +7,7 @@ const Mechanism& board_warp() {
   static const Mechanism declaration{
       .id = "board.warp",
       .sentence = "The calibration board is not flat: paper or panel bulges by fractions of a millimetre.",
+      .typical = "0.05 to 1 mm",
       .equation =
           "z += sag_x_m (1 - x^2) + sag_y_m (1 - y^2), x, y in [-1, 1] over the board's inner corners, z away from the "
           "viewer",

@@ -10,6 +10,7 @@ const Mechanism& camera_rolling_shutter() {
       .sentence =
           "The rows are read one after the other, and board or camera moved meanwhile: each photograph is sheared and "
           "stretched on its own.",
+      .typical = "0.1 to 10 px",
       .equation =
           "the board of each view stands at t + tau (motion_x_m, motion_y_m, 0) when row v is read, tau = (v - (h - 1) "
           "/ 2) / h for an image of h rows",

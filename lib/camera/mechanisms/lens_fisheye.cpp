@@ -10,6 +10,7 @@ const Mechanism& lens_fisheye() {
           "The lens does not project perspectively: the edge of its image is drawn closer than the tangent of the "
           "angle "
           "demands, as in a fisheye.",
+      .typical = "up to hundreds of px",
       .equation = "r = tan(L theta) / L, L = 1 - fisheye, theta the angle from the axis",
       .source = "Gennery, IJCV 68(3), 2006, section 3",
       .stage = "lens",

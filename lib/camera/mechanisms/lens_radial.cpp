@@ -8,6 +8,7 @@ const Mechanism& lens_radial() {
       .id = "lens.radial",
       .sentence =
           "The lens magnifies differently towards the edge of the image: straight lines bow (barrel or pincushion).",
+      .typical = "0.1 to 100 px at the corners",
       .equation = "(x', y') = (x, y) (1 + k1 r^2 + k2 r^4 + k3 r^6), r^2 = x^2 + y^2 in normalised coordinates",
       .source = "Brown 1971, equation 9; OpenCV's order and sign",
       .stage = "lens",

@@ -8,6 +8,7 @@ const Mechanism& lens_rational() {
       .id = "lens.rational",
       .sentence =
           "Towards the edge of a wide lens the magnification changes faster than a polynomial of three terms follows.",
+      .typical = "0.1 to 100 px at the corners",
       .equation = "(x', y') = (x, y) (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)",
       .source = "OpenCV's rational model, calib3d; after Claus & Fitzgibbon, CVPR 2005",
       .stage = "lens",

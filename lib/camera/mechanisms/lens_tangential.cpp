@@ -7,6 +7,7 @@ const Mechanism& lens_tangential() {
   static const Mechanism declaration{
       .id = "lens.tangential",
       .sentence = "The lens elements are decentred, so that distortion differs between opposite sides of the image.",
+      .typical = "0.1 to 5 px",
       .equation = "x' += 2 p1 x y + p2 (r^2 + 2 x^2), y' += p1 (r^2 + 2 y^2) + 2 p2 x y",
       .source = "Brown 1971, equation 9; OpenCV's order and sign",
       .stage = "lens",

@@ -9,6 +9,7 @@ const Mechanism& lens_thin_prism() {
       .sentence =
           "A slightly tilted lens element or sensor acts like a thin prism and shifts the image with the square of the "
           "radius.",
+      .typical = "0.1 to 5 px",
       .equation = "x' += s1 r^2 + s2 r^4, y' += s3 r^2 + s4 r^4",
       .source = "Weng, Cohen & Herniou 1992, equation 13, with the r^4 terms of OpenCV",
       .stage = "lens",

@@ -7,6 +7,7 @@ const Mechanism& light_ambient() {
   static const Mechanism declaration{
       .id = "light.ambient",
       .sentence = "Weak light arrives from all directions, besides the lamps.",
+      .typical = "0.1 to 5 %",
       .equation = "incident radiance from every open direction += (radiance_r, radiance_g, radiance_b)",
       .source = "irradiance of an open plane: pi times the radiance",
       .stage = "light",

@@ -7,6 +7,7 @@ const Mechanism& light_direction() {
   static const Mechanism declaration{
       .id = "light.direction",
       .sentence = "The light comes from a slightly different direction than was written down.",
+      .typical = "1 to 10 degrees",
       .equation =
           "towards' = R(tilt_x t + tilt_y b) towards, t and b at right angles to towards; for lamps at a finite "
           "distance the position is turned so about the scene's centre",

@@ -7,6 +7,7 @@ const Mechanism& light_finite_size() {
   static const Mechanism declaration{
       .id = "light.finite-size",
       .sentence = "The lamp is not a point but has a size, so that shadows have a soft edge.",
+      .typical = "penumbrae of 1 to 20 px",
       .equation =
           "L = watt_per_sr / (pi radius_m^2) over the directions that a sphere of radius_m fills; penumbra width about "
           "2 radius_m (distance to the occluder) / (distance from lamp to occluder)",

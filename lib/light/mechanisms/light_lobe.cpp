@@ -7,6 +7,7 @@ const Mechanism& light_lobe() {
   static const Mechanism declaration{
       .id = "light.lobe",
       .sentence = "The lamp does not shine equally in all directions but fades with the angle from its axis.",
+      .typical = "10 to 50 %",
       .equation =
           "intensity *= cos(theta)^exponent, theta the angle from the lamp's axis; a lamp without one faces the "
           "scene's centre",

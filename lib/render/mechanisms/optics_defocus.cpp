@@ -7,6 +7,7 @@ const Mechanism& optics_defocus() {
   static const Mechanism declaration{
       .id = "optics.defocus",
       .sentence = "The lens has an aperture, so that only one distance is sharp.",
+      .typical = "0.5 to 5 px",
       .equation =
           "a point at depth z spreads over a disc of diameter 2 aperture_radius_m f |1/z - 1/focus_m| pixels, f the "
           "focal length in pixels",

@@ -7,6 +7,7 @@ const Mechanism& optics_veiling_glare() {
   static const Mechanism declaration{
       .id = "optics.veiling-glare",
       .sentence = "Light strays between lens and sensor and lies over the whole picture as a veil.",
+      .typical = "0.5 to 5 % of the mean radiance",
       .equation = "v += share mean(v), the mean over the picture, channel by channel",
       .source = "ISO 9358:1994, veiling glare index; Talvala et al. 2007 (uniform part)",
       .stage = "optics",

@@ -8,6 +8,7 @@ const Mechanism& optics_vignetting() {
   static const Mechanism declaration{
       .id = "optics.vignetting",
       .sentence = "The lens passes less light towards the edge of the picture.",
+      .typical = "10 to 50 % at the corners",
       .equation = "pixel value *= 1 - falloff r^2, r the distance from the picture's centre over half its width",
       .source = "Kang & Weiss 2000, equation 6 (geometric part, first order in r^2); Goldman 2010, equation 2",
       .stage = "optics",

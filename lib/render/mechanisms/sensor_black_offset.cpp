@@ -7,6 +7,7 @@ const Mechanism& sensor_black_offset() {
   static const Mechanism declaration{
       .id = "sensor.black-offset",
       .sentence = "The sensor reads more than zero in the dark.",
+      .typical = "1 to 10 codes",
       .equation = "v += offset",
       .source = "EMVA Standard 1288, release 4.0, dark signal",
       .stage = "sensor",

@@ -7,6 +7,7 @@ const Mechanism& sensor_crosstalk() {
   static const Mechanism declaration{
       .id = "sensor.crosstalk",
       .sentence = "Colour filters and neighbouring pixels let some of the other colours through.",
+      .typical = "1 to 5 %",
       .equation = "(R, G, B)' = M (R, G, B), M = 1 - 2 share on the diagonal and share elsewhere",
       .source = "Hirakawa 2008, Cross-talk explained (symmetric, without the spatial part)",
       .stage = "sensor",

@@ -7,6 +7,7 @@ const Mechanism& sensor_prnu() {
   static const Mechanism declaration{
       .id = "sensor.prnu",
       .sentence = "Pixels differ in sensitivity, always in the same way: a pattern that stays with the sensor.",
+      .typical = "0.3 to 5 %",
       .equation = "v *= 1 + sigma n(pixel), n standard normal and fixed for each pixel and colour of a camera",
       .source = "EMVA Standard 1288, release 4.0, PRNU_1288; Janesick 2007, chapter 3",
       .stage = "sensor",

@@ -7,6 +7,7 @@ const Mechanism& sensor_row_pattern() {
   static const Mechanism declaration{
       .id = "sensor.row-pattern",
       .sentence = "Lamps flicker while the rows are read one after the other, and the picture shows bands.",
+      .typical = "1 to 20 %",
       .equation = "v *= 1 + amplitude sin(2 pi row / period_px + phase_rad)",
       .source = "first harmonic of mains flicker; Sheinin, Schechner & Kutulakos 2017",
       .stage = "sensor",

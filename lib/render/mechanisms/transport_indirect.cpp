@@ -8,6 +8,7 @@ const Mechanism& transport_indirect() {
   static const Mechanism declaration{
       .id = "transport.indirect",
       .sentence = "Light reaches a surface by way of other surfaces, and not from the lamp alone.",
+      .typical = "1 to 20 %",
       .equation = "L = L_direct + strength L_indirect, L_indirect all light that was scattered more than once",
       .source = "Kajiya 1986, equation 1; Goral et al. 1984",
       .stage = "transport",

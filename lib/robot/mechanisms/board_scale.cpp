@@ -8,6 +8,7 @@ const Mechanism& board_scale() {
   static const Mechanism declaration{
       .id = "board.scale",
       .sentence = "The calibration board's squares are not as large as stated, or not square.",
+      .typical = "0.1 to 1 %",
       .equation = "x -> (1 + scale_x) x, y -> (1 + scale_y) y in the board's frame",
       .source = "own; print and paper stretch differently along and across",
       .stage = "board",

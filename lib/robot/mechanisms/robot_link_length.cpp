@@ -7,6 +7,7 @@ const Mechanism& robot_link_length() {
   static const Mechanism declaration{
       .id = "robot.link-length",
       .sentence = "The robot's links are not as long as its controller believes.",
+      .typical = "0.2 to 2 mm at the tool",
       .equation =
           "a_i -> a_i + a_i_m, d_i -> d_i + d_i_m in T = product of Rz(q_i + theta_i) Tz(d_i) Tx(a_i) Rx(alpha_i)",
       .source = "Mooring, Roth & Driels 1991; Hollerbach & Wampler 1996",

@@ -7,6 +7,7 @@ const Mechanism& robot_sag() {
   static const Mechanism declaration{
       .id = "robot.sag",
       .sentence = "The robot's joints yield under gravity: the farther it reaches, the lower it hangs.",
+      .typical = "0.05 to 0.5 mm",
       .equation =
           "q_i -> q_i + joint_i_rad_per_m l_i(q), l_i the lever arm, in m, of a weight at the flange about joint i; "
           "joint_i_rad_per_m is compliance times weight; gravity along base -z",

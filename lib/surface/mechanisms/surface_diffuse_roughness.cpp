@@ -7,6 +7,7 @@ const Mechanism& surface_diffuse_roughness() {
   static const Mechanism declaration{
       .id = "surface.diffuse-roughness",
       .sentence = "The matte surface is rough: it sends more light back towards the lamp and stays bright at its limb.",
+      .typical = "5 to 20 % at grazing angles",
       .equation =
           "f = albedo / pi (A + B max(0, cos(phi_i - phi_o)) sin(max theta) tan(min theta)), "
           "A = 1 - 0.5 s / (s + 0.33), B = 0.45 s / (s + 0.09), s = sigma_rad^2",

@@ -7,6 +7,7 @@ const Mechanism& surface_interface() {
   static const Mechanism declaration{
       .id = "surface.interface",
       .sentence = "A clear interface lies over the matte base and adds a gloss that leaves the base a little darker.",
+      .typical = "F0 of 2 to 8 %, a lobe up to 10 times the diffuse light",
       .equation =
           "f = F(wi.h) D(h) G2 / (4 cos_i cos_o) + f_base (1 - E(wi)) (1 - E(wo)) / (1 - E_mean), GGX of roughness "
           "alpha, "

@@ -1,0 +1,34 @@
+// Domains: kinds of recordings that `explain` understands. Each is one file in lib/explain/domains/ (the stem names the
+// function: tables.cpp defines `const Domain& tables()` in namespace gonio::explain::domains); the build gathers them.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "explain/problem.h"
+
+namespace gonio::explain {
+
+// What the user said about the recordings beside the manifest.
+struct ProblemOptions {
+  std::vector<std::filesystem::path> repeats;  // further takes of the same recordings, from which noise is measured
+  double budget_s = 0;  // of the whole run; 0: none. Turned into an amount of work, never into a clock: the same
+                        // recordings, options and budget give the same answer on every machine
+};
+
+struct Domain {
+  std::string name;      // "boards", "images", "tables": the folder's
+  std::string sentence;  // what recordings it takes
+  int order = 0;         // in which problems are explained and reported
+  bool (*applies)(const manifest::Document& document) = nullptr;
+  std::vector<std::unique_ptr<Problem>> (*problems)(const manifest::Document& document,
+                                                    const ProblemOptions& options) = nullptr;
+  // Files of the manifest that the problems read, for provenance.
+  std::vector<std::filesystem::path> (*files)(const manifest::Document& document) = nullptr;
+};
+
+std::span<const Domain* const> all_domains();  // sorted by name; defined in a generated source
+
+}  // namespace gonio::explain
