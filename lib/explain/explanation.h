@@ -2,6 +2,7 @@
 // the scene. Filled by explain(); read by everybody else.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -69,14 +70,22 @@ struct LocatedGroup {
 struct Compensation {  // a free parameter that the missing physics had bent
   std::size_t parameter = 0;
   double before = 0, after = 0, sigma = 0;
+  // What an independent calibration says of it, where the manifest has one, and whether the parameter moved towards it.
+  std::optional<double> calibrated{}, calibrated_sigma{};
+  bool towards = false;
 };
 
 // Structure that no mechanism repairs, as a law: residual = direction * sum over terms of
-// coefficient * product of condition^power. Every coefficient has the unit that makes its term one of the residual.
+// coefficient * product of condition^power * shape. Every coefficient has the unit that makes its term one of the
+// residual over its direction.
 struct LawTerm {
   double coefficient = 0, sigma = 0;
   std::string unit;                                    // of the coefficient
   std::vector<std::pair<std::string, double>> powers;  // condition -> power
+  // A dimensionless function of shape_of / scale: "exp" (of minus that), "sin", "cos" (scale 1: of an angle).
+  std::string shape{}, shape_of{}, scale_unit{};
+  double scale = 1, scale_sigma = 0;
+  std::string along{};  // condition whose direction the term has
 };
 struct Outside {
   std::string condition{}, stage{};                // that carries it most
@@ -84,6 +93,10 @@ struct Outside {
   std::string law{};                               // in words: "residual = 0.31 m^-1 * light.distance * prediction"
   double held_out_before = 0, held_out_after = 0;  // user's unit: the range that the fit never saw
   std::string extrapolated{};                      // "light.distance beyond 0.8 m"
+  double share = 0;                                // of the excess over noise that the law takes away
+  Curve curve{};                  // over `condition`: the mean residual before and after the law is taken away
+  double split = 0;               // the law was fitted on one side of this value of `condition` and judged on the other
+  std::vector<double> per_row{};  // what the law says of every row, in the residual's unit; empty without terms
 };
 
 struct PlannedMeasurement {
@@ -143,6 +156,7 @@ struct Illustration {
   std::vector<Picture> pictures;
   std::vector<std::string> masks;  // file ids entered in the document: where the mismatch is
   std::vector<Box> boxes;          // the same as boxes
+  std::string observations{};      // file id of the table of evidence (evidence.h); empty: none is written
 };
 
 }  // namespace gonio::explain
