@@ -128,6 +128,7 @@ struct Explanation {
   double held_out_before = 0, held_out_after = 0;  // user's unit
   double fitted_before = 0, fitted_after = 0;      // the same score on the groups that were fitted
   bool converged = true;                           // of the final fit
+  std::string shortened{};                         // what a budget left out, in a sentence; empty: nothing
   std::vector<std::size_t> test_groups;            // opened once at the end; empty: nested cross-validation over all
   double false_alarm = 0;                          // share of dummies that would have passed for physics
   std::size_t dummies = 0;

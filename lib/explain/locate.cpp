@@ -112,7 +112,8 @@ std::vector<LocatedCondition> locate(const System& system, const Projection& p, 
   for (std::size_t s = 0; s < structures.list.size(); ++s) {
     if (structures.list[s].kind != Structure::Kind::curve) continue;
     const Condition& condition = system.observations().conditions[structures.list[s].index];
-    LocatedCondition located{condition.name, condition.unit, condition.stage, 0, 0, 0, {}};
+    LocatedCondition located;
+    located.name = condition.name, located.unit = condition.unit, located.stage = condition.stage;
     const Explained e = explained_by(p, p.foreign(structures, s));
     located.share = std::clamp((e.squares - e.rank) / excess, 0.0, 1.0);
     located.curve = residual_curve(system, structures.list[s].index, residual, residual, 12);
