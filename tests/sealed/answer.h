@@ -1,0 +1,38 @@
+// What explain answered to a case, read from the manifest and the evidence that it wrote.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "manifest/value.h"
+#include "sealed/sealed_case.h"
+
+namespace gonio::sealed {
+
+struct Fitted {
+  std::string mechanism, parameter;
+  double value = 0, lower = 0, upper = 0;
+};
+struct Answer {
+  bool ran = false;
+  int exit = 0;
+  double seconds = 0;
+  std::string error;                                // of a run that failed
+  std::string verdict;                              // null, named, ambiguous, unknown
+  std::vector<std::string> named, reported, minor;  // reported: named and what is not told apart from them
+  std::size_t set_size = 0;                         // of the largest set in the answer
+  std::vector<Fitted> fitted;
+  std::map<std::string, std::map<std::string, double>> limit;  // mechanism -> parameter -> detection limit
+  std::vector<std::string> invisible;
+  std::string condition, stage, sentence;
+  double before = 0, after = 0;
+  std::optional<double> auc;  // of the evidence against the truth, where that can be asked
+};
+
+// `folder`: the case's, where out.json, out/ and status.txt lie.
+Answer read_answer(const std::filesystem::path& folder, const Case& sealed);
+// Area under the receiver operating characteristic of `score` for the rows that `affected` marks; nothing where fewer
+// than one row in twenty is on either side.
+std::optional<double> area_under_curve(const Numbers& score, const std::vector<bool>& affected);
+
+}  // namespace gonio::sealed

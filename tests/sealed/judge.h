@@ -1,0 +1,59 @@
+// Answers against truths: the table of the proof, per domain and over all, with exact intervals (Clopper & Pearson
+// 1934), the confusion matrix, and the list of failures.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "manifest/value.h"
+#include "sealed/answer.h"
+#include "stats/intervals.h"
+
+namespace gonio::sealed {
+
+struct Judged {
+  Spec spec;
+  Truth truth;
+  std::string id;
+  Answer answer;
+};
+
+struct Tally {  // of one question in one domain, or over all
+  int right = 0, asked = 0;
+  double share() const { return asked > 0 ? static_cast<double>(right) / asked : 0; }
+  stats::Interval interval() const { return stats::share_interval(right, asked); }
+};
+struct Question {
+  std::string question, measure, to_reach;
+  double bound = 0;
+  bool at_most = false;
+  bool required = true;  // false: reported beside the questions of the proof
+  std::map<std::string, Tally> domains;
+  Numbers values;  // of medians
+  bool is_median = false;
+  Tally all() const;
+  double figure() const;  // share, or median; NaN where nothing was asked
+  bool met() const;
+  bool surely_missed() const;    // the interval excludes what is to be reached
+  std::string measured() const;  // "37 of 38 (97.4 %, 86.2 to 99.9)"
+};
+struct Failure {
+  std::string id, domain, kind, world, what, answer;
+};
+struct Judgement {
+  std::vector<Question> questions;
+  std::map<std::string, std::map<std::string, int>> confusion;  // truth -> first answer -> cases
+  std::vector<Failure> failures;
+  std::size_t cases = 0, unanswered = 0;
+  std::map<std::string, Numbers> seconds;  // domain -> of each case
+};
+
+// How far the effect is above what explain says it can see: |true - neutral| over the printed limit; the maker's own
+// count where the declaration's numbers are not the maker's.
+double times_the_limit(const Judged& judged);
+Judgement judge(const std::vector<Judged>& cases);
+std::string table_text(const Judgement& judgement);
+std::string page_html(const Judgement& judgement, const std::vector<Judged>& cases, const std::string& mode);
+manifest::Value truth_json(const std::vector<Judged>& cases);
+
+}  // namespace gonio::sealed

@@ -1,0 +1,151 @@
+// The proof's own parts: makers that share no code with what they test, cases that say nothing about themselves, and a
+// judge that can fail.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "sealed/judge.h"
+#include "sealed/surviving.h"
+#include "sealed/traced_lens.h"
+#include "sealed/worlds.h"
+
+namespace gonio::sealed {
+namespace {
+
+TEST(Sealed, MakersIncludeNothingOfTheSimulators) {
+  const std::set<std::string> allowed{"base", "geom", "io", "manifest", "sealed", "stats", "report"};
+  std::size_t includes = 0;
+  for (const auto& file : std::filesystem::directory_iterator(GONIO_SOURCE "/tests/sealed")) {
+    std::ifstream text(file.path());
+    for (std::string line; std::getline(text, line);) {
+      if (!line.starts_with("#include \"")) continue;
+      const std::string name = line.substr(10);
+      EXPECT_TRUE(allowed.contains(name.substr(0, name.find('/')))) << file.path() << ": " << line;
+      ++includes;
+    }
+  }
+  EXPECT_GT(includes, 20u);
+}
+
+TEST(Sealed, CasesAreOfAllKindsAndTheirNamesAreUnique) {
+  std::set<std::string> ids;
+  std::set<Kind> kinds;
+  for (const Spec& s : all_specs()) {
+    ids.insert(case_id(s));
+    kinds.insert(s.kind);
+  }
+  EXPECT_EQ(ids.size(), all_specs().size());
+  EXPECT_GE(kinds.size(), 6u);
+}
+
+TEST(Sealed, EqualSpecsGiveEqualBytesAndNothingInThemTellsTheEffect) {
+  const std::vector<Spec> specs = all_specs();
+  const auto spec = std::find_if(specs.begin(), specs.end(), [](const Spec& s) { return s.kind == Kind::single; });
+  ASSERT_NE(spec, specs.end());
+  const Case a = make_case(*spec), b = make_case(*spec);
+  EXPECT_EQ(a.files, b.files);
+  for (const auto& [name, bytes] : a.files)
+    for (const std::string& effect : spec->effects)
+      EXPECT_EQ(bytes.find("\"" + effect + "\""), std::string::npos) << name;
+}
+
+TEST(Surviving, TakesAwayWhatTheRefitSwallows) {
+  const std::vector<Numbers> line{{1, 1, 1, 1}, {0, 1, 2, 3}};
+  const FreeParameters free(line, {0.1, 0.1, 0.1, 0.1});
+  EXPECT_NEAR(length(free.surviving({3, 5, 7, 9})), 0, 1e-9);
+  EXPECT_NEAR(length(free.surviving({1, -1, -1, 1})), 20, 1e-9);
+  EXPECT_NEAR(left_beside({3, 4}, {{1, 0}}), 4, 1e-12);
+}
+
+// Third-order barrel distortion of a thin lens grows with its distance from the stop; without a distance a thin one has
+// none (Kingslake & Johnson 2010, 12.3).
+TEST(TracedLens, BarrelGrowsWithTheDistanceToTheStop) {
+  const Singlet thin{.stop_m = 1e-9, .front_m = 6e-3, .back_m = -6e-3, .thickness_m = 1e-8};
+  EXPECT_NEAR(image_height_ratio(thin, 0.4), 1, 1e-5);
+  double last = 1;
+  for (const double stop : {0.3e-3, 0.6e-3, 1.2e-3}) {
+    const double ratio = image_height_ratio({.stop_m = stop}, 0.4);
+    EXPECT_LT(ratio, last);
+    last = ratio;
+  }
+  EXPECT_LT(last, 0.99);
+}
+
+TEST(AreaUnderCurve, IsOneForAPerfectOrderAndAHalfForNone) {
+  Numbers score;
+  std::vector<bool> affected;
+  Random random(7);
+  for (int k = 0; k < 400; ++k) {
+    affected.push_back(k % 3 == 0);
+    score.push_back(k % 3 == 0 ? 10 + k : k / 1000.0);
+  }
+  EXPECT_NEAR(*area_under_curve(score, affected), 1, 1e-12);
+  for (double& s : score) s = random.uniform();
+  EXPECT_NEAR(*area_under_curve(score, affected), 0.5, 0.1);
+  EXPECT_NEAR(*area_under_curve(Numbers(400, 1.0), affected), 0.5, 1e-12);
+  EXPECT_FALSE(area_under_curve(score, std::vector<bool>(400, true)).has_value());
+}
+
+Judged answered(Kind kind, const std::string& effect, const std::vector<std::string>& named) {
+  Judged j;
+  j.spec.domain = "boards";
+  j.id = "case";
+  j.truth = {.kind = kind, .strength = 100, .share = 0.5, .floor = 1, .floor_known = true};
+  if (!effect.empty()) {
+    j.truth.mechanisms = {effect};
+    j.truth.values = {{effect, "p", 2.0}};
+  }
+  j.answer = {.ran = true,
+              .verdict = named.empty() ? "null" : "named",
+              .named = named,
+              .reported = named,
+              .before = 3,
+              .after = 1.1};
+  j.answer.set_size = named.size();
+  for (const std::string& n : named) j.answer.fitted.push_back({n, "p", 2.1, 1.9, 2.3});
+  if (!effect.empty()) j.answer.limit[effect]["p"] = 0.1;
+  return j;
+}
+
+const Question& question(const Judgement& j, const std::string& name, const std::string& measure) {
+  for (const Question& q : j.questions)
+    if (q.question.starts_with(name) && q.measure.starts_with(measure)) return q;
+  throw std::runtime_error("no question " + name);
+}
+
+TEST(Judge, CountsWhatIsRightAndWhatIsWrong) {
+  std::vector<Judged> cases;
+  for (int k = 0; k < 99; ++k) cases.push_back(answered(Kind::null, "", {}));
+  cases.push_back(answered(Kind::null, "", {"lens.radial"}));
+  for (int k = 0; k < 9; ++k) cases.push_back(answered(Kind::single, "lens.radial", {"lens.radial"}));
+  cases.push_back(answered(Kind::single, "lens.radial", {"board.warp"}));
+  cases.push_back(answered(Kind::outside, "", {"board.warp"}));
+  const Judgement j = judge(cases);
+  EXPECT_EQ(question(j, "nothing left out", "").all().right, 1);
+  EXPECT_EQ(question(j, "nothing left out", "").all().asked, 100);
+  EXPECT_TRUE(question(j, "nothing left out", "").met());
+  EXPECT_EQ(question(j, "which, where it can be", "").all().right, 9);
+  EXPECT_EQ(question(j, "outside the library", "wrongly").all().right, 1);
+  EXPECT_FALSE(question(j, "outside the library", "wrongly").met());
+  EXPECT_NEAR(question(j, "how much", "parameter").figure(), 0.05, 1e-9);
+  EXPECT_EQ(question(j, "how much", "95 %").all().right, 9);
+  EXPECT_NEAR(question(j, "repaired", "(before").figure(), 0.95, 1e-9);
+  EXPECT_EQ(j.failures.size(), 3u);
+  EXPECT_EQ(j.confusion.at("lens.radial").at("board.warp"), 1);
+  EXPECT_NE(page_html(j, cases, "quick").find("board.warp"), std::string::npos);
+}
+
+TEST(Judge, EffectsBelowThreeTimesThePrintedLimitAreNotAsked) {
+  Judged weak = answered(Kind::single, "lens.radial", {});
+  weak.answer.limit["lens.radial"]["p"] = 1.0;  // the effect has size 2
+  EXPECT_NEAR(times_the_limit(weak), 2, 1e-12);
+  EXPECT_EQ(question(judge({weak}), "present at 3x", "found").all().asked, 0);
+}
+
+}  // namespace
+}  // namespace gonio::sealed

@@ -1,0 +1,50 @@
+// A world that an instrument records: a design (which conditions, how many rows), a noise-free simulation with and
+// without effects, and the noise of a real sensor. Derived worlds hold the physics; make_case() holds the experiment.
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "base/random.h"
+#include "sealed/sealed_case.h"
+
+namespace gonio::sealed {
+
+// An effect that can be left out. Its size has one number or several (p1 and p2), each drawn from [least, most], on a
+// logarithmic scale, with either sign where `either_sign`.
+struct EffectKind {
+  std::string name, id;  // id: canonical, empty for an effect outside the library
+  std::vector<std::string> stages, conditions;
+  double least = 0, most = 0;
+  bool either_sign = false;
+  std::size_t parts = 1;
+  std::function<std::vector<TrueValue>(const Numbers& size)> values;  // empty: the declaration's numbers mean others
+  std::string variant;  // of the design that it needs; empty: the usual one
+};
+using Sizes = std::map<std::string, Numbers>;  // effect's name -> size; left out: absent
+
+class World {
+ public:
+  virtual ~World() = default;
+  virtual std::vector<EffectKind> effects() const = 0;
+  // Draws the conditions. Called once, before everything below.
+  virtual void design(Random& random, const std::string& variant) = 0;
+  virtual Numbers base() const = 0;        // true values of what the base model leaves free
+  virtual Numbers base_steps() const = 0;  // for differences
+  virtual Numbers simulate(const Numbers& base, const Sizes& sizes) const = 0;  // noise-free, all rows
+  virtual Numbers sigma(const Numbers& clean) const = 0;                        // the true noise
+  virtual Numbers noisy(const Numbers& clean, Random& random) const = 0;
+  virtual Numbers norm(const Numbers& observed) const = 0;  // the score is sqrt(sum (y - f)^2 / sum norm)
+  virtual bool relative() const = 0;                        // score is a share of the signal
+  // Files of the case; `stated` is the noise as it is written.
+  virtual void write(const Numbers& observed, const Numbers& stated, Case& into) const = 0;
+  virtual std::vector<Numbers> base_columns() const;  // default: central differences
+  // Where a row is seen in images; empty: rows are known by their values.
+  virtual void locate(const Numbers& surviving, const Numbers& observed, Case& into) const;
+  // Whether rivals are simulated to find out if effects can be told apart (dear for images).
+  virtual bool asks_rivals() const { return true; }
+};
+
+std::unique_ptr<World> make_world(const std::string& domain);  // null where there is none
+Case make_case(const Spec& spec);
+
+}  // namespace gonio::sealed

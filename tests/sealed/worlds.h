@@ -1,0 +1,30 @@
+// All worlds, one file each, and what is to be made of them.
+#pragma once
+#include <memory>
+#include <span>
+
+#include "sealed/world.h"
+
+namespace gonio::sealed {
+
+// Designs in which effects cannot be told apart or cannot be seen: by construction, and checked by the maker's count.
+struct Special {
+  Kind kind;
+  std::vector<std::string> effects;
+  std::string variant;
+};
+struct Share {  // how many cases of a domain, in all and in the ten minutes
+  int nulls = 0, distractors = 0, singles = 0, pairs = 0, specials = 0, outside = 0;
+};
+struct WorldEntry {
+  std::string domain;
+  std::unique_ptr<World> (*make)();
+  std::vector<Special> specials;
+  Share whole, quick;  // singles, specials, outside: of each effect; nulls, distractors, pairs: in all
+};
+std::span<const WorldEntry> all_worlds();
+std::vector<Spec> all_specs();  // of all worlds, in an order that says nothing
+
+std::unique_ptr<World> boards_world();
+
+}  // namespace gonio::sealed
