@@ -1,0 +1,290 @@
+// See reflectance_parameters.h.
+#include "explain/tables/reflectance_parameters.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+#include "manifest/reference.h"
+#include "scene/mechanisms.h"
+
+namespace gonio::explain::tables {
+namespace {
+
+using Kind = ReflectanceSlot::Kind;
+
+constexpr std::array<const char*, 5> rendered = {"surface.diffuse-roughness", "surface.interface", "surface.specular",
+                                                 "surface.anisotropy", "surface.retro-reflection"};
+// A fringe at 550 nm is 0.19 um of a film of index 1.45.
+constexpr std::array<double, 8> film_edges_m = {0.02e-6, 0.17e-6, 0.32e-6, 0.47e-6, 0.62e-6, 0.77e-6, 0.95e-6, 1.2e-6};
+constexpr std::size_t ridge_sectors = 4;
+
+const mechanism::Mechanism& declared(const std::string& id) {
+  const mechanism::Mechanism* m = mechanism::find_mechanism(id);
+  if (m == nullptr) throw Error(Exit::internal, "explain", "mechanism " + id + " is not registered");
+  return *m;
+}
+
+class Collector {
+ public:
+  Collector(const manifest::Document& document, const std::string& table_name, const Table& table,
+            const ReflectanceRows& rows)
+      : document_(document), table_(table), section_(document.tables.at(table_name)), rows_(rows) {}
+
+  ReflectanceParameters run() {
+    out_.surface = section_.surface;
+    out_.place = table_.place;
+    read_surface();
+    base_parameters();
+    // Tables that a model has prepared hold for the values that it was given.
+    if (!out_.base.empty() && out_.base_model->info().attachment == manifest::Attachment::none)
+      for (surface::Values& v : out_.base_values) v.prepared = nullptr;
+    for (const char* id : rendered) rendered_mechanism(declared(id));
+    out_.full_model = scratch_.surfaces[0].model;
+    const SurfacePlaces places(*out_.full_model);
+    if (places.film() && rows_.band_m.size() > 2) film();
+    if (places.ridges()) ridges();
+    if (!rows_.band_m.empty() && varies(rows_.excitation)) fluorescence();
+    return std::move(out_);
+  }
+
+ private:
+  void read_surface() {
+    const auto found = document_.surfaces.find(section_.surface);
+    const std::string place = manifest::place(document_, "/surfaces/" + section_.surface);
+    if (found == document_.surfaces.end())
+      throw Error(Exit::data, table_.place + "/surface", "names \"" + section_.surface + "\", which is not described",
+                  "enter it in \"surfaces\": {\"model\": \"diffuse\", \"albedo\": 0.5}");
+    scene::Surface surface;
+    surface.id = section_.surface;
+    surface.model = surface::find(found->second.model);
+    if (surface.model == nullptr)
+      throw Error(Exit::data, place, "has an unknown model \"" + found->second.model + "\"");
+    if (surface.model->info().takes_base || surface.model->transmits())
+      throw Error(Exit::data, place,
+                  "its model \"" + found->second.model + "\" lies on another surface or lets light through",
+                  "explain tables of reflectance with another model, such as coated-diffuse");
+    if (!found->second.file.empty()) surface.file = manifest::resolve(document_, found->second.file, place);
+    surface.parameters = found->second.parameters;
+    scene::refresh(surface, place);
+    out_.base_model = surface.model;
+    out_.prepared = surface.prepared;
+    scratch_.surfaces = {surface};
+  }
+
+  // Values of the base surface in every band, and its free numbers: those marked free, else its colours.
+  void base_parameters() {
+    const surface::Values& values = scratch_.surfaces[0].values;
+    const auto& infos = out_.base_model->info().parameters;
+    const manifest::Parameters& given = document_.surfaces.at(section_.surface).parameters;
+    const bool marked = std::any_of(given.begin(), given.end(), [](const auto& p) { return p.second.free; });
+    out_.base_values.assign(rows_.band_name.size(), values);
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+      const auto parameter = given.find(infos[i].name);
+      const bool free = marked ? parameter != given.end() && parameter->second.free : infos[i].rgb;
+      const manifest::Parameter stated = parameter != given.end() ? parameter->second : manifest::Parameter{};
+      const manifest::Parameter* fitted = fitted_bands(infos[i].name);
+      for (std::size_t b = 0; b < out_.base_values.size(); ++b) {
+        const double value = fitted != nullptr ? fitted->value[b] : values.v[i][rows_.component(b)];
+        if (infos[i].components == 3) out_.base_values[b].v[i] = {value, value, value};
+        if (free && infos[i].components == 3) enter_base(infos[i], value, b, stated);
+      }
+      if (free && infos[i].components == 1) enter_base(infos[i], values.scalar(i), ReflectanceSlot::all, stated);
+    }
+  }
+  // What an earlier explanation found per band.
+  const manifest::Parameter* fitted_bands(const std::string& name) const {
+    const auto found = section_.parameters.find(name);
+    return found != section_.parameters.end() && found->second.value.size() == rows_.band_name.size() ? &found->second
+                                                                                                      : nullptr;
+  }
+  void enter_base(const manifest::ParameterInfo& info, double value, std::size_t band,
+                  const manifest::Parameter& given) {
+    Parameter p;
+    p.name = "surfaces/" + section_.surface + "/" + info.name;
+    if (band != ReflectanceSlot::all && !rows_.band_name[band].empty()) p.name += "/" + rows_.band_name[band];
+    p.unit = info.unit;
+    p.start = p.neutral = value;
+    p.lower = std::max(info.lower, given.min.value_or(info.lower));
+    p.upper = std::min(info.upper, given.max.value_or(info.upper));
+    p.size = std::max(0.1 * std::abs(value), 0.01 * std::min(1.0, info.upper - info.lower));
+    p.prior_sigma = given.sigma;
+    out_.base.push_back(add(std::move(p), {Kind::base, info.name, band, 0, ""}));
+  }
+
+  std::size_t add(Parameter parameter, ReflectanceSlot slot) {
+    out_.parameters.push_back(std::move(parameter));
+    out_.slots.push_back(std::move(slot));
+    return out_.parameters.size() - 1;
+  }
+
+  Parameter of_mechanism(const mechanism::Mechanism& m, const mechanism::Parameter& info) const {
+    Parameter p;
+    p.name = m.id + "@" + section_.surface + "." + info.name;
+    p.unit = info.unit;
+    p.start = info.start, p.neutral = info.neutral, p.lower = info.lower, p.upper = info.upper;
+    p.size = std::max({std::abs(info.start - info.neutral), 0.02 * (info.upper - info.lower), 1e-12});
+    return p;
+  }
+
+  const manifest::MechanismUse* use_of(const mechanism::Mechanism& m) const {
+    const auto found = document_.mechanisms.find(m.id);
+    if (found == document_.mechanisms.end()) return nullptr;
+    const std::vector<std::string>& on = found->second.on;
+    return on.empty() || std::find(on.begin(), on.end(), section_.surface) != on.end() ? &found->second : nullptr;
+  }
+
+  // A mechanism that the manifest has switched on is part of the base model, and free; others are candidates.
+  void enter(const mechanism::Mechanism& m, std::vector<std::pair<Parameter, ReflectanceSlot>> own,
+             const std::string& family) {
+    const manifest::MechanismUse* use = use_of(m);
+    Candidate candidate{&m, {section_.surface}, {}, family};
+    for (auto& [parameter, slot] : own) {
+      if (use != nullptr) {
+        const auto given = use->parameters.find(slot.name);
+        if (given != use->parameters.end() && given->second.given())
+          parameter.start = parameter.neutral = std::clamp(given->second.scalar(), parameter.lower, parameter.upper);
+      }
+      slot.mechanism = m.id;
+      candidate.parameters.push_back(add(std::move(parameter), std::move(slot)));
+    }
+    if (use != nullptr)
+      out_.base.insert(out_.base.end(), candidate.parameters.begin(), candidate.parameters.end());
+    else
+      out_.candidates.push_back(std::move(candidate));
+  }
+
+  void rendered_mechanism(const mechanism::Mechanism& m) {
+    if (scene::mechanism_targets(scratch_, m).empty()) return;
+    const std::optional<std::size_t> own = parameter_place(*out_.base_model, m.parameters[0].name);
+    if (own && scratch_.surfaces[0].values.scalar(*own) != m.parameters[0].neutral) return;  // the base model has it
+    manifest::MechanismUse start;
+    std::vector<std::pair<Parameter, ReflectanceSlot>> parameters;
+    for (const mechanism::Parameter& info : m.parameters) {
+      Parameter p = of_mechanism(m, info);
+      if (info.name == "second_alpha") p.start = start_of_second_lobe(p);
+      // The signature vanishes where the base has no gloss; edits begin from where a search would.
+      start.parameters[info.name] = manifest::Parameter(info.start);
+      // Numbers that shape a term do not switch it on; those that vanish with it do.
+      const bool switches = &info == &m.parameters[0] || m.id == "surface.anisotropy";
+      parameters.push_back({p, {Kind::mechanism, info.name, ReflectanceSlot::all, 0, "", switches, info.neutral}});
+    }
+    const scene::Surface before = scratch_.surfaces[0];
+    scene::apply_mechanism(scratch_, m, start, {}, out_.place);
+    const surface::Model* model = scratch_.surfaces[0].model;
+    scratch_.surfaces[0] = before;
+    scratch_.surfaces[0].model = model;
+    scene::refresh(scratch_.surfaces[0], out_.place);
+    enter(m, std::move(parameters), "");
+  }
+  // Away from the lobe that is there: three times broader, or narrower where that is broad already.
+  double start_of_second_lobe(const Parameter& p) const {
+    const std::optional<std::size_t> alpha = parameter_place(*out_.base_model, "alpha");
+    if (!alpha) return p.start;
+    const double own = scratch_.surfaces[0].values.scalar(*parameter_place(*scratch_.surfaces[0].model, "alpha"));
+    return std::clamp(own < 0.3 ? 3 * own : own / 3, p.lower, p.upper);
+  }
+
+  void film() {
+    const mechanism::Mechanism& m = declared("surface.thin-film");
+    for (std::size_t k = 0; k + 1 < film_edges_m.size(); ++k) {
+      Parameter thickness = of_mechanism(m, m.parameters[0]), index = of_mechanism(m, m.parameters[1]);
+      thickness.lower = film_edges_m[k], thickness.upper = film_edges_m[k + 1];
+      thickness.start = 0.5 * (thickness.lower + thickness.upper);
+      thickness.size = 1e-8;
+      if (use_of(m) != nullptr) thickness.lower = 0, thickness.upper = film_edges_m.back();
+      enter(m,
+            {{thickness, {Kind::film, "film_m", ReflectanceSlot::all, 0, ""}},
+             {index, {Kind::film, "film_eta", ReflectanceSlot::all, 1, ""}}},
+            m.id);
+      if (use_of(m) != nullptr) return;
+    }
+  }
+
+  void ridges() {
+    const mechanism::Mechanism& m = declared("surface.micro-ridges");
+    const double half = 0.5 * pi / ridge_sectors;
+    for (std::size_t k = 0; k < ridge_sectors; ++k) {
+      Parameter share = of_mechanism(m, m.parameters[0]), tilt = of_mechanism(m, m.parameters[1]),
+                azimuth = of_mechanism(m, m.parameters[2]);
+      azimuth.start = azimuth.neutral = 2 * half * static_cast<double>(k);
+      azimuth.lower = azimuth.start - half, azimuth.upper = azimuth.start + half;
+      azimuth.size = 0.1, tilt.size = 0.05, tilt.neutral = tilt.start;
+      if (use_of(m) != nullptr) azimuth.lower = -half, azimuth.upper = pi - half;
+      enter(m,
+            {{share, {Kind::ridges, "ridge_share", ReflectanceSlot::all, 0, ""}},
+             {tilt, {Kind::ridges, "ridge_rad", ReflectanceSlot::all, 1, ""}},
+             {azimuth, {Kind::ridges, "ridge_azimuth_rad", ReflectanceSlot::all, 2, ""}}},
+            m.id);
+      if (use_of(m) != nullptr) return;
+    }
+  }
+
+  static bool varies(const std::vector<double>& column) {
+    return !column.empty() &&
+           *std::max_element(column.begin(), column.end()) > *std::min_element(column.begin(), column.end());
+  }
+
+  void fluorescence() {
+    const mechanism::Mechanism& m = declared("surface.fluorescence");
+    std::vector<std::pair<Parameter, ReflectanceSlot>> own;
+    for (std::size_t k = 0; k < m.parameters.size(); ++k) {
+      Parameter p = of_mechanism(m, m.parameters[k]);
+      if (k > 0) p.size = 1e-8;
+      own.push_back({p, {Kind::fluorescence, m.parameters[k].name, ReflectanceSlot::all, k, ""}});
+    }
+    enter(m, std::move(own), "");
+  }
+
+  const manifest::Document& document_;
+  const Table& table_;
+  const manifest::Table& section_;
+  const ReflectanceRows& rows_;
+  scene::Appearance scratch_;  // the surface alone: its model grows with every mechanism that it takes
+  ReflectanceParameters out_;
+};
+
+}  // namespace
+
+namespace {
+
+// The base surface's values in the parameters of a larger model, whose own are at their presets.
+surface::Values widened(const surface::Values& base, const surface::Model& from, const surface::Model& to) {
+  surface::Values wide;
+  const auto &old = from.info().parameters, &all = to.info().parameters;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double preset = all[i].preset.value_or(0);
+    wide.v[i] = {preset, preset, preset};
+  }
+  for (std::size_t i = 0; i < old.size(); ++i) wide.v[*parameter_place(to, old[i].name)] = base.v[i];
+  return wide;
+}
+
+}  // namespace
+
+// Of the candidates of one family at most one is in play: the others' first number is zero.
+ReflectanceState ReflectanceParameters::state(std::span<const double> values) const {
+  ReflectanceState s;
+  s.model = base_model;
+  for (std::size_t p = 0; p < slots.size(); ++p)
+    if (slots[p].kind == Kind::mechanism && slots[p].switches && values[p] != slots[p].neutral) s.model = full_model;
+  s.bands = base_values;
+  if (s.model != base_model)
+    for (surface::Values& v : s.bands) v = widened(v, *base_model, *s.model);
+  for (std::size_t p = 0; p < slots.size(); ++p) {
+    const ReflectanceSlot& slot = slots[p];
+    if (slot.kind == Kind::film && slot.which == 0 && values[p] > 0) s.film = {values[p], values[p + 1]};
+    if (slot.kind == Kind::ridges && slot.which == 0 && values[p] > 0)
+      s.ridges = {values[p], values[p + 1], values[p + 2]};
+    if (slot.kind == Kind::fluorescence && slot.which == 0) s.fluorescence = {values[p], values[p + 1], values[p + 2]};
+    if (slot.kind != Kind::base && slot.kind != Kind::mechanism) continue;
+    const std::optional<std::size_t> at = parameter_place(*s.model, slot.name);
+    if (!at) continue;
+    for (std::size_t b = 0; b < s.bands.size(); ++b)
+      if (slot.band == ReflectanceSlot::all || slot.band == b) s.bands[b].v[*at] = {values[p], values[p], values[p]};
+  }
+  return s;
+}
+
+}  // namespace gonio::explain::tables

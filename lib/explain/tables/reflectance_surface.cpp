@@ -1,0 +1,101 @@
+// See reflectance_surface.h.
+#include "explain/tables/reflectance_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "surface/fresnel.h"
+#include "surface/microfacet.h"
+#include "surface/thin_film.h"
+
+namespace gonio::explain::tables {
+namespace {
+
+constexpr double reference_f0 = 0.04;  // at which the lobes are read off: their shape does not depend on it
+
+void set(surface::Values& values, std::optional<std::size_t> place, double value) {
+  if (place) values.v[*place] = {value, value, value};
+}
+
+}  // namespace
+
+std::optional<std::size_t> parameter_place(const surface::Model& model, const std::string& name) {
+  const auto& all = model.info().parameters;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& p) { return p.name == name; });
+  if (found == all.end()) return {};
+  return static_cast<std::size_t>(found - all.begin());
+}
+
+SurfacePlaces::SurfacePlaces(const surface::Model& model)
+    : albedo(parameter_place(model, "albedo")),
+      f0(parameter_place(model, "f0")),
+      alpha(parameter_place(model, "alpha")),
+      retro(parameter_place(model, "retro")),
+      dielectric(f0 && model.info().parameters[*f0].components == 1) {}
+
+ReflectanceEvaluation::ReflectanceEvaluation(const ReflectanceState& state, const ReflectanceRows& rows)
+    : state_(state), rows_(rows), places_(*state.model) {
+  if (state.film.film_m == 0 && state.ridges.share == 0) return;
+  for (const surface::Values& values : state.bands) {
+    surface::Values bare = values;
+    set(bare, places_.albedo, 0);
+    set(bare, places_.retro, 0);
+    bare_.push_back(bare);
+    if (places_.dielectric) set(bare, places_.f0, reference_f0);
+    glazed_.push_back(bare);
+    if (state.ridges.share == 0) continue;
+    const double alpha = std::max(0.02, values.scalar(*places_.alpha)), azimuth = state.ridges.azimuth_rad - pi / 2;
+    saws_.push_back({surface::Ridges(state.ridges.tilt_rad, alpha, alpha, azimuth),
+                     surface::Ridges(state.ridges.tilt_rad, alpha, alpha, azimuth + pi)});
+  }
+}
+
+double ReflectanceEvaluation::fresnel(std::size_t band, double cosine) const {
+  const double f0 = state_.bands[band].scalar(*places_.f0);
+  if (!places_.dielectric) return surface::fresnel_schlick(cosine, {f0, f0, f0}).x;
+  return surface::fresnel_dielectric(cosine, surface::eta_of_f0(f0));
+}
+
+double ReflectanceEvaluation::gloss(std::size_t row, std::size_t band) const {
+  return state_.model->evaluate(bare_[band], rows_.wo[row], rows_.wi[row]).x;
+}
+
+double ReflectanceEvaluation::film(std::size_t row, std::size_t band, double f) const {
+  const Vec3 wo = rows_.wo[row], wi = rows_.wi[row];
+  const double eta = surface::eta_of_f0(state_.bands[band].scalar(*places_.f0)), wavelength = rows_.band_m[band];
+  const auto plain = [&](double cosine) { return surface::fresnel_dielectric(cosine, eta); };
+  const auto coated = [&](double cosine) {
+    return surface::fresnel_film(cosine, eta, state_.film.film_eta, state_.film.film_m, wavelength);
+  };
+  const double cosine = surface::half_cosine(wo, wi);
+  const double reference = surface::fresnel_dielectric(cosine, surface::eta_of_f0(reference_f0));
+  const double lobes = state_.model->evaluate(glazed_[band], wo, wi).x / reference;
+  const double base = f - lobes * plain(cosine);
+  const double passes = (1 - coated(wi.z)) * (1 - coated(wo.z)) / ((1 - plain(wi.z)) * (1 - plain(wo.z)));
+  return f + lobes * (coated(cosine) - plain(cosine)) + base * (passes - 1);
+}
+
+double ReflectanceEvaluation::ridged(std::size_t row, std::size_t band, double gloss_f) const {
+  const Vec3 wo = rows_.wo[row], wi = rows_.wi[row];
+  double lobe = 0;
+  for (const surface::Ridges& saw : saws_[band]) {
+    const Vec3 wof = saw.to_facet(wo), wif = saw.to_facet(wi);
+    if (wof.z > 0 && wif.z > 0) lobe += 0.5 * saw.lobe(wo, wi, wof, wif);
+  }
+  return state_.ridges.share * (fresnel(band, surface::half_cosine(wo, wi)) * lobe - gloss_f);
+}
+
+double ReflectanceEvaluation::operator()(std::size_t row, std::size_t band) const {
+  if (!(rows_.weight[row] > 0)) return 0;
+  double f = state_.model->evaluate(state_.bands[band], rows_.wo[row], rows_.wi[row]).x;
+  if (state_.film.film_m > 0) f = film(row, band, f);
+  if (state_.ridges.share > 0) f += ridged(row, band, gloss(row, band));
+  const FluorescenceTerm& glow = state_.fluorescence;
+  if (glow.emission > 0) {
+    const double off = (rows_.band_m[band] - glow.centre_m) / glow.width_m;
+    f += glow.emission * rows_.excitation[row] * std::exp(-0.5 * off * off) / pi;
+  }
+  return f;
+}
+
+}  // namespace gonio::explain::tables

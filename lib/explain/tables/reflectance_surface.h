@@ -1,0 +1,66 @@
+// A surface as reflectance tables see it: a registered model in any number of bands, and three terms that no registered
+// model has.
+//   f = f_model
+//     + lobes (F_film - F) + base (T_film / T - 1)              surface.thin-film      surface/thin_film.h
+//     + ridge_share (F ridges - gloss)                          surface.micro-ridges   surface/ridges.h
+//     + emission excitation exp(-(w - centre)^2 / 2 width^2) / pi                      surface.fluorescence
+// gloss = lobes F is the model without its base, T = (1 - F(wi)) (1 - F(wo)), ridges the mean of saws that face either
+// way. Every term is skipped, to the bit, where its amount is zero.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "explain/tables/reflectance_rows.h"
+#include "surface/ridges.h"
+#include "surface/surface.h"
+
+namespace gonio::explain::tables {
+
+struct FilmTerm {
+  double film_m = 0, film_eta = 1.4;
+};
+struct RidgesTerm {
+  double share = 0, tilt_rad = 0, azimuth_rad = 0;
+};
+struct FluorescenceTerm {
+  double emission = 0, centre_m = 0, width_m = 1;
+};
+
+// Places of the parameters that the terms read, in a model's list; nothing where it has them not.
+struct SurfacePlaces {
+  explicit SurfacePlaces(const surface::Model& model);
+  std::optional<std::size_t> albedo, f0, alpha, retro;
+  bool dielectric = false;  // f0 is one number: a clear interface
+  bool film() const { return dielectric && alpha.has_value(); }
+  bool ridges() const { return f0.has_value() && alpha.has_value(); }
+};
+std::optional<std::size_t> parameter_place(const surface::Model& model, const std::string& name);
+
+struct ReflectanceState {
+  const surface::Model* model = nullptr;
+  std::vector<surface::Values> bands;  // one per band: every RGB number is that of the band in all components
+  FilmTerm film;
+  RidgesTerm ridges;
+  FluorescenceTerm fluorescence;
+};
+
+// f of observations: rows first .. last - 1, all columns.
+class ReflectanceEvaluation {
+ public:
+  ReflectanceEvaluation(const ReflectanceState& state, const ReflectanceRows& rows);
+  double operator()(std::size_t row, std::size_t band) const;
+
+ private:
+  double gloss(std::size_t row, std::size_t band) const;
+  double fresnel(std::size_t band, double cosine) const;
+  double film(std::size_t row, std::size_t band, double f) const;
+  double ridged(std::size_t row, std::size_t band, double gloss_f) const;
+
+  const ReflectanceState& state_;
+  const ReflectanceRows& rows_;
+  SurfacePlaces places_;
+  std::vector<surface::Values> bare_, glazed_;  // without base; the same under a reference interface
+  std::vector<std::array<surface::Ridges, 2>> saws_;
+};
+
+}  // namespace gonio::explain::tables
