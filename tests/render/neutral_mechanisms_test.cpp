@@ -42,7 +42,8 @@ std::vector<float> photograph(const manifest::Document& document) {
 bool concerns_pictures(const Mechanism& m) {
   const auto is_for = [&](const char* domain) { return std::ranges::find(m.domains, domain) != m.domains.end(); };
   const bool lens = m.stage == "lens" && m.target == Target::camera;
-  return lens || !(is_for("boards") || is_for("robot"));
+  const bool tables_alone = m.domains == std::vector<std::string>{"tables"};  // acts through columns that no picture has
+  return lens || !(is_for("boards") || is_for("robot") || tables_alone);
 }
 
 manifest::MechanismUse use(const Mechanism& m, bool neutral) {

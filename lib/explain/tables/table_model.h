@@ -6,8 +6,10 @@
 // the terms whose columns are there, and hands the whole to the engine. A row has one prediction for each observed
 // column; observations are numbered row by row: row r, observed column k -> r * observed + k.
 //
-// Values are in SI: degrees have become radians when a model sees them.
+// Values are in SI: degrees have become radians when a model sees them, "theta_i [deg]" and "theta_i_deg" the column
+// theta_i. A column is found by its name with or without its unit: "exposure" is exposure_s.
 #pragma once
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -18,15 +20,19 @@
 namespace gonio::explain::tables {
 
 struct Table {
-  std::string name, place;                   // in the manifest's "tables"; "scan.json#/tables/t" for messages
-  std::vector<std::string> columns, units;   // units after conversion to SI
-  std::vector<std::vector<double>> values;   // [column][row]
-  std::vector<std::size_t> observed, sigma;  // columns; sigma empty: not stated
-  std::vector<std::size_t> first;            // group g has rows first[g] .. first[g + 1] - 1
+  std::string name, place;                       // in the manifest's "tables"; "scan.json#/tables/t" for messages
+  std::vector<std::string> columns, units;       // units after conversion to SI
+  std::vector<std::vector<double>> values;       // [column][row]; columns of names: places in their labels
+  std::vector<std::vector<std::string>> labels;  // [column]: the names in the order in which they appear; else empty
+  std::vector<std::size_t> observed, sigma;      // columns; sigma empty: not stated
+  std::vector<std::size_t> first;                // group g has rows first[g] .. first[g + 1] - 1
   std::vector<std::string> group;
   std::size_t rows() const { return values.empty() ? 0 : values[0].size(); }
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  std::size_t place_of(const std::string& column) const;  // none where there is no such column
   // The column's values; null where there is none.
   const std::vector<double>* find(const std::string& column) const;
+  bool varies(const std::string& column) const;  // is there, with more than one value
   // Error(data) at the table where it is missing or has another dimension than `unit`.
   const std::vector<double>& needed(const std::string& column, const std::string& unit) const;
 };
@@ -55,6 +61,13 @@ class BoundModel {
                         std::span<const std::size_t> columns, std::span<double> derivatives) const;
   // What a residual of one observation counts in the score's unit; empty: 1 for absolute scores, y^2 for relative ones.
   virtual std::vector<double> norm() const { return {}; }
+  // One standard deviation of every observation where the table states none; empty: from repeats, else from differences
+  // between neighbouring rows (table_noise.h).
+  virtual std::vector<double> sigma() const { return {}; }
+  // The scale in which a value of a row is compared with what was observed there: monotone, applied to observations
+  // and, after all terms, to predictions (reflectance spans decades: log1p). Sigma, norm and conditions then live in
+  // it.
+  virtual double scaled(double value, std::size_t /*row*/) const { return value; }
   // Fitted values with sigmas and the named mechanisms into the document's sections. `values`, `sigma`: the model's
   // own.
   virtual void apply(std::span<const double> values, std::span<const double> sigma,
@@ -76,6 +89,7 @@ struct Model {
   std::vector<Column> columns;
   std::string score_name, unit;  // "relative RMSE", "1"
   std::string group_noun;        // "series", "frame"
+  std::string group{};           // column that holds rows together where the table names none: "theta_i"
   Importance importance = Importance::share_of_signal;
   std::unique_ptr<BoundModel> (*bind)(const manifest::Document& document, const std::string& name,
                                       const Table& table) = nullptr;
@@ -83,15 +97,36 @@ struct Model {
 std::span<const Model* const> all_models();  // sorted by name; defined in a generated source
 const Model* find_model(const std::string& name);
 
+// A parameter of a term in one table: bounds and steps follow the table's scale.
+struct TermParameter {
+  // free: fitted. fixed: stays at `start` (the value at which a departure is stated). same: as the term's first one
+  // (one channel of three).
+  enum class Use { free, fixed, same };
+  double start = 0, lower = 0, upper = 0, size = 1;
+  Use use = Use::free;
+};
+struct TermColumn {
+  std::string name, unit, meaning;
+  bool from_least = false;  // `at` counts from the column's smallest value: time since the first row
+  bool needed = true;       // else NaN where the table has none
+};
+
 // A mechanism that changes a predicted value through known columns, whatever predicted it: an offset, a response curve,
 // a drift with time. `act` returns `predicted`, to the bit, at the neutral parameters.
 struct Term {
   const mechanism::Mechanism& (*mechanism)() = nullptr;
-  std::vector<Column> columns;                    // needed, in the order of `at`
-  std::vector<std::string> models;                // to which it applies; empty: to all
-  bool (*applies)(const Table& table) = nullptr;  // null: wherever the columns are there and vary
+  int order = 0;                                  // terms act in this order: light, volume, optics, sensor (term_order)
+  std::vector<TermColumn> columns{};              // in the order of `at`
+  std::vector<std::string> models{};              // to which it applies; empty: to all
+  bool (*applies)(const Table& table) = nullptr;  // null: wherever the needed columns are there and vary
   double (*act)(double predicted, std::span<const double> at, std::span<const double> parameters) = nullptr;
+  // Fits the mechanism's declaration (already in `parameters`) to a table whose largest observation is `scale`.
+  void (*adapt)(const Table& table, double scale, std::span<TermParameter> parameters) = nullptr;
 };
+namespace term_order {  // as render/sensor_chain.h has it behind the optics
+constexpr int light = 100, volume = 200, reference = 300, optics = 400, shutter = 500, non_linearity = 600,
+              row_pattern = 700, black_offset = 800, saturation = 900;
+}
 std::span<const Term* const> all_terms();
 
 }  // namespace gonio::explain::tables

@@ -1,0 +1,23 @@
+// sensor.black-offset on a predicted reading. Equation: render/sensor_chain.h, step 8.
+#include "explain/tables/table_model.h"
+
+namespace gonio::mechanism {
+const Mechanism& sensor_black_offset();
+}
+
+namespace gonio::explain::tables {
+
+const Term& sensor_black_offset() {
+  static const Term term{.mechanism = mechanism::sensor_black_offset,
+                         .order = term_order::black_offset,
+                         .models = {"sensor", "light", "volume", "surface", "expression"},
+                         .applies = [](const Table&) { return true; },
+                         .act = [](double f, std::span<const double>, std::span<const double> p) { return f + p[0]; },
+                         .adapt =
+                             [](const Table&, double scale, std::span<TermParameter> p) {
+                               p[0] = {0.01 * scale, -0.2 * scale, 0.2 * scale, 0.01 * scale};
+                             }};
+  return term;
+}
+
+}  // namespace gonio::explain::tables

@@ -1,0 +1,94 @@
+// Tables of grey levels: what was put in is found with an interval that covers it, what was not is not named.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "table_world.h"
+
+namespace gonio::explain::tables::tests {
+namespace {
+
+double ideal(double f, double, double) {
+  return f;
+}
+
+TEST(SensorTable, AnIdealSensorHasNothingToExplain) {
+  int named_something = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const TablesProblem problem = sensor_world(seed, ideal).problem();
+    named_something += !explain(problem, {}).named.empty();
+  }
+  EXPECT_EQ(named_something, 0);
+}
+
+struct Case {
+  std::string id, parameter;
+  double value;
+  std::function<double(double, double, double)> reading;
+};
+
+class Injected : public testing::TestWithParam<int> {
+ public:
+  static std::vector<Case> cases() {
+    return {{"sensor.black-offset", "sensor.black-offset.offset", 12, [](double f, double, double) { return f + 12; }},
+            {"sensor.shutter", "sensor.shutter.extra_s", 2e-4,
+             [](double f, double e, double) { return f * (e + 2e-4) / e; }},
+            {"light.drift", "light.drift.amplitude", 0.08,
+             [](double f, double, double t) { return f * (1 + 0.08 * std::exp(-t / 150)); }},
+            {"sensor.saturation", "sensor.saturation.full_scale", 400,
+             [](double f, double, double) { return std::min(f, 400.0); }}};
+  }
+};
+
+TEST_P(Injected, IsNamedWithAnIntervalThatCoversIt) {
+  const Case c = cases()[static_cast<std::size_t>(GetParam())];
+  const TablesProblem problem = sensor_world(11, c.reading).problem();
+  const Explanation e = explain(problem, {});
+  EXPECT_EQ(named(problem, e), c.id) << e.sentence;
+  const Estimate* found = estimate_of(problem, e, c.parameter);
+  ASSERT_NE(found, nullptr);
+  EXPECT_NEAR(found->value, c.value, 4 * found->sigma);
+  EXPECT_NEAR(found->value, c.value, 0.25 * c.value);
+}
+INSTANTIATE_TEST_SUITE_P(Terms, Injected, testing::Range(0, 4));
+
+TEST(SensorTable, NonLinearityIsNamedAndStatedAtTheLargestReading) {
+  const World w = sensor_world(5, [](double f, double, double) { return f * (1 - 0.1 * f / 1300); });
+  const TablesProblem problem = w.problem();
+  const Explanation e = explain(problem, {});
+  EXPECT_EQ(named(problem, e), "sensor.non-linearity") << e.sentence;
+  manifest::Document document = w.document();
+  problem.apply(e, document);
+  const manifest::MechanismUse& use = document.mechanisms.at("sensor.non-linearity");
+  EXPECT_NEAR(use.parameters.at("quadratic").scalar() / use.parameters.at("reference").scalar(), -0.1 / 1300, 2e-5);
+  // The upgraded manifest explains itself: nothing is left.
+  const TablesProblem again(document, "t", {}, false);
+  EXPECT_EQ(named(again, explain(again, {})), "");
+}
+
+TEST(SensorTable, NeutralTermsLeaveThePredictionBitForBit) {
+  const TablesProblem problem = sensor_world(1, ideal).problem();
+  const std::vector<double> values = preliminary_fit(problem);
+  ASSERT_FALSE(problem.candidates().empty());
+  for (std::size_t g = 0; g < problem.observations().groups(); ++g) {
+    const std::size_t rows = problem.observations().first[g + 1] - problem.observations().first[g];
+    std::vector<double> with(rows), without(rows);
+    problem.predict(values, g, with);
+    problem.bound().predict(std::span(values).first(problem.bound().parameters().size()), problem.table().first[g],
+                            problem.table().first[g + 1], without);
+    for (std::size_t i = 0; i < rows; ++i) without[i] /= problem.reference(problem.observations().first[g] + i);
+    EXPECT_EQ(with, without);
+  }
+}
+
+TEST(SensorTable, NoiseIsFoundFromNeighboursWithin30Percent) {
+  const TablesProblem problem = sensor_world(3, ideal, false).problem();
+  const Table& t = problem.table();
+  double ratio = 0;
+  for (std::size_t r = 0; r < t.rows(); ++r)
+    ratio += problem.observations().sigma[r] * problem.reference(r) / (*t.find("value_sigma"))[r] /
+             static_cast<double>(t.rows());
+  EXPECT_NEAR(ratio, 1, 0.3);
+}
+
+}  // namespace
+}  // namespace gonio::explain::tables::tests
