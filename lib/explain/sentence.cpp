@@ -2,7 +2,9 @@
 #include "explain/sentence.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 
 namespace gonio::explain {
 namespace {
@@ -98,6 +100,21 @@ std::string printed(double value, int digits) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
+}
+
+Shown shown_in(const std::string& unit, double size) {
+  size = std::abs(size);
+  if (unit == "rad") return {180 / std::numbers::pi, "degrees"};
+  if (unit == "m" && size > 0 && size < 0.0995) return size < 99.5e-6 ? Shown{1e6, "µm"} : Shown{1e3, "mm"};
+  if (unit == "s" && size > 0 && size < 0.0995) return {1e3, "ms"};
+  if (unit.empty() || unit == "1") return {1, ""};
+  if (unit.starts_with("half ")) return {1, "of the " + unit};
+  return {1, unit};
+}
+
+std::string quantity(double value, const std::string& unit, int digits) {
+  const Shown shown = shown_in(unit, value);
+  return printed(value * shown.factor, digits) + (shown.unit.empty() ? "" : " " + shown.unit);
 }
 
 void write_sentence(const Problem& problem, Explanation& e) {

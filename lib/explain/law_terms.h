@@ -1,0 +1,40 @@
+// The terms that a law may be made of. Private to the law.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "explain/explanation.h"
+#include "explain/system.h"
+
+namespace gonio::explain {
+
+struct Term {
+  std::vector<std::pair<std::size_t, double>> powers;  // condition -> power
+  std::string shape;                                   // "", "exp", "sin", "cos" of `shape_of` / scale
+  std::size_t shape_of = 0;
+  double scale = 1;
+  bool fitted_scale = false;
+  std::size_t along = 0;  // condition whose direction it has
+  double price = 0;       // in units of the fall of chi-square that it has to bring beside its coefficient
+  bool operator==(const Term&) const = default;
+};
+
+// What a condition admits. Azimuths repeat themselves: no powers of them.
+struct ConditionKind {
+  bool usable = false, crosses_zero = false, periodic = false, angle = false;
+  double lower = 0, upper = 0;
+};
+ConditionKind kind_of(const System& system, std::size_t condition);
+
+// Terms over the conditions `leaders`, alone and with one other condition, in an order that depends on nothing else.
+std::vector<Term> possible_terms(const System& system, const std::vector<std::size_t>& leaders);
+
+// The term with coefficient one on every row, direction included; zero where a condition does not apply.
+std::vector<double> column_of(const System& system, const Term& term);
+
+// The term as it is told, with its coefficient's unit.
+LawTerm told(const System& system, const Term& term, double coefficient, double sigma, double scale_sigma);
+std::string in_words(const Problem& problem, const std::vector<LawTerm>& terms);
+
+}  // namespace gonio::explain
