@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "explain/law.h"
 #include "explain/noise.h"
+#include "explain/plan.h"
 #include "explain/race.h"
 #include "explain/sentence.h"
 
@@ -230,6 +232,8 @@ Explanation explain(const Problem& problem, const Options& options) {
   else if (e.verdict == Verdict::unknown && !e.conditions.empty())
     e.stage = e.conditions[0].stage;
   fill_scoreboard(selection, e);
+  find_law(all, e);
+  make_plan(all, e);
   write_sentence(problem, e);
   return e;
 }
