@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "explain/compensation.h"
 #include "explain/law.h"
 #include "explain/noise.h"
 #include "explain/plan.h"
@@ -232,6 +233,7 @@ Explanation explain(const Problem& problem, const Options& options) {
   else if (e.verdict == Verdict::unknown && !e.conditions.empty())
     e.stage = e.conditions[0].stage;
   fill_scoreboard(selection, e);
+  compare_with_calibration(problem, e);
   find_law(all, e);
   make_plan(all, e);
   write_sentence(problem, e);

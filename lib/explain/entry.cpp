@@ -57,13 +57,19 @@ Value named_mechanism(const Problem& problem, const Explanation& e, std::size_t 
   return entry;
 }
 
+Value located_condition(const LocatedCondition& c) {
+  return Value::object({{"condition", c.name},
+                        {"range", numbers({c.lower, c.upper})},
+                        {"unit", c.unit},
+                        {"share", number(c.share)},
+                        {"effect", number(c.effect)},
+                        {"effect_unit", c.curve.value_unit}});
+}
+
 Value located(const Explanation& e, const Illustration& illustration) {
   if (!e.significant || e.conditions.empty()) return {};
-  const LocatedCondition& first = e.conditions[0];
-  Value result = Value::object({{"condition", first.name},
-                                {"range", numbers({first.lower, first.upper})},
-                                {"unit", first.unit},
-                                {"share", number(first.share)}});
+  Value result = located_condition(e.conditions[0]);
+  if (!illustration.observations.empty()) result["observations"] = illustration.observations;
   if (!illustration.masks.empty()) result["mask"] = illustration.masks[0];
   if (illustration.masks.size() > 1) result["masks"] = illustration.masks;
   if (!illustration.boxes.empty()) {
@@ -75,9 +81,7 @@ Value located(const Explanation& e, const Illustration& illustration) {
   }
   if (!e.stage.empty()) result["stage"] = e.stage;
   Value conditions = Value::array(), groups = Value::array();
-  for (const LocatedCondition& c : e.conditions)
-    conditions.push_back(Value::object(
-        {{"condition", c.name}, {"share", number(c.share)}, {"range", numbers({c.lower, c.upper})}, {"unit", c.unit}}));
+  for (const LocatedCondition& c : e.conditions) conditions.push_back(located_condition(c));
   for (const LocatedGroup& g : e.groups)
     groups.push_back(Value::object(
         {{"group", g.name}, {"share", number(g.share)}, {"before", number(g.before)}, {"after", number(g.after)}}));
@@ -125,12 +129,64 @@ Value isolability(const Problem& problem, const Explanation& e) {
 
 Value compensation(const Problem& problem, const Explanation& e) {
   Value list = Value::array();
-  for (const Compensation& c : e.compensation)
-    list.push_back(Value::object({{"parameter", problem.parameters()[c.parameter].name},
-                                  {"before", number(c.before)},
-                                  {"after", number(c.after)},
-                                  {"sigma", number(c.sigma)}}));
+  for (const Compensation& c : e.compensation) {
+    Value entry = Value::object({{"parameter", problem.parameters()[c.parameter].name},
+                                 {"before", number(c.before)},
+                                 {"after", number(c.after)},
+                                 {"sigma", number(c.sigma)},
+                                 {"unit", problem.parameters()[c.parameter].unit}});
+    if (c.calibrated) {
+      entry["calibrated"] = Value::object({{"value", number(*c.calibrated)}, {"sigma", number(*c.calibrated_sigma)}});
+      entry["towards"] = c.towards;
+    }
+    list.push_back(entry);
+  }
   return list;
+}
+
+Value law_term(const LawTerm& t) {
+  Value powers = Value::object();
+  for (const auto& [condition, power] : t.powers) powers[condition] = power;
+  Value term = Value::object({{"coefficient", number(t.coefficient)},
+                              {"sigma", number(t.sigma)},
+                              {"unit", t.unit},
+                              {"along", t.along},
+                              {"powers", powers}});
+  if (!t.shape.empty())
+    term["shape"] = Value::object({{"function", t.shape},
+                                   {"of", t.shape_of},
+                                   {"scale", number(t.scale)},
+                                   {"scale_sigma", number(t.scale_sigma)},
+                                   {"scale_unit", t.scale_unit}});
+  return term;
+}
+
+// A law of no known effect, or only where the structure is.
+Value outside(const Outside& o) {
+  Value entry = Value::object({{"condition", o.condition}, {"stage", o.stage}});
+  if (o.terms.empty()) return entry;
+  Value terms = Value::array();
+  for (const LawTerm& t : o.terms) terms.push_back(law_term(t));
+  entry["law"] = o.law;
+  entry["terms"] = terms;
+  entry["share"] = number(o.share);
+  entry["extrapolated"] = o.extrapolated;
+  entry["held_out"] = Value::object({{"before", number(o.held_out_before)}, {"after", number(o.held_out_after)}});
+  return entry;
+}
+
+Value next_measurement(const Problem& problem, const Explanation& e) {
+  Value next = Value::object();
+  if (!e.next_measurement.empty()) next["sentence"] = e.next_measurement;
+  Value plan = Value::array();
+  for (const PlannedMeasurement& p : e.plan) {
+    std::vector<std::string> ids;
+    for (const std::size_t c : p.separates) ids.push_back(problem.candidates()[c].id());
+    plan.push_back(
+        Value::object({{"sentence", p.sentence}, {"setup", p.setup}, {"separates", ids}, {"z", number(p.z)}}));
+  }
+  if (!e.plan.empty()) next["plan"] = plan;
+  return next;
 }
 
 }  // namespace
@@ -147,7 +203,7 @@ Value entry_of(const Problem& problem, const Explanation& e, const Illustration&
   Value entry = Value::object({{"domain", problem.domain()}, {"verdict", verdict_name(e.verdict)}});
   entry["named"] = named;
   entry["not_told_apart"] = apart;
-  entry["outside"] = e.outside ? Value::object({{"condition", e.outside->condition}}) : Value();
+  entry["outside"] = e.outside ? outside(*e.outside) : Value();
   entry["located"] = located(e, illustration);
   entry["held_out"] =
       Value::object({{"before", number(e.held_out_before)},
@@ -169,9 +225,7 @@ Value entry_of(const Problem& problem, const Explanation& e, const Illustration&
   entry["isolability"] = isolability(problem, e);
   entry["compensation"] = compensation(problem, e);
   entry["sentence"] = e.sentence;
-  Value next = Value::object();
-  if (!e.next_measurement.empty()) next["sentence"] = e.next_measurement;
-  entry["next_measurement"] = next;
+  entry["next_measurement"] = next_measurement(problem, e);
   return entry;
 }
 

@@ -7,6 +7,7 @@
 #include "base/progress.h"
 #include "explain/domains.h"
 #include "explain/entry.h"
+#include "explain/evidence.h"
 #include "explain/report.h"
 
 namespace gonio::explain {
@@ -23,6 +24,14 @@ Exit worse(Exit a, Exit b) {
   return static_cast<int>(a) > static_cast<int>(b) ? a : b;
 }
 
+// "boards"; the second problem of a domain is "tables-2".
+std::string evidence_name(const std::vector<std::unique_ptr<Problem>>& problems, std::size_t k) {
+  const std::string domain = problems[k]->domain();
+  const auto earlier = std::count_if(problems.begin(), problems.begin() + static_cast<std::ptrdiff_t>(k),
+                                     [&](const std::unique_ptr<Problem>& p) { return p->domain() == domain; });
+  return earlier == 0 ? domain : domain + "-" + std::to_string(earlier + 1);
+}
+
 }  // namespace
 
 Exit explain_document(manifest::Document& document, const ExplainRequest& request) {
@@ -36,6 +45,8 @@ Exit explain_document(manifest::Document& document, const ExplainRequest& reques
     const Problem& problem = *problems[k];
     Explanation& e = explanations[k] = explain(problem, request.options);
     illustrations[k] = problem.illustrate(e, request.out, document);
+    if (e.significant && !request.out.empty())
+      illustrations[k].observations = write_evidence(problem, e, evidence_name(problems, k), request.out, document);
     problem.apply(e, document);
     document.explanations.push_back(entry_of(problem, e, illustrations[k]));
     parts.push_back({&problem, &e, &illustrations[k]});

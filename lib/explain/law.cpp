@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "explain/law_search.h"
-#include "explain/sentence.h"
+#include "explain/wording.h"
 #include "explain/signature.h"
 
 namespace gonio::explain {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/unit.h"
-#include "explain/sentence.h"
+#include "explain/wording.h"
 
 namespace gonio::explain {
 namespace {

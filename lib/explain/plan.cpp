@@ -29,8 +29,8 @@ Uncertain uncertain_parameters(const Problem& problem, const Explanation& e) {
   u.covariance.resize(n, n);
   for (Eigen::Index a = 0; a < n; ++a)
     for (Eigen::Index b = 0; b < n; ++b)
-      u.covariance(a, b) = e.covariance[places[static_cast<std::size_t>(a)] * e.active.size() +
-                                        places[static_cast<std::size_t>(b)]];
+      u.covariance(a, b) =
+          e.covariance[places[static_cast<std::size_t>(a)] * e.active.size() + places[static_cast<std::size_t>(b)]];
   return u;
 }
 
@@ -70,8 +70,7 @@ class Prospect {
       d(i, 0) = (there.prediction[row] - at_.prediction[row]) / sigma(i);
     }
     d = without_nuisance(d);
-    const Eigen::MatrixXd inner =
-        Eigen::MatrixXd::Identity(open_.cols(), open_.cols()) + open_.transpose() * open_;
+    const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(open_.cols(), open_.cols()) + open_.transpose() * open_;
     const Eigen::VectorXd shared = open_.transpose() * d;
     const double squared = d.squaredNorm() - shared.dot(inner.ldlt().solve(shared));
     return std::isfinite(squared) ? std::sqrt(std::max(0.0, squared)) : 0;

@@ -3,60 +3,84 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <numbers>
+
+#include "explain/compensation.h"
 
 namespace gonio::explain {
 namespace {
 
-std::string targets(const Candidate& c) {
-  std::string text;
-  for (std::size_t k = 0; k < c.on.size(); ++k)
-    text += (k == 0 ? " on " : k + 1 == c.on.size() ? " and " : ", ") + c.on[k];
-  return text;
-}
-
-std::string with_unit(double value, const std::string& unit) {
-  return unit.empty() || unit == "1" ? printed(value) : printed(value) + " " + unit;
-}
+constexpr double least_share = 0.05;  // of the excess, for a place to be worth a word
 
 std::string located_in(const Explanation& e) {
-  if (e.conditions.empty() || e.conditions[0].share < 0.05) return "";
+  if (e.conditions.empty() || e.conditions[0].share < least_share) return "";
   const LocatedCondition& c = e.conditions[0];
-  return ", seen in " + c.name + " between " + printed(c.lower, 2) + " and " + with_unit(c.upper, c.unit);
+  const std::string range = range_in_words(c);
+  if (range.empty()) return ", seen over the whole range of the " + condition_in_words(c.name);
+  return ", seen where the " + condition_in_words(c.name) + " is " + range;
+}
+
+std::string law_sentence(const Problem& problem, const Outside& o) {
+  if (o.terms.empty()) return "";
+  return " Outside the library, a law describes it: " + o.law + ". Fitted on the other side it lowers the " +
+         problem.score_name() + " for " + o.extrapolated + " from " +
+         score_in_words(o.held_out_before, problem.unit()) + " to " + score_in_words(o.held_out_after, problem.unit()) +
+         ".";
+}
+
+std::string listed(const Problem& problem, const std::vector<std::size_t>& candidates, std::size_t first,
+                   const char* last) {
+  std::string text;
+  for (std::size_t k = first; k < candidates.size(); ++k)
+    text += (k == first ? "" : k + 1 == candidates.size() ? last : ", ") + problem.candidates()[candidates[k]].id();
+  return text;
 }
 
 std::string named_sentence(const Problem& problem, const Explanation& e) {
   std::string text = "The recordings show ";
   for (std::size_t k = 0; k < e.named.size(); ++k) {
-    const Candidate& c = problem.candidates()[e.named[k]];
-    text += (k == 0 ? "" : k + 1 == e.named.size() ? " and " : ", ") + c.id() + targets(c);
+    text += (k == 0 ? "" : k + 1 == e.named.size() ? " and " : ", ") + mechanism_in_words(problem, e.named[k]);
+    if (const std::string own = parameters_in_words(problem, e, e.named[k]); !own.empty()) text += " (" + own + ")";
   }
-  text += located_in(e) + ": with it the " + problem.score_name() + " on " +
+  text += located_in(e) + ": with " + (e.named.size() == 1 ? "it" : "them") + " the " + problem.score_name() + " on " +
           (e.test_groups.empty() ? "left-out " : "unseen ") + problem.group_noun() + "s falls from " +
-          with_unit(e.held_out_before, problem.unit()) + " to " + with_unit(e.held_out_after, problem.unit()) + ".";
-  for (const std::vector<std::size_t>& set : e.not_told_apart) {
-    text += " As good an explanation as " + problem.candidates()[set[0]].id() + " is";
-    for (std::size_t k = 1; k < set.size(); ++k) text += (k == 1 ? " " : " or ") + problem.candidates()[set[k]].id();
-    text += ": these recordings cannot tell them apart.";
-  }
-  if (e.outside) text += " Structure over " + e.outside->condition + " remains that nothing in the library repairs.";
+          score_in_words(e.held_out_before, problem.unit()) + " to " +
+          score_in_words(e.held_out_after, problem.unit()) + ".";
+  for (const std::vector<std::size_t>& set : e.not_told_apart)
+    text += " As good an explanation as " + problem.candidates()[set[0]].id() + " is " +
+            listed(problem, set, 1, " or ") + ": these recordings cannot tell them apart.";
+  if (e.outside)
+    text += " Structure over the " + condition_in_words(e.outside->condition) +
+            " remains that nothing in the library repairs." + law_sentence(problem, *e.outside);
   return text;
 }
 
 std::string plain_sentence(const Problem& problem, const Explanation& e) {
+  const std::string score = problem.score_name() + " " + score_in_words(e.held_out_before, problem.unit());
   if (e.verdict == Verdict::unknown) {
     const std::string where = e.outside ? e.outside->condition : e.conditions.empty() ? "" : e.conditions[0].name;
-    return "There is a mismatch that matters" + (where.empty() ? "" : ", structured over " + where) +
-           ", and no physics in the library repairs it on unseen " + problem.group_noun() + "s (" +
-           problem.score_name() + " " + with_unit(e.held_out_before, problem.unit()) + ").";
+    std::string text = "There is a mismatch that matters";
+    if (!where.empty()) {
+      const auto located = std::find_if(e.conditions.begin(), e.conditions.end(),
+                                        [&](const LocatedCondition& c) { return c.name == where; });
+      text += ", structured over the " + condition_in_words(where);
+      const std::string range = located == e.conditions.end() ? "" : range_in_words(*located);
+      if (!range.empty()) text += " (most of it " + range + ")";
+    }
+    text += ", and no physics in the library repairs it on unseen " + problem.group_noun() + "s (" + score + ").";
+    return e.outside ? text + law_sentence(problem, *e.outside) : text;
   }
   if (e.significant)
     return "A mismatch beyond noise is there, but nothing that would repair it matters (under " +
-           printed(100 * e.matters) + " %); no physics is named (" + problem.score_name() + " " +
-           with_unit(e.held_out_before, problem.unit()) + ").";
-  return "No mismatch beyond noise (p = " + printed(e.global_p, 2) + "); no physics is named (" + problem.score_name() +
-         " " + with_unit(e.held_out_before, problem.unit()) + ").";
+           printed(100 * e.matters) + " %); no physics is named (" + score + ").";
+  return "No mismatch beyond noise (p = " + printed(e.global_p, 2) + "); no physics is named (" + score + ").";
+}
+
+// Mechanisms that are there but matter too little.
+std::string minor_sentence(const Explanation& e) {
+  std::string names;
+  for (const std::size_t place : e.minor)
+    if (place < e.scoreboard.size()) names += (names.empty() ? "" : ", ") + e.scoreboard[place].name;
+  return names.empty() ? "" : " Also there, but smaller than what matters: " + names + ".";
 }
 
 // The measurement that tells two mechanisms apart, from either one's declaration.
@@ -66,60 +90,64 @@ std::string told_apart(const mechanism::Mechanism& a, const std::string& b) {
   return "";
 }
 
-std::string conditions_of(const mechanism::Mechanism& m) {
-  return m.conditions.empty() ? "" : " (" + m.conditions[0] + ")";
+std::string from_declarations(const mechanism::Mechanism& a, const mechanism::Mechanism& b) {
+  std::string how = told_apart(a, b.id);
+  if (how.empty()) how = told_apart(b, a.id);
+  if (how.empty() && !a.mistaken_for.empty()) how = a.mistaken_for[0].told_apart;
+  return "To tell " + a.id + " from " + b.id + ": " + (how.empty() ? "record under other conditions" : how) + ".";
+}
+
+std::string planned(const Problem& problem, const PlannedMeasurement& p) {
+  const std::string first = problem.candidates()[p.separates[0]].id();
+  const std::string part = p.separates.size() > 1
+                               ? "To tell " + first + " from " + problem.candidates()[p.separates[1]].id()
+                               : "To see whether " + first + " is there";
+  return part + ": " + p.sentence + " (expected: " + printed(p.z, 2) + " standard errors).";
+}
+
+std::string unseen(const Problem& problem, const Explanation& e) {
+  std::string ids;
+  std::size_t count = 0;
+  for (const Isolability& i : e.isolability) {
+    if (i.visible) continue;
+    const mechanism::Mechanism& m = *problem.candidates()[i.candidate].mechanism;
+    if (++count > 4) continue;
+    ids += (ids.empty() ? "" : ", ") + m.id;
+    if (!m.conditions.empty()) ids += " (vary the " + condition_in_words(m.conditions[0]) + ")";
+  }
+  if (count == 0) return "";
+  if (count > 4) ids += " and " + std::to_string(count - 4) + " more";
+  return "These recordings cannot show " + ids + ".";
 }
 
 std::string measurement(const Problem& problem, const Explanation& e) {
   for (const std::vector<std::size_t>& set : e.not_told_apart)
     for (std::size_t k = 1; k < set.size(); ++k) {
-      const mechanism::Mechanism &a = *problem.candidates()[set[0]].mechanism,
-                                 &b = *problem.candidates()[set[k]].mechanism;
-      std::string how = told_apart(a, b.id);
-      if (how.empty()) how = told_apart(b, a.id);
-      if (how.empty() && !a.mistaken_for.empty()) how = a.mistaken_for[0].told_apart;
-      return "To tell " + a.id + " from " + b.id + ": " + (how.empty() ? "record under other conditions" : how) + ".";
+      for (const PlannedMeasurement& p : e.plan)
+        if (p.separates == std::vector<std::size_t>{set[0], set[k]}) return planned(problem, p);
+      return from_declarations(*problem.candidates()[set[0]].mechanism, *problem.candidates()[set[k]].mechanism);
     }
   if (!e.named.empty()) {
     const mechanism::Mechanism& m = *problem.candidates()[e.named[0]].mechanism;
     if (!m.mistaken_for.empty())
       return "To confirm " + m.id + " against " + m.mistaken_for[0].with + ": " + m.mistaken_for[0].told_apart + ".";
   }
-  for (const Isolability& i : e.isolability)
-    if (!i.visible && e.verdict != Verdict::named)
-      return "These recordings cannot show " + problem.candidates()[i.candidate].id() + "; vary its conditions" +
-             conditions_of(*problem.candidates()[i.candidate].mechanism) + " to look for it.";
   if (e.verdict == Verdict::unknown && !e.conditions.empty())
-    return "Record more " + problem.group_noun() + "s that vary " + e.conditions[0].name + ".";
-  return "";
+    return "Record more " + problem.group_noun() + "s that vary the " +
+           condition_in_words(e.outside ? e.outside->condition : e.conditions[0].name) + ".";
+  if (!e.named.empty()) return "";
+  const std::string blind = unseen(problem, e);
+  for (const PlannedMeasurement& p : e.plan) return blind + " " + planned(problem, p);
+  return blind;
 }
 
 }  // namespace
 
-std::string printed(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
-}
-
-Shown shown_in(const std::string& unit, double size) {
-  size = std::abs(size);
-  if (unit == "rad") return {180 / std::numbers::pi, "degrees"};
-  if (unit == "m" && size > 0 && size < 0.0995) return size < 99.5e-6 ? Shown{1e6, "µm"} : Shown{1e3, "mm"};
-  if (unit == "s" && size > 0 && size < 0.0995) return {1e3, "ms"};
-  if (unit.empty() || unit == "1") return {1, ""};
-  if (unit.starts_with("half ")) return {1, "of the " + unit};
-  return {1, unit};
-}
-
-std::string quantity(double value, const std::string& unit, int digits) {
-  const Shown shown = shown_in(unit, value);
-  return printed(value * shown.factor, digits) + (shown.unit.empty() ? "" : " " + shown.unit);
-}
-
 void write_sentence(const Problem& problem, Explanation& e) {
   e.sentence = e.named.empty() ? plain_sentence(problem, e) : named_sentence(problem, e);
+  e.sentence += minor_sentence(e);
   if (const std::string remarks = problem.remarks(e); !remarks.empty()) e.sentence += " " + remarks;
+  if (!e.shortened.empty()) e.sentence += " " + e.shortened;
   e.next_measurement = measurement(problem, e);
 }
 

@@ -110,6 +110,17 @@ TEST(Law, AWiggleDoesNotExtrapolate) {
   EXPECT_LE(laws, 0.05 * runs);
 }
 
+// A bump in one place is no law either.
+TEST(Law, ABumpDoesNotExtrapolate) {
+  int laws = 0;
+  const int runs = 20;
+  for (int run = 0; run < runs; ++run) {
+    const auto bump = [](double, double z) { return 0.4 * std::exp(-std::pow((z - 0.1) / 0.12, 2)); };
+    laws += !law_of(LawProblem({.law = bump}, 1200 + run), "clock.time").outside->terms.empty();
+  }
+  EXPECT_LE(laws, 0.05 * runs);
+}
+
 // What the free parameters take (here the slope) is not told as a law.
 TEST(Law, WhatTheRefitAbsorbsIsNoLaw) {
   for (int run = 0; run < 10; ++run) {

@@ -1,0 +1,44 @@
+// See compensation.h.
+#include "explain/compensation.h"
+
+#include <cmath>
+
+#include "explain/wording.h"
+
+namespace gonio::explain {
+
+void compare_with_calibration(const Problem& problem, Explanation& e) {
+  for (Compensation& c : e.compensation) {
+    const Parameter& p = problem.parameters()[c.parameter];
+    if (!p.prior_sigma) continue;
+    c.calibrated = p.start;
+    c.calibrated_sigma = *p.prior_sigma;
+    c.towards = std::abs(c.after - p.start) < std::abs(c.before - p.start);
+  }
+}
+
+std::string compensation_in_words(const Problem& problem, const Explanation& e) {
+  if (e.compensation.empty()) return "";
+  const Compensation& most = e.compensation[0];
+  const double moved = most.sigma > 0 ? std::abs(most.after - most.before) / most.sigma : 0;
+  std::string text;
+  if (moved >= 2) {
+    const Parameter& p = problem.parameters()[most.parameter];
+    const Shown shown = shown_in(p.unit, most.after);
+    const std::string unit = shown.unit.empty() ? "" : " " + shown.unit;
+    text = p.name + " moved from " + printed(most.before * shown.factor, 5) + " to " +
+           printed(most.after * shown.factor, 5) + unit + ", by " + printed(moved, 2) + " of its standard errors.";
+  }
+  std::size_t calibrated = 0, towards = 0;
+  for (const Compensation& c : e.compensation) {
+    if (!c.calibrated || !(std::abs(c.after - c.before) >= 0.5 * c.sigma)) continue;
+    ++calibrated;
+    towards += c.towards;
+  }
+  if (calibrated > 0)
+    text += (text.empty() ? "" : " ") + std::string("Of ") + std::to_string(calibrated) +
+            " parameters with an independent calibration that moved, " + std::to_string(towards) + " moved towards it.";
+  return text;
+}
+
+}  // namespace gonio::explain

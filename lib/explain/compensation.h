@@ -1,0 +1,17 @@
+// How far free parameters moved when the missing physics came in. Where the manifest states an independent calibration
+// with its uncertainty (the prior of the fit), the physics that was left out had bent them away from it, and they
+// should come back.
+#pragma once
+#include <string>
+
+#include "explain/explanation.h"
+
+namespace gonio::explain {
+
+// Completes `explanation.compensation` by what calibrations say.
+void compare_with_calibration(const Problem& problem, Explanation& explanation);
+// "fx_px of cameras/c moved from 533.1 to 540.2 px, by 9 standard errors, towards its calibration": empty: nothing
+// moved by two standard errors.
+std::string compensation_in_words(const Problem& problem, const Explanation& explanation);
+
+}  // namespace gonio::explain
