@@ -14,7 +14,22 @@
 namespace gonio::camera {
 namespace {
 
-enum Column : std::size_t { image, corner, board_x, board_y, u, v, sigma, weight, columns };
+enum Column : std::size_t {
+  image,
+  corner,
+  board_x,
+  board_y,
+  u,
+  v,
+  sigma,
+  weight,  // from here on they may be left out
+  channel,
+  turned,
+  time,
+  temperature,
+  columns
+};
+constexpr std::size_t written = channel;  // what calib-charuco finds
 constexpr std::array<std::pair<const char*, const char*>, columns> names = {{{"image", ""},
                                                                              {"corner", "1"},
                                                                              {"board_x_m", "m"},
@@ -22,7 +37,12 @@ constexpr std::array<std::pair<const char*, const char*>, columns> names = {{{"i
                                                                              {"u_px", "px"},
                                                                              {"v_px", "px"},
                                                                              {"sigma_px", "px"},
-                                                                             {"weight", "1"}}};
+                                                                             {"weight", "1"},
+                                                                             {"channel", "1"},
+                                                                             {"turned_rad", "rad"},
+                                                                             {"time_s", "s"},
+                                                                             {"temperature_K", "K"}}};
+constexpr std::array<double, columns> presets = {0, 0, 0, 0, 0, 0, 0, 1, 1, 0, not_stated, not_stated};
 constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 constexpr double largest_corner_id = 1e6;
 
@@ -31,7 +51,7 @@ std::array<std::size_t, columns> places_of(const std::vector<std::string>& given
   std::array<std::size_t, columns> places{};
   for (std::size_t i = 0; i < columns; ++i) {
     const auto found = std::ranges::find(given, names[i].first);
-    if (found == given.end() && i == weight) {
+    if (found == given.end() && i >= weight) {
       places[i] = nowhere;
       continue;
     }
@@ -47,12 +67,14 @@ std::array<std::size_t, columns> places_of(const std::vector<std::string>& given
 void append(CornerTable& table, const std::string& name, const std::array<double, columns>& value,
             const std::string& place) {
   for (std::size_t i = corner; i < columns; ++i) {
-    if (!std::isfinite(value[i]))
+    if (!std::isfinite(value[i]) && !std::isnan(presets[i]))
       throw Error(Exit::data, place, std::string(names[i].first) + " is not a finite number");
   }
   if (!(value[sigma] > 0))
     throw Error(Exit::data, place, "sigma_px is not above 0", "state the noise of the corner in pixels");
   if (!(value[weight] >= 0)) throw Error(Exit::data, place, "weight is below 0");
+  if (value[channel] != 0 && value[channel] != 1 && value[channel] != 2)
+    throw Error(Exit::data, place, "channel is none of 0, 1, 2", "0 red, 1 green, 2 blue");
   if (!(std::abs(value[corner]) <= largest_corner_id)) throw Error(Exit::data, place, "corner is no corner's number");
   auto group = std::find_if(table.images.rbegin(), table.images.rend(),
                             [&](const ImageCorners& candidate) { return candidate.image == name; });
@@ -64,7 +86,11 @@ void append(CornerTable& table, const std::string& name, const std::array<double
                             {value[board_x], value[board_y]},
                             {value[u], value[v]},
                             value[sigma],
-                            value[weight]});
+                            value[weight],
+                            static_cast<int>(value[channel]),
+                            value[turned],
+                            value[time],
+                            value[temperature]});
 }
 
 // One record of a CSV file, from `at` to behind its line end. Fields may be quoted, with "" for a quote.
@@ -118,8 +144,7 @@ void read_csv(const std::filesystem::path& path, CornerTable& table) {
       throw Error(Exit::data, place,
                   std::to_string(fields.size()) + " fields (the header names " + std::to_string(header.size()) + ")");
     }
-    std::array<double, columns> value{};
-    value[weight] = 1;
+    std::array<double, columns> value = presets;
     for (std::size_t i = corner; i < columns; ++i) {
       if (places[i] != nowhere) value[i] = number(fields[places[i]], place);
     }
@@ -140,8 +165,7 @@ void read_rows(const manifest::Table& section, const std::string& place, CornerT
     }
     const auto& cells = row.as_array();
     if (!cells[places[image]].is_string()) throw Error(Exit::data, here, "image is not an id in quotes");
-    std::array<double, columns> value{};
-    value[weight] = 1;
+    std::array<double, columns> value = presets;
     for (std::size_t i = corner; i < columns; ++i) {
       if (places[i] == nowhere) continue;
       if (!cells[places[i]].is_number()) throw Error(Exit::data, here, std::string(names[i].first) + " is no number");
@@ -166,7 +190,7 @@ std::string quoted(const std::string& text) {
 
 std::string csv_of(const CornerTable& table) {
   std::string text;
-  for (std::size_t i = 0; i < columns; ++i) text += std::string(i > 0 ? "," : "") + names[i].first;
+  for (std::size_t i = 0; i < written; ++i) text += std::string(i > 0 ? "," : "") + names[i].first;
   text += '\n';
   for (const ImageCorners& group : table.images) {
     for (const TableCorner& c : group.corners) {
@@ -213,7 +237,7 @@ void write_corners(const CornerTable& table, const std::string& name, const std:
   section.model = "camera";
   section.camera = table.camera;
   section.board = table.board;
-  for (const auto& [column, unit] : names) section.columns.emplace_back(column, unit);
+  for (std::size_t i = 0; i < written; ++i) section.columns.emplace_back(names[i].first, names[i].second);
   section.observed = {"u_px", "v_px"};
   section.sigma = {"sigma_px"};
   if (csv.empty()) {

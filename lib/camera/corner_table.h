@@ -1,9 +1,12 @@
 // The table of found corners through which calib-charuco hands its measurements on: one row per corner, inline in the
 // manifest or a CSV file beside it. Columns: image (an id of `images`), corner, board_x_m, board_y_m, u_px, v_px,
 // sigma_px, weight (may be left out); observed [u_px, v_px], sigma [sigma_px]; model "camera". Board frame and pixel
-// convention: board.h.
+// convention: board.h. Tables made by others may say more of a corner, and explain reads it: channel (0 red, 1 green,
+// 2 blue), turned_rad (by which the picture was turned before its corners were sought), time_s, temperature_K. These
+// are read, not written.
 #pragma once
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -12,11 +15,15 @@
 
 namespace gonio::camera {
 
+inline constexpr double not_stated = std::numeric_limits<double>::quiet_NaN();
+
 struct TableCorner {
   int id = 0;
   Vec2 board_m, pixel;
   double sigma_px = 0;  // of one coordinate
   double weight = 1;    // that a fit gave the corner; below 1: held back as an outlier
+  int channel = 1;
+  double turned_rad = 0, time_s = not_stated, temperature_K = not_stated;
 };
 struct ImageCorners {
   std::string image;

@@ -60,6 +60,8 @@ std::optional<double> true_value(const CaseTruth& t, const std::string& paramete
   if (parameter == "s3") return t.lens.s3;
   if (parameter == "sag_x_m") return t.board.sag_x_m;
   if (parameter == "sag_y_m") return t.board.sag_y_m;
+  if (parameter == "scale_x") return t.board.stretch_x;
+  if (parameter == "pupil_m") return t.lens.pupil_m;
   return std::nullopt;
 }
 
@@ -97,8 +99,7 @@ void enter(const BoardCase& sealed, const Answer& answer, Row& row) {
 }
 
 std::string kind_of(const CaseTruth& t) {
-  if (t.outside)
-    return t.wave_px > 0 ? "outside the library: periodic sensor error" : "outside the library: stretched print";
+  if (t.outside) return "outside the library: periodic sensor error";
   if (t.effects.empty()) return "nothing left out";
   std::string kind;
   for (const std::string& e : t.effects) kind += (kind.empty() ? "" : " + ") + e;

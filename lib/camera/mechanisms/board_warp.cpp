@@ -14,7 +14,7 @@ const Mechanism& board_warp() {
       .source = "Kogan, mrcal 2021 (calobject warp)",
       .stage = "board",
       .target = Target::board,
-      .domains = {"boards"},
+      .domains = {"boards", "robot"},
       .parameters =
           {{.name = "sag_x_m",
             .unit = "m",
@@ -22,7 +22,7 @@ const Mechanism& board_warp() {
             .upper = 0.01,
             .meaning = "sag along the columns' direction"},
            {.name = "sag_y_m", .unit = "m", .lower = -0.01, .upper = 0.01, .meaning = "sag along the rows' direction"}},
-      .conditions = {"board.radius", "board.x", "board.y"},
+      .conditions = {"board.radius", "board.x", "board.y", "camera.obliqueness"},
       .mistaken_for = {{.with = "lens.radial",
                         .told_apart = "turn the board by 90 degrees, photograph it at two ranges"},
                        {.with = "lens.non-central", .told_apart = "turn the board by 90 degrees"}},

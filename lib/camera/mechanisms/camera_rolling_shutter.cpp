@@ -1,5 +1,5 @@
 // camera.rolling-shutter: rows that are read one after the other while board or camera move. Equation:
-// explain/boards/rolling_shutter.h.
+// camera/corner_model.h.
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {

@@ -12,7 +12,7 @@ const Mechanism& lens_tangential() {
       .source = "Brown 1971, equation 9; OpenCV's order and sign",
       .stage = "lens",
       .target = Target::camera,
-      .domains = {"boards"},
+      .domains = {"boards", "robot"},
       .parameters =
           {{.name = "p1", .unit = "1", .lower = -0.05, .upper = 0.05, .meaning = "decentring along the rows' normal"},
            {.name = "p2",
@@ -20,7 +20,7 @@ const Mechanism& lens_tangential() {
             .lower = -0.05,
             .upper = 0.05,
             .meaning = "decentring along the columns' normal"}},
-      .conditions = {"camera.image-azimuth", "camera.image-radius"},
+      .conditions = {"camera.image-azimuth", "camera.image-radius", "camera.obliqueness"},
       .mistaken_for = {{.with = "lens.thin-prism",
                         .told_apart = "fill the corners of the image; the prism has no r^2 + 2 x^2"},
                        {.with = "board.warp",

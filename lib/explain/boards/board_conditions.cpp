@@ -1,12 +1,15 @@
 // Conditions of board corners, each with the direction in (u, v) along which its physics would act: lens terms along
-// the image radius, a bent board along what a height above the board does to the pixel.
+// the image radius, a bent board along what a height above the board does to the pixel, a stretched one along its x
+// axis; whether the stretch is the board's or the focal lengths' shows over its roll.
+#include <algorithm>
 #include <cmath>
 
 #include "explain/boards/boards_outcome.h"
 
 namespace gonio::explain {
+namespace {
 
-std::vector<Condition> board_conditions() {
+std::vector<Condition> names() {
   return {{"camera.image-radius", "half diagonal", "lens", {}, {}, "px"},
           {"camera.image-azimuth", "rad", "lens", {}, {}, "px"},
           {"camera.image-x", "half width", "sensor", {}, {}, "px"},
@@ -14,12 +17,29 @@ std::vector<Condition> board_conditions() {
           {"camera.distance", "m", "lens", {}, {}, "px"},
           {"board.radius", "half board", "board", {}, {}, "mm"},
           {"board.x", "half board", "board", {}, {}, "mm"},
-          {"board.y", "half board", "board", {}, {}, "mm"}};
+          {"board.y", "half board", "board", {}, {}, "mm"},
+          {"board.roll", "rad", "board", {}, {}, "0.1 %"},
+          {"camera.image-radius-over-distance", "half diagonal/m", "optics", {}, {}, "px"},
+          {"camera.channel", "1", "optics", {}, {}, "px"},
+          {"camera.image-radius-by-channel", "half diagonal", "optics", {}, {}, "px"},
+          {"camera.turned", "rad", "sensor", {}, {}, "px"},
+          {"camera.temperature", "K", "sensor", {}, {}, "px"},
+          {"camera.temperature-in-x", "K", "sensor", {}, {}, "px"},
+          {"camera.temperature-in-y", "K", "sensor", {}, {}, "px"},
+          {"camera.time", "s", "sensor", {}, {}, "px"},
+          {"camera.time-in-x", "s", "sensor", {}, {}, "px"},
+          {"camera.time-in-y", "s", "sensor", {}, {}, "px"}};
 }
 
-void append_conditions(const BoardsInput::Camera& camera, const BoardsInput::Board& board,
-                       const BoardsInput::View& view, const BoardsInput::Corner& corner,
-                       std::vector<Condition>& conditions) {
+struct Entry {
+  double value = 0;
+  Vec2 direction;
+};
+
+// In the order of names().
+std::vector<Entry> entries(const BoardsInput& input, const BoardsInput::View& view, const BoardsInput::Corner& corner) {
+  const BoardsInput::Camera& camera = input.cameras[view.camera];
+  const BoardsInput::Board& board = input.boards[view.board];
   const camera::Intrinsics& k = camera.intrinsics;
   // The predicted pixel: with the detected one, its noise would be condition and residual at once.
   Vec2 pixel = corner.pixel;
@@ -29,27 +49,61 @@ void append_conditions(const BoardsInput::Camera& camera, const BoardsInput::Boa
   const double radius_px = norm(from_centre), radius = radius_px / std::hypot(half_x, half_y);
   const Vec2 outward = radius_px > 0 ? from_centre * (1 / radius_px) : Vec2{0, 0};
   const Vec3 at = view.camera_from_board * Vec3{corner.board_m.x, corner.board_m.y, 0};
-  const Vec3 normal = view.camera_from_board.rotate({0, 0, 1});
-  // d(u, v) for one millimetre along the board's normal.
-  const Vec2 lift{1e-3 * k.fx_px * (normal.x - at.x / at.z * normal.z) / at.z,
-                  1e-3 * k.fy_px * (normal.y - at.y / at.z * normal.z) / at.z};
+  // d(u, v) for one millimetre along an axis of the board.
+  const auto millimetre = [&](Vec3 axis) {
+    const Vec3 a = view.camera_from_board.rotate(axis);
+    return Vec2{1e-3 * k.fx_px * (a.x - at.x / at.z * a.z) / at.z, 1e-3 * k.fy_px * (a.y - at.y / at.z * a.z) / at.z};
+  };
+  const Vec2 lift = millimetre({0, 0, 1});
   const double x = (corner.board_m.x - board.extent.middle_m.x) / board.extent.half_m.x;
   const double y = (corner.board_m.y - board.extent.middle_m.y) / board.extent.half_m.y;
-  std::size_t next = 0;
-  const auto append = [&](double value, Vec2 direction) {
-    Condition& c = conditions[next++];
-    c.values.insert(c.values.end(), 2, value);
-    c.direction.push_back(direction.x);
-    c.direction.push_back(direction.y);
-  };
-  append(radius, outward);
-  append(std::atan2(from_centre.y, from_centre.x), outward * (radius * radius));
-  append(from_centre.x / half_x, {1, 0});
-  append(from_centre.y / half_y, {0, 1});
-  append(norm(at), outward);
-  append(std::hypot(x, y), lift);
-  append(x, lift);
-  append(y, lift);
+  const Vec3 along = view.camera_from_board.rotate({1, 0, 0});
+  const double roll = std::atan(along.y / along.x);  // modulo half a turn, as a stretch is
+  const double channel = static_cast<double>(corner.colour);
+  return {{radius, outward},
+          {std::atan2(from_centre.y, from_centre.x), outward * (radius * radius)},
+          {from_centre.x / half_x, {1, 0}},
+          {from_centre.y / half_y, {0, 1}},
+          {norm(at), outward},
+          {std::hypot(x, y), lift},
+          {x, lift},
+          {y, lift},
+          {roll, millimetre({1, 0, 0}) * (corner.board_m.x - board.extent.middle_m.x)},  // 0.1 % longer in x
+          {radius / norm(at), outward},
+          {channel, outward * radius},
+          {(channel - 1) * radius, outward},
+          {corner.turned_rad, {std::cos(corner.turned_rad), std::sin(corner.turned_rad)}},
+          {view.warmer_K, outward * radius},
+          {view.warmer_K, {1, 0}},
+          {view.warmer_K, {0, 1}},
+          {view.later_s, outward * radius},
+          {view.later_s, {1, 0}},
+          {view.later_s, {0, 1}}};
+}
+
+bool varies(const Condition& c) {
+  return std::any_of(c.values.begin(), c.values.end(), [&](double v) { return v != c.values.front(); });
+}
+
+}  // namespace
+
+std::vector<Condition> board_conditions(const BoardsInput& input) {
+  std::vector<Condition> conditions = names();
+  for (const BoardsInput::View& view : input.views)
+    for (const BoardsInput::Corner& corner : view.corners) {
+      const std::vector<Entry> own = entries(input, view, corner);
+      for (std::size_t c = 0; c < own.size(); ++c) {
+        conditions[c].values.insert(conditions[c].values.end(), 2, own[c].value);
+        conditions[c].direction.push_back(own[c].direction.x);
+        conditions[c].direction.push_back(own[c].direction.y);
+      }
+    }
+  // Where there is but one channel, a radius times the channel says nothing that the radius does not.
+  const bool coloured = varies(conditions[10]);
+  std::erase_if(conditions, [&](const Condition& c) {
+    return !varies(c) || (!coloured && c.name == "camera.image-radius-by-channel");
+  });
+  return conditions;
 }
 
 }  // namespace gonio::explain

@@ -1,10 +1,12 @@
 // See boards_problem.h: from the manifest to plain numbers.
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "camera/board.h"
 #include "camera/corner_table.h"
 #include "explain/boards/boards_problem.h"
+#include "mechanism/mechanism.h"
 
 namespace gonio::explain {
 namespace {
@@ -78,7 +80,13 @@ void add_table(const manifest::Document& document, const std::string& name, Boar
     view.board = entered(input.boards, table.board.empty() ? image->board : table.board,
                          [&](const std::string& id) { return board_input(document, id); });
     view.camera_from_board = *image->camera_from_board;
-    for (const camera::TableCorner& c : corners.corners) view.corners.push_back({c.board_m, c.pixel, c.sigma_px});
+    view.time_s = image->time_s;
+    view.temperature_K = image->temperature_K;
+    for (const camera::TableCorner& c : corners.corners) {
+      view.corners.push_back({c.board_m, c.pixel, c.sigma_px, static_cast<camera::Colour>(c.channel), c.turned_rad});
+      if (!view.time_s && std::isfinite(c.time_s)) view.time_s = c.time_s;
+      if (!view.temperature_K && std::isfinite(c.temperature_K)) view.temperature_K = c.temperature_K;
+    }
     if (view.corners.size() >= 6) input.views.push_back(std::move(view));
   }
 }
@@ -88,6 +96,66 @@ void add_table(const manifest::Document& document, const std::string& name, Boar
 bool has_boards(const manifest::Document& document) {
   return std::any_of(document.tables.begin(), document.tables.end(),
                      [](const auto& t) { return is_corner_table(t.second); });
+}
+
+namespace {
+
+// Terms that no section of cameras or boards has a place for, where the manifest switches them on.
+void read_given(const manifest::Document& document, BoardsInput& input) {
+  for (const auto& [id, use] : document.mechanisms) {
+    const mechanism::Mechanism* m = mechanism::find_mechanism(id);
+    if (m == nullptr || std::ranges::find(m->domains, "boards") == m->domains.end()) continue;
+    const auto add = [&](const std::string& name) {
+      const auto found = std::find(use.on.begin(), use.on.end(), name);
+      if (!use.on.empty() && found == use.on.end()) return;
+      for (const auto& [parameter, value] : use.parameters) {
+        const auto column = camera::corner_column(parameter);
+        if (!column || *column < camera::CornerColumn::scale || value.value.empty()) continue;
+        const auto place = static_cast<std::size_t>(found - use.on.begin());
+        input.given.push_back({id, name, *column, value.value[std::min(place, value.value.size() - 1)]});
+      }
+    };
+    if (m->target == mechanism::Target::board)
+      for (const BoardsInput::Board& board : input.boards) add(board.name);
+    else
+      for (const BoardsInput::Camera& camera : input.cameras) add(camera.name);
+  }
+}
+
+// Differences from the mean where all views state the quantity.
+template <class Stated>
+void settle_drift(std::vector<BoardsInput::View>& views, Stated stated, double BoardsInput::View::*difference) {
+  double sum = 0;
+  for (const BoardsInput::View& view : views) {
+    if (!(view.*stated)) return;
+    sum += *(view.*stated);
+  }
+  for (BoardsInput::View& view : views) view.*difference = *(view.*stated) - sum / static_cast<double>(views.size());
+}
+
+// One target at rest, not two views that start from the same guess: common corners lie within a hundredth of the
+// image's width.
+bool of_one_target(const BoardsInput& input, const BoardsInput::View& a, const BoardsInput::View& b) {
+  if (a.camera != b.camera || a.board != b.board || !(a.camera_from_board == b.camera_from_board)) return false;
+  const double near_px = 0.01 * input.cameras[a.camera].width_px;
+  return std::ranges::all_of(a.corners, [&](const BoardsInput::Corner& c) {
+    return std::ranges::all_of(b.corners, [&](const BoardsInput::Corner& d) {
+      return norm(c.board_m - d.board_m) > 1e-9 || norm(c.pixel - d.pixel) < near_px;
+    });
+  });
+}
+
+}  // namespace
+
+void settle_views(BoardsInput& input) {
+  for (std::size_t v = 0; v < input.views.size(); ++v) {
+    BoardsInput::View& view = input.views[v];
+    view.pose_of = v;
+    for (std::size_t w = 0; w < v && view.pose_of == v; ++w)
+      if (of_one_target(input, input.views[w], view)) view.pose_of = w;
+  }
+  settle_drift(input.views, &BoardsInput::View::temperature_K, &BoardsInput::View::warmer_K);
+  settle_drift(input.views, &BoardsInput::View::time_s, &BoardsInput::View::later_s);
 }
 
 BoardsInput boards_input(const manifest::Document& document) {
@@ -100,6 +168,7 @@ BoardsInput boards_input(const manifest::Document& document) {
                     " board views, and explain leaves views out to judge (at least " + std::to_string(fewest_views) +
                     ")",
                 "photograph the board from more directions");
+  read_given(document, input);
   return input;
 }
 

@@ -1,26 +1,39 @@
-// What surrounds the boards problem: the conditions of a corner, the upgraded cameras and boards, the pictures. Private
-// to boards/.
+// What surrounds the boards problem: its parameters, the conditions of a corner, the upgraded cameras and boards, the
+// pictures. Private to boards/.
 #pragma once
 #include <vector>
 
 #include "explain/boards/boards_problem.h"
-#include "explain/boards/rolling_shutter.h"
 #include "explain/explanation.h"
 
 namespace gonio::explain {
 
-// What a parameter of the problem moves: a column of MovingColumn of one camera, board or view; the others are none.
+// What a parameter of the problem moves: a column of camera::CornerColumn of one camera, board or view; the others are
+// none. A pose belongs to the first of the views that share it.
 struct BoardRole {
   std::size_t camera = static_cast<std::size_t>(-1), board = static_cast<std::size_t>(-1),
               view = static_cast<std::size_t>(-1);
   std::size_t column = 0;
 };
 
-// Conditions without values, and the two rows (u, v) of one corner appended to each.
-std::vector<Condition> board_conditions();
-void append_conditions(const BoardsInput::Camera& camera, const BoardsInput::Board& board,
-                       const BoardsInput::View& view, const BoardsInput::Corner& corner,
-                       std::vector<Condition>& conditions);
+struct BoardParameters {
+  std::vector<Parameter> parameters;
+  std::vector<BoardRole> roles;
+  std::vector<std::size_t> base;
+  std::vector<Candidate> candidates;
+};
+BoardParameters board_parameters(const BoardsInput& input);
+
+// The forward model of one view under `values`, and the turn of its pose from where it started.
+struct BoardScene {
+  camera::CornerModel model;
+  Vec3 turn;
+};
+BoardScene board_scene(const BoardsInput& input, const std::vector<BoardRole>& roles, std::span<const double> values,
+                       std::size_t view);
+
+// Conditions of all corners, two rows (u, v) each; those that do not vary over the recordings are left out.
+std::vector<Condition> board_conditions(const BoardsInput& input);
 
 void upgrade_boards(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
                     const Explanation& explanation, manifest::Document& document);

@@ -39,6 +39,7 @@ void upgrade_camera(const Problem& problem, const BoardsInput& input, std::size_
   for (std::size_t p = 0; p < roles.size(); ++p) {
     if (roles[p].camera != c) continue;
     const std::size_t column = roles[p].column;
+    if (column >= camera::CornerColumn::motion) continue;
     const bool lens = column >= BoardColumn::distortion;
     const auto active = std::find(e.active.begin(), e.active.end(), p);
     if (lens && active != e.active.end()) terms.add(column - BoardColumn::distortion);
@@ -68,7 +69,7 @@ void upgrade_image(const BoardsInput& input, std::size_t v, const std::vector<Bo
   std::array<double, 6> change{};
   manifest::PoseSigma sigma{std::vector<double>(3, 0.0), std::vector<double>(3, 0.0)};
   for (std::size_t p = 0; p < roles.size(); ++p) {
-    if (roles[p].view != v || roles[p].column >= MovingColumn::motion) continue;
+    if (roles[p].view != input.views[v].pose_of || roles[p].column >= BoardColumn::warp) continue;
     const std::size_t i = roles[p].column - BoardColumn::rotation;
     change[i] = e.values[p];
     (i < 3 ? sigma.rotation_rad : sigma.translation_m)[i % 3] = e.sigma[p];
@@ -79,6 +80,37 @@ void upgrade_image(const BoardsInput& input, std::size_t v, const std::vector<Bo
   written.translation_m = pose.translation_m;
   written.sigma = sigma;
   image.camera_from_board = written;
+}
+
+// Terms that have no place in a camera or a board: under "mechanisms", one number for each target.
+void upgrade_mechanisms(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
+                        const Explanation& e, manifest::Document& document) {
+  for (std::size_t p = 0; p < roles.size(); ++p) {
+    const BoardRole& role = roles[p];
+    if (role.column < camera::CornerColumn::scale) continue;
+    const std::string& name = role.board != none ? input.boards[role.board].name : input.cameras[role.camera].name;
+    const std::string& full = problem.parameters()[p].name;
+    const auto holds = [&](const Candidate& c) {
+      return std::find(c.parameters.begin(), c.parameters.end(), p) != c.parameters.end();
+    };
+    std::string id;
+    for (const std::size_t c : e.named)
+      if (holds(problem.candidates()[c])) id = problem.candidates()[c].id();
+    for (const BoardsInput::Given& given : input.given)
+      if (given.column == role.column && given.on == name &&
+          std::find(problem.base().begin(), problem.base().end(), p) != problem.base().end())
+        id = given.mechanism;
+    if (id.empty()) continue;
+    manifest::MechanismUse& use = document.mechanisms[id];
+    if (std::find(use.on.begin(), use.on.end(), name) == use.on.end()) use.on.push_back(name);
+    const auto place = static_cast<std::size_t>(std::find(use.on.begin(), use.on.end(), name) - use.on.begin());
+    const std::string key = full.substr(full.find_last_of("./") + 1);
+    std::vector<double>&value = use.parameters[key].value, &sigma = use.sigma[key];
+    value.resize(use.on.size());
+    sigma.resize(use.on.size());
+    value[place] = e.values[p];
+    sigma[place] = e.sigma[p];
+  }
 }
 
 }  // namespace
@@ -92,13 +124,14 @@ void upgrade_boards(const Problem& problem, const BoardsInput& input, const std:
     section.rms_px = rms(input, o, e, [&](std::size_t v) { return input.views[v].camera == c; });
   }
   for (std::size_t p = 0; p < roles.size(); ++p) {
-    if (roles[p].board == none || !(input.boards[roles[p].board].warped || is_named(problem, e, "board.warp")))
-      continue;
+    if (roles[p].board == none || roles[p].column >= camera::CornerColumn::motion) continue;
+    if (!(input.boards[roles[p].board].warped || is_named(problem, e, "board.warp"))) continue;
     manifest::Board& section = document.boards.at(input.boards[roles[p].board].name);
     const std::string axis = roles[p].column == BoardColumn::warp ? "x_m" : "y_m";
     section.warp[axis] = manifest::Parameter(e.values[p]);
     section.sigma[axis] = {e.sigma[p]};
   }
+  upgrade_mechanisms(problem, input, roles, e, document);
   for (std::size_t v = 0; v < input.views.size(); ++v) {
     const auto image = std::find_if(document.images.begin(), document.images.end(),
                                     [&](const manifest::ImageEntry& i) { return i.id == input.views[v].image; });

@@ -1,5 +1,5 @@
-// board.scale: a board that was printed larger or smaller than stated. A camera alone cannot see it; the robot's metres
-// can.
+// board.scale: a board that was printed larger or smaller than stated. A camera alone sees only that one direction is
+// stretched against the other; a robot's metres show the rest.
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {
@@ -9,11 +9,13 @@ const Mechanism& board_scale() {
       .id = "board.scale",
       .sentence = "The calibration board's squares are not as large as stated, or not square.",
       .typical = "0.1 to 1 %",
-      .equation = "x -> (1 + scale_x) x, y -> (1 + scale_y) y in the board's frame",
+      .equation =
+          "x -> (1 + scale_x) x, y -> (1 + scale_y) y in the board's frame; on tables of corners alone scale_x stands "
+          "for the ratio (1 + scale_x) / (1 + scale_y) - 1",
       .source = "own; print and paper stretch differently along and across",
       .stage = "board",
       .target = Target::board,
-      .domains = {"robot"},
+      .domains = {"boards", "robot"},
       .parameters = {{.name = "scale_x",
                       .unit = "1",
                       .lower = -0.2,
@@ -24,8 +26,10 @@ const Mechanism& board_scale() {
                       .lower = -0.2,
                       .upper = 0.2,
                       .meaning = "stretch along the rows' direction"}},
-      .conditions = {"camera.distance"},
+      .conditions = {"board.roll", "camera.distance"},
       .mistaken_for = {{.with = "robot.link-length", .told_apart = "measure the board with a caliper"},
+                       {.with = "focal aspect",
+                        .told_apart = "measure the board with a caliper, or turn it by 90 degrees"},
                        {.with = "lens.radial", .told_apart = "measure the board with a caliper"}},
   };
   return declaration;
