@@ -5,6 +5,7 @@
 #include "cli/program.h"
 #include "explain/domains.h"
 #include "explain/explain_document.h"
+#include "explain/tables/quick_table.h"
 
 namespace gonio::tools::explain {
 namespace {
@@ -19,6 +20,8 @@ gonio::explain::ExplainRequest request_of(cli::Invocation& call) {
   request.options.protect = call.texts("protect");
   request.options.dummies = static_cast<std::size_t>(call.integer("dummies"));
   request.options.seed = call.seed;
+  request.options.budget_s = request.recordings.budget_s = call.given("budget") ? call.number("budget") : 0;
+  for (const std::string& path : call.texts("repeat")) request.recordings.repeats.emplace_back(path);
   request.out = call.out;
   if (call.given("html"))
     request.page = call.text("html");
@@ -27,13 +30,44 @@ gonio::explain::ExplainRequest request_of(cli::Invocation& call) {
   return request;
 }
 
+// A table on the command line becomes a manifest.
+void read_table(cli::Invocation& call) {
+  const std::vector<std::string>& operands = call.texts("FILE");
+  if (operands.empty() && !call.given("table")) {
+    for (const char* name : {"model", "observed", "sigma", "group", "block", "units", "free"})
+      if (call.given(name))
+        throw Error(Exit::usage, std::string("--") + name, "says something about a table, and none is given",
+                    "name it: explain data.csv --model 'a*cos(theta)+b' --observed f --free a=1,b=0");
+    return;
+  }
+  if (call.has_document || operands.size() + call.given("table") > 1)
+    throw Error(Exit::usage, "explain", "has more than one thing to explain", "give one manifest, or one table");
+  gonio::explain::tables::QuickTable quick;
+  quick.file = operands.empty() ? call.text("table") : operands[0];
+  for (const char* needed : {"model", "observed"})
+    if (!call.given(needed))
+      throw Error(Exit::usage, quick.file.string(), std::string("is a table without --") + needed,
+                  "explain data.csv --model 'a*cos(theta)+b' --observed f --free a=1,b=0");
+  quick.model = call.text("model");
+  quick.observed = call.texts("observed");
+  quick.sigma = call.texts("sigma");
+  if (call.given("group")) quick.group = call.text("group");
+  if (call.given("block")) quick.block = call.text("block");
+  if (call.given("units")) quick.units = gonio::explain::tables::parse_pairs(call.text("units"), "--units");
+  if (call.given("free")) quick.free = gonio::explain::tables::parse_numbers(call.text("free"), "--free");
+  call.note_input(quick.file);
+  call.document = gonio::explain::tables::quick_document(quick);
+  call.has_document = true;
+}
+
 void check(cli::Invocation& call) {
   if (call.flag("list")) return;
   gonio::explain::check_hypotheses(call.texts("hypotheses"));
+  read_table(call);
   if (!call.has_document)
     throw Error(Exit::no_input, "explain", "has no manifest to read",
-                "pipe one in, or name it: explain recording.json");
-  if (call.flag("check")) gonio::explain::problems_of(call.document);
+                "pipe one in, or name it: explain recording.json; or a table: explain data.csv --model ...");
+  if (call.flag("check")) gonio::explain::problems_of(call.document, request_of(call).recordings);
 }
 
 Exit run(cli::Invocation& call) {
@@ -43,10 +77,51 @@ Exit run(cli::Invocation& call) {
     return Exit::done;
   }
   for (const std::filesystem::path& path : gonio::explain::files_of(call.document)) call.note_input(path);
-  return gonio::explain::explain_document(call.document, request_of(call));
+  const gonio::explain::ExplainRequest request = request_of(call);
+  for (const std::filesystem::path& path : request.recordings.repeats) call.note_input(path);
+  return gonio::explain::explain_document(call.document, request);
 }
 
-std::vector<cli::Option> options() {
+std::vector<cli::Option> table_options() {
+  return {
+      {.name = "table",
+       .type = Type::input_file,
+       .help = "Explain this table, CSV or JSON ({\"units\": {...}, \"rows\": [{...}, ...]}), instead of a manifest."},
+      {.name = "model",
+       .type = Type::text,
+       .help = "What predicts the table: sensor, light, volume, surface, tracks, or an expression over its columns "
+               "such as a*cos(theta)+b.",
+       .metavar = "MODEL"},
+      {.name = "observed",
+       .type = Type::text,
+       .help = "Column that was measured; may be repeated.",
+       .metavar = "COLUMN",
+       .repeat = true},
+      {.name = "sigma",
+       .type = Type::text,
+       .help = "Column with one standard deviation of it, in the same order; default: from repeats, else from "
+               "differences between neighbouring rows.",
+       .metavar = "COLUMN",
+       .repeat = true},
+      {.name = "group",
+       .type = Type::text,
+       .help = "Column whose equal values are held out together; default: stretches along the telling condition.",
+       .metavar = "COLUMN"},
+      {.name = "block",
+       .type = Type::text,
+       .help = "Column whose equal values share their noise; default: single rows.",
+       .metavar = "COLUMN"},
+      {.name = "units",
+       .type = Type::text,
+       .help = "Units that the headings do not state: theta=deg,f=1/sr.",
+       .metavar = "NAME=UNIT,..."},
+      {.name = "free",
+       .type = Type::text,
+       .help = "Parameters that are fitted, and where they start: a=1,b=0.",
+       .metavar = "NAME=VALUE,..."}};
+}
+
+std::vector<cli::Option> engine_options() {
   return {
       {.name = "matters",
        .type = Type::quantity,
@@ -79,6 +154,16 @@ std::vector<cli::Option> options() {
        .preset = "24",
        .lower = 0,
        .upper = 1000},
+      {.name = "repeat",
+       .type = Type::input_file,
+       .help = "A further take of the same recordings, from which noise is measured; may be repeated.",
+       .repeat = true},
+      {.name = "budget",
+       .type = Type::quantity,
+       .help = "Time to spend, turned into an amount of work that is the same on every machine; default: no limit.",
+       .metavar = "TIME",
+       .dimension = Dimension::time,
+       .lower = 0.001},
       {.name = "html",
        .type = Type::output_file,
        .help = "Write the report page here; with --out it is DIR/report.html."},
@@ -87,23 +172,32 @@ std::vector<cli::Option> options() {
        .help = "Print the mechanisms with their conditions and confusions, and end."}};
 }
 
+std::vector<cli::Option> options() {
+  std::vector<cli::Option> all = engine_options();
+  for (cli::Option& option : table_options()) all.push_back(std::move(option));
+  return all;
+}
+
 }  // namespace
 
 const cli::Program& gonio_program() {
   static const cli::Program program{
       .name = "explain",
       .sentence = "find the physics that a simulation left out",
-      .synopsis = {"[OPTION]... [-i FILE | recording.json]", "--list"},
+      .synopsis = {"[OPTION]... [-i FILE | recording.json]",
+                   "[OPTION]... data.csv --model MODEL --observed COLUMN [--free NAME=VALUE,...]", "--list"},
       .options = options(),
-      .operands = {{.name = "MANIFEST",
+      .operands = {{.name = "FILE",
                     .type = Type::input_file,
-                    .help = "Recordings with their base model; ends in .json."}},
-      .standalone = {"list"},
+                    .help = "Recordings with their base model, a manifest that ends in .json; or a table as CSV.",
+                    .repeat = true}},
+      .standalone = {"list", "table"},
       .takes_out = true,
       .takes_seed = true,
       .sections_read = {"files", "boards", "cameras", "images", "meshes", "surfaces", "lights", "objects", "tables",
                         "mechanisms"},
-      .sections_written = {"boards", "cameras", "images", "surfaces", "lights", "mechanisms", "explanations"},
+      .sections_written = {"boards", "cameras", "images", "surfaces", "lights", "tables", "files", "mechanisms",
+                           "explanations"},
       .files = {{"report.html", "one self-contained page: where, which curve, how sure, what to measure next"},
                 {"mask-*.png", "images: where the mismatch is"}},
       .exits = {{Exit::done, "No mismatch that matters, or the physics that explains it is named."},

@@ -35,7 +35,7 @@ std::string evidence_name(const std::vector<std::unique_ptr<Problem>>& problems,
 }  // namespace
 
 Exit explain_document(manifest::Document& document, const ExplainRequest& request) {
-  const std::vector<std::unique_ptr<Problem>> problems = problems_of(document);
+  const std::vector<std::unique_ptr<Problem>> problems = problems_of(document, request.recordings);
   std::vector<Explanation> explanations(problems.size());
   std::vector<Illustration> illustrations(problems.size());
   std::vector<ReportPart> parts;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "explain/domain.h"
 #include "explain/engine.h"
 #include "manifest/document.h"
 
@@ -12,6 +13,7 @@ namespace gonio::explain {
 
 struct ExplainRequest {
   Options options;
+  ProblemOptions recordings;
   std::filesystem::path out;   // folder for masks; empty: none are written
   std::filesystem::path page;  // report page; empty: none
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -31,7 +32,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 13> instead 
 
 }  // namespace
 
-void check_column_unit(const std::string& column, const std::string& unit, const std::string& place) {
+void check_column_unit(const std::string& column, const std::string& written, const std::string& place) {
+  std::string unit;  // brackets only say how far a slash reaches: W/(m^2 sr)
+  std::copy_if(written.begin(), written.end(), std::back_inserter(unit), [](char c) { return c != '(' && c != ')'; });
   std::size_t start = 0;
   while (!unit.empty() && start <= unit.size()) {  // "": a column of names
     const auto end = std::min(unit.find_first_of(" ./*", start), unit.size());

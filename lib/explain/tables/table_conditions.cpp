@@ -70,7 +70,7 @@ std::vector<Condition> further_conditions(const Table& table, const manifest::Ta
                                       [&](const Column& column) { return table.place_of(column.name) == c; });
     if (modelled) continue;
     std::optional<Condition> condition = condition_of(table, name);
-    if (!condition) continue;
+    if (!condition || (name == section.group && known_as(name) == nullptr)) continue;  // a mere label of rows
     const auto same = [&](const Condition& other) { return other.name == condition->name; };
     if (std::none_of(known.begin(), known.end(), same)) result.push_back(std::move(*condition));
   }

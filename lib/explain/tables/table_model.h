@@ -109,6 +109,7 @@ struct TermColumn {
   std::string name, unit, meaning;
   bool from_least = false;  // `at` counts from the column's smallest value: time since the first row
   bool needed = true;       // else NaN where the table has none
+  bool as_share = false;    // of its largest value
 };
 
 // A mechanism that changes a predicted value through known columns, whatever predicted it: an offset, a response curve,

@@ -22,9 +22,10 @@ std::vector<double> values_at(const Table& table, const TermColumn& column) {
   const std::vector<double>* values = table.find(column.name);
   if (values == nullptr) return std::vector<double>(table.rows(), std::nan(""));
   std::vector<double> at = *values;
-  if (!column.from_least) return at;
-  const double least = *std::min_element(at.begin(), at.end());
+  const double least = column.from_least ? *std::min_element(at.begin(), at.end()) : 0;
   for (double& v : at) v -= least;
+  const double most = column.as_share ? *std::max_element(at.begin(), at.end()) : 1;
+  for (double& v : at) v /= most;
   return at;
 }
 

@@ -19,7 +19,7 @@ struct Atom {
   double factor;
 };
 constexpr double degree = std::numbers::pi / 180;
-constexpr std::array<Atom, 44> atoms = {
+constexpr std::array<Atom, 42> atoms = {
     {{"1", "", 1},           {"", "", 1},       {"%", "", 0.01},  {"DN", "", 1},      {"count", "", 1},
      {"counts", "", 1},      {"e", "", 1},      {"m", "m", 1},    {"mm", "m", 1e-3},  {"um", "m", 1e-6},
      {"nm", "m", 1e-9},      {"cm", "m", 1e-2}, {"km", "m", 1e3}, {"rad", "rad", 1},  {"mrad", "rad", 1e-3},
@@ -28,7 +28,7 @@ constexpr std::array<Atom, 44> atoms = {
      {"mW", "W", 1e-3},      {"uW", "W", 1e-6}, {"J", "J", 1},    {"K", "K", 1},      {"mK", "K", 1e-3},
      {"V", "V", 1},          {"mV", "V", 1e-3}, {"A", "A", 1},    {"mA", "A", 1e-3},  {"uA", "A", 1e-6},
      {"kg", "kg", 1},        {"g", "kg", 1e-3}, {"Hz", "Hz", 1},  {"kHz", "Hz", 1e3}, {"lx", "lx", 1},
-     {"cd", "cd", 1},        {"lm", "lm", 1},   {"N", "N", 1},    {"Pa", "Pa", 1}}};
+     {"cd", "cd", 1},        {"lm", "lm", 1}}};
 // That may end a column's name. "min" and "h" are left out: theta_min is no time.
 constexpr std::array<std::string_view, 16> endings = {"m",   "mm", "um", "nm", "cm", "km", "rad", "mrad",
                                                       "deg", "s",  "ms", "us", "px", "K",  "sr",  "W"};

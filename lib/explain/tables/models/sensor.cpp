@@ -146,7 +146,7 @@ const Model& sensor() {
                                        {"channel", "", "each has a gain, or radiances, of its own", false}},
                            .score_name = "relative RMSE",
                            .unit = "1",
-                           .group_noun = "group of readings",
+                           .group_noun = "group",
                            .importance = Importance::share_of_signal,
                            .bind = [](const manifest::Document& document, const std::string& name,
                                       const Table& table) -> std::unique_ptr<BoundModel> {

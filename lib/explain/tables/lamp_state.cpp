@@ -1,0 +1,190 @@
+// See lamp_state.h.
+#include "explain/tables/lamp_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "light/irradiance.h"
+
+namespace gonio::explain::tables {
+namespace {
+
+constexpr char inverse_square[] = "light.inverse-square";
+constexpr int grid = 12;
+
+scene::Light lamp_of(const manifest::Document& document, const std::string& name, const std::string& place) {
+  const auto found = document.lights.find(name);
+  if (found == document.lights.end())
+    throw Error(Exit::data, place, "names light \"" + name + "\", which is not there");
+  const manifest::Light& section = found->second;
+  scene::Light lamp;
+  lamp.id = name;
+  lamp.model = light::find(section.model);
+  lamp.parameters = section.parameters;
+  const std::string at = manifest::place(document, "/lights/" + name);
+  if (lamp.model->info().attachment == manifest::Attachment::picture)
+    throw Error(Exit::data, at, "shines through a picture, which a table of irradiances does not read",
+                "explain images of it instead");
+  if (!section.file.empty()) lamp.file = manifest::resolve(document, section.file, "/lights/" + name + "/file");
+  scene::refresh(lamp, at);
+  return lamp;
+}
+
+const std::vector<double>* given(const scene::Light& lamp, const std::string& name) {
+  const auto found = lamp.parameters.find(name);
+  return found == lamp.parameters.end() || !found->second.given() ? nullptr : &found->second.value;
+}
+
+std::vector<double> list_of(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+
+}  // namespace
+
+void bring_near(scene::Light& lamp, double nearness_per_m, Vec3 centre_m, const std::string& place) {
+  if (nearness_per_m == 0) return;
+  const Vec3 towards = normalized(lamp.parameters.at("towards").vector());
+  const Rgb facing = lamp.parameters.at("watt_per_m2").rgb();
+  lamp.model = light::find("point");
+  lamp.parameters = {{"position_m", manifest::Parameter(list_of(centre_m + towards * (1 / nearness_per_m)))},
+                     {"watt_per_sr", manifest::Parameter(list_of(facing * (1 / (nearness_per_m * nearness_per_m))))}};
+  scene::refresh(lamp, place);
+}
+
+Rgb irradiance(const scene::Light& lamp, Vec3 point_m, Vec3 normal) {
+  const std::string& model = lamp.model->info().id;
+  if (model == "point" || model == "sphere") {
+    const std::vector<double>* radius = given(lamp, "radius_m");
+    const Rgb intensity = lamp.parameters.at("watt_per_sr").rgb();
+    const Vec3 position = lamp.parameters.at("position_m").vector();
+    return radius == nullptr || radius->at(0) == 0
+               ? light::point_irradiance(intensity, position, point_m, normal)
+               : light::sphere_irradiance(intensity, position, radius->at(0), point_m, normal);
+  }
+  Rgb sum;
+  for (int i = 0; i < grid * grid; ++i) {
+    const light::Sample s = lamp.emitter->sample(point_m, {(i % grid + 0.5) / grid, (i / grid + 0.5) / grid});
+    if (s.valid) sum = sum + s.weight * std::max(0.0, dot(s.direction, normal));
+    if (s.valid && s.delta) return sum * (1.0 / (i + 1));
+  }
+  return sum * (1.0 / (grid * grid));
+}
+
+Sight sight_of(const scene::Light& lamp, Vec3 point_m, Vec3 centre_m) {
+  Sight sight;
+  if (const std::vector<double>* position = given(lamp, "position_m"); position != nullptr) {
+    const Vec3 at{(*position)[0], (*position)[1], (*position)[2]}, arm = at - point_m;
+    sight.distance_m = norm(arm);
+    sight.towards = sight.distance_m > 0 ? arm * (1 / sight.distance_m) : Vec3{0, 0, 1};
+    const std::vector<double>* axis = given(lamp, "direction");
+    const Vec3 facing = axis != nullptr ? Vec3{(*axis)[0], (*axis)[1], (*axis)[2]} : centre_m - at;
+    if (norm(facing) > 0)
+      sight.emission_rad = std::acos(std::clamp(-dot(normalized(facing), sight.towards), -1.0, 1.0));
+    return sight;
+  }
+  const std::vector<double>* towards = given(lamp, "towards");
+  sight.towards = towards == nullptr ? Vec3{0, 0, 1} : normalized(Vec3{(*towards)[0], (*towards)[1], (*towards)[2]});
+  sight.distance_m = -dot(point_m - centre_m, sight.towards);
+  return sight;
+}
+
+LampState::LampState(const manifest::Document& document, const std::vector<std::string>& names, Vec3 centre_m,
+                     const std::string& place)
+    : centre_m_(centre_m), place_(place) {
+  for (const std::string& name : names) appearance_.lights.push_back(lamp_of(document, name, place));
+  free_parameters(document);
+  mechanisms_of_lamps();
+}
+
+void LampState::add(Parameter parameter, LampNumber number) {
+  parameters_.push_back(std::move(parameter));
+  numbers_.push_back(std::move(number));
+}
+
+void LampState::free_parameters(const manifest::Document&) {
+  constexpr char axes[] = "xyz";
+  for (std::size_t l = 0; l < lamps().size(); ++l)
+    for (const auto& [name, value] : lamps()[l].parameters) {
+      if (!value.free) continue;
+      for (std::size_t k = 0; k < value.value.size(); ++k) {
+        Parameter p;
+        p.name = "lights/" + lamps()[l].id + "/" + name + (value.value.size() > 1 ? std::string("_") + axes[k] : "");
+        p.start = p.neutral = value.value[k];
+        if (value.min) p.lower = *value.min;
+        if (value.max) p.upper = *value.max;
+        p.prior_sigma = value.sigma;
+        double largest = 0;
+        for (const double v : value.value) largest = std::max(largest, std::abs(v));
+        p.size = largest > 0 ? largest : 1;
+        base_.push_back(parameters_.size());
+        add(std::move(p), {l, name, nullptr, k});
+      }
+    }
+}
+
+// Every registered mechanism of lamps that the scene can apply to this one.
+void LampState::mechanisms_of_lamps() {
+  for (const mechanism::Mechanism* m : mechanism::all_mechanisms()) {
+    if (m->target != mechanism::Target::light) continue;
+    const std::vector<std::string> targets = scene::mechanism_targets(appearance_, *m);
+    for (std::size_t l = 0; l < lamps().size(); ++l) {
+      const bool by_scene = std::find(targets.begin(), targets.end(), lamps()[l].id) != targets.end();
+      const bool near = m->id == inverse_square && lamps()[l].model->info().id == "directional";
+      if (!near && (!by_scene || m->id == inverse_square)) continue;
+      Candidate candidate{m, {lamps()[l].id}, {}, {}};
+      for (std::size_t k = 0; k < m->parameters.size(); ++k) {
+        const mechanism::Parameter& p = m->parameters[k];
+        candidate.parameters.push_back(parameters_.size());
+        const double size = std::max(std::abs(p.start - p.neutral), 0.02 * (p.upper - p.lower));
+        add({lamps()[l].id + "/" + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, size, {}, {}}, {l, "", m, k});
+      }
+      candidates_.push_back(std::move(candidate));
+    }
+  }
+}
+
+std::vector<scene::Light> LampState::at(std::span<const double> values) const {
+  scene::Appearance state = appearance_;
+  std::vector<char> changed(state.lights.size(), 0);
+  for (const std::size_t p : base_) {
+    const LampNumber& n = numbers_[p];
+    state.lights[n.lamp].parameters[n.name].value[n.component] = values[p];
+    changed[n.lamp] = 1;
+  }
+  for (std::size_t l = 0; l < changed.size(); ++l)
+    if (changed[l]) scene::refresh(state.lights[l], place_);
+  for (const Candidate& c : candidates_) {
+    const mechanism::Mechanism& m = *c.mechanism;
+    const std::size_t lamp = numbers_[c.parameters[0]].lamp;
+    manifest::MechanismUse use;
+    use.on = c.on;
+    bool in_play = false;
+    for (std::size_t k = 0; k < c.parameters.size(); ++k) {
+      const double v = values[c.parameters[k]];
+      use.parameters[m.parameters[k].name] = v;
+      in_play = in_play || v != m.parameters[k].neutral;
+    }
+    if (!in_play) continue;
+    if (m.id == inverse_square)
+      bring_near(state.lights[lamp], values[c.parameters[0]], centre_m_, place_);
+    else
+      scene::apply_mechanism(state, m, use, centre_m_, place_);
+  }
+  return state.lights;
+}
+
+void LampState::apply(std::span<const double> values, std::span<const double> sigma,
+                      manifest::Document& document) const {
+  for (const std::size_t p : base_) {
+    const LampNumber& n = numbers_[p];
+    manifest::Light& light = document.lights.at(lamps()[n.lamp].id);
+    std::vector<double>& value = light.parameters[n.name].value;
+    value[n.component] = values[p];
+    std::vector<double>& width = light.sigma[n.name];
+    width.resize(value.size(), 0);
+    width[n.component] = sigma[p];
+  }
+}
+
+}  // namespace gonio::explain::tables

@@ -1,0 +1,114 @@
+// See quick_table.h.
+#include "explain/tables/quick_table.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/quantity.h"
+#include "base/text.h"
+#include "explain/tables/read_table.h"
+#include "manifest/fields.h"
+
+namespace gonio::explain::tables {
+namespace {
+
+constexpr char place_of_units[] = "--units";
+
+std::size_t column_of(const RawTable& raw, const std::string& name, const std::string& place) {
+  for (std::size_t c = 0; c < raw.columns.size(); ++c)
+    if (raw.columns[c] == name) return c;
+  for (std::size_t c = 0; c < raw.columns.size(); ++c)
+    if (stem_of(raw.columns[c]) == stem_of(name)) return c;
+  throw Error(Exit::usage, place, "the table has no column \"" + name + "\"", manifest::remedy_for(name, raw.columns));
+}
+
+// Gives columns the units that the user states; true where values had to be converted.
+bool set_units(const std::vector<std::pair<std::string, std::string>>& units, RawTable& raw) {
+  bool converted = false;
+  for (const auto& [name, text] : units) {
+    const std::size_t c = column_of(raw, name, place_of_units);
+    Unit unit;
+    try {
+      unit = parse_unit(text, place_of_units);
+    } catch (const Error& e) {
+      throw Error(Exit::usage, e.place(), e.problem(), e.remedy());
+    }
+    if (!raw.units[c].powers.empty() || raw.units[c].factor != 1)
+      throw Error(Exit::usage, place_of_units, "column \"" + raw.columns[c] + "\" states its unit itself",
+                  "leave it out of --units");
+    for (double& v : raw.values[c]) v *= unit.factor;
+    converted = converted || unit.factor != 1;
+    raw.units[c] = unit;
+  }
+  return converted;
+}
+
+manifest::Value rows_of(const RawTable& raw) {
+  manifest::Value rows = manifest::Value::array();
+  for (std::size_t r = 0; r < raw.values[0].size(); ++r) {
+    manifest::Value row = manifest::Value::array();
+    for (std::size_t c = 0; c < raw.columns.size(); ++c) {
+      const double v = raw.values[c][r];
+      row.push_back(raw.labels[c].empty() ? manifest::Value(v)
+                                          : manifest::Value(raw.labels[c][static_cast<std::size_t>(v)]));
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> parse_pairs(const std::string& text, const std::string& place) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  std::size_t at = 0;
+  while (at <= text.size()) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::string item = text.substr(at, end - at);
+    const auto equals = item.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == item.size())
+      throw Error(Exit::usage, place, "\"" + item + "\" is not NAME=VALUE", "separate several by commas");
+    pairs.emplace_back(item.substr(0, equals), item.substr(equals + 1));
+    at = end + 1;
+  }
+  return pairs;
+}
+
+std::vector<std::pair<std::string, double>> parse_numbers(const std::string& text, const std::string& place) {
+  std::vector<std::pair<std::string, double>> numbers;
+  for (const auto& [name, value] : parse_pairs(text, place))
+    numbers.emplace_back(name, parse_quantity(value, Dimension::none, place));
+  return numbers;
+}
+
+manifest::Document quick_document(const QuickTable& quick) {
+  manifest::Document document;
+  document.name = quick.file.string();
+  document.allow_outside = true;  // what the user names may lie anywhere
+  manifest::Table section;
+  section.model = find_model(quick.model) != nullptr ? quick.model : "expression";
+  if (section.model == "expression") section.expression = quick.model;
+  RawTable raw = read_raw(quick.file, section, quick.file.filename().string());
+  const bool converted = set_units(quick.units, raw);
+  for (const std::string& name : quick.observed)
+    section.observed.push_back(raw.columns[column_of(raw, name, "--observed")]);
+  for (const std::string& name : quick.sigma) section.sigma.push_back(raw.columns[column_of(raw, name, "--sigma")]);
+  if (!quick.group.empty()) section.group = raw.columns[column_of(raw, quick.group, "--group")];
+  if (!quick.block.empty()) section.block = raw.columns[column_of(raw, quick.block, "--block")];
+  for (std::size_t c = 0; c < raw.columns.size(); ++c)
+    section.columns.emplace_back(raw.columns[c], raw.labels[c].empty() ? raw.units[c].text() : "");
+  for (const auto& [name, start] : quick.free) {
+    manifest::Parameter p(start);
+    p.free = true;
+    section.parameters[name] = p;
+  }
+  const std::string name = file_stem(quick.file.stem().string());
+  if (converted)
+    section.rows = rows_of(raw);
+  else
+    section.file = manifest::add_file(document, quick.file, name);
+  document.tables[name] = std::move(section);
+  return document;
+}
+
+}  // namespace gonio::explain::tables

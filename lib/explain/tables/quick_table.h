@@ -1,0 +1,28 @@
+// What people type, turned into a manifest: explain data.csv --model 'a*cos(theta)+b' --observed f --free a=1,b=0.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "manifest/document.h"
+
+namespace gonio::explain::tables {
+
+struct QuickTable {
+  std::filesystem::path file;  // CSV or JSON
+  std::string model;           // a registered model's name, or an expression
+  std::vector<std::string> observed, sigma;
+  std::string group, block;
+  std::vector<std::pair<std::string, std::string>> units;  // column -> unit, where the heading states none
+  std::vector<std::pair<std::string, double>> free;        // parameters and where they start
+};
+// The table enters as "tables"/STEM with its file, hashed; where units had to be converted that the file itself does
+// not state, the rows enter inline in SI. Error(usage) at the option, Error(data) at the file.
+manifest::Document quick_document(const QuickTable& quick);
+
+// "a=1,b=0.5" and "theta=deg,f=1/sr". Error(usage) at `place`.
+std::vector<std::pair<std::string, std::string>> parse_pairs(const std::string& text, const std::string& place);
+std::vector<std::pair<std::string, double>> parse_numbers(const std::string& text, const std::string& place);
+
+}  // namespace gonio::explain::tables

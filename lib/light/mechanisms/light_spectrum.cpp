@@ -1,0 +1,39 @@
+// light.spectrum: the colour of a lamp changes. Equation below; explain/tables/terms/light_spectrum.cpp. Pictures that
+// `render` makes have no time, so that it has nothing to apply there.
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+
+const Mechanism& light_spectrum() {
+  static const Mechanism declaration{
+      .id = "light.spectrum",
+      .sentence = "The lamp's spectrum shifts while it runs, so that the channels change against each other.",
+      .typical = "1 to 5 nm; some 0.1 to 3 % in ratios of channels",
+      .equation =
+          "red *= 1 + red_share t / T, blue *= 1 + blue_share t / T; t since the first recording, T to the last",
+      .source = "first order in the shift of the peak; LEDs: Chhajed et al. 2005",
+      .stage = "light",
+      .target = Target::scene,
+      .domains = {"tables"},
+      .parameters = {{.name = "red_share",
+                      .unit = "1",
+                      .neutral = 0,
+                      .lower = -0.3,
+                      .upper = 0.3,
+                      .start = 0.01,
+                      .meaning = "relative change of red against green over the whole time"},
+                     {.name = "blue_share",
+                      .unit = "1",
+                      .neutral = 0,
+                      .lower = -0.3,
+                      .upper = 0.3,
+                      .start = 0.01,
+                      .meaning = "relative change of blue against green over the whole time"}},
+      .conditions = {"image.time", "image.channel"},
+      .mistaken_for = {{.with = "surface.fluorescence", .told_apart = "a spectrometer on the lamp, or a UV filter"},
+                       {.with = "light.drift", .told_apart = "ratios of channels: warming up leaves them"}},
+  };
+  return declaration;
+}
+
+}  // namespace gonio::mechanism
