@@ -11,7 +11,7 @@
 namespace gonio::explain {
 namespace {
 
-constexpr std::size_t most_parameters = 4;
+constexpr std::size_t most_parameters = 2;
 
 // "lights/lamp/radius_m" -> "radius"; the unit goes with the value.
 std::string short_name(const std::string& full) {
@@ -63,7 +63,15 @@ std::string score_in_words(double score, const std::string& unit) {
 
 std::string estimate_in_words(double value, double sigma, const std::string& unit) {
   const Shown shown = shown_in(unit, std::max(std::abs(value), sigma));
-  return joined(report::with_sigma(value * shown.factor, sigma * shown.factor), shown);
+  value *= shown.factor, sigma *= shown.factor;
+  // Below its sigma a value has no digits of its own.
+  if (std::abs(value) < sigma && sigma >= 1e-6 && sigma < 1e6) {
+    const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(sigma))));
+    char text[96];
+    std::snprintf(text, sizeof text, "%.*f ± %.*f", decimals, value, decimals, sigma);
+    return joined(text, shown);
+  }
+  return joined(report::with_sigma(value, sigma), shown);
 }
 
 std::string condition_in_words(const std::string& name) {
@@ -95,14 +103,24 @@ std::string mechanism_in_words(const Problem& problem, std::size_t candidate) {
 
 std::string parameters_in_words(const Problem& problem, const Explanation& e, std::size_t candidate) {
   const std::vector<std::size_t>& own = problem.candidates()[candidate].parameters;
-  std::string text;
-  std::size_t shown = 0;
+  std::vector<const Estimate*> clear;  // of neutral, the clearest first
+  const auto distance = [&](const Estimate* x) {
+    return x->sigma > 0 ? std::abs(x->value - problem.parameters()[x->parameter].neutral) / x->sigma : 0;
+  };
   for (const Estimate& x : e.estimates) {
     if (std::find(own.begin(), own.end(), x.parameter) == own.end()) continue;
     const Parameter& p = problem.parameters()[x.parameter];
     if (p.groups.size() == 1 && problem.observations().groups() > 1) return "";  // a number for every group
-    if (++shown > most_parameters) return text + ", ...";
-    text += (text.empty() ? "" : ", ") + short_name(p.name) + " " + estimate_in_words(x.value, x.sigma, p.unit);
+    if (distance(&x) > 2) clear.push_back(&x);
+  }
+  std::stable_sort(clear.begin(), clear.end(),
+                   [&](const Estimate* a, const Estimate* b) { return distance(a) > distance(b); });
+  if (clear.size() > most_parameters) clear.resize(most_parameters);
+  std::sort(clear.begin(), clear.end());  // in the order of the declaration
+  std::string text;
+  for (const Estimate* x : clear) {
+    const Parameter& p = problem.parameters()[x->parameter];
+    text += (text.empty() ? "" : ", ") + short_name(p.name) + " " + estimate_in_words(x->value, x->sigma, p.unit);
   }
   return text;
 }

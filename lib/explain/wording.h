@@ -24,7 +24,7 @@ std::string condition_in_words(const std::string& name);  // "surface.half-angle
 // "above 0.6 of the half diagonal", "between 20 and 45 degrees"; empty where it is everywhere.
 std::string range_in_words(const LocatedCondition& located);
 std::string mechanism_in_words(const Problem& problem, std::size_t candidate);  // "surface.interface on bunny"
-// "f0 0.043 ± 0.002, alpha 0.10 ± 0.01": of one named candidate, at most four.
+// "f0 0.043 ± 0.002, alpha 0.10 ± 0.01": of one named candidate, the two clearest.
 std::string parameters_in_words(const Problem& problem, const Explanation& explanation, std::size_t candidate);
 
 }  // namespace gonio::explain

@@ -135,6 +135,19 @@ void Page::key_numbers(const std::vector<KeyNumber>& numbers) {
   body_ += "</dl>\n";
 }
 
+void Page::score_bars(const std::vector<ScoreBar>& bars) {
+  double longest = 0;
+  for (const auto& bar : bars) longest = std::max(longest, bar.size);
+  body_ += "<dl class=\"scores\">";
+  for (const auto& bar : bars) {
+    const double share = longest > 0 && bar.size > 0 ? bar.size / longest : 0;
+    body_ += "<dt>" + escape(bar.label) + "</dt><dd" + tone_class(bar.tone) +
+             " style=\"--share:" + std::to_string(static_cast<int>(75 * share + 0.5)) + "%\"><i></i>" +
+             escape(bar.value) + "</dd>";
+  }
+  body_ += "</dl>\n";
+}
+
 void Page::table(const TableText& table) {
   body_ += "<div class=\"scroll\"><table>";
   if (!table.caption.empty()) body_ += "<caption>" + escape(table.caption) + "</caption>";
@@ -152,11 +165,12 @@ void Page::table(const TableText& table) {
   body_ += "</tbody></table></div>\n";
 }
 
-void Page::figures(const std::vector<Figure>& figures) {
+void Page::figures(const std::vector<Figure>& figures, int width_px) {
+  const int drawing = std::max(480, width_px);
   body_ += "<div class=\"figures\">";
   for (const auto& figure : figures)
-    body_ += "<figure style=\"width:" + std::to_string(figure.svg.empty() ? shown_width(figure, 340) : 480) + "px\">" +
-             (figure.svg.empty() ? image_tag(figure, 340, "") : figure.svg) +
+    body_ += "<figure style=\"width:" + std::to_string(figure.svg.empty() ? shown_width(figure, width_px) : drawing) +
+             "px\">" + (figure.svg.empty() ? image_tag(figure, width_px, "") : figure.svg) +
              caption_tag(figure.title, figure.caption) + "</figure>";
   body_ += "</div>\n";
 }

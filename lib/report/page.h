@@ -26,6 +26,11 @@ struct Column {
   std::string name{}, unit{};
   bool numeric = true;  // numbers are aligned right, text left
 };
+struct ScoreBar {  // a length beside its number, for a few scores to be compared at a glance
+  std::string label, value;
+  double size = 0;  // the longest bar of the list fills the width
+  Tone tone = Tone::neutral;
+};
 struct TableText {
   std::string caption{};
   std::vector<Column> columns{};
@@ -54,8 +59,10 @@ class Page {
   void note(std::string_view text);  // small print
   void list(const std::vector<std::string>& items);
   void key_numbers(const std::vector<KeyNumber>& numbers);
+  void score_bars(const std::vector<ScoreBar>& bars);
   void table(const TableText& table);
-  void figures(const std::vector<Figure>& figures);  // beside each other where there is room
+  // Beside each other where there is room; `width_px`: about which pictures are shown.
+  void figures(const std::vector<Figure>& figures, int width_px = 340);
   // Two pictures of the same size under one movable divider: `left` shows left of it, `right` right of it.
   void slider(const Figure& left, const Figure& right, std::string_view caption);
   void plot(const Plot& plot);

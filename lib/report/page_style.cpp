@@ -98,6 +98,16 @@ svg .c0{stroke:var(--s0);fill:var(--s0)}svg .c1{stroke:var(--s1);fill:var(--s1)}
 svg .c3{stroke:var(--s3);fill:var(--s3)}svg .c4{stroke:var(--s4);fill:var(--s4)}svg .c5{stroke:var(--s5);fill:var(--s5)}
 svg .line,svg .error{fill:none}
 svg .bars,svg .band{stroke:none}
+svg .shade{fill:var(--accent);opacity:.1;stroke:none}
+dl.scores{display:grid;grid-template-columns:minmax(8rem,max-content) 1fr;gap:.45rem 1rem;margin:1rem 0 1.4rem;max-width:46rem;
+font-size:.9063rem}
+dl.scores dt{color:var(--soft)}
+dl.scores dd{margin:0;display:grid;grid-template-columns:var(--share) max-content;align-items:center;gap:.6rem}
+dl.scores dd i{display:block;height:.85rem;min-width:2px;border-radius:2px;background:var(--s5);print-color-adjust:exact;
+-webkit-print-color-adjust:exact}
+dl.scores dd.good i{background:var(--good)}
+dl.scores dd.bad i{background:var(--bad)}
+figure:has(.heat){margin:0 0 1.4rem}
 .heat td{padding:.32rem .55rem;min-width:3.2rem;text-align:right;border:1px solid var(--paper);color:#111}
 .heat td.pale{color:#fff}
 .heat th{padding-right:1rem;border:0}
@@ -105,10 +115,13 @@ svg .bars,svg .band{stroke:none}
 .scale{max-width:24rem;margin:.25rem 0 1.5rem;font-size:.8125rem;color:var(--soft)}
 .scale .ramp{height:.7rem;border-radius:2px;margin:.3rem 0 .15rem;print-color-adjust:exact;-webkit-print-color-adjust:exact}
 .scale .ticks{display:flex;justify-content:space-between}
-details{margin:1rem 0 1.5rem}
+details{margin:0;border-top:1px solid var(--line);padding:.7rem 0}
+details[open]{padding-bottom:1.2rem}
+section>details:last-of-type{border-bottom:1px solid var(--line);margin-bottom:1.5rem}
+.verdict{margin:0 0 1rem;font-weight:560}
 summary{cursor:pointer;color:var(--accent);font-size:.9375rem}
 footer{margin-top:2.5rem;padding-top:1rem;padding-bottom:2.5rem;border-top:1px solid var(--line);font-size:.8125rem;color:var(--soft)}
-@media (max-width:40rem){main,header,footer{padding-left:1rem;padding-right:1rem}nav div{padding-left:1rem;padding-right:1rem}
+@media (max-width:40rem){dl.scores{grid-template-columns:1fr;gap:.1rem}dl.scores dd{margin-bottom:.5rem}main,header,footer{padding-left:1rem;padding-right:1rem}nav div{padding-left:1rem;padding-right:1rem}
 header{padding-top:1.75rem}}
 @media (prefers-reduced-motion:reduce){html{scroll-behavior:auto}}
 @media print{:root{color-scheme:light;--paper:#fff;--ink:#000;--soft:#444;--line:#ccc;--fill:#f4f4f4;--accent:#000;--good:#1a7146;

@@ -154,6 +154,15 @@ std::string draw(const Mark& mark, const Drawing& d) {
          escape(mark.name) + "</text>";
 }
 
+std::string draw(const Shade& shade, const Drawing& d) {
+  const auto [lower, upper] = d.x.range();
+  const double from = std::max(shade.from, lower), to = std::min(shade.to, upper);
+  if (!(to > from) || !d.x.shows(from)) return {};
+  const double at = d.x.place(from);
+  return print("<rect class=\"shade\" x=\"%.2f\" y=\"%.0f\" width=\"%.2f\" height=\"%.2f\"/>", at, top,
+               d.x.place(to) - at, d.height - bottom - top);
+}
+
 }  // namespace
 
 std::string svg(const Plot& plot) {
@@ -168,8 +177,10 @@ std::string svg(const Plot& plot) {
       PlotAxis(range.x, plot.log_x, left, width - right),
       plot.equal_scales ? PlotAxis(range.y, plot.log_y, top, floor) : PlotAxis(range.y, plot.log_y, floor, top),
       height};
-  std::string text = print("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\" aria-label=\"", width, height) +
-                     escape(plot.title) + "\">" + frame(plot, d);
+  std::string text =
+      print("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\" aria-label=\"", width, height) + escape(plot.title) + "\">";
+  for (const auto& shade : plot.shades) text += draw(shade, d);
+  text += frame(plot, d);
   for (std::size_t n = 0; n < plot.series.size(); ++n) text += draw(plot.series[n], style(plot, n), d);
   for (const auto& mark : plot.marks) text += draw(mark, d);
   return text + "</svg>";
@@ -192,6 +203,11 @@ std::string legend(const Plot& plot) {
                "\" d=\"M4 0H22V12H4z\"/>";
     text += "<span><svg viewBox=\"0 0 26 12\" aria-hidden=\"true\">" + sample + "</svg>" + escape(s.name) + "</span>";
   }
+  for (const Shade& shade : plot.shades)
+    if (!shade.name.empty())
+      text +=
+          "<span><svg viewBox=\"0 0 26 12\" aria-hidden=\"true\"><path class=\"shade\" d=\"M4 0H22V12H4z\"/></svg>" +
+          escape(shade.name) + "</span>";
   return text.empty() ? text : "<div class=\"legend\">" + text + "</div>";
 }
 

@@ -27,11 +27,16 @@ struct Mark {  // a reference line with a word beside it
   double at = 0;
   std::string name;
 };
+struct Shade {  // a range of x that the reader should look at
+  double from = 0, to = 0;
+  std::string name{};  // in the legend; empty: not in the legend
+};
 struct Plot {
   std::string title{}, caption{};
   std::string x_label{}, y_label{};
   std::vector<Series> series{};
   std::vector<Mark> marks{};
+  std::vector<Shade> shades{};
   bool log_x = false, log_y = false;        // values <= 0 are gaps
   bool zero_y = false;                      // the y axis includes zero
   bool equal_scales = false;                // one unit is as long on x as on y, and y points down: an image plane
