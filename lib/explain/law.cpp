@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "explain/law_search.h"
-#include "explain/wording.h"
 #include "explain/signature.h"
+#include "explain/wording.h"
 
 namespace gonio::explain {
 namespace {

@@ -38,7 +38,10 @@ Uncertain uncertain_parameters(const Problem& problem, const Explanation& e) {
 class Prospect {
  public:
   Prospect(const Problem& problem, const Explanation& e, const Uncertain& uncertain, std::size_t proposal)
-      : problem_(problem), proposal_(proposal), at_(problem.propose(e.values, proposal)) {
+      : problem_(problem),
+        proposal_(proposal),
+        noise_factor_(e.noise_factor),
+        at_(problem.propose(e.values, proposal)) {
     const auto rows = static_cast<Eigen::Index>(at_.prediction.size());
     Eigen::MatrixXd nuisance(rows, static_cast<Eigen::Index>(at_.nuisance.size()));
     for (Eigen::Index c = 0; c < nuisance.cols(); ++c)
@@ -77,7 +80,7 @@ class Prospect {
   }
 
  private:
-  double sigma(Eigen::Index row) const { return at_.sigma[static_cast<std::size_t>(row)]; }
+  double sigma(Eigen::Index row) const { return noise_factor_ * at_.sigma[static_cast<std::size_t>(row)]; }
   Eigen::MatrixXd without_nuisance(const Eigen::MatrixXd& m) const { return m - basis_ * (basis_.transpose() * m); }
   Eigen::VectorXd derivative(std::vector<double> values, std::size_t parameter) const {
     const Parameter& p = problem_.parameters()[parameter];
@@ -98,6 +101,7 @@ class Prospect {
 
   const Problem& problem_;
   std::size_t proposal_;
+  double noise_factor_;
   ProposedRows at_;
   Eigen::MatrixXd basis_, open_;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 
 #include "explain/report_parts.h"
 
@@ -51,7 +52,7 @@ std::string report_page(const std::string& name, const std::vector<ReportPart>& 
   if (parts.size() == 1)
     if (const std::string rest = first_sentence(parts[0].explanation->sentence).second; !rest.empty())
       lead = rest + " (" + lead + ")";
-  report::Page page("explain: " + name, headline, lead, tone_of(worst));
+  report::Page page("explain: " + std::filesystem::path(name).filename().string(), headline, lead, tone_of(worst));
   for (const ReportPart& p : parts) tell_part(page, p, parts.size() == 1);
   page.footer(
       "Written by gonio explain. Scores are of groups that the fit did not see; intervals hold under correlation "

@@ -123,8 +123,10 @@ void compensation(report::Page& page, const Problem& problem, const Explanation&
     std::string calibrated;
     if (c.calibrated)
       calibrated = estimate_in_words(*c.calibrated, *c.calibrated_sigma, p.unit) + (c.towards ? ", towards" : ", away");
-    table.rows.push_back({p.name, printed(c.before * shown.factor, 5), estimate_in_words(c.after, c.sigma, p.unit),
-                          printed((c.after - c.before) / c.sigma, 2), calibrated});
+    table.rows.push_back(
+        {p.name, printed(c.before * shown.factor, 5), estimate_in_words(c.after, c.sigma, p.unit),
+         (c.after < c.before ? "−" : "") + standard_errors_in_words(std::abs(c.after - c.before) / c.sigma),
+         calibrated});
   }
   page.table(table);
   page.close_details();

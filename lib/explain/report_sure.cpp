@@ -99,7 +99,7 @@ void tell_next(report::Page& page, const ReportPart& part) {
   for (const PlannedMeasurement& p : e.plan) {
     std::string ids = problem.candidates()[p.separates[0]].id();
     ids += p.separates.size() > 1 ? " from " + problem.candidates()[p.separates[1]].id() : " from nothing";
-    table.rows.push_back({p.sentence, ids, printed(p.z, 2)});
+    table.rows.push_back({p.sentence, ids, standard_errors_in_words(p.z)});
   }
   page.table(table);
 }

@@ -102,7 +102,7 @@ std::string planned(const Problem& problem, const PlannedMeasurement& p) {
   const std::string part = p.separates.size() > 1
                                ? "To tell " + first + " from " + problem.candidates()[p.separates[1]].id()
                                : "To see whether " + first + " is there";
-  return part + ": " + p.sentence + " (expected: " + printed(p.z, 2) + " standard errors).";
+  return part + ": " + p.sentence + " (expected: " + standard_errors_in_words(p.z) + " standard errors).";
 }
 
 std::string unseen(const Problem& problem, const Explanation& e) {

@@ -37,6 +37,10 @@ std::string printed(double value, int digits) {
   return text;
 }
 
+std::string standard_errors_in_words(double z) {
+  return z >= 99.5 ? std::to_string(std::lround(z)) : printed(z, 2);
+}
+
 Shown shown_in(const std::string& unit, double size) {
   size = std::abs(size);
   if (unit == "rad") return {180 / std::numbers::pi, "degrees"};

@@ -7,6 +7,7 @@
 namespace gonio::explain {
 
 std::string printed(double value, int digits = 3);  // significant digits, no trailing zeros
+std::string standard_errors_in_words(double z);     // "243", "8.1"
 
 // Units as people use them: degrees for angles, millimetres for small lengths, milliseconds for short times. `size`: of
 // the numbers to be shown together.

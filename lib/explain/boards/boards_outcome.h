@@ -35,6 +35,14 @@ BoardScene board_scene(const BoardsInput& input, const std::vector<BoardRole>& r
 // Conditions of all corners, two rows (u, v) each; those that do not vary over the recordings are left out.
 std::vector<Condition> board_conditions(const BoardsInput& input);
 
+// Views that the user could take next with the first camera and the first board: near and far, tilted, turned in its
+// plane, in the corners of the image, upside down. Their corners are those that are expected inside the image.
+struct BoardProposal {
+  Proposal told;
+  BoardsInput::View view;
+};
+std::vector<BoardProposal> board_proposals(const BoardsInput& input);
+
 void upgrade_boards(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
                     const Explanation& explanation, manifest::Document& document);
 Illustration illustrate_boards(const BoardsInput& input, const Observations& observations,

@@ -108,6 +108,33 @@ class BoardsProblem : public Problem {
     return std::max(1e-6, stats::robust_sigma(differences));
   }
 
+  std::vector<Proposal> proposals() const override {
+    std::vector<Proposal> told;
+    for (const BoardProposal& p : board_proposals(input_)) told.push_back(p.told);
+    return told;
+  }
+  // A proposed view has a pose of its own: six numbers of nuisance.
+  ProposedRows propose(std::span<const double> values, std::size_t proposal) const override {
+    BoardsInput input = input_;
+    const std::size_t number = input.views.size();
+    input.views.push_back(board_proposals(input_)[proposal].view);
+    input.views.back().pose_of = number;
+    const BoardScene s = board_scene(input, roles_, values, number);
+    ProposedRows rows;
+    rows.nuisance.resize(6);
+    for (const BoardsInput::Corner& corner : input.views.back().corners) {
+      Vec2 pixel{infinity, infinity};
+      camera::CornerJacobian j{};
+      camera::predict(s.model, place_of(corner), pixel, j);
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        rows.prediction.push_back(axis == 0 ? pixel.x : pixel.y);
+        rows.sigma.push_back(corner.sigma_px);
+        for (std::size_t k = 0; k < 6; ++k) rows.nuisance[k].push_back(j[axis][BoardColumn::rotation + k]);
+      }
+    }
+    return rows;
+  }
+
   void apply(const Explanation& e, manifest::Document& document) const override {
     upgrade_boards(*this, input_, roles_, e, document);
   }
