@@ -23,7 +23,7 @@ TEST(Flea3, RawCodesAreProportionalToTheExposure) {
   quick.block = "frame";
   const TablesProblem problem(quick_document(quick), "flea3", {}, false);
   EXPECT_GT(problem.observations().rows(), 250u);
-  EXPECT_EQ(problem.observations().groups(), 7u);
+  EXPECT_GE(problem.observations().groups(), 6u);
   const Explanation e = explain(problem, {});
   EXPECT_EQ(named(problem, e), "") << e.sentence;
   EXPECT_LT(e.held_out_before, 0.03);  // lamp and shutter differ from frame to frame by some per cent

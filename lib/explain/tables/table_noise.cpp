@@ -74,6 +74,17 @@ double typical(const Pairs& pairs) {
   return stats::median(variance) / median_of_chi2_1;
 }
 
+// Along the ordering whose differences are smallest.
+Pairs closest_pairs(const Table& table, std::span<const double> y, std::span<const double> prediction,
+                    const std::vector<std::size_t>& conditions) {
+  Pairs best = neighbour_pairs(table, y, prediction, conditions, Table::none);
+  for (const std::size_t c : conditions) {
+    Pairs pairs = neighbour_pairs(table, y, prediction, conditions, c);
+    if (typical(pairs) < typical(best)) best = std::move(pairs);
+  }
+  return best;
+}
+
 // Non-negative least squares in three unknowns by coordinate descent, weights 1 / var^2 of the last round.
 NoiseModel fitted(const std::vector<std::array<double, 2>>& points) {
   std::array<double, 3> a{};
@@ -97,7 +108,7 @@ NoiseModel fitted(const std::vector<std::array<double, 2>>& points) {
       weight[i] = 1 / (v * v);
     }
   }
-  return {a[0], a[1], a[2], {}};
+  return {a[0], a[1], a[2], {}, false};
 }
 
 }  // namespace
@@ -129,6 +140,12 @@ NoiseModel fit_noise(Pairs pairs) {
   return model;
 }
 
+double neighbour_scatter(const Table& table, std::span<const double> whitened,
+                         const std::vector<std::size_t>& conditions) {
+  const std::vector<double> nothing(whitened.size(), 0.0);
+  return std::sqrt(typical(closest_pairs(table, whitened, nothing, conditions)));
+}
+
 NoiseModel table_noise(const Table& table, std::span<const double> observed, std::span<const double> prediction,
                        const std::vector<std::vector<double>>& repeats, const std::vector<std::size_t>& conditions) {
   const Pairs repeated = repeated_pairs(table, observed, prediction, repeats, conditions);
@@ -137,13 +154,10 @@ NoiseModel table_noise(const Table& table, std::span<const double> observed, std
     model = fit_noise(repeated);
     model.how = "from " + std::to_string(repeated.size()) + " repeated observations";
   } else {
-    Pairs best = neighbour_pairs(table, observed, prediction, conditions, Table::none);
-    for (const std::size_t c : conditions) {
-      Pairs pairs = neighbour_pairs(table, observed, prediction, conditions, c);
-      if (typical(pairs) < typical(best)) best = std::move(pairs);
-    }
+    Pairs best = closest_pairs(table, observed, prediction, conditions);
     model = fit_noise(std::move(best));
     model.how = "from differences between neighbouring rows";
+    model.from_neighbours = true;
   }
   // Values without any scatter (a simulation) have the noise of their rounding.
   double square = 0;

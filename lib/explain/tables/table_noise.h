@@ -19,6 +19,7 @@ namespace gonio::explain::tables {
 struct NoiseModel {
   double read2 = 0, shot = 0, share2 = 0;
   std::string how;  // for the report: "from 40 repeated rows"
+  bool from_neighbours = false;
   double sigma(double value) const;
 };
 
@@ -26,6 +27,10 @@ struct NoiseModel {
 // columns that may carry structure.
 NoiseModel table_noise(const Table& table, std::span<const double> observed, std::span<const double> prediction,
                        const std::vector<std::vector<double>>& repeats, const std::vector<std::size_t>& conditions);
+
+// Standard deviation of whitened residuals as their neighbours show it; 1 where the noise is what was believed.
+double neighbour_scatter(const Table& table, std::span<const double> whitened,
+                         const std::vector<std::size_t>& conditions);
 
 // For tests: the model that fits pairs (value, variance estimate from one degree of freedom) best.
 NoiseModel fit_noise(std::vector<std::pair<double, double>> pairs);

@@ -1,9 +1,11 @@
 // See tables_problem.h: what goes back into the manifest, and what a person looks at.
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.h"
 #include "explain/explanation.h"
 #include "explain/tables/tables_problem.h"
+#include "report/plot.h"
 
 namespace gonio::explain::tables {
 
@@ -51,8 +53,42 @@ void TablesProblem::apply(const Explanation& e, manifest::Document& document) co
   }
 }
 
-Illustration TablesProblem::illustrate(const Explanation&, const std::filesystem::path&, manifest::Document&) const {
-  return {};
+namespace {
+
+constexpr std::size_t most_dots = 1200;
+
+// At most `most_dots` rows, evenly taken.
+report::Series dots(const Condition& condition, const std::vector<double>& residual, const std::string& name) {
+  report::Series series;
+  series.name = name;
+  series.kind = report::Series::Kind::points;
+  const std::size_t step = 1 + residual.size() / most_dots;
+  for (std::size_t i = 0; i < residual.size(); i += step) {
+    const double direction = condition.direction.empty() ? 1 : condition.direction[i];
+    if (!std::isfinite(condition.values[i]) || direction == 0) continue;
+    series.x.push_back(condition.values[i]);
+    series.y.push_back(residual[i] / direction);
+  }
+  return series;
+}
+
+}  // namespace
+
+// Every row's residual over the most telling condition: what lies beneath the page's curve.
+Illustration TablesProblem::illustrate(const Explanation& e, const std::filesystem::path&, manifest::Document&) const {
+  Illustration result;
+  if (e.conditions.empty() || !e.significant) return result;
+  const auto& conditions = observations_.conditions;
+  const auto found = std::find_if(conditions.begin(), conditions.end(),
+                                  [&](const Condition& c) { return c.name == e.conditions[0].name; });
+  if (found == conditions.end()) return result;
+  report::Plot plot;
+  plot.x_label = found->name + (found->unit == "1" || found->unit.empty() ? "" : " [" + found->unit + "]");
+  plot.y_label = found->curve_unit == "1" ? "relative residual" : "residual [" + found->curve_unit + "]";
+  plot.series.push_back(dots(*found, e.residual_before, "base model"));
+  if (!e.named.empty()) plot.series.push_back(dots(*found, e.residual_after, "with the named physics"));
+  result.pictures.push_back({"Residuals of single rows over " + found->name, "", report::svg(plot)});
+  return result;
 }
 
 }  // namespace gonio::explain::tables

@@ -216,6 +216,19 @@ void TablesProblem::set_noise(const manifest::Table& section, const ProblemOptio
       table_noise(table_, o.value, prediction_, rescaled(read_repeats(options.repeats, section, table_)), conditions);
   for (std::size_t i = 0; i < o.rows(); ++i) o.sigma[i] = noise.sigma(prediction_[i]);
   noise_ = noise.how;
+  if (noise.from_neighbours) noise_conditions_ = std::move(conditions);
+}
+
+std::optional<double> TablesProblem::noise_factor(std::span<const double> residual) const {
+  if (noise_conditions_.empty()) return {};
+  std::size_t fitted = base_.size();
+  for (const Candidate& c : candidates_) fitted += c.parameters.size();
+  const auto rows = static_cast<double>(residual.size()), freedom = rows - static_cast<double>(fitted);
+  if (freedom < 0.5 * rows) return 1.0;
+  std::vector<double> whitened(residual.begin(), residual.end());
+  for (std::size_t i = 0; i < whitened.size(); ++i) whitened[i] /= observations_.sigma[i];
+  const double scatter = neighbour_scatter(table_, whitened, noise_conditions_);
+  return scatter > 0 ? scatter * std::sqrt(rows / freedom) : 1.0;
 }
 
 // The slope of the scale over the noise itself, at what was observed.

@@ -35,6 +35,8 @@ class TablesProblem final : public Problem {
   std::string score_name() const override { return model_->score_name; }
   std::string group_noun() const override { return model_->group_noun; }
   Importance importance() const override { return model_->importance; }
+  // Noise that was estimated on the base model's residuals is measured again where every mechanism had its part.
+  std::optional<double> noise_factor(std::span<const double> residual) const override;
   std::string remarks(const Explanation& explanation) const override;
   std::vector<Proposal> proposals() const override { return bound_->proposals(); }
   ProposedRows propose(std::span<const double> values, std::size_t proposal) const override;
@@ -62,9 +64,10 @@ class TablesProblem final : public Problem {
   Table table_;
   std::unique_ptr<BoundModel> bound_;
   std::unique_ptr<TermStack> terms_;
-  std::vector<double> prediction_;  // of the base model, fitted: places conditions and scales noise
-  std::vector<double> reference_;   // by which each observation is divided; empty: by nothing
-  bool rescaled_ = false;           // the model compares in a scale of its own
+  std::vector<double> prediction_;             // of the base model, fitted: places conditions and scales noise
+  std::vector<double> reference_;              // by which each observation is divided; empty: by nothing
+  bool rescaled_ = false;                      // the model compares in a scale of its own
+  std::vector<std::size_t> noise_conditions_;  // columns along which neighbours differ; empty: noise is known
   std::string domain_, noise_, grouped_;
 };
 
