@@ -10,7 +10,7 @@
 #include "cli/reference.h"
 #include "cli/roff.h"
 #include "manifest/reference.h"
-#include "mechanism/mechanism.h"
+#include "mechanism/listing.h"
 
 namespace {
 
@@ -32,25 +32,6 @@ std::string page(const fs::path& root, const std::string& name, int section, con
          cli::roff_from_markdown(generated);
 }
 
-std::string mechanisms_text() {
-  std::string out = "# MECHANISMS\n";
-  for (const auto* m : mechanism::all_mechanisms()) {
-    out += "## " + m->id + "\n" + m->sentence + "\n\n" + m->equation +
-           "\n\n| parameter | unit | neutral | bounds | meaning |\n";
-    const auto number = [](double v) { return manifest::print_json(manifest::Value(v), -1); };
-    for (const auto& p : m->parameters)
-      out += "| " + p.name + " | " + p.unit + " | " + number(p.neutral) + " | " + number(p.lower) + " to " +
-             number(p.upper) + " | " + p.meaning + " |\n";
-    out += "\nStage: " + m->stage + ". Shows in:";
-    for (std::size_t i = 0; i < m->conditions.size(); ++i) out += (i == 0 ? " " : ", ") + m->conditions[i];
-    out += ".\n";
-    for (const auto& c : m->mistaken_for)
-      out += "- mistaken for **" + c.with + "**; told apart by: " + c.told_apart + "\n";
-    out += "\nSource: " + m->source + "\n\n";
-  }
-  return out;
-}
-
 void write_all(const fs::path& root) {
   for (const auto* program : cli::all_programs()) {
     write_file(root / "man" / (program->name + ".1"), cli::man_page(*program, prose(root, program->name)));
@@ -60,7 +41,7 @@ void write_all(const fs::path& root) {
   }
   write_file(root / "man" / "gonio-manifest.5",
              page(root, "gonio-manifest", 5, "# SECTIONS\n" + manifest::manifest_fields_text()));
-  write_file(root / "man" / "gonio-mechanisms.7", page(root, "gonio-mechanisms", 7, mechanisms_text()));
+  write_file(root / "man" / "gonio-mechanisms.7", page(root, "gonio-mechanisms", 7, mechanism::markdown()));
   for (const char* name : {"gonio", "gonio-conventions", "gonio-surfaces"})
     write_file(root / "man" / (std::string(name) + ".7"), page(root, name, 7));
   write_file(root / "schemas" / "manifest-1.schema.json", manifest::print_json(manifest::manifest_schema()) + "\n");

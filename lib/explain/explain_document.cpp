@@ -9,6 +9,7 @@
 #include "explain/entry.h"
 #include "explain/evidence.h"
 #include "explain/report.h"
+#include "mechanism/listing.h"
 
 namespace gonio::explain {
 namespace {
@@ -59,15 +60,7 @@ Exit explain_document(manifest::Document& document, const ExplainRequest& reques
 }
 
 std::string list_of_mechanisms() {
-  std::string text;
-  for (const mechanism::Mechanism* m : mechanism::all_mechanisms()) {
-    text += m->id + "  (" + m->stage + ")\n    " + m->sentence + "\n    seen in:";
-    for (std::size_t k = 0; k < m->conditions.size(); ++k) text += (k == 0 ? " " : ", ") + m->conditions[k];
-    text += "\n";
-    for (const mechanism::Confusion& c : m->mistaken_for)
-      text += "    mistaken for " + c.with + ": " + c.told_apart + "\n";
-  }
-  return text;
+  return mechanism::text();
 }
 
 void check_hypotheses(const std::vector<std::string>& ids) {
