@@ -1,6 +1,7 @@
 #include "explain/robot_world.h"
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <random>
 
 #include "camera/corner_table.h"
@@ -36,6 +37,11 @@ Drawing ur5e(double longer_upper_arm) {
                Eigen::Vector3d(wrist, 0, shoulder - 0.0997)};
   d.home.translation() = Eigen::Vector3d(wrist, -0.1333 - 0.0996, shoulder - 0.0997);
   d.home.linear() << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return d;
+}
+Drawing grown(Drawing d, double factor) {
+  for (Eigen::Vector3d& point : d.through) point *= factor;
+  d.home.translation() *= factor;
   return d;
 }
 Pose tool(const Drawing& d, const Joints& q) {
@@ -142,6 +148,31 @@ void describe(manifest::Document& d) {
   d.robots["arm"].model = "ur5e";
 }
 
+// Where the camera is, about the board's middle.
+struct Viewpoint {
+  double tilt = 0, around = 0, range = 0, roll = 0;
+};
+Viewpoint thrown(const CellTruth& truth, Dice& dice) {
+  Viewpoint v;
+  v.tilt = dice.between(0, truth.tilt_rad);
+  v.around = dice.between(0, 2 * pi);
+  v.range = dice.between(0.35, 0.7);
+  return v;
+}
+// A drive around the board: every part of the viewpoint swings in a time of its own.
+Viewpoint driven(const CellTruth& truth, double t) {
+  const auto swing = [&](double period) { return std::sin(2 * pi * t / period); };
+  return {0.5 * truth.tilt_rad * (1.1 + swing(3.1)), 2.5 * swing(6.3), 0.5 + 0.12 * swing(2.3), 0.7 * swing(3.7)};
+}
+Pose board_from_camera(const Viewpoint& v, const Eigen::Vector3d& middle) {
+  Pose p = Pose::Identity();
+  p.rotate(Eigen::AngleAxisd(v.around, Eigen::Vector3d::UnitZ()))
+      .rotate(Eigen::AngleAxisd(v.tilt, Eigen::Vector3d::UnitX()));
+  p.rotate(Eigen::AngleAxisd(v.roll - v.around, Eigen::Vector3d::UnitZ()));
+  p.translation() = middle - p.linear() * Eigen::Vector3d(0, 0, v.range);
+  return p;
+}
+
 }  // namespace
 
 manifest::Document robot_cell(const CellTruth& truth, std::size_t views, std::uint64_t seed) {
@@ -159,25 +190,34 @@ manifest::Document robot_cell(const CellTruth& truth, std::size_t views, std::ui
   manifest::Document d;
   describe(d);
   camera::CornerTable table{"cam", "board", {}};
+  Joints before = Joints::Zero();
   for (int tries = 0; table.images.size() < views && tries < 10000; ++tries) {
     // A camera that looks at the board's middle from 0.35 to 0.7 m, aslant, rolled.
-    const double tilt = dice.between(0, truth.tilt_rad), around = dice.between(0, 2 * pi),
-                 range = dice.between(0.35, 0.7);
-    Pose board_from_camera = Pose::Identity();
-    board_from_camera.rotate(Eigen::AngleAxisd(around, Eigen::Vector3d::UnitZ()))
-        .rotate(Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()));
-    board_from_camera.rotate(Eigen::AngleAxisd(dice.between(-1, 1) - around, Eigen::Vector3d::UnitZ()));
-    board_from_camera.translation() = middle - board_from_camera.linear() * Eigen::Vector3d(0, 0, range);
+    const double now_s = 0.1 * tries;
+    Viewpoint viewpoint = truth.in_motion ? driven(truth, now_s) : thrown(truth, dice);
+    if (!truth.in_motion) viewpoint.roll = dice.between(-1, 1);
+    const auto joints_at = [&](const Viewpoint& at, Joints& q) {
+      return reach(nominal, base_from_board * board_from_camera(at, middle) * tool_from_camera.inverse(), q);
+    };
     Joints q;
     q << -0.3, -1.5, 1.4, -1.5, -1.57, 0.3;
-    if (!reach(nominal, base_from_board * board_from_camera * tool_from_camera.inverse(), q)) continue;
-    const Pose stands = dice.shaken(tool(real, hanging(real, q + offset, truth.sag_rad_per_m)), truth.robot_turn_rad,
-                                    truth.robot_shift_m);
+    if (!joints_at(viewpoint, q)) continue;
+    Joints truly = q;
+    if (truth.lag_s != 0 && !joints_at(driven(truth, now_s + truth.lag_s), truly)) continue;
+    for (int i = 0; i < 6 && !table.images.empty(); ++i)
+      truly[i] += (q[i] > before[i] ? 0.5 : -0.5) * truth.backlash_rad[static_cast<std::size_t>(i)];
+    before = q;
+    const double warmer = truth.warming_K * static_cast<double>(table.images.size()) / static_cast<double>(views - 1);
+    const Drawing warm = grown(real, 1 + truth.growth_per_K * warmer);
+    const Pose stands = dice.shaken(tool(warm, hanging(warm, truly + offset, truth.sag_rad_per_m)),
+                                    truth.robot_turn_rad, truth.robot_shift_m);
     const Pose camera_from_board = (stands * tool_from_camera).inverse() * base_from_board;
     manifest::ImageEntry image;
     image.id = "view" + std::to_string(table.images.size());
     image.camera = "cam", image.board = "board", image.robot = "arm";
     image.base_from_tool = section<frame::Base, frame::Tool>(tool(nominal, q));
+    if (truth.in_motion) image.time_s = now_s;
+    if (truth.warming_K != 0) image.temperature_K = 295 + warmer;
     for (int i = 0; i < 6; ++i) image.joints_rad.push_back(q[i]);
     image.camera_from_board = section<frame::Camera, frame::Board>(dice.shaken(camera_from_board, 1e-3, 1e-3));
     table.images.push_back(photograph(camera_from_board, truth, dice, image.id));

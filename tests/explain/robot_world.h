@@ -17,6 +17,11 @@ struct CellTruth {
   double corner_px = 0.1;
   double tilt_rad = 0.7;                      // the camera looks at the board up to this much aslant
   double board_stretch = 0, board_sag_m = 0;  // both axes; a paraboloid over x
+  std::array<double, 6> backlash_rad{};       // play of the joints: half of it to either side
+  double growth_per_K = 0;                    // of all lengths of the arm
+  double warming_K = 0;                       // from the first image to the last; stated in the manifest
+  bool in_motion = false;                     // one smooth drive, an image every 0.1 s, times stated
+  double lag_s = 0;                           // images are of poses that are stated this much later
 };
 
 // `views` images of an 8 x 6 board of 30 mm squares by a camera in the hand, "mountings" a few millimetres off.

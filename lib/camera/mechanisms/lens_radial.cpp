@@ -13,7 +13,7 @@ const Mechanism& lens_radial() {
       .source = "Brown 1971, equation 9; OpenCV's order and sign",
       .stage = "lens",
       .target = Target::camera,
-      .domains = {"boards", "robot"},
+      .domains = {"boards", "robot", "tables"},
       .parameters = {{.name = "k1", .unit = "1", .lower = -1, .upper = 1, .meaning = "third-order radial term"},
                      {.name = "k2", .unit = "1", .lower = -10, .upper = 10, .meaning = "fifth-order radial term"},
                      {.name = "k3", .unit = "1", .lower = -50, .upper = 50, .meaning = "seventh-order radial term"}},

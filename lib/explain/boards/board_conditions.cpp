@@ -57,11 +57,14 @@ std::vector<Entry> entries(const BoardsInput& input, const BoardsInput::View& vi
   const Vec2 lift = millimetre({0, 0, 1});
   const double x = (corner.board_m.x - board.extent.middle_m.x) / board.extent.half_m.x;
   const double y = (corner.board_m.y - board.extent.middle_m.y) / board.extent.half_m.y;
+  // Modulo half a turn, with the other sign on the opposite side: decentring differs there, a radial term does not.
+  const double azimuth = std::atan2(from_centre.y, from_centre.x), half_azimuth = azimuth < 0 ? azimuth + pi : azimuth;
+  const bool opposite = azimuth < 0;
   const Vec3 along = view.camera_from_board.rotate({1, 0, 0});
   const double roll = std::atan(along.y / along.x);  // modulo half a turn, as a stretch is
   const double channel = static_cast<double>(corner.colour);
   return {{radius, outward},
-          {std::atan2(from_centre.y, from_centre.x), outward * (radius * radius)},
+          {half_azimuth, outward * (opposite ? -radius * radius : radius * radius)},
           {from_centre.x / half_x, {1, 0}},
           {from_centre.y / half_y, {0, 1}},
           {norm(at), outward},

@@ -33,7 +33,25 @@ Eigen::Matrix3d crossing(Vec3 v) {
 
 bool is_nominal(const RobotState& s) {
   const std::array<double, 6> zero{};
-  return s.joint_rad == zero && s.a_m == zero && s.d_m == zero && s.sag_rad_per_m == std::array<double, 2>{};
+  return s.joint_rad == zero && s.a_m == zero && s.d_m == zero && s.sag_rad_per_m == std::array<double, 2>{} &&
+         s.backlash_rad == zero;
+}
+
+// The stated pose with the state's kinematics in place of the nominal ones.
+Rigid<frame::Base, frame::Tool> corrected_pose(const RobotInput& input, const RobotInput::View& view,
+                                               const RobotState& state) {
+  if (input.links.empty() || view.joints_rad.empty() || is_nominal(state)) return view.base_from_tool;
+  const auto nominal = robot::flange(input.links, view.joints_rad);
+  std::vector<robot::Link> links = input.links;
+  std::vector<double> joints = view.joints_rad;
+  const std::vector<double> levers = robot::weight_levers(links, joints);
+  for (std::size_t i = 0; i < links.size() && i < 6; ++i) {
+    links[i].a_m += state.a_m[i];
+    links[i].d_m += state.d_m[i];
+    joints[i] += state.joint_rad[i] + 0.5 * view.approach[i] * state.backlash_rad[i];
+  }
+  for (std::size_t k = 0; k < 2 && k + 1 < joints.size(); ++k) joints[k + 1] += state.sag_rad_per_m[k] * levers[k + 1];
+  return robot::flange(links, joints) * (inverse(nominal) * view.base_from_tool);
 }
 
 }  // namespace
@@ -48,18 +66,17 @@ PoseChange change_between(const camera::BoardPose& from, const camera::BoardPose
 
 Rigid<frame::Base, frame::Tool> tool_pose(const RobotInput& input, const RobotInput::View& view,
                                           const RobotState& state) {
-  if (input.links.empty() || view.joints_rad.empty() || is_nominal(state)) return view.base_from_tool;
-  const auto nominal = robot::flange(input.links, view.joints_rad);
-  std::vector<robot::Link> links = input.links;
-  std::vector<double> joints = view.joints_rad;
-  const std::vector<double> levers = robot::weight_levers(links, joints);
-  for (std::size_t i = 0; i < links.size() && i < 6; ++i) {
-    links[i].a_m += state.a_m[i];
-    links[i].d_m += state.d_m[i];
-    joints[i] += state.joint_rad[i];
+  Rigid<frame::Base, frame::Tool> tool = corrected_pose(input, view, state);
+  if (state.lag_s != 0 && view.passes) {
+    std::array<double, 6> xi{};
+    for (std::size_t i = 0; i < 6; ++i)
+      xi[i] = state.lag_s * (view.velocity[i] + 0.5 * state.lag_s * view.acceleration[i]);
+    tool = tool *
+           Rigid<frame::Tool, frame::Tool>{quaternion_of_rotation_vector({xi[0], xi[1], xi[2]}), {xi[3], xi[4], xi[5]}};
   }
-  for (std::size_t k = 0; k < 2 && k + 1 < joints.size(); ++k) joints[k + 1] += state.sag_rad_per_m[k] * levers[k + 1];
-  return robot::flange(links, joints) * (inverse(nominal) * view.base_from_tool);
+  const double growth = state.growth_per_K * view.warmer_K + state.growth_per_s * view.later_s;
+  if (growth != 0) tool.translation_m = tool.translation_m * (1 + growth);
+  return tool;
 }
 
 camera::BoardPose chain_pose(const RobotInput& input, const RobotInput::View& view, const RobotState& state) {

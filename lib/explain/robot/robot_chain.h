@@ -1,6 +1,10 @@
 // The pose of the board in the camera by two ways, and how noise of the robot moves it. Private to robot/.
 //
 // Changes of pose are six numbers, rotation vector (left, camera's axes, rad) then shift (m), as in camera::moved.
+//
+// The tool's pose under a state: flange(links + changes, joints + offsets + s backlash / 2 + yielding) in place of the
+// nominal flange (s the sign of approach), then moved on along its path by the lag, then its position scaled by the
+// growth of the links: with all a_i and d_i times a factor, the flange's position is times this factor.
 #pragma once
 #include <Eigen/Dense>
 #include <array>
@@ -17,6 +21,8 @@ struct RobotState {
   std::array<double, 6> hand{}, fixed{};  // changes of the two mountings
   std::array<double, 6> joint_rad{}, a_m{}, d_m{};
   std::array<double, 2> sag_rad_per_m{};  // joints 2 and 3
+  std::array<double, 6> backlash_rad{};
+  double growth_per_K = 0, growth_per_s = 0, lag_s = 0;
   camera::Intrinsics intrinsics;
   camera::BoardWarp warp;
   std::array<double, 2> scale{};

@@ -152,6 +152,9 @@ std::string joint_words(const Part part, std::size_t index) {
   if (part == Part::joint) return "the zero of joint " + number;
   if (part == Part::a) return "the length of link " + number;
   if (part == Part::d) return "the offset of link " + number;
+  if (part == Part::backlash) return "the play of joint " + number;
+  if (part == Part::growth) return index == 0 ? "the arm's growth with temperature" : "the arm's growth with time";
+  if (part == Part::lag) return "the lag of the poses";
   return "the yielding of joint " + std::to_string(index + 2);
 }
 
@@ -170,7 +173,8 @@ void find_entangled(const RobotWork& work, const std::vector<PoseMatrix>& whiten
         joint_words(role.part, role.index) +
         (same ? " is the same as a change of the mounting: no poses tell them apart"
               : " is not told apart from the mounting (correlation " + printed(correlation, 3) + ")"));
-    if (!same) sweeps.push_back(role.part == Part::sag ? role.index + 1 : role.index);
+    if (!same && role.part != Part::growth && role.part != Part::lag)
+      sweeps.push_back(role.part == Part::sag ? role.index + 1 : role.index);
   }
   std::sort(sweeps.begin(), sweeps.end());
   sweeps.erase(std::unique(sweeps.begin(), sweeps.end()), sweeps.end());

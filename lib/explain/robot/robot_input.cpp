@@ -86,6 +86,8 @@ RobotInput::View view_of(const manifest::Document& document, const manifest::Ima
   RobotInput::View view;
   view.image = image.id;
   view.joints_rad = image.joints_rad;
+  view.time_s = image.time_s;
+  view.temperature_K = image.temperature_K;
   view.camera_from_board = *image.camera_from_board;
   if (image.base_from_tool) {
     view.base_from_tool = *image.base_from_tool;
@@ -138,6 +140,7 @@ RobotInput input_of(const manifest::Document& document, const std::string& name,
   read_camera(document, input);
   read_board(document, input);
   for (const manifest::ImageEntry* image : images) input.views.push_back(view_of(document, *image, input));
+  find_passage(input);
   read_corners(document, input);
   even_out(document, input);
   return input;

@@ -55,39 +55,73 @@ class Declaration {
     }
   }
 
-  // `roles`: one for each parameter of the mechanism; those that are not `wanted` are left out.
-  template <class Wanted>
-  void candidate(const char* id, const std::vector<RobotRole>& roles, double size, Wanted wanted) {
-    const mechanism::Mechanism* m = mechanism::find_mechanism(id);
-    if (m == nullptr || m->parameters.size() != roles.size())
-      throw Error(Exit::internal, "explain",
-                  std::string("mechanism ") + id + " is not registered as the domain knows it");
-    Candidate c{m, {}, {}, {}};
-    for (std::size_t k = 0; k < roles.size(); ++k) {
-      const mechanism::Parameter& p = m->parameters[k];
-      if (!wanted(roles[k])) continue;
-      c.parameters.push_back(
-          add({std::string(id) + "." + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, size, {}, {}}, roles[k]));
+  // One candidate, or one for each unit in which a drift is stated (per kelvin, per second): those are alternatives.
+  void mechanism(const mechanism::Mechanism& m) {
+    std::vector<std::string> rates;
+    for (const mechanism::Parameter& p : m.parameters)
+      if (std::find(rates.begin(), rates.end(), rate_of(p)) == rates.end()) rates.push_back(rate_of(p));
+    const bool drifts = rates.size() > 1 && m.parameters.size() == rates.size();
+    for (const std::string& rate : drifts ? rates : std::vector<std::string>{""}) {
+      Candidate c{&m, {}, {}, drifts ? m.id : ""};
+      for (const mechanism::Parameter& p : m.parameters) {
+        if (drifts && rate_of(p) != rate) continue;
+        const std::optional<RobotRole> role = role_of(p.name);
+        if (!role)
+          throw Error(Exit::internal, "explain", "mechanism " + m.id + " has no term " + p.name + " for robots");
+        if (!moves_something(*role)) continue;
+        c.parameters.push_back(
+            add({m.id + "." + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, size_of(*role), {}, {}}, *role));
+      }
+      if (!c.parameters.empty()) result_.candidates.push_back(std::move(c));
     }
-    if (!c.parameters.empty()) result_.candidates.push_back(std::move(c));
-  }
-
-  void lens(const char* id) {
-    const mechanism::Mechanism* m = mechanism::find_mechanism(id);
-    if (m == nullptr) return;
-    std::vector<RobotRole> roles;
-    for (const mechanism::Parameter& p : m->parameters) {
-      const auto name = std::find(camera::distortion_names.begin(), camera::distortion_names.end(), p.name);
-      roles.push_back({Part::distortion, static_cast<std::size_t>(name - camera::distortion_names.begin())});
-    }
-    const auto lacking = [&](const RobotRole& r) {
-      return r.index < camera::distortion_names.size() &&
-             std::find(input_.terms.begin(), input_.terms.end(), r.index) == input_.terms.end();
-    };
-    candidate(id, roles, 0.01, lacking);
   }
 
  private:
+  static std::string rate_of(const mechanism::Parameter& p) {
+    const std::size_t slash = p.unit.find('/');
+    return slash == std::string::npos ? "" : p.unit.substr(slash);
+  }
+  static double size_of(const RobotRole& role) {
+    switch (role.part) {
+      case Part::joint: return 3e-3;
+      case Part::a:
+      case Part::d:
+      case Part::sag: return 2e-3;
+      case Part::warp: return 1e-3;
+      case Part::backlash: return 5e-4;
+      case Part::growth: return role.index == 0 ? 2e-5 : 1e-7;
+      default: return 1e-2;
+    }
+  }
+  template <class Condition>
+  bool any_view(Condition condition) const {
+    return std::any_of(input_.views.begin(), input_.views.end(), condition);
+  }
+
+  // Could these recordings show it, and does the base model lack it?
+  bool moves_something(const RobotRole& role) const {
+    using View = RobotInput::View;
+    const bool corners = !input_.views[0].corners.empty();
+    const bool joints = !input_.links.empty() && !input_.views[0].joints_rad.empty();
+    switch (role.part) {
+      case Part::joint:
+      case Part::a:
+      case Part::d: return joints && role.index < input_.links.size();
+      case Part::sag: return joints && role.index + 1 < input_.links.size();
+      case Part::backlash:
+        return joints && role.index < input_.links.size() &&
+               any_view([&](const View& v) { return v.approach[role.index] > 0; }) &&
+               any_view([&](const View& v) { return v.approach[role.index] < 0; });
+      case Part::growth:
+        return any_view([&](const View& v) { return (role.index == 0 ? v.warmer_K : v.later_s) != 0; });
+      case Part::lag: return any_view([](const View& v) { return v.passes; });
+      case Part::warp: return corners && !input_.warped;
+      case Part::distortion:
+        return corners && std::find(input_.terms.begin(), input_.terms.end(), role.index) == input_.terms.end();
+      default: return corners;
+    }
+  }
+
   std::size_t add(Parameter parameter, RobotRole role) {
     result_.parameters.push_back(std::move(parameter));
     result_.roles.push_back(role);
@@ -97,13 +131,47 @@ class Declaration {
   RobotParameters& result_;
 };
 
-std::vector<RobotRole> roles_of(Part part, std::size_t count) {
-  std::vector<RobotRole> roles;
-  for (std::size_t i = 0; i < count; ++i) roles.push_back({part, i});
-  return roles;
+// "joint_3_rad" is number 3 between these; nothing for other names.
+std::optional<std::size_t> numbered(const std::string& name, const std::string& before, const std::string& behind) {
+  if (name.size() != before.size() + 1 + behind.size() || !name.starts_with(before) || !name.ends_with(behind))
+    return {};
+  const char digit = name[before.size()];
+  return digit >= '1' && digit <= '6' ? std::optional<std::size_t>(static_cast<std::size_t>(digit - '1'))
+                                      : std::nullopt;
 }
 
 }  // namespace
+
+std::optional<RobotRole> role_of(const std::string& name) {
+  struct Numbered {
+    Part part;
+    const char *before, *behind;
+  };
+  constexpr std::array<Numbered, 4> numbered_parts = {{{Part::joint, "joint_", "_rad"},
+                                                       {Part::a, "a_", "_m"},
+                                                       {Part::d, "d_", "_m"},
+                                                       {Part::backlash, "backlash_", "_rad"}}};
+  for (const Numbered& n : numbered_parts)
+    if (const auto index = numbered(name, n.before, n.behind)) return RobotRole{n.part, *index};
+  struct Single {
+    const char* name;
+    RobotRole role;
+  };
+  constexpr std::array<Single, 9> singles = {{{"joint_2_rad_per_m", {Part::sag, 0}},
+                                              {"joint_3_rad_per_m", {Part::sag, 1}},
+                                              {"sag_x_m", {Part::warp, 0}},
+                                              {"sag_y_m", {Part::warp, 1}},
+                                              {"scale_x", {Part::scale, 0}},
+                                              {"scale_y", {Part::scale, 1}},
+                                              {"growth_per_K", {Part::growth, 0}},
+                                              {"growth_per_s", {Part::growth, 1}},
+                                              {"lag_s", {Part::lag, 0}}}};
+  for (const Single& s : singles)
+    if (name == s.name) return s.role;
+  const auto term = std::find(camera::distortion_names.begin(), camera::distortion_names.end(), name);
+  if (term == camera::distortion_names.end()) return {};
+  return RobotRole{Part::distortion, static_cast<std::size_t>(term - camera::distortion_names.begin())};
+}
 
 bool moves_camera_or_board(Part part) {
   return part == Part::pinhole || part == Part::distortion || part == Part::warp || part == Part::scale;
@@ -122,25 +190,9 @@ RobotParameters robot_parameters(const RobotInput& input) {
   Declaration declare(input, result);
   declare.mounting(input.eye_to_hand ? "tool_from_board" : "tool_from_camera", Part::hand);
   declare.mounting(input.eye_to_hand ? "base_from_camera" : "base_from_board", Part::fixed);
-  const bool corners = !input.views[0].corners.empty(),
-             joints = !input.links.empty() && !input.views[0].joints_rad.empty();
-  if (corners) declare.camera();
-  if (joints) {
-    const auto has_link = [&](const RobotRole& r) { return r.index < input.links.size(); };
-    declare.candidate("robot.joint-offset", roles_of(Part::joint, 6), 3e-3, has_link);
-    std::vector<RobotRole> lengths = roles_of(Part::a, 6);
-    const std::vector<RobotRole> offsets = roles_of(Part::d, 6);
-    lengths.insert(lengths.end(), offsets.begin(), offsets.end());
-    declare.candidate("robot.link-length", lengths, 2e-3, has_link);
-    declare.candidate("robot.sag", roles_of(Part::sag, 2), 2e-3,
-                      [&](const RobotRole& r) { return r.index + 1 < input.links.size(); });
-  }
-  if (corners) {
-    const auto all = [](const RobotRole&) { return true; };
-    if (!input.warped) declare.candidate("board.warp", roles_of(Part::warp, 2), 1e-3, all);
-    declare.candidate("board.scale", roles_of(Part::scale, 2), 1e-2, all);
-    for (const char* id : {"lens.radial", "lens.tangential", "lens.thin-prism"}) declare.lens(id);
-  }
+  if (!input.views[0].corners.empty()) declare.camera();
+  for (const mechanism::Mechanism* m : mechanism::all_mechanisms())
+    if (std::find(m->domains.begin(), m->domains.end(), "robot") != m->domains.end()) declare.mechanism(*m);
   return result;
 }
 
@@ -167,6 +219,9 @@ RobotState state_of(const RobotInput& input, const RobotParameters& p, std::span
       case Part::sag: s.sag_rad_per_m[i] = v; break;
       case Part::warp: (i == 0 ? s.warp.sag_x_m : s.warp.sag_y_m) = v; break;
       case Part::scale: s.scale[i] = v; break;
+      case Part::backlash: s.backlash_rad[i] = v; break;
+      case Part::growth: (i == 0 ? s.growth_per_K : s.growth_per_s) = v; break;
+      case Part::lag: s.lag_s = v; break;
     }
   }
   return s;

@@ -1,5 +1,6 @@
 // The parameters of the robot domain: what each one moves, and the candidates they make. Private to robot/.
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,10 +10,12 @@
 namespace gonio::explain {
 
 struct RobotRole {
-  enum class Part { hand, fixed, pinhole, distortion, joint, a, d, sag, warp, scale };
+  enum class Part { hand, fixed, pinhole, distortion, joint, a, d, sag, warp, scale, backlash, growth, lag };
   Part part = Part::hand;
   std::size_t index = 0;
 };
+// What a parameter of a mechanism moves here, by its name; nothing for names that this domain does not know.
+std::optional<RobotRole> role_of(const std::string& parameter);
 bool moves_camera_or_board(RobotRole::Part part);  // and with it the measured pose, not the chain
 Eigen::Index slope_column(const RobotRole& role);  // of measured_slopes(), for those
 

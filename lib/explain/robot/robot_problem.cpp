@@ -53,8 +53,8 @@ class HandEyeProblem final : public RobotProblem {
   }
 
   std::string domain() const override { return "robot"; }
-  std::string unit() const override { return "1"; }
-  std::string score_name() const override { return "error of the board's pose over its noise"; }
+  std::string unit() const override { return "times its noise"; }
+  std::string score_name() const override { return "error of the board's pose"; }
   std::string group_noun() const override { return "pose"; }
   Importance importance() const override { return Importance::share_of_residual; }
   bool sets_outliers_aside() const override { return false; }  // those are left out before: settle()

@@ -16,6 +16,7 @@
 // about the board's origin. It does not tell robot noise from kinematic errors that no hypothesis describes: both count
 // as robot.
 #pragma once
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,7 +37,13 @@ struct RobotInput {
   struct View {
     std::string image;
     Rigid<frame::Base, frame::Tool> base_from_tool;
-    std::vector<double> joints_rad;  // of every view, or of none
+    std::vector<double> joints_rad;    // of every view, or of none
+    std::array<double, 6> approach{};  // 1: the joint last turned forwards, -1: backwards, 0: not known
+    std::optional<double> time_s{}, temperature_K{};
+    double warmer_K = 0, later_s = 0;  // than the mean of the images, where all of them say
+    // T(t + dt) = T(t) xi, xi = velocity dt + acceleration dt^2 / 2 as (rotation vector, shift) in the tool's axes.
+    std::array<double, 6> velocity{}, acceleration{};
+    bool passes = false;  // the neighbours are near enough to know these
     camera::BoardPose camera_from_board;
     std::vector<Corner> corners;                       // of every view, or of none:
     double rotation_sigma_rad = 0, shift_sigma_m = 0;  // then the stated noise of camera_from_board
@@ -62,6 +69,10 @@ struct RobotInput {
 bool has_hand_eye(const manifest::Document& document);
 // One for each such mounting. Error(data) in words where a part is missing.
 std::vector<RobotInput> robot_inputs(const manifest::Document& document);
+
+// How the arm came to each pose and passed through it: approach, warmer_K, later_s, velocity and acceleration, from the
+// views' joints, times and temperatures.
+void find_passage(RobotInput& input);
 
 // What robot, camera and board contribute to the scatter of the board's position, standard deviations in m; and what
 // the poses cannot tell apart from the mounting, one sentence each, with the move that separates them.

@@ -168,18 +168,43 @@ void settle(RobotWork& work) {
   erase_marked(work.noisy, work.noise.outlier);
 }
 
+namespace {
+
+double speed(const RobotInput::View& v) {
+  return std::hypot(v.velocity[3], v.velocity[4], v.velocity[5]);
+}
+
+// Conditions of recordings that say when they were taken.
+struct Drift {
+  const char *name, *unit, *curve_unit;
+  double (*of)(const RobotInput::View& view);
+};
+constexpr Drift drifts[] = {{"robot.temperature", "K", "1", [](const RobotInput::View& v) { return v.warmer_K; }},
+                            {"robot.time", "s", "1", [](const RobotInput::View& v) { return v.later_s; }},
+                            {"robot.speed", "m/s", "s", [](const RobotInput::View& v) { return speed(v); }}};
+
+bool varies(const RobotWork& work, double (*of)(const RobotInput::View& view)) {
+  return std::ranges::any_of(work.input.views, [&](const RobotInput::View& v) { return of(v) != 0; });
+}
+
+}  // namespace
+
 std::vector<Condition> robot_conditions(const RobotWork& work) {
   std::vector<Condition> conditions = {{"robot.reach", "m", "pose", {}, {}, "m"},
                                        {"camera.distance", "m", "lens", {}, {}, "m"},
                                        {"camera.obliqueness", "rad", "board", {}, {}, "m"}};
+  for (const Drift& drift : drifts)
+    if (varies(work, drift.of)) conditions.push_back({drift.name, drift.unit, "pose", {}, {}, drift.curve_unit});
   if (work.input.links.empty() || work.input.views[0].joints_rad.empty()) return conditions;
-  for (std::size_t j = 1; j + 1 < std::min<std::size_t>(6, work.input.links.size()); ++j)
+  for (std::size_t j = 1; j + 1 < std::min<std::size_t>(6, work.input.links.size()); ++j) {
     conditions.push_back({"robot.joint-" + std::to_string(j + 1), "rad", "pose", {}, {}, "rad"});
+    conditions.push_back({"robot.approach-" + std::to_string(j + 1), "1", "pose", {}, {}, "rad"});
+  }
   return conditions;
 }
 
-// Directions: a drop of the tool (reach), a shift along the line of sight (distance, obliqueness), a turn about the
-// joint's axis.
+// Directions: a drop of the tool (reach), a shift along the line of sight (distance, obliqueness), growth of the arm
+// (temperature, time), the way of the tool (speed), a turn about the joint's axis (joint, approach).
 void append_robot_conditions(const RobotWork& work, std::size_t view, const PoseMatrix& whitener,
                              std::vector<Condition>& conditions) {
   const RobotInput::View& v = work.input.views[view];
@@ -207,11 +232,20 @@ void append_robot_conditions(const RobotWork& work, std::size_t view, const Pose
   along.tail<3>() << sight.x, sight.y, sight.z;
   append(1, norm(board.translation_m), along);
   append(2, std::acos(std::clamp(std::abs(dot(board.rotate({0, 0, 1}), sight)), 0.0, 1.0)), along);
-  if (conditions.size() < 4) return;
+  std::size_t next = 3;
+  for (const Drift& drift : drifts) {
+    if (!varies(work, drift.of)) continue;
+    const bool moves = drift.of == drifts[2].of;
+    append(
+        next++, drift.of(v),
+        moves ? PoseChange(by * Eigen::Map<const PoseChange>(v.velocity.data())) : tool_change({}, tool.translation_m));
+  }
+  if (next == conditions.size()) return;
   const std::vector<robot::Motion> motions = robot::joint_motions(work.input.links, v.joints_rad);
-  for (std::size_t k = 3; k < conditions.size(); ++k) {
-    const std::size_t joint = k - 2;
-    append(k, v.joints_rad[joint], tool_change(motions[joint].turn_rad, motions[joint].shift_m));
+  for (std::size_t joint = 1; next < conditions.size(); ++joint) {
+    const PoseChange turned = tool_change(motions[joint].turn_rad, motions[joint].shift_m);
+    append(next++, v.joints_rad[joint], turned);
+    append(next++, v.approach[joint], turned);
   }
 }
 

@@ -54,14 +54,17 @@ void upgrade_mounting(const RobotWork& work, const RobotFindings& findings, cons
   add(section.outliers, work.outliers);
 }
 
+// The arm's rows, and the poses that follow from them; play, growth and lag, which no row holds, are in the poses.
 void upgrade_arm(const RobotWork& work, const RobotState& state, manifest::Document& document) {
-  manifest::Robot& arm = document.robots.at(work.input.robot);
-  arm.dh = work.input.links;
-  arm.calibration.clear();
-  for (std::size_t i = 0; i < arm.dh.size() && i < 6; ++i) {
-    arm.dh[i].theta_rad += state.joint_rad[i];
-    arm.dh[i].a_m += state.a_m[i];
-    arm.dh[i].d_m += state.d_m[i];
+  if (!work.input.links.empty()) {
+    manifest::Robot& arm = document.robots.at(work.input.robot);
+    arm.dh = work.input.links;
+    arm.calibration.clear();
+    for (std::size_t i = 0; i < arm.dh.size() && i < 6; ++i) {
+      arm.dh[i].theta_rad += state.joint_rad[i];
+      arm.dh[i].a_m += state.a_m[i];
+      arm.dh[i].d_m += state.d_m[i];
+    }
   }
   for (const RobotInput::View& view : work.input.views) {
     const auto image = std::find_if(document.images.begin(), document.images.end(),
