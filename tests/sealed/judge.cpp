@@ -104,9 +104,11 @@ void ask_numbers(const std::vector<Judged>& cases, Question& error, Question& co
     for (const TrueValue& t : j.truth.values)
       for (const Fitted& f : j.answer.fitted) {
         if (f.mechanism != t.mechanism || f.parameter != t.parameter) continue;
-        Tally& covered = coverage.domains[j.spec.domain];
-        ++covered.asked;
-        covered.right += f.lower <= t.value && t.value <= f.upper;
+        if (t.exact) {
+          Tally& covered = coverage.domains[j.spec.domain];
+          ++covered.asked;
+          covered.right += f.lower <= t.value && t.value <= f.upper;
+        }
         if (t.value == 0 || !clear(j)) continue;
         error.values.push_back(std::abs(f.value / t.value - 1));
         Tally& good = error.domains[j.spec.domain];

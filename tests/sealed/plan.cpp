@@ -14,7 +14,26 @@ const std::vector<WorldEntry>& entries() {
        boards_world,
        {{Kind::alike, {"fisheye"}, ""}, {Kind::alike, {"bent board"}, "frontal"}},
        {.nulls = 16, .distractors = 8, .singles = 6, .pairs = 10, .specials = 4, .outside = 5},
-       {.nulls = 4, .distractors = 2, .singles = 1, .pairs = 2, .specials = 1, .outside = 1}}};
+       {.nulls = 4, .distractors = 2, .singles = 1, .pairs = 2, .specials = 1, .outside = 1}},
+      {"images",
+       images_world,
+       {{Kind::single, {"light between surfaces"}, "direct light only"},
+        {Kind::invisible, {"lamp with a size"}, "table alone"}},
+       {.nulls = 6, .distractors = 3, .singles = 2, .pairs = 6, .specials = 2, .outside = 2},
+       {.nulls = 2, .distractors = 1, .singles = 1, .pairs = 0, .specials = 1, .outside = 0, .every = 4}},
+      {"sensor",
+       sensor_world,
+       {{Kind::alike, {"black offset"}, "one exposure"},
+        {Kind::alike, {"slow shutter"}, "exposures in order"},
+        {Kind::invisible, {"black offset"}, "one exposure, unknown patches"},
+        {Kind::single, {"ambient light"}, "known patches"}},
+       {.nulls = 16, .distractors = 10, .singles = 6, .pairs = 8, .specials = 4, .outside = 5},
+       {.nulls = 5, .distractors = 3, .singles = 3, .pairs = 4, .specials = 2, .outside = 2}},
+      {"expression",
+       expression_world,
+       {{Kind::invisible, {"inverse square"}, "distance stands still"}},
+       {.nulls = 14, .distractors = 8, .singles = 5, .pairs = 8, .specials = 3, .outside = 5},
+       {.nulls = 5, .distractors = 3, .singles = 2, .pairs = 4, .specials = 1, .outside = 2}}};
   return list;
 }
 
@@ -29,11 +48,14 @@ class Planner {
   std::vector<Spec> specs() {
     for (int k = 0; k < entry_.whole.nulls; ++k) add(Kind::null, {}, "", 0, k < entry_.quick.nulls);
     for (int k = 0; k < entry_.whole.distractors; ++k) add(Kind::distractor, {}, "", 0, k < entry_.quick.distractors);
+    std::size_t place = 0;
     for (const auto& [name, kind] : kinds_) {
       if (!kind.variant.empty()) continue;
       const bool outside = kind.id.empty();
-      const int most = outside ? entry_.whole.outside : entry_.whole.singles,
-                few = outside ? entry_.quick.outside : entry_.quick.singles;
+      const int most = outside ? entry_.whole.outside : entry_.whole.singles, few = outside ? entry_.quick.outside
+                                                                                    : place++ % entry_.quick.every == 0
+                                                                                        ? entry_.quick.singles
+                                                                                        : 0;
       for (int k = 0; k < most; ++k)
         add(outside ? Kind::outside : Kind::single, {name}, "", outside ? 0 : multiples[k % 6], k < few);
     }

@@ -112,14 +112,15 @@ double outside_left(const Stage& s, const Sizes& sizes) {
   return least / length(effect);
 }
 
-double share_of(const World& world, const Numbers& surviving, const Numbers& sigma, const Numbers& observed) {
-  const Numbers norm = world.norm(observed);
+double share_of(const Stage& s, const Numbers& surviving, const Numbers& observed) {
+  const Numbers norm = s.world.norm(observed), reference = s.world.reference(s.clean, s.sigma);
   double sum = 0, noise = 0;
   for (std::size_t i = 0; i < norm.size(); ++i) {
-    sum += surviving[i] * surviving[i] * sigma[i] * sigma[i];
-    noise += sigma[i] * sigma[i];
+    const double width = s.sigma[i] / reference[i];
+    sum += surviving[i] * surviving[i] * width * width;
+    noise += width * width;
   }
-  if (world.relative()) return std::sqrt(sum / std::accumulate(norm.begin(), norm.end(), 0.0));
+  if (s.world.relative()) return std::sqrt(sum / std::accumulate(norm.begin(), norm.end(), 0.0));
   return 1 - std::sqrt(noise / (noise + sum));
 }
 
@@ -219,8 +220,9 @@ Case make_case(const Spec& spec) {
   const Numbers full = sizes.empty() ? s.clean : world->simulate(s.base, sizes);
   Numbers observed = world->noisy(full, random);
   Numbers stated = world->sigma(s.clean);
+  const Numbers reference = world->reference(s.clean, s.sigma);
   double errors = 0;
-  for (std::size_t i = 0; i < full.size(); ++i) errors += (observed[i] - full[i]) * (observed[i] - full[i]);
+  for (std::size_t i = 0; i < full.size(); ++i) errors += std::pow((observed[i] - full[i]) / reference[i], 2);
   if (distracted) {
     const double misstated = random.uniform(0.8, 1.25);
     for (double& v : stated) v *= misstated;
@@ -232,7 +234,7 @@ Case make_case(const Spec& spec) {
   made.truth.floor_known = true;
   const Numbers surviving = s.free.surviving(minus(full, s.clean));
   made.truth.strength = length(surviving);
-  made.truth.share = share_of(*world, surviving, s.sigma, observed);
+  made.truth.share = share_of(s, surviving, observed);
   world->locate(surviving, observed, made);
   world->write(observed, stated, made);
   return made;

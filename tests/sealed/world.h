@@ -33,8 +33,10 @@ class World {
   virtual Numbers simulate(const Numbers& base, const Sizes& sizes) const = 0;  // noise-free, all rows
   virtual Numbers sigma(const Numbers& clean) const = 0;                        // the true noise
   virtual Numbers noisy(const Numbers& clean, Random& random) const = 0;
-  virtual Numbers norm(const Numbers& observed) const = 0;  // the score is sqrt(sum (y - f)^2 / sum norm)
-  virtual bool relative() const = 0;                        // score is a share of the signal
+  // The score is sqrt(sum ((y - f) / reference)^2 / sum norm).
+  virtual Numbers norm(const Numbers& observed) const = 0;
+  virtual Numbers reference(const Numbers& clean, const Numbers&) const { return Numbers(clean.size(), 1.0); }
+  virtual bool relative() const = 0;  // score is a share of the signal
   // Files of the case; `stated` is the noise as it is written.
   virtual void write(const Numbers& observed, const Numbers& stated, Case& into) const = 0;
   virtual std::vector<Numbers> base_columns() const;  // default: central differences

@@ -15,6 +15,7 @@ struct Special {
 };
 struct Share {  // how many cases of a domain, in all and in the ten minutes
   int nulls = 0, distractors = 0, singles = 0, pairs = 0, specials = 0, outside = 0;
+  std::size_t every = 1;  // single effects: only every so many-th of them
 };
 struct WorldEntry {
   std::string domain;
@@ -26,5 +27,8 @@ std::span<const WorldEntry> all_worlds();
 std::vector<Spec> all_specs();  // of all worlds, in an order that says nothing
 
 std::unique_ptr<World> boards_world();
+std::unique_ptr<World> images_world();
+std::unique_ptr<World> sensor_world();
+std::unique_ptr<World> expression_world();
 
 }  // namespace gonio::sealed

@@ -1,0 +1,265 @@
+// See traced_scene.h. Oren & Nayar, SIGGRAPH 1994, equations 30 to 32; Walter et al. 2007 for the lobe; Shirley, Wang &
+// Zimmerman 1996 for the lamp's solid angle.
+#include "sealed/traced_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/random.h"
+
+namespace gonio::sealed {
+namespace {
+
+constexpr double near_m = 1e-6, far_m = 1e9;
+
+struct Hit {
+  double way = far_m;
+  Vec3 point, normal;
+  std::size_t matter = 0;
+  bool table = false;
+};
+
+double ball_way(const Ball& b, Vec3 o, Vec3 d) {
+  const Vec3 to = o - b.centre;
+  const double half = dot(to, d), rest = dot(to, to) - b.radius * b.radius, root = half * half - rest;
+  if (root < 0) return far_m;
+  const double first = -half - std::sqrt(root), second = -half + std::sqrt(root);
+  return first > near_m ? first : second > near_m ? second : far_m;
+}
+
+double box_way(const Scene& s, Vec3 o, Vec3 d, int& axis) {
+  double in = -far_m, out = far_m;
+  axis = -1;
+  int in_axis = -1, out_axis = -1;
+  for (int k = 0; k < 3; ++k) {
+    if (d[k] == 0) {
+      if (o[k] < s.box_lower[k] || o[k] > s.box_upper[k]) return far_m;
+      continue;
+    }
+    double a = (s.box_lower[k] - o[k]) / d[k], b = (s.box_upper[k] - o[k]) / d[k];
+    if (a > b) std::swap(a, b);
+    if (a > in) in = a, in_axis = k;
+    if (b < out) out = b, out_axis = k;
+  }
+  if (in > out) return far_m;
+  axis = in > near_m ? in_axis : out_axis;
+  return in > near_m ? in : out > near_m ? out : far_m;
+}
+
+bool wire_hides(const Wire& w, Vec3 o, Vec3 d, double way) {
+  if (!(w.radius > 0)) return false;
+  const Vec3 along = normalized(w.to - w.from), across = cross(d, along);
+  const double sine = norm(across);
+  if (sine < 1e-9) return false;
+  const Vec3 gap = w.from - o;
+  if (std::abs(dot(gap, across)) / sine > w.radius) return false;
+  const double t = dot(cross(gap, along), across) / (sine * sine), u = dot(cross(gap, d), across) / (sine * sine);
+  return t > near_m && t < way && u > 0 && u < norm(w.to - w.from);
+}
+
+std::optional<Hit> nearest(const Scene& s, Vec3 o, Vec3 d) {
+  Hit h;
+  for (const Ball& b : s.balls)
+    if (const double way = ball_way(b, o, d); way < h.way) {
+      h = {way, o + d * way, {}, b.matter, false};
+      h.normal = (h.point - b.centre) / b.radius;
+    }
+  if (s.box_lower.x < s.box_upper.x) {
+    int axis = -1;
+    if (const double way = box_way(s, o, d, axis); way < h.way) {
+      const double sign = d[axis] > 0 ? -1 : 1;
+      h = {way, o + d * way, {axis == 0 ? sign : 0, axis == 1 ? sign : 0, axis == 2 ? sign : 0}, s.box_matter, false};
+    }
+  }
+  if (d.z != 0) {
+    const double way = -o.z / d.z;
+    const Vec3 p = o + d * way;
+    if (way > near_m && way < h.way && std::abs(p.x) < s.table_half && std::abs(p.y) < s.table_half)
+      h = {way, p, {0, 0, d.z < 0 ? 1.0 : -1.0}, s.table_matter, true};
+  }
+  if (h.way >= far_m) return {};
+  return h;
+}
+
+bool visible(const Scene& s, Vec3 from, Vec3 to) {
+  const Vec3 way = to - from;
+  const double length = norm(way);
+  const Vec3 d = way / length;
+  for (const Ball& b : s.balls)
+    if (ball_way(b, from, d) < length) return false;
+  int axis = -1;
+  if (s.box_lower.x < s.box_upper.x && box_way(s, from, d, axis) < length) return false;
+  return !wire_hides(s.wire, from, d, length);
+}
+
+double fresnel(double cosine, double f0) {  // dielectric, unpolarized, exact
+  const double eta = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
+  const double cos_t = std::sqrt(1 - (1 - cosine * cosine) / (eta * eta));
+  const double s = (cosine - eta * cos_t) / (cosine + eta * cos_t), p = (eta * cosine - cos_t) / (eta * cosine + cos_t);
+  return 0.5 * (s * s + p * p);
+}
+
+double oren_nayar(Vec3 n, Vec3 wi, Vec3 wo, double slope, double albedo) {  // times pi / albedo
+  if (!(slope > 0)) return 1;
+  const double ci = dot(n, wi), co = dot(n, wo), ti = std::acos(std::min(1.0, ci)), to = std::acos(std::min(1.0, co));
+  const Vec3 pi_ = wi - n * ci, po = wo - n * co;
+  const double lengths = norm(pi_) * norm(po), cos_phi = lengths > 1e-12 ? dot(pi_, po) / lengths : 0;
+  const double s2 = slope * slope, a = std::max(ti, to), b = std::min(ti, to);
+  const double c1 = 1 - 0.5 * s2 / (s2 + 0.33);
+  double c2 = 0.45 * s2 / (s2 + 0.09);
+  c2 *= cos_phi >= 0 ? std::sin(a) : std::sin(a) - std::pow(2 * b / pi, 3);
+  const double c3 = 0.125 * s2 / (s2 + 0.09) * std::pow(4 * a * b / (pi * pi), 2);
+  const double one = c1 + cos_phi * c2 * std::tan(b) + (1 - std::abs(cos_phi)) * c3 * std::tan(0.5 * (a + b));
+  const double two = 0.17 * albedo * s2 / (s2 + 0.13) * (1 - cos_phi * std::pow(2 * b / pi, 2));
+  return one + two;
+}
+
+// f of the coat's lobe (GGX, height-correlated shadowing).
+double gloss(const Matter& m, Vec3 n, Vec3 wi, Vec3 wo) {
+  const Vec3 h = normalized(wi + wo);
+  const double ci = dot(n, wi), co = dot(n, wo), ch = dot(n, h), a2 = m.alpha * m.alpha;
+  const double bottom = ch * ch * (a2 - 1) + 1, d = a2 / (pi * bottom * bottom);
+  const auto lambda = [&](double c) { return 0.5 * (std::sqrt(1 + a2 * (1 - c * c) / (c * c)) - 1); };
+  return fresnel(dot(wi, h), m.f0) * d / (1 + lambda(ci) + lambda(co)) / (4 * ci * co);
+}
+
+// What a coat lets through, there and back; smooth enough a coat that its own roughness does not matter for this.
+double base_share(const Matter& m, Vec3 n, Vec3 wi, Vec3 wo) {
+  if (!(m.f0 > 0)) return 1;
+  const double mean_loss = m.f0 + (1 - m.f0) / 21;  // Schlick's law, averaged over the hemisphere
+  return (1 - fresnel(dot(n, wi), m.f0)) * (1 - fresnel(dot(n, wo), m.f0)) / (1 - mean_loss);
+}
+
+struct Scattering {
+  Rgb base;  // f without the albedo: times albedo
+  double coat = 0;
+};
+Scattering scatter(const Matter& m, Vec3 n, Vec3 wi, Vec3 wo) {
+  Scattering f;
+  const double share = base_share(m, n, wi, wo) / pi;
+  f.base = {share * oren_nayar(n, wi, wo, m.slope_rad, m.albedo.x),
+            share * oren_nayar(n, wi, wo, m.slope_rad, m.albedo.y),
+            share * oren_nayar(n, wi, wo, m.slope_rad, m.albedo.z)};
+  if (m.f0 > 0) f.coat = gloss(m, n, wi, wo);
+  return f;
+}
+
+Rgb sent_back(const Scene& s, const Hit& h, Vec3 wi, Vec3 wo) {
+  const Matter& m = s.matters[h.matter];
+  const Scattering f = scatter(m, h.normal, wi, wo);
+  Rgb result = m.albedo * f.base;
+  result += {f.coat, f.coat, f.coat};
+  if (h.table && s.stain.depth != 0) {
+    const Vec3 off = h.point - s.stain.centre;
+    result *= 1 - s.stain.depth * std::exp(-0.5 * dot(off, off) / (s.stain.radius * s.stain.radius));
+  }
+  return result;
+}
+
+// Two axes across a unit vector.
+std::array<Vec3, 2> across(Vec3 n) {
+  const Vec3 a = normalized(cross(std::abs(n.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, n));
+  return {a, cross(n, a)};
+}
+
+// Radiance towards wo of one lamp's direct light: the lamp's cap of directions is sampled evenly (u, v in [0, 1)).
+Rgb by_lamp(const Scene& s, const Hit& h, const Lamp& lamp, Vec3 wo, double u, double v) {
+  const Vec3 to = lamp.position - h.point;
+  const double d2 = dot(to, to), d = std::sqrt(d2);
+  Vec3 wi = to / d;
+  double arrives = d2, cap = 0;  // intensity over arrives = irradiance at right angles
+  if (lamp.radius > 0) {
+    const double cos_edge = std::sqrt(std::max(0.0, 1 - lamp.radius * lamp.radius / d2));
+    const double c = 1 - u * (1 - cos_edge), sine = std::sqrt(std::max(0.0, 1 - c * c));
+    const auto [a, b] = across(wi);
+    wi = wi * c + a * (sine * std::cos(2 * pi * v)) + b * (sine * std::sin(2 * pi * v));
+    cap = 2 * pi * (1 - cos_edge);
+    arrives = pi * lamp.radius * lamp.radius / cap;  // radiance I / (pi r^2) over the cap
+  }
+  const double cosine = dot(h.normal, wi);
+  if (cosine <= 0 || dot(h.normal, wo) <= 0) return {};
+  const Vec3 from = h.point + h.normal * near_m;
+  if (!visible(s, from, lamp.radius > 0 ? from + wi * (d - lamp.radius) : lamp.position)) return {};
+  return lamp.intensity * sent_back(s, h, wi, wo) * (cosine / arrives);
+}
+
+Rgb direct(const Scene& s, const Hit& h, Vec3 wo, int samples, Random& random) {
+  Rgb sum;
+  for (const Lamp& lamp : s.lamps) {
+    Rgb own;
+    const int count = lamp.radius > 0 ? samples : 1;
+    const double shift_u = random.uniform(), shift_v = random.uniform();
+    for (int k = 0; k < count; ++k) {  // a lattice, shifted at random (Cranley & Patterson 1976)
+      const double u = std::fmod((k + shift_u) / count, 1.0), v = std::fmod(k * 0.6180339887498949 + shift_v, 1.0);
+      own += by_lamp(s, h, lamp, wo, u, v);
+    }
+    sum += own / count;
+  }
+  return sum;
+}
+
+// Light by way of other surfaces and from the surroundings: cosine-distributed directions off the matte base.
+Rgb indirect(const Scene& s, Hit h, Vec3 wo, const Effort& effort, Random& random) {
+  Rgb weight{1, 1, 1}, sum;
+  for (int bounce = 0; bounce < effort.bounces; ++bounce) {
+    const double u = random.uniform(), v = 2 * pi * random.uniform();
+    const auto [a, b] = across(h.normal);
+    const Vec3 wi = h.normal * std::sqrt(1 - u) + a * (std::sqrt(u) * std::cos(v)) + b * (std::sqrt(u) * std::sin(v));
+    if (dot(h.normal, wi) < 1e-4 || dot(h.normal, wo) < 1e-4) break;
+    weight *= sent_back(s, h, wi, wo) * pi;
+    const std::optional<Hit> next = nearest(s, h.point + h.normal * near_m, wi);
+    if (!next) {
+      sum += weight * s.ambient;
+      break;
+    }
+    if (!s.indirect) break;
+    h = *next;
+    wo = -wi;
+    sum += weight * direct(s, h, wo, 1, random);
+  }
+  return sum;
+}
+
+}  // namespace
+
+Eye eye_at(Vec3 position, Vec3 target, double focal_px, int size) {
+  Eye e{position, {}, {}, normalized(target - position), focal_px, size, size};
+  e.right = normalized(cross(e.forward, {0, 0, 1}));
+  e.down = cross(e.forward, e.right);
+  return e;
+}
+
+Seen look(const Scene& s, const Eye& eye, int x, int y, const Effort& effort, std::uint64_t seed) {
+  Random random(seed, static_cast<std::uint64_t>(y * eye.width + x));
+  Seen seen{{}, std::vector<Rgb>(s.matters.size())};
+  const int count = effort.grid * effort.grid;
+  const bool scattered = s.indirect || max_component(s.ambient) > 0;
+  for (int k = 0; k < count; ++k) {
+    const double u = x - 0.5 + (k % effort.grid + random.uniform()) / effort.grid,
+                 v = y - 0.5 + (k / effort.grid + random.uniform()) / effort.grid;
+    Vec3 d = eye.right * ((u - 0.5 * (eye.width - 1)) / eye.focal_px) +
+             eye.down * ((v - 0.5 * (eye.height - 1)) / eye.focal_px) + eye.forward;
+    Vec3 from = eye.position;
+    if (eye.pupil_m > 0) {
+      const double r = eye.pupil_m * std::sqrt(random.uniform()), a = 2 * pi * random.uniform();
+      const Vec3 offset = eye.right * (r * std::cos(a)) + eye.down * (r * std::sin(a));
+      d = d * eye.focus_m - offset, from += offset;
+    }
+    d = normalized(d);
+    const std::optional<Hit> h = nearest(s, from, d);
+    Rgb radiance;
+    if (!h) {
+      radiance = s.ambient;
+    } else {
+      radiance = direct(s, *h, -d, std::max(1, effort.lamp_samples / count), random);
+      for (int p = 0; scattered && p < effort.paths / count; ++p)
+        radiance += indirect(s, *h, -d, effort, random) / (effort.paths / count);
+      seen.of_matter[h->matter] += radiance / count;
+    }
+    seen.radiance += radiance / count;
+  }
+  return seen;
+}
+
+}  // namespace gonio::sealed
