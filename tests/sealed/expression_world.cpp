@@ -100,7 +100,7 @@ void ExpressionWorld::design(Random& random, const std::string& variant) {
   relative_ = random.uniform(0.002, 0.006);
   for (const char* name : {"exposure_s", "radiance", "distance_m", "path_m", "image_radius", "time_s", "series"}) {
     const std::string column = name;
-    add_column(column, column == "radiance"                             ? "W/(m^2 sr)"
+    add_column(column, column == "radiance"                             ? "W/m^2/sr"
                        : column == "image_radius" || column == "series" ? "1"
                        : column.ends_with("_m")                         ? "m"
                                                                         : "s");

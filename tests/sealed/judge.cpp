@@ -10,8 +10,8 @@
 namespace gonio::sealed {
 namespace {
 
-constexpr double own_limit = 3.417;  // two-sided level 1 %, power 80 %, in noise widths
-constexpr double clearly = 3, matters = 0.01;
+constexpr double own_limit = 3.417;                          // two-sided level 1 %, power 80 %, in noise widths
+constexpr double clearly = 3, matters = 0.01, margin = 1.3;  // cases within the margin are asked neither way
 
 bool has(const std::vector<std::string>& list, const std::string& id) {
   return std::find(list.begin(), list.end(), id) != list.end();
@@ -29,7 +29,10 @@ bool says_nothing(const Judged& j) {
   return j.truth.kind == Kind::null || j.truth.kind == Kind::distractor;
 }
 bool matter(const Judged& j) {
-  return j.truth.share >= matters;
+  return j.truth.share >= margin * matters;
+}
+bool too_small(const Judged& j) {
+  return j.truth.share < matters / margin;
 }
 // Present, above what can be seen, and large enough to be worth a name.
 bool clear(const Judged& j) {
@@ -87,7 +90,7 @@ std::vector<Asked> questions() {
       {share_question("cannot be seen", "named nevertheless", "", 0.02, true, false),
        [](const Judged& j) { return j.truth.kind == Kind::invisible; }, wrongly_named},
       {share_question("present, too small to matter", "named nevertheless", "", 0, true, false),
-       [](const Judged& j) { return single(j) && !matter(j); }, wrongly_named},
+       [](const Judged& j) { return single(j) && too_small(j); }, wrongly_named},
       {share_question("present, any size", "something named that is not there", "", 0, true, false),
        [](const Judged& j) { return (single(j) && j.truth.apart == Apart::yes) || j.truth.kind == Kind::pair; },
        [](const Judged& j) {

@@ -15,6 +15,11 @@ const std::vector<WorldEntry>& entries() {
        {{Kind::alike, {"fisheye"}, ""}, {Kind::alike, {"bent board"}, "frontal"}},
        {.nulls = 16, .distractors = 8, .singles = 6, .pairs = 10, .specials = 4, .outside = 5},
        {.nulls = 4, .distractors = 2, .singles = 1, .pairs = 2, .specials = 1, .outside = 1}},
+      {"robot",
+       robot_world,
+       {},
+       {.nulls = 8, .distractors = 4, .singles = 3, .pairs = 3, .specials = 0, .outside = 2},
+       {.nulls = 2, .distractors = 1, .singles = 1, .pairs = 0, .specials = 0, .outside = 1}},
       {"images",
        images_world,
        {{Kind::single, {"light between surfaces"}, "direct light only"},
@@ -33,7 +38,22 @@ const std::vector<WorldEntry>& entries() {
        expression_world,
        {{Kind::invisible, {"inverse square"}, "distance stands still"}},
        {.nulls = 14, .distractors = 8, .singles = 5, .pairs = 8, .specials = 3, .outside = 5},
-       {.nulls = 5, .distractors = 3, .singles = 2, .pairs = 4, .specials = 1, .outside = 2}}};
+       {.nulls = 5, .distractors = 3, .singles = 2, .pairs = 4, .specials = 1, .outside = 2}},
+      {"surface",
+       surface_world,
+       {{Kind::alike, {"rough matte"}, "normal incidence"}},
+       {.nulls = 12, .distractors = 6, .singles = 5, .pairs = 5, .specials = 3, .outside = 4},
+       {.nulls = 4, .distractors = 2, .singles = 2, .pairs = 2, .specials = 1, .outside = 2}},
+      {"light",
+       light_world,
+       {{Kind::single, {"diverging light"}, "believed parallel"}},
+       {.nulls = 12, .distractors = 6, .singles = 5, .pairs = 6, .specials = 3, .outside = 4},
+       {.nulls = 4, .distractors = 2, .singles = 2, .pairs = 3, .specials = 1, .outside = 2}},
+      {"tracks",
+       tracks_world,
+       {},
+       {.nulls = 10, .distractors = 4, .singles = 5, .pairs = 3, .specials = 0, .outside = 4},
+       {.nulls = 3, .distractors = 1, .singles = 2, .pairs = 1, .specials = 0, .outside = 1}}};
   return list;
 }
 

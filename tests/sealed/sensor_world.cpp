@@ -109,7 +109,7 @@ void SensorWorld::design(Random& random, const std::string& variant) {
   gain_ = 0.9 * full_scale / (*std::max_element(radiance_.begin(), radiance_.end()) * longest);
   add_column("exposure_s", "s");
   if (patches_known_)
-    add_column("radiance", "W/(m^2 sr)");
+    add_column("radiance", "W/m^2/sr");
   else
     add_column("patch", "1");
   add_column("time_s", "s");

@@ -1,5 +1,4 @@
-// See traced_scene.h. Oren & Nayar, SIGGRAPH 1994, equations 30 to 32; Walter et al. 2007 for the lobe; Shirley, Wang &
-// Zimmerman 1996 for the lamp's solid angle.
+// See traced_scene.h. Shirley, Wang & Zimmerman 1996 for the lamp's solid angle.
 #include "sealed/traced_scene.h"
 
 #include <algorithm>
@@ -93,61 +92,15 @@ bool visible(const Scene& s, Vec3 from, Vec3 to) {
   return !wire_hides(s.wire, from, d, length);
 }
 
-double fresnel(double cosine, double f0) {  // dielectric, unpolarized, exact
-  const double eta = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
-  const double cos_t = std::sqrt(1 - (1 - cosine * cosine) / (eta * eta));
-  const double s = (cosine - eta * cos_t) / (cosine + eta * cos_t), p = (eta * cosine - cos_t) / (eta * cosine + cos_t);
-  return 0.5 * (s * s + p * p);
-}
-
-double oren_nayar(Vec3 n, Vec3 wi, Vec3 wo, double slope, double albedo) {  // times pi / albedo
-  if (!(slope > 0)) return 1;
-  const double ci = dot(n, wi), co = dot(n, wo), ti = std::acos(std::min(1.0, ci)), to = std::acos(std::min(1.0, co));
-  const Vec3 pi_ = wi - n * ci, po = wo - n * co;
-  const double lengths = norm(pi_) * norm(po), cos_phi = lengths > 1e-12 ? dot(pi_, po) / lengths : 0;
-  const double s2 = slope * slope, a = std::max(ti, to), b = std::min(ti, to);
-  const double c1 = 1 - 0.5 * s2 / (s2 + 0.33);
-  double c2 = 0.45 * s2 / (s2 + 0.09);
-  c2 *= cos_phi >= 0 ? std::sin(a) : std::sin(a) - std::pow(2 * b / pi, 3);
-  const double c3 = 0.125 * s2 / (s2 + 0.09) * std::pow(4 * a * b / (pi * pi), 2);
-  const double one = c1 + cos_phi * c2 * std::tan(b) + (1 - std::abs(cos_phi)) * c3 * std::tan(0.5 * (a + b));
-  const double two = 0.17 * albedo * s2 / (s2 + 0.13) * (1 - cos_phi * std::pow(2 * b / pi, 2));
-  return one + two;
-}
-
-// f of the coat's lobe (GGX, height-correlated shadowing).
-double gloss(const Matter& m, Vec3 n, Vec3 wi, Vec3 wo) {
-  const Vec3 h = normalized(wi + wo);
-  const double ci = dot(n, wi), co = dot(n, wo), ch = dot(n, h), a2 = m.alpha * m.alpha;
-  const double bottom = ch * ch * (a2 - 1) + 1, d = a2 / (pi * bottom * bottom);
-  const auto lambda = [&](double c) { return 0.5 * (std::sqrt(1 + a2 * (1 - c * c) / (c * c)) - 1); };
-  return fresnel(dot(wi, h), m.f0) * d / (1 + lambda(ci) + lambda(co)) / (4 * ci * co);
-}
-
-// What a coat lets through, there and back; smooth enough a coat that its own roughness does not matter for this.
-double base_share(const Matter& m, Vec3 n, Vec3 wi, Vec3 wo) {
-  if (!(m.f0 > 0)) return 1;
-  const double mean_loss = m.f0 + (1 - m.f0) / 21;  // Schlick's law, averaged over the hemisphere
-  return (1 - fresnel(dot(n, wi), m.f0)) * (1 - fresnel(dot(n, wo), m.f0)) / (1 - mean_loss);
-}
-
-struct Scattering {
-  Rgb base;  // f without the albedo: times albedo
-  double coat = 0;
-};
-Scattering scatter(const Matter& m, Vec3 n, Vec3 wi, Vec3 wo) {
-  Scattering f;
-  const double share = base_share(m, n, wi, wo) / pi;
-  f.base = {share * oren_nayar(n, wi, wo, m.slope_rad, m.albedo.x),
-            share * oren_nayar(n, wi, wo, m.slope_rad, m.albedo.y),
-            share * oren_nayar(n, wi, wo, m.slope_rad, m.albedo.z)};
-  if (m.f0 > 0) f.coat = gloss(m, n, wi, wo);
-  return f;
+// Two axes across a unit vector.
+std::array<Vec3, 2> across(Vec3 n) {
+  const Vec3 a = normalized(cross(std::abs(n.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, n));
+  return {a, cross(n, a)};
 }
 
 Rgb sent_back(const Scene& s, const Hit& h, Vec3 wi, Vec3 wo) {
   const Matter& m = s.matters[h.matter];
-  const Scattering f = scatter(m, h.normal, wi, wo);
+  const Scattering f = scatter(m, h.normal, across(h.normal)[0], wi, wo);
   Rgb result = m.albedo * f.base;
   result += {f.coat, f.coat, f.coat};
   if (h.table && s.stain.depth != 0) {
@@ -155,12 +108,6 @@ Rgb sent_back(const Scene& s, const Hit& h, Vec3 wi, Vec3 wo) {
     result *= 1 - s.stain.depth * std::exp(-0.5 * dot(off, off) / (s.stain.radius * s.stain.radius));
   }
   return result;
-}
-
-// Two axes across a unit vector.
-std::array<Vec3, 2> across(Vec3 n) {
-  const Vec3 a = normalized(cross(std::abs(n.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, n));
-  return {a, cross(n, a)};
 }
 
 // Radiance towards wo of one lamp's direct light: the lamp's cap of directions is sampled evenly (u, v in [0, 1)).

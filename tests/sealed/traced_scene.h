@@ -7,15 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "geom/vector.h"
+#include "sealed/matter.h"
 
 namespace gonio::sealed {
 
-struct Matter {
-  Rgb albedo{0.5, 0.5, 0.5};
-  double f0 = 0, alpha = 0.2;  // of a clear coat; none where f0 is 0
-  double slope_rad = 0;        // of the matte base (Oren & Nayar 1994)
-};
 struct Ball {
   Vec3 centre;
   double radius = 0.05;

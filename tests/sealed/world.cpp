@@ -142,11 +142,27 @@ Sizes harmless(const Stage& s, Random& random) {
   if (known.empty()) return {};
   const EffectKind& kind = known[random.below(static_cast<std::uint32_t>(known.size()))];
   Numbers size = drawn(kind, random);
-  double noise = 0, signal = 0;
-  for (std::size_t i = 0; i < s.sigma.size(); ++i) noise += s.sigma[i] * s.sigma[i], signal += s.clean[i] * s.clean[i];
-  const double widths = s.world.relative() ? harmless_share * std::sqrt(signal / noise) : harmless_widths;
-  scale_to(s, widths * std::sqrt(static_cast<double>(s.sigma.size())), size, kind.name);
+  const double widths = harmless_widths * std::sqrt(static_cast<double>(s.sigma.size()));
+  scale_to(s, widths, size, kind.name);
+  if (s.world.relative()) {
+    const double share = share_of(s, s.surviving({{kind.name, size}}), s.clean);
+    scale_to(s, widths * std::min(4.0, harmless_share / share), size, kind.name);
+  }
   return {{kind.name, size}};
+}
+
+// Share of the effect that counts least, beside the others.
+double weakest_share(const Stage& s, const Sizes& sizes, const Numbers& observed) {
+  double least = 1e300;
+  for (const auto& [name, size] : sizes) {
+    std::vector<Numbers> beside;
+    for (const auto& [other, its] : sizes)
+      if (other != name) beside.push_back(s.surviving({{other, its}}));
+    Numbers own = s.surviving({{name, size}});
+    const double left = beside.empty() ? 1 : left_beside(own, beside) / length(own);
+    least = std::min(least, left * share_of(s, own, observed));
+  }
+  return least;
 }
 
 void fill_truth(const Spec& spec, const Stage& s, const Sizes& sizes, Truth& truth) {
@@ -231,10 +247,10 @@ Case make_case(const Spec& spec) {
   }
   const Numbers norm = world->norm(observed);
   made.truth.floor = std::sqrt(errors / std::accumulate(norm.begin(), norm.end(), 0.0));
-  made.truth.floor_known = true;
+  made.truth.floor_known = world->knows_floor();
   const Numbers surviving = s.free.surviving(minus(full, s.clean));
   made.truth.strength = length(surviving);
-  made.truth.share = share_of(s, surviving, observed);
+  made.truth.share = sizes.size() > 1 ? weakest_share(s, sizes, observed) : share_of(s, surviving, observed);
   world->locate(surviving, observed, made);
   world->write(observed, stated, made);
   return made;

@@ -44,6 +44,7 @@ class World {
   virtual void locate(const Numbers& surviving, const Numbers& observed, Case& into) const;
   // Whether rivals are simulated to find out if effects can be told apart (dear for images).
   virtual bool asks_rivals() const { return true; }
+  virtual bool knows_floor() const { return true; }  // false: the score is another than the noise of the rows
 };
 
 std::unique_ptr<World> make_world(const std::string& domain);  // null where there is none

@@ -30,5 +30,9 @@ std::unique_ptr<World> boards_world();
 std::unique_ptr<World> images_world();
 std::unique_ptr<World> sensor_world();
 std::unique_ptr<World> expression_world();
+std::unique_ptr<World> surface_world();
+std::unique_ptr<World> light_world();
+std::unique_ptr<World> robot_world();
+std::unique_ptr<World> tracks_world();
 
 }  // namespace gonio::sealed

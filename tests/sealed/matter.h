@@ -1,0 +1,25 @@
+// What matter sends back, by equations of the makers' own: coats by microfacets with the exact Fresnel reflectance,
+// rough matte bases after Oren & Nayar's full model, lobes with a heavy tail, stretched lobes, and light sent back to
+// the lamp.
+#pragma once
+#include "geom/vector.h"
+
+namespace gonio::sealed {
+
+struct Matter {
+  Rgb albedo{0.5, 0.5, 0.5};
+  double f0 = 0, alpha = 0.2;           // of a clear coat; none where f0 is 0
+  double slope_rad = 0;                 // of the matte base (Oren & Nayar 1994)
+  double tail = 0, tail_alpha = 0.5;    // share of the coat's facets that are far rougher
+  double stretch = 1;                   // alpha along x over alpha along y
+  double retro = 0, retro_width = 0.2;  // share sent back to the lamp, in a lobe of this width (rad)
+};
+struct Scattering {
+  Rgb base;         // f of the matte base without its albedo, 1/sr
+  double coat = 0;  // f of everything else, 1/sr
+};
+// Directions from the surface, unit; `x`: the surface's own direction, across n.
+Scattering scatter(const Matter& m, Vec3 n, Vec3 x, Vec3 wi, Vec3 wo);
+double fresnel(double cosine, double f0);  // dielectric, unpolarized, exact
+
+}  // namespace gonio::sealed
