@@ -171,7 +171,13 @@ Answer read_answer(const std::filesystem::path& folder, const Case& sealed) {
   const Value::Array& explanations = list(document.find("explanations"));
   if (explanations.empty()) return a;
   a.ran = true;
-  read_entry(explanations[0], a);
+  std::size_t own = 0;
+  for (std::size_t k = 0; k < explanations.size(); ++k)
+    if (text_or_nothing(explanations[k].find("domain")) == sealed.spec.domain) own = k;
+  read_entry(explanations[own], a);
+  for (std::size_t k = 0; k < explanations.size(); ++k)
+    for (const Value& n : list(explanations[k].find("named")))
+      if (k != own) add_unique(a.elsewhere, text_or_nothing(n.find("mechanism")));
   if (std::filesystem::is_directory(folder / "out"))
     for (const auto& file : std::filesystem::directory_iterator(folder / "out"))
       if (const std::string name = file.path().filename().string();

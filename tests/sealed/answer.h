@@ -19,6 +19,7 @@ struct Answer {
   double seconds = 0;
   std::string error;                                // of a run that failed
   std::string verdict;                              // null, named, ambiguous, unknown
+  std::vector<std::string> elsewhere;               // named in another domain's explanation of the same recordings
   std::vector<std::string> named, reported, minor;  // reported: named and what is not told apart from them
   std::size_t set_size = 0;                         // of the largest set in the answer
   std::vector<Fitted> fitted;

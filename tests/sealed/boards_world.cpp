@@ -106,7 +106,8 @@ class Boards final : public World {
                      false,
                      1,
                      {},
-                     ""});
+                     "",
+                     24});
     kinds.push_back({"fisheye", "lens.fisheye", {"lens"}, radius, 0.05, 0.6, false, 1, {}, "only where asked"});
     kinds.push_back({"any radial", "lens.radial", {"lens"}, radius, 0.05, 0.2, true, 3, {}, "only as a rival"});
     kinds.push_back({"periodic error of the columns", "", {"sensor"}, {"camera.image-x"}, 0.15, 0.6, false, 1, {}, ""});

@@ -10,7 +10,6 @@
 namespace gonio::sealed {
 namespace {
 
-constexpr double own_limit = 3.417;                          // two-sided level 1 %, power 80 %, in noise widths
 constexpr double clearly = 3, matters = 0.01, margin = 1.3;  // cases within the margin are asked neither way
 
 bool has(const std::vector<std::string>& list, const std::string& id) {
@@ -53,7 +52,7 @@ Question share_question(const char* question, const char* measure, const char* t
 }
 
 bool wrongly_named(const Judged& j) {
-  return !j.answer.named.empty();
+  return !j.answer.named.empty() || !j.answer.elsewhere.empty();
 }
 
 std::vector<Asked> questions() {
@@ -173,7 +172,7 @@ double times_the_limit(const Judged& judged) {
     times = std::max(times, std::abs(t.value) / limit->second);
     known = true;
   }
-  return known ? times : judged.truth.strength / own_limit;
+  return known ? times : judged.truth.strength / judged.truth.limit;
 }
 
 Tally Question::all() const {

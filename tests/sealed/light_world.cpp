@@ -111,7 +111,7 @@ double LightWorld::reading(const Numbers& base, const Sizes& sizes, std::size_t 
   };
   double e = 0;
   if (believes_parallel_ && size_of(sizes, "diverging light") == 0) {
-    e = base[0] * lamp_.z / std::pow(norm(lamp_), 3);
+    e = base[0] * lamp_.z / std::pow(dot(lamp_, lamp_), 1.5);
   } else {
     e = base[0] * from(lamp_ + push_ * size_of(sizes, "lamp elsewhere"), size_of(sizes, "narrow lamp"));
   }
@@ -128,7 +128,7 @@ void LightWorld::describe(Value& manifest, Value& table) const {
   const auto three = [](Vec3 v) { return Value(std::vector<double>{v.x, v.y, v.z}); };
   Value light = Value::object();
   if (believes_parallel_) {
-    light = Value::object({{"model", "directional"}, {"towards", three(normalized(lamp_))}});
+    light = Value::object({{"model", "directional"}, {"towards", three(lamp_ / std::sqrt(dot(lamp_, lamp_)))}});
     light["irradiance"] = free_parameter(1);
   } else {
     light = Value::object({{"model", "point"}, {"position_m", three(lamp_)}});

@@ -56,6 +56,7 @@ struct Truth {
   std::vector<std::string> stages, conditions;  // any of them is right
   Apart apart = Apart::yes;
   double strength = 0;  // length of the effect after the fair refit, in noise widths
+  double limit = 3.42;  // length that a test at 1 % with as many free numbers finds in 80 % of cases
   double share = 0;     // of it in the signal (relative scores), or of the score it makes (pixels); pairs: the weaker's
   double floor = 0;     // score of the true model: noise alone, in the domain's unit
   bool floor_known = false;

@@ -29,21 +29,45 @@ Eigen::MatrixXd basis_of(Eigen::MatrixXd columns) {
 struct FreeParameters::Basis {
   Eigen::MatrixXd q;
   Eigen::VectorXd weight;
+  std::vector<std::vector<Eigen::Index>> rows;  // of each stratum
+  std::vector<Eigen::MatrixXd> own;             // orthonormal basis within it
+
+  Eigen::VectorXd without_own(Eigen::VectorXd e) const {
+    for (std::size_t s = 0; s < rows.size(); ++s) {
+      const Eigen::VectorXd part = e(rows[s]);
+      e(rows[s]) = part - own[s] * (own[s].transpose() * part);
+    }
+    return e;
+  }
+  void add_strata(const std::vector<std::size_t>& stratum, const std::vector<Numbers>& directions) {
+    for (std::size_t i = 0; i < stratum.size(); ++i) {
+      if (stratum[i] >= rows.size()) rows.resize(stratum[i] + 1);
+      rows[stratum[i]].push_back(static_cast<Eigen::Index>(i));
+    }
+    for (const std::vector<Eigen::Index>& r : rows) {
+      Eigen::MatrixXd d(static_cast<Eigen::Index>(r.size()), static_cast<Eigen::Index>(directions.size()));
+      for (std::size_t k = 0; k < directions.size(); ++k)
+        d.col(static_cast<Eigen::Index>(k)) = vector_of(directions[k])(r).cwiseProduct(weight(r));
+      own.push_back(basis_of(std::move(d)));
+    }
+  }
 };
 
-FreeParameters::FreeParameters(const std::vector<Numbers>& columns, const Numbers& sigma)
+FreeParameters::FreeParameters(const std::vector<Numbers>& columns, const Numbers& sigma,
+                               const std::vector<std::size_t>& stratum, const std::vector<Numbers>& own)
     : basis_(std::make_unique<Basis>()) {
   basis_->weight = vector_of(sigma).cwiseInverse();
+  basis_->add_strata(stratum, own);
   Eigen::MatrixXd all(static_cast<Eigen::Index>(sigma.size()), static_cast<Eigen::Index>(columns.size()));
   for (std::size_t c = 0; c < columns.size(); ++c)
-    all.col(static_cast<Eigen::Index>(c)) = vector_of(columns[c]).cwiseProduct(basis_->weight);
+    all.col(static_cast<Eigen::Index>(c)) = basis_->without_own(vector_of(columns[c]).cwiseProduct(basis_->weight));
   basis_->q = basis_of(std::move(all));
 }
 FreeParameters::~FreeParameters() = default;
 FreeParameters::FreeParameters(FreeParameters&&) noexcept = default;
 
 Numbers FreeParameters::surviving(const Numbers& effect) const {
-  Eigen::VectorXd e = vector_of(effect).cwiseProduct(basis_->weight);
+  Eigen::VectorXd e = basis_->without_own(vector_of(effect).cwiseProduct(basis_->weight));
   if (basis_->q.cols() > 0) e -= basis_->q * (basis_->q.transpose() * e);
   return {e.data(), e.data() + e.size()};
 }

@@ -10,7 +10,9 @@ namespace gonio::sealed {
 class FreeParameters {
  public:
   // `columns`: derivatives of all rows with respect to each free parameter; `sigma`: noise of the rows.
-  FreeParameters(const std::vector<Numbers>& columns, const Numbers& sigma);
+  // `stratum`: rows of one stratum have free numbers of their own, with the derivatives `own`; empty: there are none.
+  FreeParameters(const std::vector<Numbers>& columns, const Numbers& sigma,
+                 const std::vector<std::size_t>& stratum = {}, const std::vector<Numbers>& own = {});
   ~FreeParameters();
   FreeParameters(FreeParameters&&) noexcept;
   Numbers surviving(const Numbers& effect) const;  // in noise widths

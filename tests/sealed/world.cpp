@@ -11,8 +11,18 @@
 namespace gonio::sealed {
 namespace {
 
-constexpr double limit = 3.417;  // normal quantiles: two-sided level 1 %, power 80 %
-constexpr double surely_apart = 5, surely_not = 3, surely_outside = 0.7;
+// Length of an effect that a chi-square test with k degrees of freedom at 1 % finds with a power of 80 %: Wilson &
+// Hilferty's cube root for the quantile, and the normal law of the noncentral variable (Patnaik 1949).
+double limit_of(double k) {
+  const double quantile = k * std::pow(1 - 2 / (9 * k) + 2.326 * std::sqrt(2 / (9 * k)), 3);
+  double noncentral = quantile - k;
+  for (int step = 0; step < 30; ++step) noncentral = quantile - k + 0.842 * std::sqrt(2 * (k + 2 * noncentral));
+  return std::sqrt(noncentral);
+}
+double freedom(const EffectKind& kind) {
+  return kind.freedom > 0 ? kind.freedom : static_cast<double>(kind.parts);
+}
+constexpr double surely_apart = 5, surely_not = 3, surely_outside = 0.85;
 constexpr double harmless_share = 0.002, harmless_widths = 0.1;  // of the signal; of the noise, where it is in pixels
 
 const EffectKind& find(const std::vector<EffectKind>& kinds, const std::string& name) {
@@ -49,7 +59,7 @@ struct Stage {
         base(w.base()),
         clean(w.simulate(base, around)),
         sigma(w.sigma(clean)),
-        free(w.base_columns(), sigma) {}
+        free(w.base_columns(), sigma, w.strata(), w.own_columns()) {}
   Numbers surviving(const Sizes& sizes) const { return free.surviving(minus(world.simulate(base, sizes), clean)); }
 };
 
@@ -128,7 +138,7 @@ Sizes sizes_of(const Spec& spec, const Stage& s, Random& random) {
   Sizes sizes;
   for (const std::string& name : spec.effects) {
     Numbers size = drawn(find(s.kinds, name), random);
-    if (spec.multiple > 0) scale_to(s, spec.multiple * limit, size, name);
+    if (spec.multiple > 0) scale_to(s, spec.multiple * limit_of(freedom(find(s.kinds, name))), size, name);
     sizes[name] = size;
   }
   return sizes;
@@ -140,15 +150,18 @@ Sizes harmless(const Stage& s, Random& random) {
   for (const EffectKind& k : s.kinds)
     if (!k.id.empty() && k.variant.empty()) known.push_back(k);
   if (known.empty()) return {};
-  const EffectKind& kind = known[random.below(static_cast<std::uint32_t>(known.size()))];
-  Numbers size = drawn(kind, random);
-  const double widths = harmless_widths * std::sqrt(static_cast<double>(s.sigma.size()));
-  scale_to(s, widths, size, kind.name);
-  if (s.world.relative()) {
-    const double share = share_of(s, s.surviving({{kind.name, size}}), s.clean);
-    scale_to(s, widths * std::min(4.0, harmless_share / share), size, kind.name);
+  for (int tries = 0; tries < 20; ++tries) {  // some effects have a least size
+    const EffectKind& kind = known[random.below(static_cast<std::uint32_t>(known.size()))];
+    Numbers size = drawn(kind, random);
+    const double widths = harmless_widths * std::sqrt(static_cast<double>(s.sigma.size()));
+    scale_to(s, widths, size, kind.name);
+    if (s.world.relative()) {
+      const double share = share_of(s, s.surviving({{kind.name, size}}), s.clean);
+      scale_to(s, widths * std::min(4.0, harmless_share / share), size, kind.name);
+    }
+    if (length(s.surviving({{kind.name, size}})) < 4.5 * widths) return {{kind.name, size}};
   }
-  return {{kind.name, size}};
+  return {};
 }
 
 // Share of the effect that counts least, beside the others.
@@ -174,6 +187,7 @@ void fill_truth(const Spec& spec, const Stage& s, const Sizes& sizes, Truth& tru
       if (kind.values)
         for (const TrueValue& v : kind.values(size)) truth.values.push_back(v);
     }
+    truth.limit = std::max(truth.limit, limit_of(freedom(kind)));
     truth.stages.insert(truth.stages.end(), kind.stages.begin(), kind.stages.end());
     truth.conditions.insert(truth.conditions.end(), kind.conditions.begin(), kind.conditions.end());
     truth.world += (truth.world.empty() ? "" : " + ") + name;

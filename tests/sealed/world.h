@@ -19,6 +19,7 @@ struct EffectKind {
   std::size_t parts = 1;
   std::function<std::vector<TrueValue>(const Numbers& size)> values;  // empty: the declaration's numbers mean others
   std::string variant;  // of the design that it needs; empty: the usual one
+  double freedom = 0;   // numbers that a test for it has (one a view); 0: as many as it has parts
 };
 using Sizes = std::map<std::string, Numbers>;  // effect's name -> size; left out: absent
 
@@ -40,6 +41,9 @@ class World {
   // Files of the case; `stated` is the noise as it is written.
   virtual void write(const Numbers& observed, const Numbers& stated, Case& into) const = 0;
   virtual std::vector<Numbers> base_columns() const;  // default: central differences
+  // Rows with free numbers of their own (a pixel's radiance in all pictures) and the derivatives with respect to them.
+  virtual std::vector<std::size_t> strata() const { return {}; }
+  virtual std::vector<Numbers> own_columns() const { return {}; }
   // Where a row is seen in images; empty: rows are known by their values.
   virtual void locate(const Numbers& surviving, const Numbers& observed, Case& into) const;
   // Whether rivals are simulated to find out if effects can be told apart (dear for images).
