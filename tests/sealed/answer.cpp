@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/atomic_file.h"
+#include "io/exr.h"
 
 namespace gonio::sealed {
 namespace {
@@ -104,15 +105,19 @@ std::vector<std::string> split(const std::string& line) {
   return fields;
 }
 
-// Rows of the evidence are the case's rows in another order: they are known by the value that was observed.
-std::optional<double> auc_of(const std::filesystem::path& file, const Case& sealed) {
+// What explain calls the domain of a world.
+std::string domain_of(const Spec& spec) {
+  if (spec.domain == "boards" || spec.domain == "robot" || spec.domain == "images") return spec.domain;
+  return spec.domain == "exposures" || spec.domain == "photometric" ? "stacks" : "tables";
+}
+
+struct Evidence {
+  Numbers observed, effect;
+};
+Evidence read_evidence(const std::filesystem::path& file) {
   const std::string text = read_file(file);
-  std::vector<std::pair<double, double>> truth;
-  for (const Observed& o : sealed.observed) truth.emplace_back(o.value, std::abs(o.effect));
-  std::sort(truth.begin(), truth.end());
+  Evidence e;
   std::size_t observed = 0, effect = 0;
-  Numbers score;
-  std::vector<bool> affected;
   for (std::size_t at = 0, line = 0; at < text.size(); ++line) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::vector<std::string> fields = split(text.substr(at, end - at));
@@ -122,18 +127,53 @@ std::optional<double> auc_of(const std::filesystem::path& file, const Case& seal
         return static_cast<std::size_t>(std::find(fields.begin(), fields.end(), name) - fields.begin());
       };
       observed = place("observed"), effect = place("effect");
-      if (observed == fields.size() || effect == fields.size()) return {};
       continue;
     }
     if (fields.size() <= std::max(observed, effect)) continue;
-    const double value = std::atof(fields[observed].c_str());
-    const auto near =
-        std::lower_bound(truth.begin(), truth.end(), std::pair{value - 1e-6 * std::abs(value) - 1e-300, 0.0});
-    if (near == truth.end() || near->first > value + 1e-6 * std::abs(value)) continue;
-    score.push_back(std::atof(fields[effect].c_str()));
+    e.observed.push_back(std::atof(fields[observed].c_str()));
+    e.effect.push_back(std::atof(fields[effect].c_str()));
+  }
+  return e;
+}
+
+// Rows of the evidence are the case's rows, known by the value that was observed where that is written in its own unit,
+// else by their order: the makers write groups one after the other.
+std::optional<double> auc_of(const std::filesystem::path& file, const Case& sealed) {
+  const Evidence e = read_evidence(file);
+  std::vector<std::pair<double, double>> truth;
+  for (const Observed& o : sealed.observed) truth.emplace_back(o.value, std::abs(o.effect));
+  std::sort(truth.begin(), truth.end());
+  Numbers score;
+  std::vector<bool> affected;
+  for (std::size_t k = 0; k < e.observed.size(); ++k) {
+    const double value = e.observed[k], slack = 1e-6 * std::abs(value) + 1e-300;
+    const auto near = std::lower_bound(truth.begin(), truth.end(), std::pair{value - slack, 0.0});
+    if (near == truth.end() || near->first > value + slack) continue;
+    score.push_back(e.effect[k]);
     affected.push_back(near->second >= 1);
   }
-  return 2 * score.size() > truth.size() ? area_under_curve(score, affected) : std::nullopt;
+  if (10 * score.size() > 9 * truth.size()) return area_under_curve(score, affected);
+  if (e.effect.size() != sealed.observed.size()) return {};
+  affected.clear();
+  for (const Observed& o : sealed.observed) affected.push_back(std::abs(o.effect) >= 1);
+  return area_under_curve(e.effect, affected);
+}
+
+// Masks that images and stacks write, effect-ID.exr, against the effect on every pixel.
+std::optional<double> auc_of_masks(const std::filesystem::path& folder, const Case& sealed) {
+  Numbers score;
+  std::vector<bool> affected;
+  for (const auto& [id, effect] : sealed.pixels) {
+    const std::filesystem::path file = folder / ("effect-" + id + ".exr");
+    if (!std::filesystem::exists(file)) continue;
+    const io::Image mask = io::decode_exr(read_file(file), file.string());
+    if (mask.pixels() != effect.size()) continue;
+    for (std::size_t p = 0; p < effect.size(); ++p) {
+      score.push_back(mask.data[p * mask.channels.size()]);
+      affected.push_back(effect[p] >= 1);
+    }
+  }
+  return score.empty() ? std::nullopt : area_under_curve(score, affected);
 }
 
 }  // namespace
@@ -173,16 +213,17 @@ Answer read_answer(const std::filesystem::path& folder, const Case& sealed) {
   a.ran = true;
   std::size_t own = 0;
   for (std::size_t k = 0; k < explanations.size(); ++k)
-    if (text_or_nothing(explanations[k].find("domain")) == sealed.spec.domain) own = k;
+    if (text_or_nothing(explanations[k].find("domain")) == domain_of(sealed.spec)) own = k;
   read_entry(explanations[own], a);
   for (std::size_t k = 0; k < explanations.size(); ++k)
     for (const Value& n : list(explanations[k].find("named")))
       if (k != own) add_unique(a.elsewhere, text_or_nothing(n.find("mechanism")));
-  if (std::filesystem::is_directory(folder / "out"))
-    for (const auto& file : std::filesystem::directory_iterator(folder / "out"))
-      if (const std::string name = file.path().filename().string();
-          name.starts_with("evidence") && name.ends_with(".csv") && !a.auc)
-        a.auc = auc_of(file.path(), sealed);
+  if (!sealed.pixels.empty()) {
+    a.auc = auc_of_masks(folder / "out", sealed);
+  } else if (const auto file = folder / "out" / ("evidence-" + domain_of(sealed.spec) + ".csv");
+             std::filesystem::exists(file)) {
+    a.auc = auc_of(file, sealed);
+  }
   return a;
 }
 

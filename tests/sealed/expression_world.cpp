@@ -86,7 +86,9 @@ std::vector<EffectKind> ExpressionWorld::effects() const {
                0.02,
                true,
                1,
-               exact("sensor.black-offset", "offset"),
+               [this](const Numbers& size) {
+                 return std::vector<TrueValue>{{"sensor.black-offset", "offset", size[0] * a_}};
+               },
                ""});
   k.push_back({"bent response", "sensor.non-linearity", {"sensor"}, signal, 0.03, 0.12, false, 1, {}, ""});
   k.push_back({"inverse square", "light.inverse-square", {"light"}, {"light.distance"}, 0.3, 1, false, 1, {}, ""});

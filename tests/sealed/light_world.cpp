@@ -1,5 +1,6 @@
 // A photodiode on a stage under a lamp: irradiance over planes at three heights. Lamps with a size are summed over
 // their discs; lamps that were put down elsewhere are where they are.
+#include <algorithm>
 #include <cmath>
 
 #include "geom/vector.h"
@@ -104,10 +105,11 @@ void LightWorld::design(Random& random, const std::string& variant) {
 
 double LightWorld::reading(const Numbers& base, const Sizes& sizes, std::size_t row) const {
   const Vec3 at_diode{at("x_m", row), at("y_m", row), at("z_m", row)};
+  // A lamp that is narrower sideways faces the middle of what it lights.
   const auto from = [&](Vec3 lamp, double exponent) {
-    const Vec3 to = lamp - at_diode;
-    const double d2 = dot(to, to), cosine = to.z / std::sqrt(d2);
-    return cosine / d2 * std::pow(cosine, exponent);
+    const Vec3 to = lamp - at_diode, axis = lamp - Vec3{0, 0, 0.08};
+    const double d2 = dot(to, to), off = dot(to, axis) / std::sqrt(d2 * dot(axis, axis));
+    return to.z / std::pow(d2, 1.5) * std::pow(std::max(0.0, off), exponent);
   };
   double e = 0;
   if (believes_parallel_ && size_of(sizes, "diverging light") == 0) {
@@ -129,7 +131,7 @@ void LightWorld::describe(Value& manifest, Value& table) const {
   Value light = Value::object();
   if (believes_parallel_) {
     light = Value::object({{"model", "directional"}, {"towards", three(lamp_ / std::sqrt(dot(lamp_, lamp_)))}});
-    light["irradiance"] = free_parameter(1);
+    light["watt_per_m2"] = free_parameter(1);
   } else {
     light = Value::object({{"model", "point"}, {"position_m", three(lamp_)}});
     light["watt_per_sr"] = free_parameter(1);

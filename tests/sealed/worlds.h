@@ -34,6 +34,7 @@ std::unique_ptr<World> surface_world();
 std::unique_ptr<World> light_world();
 std::unique_ptr<World> robot_world();
 std::unique_ptr<World> tracks_world();
+std::unique_ptr<World> volume_world();
 std::unique_ptr<World> exposures_world();
 std::unique_ptr<World> photometric_world();
 
