@@ -73,7 +73,7 @@ const std::vector<WorldEntry>& entries() {
 }
 
 // Sizes in detection limits, in turn: 0 draws what occurs in practice.
-constexpr double multiples[] = {0, 4, 0, 8, 2, 0};
+constexpr double multiples[] = {0, 0, 4, 0, 8, 0};
 
 class Planner {
  public:
