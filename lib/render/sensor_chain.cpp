@@ -23,11 +23,17 @@ const std::map<std::string, Links>& links() {
       {"optics.veiling-glare", {&Sensor::glare_share}},
       {"sensor.crosstalk", {&Sensor::crosstalk_share}},
       {"sensor.prnu", {&Sensor::prnu_sigma}},
-      {"sensor.non-linearity", {&Sensor::quadratic, &Sensor::reference}},
+      {"sensor.non-linearity", {}},  // response_of()
       {"sensor.row-pattern", {&Sensor::row_amplitude, &Sensor::row_period_px, &Sensor::row_phase_rad}},
       {"sensor.black-offset", {&Sensor::black_offset}},
       {"sensor.saturation", {&Sensor::full_scale}}};
   return all;
+}
+
+Response response_of(const std::vector<double>& amounts) {
+  ToneSlopes slopes;
+  std::copy_n(amounts.begin() + 3, slopes.size(), slopes.begin());
+  return {amounts[0], amounts[2], amounts[1], ToneCurve(slopes)};
 }
 
 // Knuth's product of uniforms; beyond 50 expected events the rounded normal, whose third moment differs by less than a
@@ -99,7 +105,7 @@ io::Image behind_filters(const io::Image& rendered, const Sensor& sensor) {
 double reading(double v, const Sensor& sensor, int row, Random& fixed, Random& random) {
   if (sensor.prnu_sigma != 0) v *= 1 + sensor.prnu_sigma * fixed.normal();
   if (sensor.noise.gain > 0) v = poisson(v * sensor.noise.gain, random) / sensor.noise.gain;
-  if (sensor.quadratic != 0) v *= 1 + sensor.quadratic * v / sensor.reference;
+  v = sensor.response(v);
   if (sensor.row_amplitude != 0)
     v *= 1 + sensor.row_amplitude * std::sin(2 * pi * row / sensor.row_period_px + sensor.row_phase_rad);
   v += sensor.black_offset + sensor.noise.read * random.normal();
@@ -125,7 +131,8 @@ Sensor sensor_of(const manifest::Document& document, std::size_t image) {
     const auto amounts = scene::camera_amounts(*mechanism::find_mechanism(id), use, entry.camera,
                                                manifest::place(document, "/mechanisms/" + id));
     if (!amounts) continue;
-    for (std::size_t i = 0; i < amounts->size(); ++i) sensor.*link->second[i] = (*amounts)[i];
+    if (id == "sensor.non-linearity") sensor.response = response_of(*amounts);
+    for (std::size_t i = 0; i < link->second.size(); ++i) sensor.*link->second[i] = (*amounts)[i];
   }
   return sensor;
 }

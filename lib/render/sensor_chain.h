@@ -6,7 +6,7 @@
 //   3. the camera's mosaic    one channel Y behind colour filters; "polarizers": Y behind polarizers (render/mosaic.h)
 //   4. sensor.prnu            v *= 1 + sigma n, n normal and always the same for a pixel of a camera
 //   5. photon noise           Poisson: v is v * gain electrons (Janesick 2007, equation 2.14)
-//   6. sensor.non-linearity   v *= 1 + quadratic v / reference
+//   6. sensor.non-linearity   quadratic, power law, tone curve (render/tone_curve.h)
 //   7. sensor.row-pattern     v *= 1 + amplitude sin(2 pi row / period_px + phase_rad)
 //   8. sensor.black-offset    v += offset
 //   9. read noise             normal
@@ -20,6 +20,7 @@
 #include "io/image.h"
 #include "manifest/document.h"
 #include "mechanism/mechanism.h"
+#include "render/tone_curve.h"
 
 namespace gonio::render {
 
@@ -28,7 +29,7 @@ struct Sensor {  // as it stands: ideal, three channels, without noise
   std::string mosaic;
   manifest::Noise noise;
   double glare_share = 0, crosstalk_share = 0, prnu_sigma = 0;
-  double quadratic = 0, reference = 1;
+  Response response;
   double row_amplitude = 0, row_period_px = 100, row_phase_rad = 0;
   double black_offset = 0;
   double full_scale = 0;  // 0: no limit

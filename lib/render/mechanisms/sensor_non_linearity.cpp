@@ -1,34 +1,68 @@
-// sensor.non-linearity: the reading bends away from the light. Equation: render/sensor_chain.h, step 6.
+// sensor.non-linearity: the reading bends away from the light. Equations: render/tone_curve.h. Its three forms are
+// alternatives; explain fits one of them at a time.
 #include "mechanism/mechanism.h"
+#include "render/tone_curve.h"
 
 namespace gonio::mechanism {
+namespace {
+
+std::vector<Parameter> parameters_of_response() {
+  std::vector<Parameter> all = {
+      {.name = "quadratic",
+       .unit = "1",
+       .neutral = 0,
+       .lower = -0.5,
+       .upper = 0.5,
+       .start = -0.02,
+       .meaning = "relative departure from proportionality at the value reference"},
+      {.name = "reference",
+       .unit = "W/(m^2 sr)",
+       .neutral = 1,
+       .lower = 1e-06,
+       .upper = 1000000.0,
+       .start = 1,
+       .meaning = "value at which light and reading agree, and at which the quadratic's departure is stated; without "
+                  "effect where the others are neutral"},
+      {.name = "gamma",
+       .unit = "1",
+       .neutral = 1,
+       .lower = 0.1,
+       .upper = 5,
+       .start = 0.9,
+       .meaning = "exponent of a power law: reading over reference is light over reference to this power"},
+  };
+  for (std::size_t k = 0; k < render::tone_nodes.size(); ++k)
+    all.push_back({.name = "slope_" + std::to_string(k + 1),
+                   .unit = "1",
+                   .neutral = 1,
+                   .lower = 0.02,
+                   .upper = 100,
+                   .start = 1.1,
+                   .meaning = "tone curve: d ln(light) / d ln(reading) where the reading is node " +
+                              std::to_string(k + 1) +
+                              " of the reference (nodes: 1, 2, 4, 6, 8, 12, 16, 24, 32, 48 "
+                              "and 64 of 64)"});
+  return all;
+}
+
+}  // namespace
 
 const Mechanism& sensor_non_linearity() {
   static const Mechanism declaration{
       .id = "sensor.non-linearity",
       .sentence = "The reading does not grow in proportion to the light.",
       .typical = "0.3 to 2 % (film and JPEG: far more)",
-      .equation = "v *= 1 + quadratic v / reference",
-      .source = "EMVA Standard 1288, release 4.0, linearity (second order)",
+      .equation =
+          "v *= 1 + quadratic v / reference; or v = reference (v / reference)^gamma; or a tone curve, "
+          "d ln(light) / d ln(v) = slope(v / reference), linear in ln(v) between the nodes slope_1 .. slope_11",
+      .source = "EMVA Standard 1288, release 4.0, linearity (second order); Debevec & Malik 1997, equation 3",
       .stage = "sensor",
       .target = Target::camera,
-      .domains = {},
-      .parameters = {{.name = "quadratic",
-                      .unit = "1",
-                      .neutral = 0,
-                      .lower = -0.5,
-                      .upper = 0.5,
-                      .start = -0.02,
-                      .meaning = "relative departure from proportionality at the value reference"},
-                     {.name = "reference",
-                      .unit = "W/(m^2 sr)",
-                      .neutral = 1,
-                      .lower = 1e-06,
-                      .upper = 1000000.0,
-                      .start = 1,
-                      .meaning = "value at which the departure is stated; without effect where quadratic is 0"}},
+      .domains = {"stacks"},
+      .parameters = parameters_of_response(),
       .conditions = {"image.radiance"},
       .mistaken_for = {{.with = "surface.specular", .told_apart = "exposure ramp"},
+                       {.with = "sensor.black-offset", .told_apart = "lens cap"},
                        {.with = "sensor.saturation", .told_apart = "shorter exposure"}},
   };
   return declaration;
