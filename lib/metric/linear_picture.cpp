@@ -96,6 +96,14 @@ void Response::check_invertible(const std::string& place) const {
                   "write OpenEXR (--format exr), which needs no way back to codes");
 }
 
+const manifest::Value& response_of_channel(const manifest::Value& stated, const std::string& channel,
+                                           const std::string& place) {
+  if (!stated.is_object()) return stated;
+  const manifest::Value* own = stated.find(channel);
+  if (own == nullptr) refuse_response(place, "states no response for the channel " + channel);
+  return *own;
+}
+
 LinearPicture read_linear(const std::filesystem::path& path, const manifest::Value& response,
                           const std::string& place) {
   LinearPicture picture;
@@ -104,9 +112,10 @@ LinearPicture read_linear(const std::filesystem::path& path, const manifest::Val
   if (picture.integer_codes && response.is_null())
     throw Error(Exit::data, place, "is an 8 or 16-bit picture whose response is not stated",
                 "state \"response\" (--response): \"linear\", \"srgb\" or a table");
-  const Response linear(response, place);
   const io::Image raw = io::read_picture(path);
   const auto names = colour_names(raw, picture.name);
+  std::vector<Response> linear;
+  for (const auto& name : names) linear.emplace_back(response_of_channel(response, name, place), place);
   picture.colour = select(raw, names, "");
   picture.variance = select(raw, names, "variance.");
   picture.clipped.assign(raw.pixels(), 0);
@@ -114,7 +123,7 @@ LinearPicture read_linear(const std::filesystem::path& path, const manifest::Val
   for (std::size_t i = 0; i < picture.colour.data.size(); ++i) {
     float& value = picture.colour.data[i];
     if (picture.integer_codes && value >= full_scale) picture.clipped[i / channels] = 1;
-    value = linear(value);
+    value = linear[i % channels](value);
   }
   return picture;
 }

@@ -2,7 +2,8 @@
 //
 // A response takes the code (stored value over full scale, 0 to 1) to a linear value: "linear", "srgb" (IEC 61966-2-1),
 // or a table
-// [[code, linear], ...], interpolated linearly, constant beyond its ends. EXR is linear unless stated otherwise; an 8
+// [[code, linear], ...], interpolated linearly, constant beyond its ends, or an object with one of these for each
+// channel, {"R": ..., "G": ..., "B": ...}. EXR is linear unless stated otherwise; an 8
 // or 16-bit file without a stated response is refused, because a guess would bend every number that follows.
 #pragma once
 #include <cstdint>
@@ -20,13 +21,17 @@ class Response {
  public:
   explicit Response(const manifest::Value& stated, const std::string& place);
   float operator()(float code) const;
-  float code(float linear) const;  // the inverse
+  float code(float linear) const;                         // the inverse
   void check_invertible(const std::string& place) const;  // Error(data) for a table whose linear values do not rise
 
  private:
   bool srgb_ = false;
   std::vector<std::pair<double, double>> table_;  // empty: linear
 };
+
+// What is stated for `channel`: the response itself, or the object's entry. Error(data) where the object has none.
+const manifest::Value& response_of_channel(const manifest::Value& stated, const std::string& channel,
+                                           const std::string& place);
 
 struct LinearPicture {
   std::string name;                   // for messages

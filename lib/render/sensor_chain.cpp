@@ -31,9 +31,9 @@ const std::map<std::string, Links>& links() {
 }
 
 Response response_of(const std::vector<double>& amounts) {
-  ToneSlopes slopes;
-  std::copy_n(amounts.begin() + 3, slopes.size(), slopes.begin());
-  return {amounts[0], amounts[2], amounts[1], ToneCurve(slopes)};
+  ToneBends bends;
+  std::copy_n(amounts.begin() + 4, bends.size(), bends.begin());
+  return {amounts[0], amounts[2], amounts[1], ToneCurve(slopes_of(amounts[3], bends))};
 }
 
 // Knuth's product of uniforms; beyond 50 expected events the rounded normal, whose third moment differs by less than a

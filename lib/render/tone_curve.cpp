@@ -25,6 +25,14 @@ double power(double v, double exponent) {
 
 }  // namespace
 
+ToneSlopes slopes_of(double slope, const ToneBends& bends) {
+  ToneSlopes p;
+  p[tone_anchor] = slope;
+  for (std::size_t k = tone_anchor; k > 0; --k) p[k - 1] = p[k] * std::exp(bends[k - 1]);
+  for (std::size_t k = tone_anchor; k + 1 < nodes; ++k) p[k + 1] = p[k] * std::exp(bends[k]);
+  return p;
+}
+
 ToneCurve::ToneCurve(const ToneSlopes& slopes) : slopes_(slopes), log_light_{} {
   const std::array<double, nodes>& x = log_nodes();
   log_light_[nodes - 1] = 0;

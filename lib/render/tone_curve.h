@@ -14,8 +14,13 @@ namespace gonio::render {
 
 inline constexpr std::array<double, 11> tone_nodes{1.0 / 64, 1.0 / 32, 1.0 / 16, 3.0 / 32, 1.0 / 8, 3.0 / 16,
                                                    1.0 / 4,  3.0 / 8,  1.0 / 2,  3.0 / 4,  1.0};
+inline constexpr std::size_t tone_anchor = 6;              // the node at a quarter
 using ToneSlopes = std::array<double, tone_nodes.size()>;  // p at the nodes, each > 0
 inline constexpr ToneSlopes linear_tone{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+// The slopes as they are declared and fitted: `slope` at the anchor; going outwards from it to both sides, each bend is
+// the logarithm of the outer slope over the inner one. bends[k] lies between nodes k and k + 1.
+using ToneBends = std::array<double, tone_nodes.size() - 1>;
+ToneSlopes slopes_of(double slope, const ToneBends& bends);
 
 class ToneCurve {
  public:

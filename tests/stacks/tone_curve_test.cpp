@@ -38,6 +38,17 @@ TEST(ToneCurve, EqualSlopesAreAPowerLaw) {
   for (double v = 0.001; v < 2; v *= 1.3) EXPECT_NEAR(curve(v), power(v), 1e-12);
 }
 
+TEST(ToneCurve, BendsLeadOutwardsFromTheAnchor) {
+  ToneBends bends{};
+  EXPECT_EQ(slopes_of(1, bends), linear_tone);
+  bends[tone_anchor - 1] = 0.1;
+  bends[tone_anchor] = -0.2;
+  const ToneSlopes slopes = slopes_of(2, bends);
+  EXPECT_DOUBLE_EQ(slopes[tone_anchor], 2);
+  EXPECT_DOUBLE_EQ(slopes.front(), 2 * std::exp(0.1));
+  EXPECT_DOUBLE_EQ(slopes.back(), 2 * std::exp(-0.2));
+}
+
 TEST(ToneCurve, ResponsesAreUndoneByTheirInverse) {
   const Response all{-0.15, 0.7, 2.0, ToneCurve(film())};
   for (double v = 0.01; v < 2; v *= 1.2) EXPECT_NEAR(all.light(all(v)), v, 1e-11 * v) << v;

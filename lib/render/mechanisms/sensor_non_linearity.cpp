@@ -30,18 +30,24 @@ std::vector<Parameter> parameters_of_response() {
        .upper = 5,
        .start = 0.9,
        .meaning = "exponent of a power law: reading over reference is light over reference to this power"},
+      {.name = "slope",
+       .unit = "1",
+       .neutral = 1,
+       .lower = 0.05,
+       .upper = 20,
+       .start = 1.1,
+       .meaning = "tone curve: d ln(light) / d ln(reading) where the reading is a quarter of the reference"},
   };
-  for (std::size_t k = 0; k < render::tone_nodes.size(); ++k)
-    all.push_back({.name = "slope_" + std::to_string(k + 1),
+  // Nodes: 1, 2, 4, 6, 8, 12, 16 (the anchor), 24, 32, 48 and 64 of 64.
+  for (std::size_t k = 1; k < render::tone_nodes.size(); ++k)
+    all.push_back({.name = "bend_" + std::to_string(k),
                    .unit = "1",
-                   .neutral = 1,
-                   .lower = 0.02,
-                   .upper = 100,
-                   .start = 1.1,
-                   .meaning = "tone curve: d ln(light) / d ln(reading) where the reading is node " +
-                              std::to_string(k + 1) +
-                              " of the reference (nodes: 1, 2, 4, 6, 8, 12, 16, 24, 32, 48 "
-                              "and 64 of 64)"});
+                   .neutral = 0,
+                   .lower = -4,
+                   .upper = 4,
+                   .start = 0.02,
+                   .meaning = "tone curve: logarithm of the slope at the outer over that at the inner of its nodes " +
+                              std::to_string(k) + " and " + std::to_string(k + 1)});
   return all;
 }
 
@@ -54,7 +60,8 @@ const Mechanism& sensor_non_linearity() {
       .typical = "0.3 to 2 % (film and JPEG: far more)",
       .equation =
           "v *= 1 + quadratic v / reference; or v = reference (v / reference)^gamma; or a tone curve, "
-          "d ln(light) / d ln(v) = slope(v / reference), linear in ln(v) between the nodes slope_1 .. slope_11",
+          "d ln(light) / d ln(v) = slope at v = reference / 4, exp(bend_k) times as much from node to node outwards, "
+          "linear in ln(v) between",
       .source = "EMVA Standard 1288, release 4.0, linearity (second order); Debevec & Malik 1997, equation 3",
       .stage = "sensor",
       .target = Target::camera,

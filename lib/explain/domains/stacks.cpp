@@ -1,0 +1,40 @@
+// Stacks of pictures of one static scene without geometry.
+#include "explain/domain.h"
+#include "explain/stacks/exposures_problem.h"
+
+namespace gonio::explain::domains {
+
+const Domain& stacks() {
+  static const Domain domain{
+      .name = "stacks",
+      .sentence =
+          "pictures of one static scene without objects: three exposures with exposure_s, or six under distant "
+          "lamps",
+      .order = 4,
+      .applies =
+          [](const manifest::Document& document) {
+            using namespace explain::stacks;
+            return !stacks_of(document, Kind::exposures).empty();
+          },
+      .problems =
+          [](const manifest::Document& document, const ProblemOptions&) {
+            std::vector<std::unique_ptr<Problem>> problems = explain::stacks::exposures_problems(document);
+            return problems;
+          },
+      .files =
+          [](const manifest::Document& document) {
+            std::vector<std::filesystem::path> files;
+            for (const explain::stacks::Kind kind : {explain::stacks::Kind::exposures, explain::stacks::Kind::lights})
+              for (const std::vector<std::size_t>& entries : explain::stacks::stacks_of(document, kind))
+                for (const std::size_t i : entries) {
+                  const std::string at = "/images/" + std::to_string(i);
+                  files.push_back(manifest::resolve(document, document.images[i].file, at + "/file"));
+                  if (!document.images[i].mask.empty())
+                    files.push_back(manifest::resolve(document, document.images[i].mask, at + "/mask"));
+                }
+            return files;
+          }};
+  return domain;
+}
+
+}  // namespace gonio::explain::domains

@@ -1,0 +1,68 @@
+// See exposures_problem.h: the words, the upgraded manifest and the pictures of a stack of exposures.
+#include <algorithm>
+#include <cmath>
+
+#include "explain/explanation.h"
+#include "explain/sentence.h"
+#include "explain/stacks/exposures_problem.h"
+#include "explain/stacks/stack_manifest.h"
+#include "explain/stacks/stack_pictures.h"
+
+namespace gonio::explain::stacks {
+std::string ExposuresProblem::remarks(const Explanation& e) const {
+  if (!is_named(*this, e, "sensor.non-linearity")) return "";
+  const auto named = std::find_if(e.named.begin(), e.named.end(),
+                                  [&](std::size_t c) { return candidates_[c].id() == "sensor.non-linearity"; });
+  const std::vector<std::size_t>& own = candidates_[*named].parameters;
+  if (own[0] == shared_.quadratic)
+    return "The response departs from proportion by " + printed(100 * e.values[own[0]]) + " % at the reading " +
+           printed(stack_.full_scale) + ".";
+  if (own[0] == shared_.gamma)
+    return "The response is a power law: readings grow with the light to the power " + printed(e.values[own[0]]) + ".";
+  const ReadingChain now = chain(e.values);
+  std::string text =
+      own[0] != shared_.slope[0] ? "The response is a tone curve of each channel" : "The response is a tone curve";
+  text += ", not one power: where it reads";
+  for (const double z : {0.25, 0.5, 0.75}) {
+    const render::ToneCurve& curve = now.response[stack_.channels.size() > 1 ? 1 : 0].curve;
+    const double slope = std::log(curve.light(1.01 * z) / curve.light(z / 1.01)) / (2 * std::log(1.01));
+    text += (z == 0.25 ? " " : z == 0.75 ? " and " : ", ") + printed(100 * z) + " %";
+    text += " of " + printed(stack_.full_scale) + " it grows with the light to the power " + printed(1 / slope, 2);
+  }
+  return text + (stack_.channels.size() > 1 ? " (green)." : ".");
+}
+
+void ExposuresProblem::apply(const Explanation& e, manifest::Document& document) const {
+  const bool bent = is_named(*this, e, "sensor.non-linearity");
+  const ReadingChain now = chain(e.values);
+  if (bent) state_responses(stack_, now.response, now.offset, document);
+  for (const std::size_t c : e.named) {
+    const mechanism::Mechanism& m = *candidates_[c].mechanism;
+    if (m.id == "sensor.non-linearity" || (bent && m.id == "sensor.black-offset")) continue;
+    const bool of_camera = m.target == mechanism::Target::camera && !stack_.camera.empty();
+    switch_on(candidates_[c], of_camera ? std::vector<std::string>{stack_.camera} : std::vector<std::string>{}, e,
+              document);
+  }
+}
+
+Illustration ExposuresProblem::illustrate(const Explanation& e, const std::filesystem::path& out,
+                                          manifest::Document& document) const {
+  Illustration result;
+  std::vector<CurveDot> dots;
+  const ReadingChain before = chain(e.base_values), after = chain(e.values);
+  std::size_t row = 0;
+  for (std::size_t g = 0; g < rows_.size(); ++g)
+    for (const std::size_t s : rows_[g])
+      dots.push_back({sites_[s].channel, radiance(after, e.values, s) * taken_[g].exposure_s * taken_[g].gain,
+                      observations_.value[row++]});
+  const std::string title = "Readings over radiance times exposure, both logarithmic";
+  result.pictures.push_back({title + (e.named.empty() ? "; the lines are a linear sensor"
+                                                      : ", with what was fitted; dashed, a linear sensor"),
+                             "", curve_drawing(stack_, after, dots)});
+  if (e.verdict != Verdict::null)
+    add_effects(stack_, exposure_effects(stack_, noise_, taken_, before, after, !e.named.empty()), e, out, document,
+                result);
+  return result;
+}
+
+}  // namespace gonio::explain::stacks

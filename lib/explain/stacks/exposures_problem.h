@@ -1,0 +1,74 @@
+// A stack of exposures: one static scene recorded for different times. Base model: readings are radiance times
+// exposure, for integer files up to half a code of rounding. Unknown: the radiance of every site (stack_sites.h),
+// stated as the reading that it would give in the one of its pictures that shows it best. So stated it hardly moves
+// when a response is put in, and the readings in the other pictures are nearly linear in it, whatever the response.
+//
+// Groups are the pictures, blocks parts of a picture. A picture that is left out is predicted from the radiances that
+// the others show and the response that was fitted to them. Sites are few (a hundred and fifty) because their
+// radiances belong to all pictures.
+#pragma once
+#include <memory>
+#include <tuple>
+
+#include "explain/problem.h"
+#include "explain/stacks/reading_chain.h"
+#include "explain/stacks/stack_sites.h"
+
+namespace gonio::explain::stacks {
+
+class ExposuresProblem final : public Problem {
+ public:
+  ExposuresProblem(const manifest::Document& document, Stack stack, const SiteOptions& options = {});
+
+  void predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const override;
+  void jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
+                std::span<double> derivatives) const override;
+  std::string domain() const override { return "stacks"; }
+  std::string unit() const override { return "1"; }
+  std::string score_name() const override { return "relative RMSE"; }
+  std::string group_noun() const override { return "exposure"; }
+  Importance importance() const override { return Importance::share_of_signal; }
+  // From pairs of sites of nearly the same brightness in one picture: what bends the response is the same for both.
+  std::optional<double> noise_factor(std::span<const double> residual) const override;
+  std::string remarks(const Explanation& explanation) const override;
+  void apply(const Explanation& explanation, manifest::Document& document) const override;
+  Illustration illustrate(const Explanation& explanation, const std::filesystem::path& out,
+                          manifest::Document& document) const override;
+
+  const Stack& stack() const { return stack_; }
+  const std::vector<Site>& sites() const { return sites_; }
+  ReadingChain chain(std::span<const double> values) const;
+
+ private:
+  // Places in parameters_ of what all readings share.
+  struct Shared {
+    std::size_t quadratic = 0, gamma = 0, offset = 0, rounding = 0, full_scale = 0, extra_s = 0, drift = 0, drift_s = 0,
+                glare = 0;
+    std::array<std::size_t, 4> slope{};  // of one curve for all channels, then of each channel's own
+    std::array<std::array<std::size_t, std::tuple_size_v<render::ToneBends>>, 4> bend{};
+  };
+  void add_radiances();
+  void add_rows();
+  void add_conditions();
+  void add_shared(const manifest::Document& document);
+  void add_responses(const manifest::Document& document);
+  double radiance(const ReadingChain& chain, std::span<const double> values, std::size_t site) const;
+  // A parameter as `id` declares it; `prefix` stands before its name. Neutral is what the manifest already says.
+  std::size_t add_parameter(const manifest::Document& document, const std::string& id, const std::string& name,
+                            double size, const std::string& prefix = "");
+  void add_candidate(const manifest::Document& document, const std::string& id, std::vector<std::size_t> parameters);
+
+  Stack stack_;
+  ReadingNoise noise_;
+  std::vector<Site> sites_;
+  std::vector<std::size_t> shown_in_;           // by site: the image that its radiance is stated in
+  std::vector<std::vector<std::size_t>> rows_;  // by image: sites, ascending
+  std::vector<Taken> taken_;                    // by image
+  Shared shared_;
+  std::array<double, 3> mean_radiance_{};
+};
+
+// One problem for every stack of exposures in the manifest.
+std::vector<std::unique_ptr<Problem>> exposures_problems(const manifest::Document& document);
+
+}  // namespace gonio::explain::stacks

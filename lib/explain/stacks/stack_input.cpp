@@ -1,0 +1,200 @@
+// See stack_input.h.
+#include "explain/stacks/stack_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "base/error.h"
+#include "io/codes.h"
+#include "io/picture.h"
+#include "metric/linear_picture.h"
+
+namespace gonio::explain::stacks {
+namespace {
+
+using manifest::Document;
+using manifest::ImageEntry;
+
+constexpr std::size_t fewest_exposures = 3, fewest_lights = 6;
+
+std::string pointer(std::size_t entry, const std::string& key) {
+  return "/images/" + std::to_string(entry) + key;
+}
+
+bool may_be_stacked(const ImageEntry& e) {
+  const bool dropped = e.weight && *e.weight == 0;
+  const bool of_boards = !e.board.empty() || !e.boards.empty() || !e.robot.empty();
+  return !e.file.empty() && !dropped && !of_boards;
+}
+
+// The lamp of an image in a stack of lights, or empty.
+std::string distant_lamp(const Document& document, const ImageEntry& e) {
+  if (e.light.size() != 1) return "";
+  const auto light = document.lights.find(e.light[0]);
+  return light != document.lights.end() && light->second.model == "directional" ? e.light[0] : "";
+}
+
+std::string place_of_camera(const ImageEntry& e) {
+  std::string key = e.camera + "|" + e.group;
+  if (!e.world_from_camera) return key;
+  const auto& pose = *e.world_from_camera;
+  for (const double v : {pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.translation_m.x,
+                         pose.translation_m.y, pose.translation_m.z})
+    key += "|" + std::to_string(v);
+  return key;
+}
+
+bool large_enough(const Document& document, const std::vector<std::size_t>& entries, Kind kind) {
+  std::set<double> times;
+  std::set<std::string> lamps;
+  for (const std::size_t i : entries) {
+    times.insert(document.images[i].exposure_s.value_or(0));
+    lamps.insert(distant_lamp(document, document.images[i]));
+  }
+  return kind == Kind::exposures ? times.size() >= fewest_exposures
+                                 : lamps.size() >= fewest_lights && lamps.size() == entries.size();
+}
+
+// Charge and light spill over from a clipped pixel, and resampling mixes it in: pixels around it do not count, whatever
+// their filter or channel.
+void drop_neighbours_of_clipped(const std::vector<std::uint8_t>& clipped, int reach, StackImage& image) {
+  const int width = image.picture.width, height = image.picture.height;
+  const auto channels = static_cast<int>(image.picture.channels.size());
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      if (!clipped[static_cast<std::size_t>(y * width + x)]) continue;
+      for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v)
+        for (int u = std::max(0, x - reach); u <= std::min(width - 1, x + reach); ++u)
+          for (int c = 0; c < channels; ++c) image.counts[image.picture.index(u, v, c)] = 0;
+    }
+}
+
+// Readings, and which of them count.
+void read_image(const Document& document, StackImage& image, Stack& stack) {
+  const ImageEntry& entry = document.images[image.entry];
+  const std::string at = manifest::place(document, pointer(image.entry, "/response"));
+  const std::filesystem::path path = manifest::resolve(document, entry.file, pointer(image.entry, "/file"));
+  const int bits = io::code_bits(path);
+  if (bits > 0 && entry.response.is_null())
+    throw Error(Exit::data, at, "is not stated for an 8 or 16-bit picture",
+                "state \"response\": \"linear\", \"srgb\" or a table");
+  const double quantum = bits > 0 ? 1 / (std::pow(2.0, bits) - 1) : 0;
+  stack.integer = bits > 0;
+  if (entry.response.is_string() && entry.response.as_string() == "linear")
+    stack.quantum = std::max(stack.quantum, quantum);
+  const io::Image raw = io::read_picture(path);
+  const bool colour = raw.channel("R") >= 0 && raw.channel("G") >= 0 && raw.channel("B") >= 0;
+  if (!colour && raw.channel("Y") < 0)
+    throw Error(Exit::data, manifest::place(document, pointer(image.entry, "/file")),
+                "names a picture without channels R, G, B or Y", "record one of them");
+  const std::vector<std::string> channels =
+      colour ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
+  image.picture = io::Image(raw.width, raw.height, channels);
+  image.counts.assign(image.picture.data.size(), 1);
+  const float lowest = static_cast<float>(0.5 * quantum), highest = static_cast<float>(1 - 0.5 * quantum);
+  std::vector<std::uint8_t> clipped(raw.pixels());
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const metric::Response response(metric::response_of_channel(entry.response, channels[c], at), at);
+    const auto from = static_cast<std::size_t>(raw.channel(channels[c]));
+    stack.lowest =
+        std::max(response(0), stack.images.empty() && c == 0 ? response(0) : static_cast<float>(stack.lowest));
+    stack.highest =
+        std::min(response(1), stack.images.empty() && c == 0 ? response(1) : static_cast<float>(stack.highest));
+    for (std::size_t p = 0; p < raw.pixels(); ++p) {
+      const float code = raw.data[p * raw.channels.size() + from];
+      const std::size_t i = p * channels.size() + c;
+      image.picture.data[i] = response(code);
+      if (!std::isfinite(code) || (bits > 0 && (code < lowest || code > highest))) image.counts[i] = 0;
+      if (bits > 0 && code > highest) clipped[p] = 1;
+    }
+  }
+  drop_neighbours_of_clipped(clipped, stack.step, image);
+}
+
+void read_mask(const Document& document, StackImage& image) {
+  const std::string& mask = document.images[image.entry].mask;
+  if (mask.empty()) return;
+  const std::string at = pointer(image.entry, "/mask");
+  const metric::Mask read = metric::read_mask(manifest::resolve(document, mask, at));
+  if (read.width != image.picture.width || read.height != image.picture.height)
+    throw Error(Exit::data, manifest::place(document, at), "has another size than the picture", "crop both alike");
+  const std::size_t channels = image.picture.channels.size();
+  for (std::size_t i = 0; i < image.counts.size(); ++i) image.counts[i] = image.counts[i] && read.counts[i / channels];
+}
+
+void check_alike(const Document& document, const StackImage& image, const Stack& stack) {
+  const io::Image& first = stack.images[0].picture;
+  if (image.picture.width == first.width && image.picture.height == first.height &&
+      image.picture.channels == first.channels)
+    return;
+  throw Error(Exit::data, manifest::place(document, pointer(image.entry, "/file")),
+              "has another size or other channels than the stack's first picture", "give pictures of one kind");
+}
+
+void set_scale(Stack& stack) {
+  if (stack.integer && stack.quantum > 0) return;
+  double largest = 0;
+  for (const StackImage& image : stack.images)
+    for (std::size_t i = 0; i < image.counts.size(); ++i)
+      if (image.counts[i]) largest = std::max(largest, double{image.picture.data[i]});
+  if (largest > 0) stack.full_scale = largest;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::size_t>> stacks_of(const Document& document, Kind kind) {
+  std::map<std::string, std::vector<std::size_t>> found;
+  if (!document.objects.empty()) return {};
+  for (std::size_t i = 0; i < document.images.size(); ++i) {
+    const ImageEntry& e = document.images[i];
+    if (!may_be_stacked(e)) continue;
+    std::string key = place_of_camera(e);
+    if (kind == Kind::exposures) {
+      if (!e.exposure_s) continue;
+      for (const std::string& light : e.light) key += "|" + light;
+    } else {
+      if (distant_lamp(document, e).empty()) continue;
+      key += "|" + std::to_string(e.exposure_s.value_or(0));
+    }
+    found[key].push_back(i);
+  }
+  std::vector<std::vector<std::size_t>> result;
+  for (auto& [key, entries] : found)
+    if (large_enough(document, entries, kind)) result.push_back(std::move(entries));
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+Stack read_stack(const Document& document, const std::vector<std::size_t>& entries, Kind kind) {
+  Stack stack;
+  stack.camera = document.images[entries[0]].camera;
+  if (const auto camera = document.cameras.find(stack.camera); camera != document.cameras.end())
+    stack.step = camera->second.mosaic.empty() ? 1 : 2;
+  for (const std::size_t i : entries) {
+    const ImageEntry& e = document.images[i];
+    StackImage image;
+    image.id = e.id;
+    image.entry = i;
+    image.exposure_s = e.exposure_s.value_or(1);
+    if (e.gain && e.gain->given()) image.gain = e.gain->scalar();
+    image.time_s = e.time_s;
+    image.temperature_K = e.temperature_K;
+    if (kind == Kind::lights) image.light = e.light[0];
+    if (e.noise) image.noise = *e.noise;
+    image.noise_stated = e.noise && (e.noise->gain > 0 || e.noise->read > 0);
+    read_image(document, image, stack);
+    read_mask(document, image);
+    if (!stack.images.empty()) check_alike(document, image, stack);
+    stack.images.push_back(std::move(image));
+  }
+  if (kind == Kind::exposures)
+    for (const std::string& light : document.images[entries[0]].light)
+      stack.name += (stack.name.empty() ? "" : ", ") + light;
+  stack.channels = stack.images[0].picture.channels;
+  set_scale(stack);
+  return stack;
+}
+
+}  // namespace gonio::explain::stacks
