@@ -44,6 +44,12 @@ void read_table(cli::Invocation& call) {
     throw Error(Exit::usage, "explain", "has more than one thing to explain", "give one manifest, or one table");
   gonio::explain::tables::QuickTable quick;
   quick.file = operands.empty() ? call.text("table") : operands[0];
+  call.note_input(quick.file);
+  call.has_document = true;
+  if (gonio::explain::tables::is_height_map(quick.file)) {
+    call.document = gonio::explain::tables::height_map_document(quick.file);
+    return;
+  }
   for (const char* needed : {"model", "observed"})
     if (!call.given(needed))
       throw Error(Exit::usage, quick.file.string(), std::string("is a table without --") + needed,
@@ -55,9 +61,7 @@ void read_table(cli::Invocation& call) {
   if (call.given("block")) quick.block = call.text("block");
   if (call.given("units")) quick.units = gonio::explain::tables::parse_pairs(call.text("units"), "--units");
   if (call.given("free")) quick.free = gonio::explain::tables::parse_numbers(call.text("free"), "--free");
-  call.note_input(quick.file);
   call.document = gonio::explain::tables::quick_document(quick);
-  call.has_document = true;
 }
 
 void check(cli::Invocation& call) {

@@ -54,6 +54,8 @@ class Prospect {
       const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(nuisance);
       basis_ = qr.householderQ() * Eigen::MatrixXd::Identity(rows, qr.rank());
     }
+    open_ = Eigen::MatrixXd(rows, 0);
+    if (uncertain.parameters.empty() || rows == 0) return;
     // sqrt(C) folded into the derivatives: 1 + J C J' = 1 + K K'.
     Eigen::MatrixXd j(rows, static_cast<Eigen::Index>(uncertain.parameters.size()));
     for (std::size_t k = 0; k < uncertain.parameters.size(); ++k)
@@ -75,7 +77,7 @@ class Prospect {
     d = without_nuisance(d);
     const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(open_.cols(), open_.cols()) + open_.transpose() * open_;
     const Eigen::VectorXd shared = open_.transpose() * d;
-    const double squared = d.squaredNorm() - shared.dot(inner.ldlt().solve(shared));
+    const double squared = d.squaredNorm() - (shared.size() > 0 ? shared.dot(inner.ldlt().solve(shared)) : 0);
     return std::isfinite(squared) ? std::sqrt(std::max(0.0, squared)) : 0;
   }
 

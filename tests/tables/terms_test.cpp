@@ -137,6 +137,26 @@ TEST(Terms, AnOffsetAndALateShutterAreOneWhereOnlyTheExposureVaries) {
   EXPECT_TRUE(ids.contains("sensor.shutter")) << e.sentence;
 }
 
+// A shutter may be late by most of the shortest exposure.
+TEST(Terms, AShutterThatIsLateByMostOfTheShortestExposureIsNamed) {
+  World w;
+  w.columns = {{"exposure_s", "s"}, {"radiance", "1"}, {"series", "1"}, {"f", "1"}, {"f_sigma", "1"}};
+  w.rest = R"("model": "expression", "expression": "a*radiance*exposure_s", "group": "series",
+              "parameters": {"a": {"value": 1, "free": true}}, "observed": ["f"], "sigma": ["f_sigma"])";
+  Random random(8, 2);
+  for (int i = 0; i < 300; ++i) {
+    const double exposure = 0.02 * std::pow(2, -static_cast<double>(random.below(6))), radiance = random.uniform(5, 50);
+    const double f = 1.3 * radiance * (exposure + 4.7e-4), sigma = 0.005 * f;
+    w.rows.push_back({exposure, radiance, static_cast<double>(i % 10), f + sigma * random.normal(), sigma});
+  }
+  const TablesProblem problem = w.problem();
+  const Explanation e = explain(problem, {});
+  EXPECT_EQ(named(problem, e), "sensor.shutter") << e.sentence;
+  const Estimate* extra = estimate_of(problem, e, "sensor.shutter.extra_s");
+  ASSERT_NE(extra, nullptr);
+  EXPECT_NEAR(extra->value, 4.7e-4, 4 * extra->sigma);
+}
+
 // Sixteen nulls at a level of 1 %: more than one name has a probability of 1.1 %.
 TEST(Terms, NothingIsNamedWhereNothingWasLeftOut) {
   int named_something = 0;

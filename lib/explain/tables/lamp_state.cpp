@@ -2,7 +2,9 @@
 #include "explain/tables/lamp_state.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 #include "light/irradiance.h"
@@ -95,6 +97,7 @@ LampState::LampState(const manifest::Document& document, const std::vector<std::
   for (const std::string& name : names) appearance_.lights.push_back(lamp_of(document, name, place));
   free_parameters(document);
   mechanisms_of_lamps();
+  second_source();
 }
 
 void LampState::add(Parameter parameter, LampNumber number) {
@@ -144,9 +147,55 @@ void LampState::mechanisms_of_lamps() {
   }
 }
 
+void LampState::second_source() {
+  const mechanism::Mechanism* m = mechanism::find_mechanism("light.second-source");
+  if (m == nullptr || m->parameters.size() != 3) return;  // irradiance, azimuth, elevation
+  double facing = 0;
+  for (const scene::Light& lamp : lamps()) {
+    const Rgb e = irradiance(lamp, centre_m_, sight_of(lamp, centre_m_, centre_m_).towards);
+    facing = std::max(facing, e.x);
+  }
+  if (!(facing > 0)) return;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const double azimuth = 0.5 * pi * quarter;
+    Candidate candidate{m, {}, {}, m->id};
+    const std::array<Parameter, 3> own = {
+        Parameter{"", m->parameters[0].unit, 0.05 * facing, 0, 0, facing, 0.05 * facing, {}, {}},
+        Parameter{"", "rad", azimuth, azimuth, azimuth - 0.3 * pi, azimuth + 0.3 * pi, 0.5, {}, {}},
+        Parameter{"", "rad", 0.8, 0.8, 0.05, 1.5, 0.3, {}, {}}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      candidate.parameters.push_back(parameters_.size());
+      Parameter p = own[k];
+      p.name = m->id + "-" + std::to_string(quarter + 1) + "/" + m->parameters[k].name;
+      add(std::move(p), {lamps().size(), "", m, k});
+    }
+    candidates_.push_back(std::move(candidate));
+  }
+}
+
+scene::Light LampState::second_lamp(std::span<const double> numbers) const {
+  const double around = numbers[1], up = numbers[2];
+  const Vec3 towards{std::cos(up) * std::cos(around), std::cos(up) * std::sin(around), std::sin(up)};
+  scene::Light lamp;
+  lamp.id = "second source";
+  const Sight first = sight_of(lamps()[0], centre_m_, centre_m_);
+  if (given(lamps()[0], "position_m") != nullptr && first.distance_m > 0) {
+    lamp.model = light::find("point");
+    lamp.parameters = {{"position_m", manifest::Parameter(list_of(centre_m_ + towards * first.distance_m))},
+                       {"watt_per_sr", manifest::Parameter(numbers[0] * first.distance_m * first.distance_m)}};
+  } else {
+    lamp.model = light::find("directional");
+    lamp.parameters = {{"towards", manifest::Parameter(list_of(towards))},
+                       {"watt_per_m2", manifest::Parameter(numbers[0])}};
+  }
+  scene::refresh(lamp, place_);
+  return lamp;
+}
+
 std::vector<scene::Light> LampState::at(std::span<const double> values) const {
   scene::Appearance state = appearance_;
   std::vector<char> changed(state.lights.size(), 0);
+  std::optional<scene::Light> second;
   for (const std::size_t p : base_) {
     const LampNumber& n = numbers_[p];
     state.lights[n.lamp].parameters[n.name].value[n.component] = values[p];
@@ -163,14 +212,20 @@ std::vector<scene::Light> LampState::at(std::span<const double> values) const {
     for (std::size_t k = 0; k < c.parameters.size(); ++k) {
       const double v = values[c.parameters[k]];
       use.parameters[m.parameters[k].name] = v;
-      in_play = in_play || v != m.parameters[k].neutral;
+      in_play = in_play || v != parameters_[c.parameters[k]].neutral;
     }
     if (!in_play) continue;
+    if (lamp == lamps().size()) {
+      second =
+          second_lamp(std::vector<double>{values[c.parameters[0]], values[c.parameters[1]], values[c.parameters[2]]});
+      continue;
+    }
     if (m.id == inverse_square)
       bring_near(state.lights[lamp], values[c.parameters[0]], centre_m_, place_);
     else
       scene::apply_mechanism(state, m, use, centre_m_, place_);
   }
+  if (second) state.lights.push_back(std::move(*second));
   return state.lights;
 }
 

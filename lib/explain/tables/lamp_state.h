@@ -10,8 +10,8 @@
 
 namespace gonio::explain::tables {
 
-struct LampNumber {  // which number of which lamp a parameter of the problem is
-  std::size_t lamp = 0;
+struct LampNumber {                         // which number of which lamp a parameter of the problem is
+  std::size_t lamp = 0;                     // lamps().size(): the second source, which shines on every row
   std::string name;                         // of the lamp's parameter, or
   const mechanism::Mechanism* m = nullptr;  // of this mechanism
   std::size_t component = 0;                // of a vector; of the mechanism's parameters
@@ -29,13 +29,15 @@ class LampState {
   const std::vector<Candidate>& candidates() const { return candidates_; }
   const std::vector<LampNumber>& numbers() const { return numbers_; }
 
-  // The lamps with these values of parameters().
+  // The lamps with these values of parameters(); behind them the second source, where it is in play.
   std::vector<scene::Light> at(std::span<const double> values) const;
   void apply(std::span<const double> values, std::span<const double> sigma, manifest::Document& document) const;
 
  private:
   void free_parameters(const manifest::Document& document);
   void mechanisms_of_lamps();
+  void second_source();
+  scene::Light second_lamp(std::span<const double> numbers) const;
   void add(Parameter parameter, LampNumber number);
 
   scene::Appearance appearance_;
@@ -47,6 +49,10 @@ class LampState {
   std::vector<Candidate> candidates_;
 };
 
+// light.second-source in a table: a point as far from the centre as the first lamp is (a directional one: parallel
+// light), so that its irradiance of a plane differs from that of even ambient light. Its direction is not found by
+// small steps: four quarters of the horizon are alternatives of one family.
+//
 // A lamp whose rays the base model believes to be parallel, at 1 / nearness_per_m from the centre instead, its
 // irradiance at the centre unchanged: E(p) = E cos D^2 / d^2 (light.inverse-square). Unchanged at nearness 0.
 void bring_near(scene::Light& lamp, double nearness_per_m, Vec3 centre_m, const std::string& place);

@@ -2,11 +2,13 @@
 #include "explain/tables/quick_table.h"
 
 #include <algorithm>
+#include <fstream>
 
 #include "base/error.h"
 #include "base/quantity.h"
 #include "base/text.h"
 #include "explain/tables/read_table.h"
+#include "io/height_map.h"
 #include "manifest/fields.h"
 
 namespace gonio::explain::tables {
@@ -79,6 +81,26 @@ std::vector<std::pair<std::string, double>> parse_numbers(const std::string& tex
   for (const auto& [name, value] : parse_pairs(text, place))
     numbers.emplace_back(name, parse_quantity(value, Dimension::none, place));
   return numbers;
+}
+
+bool is_height_map(const std::filesystem::path& file) {
+  std::string beginning(16, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  beginning.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, stream.gcount())));
+  return io::is_height_map(beginning);
+}
+
+manifest::Document height_map_document(const std::filesystem::path& file) {
+  manifest::Document document;
+  document.name = file.string();
+  document.allow_outside = true;
+  const std::string name = file_stem(file.stem().string());
+  manifest::Table section;
+  section.model = "heights";
+  section.file = manifest::add_file(document, file, name);
+  document.tables[name] = std::move(section);
+  return document;
 }
 
 manifest::Document quick_document(const QuickTable& quick) {

@@ -21,6 +21,10 @@ struct QuickTable {
 // not state, the rows enter inline in SI. Error(usage) at the option, Error(data) at the file.
 manifest::Document quick_document(const QuickTable& quick);
 
+// A height map (io/height_map.h), which describes itself, as a table of the model "heights".
+bool is_height_map(const std::filesystem::path& file);
+manifest::Document height_map_document(const std::filesystem::path& file);
+
 // "a=1,b=0.5" and "theta=deg,f=1/sr". Error(usage) at `place`.
 std::vector<std::pair<std::string, std::string>> parse_pairs(const std::string& text, const std::string& place);
 std::vector<std::pair<std::string, double>> parse_numbers(const std::string& text, const std::string& place);

@@ -104,6 +104,7 @@ struct TermParameter {
   enum class Use { free, fixed, same };
   double start = 0, lower = 0, upper = 0, size = 1;
   Use use = Use::free;
+  bool as_observed = false;  // in the unit of the observed column
 };
 struct TermColumn {
   std::string name, unit, meaning;

@@ -111,6 +111,7 @@ void TablesProblem::observe(const manifest::Document& document, const ProblemOpt
                   "check the starting values of its parameters");
   set_noise(section, options);
   set_reference();
+  plan(document);
   add_conditions(section);
 }
 
@@ -303,8 +304,23 @@ std::vector<double> TablesProblem::final_slopes(std::span<const double> values, 
   return slopes;
 }
 
+void TablesProblem::plan(const manifest::Document& document) {
+  const bool bindable = model_->name == "sensor" || model_->name == "volume" || model_->name == "expression";
+  if (!bound_->proposals().empty() || rescaled_ || !bindable) return;
+  std::vector<std::string> done;
+  for (const Candidate& c : bound_->candidates()) done.push_back(c.id());
+  std::vector<double> sigma = observations_.sigma;
+  for (std::size_t i = 0; i < sigma.size(); ++i) sigma[i] *= reference(i);
+  proposed_ = std::make_unique<ProposedTable>(document, *model_, table_, done, prediction_, sigma);
+}
+
+std::vector<Proposal> TablesProblem::proposals() const {
+  return proposed_ ? proposed_->proposals() : bound_->proposals();
+}
+
 ProposedRows TablesProblem::propose(std::span<const double> values, std::size_t proposal) const {
-  return bound_->propose(values.first(bound_->parameters().size()), proposal);
+  return proposed_ ? proposed_->propose(values, proposal)
+                   : bound_->propose(values.first(bound_->parameters().size()), proposal);
 }
 
 }  // namespace gonio::explain::tables

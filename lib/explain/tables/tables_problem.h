@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "explain/domain.h"
+#include "explain/tables/proposed_table.h"
 #include "explain/tables/table_model.h"
 #include "explain/tables/term_stack.h"
 
@@ -38,7 +39,7 @@ class TablesProblem final : public Problem {
   // Noise that was estimated on the base model's residuals is measured again where every mechanism had its part.
   std::optional<double> noise_factor(std::span<const double> residual) const override;
   std::string remarks(const Explanation& explanation) const override;
-  std::vector<Proposal> proposals() const override { return bound_->proposals(); }
+  std::vector<Proposal> proposals() const override;
   ProposedRows propose(std::span<const double> values, std::size_t proposal) const override;
   void apply(const Explanation& explanation, manifest::Document& document) const override;
   Illustration illustrate(const Explanation& explanation, const std::filesystem::path& out,
@@ -53,6 +54,7 @@ class TablesProblem final : public Problem {
   void set_noise(const manifest::Table& section, const ProblemOptions& options);
   void set_reference();
   void rescale_sigma();
+  void plan(const manifest::Document& document);
   std::vector<std::vector<double>> rescaled(std::vector<std::vector<double>> repeats) const;
   std::vector<double> final_slopes(std::span<const double> values, std::size_t first,
                                    std::vector<double> predictions) const;
@@ -64,6 +66,7 @@ class TablesProblem final : public Problem {
   Table table_;
   std::unique_ptr<BoundModel> bound_;
   std::unique_ptr<TermStack> terms_;
+  std::unique_ptr<ProposedTable> proposed_;    // where the model proposes nothing itself; null: nothing
   std::vector<double> prediction_;             // of the base model, fitted: places conditions and scales noise
   std::vector<double> reference_;              // by which each observation is divided; empty: by nothing
   bool rescaled_ = false;                      // the model compares in a scale of its own

@@ -31,7 +31,7 @@ std::vector<double> values_at(const Table& table, const TermColumn& column) {
 
 TermParameter declared(const mechanism::Parameter& p) {
   const double size = std::max({std::abs(p.start - p.neutral), 1e-3 * std::min(p.upper - p.lower, 1e3), 1e-9});
-  return {p.start, p.lower, p.upper, size, TermParameter::Use::free};
+  return {p.start, p.lower, p.upper, size, TermParameter::Use::free, false};
 }
 
 }  // namespace
@@ -79,7 +79,8 @@ void TermStack::bind(const Table& table, const Term& term) {
                                                                : none);
     if (s.use != TermParameter::Use::free) continue;
     candidate.parameters.push_back(offset_ + parameters_.size());
-    parameters_.push_back({m.id + "." + p.name, p.unit, s.start, p.neutral, s.lower, s.upper, s.size, {}, {}});
+    const std::string& unit = s.as_observed ? table.units[table.observed[0]] : p.unit;
+    parameters_.push_back({m.id + "." + p.name, unit, s.start, p.neutral, s.lower, s.upper, s.size, {}, {}});
   }
   bound_.push_back(std::move(bound));
   candidates_.push_back(std::move(candidate));

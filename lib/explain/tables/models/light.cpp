@@ -73,7 +73,8 @@ class Illumination final : public BoundModel {
     const std::vector<scene::Light> lamps = lamps_.at(values);
     for (std::size_t r = first; r < last; ++r) {
       const Spot& s = spots_[r];
-      const Rgb e = irradiance(lamps[s.lamp], s.point_m, s.normal);
+      Rgb e = irradiance(lamps[s.lamp], s.point_m, s.normal);
+      if (lamps.size() > lamps_.lamps().size()) e = e + irradiance(lamps.back(), s.point_m, s.normal);
       const double band = s.channel < 0 ? (e.x + e.y + e.z) / 3 : e[s.channel];
       prediction[r - first] = values[gain_] * band * s.exposure;
     }
@@ -102,20 +103,21 @@ class Illumination final : public BoundModel {
   }
 
   void add_conditions(const Table& table) {
-    Condition distance{"light.distance", "m", "light", {}, {}},
-        incidence{"surface.incidence-angle", "rad", "light", {}, {}};
-    Condition emission{"light.emission-angle", "rad", "light", {}, {}}, x{"scene.x", "m", "light", {}, {}},
-        y{"scene.y", "m", "light", {}, {}}, z{"scene.z", "m", "light", {}, {}};
+    const auto named = [](const char* name, const char* unit) { return Condition{name, unit, "light", {}, {}}; };
+    Condition distance = named("light.distance", "m"), emission = named("light.emission-angle", "rad");
+    Condition incidence = named("light.incidence-angle", "rad"), of_surface = named("surface.incidence-angle", "rad");
+    Condition x = named("scene.x", "m"), y = named("scene.y", "m"), z = named("scene.z", "m");
     for (const Spot& s : spots_) {
       const Sight sight = sight_of(lamps_.lamps()[s.lamp], s.point_m, centre_m_);
       distance.values.push_back(sight.distance_m);
       incidence.values.push_back(std::acos(std::clamp(dot(sight.towards, s.normal), -1.0, 1.0)));
+      of_surface.values.push_back(incidence.values.back());
       emission.values.push_back(sight.emission_rad);
       x.values.push_back(s.point_m.x);
       y.values.push_back(s.point_m.y);
       z.values.push_back(s.point_m.z);
     }
-    for (Condition* c : {&distance, &incidence, &emission, &x, &y, &z}) {
+    for (Condition* c : {&distance, &emission, &incidence, &of_surface, &x, &y, &z}) {
       const auto [least, most] = std::minmax_element(c->values.begin(), c->values.end());
       if (*most - *least > 1e-9 * (std::abs(*least) + std::abs(*most))) conditions_.push_back(std::move(*c));
     }

@@ -16,6 +16,7 @@ const Term& sensor_black_offset() {
                          .adapt =
                              [](const Table&, double scale, std::span<TermParameter> p) {
                                p[0] = {0.01 * scale, -0.2 * scale, 0.2 * scale, 0.01 * scale};
+                               p[0].as_observed = true;
                              }};
   return term;
 }

@@ -19,6 +19,7 @@ const Term& sensor_saturation() {
                          .adapt =
                              [](const Table&, double scale, std::span<TermParameter> p) {
                                p[0] = {0.98 * scale, 0.2 * scale, 2 * scale, 0.1 * scale};
+                               p[0].as_observed = true;
                              }};
   return term;
 }

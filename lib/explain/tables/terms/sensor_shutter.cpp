@@ -21,7 +21,7 @@ const Term& sensor_shutter() {
                                const std::vector<double>& exposure = *table.find("exposure_s");
                                const double least =
                                    std::max(1e-12, *std::min_element(exposure.begin(), exposure.end()));
-                               p[0] = {0.02 * least, -0.5 * least, 0.5 * least, 0.02 * least};
+                               p[0] = {0.02 * least, -0.9 * least, std::max(0.01, 2 * least), 0.02 * least};
                              }};
   return term;
 }
