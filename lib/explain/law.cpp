@@ -42,7 +42,7 @@ std::vector<std::size_t> conditions_of(const std::vector<Term>& terms, std::size
   for (const Term& t : terms) {
     for (const auto& [c, power] : t.powers) add(c);
     if (!t.shape.empty()) add(t.shape_of);
-    if (t.powers.empty() && t.shape.empty()) add(t.along);
+    if (t.powers.empty() && t.shape.empty() && t.along != Term::absolute) add(t.along);
   }
   const auto found = std::find(list.begin(), list.end(), preferred);
   if (found != list.end()) std::rotate(list.begin(), found, found + 1);

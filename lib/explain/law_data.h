@@ -7,12 +7,12 @@
 
 #include "explain/explanation.h"
 #include "explain/fit.h"
+#include "explain/law_terms.h"
 #include "explain/system.h"
 
 namespace gonio::explain {
 
 using RawColumns = std::vector<std::vector<double>>;
-using Mask = std::vector<char>;  // one per row; empty: all
 
 // Fall of chi-square that one further column would bring, and the share of its length that survives the projection.
 struct Score {

@@ -11,9 +11,11 @@
 namespace gonio::explain {
 namespace {
 
-constexpr double least_survivor = 0.02;      // of a term's length, after projection
-constexpr std::size_t columns_at_once = 48;  // bounds the memory
-constexpr double nearly_as_good = 0.85;      // of the best fall
+constexpr double least_survivor = 0.02;          // of a term's length, after projection
+constexpr std::size_t most_values = 15'000'000;  // of all terms on the rows on which they are ranked
+constexpr std::size_t ranked_on_all = 12;        // the best of those, ranked again on all rows
+constexpr std::size_t columns_at_once = 48;      // bounds the memory
+constexpr double nearly_as_good = 0.85;          // of the best fall
 constexpr std::size_t most_singles = 6;
 constexpr double splits[] = {0.35, 0.5, 0.65};  // quantiles of the condition
 
@@ -33,20 +35,43 @@ double inflation(const LawData& data, const Term& term, const RawColumns& chosen
   return fall > 0 ? std::max(1.0, variance * fall / (last * last)) : 1;
 }
 
-std::vector<Ranked> ranked(const LawData& data, const std::vector<Term>& possible, const RawColumns& chosen,
-                           double price) {
-  std::vector<Ranked> list;
-  for (std::size_t first = 0; first < possible.size(); first += columns_at_once) {
-    const std::size_t last = std::min(possible.size(), first + columns_at_once);
+// Every n-th block, so that ranking all terms stays affordable; empty: all rows.
+Mask thinned(const LawData& data, std::size_t terms) {
+  const Observations& o = data.system().observations();
+  const std::size_t step = 1 + o.rows() * terms / most_values;
+  if (step == 1) return {};
+  Mask mask(o.rows());
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = o.block[i] % step == 0;
+  return mask;
+}
+
+void rank(const LawData& data, const std::vector<Term>& possible, const std::vector<std::size_t>& places,
+          const RawColumns& chosen, double price, const Mask& mask, std::vector<Ranked>& list) {
+  list.clear();
+  for (std::size_t first = 0; first < places.size(); first += columns_at_once) {
+    const std::size_t last = std::min(places.size(), first + columns_at_once);
     RawColumns columns;
-    for (std::size_t k = first; k < last; ++k) columns.push_back(column_of(data.system(), possible[k]));
-    const std::vector<Score> scores = data.scores(columns, chosen);
+    for (std::size_t k = first; k < last; ++k) columns.push_back(column_of(data.system(), possible[places[k]], mask));
+    const std::vector<Score> scores = data.scores(columns, chosen, mask);
     for (std::size_t k = first; k < last; ++k) {
       const Score& s = scores[k - first];
-      if (s.survives > least_survivor) list.push_back({k, s.fall, s.fall - price * possible[k].price});
+      if (s.survives > least_survivor) list.push_back({places[k], s.fall, s.fall - price * possible[places[k]].price});
     }
   }
   std::stable_sort(list.begin(), list.end(), [](const Ranked& a, const Ranked& b) { return a.worth > b.worth; });
+}
+
+std::vector<Ranked> ranked(const LawData& data, const std::vector<Term>& possible, const RawColumns& chosen,
+                           double price) {
+  std::vector<std::size_t> places(possible.size());
+  for (std::size_t k = 0; k < places.size(); ++k) places[k] = k;
+  std::vector<Ranked> list;
+  const Mask mask = thinned(data, possible.size());
+  rank(data, possible, places, chosen, price, mask, list);
+  if (mask.empty()) return list;
+  places.clear();
+  for (std::size_t k = 0; k < std::min(ranked_on_all, list.size()); ++k) places.push_back(list[k].place);
+  rank(data, possible, places, chosen, price, {}, list);
   return list;
 }
 

@@ -43,6 +43,29 @@ void add_shapes(const ConditionKind& kind, std::size_t c, double blocks, std::ve
                        1 + std::log(blocks)});
 }
 
+bool is_relative(const Condition& c) {
+  return !c.direction.empty() && Unit(c.curve_unit).is_number();
+}
+
+// Of the observations, as far as the problem says.
+Unit residual_unit(const Problem& problem) {
+  for (const Condition& c : problem.observations().conditions) {
+    if (c.direction.empty() && !c.curve_unit.empty()) return Unit(c.curve_unit);
+    if (c.name == "image.radiance") return Unit(c.unit);
+  }
+  return problem.importance() == Importance::share_of_signal ? Unit() : Unit(problem.unit());
+}
+
+// Adds the same terms without a direction.
+void add_absolute(std::vector<Term>& terms, std::size_t first) {
+  const std::size_t last = terms.size();
+  for (std::size_t k = first; k < last; ++k) {
+    Term term = terms[k];
+    term.along = Term::absolute;
+    if (!term.powers.empty() || !term.shape.empty()) terms.push_back(std::move(term));
+  }
+}
+
 double direction_of(const Condition& condition, std::size_t row) {
   return condition.direction.empty() ? 1 : condition.direction[row];
 }
@@ -102,6 +125,7 @@ std::vector<Term> possible_terms(const System& system, const std::vector<std::si
   for (std::size_t place = 0; place < leaders.size(); ++place) {
     const std::size_t c = leaders[place];
     if (!kinds[c].usable) continue;
+    const std::size_t first = terms.size();
     terms.push_back({{}, "", c, 1, false, c, 0});  // in proportion to the direction itself
     for (const double power : powers_for(kinds[c]))
       terms.push_back({{{c, power}}, "", c, 1, false, c, price_of(power)});
@@ -115,16 +139,17 @@ std::vector<Term> possible_terms(const System& system, const std::vector<std::si
           if (std::abs(p) <= 2 && std::abs(q) <= 2)
             terms.push_back({{{c, p}, {d, q}}, "", c, 1, false, c, 2 + price_of(p) + price_of(q)});
     }
+    if (is_relative(system.observations().conditions[c])) add_absolute(terms, first);
   }
   return terms;
 }
 
-std::vector<double> column_of(const System& system, const Term& term) {
+std::vector<double> column_of(const System& system, const Term& term, const Mask& mask) {
   const std::vector<Condition>& conditions = system.observations().conditions;
   std::vector<double> column(system.observations().rows(), 0.0);
   for (std::size_t i = 0; i < column.size(); ++i) {
-    if (!(system.weight(i) > 0)) continue;
-    double value = direction_of(conditions[term.along], i);
+    if (!(system.weight(i) > 0) || !(mask.empty() || mask[i])) continue;
+    double value = term.along == Term::absolute ? 1 : direction_of(conditions[term.along], i);
     for (const auto& [c, power] : term.powers) {
       const double x = conditions[c].values[i];
       value *= power == 1 ? x : power == 2 ? x * x : std::pow(x, power);
@@ -141,12 +166,14 @@ std::vector<double> column_of(const System& system, const Term& term) {
 LawTerm told(const System& system, const Term& term, double coefficient, double sigma, double scale_sigma) {
   const Problem& problem = system.problem();
   const std::vector<Condition>& conditions = problem.observations().conditions;
-  const Condition& along = conditions[term.along];
   LawTerm t;
   t.coefficient = coefficient;
   t.sigma = sigma;
-  t.along = along.name;
-  Unit unit(along.curve_unit.empty() && along.direction.empty() ? problem.unit() : along.curve_unit);
+  Unit unit = residual_unit(problem);
+  if (term.along != Term::absolute && !conditions[term.along].direction.empty()) {
+    t.along = conditions[term.along].name;
+    unit = Unit(conditions[term.along].curve_unit);
+  }
   for (const auto& [c, power] : term.powers) {
     unit = unit / Unit(conditions[c].unit).power(power);
     t.powers.emplace_back(conditions[c].name, power);
@@ -164,13 +191,21 @@ LawTerm told(const System& system, const Term& term, double coefficient, double 
 std::string in_words(const Problem& problem, const std::vector<LawTerm>& terms) {
   if (terms.empty()) return "";
   const std::vector<Condition>& conditions = problem.observations().conditions;
-  const auto along =
-      std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return c.name == terms[0].along; });
+  const auto relative = [&](const LawTerm& t) {
+    const auto along =
+        std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return c.name == t.along; });
+    return along != conditions.end() && is_relative(*along);
+  };
+  const bool all_relative = std::all_of(terms.begin(), terms.end(), relative);
   std::string text = "residual";
-  if (along != conditions.end() && !along->direction.empty())
-    text = Unit(along->curve_unit).is_number() ? "relative residual" : "residual along " + along->name;
+  if (all_relative)
+    text = "relative residual";
+  else if (!terms[0].along.empty() && !relative(terms[0]))
+    text = "residual along " + terms[0].along;
   text += " =";
-  for (std::size_t k = 0; k < terms.size(); ++k) text += (k == 0 ? " " : " + ") + term_in_words(terms[k]);
+  for (std::size_t k = 0; k < terms.size(); ++k)
+    text +=
+        (k == 0 ? " " : " + ") + term_in_words(terms[k]) + (relative(terms[k]) && !all_relative ? " * prediction" : "");
   return text;
 }
 
