@@ -43,16 +43,22 @@ void add_shapes(const ConditionKind& kind, std::size_t c, double blocks, std::ve
                        1 + std::log(blocks)});
 }
 
+constexpr const char* radiance = "image.radiance";  // what was predicted: its curve is an absolute error
+
 bool is_relative(const Condition& c) {
-  return !c.direction.empty() && Unit(c.curve_unit).is_number();
+  return !c.direction.empty() && Unit(c.curve_unit).is_number() && c.name != radiance;
+}
+
+// The condition whose direction makes errors absolute; null: no direction does.
+const Condition* absolute_condition(const std::vector<Condition>& conditions) {
+  const auto found =
+      std::find_if(conditions.begin(), conditions.end(), [](const Condition& c) { return c.name == radiance; });
+  return found == conditions.end() ? nullptr : &*found;
 }
 
 // Of the observations, as far as the problem says.
 Unit residual_unit(const Problem& problem) {
-  for (const Condition& c : problem.observations().conditions) {
-    if (c.direction.empty() && !c.curve_unit.empty()) return Unit(c.curve_unit);
-    if (c.name == "image.radiance") return Unit(c.unit);
-  }
+  if (const Condition* c = absolute_condition(problem.observations().conditions); c != nullptr) return Unit(c->unit);
   return problem.importance() == Importance::share_of_signal ? Unit() : Unit(problem.unit());
 }
 
@@ -146,10 +152,11 @@ std::vector<Term> possible_terms(const System& system, const std::vector<std::si
 
 std::vector<double> column_of(const System& system, const Term& term, const Mask& mask) {
   const std::vector<Condition>& conditions = system.observations().conditions;
+  const Condition* along = term.along == Term::absolute ? absolute_condition(conditions) : &conditions[term.along];
   std::vector<double> column(system.observations().rows(), 0.0);
   for (std::size_t i = 0; i < column.size(); ++i) {
     if (!(system.weight(i) > 0) || !(mask.empty() || mask[i])) continue;
-    double value = term.along == Term::absolute ? 1 : direction_of(conditions[term.along], i);
+    double value = along == nullptr ? 1 : direction_of(*along, i);
     for (const auto& [c, power] : term.powers) {
       const double x = conditions[c].values[i];
       value *= power == 1 ? x : power == 2 ? x * x : std::pow(x, power);
@@ -170,7 +177,8 @@ LawTerm told(const System& system, const Term& term, double coefficient, double 
   t.coefficient = coefficient;
   t.sigma = sigma;
   Unit unit = residual_unit(problem);
-  if (term.along != Term::absolute && !conditions[term.along].direction.empty()) {
+  if (term.along != Term::absolute && !conditions[term.along].direction.empty() &&
+      conditions[term.along].name != radiance) {
     t.along = conditions[term.along].name;
     unit = Unit(conditions[term.along].curve_unit);
   }

@@ -152,7 +152,8 @@ void tell_law(report::Page& page, const ReportPart& part) {
                  " of the excess over noise.");
   report::Plot plot = curve_plot(o.curve, "less the law");
   const double factor = shown_in(o.curve.unit, largest(o.curve.centre)).factor;
-  plot.marks = {{report::Mark::Axis::x, o.split * factor, "fitted on one side, judged on the other"}};
+  plot.marks = {{report::Mark::Axis::x, o.split * factor, "fitted | judged"}};
+  plot.caption = "Fitted on one side of the line and judged on the other, both ways.";
   page.plot(plot);
 }
 
