@@ -65,54 +65,25 @@ Vec2 through_lens(Vec2 p, const Sizes& sizes) {
 class Boards final : public World {
  public:
   std::vector<EffectKind> effects() const override {
-    const std::vector<std::string> radius{"camera.image-radius"}, board{"board.radius", "board.x", "board.y"};
-    const auto k1 = [](const Numbers& s) { return std::vector<TrueValue>{{"lens.radial", "k1", s[0]}}; };
-    const auto p = [](const Numbers& s) {
-      return std::vector<TrueValue>{{"lens.tangential", "p1", s[0]}, {"lens.tangential", "p2", s[1]}};
-    };
-    const auto sag = [](const Numbers& s) {
-      return std::vector<TrueValue>{{"board.warp", "sag_x_m", s[0]}, {"board.warp", "sag_y_m", s[1]}};
-    };
-    std::vector<EffectKind> kinds;
-    kinds.push_back({"radial", "lens.radial", {"lens"}, radius, 0.01, 0.25, true, 1, k1, ""});
-    kinds.push_back({"traced lens", "lens.radial", {"lens"}, radius, 2e-4, 1.5e-3, false, 1, {}, ""});
-    kinds.push_back({"decentred",
-                     "lens.tangential",
-                     {"lens"},
-                     {"camera.image-azimuth", "camera.image-radius", "camera.image-x", "camera.image-y"},
-                     0.001,
-                     0.01,
-                     true,
-                     2,
-                     p,
-                     ""});
-    kinds.push_back({"prism",
-                     "lens.thin-prism",
-                     {"lens"},
-                     {"camera.image-azimuth", "camera.image-radius", "camera.image-x", "camera.image-y"},
-                     0.002,
-                     0.02,
-                     true,
-                     2,
-                     {},
-                     ""});
-    kinds.push_back({"bent board", "board.warp", {"board"}, board, 1e-4, 1e-3, true, 2, sag, ""});
-    kinds.push_back({"rolling shutter",
-                     "camera.rolling-shutter",
-                     {"sensor"},
-                     {"camera.image-y", "camera.image-x"},
-                     0.5,
-                     5,
-                     false,
-                     1,
-                     {},
-                     "",
-                     24});
-    kinds.push_back({"fisheye", "lens.fisheye", {"lens"}, radius, 0.05, 0.6, false, 1, {}, "only where asked"});
-    kinds.push_back({"any radial", "lens.radial", {"lens"}, radius, 0.05, 0.2, true, 3, {}, "only as a rival"});
-    kinds.push_back({"periodic error of the columns", "", {"sensor"}, {"camera.image-x"}, 0.15, 0.6, false, 1, {}, ""});
-    kinds.push_back({"dog-ear", "", {"board"}, board, 1e-3, 5e-3, true, 1, {}, ""});
-    return kinds;
+    const std::vector<std::string> radius{"camera.image-radius"}, board{"board.radius", "board.x", "board.y"},
+        image{"camera.image-azimuth", "camera.image-radius", "camera.image-x", "camera.image-y"}, lens{"lens"};
+    std::vector<EffectKind> k;
+    const auto add = [&](EffectKind kind) -> EffectKind& { return k.emplace_back(std::move(kind)); };
+    add({"radial", "lens.radial", lens, radius, 0.01, 0.25}).of_either_sign().means({"k1"});
+    add({"traced lens", "lens.radial", lens, radius, 2e-4, 1.5e-3});
+    add({"decentred", "lens.tangential", lens, image, 0.001, 0.01}).of_either_sign().of_parts(2).means({"p1", "p2"});
+    add({"prism", "lens.thin-prism", lens, image, 0.002, 0.02}).of_either_sign().of_parts(2);
+    add({"bent board", "board.warp", {"board"}, board, 1e-4, 1e-3})
+        .of_either_sign()
+        .of_parts(2)
+        .means({"sag_x_m", "sag_y_m"});
+    add({"rolling shutter", "camera.rolling-shutter", {"sensor"}, {"camera.image-y", "camera.image-x"}, 0.5, 5})
+        .of_parts(1, 24);
+    add({"fisheye", "lens.fisheye", lens, radius, 0.05, 0.6}).only_for("where asked");
+    add({"any radial", "lens.radial", lens, radius, 0.05, 0.2}).of_either_sign().of_parts(3).only_for("a rival");
+    add({"periodic error of the columns", "", {"sensor"}, {"camera.image-x"}, 0.15, 0.6});
+    add({"dog-ear", "", {"board"}, board, 1e-3, 5e-3}).of_either_sign();
+    return k;
   }
   void design(Random& random, const std::string& variant) override {
     noise_px_ = random.uniform(0.05, 0.15);

@@ -31,69 +31,19 @@ class ExpressionWorld final : public RowsWorld {
 };
 
 std::vector<EffectKind> ExpressionWorld::effects() const {
-  const std::vector<std::string> signal{"image.radiance", "image.exposure", "scene.radiance"};
-  const auto exact = [](const char* mechanism, const char* parameter) {
-    return [=](const Numbers& s) { return std::vector<TrueValue>{{mechanism, parameter, s[0]}}; };
-  };
+  const std::vector<std::string> signal{"image.radiance", "image.exposure", "scene.radiance"}, sensor{"sensor"},
+      light{"light"}, path{"volume.path-length"};
   std::vector<EffectKind> k;
-  k.push_back({"vignetting",
-               "optics.vignetting",
-               {"optics"},
-               {"camera.image-radius"},
-               0.05,
-               0.4,
-               false,
-               1,
-               [](const Numbers& s) {
-                 return std::vector<TrueValue>{{"optics.vignetting", "falloff", s[0], false}};
-               },
-               ""});
-  k.push_back({"turbid liquid",
-               "volume.absorption",
-               {"transport", "volume", "surface"},
-               {"volume.path-length"},
-               1,
-               8,
-               false,
-               1,
-               {},
-               ""});
-  k.push_back({"lamp warming up",
-               "light.drift",
-               {"light"},
-               {"image.time"},
-               0.02,
-               0.1,
-               true,
-               1,
-               exact("light.drift", "amplitude"),
-               ""});
-  k.push_back({"slow shutter",
-               "sensor.shutter",
-               {"sensor"},
-               {"image.exposure"},
-               1e-4,
-               1e-3,
-               true,
-               1,
-               exact("sensor.shutter", "extra_s"),
-               ""});
-  k.push_back({"black offset",
-               "sensor.black-offset",
-               {"sensor"},
-               signal,
-               0.002,
-               0.02,
-               true,
-               1,
-               [this](const Numbers& size) {
-                 return std::vector<TrueValue>{{"sensor.black-offset", "offset", size[0] * a_}};
-               },
-               ""});
-  k.push_back({"bent response", "sensor.non-linearity", {"sensor"}, signal, 0.03, 0.12, false, 1, {}, ""});
-  k.push_back({"inverse square", "light.inverse-square", {"light"}, {"light.distance"}, 0.3, 1, false, 1, {}, ""});
-  k.push_back({"sway of the rail", "", {}, {"light.distance"}, 0.02, 0.06, false, 1, {}, ""});
-  k.push_back({"three-halves power of the path", "", {}, {"volume.path-length"}, 2, 8, false, 1, {}, ""});
+  const auto add = [&](EffectKind kind) -> EffectKind& { return k.emplace_back(std::move(kind)); };
+  add({"vignetting", "optics.vignetting", {"optics"}, {"camera.image-radius"}, 0.05, 0.4}).nearly("falloff");
+  add({"turbid liquid", "volume.absorption", {"transport", "volume", "surface"}, path, 1, 8}).nearly("sigma_a_per_m");
+  add({"lamp warming up", "light.drift", light, {"image.time"}, 0.02, 0.1}).of_either_sign().means({"amplitude"});
+  add({"slow shutter", "sensor.shutter", sensor, {"image.exposure"}, 1e-4, 1e-3}).of_either_sign().means({"extra_s"});
+  add({"black offset", "sensor.black-offset", sensor, signal, 0.002, 0.02}).of_either_sign().means({"offset"}, {a_});
+  add({"bent response", "sensor.non-linearity", sensor, signal, 0.03, 0.12});
+  add({"inverse square", "light.inverse-square", light, {"light.distance"}, 0.3, 1});
+  add({"sway of the rail", "", {}, {"light.distance"}, 0.02, 0.06});
+  add({"three-halves power of the path", "", {}, path, 2, 8});
   return k;
 }
 

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "io/exr.h"
 #include "sealed/camera_chain.h"
+#include "sealed/image_effects.h"
 #include "sealed/recording.h"
 #include "sealed/traced_scene.h"
 #include "sealed/worlds.h"
@@ -18,7 +19,7 @@ constexpr std::size_t views = 3, lamps = 3;
 
 class Images final : public World {
  public:
-  std::vector<EffectKind> effects() const override;
+  std::vector<EffectKind> effects() const override { return image_effects(&white_); }
   void design(Random& random, const std::string& variant) override;
   Numbers base() const override { return {}; }
   Numbers base_steps() const override { return {}; }
@@ -63,177 +64,6 @@ class Images final : public World {
   mutable Numbers clean_;
   mutable std::vector<Numbers> of_matter_;
 };
-
-std::vector<TrueValue> nearly(const char* mechanism, const char* parameter, double value) {
-  return {{mechanism, parameter, value, false}};
-}
-
-std::vector<EffectKind> Images::effects() const {
-  const std::vector<std::string> edge{"light.shadow-edge-distance", "light.visibility", "image.edge-distance"},
-      radius{"camera.image-radius"}, bright{"image.radiance"}, sky{"scene.ambient-visibility", "light.visibility"},
-      angles{"surface.half-angle", "surface.exitance-angle", "surface.incidence-angle", "surface.phase-angle"};
-  std::vector<EffectKind> k;
-  const auto add = [&](EffectKind kind) { k.push_back(std::move(kind)); };
-  add({"lamp with a size",
-       "light.finite-size",
-       {"light"},
-       edge,
-       0.008,
-       0.035,
-       false,
-       1,
-       [](const Numbers& s) {
-         return std::vector<TrueValue>{{"light.finite-size", "radius_m", s[0]}};
-       },
-       ""});
-  add({"ambient light",
-       "light.ambient",
-       {"light"},
-       sky,
-       0.004,
-       0.04,
-       false,
-       1,
-       [](const Numbers& s) {
-         return std::vector<TrueValue>{{"light.ambient", "radiance_r", s[0]},
-                                       {"light.ambient", "radiance_g", s[0]},
-                                       {"light.ambient", "radiance_b", 1.1 * s[0]}};
-       },
-       ""});
-  add({"lamps elsewhere",
-       "light.direction",
-       {"light"},
-       {"light.identity", "surface.incidence-angle", "light.shadow-edge-distance", "light.visibility"},
-       0.02,
-       0.12,
-       false,
-       1,
-       {},
-       ""});
-  add({"vignetting",
-       "optics.vignetting",
-       {"optics"},
-       radius,
-       0.05,
-       0.35,
-       false,
-       1,
-       [](const Numbers& s) { return nearly("optics.vignetting", "falloff", s[0]); },
-       ""});
-  add({"clear coat",
-       "surface.interface",
-       {"surface"},
-       {"surface.half-angle", "image.radiance"},
-       0.02,
-       0.06,
-       false,
-       1,
-       [](const Numbers& s) { return nearly("surface.interface", "f0", s[0]); },
-       ""});
-  add({"rough matte",
-       "surface.diffuse-roughness",
-       {"surface"},
-       angles,
-       0.2,
-       0.5,
-       false,
-       1,
-       [](const Numbers& s) { return nearly("surface.diffuse-roughness", "sigma_rad", s[0]); },
-       ""});
-  add({"veiling glare", "optics.veiling-glare", {"optics"}, bright, 0.01, 0.05, false, 1, {}, ""});
-  add({"black offset", "sensor.black-offset", {"sensor"}, bright, 0.004, 0.02, false, 1, {}, ""});
-  add({"bent response", "sensor.non-linearity", {"sensor"}, bright, 0.02, 0.1, false, 1, {}, ""});
-  add({"saturation",
-       "sensor.saturation",
-       {"sensor"},
-       bright,
-       0.15,
-       0.4,
-       false,
-       1,
-       [this](const Numbers& s) {
-         return std::vector<TrueValue>{{"sensor.saturation", "full_scale", (1 - s[0]) * white_}};
-       },
-       ""});
-  add({"mains ripple", "sensor.row-pattern", {"sensor"}, {"camera.image-y"}, 0.01, 0.1, false, 1, {}, ""});
-  add({"crosstalk",
-       "sensor.crosstalk",
-       {"sensor"},
-       {"image.hue"},
-       0.01,
-       0.05,
-       false,
-       1,
-       [](const Numbers& s) {
-         return std::vector<TrueValue>{{"sensor.crosstalk", "share", s[0]}};
-       },
-       ""});
-  add({"second lamp",
-       "light.second-source",
-       {"light"},
-       {"light.second-visibility", "light.visibility", "surface.second-incidence-angle"},
-       0.01,
-       0.1,
-       false,
-       1,
-       {},
-       ""});
-  add({"stain",
-       "surface.spatial-variation",
-       {"surface"},
-       {"surface.position", "scene.position"},
-       0.1,
-       0.5,
-       false,
-       1,
-       {},
-       ""});
-  add({"wide pupil",
-       "optics.defocus",
-       {"optics"},
-       {"image.edge-distance", "scene.depth"},
-       0.004,
-       0.012,
-       false,
-       1,
-       {},
-       ""});
-  add({"moved ball",
-       "geometry.pose",
-       {"pose", "geometry"},
-       {"image.edge-distance", "image.gradient"},
-       0.001,
-       0.005,
-       false,
-       1,
-       {},
-       ""});
-  add({"shrunk ball",
-       "geometry.scale",
-       {"geometry", "pose"},
-       {"image.edge-distance", "image.gradient"},
-       0.01,
-       0.05,
-       false,
-       1,
-       {},
-       ""});
-  add({"light between surfaces",
-       "transport.indirect",
-       {"transport"},
-       {"scene.indirect-irradiance", "light.visibility"},
-       1,
-       1.0001,
-       false,
-       1,
-       [](const Numbers&) {
-         return std::vector<TrueValue>{{"transport.indirect", "strength", 1}};
-       },
-       "direct light only"});
-  add({"uneven columns", "", {"sensor"}, {"camera.image-x"}, 0.02, 0.08, false, 1, {}, ""});
-  add({"wire", "", {"light", "geometry"}, {}, 0.002, 0.006, false, 1, {}, ""});
-  return k;
-}
 
 void Images::design(Random& random, const std::string& variant) {
   believes_direct_ = variant == "direct light only";

@@ -31,54 +31,29 @@ class LightWorld final : public RowsWorld {
 };
 
 std::vector<EffectKind> LightWorld::effects() const {
+  const std::vector<std::string> angle{"light.emission-angle", "light.incidence-angle", "surface.incidence-angle"},
+      place{"surface.incidence-angle",
+            "light.incidence-angle",
+            "light.emission-angle",
+            "light.distance",
+            "scene.x",
+            "scene.y"},
+      light{"light"};
   std::vector<EffectKind> k;
-  const std::vector<std::string> angle{"light.emission-angle", "light.incidence-angle"};
-  k.push_back({"narrow lamp", "light.lobe", {"light"}, angle, 0.3, 4, false, 1, {}, ""});
-  k.push_back({"lamp elsewhere",
-               "light.position",
-               {"light"},
-               {"light.incidence-angle", "light.distance", "light.emission-angle", "scene.x", "scene.y", "x_m", "y_m"},
-               0.005,
-               0.04,
-               false,
-               1,
-               {},
-               ""});
-  k.push_back(
-      {"room light", "light.ambient", {"light"}, {"image.radiance", "light.irradiance"}, 0.02, 0.2, false, 1, {}, ""});
-  k.push_back({"lamp warming up",
-               "light.drift",
-               {"light"},
-               {"image.time"},
-               0.02,
-               0.1,
-               true,
-               1,
-               [](const Numbers& s) {
-                 return std::vector<TrueValue>{{"light.drift", "amplitude", s[0]}};
-               },
-               ""});
-  k.push_back({"second lamp",
-               "light.second-source",
-               {"light"},
-               {"light.incidence-angle", "scene.x", "scene.y", "x_m", "y_m", "light.second-incidence-angle"},
-               0.03,
-               0.2,
-               false,
-               1,
-               {},
-               ""});
-  k.push_back({"diverging light",
-               "light.inverse-square",
-               {"light"},
-               {"light.distance"},
-               1,
-               1.0001,
-               false,
-               1,
-               {},
-               "believed parallel"});
-  k.push_back({"rings of a Fresnel lens", "", {"light"}, {}, 0.03, 0.1, false, 1, {}, ""});
+  const auto add = [&](EffectKind kind) -> EffectKind& { return k.emplace_back(std::move(kind)); };
+  add({"narrow lamp", "light.lobe", light, angle, 0.3, 4}).nearly("exponent");
+  add({"lamp elsewhere", "light.position", light, place, 0.005, 0.04});
+  add({"room light", "light.ambient", light, {"image.radiance", "light.irradiance"}, 0.02, 0.2});
+  add({"lamp warming up", "light.drift", light, {"image.time"}, 0.02, 0.1}).of_either_sign().means({"amplitude"});
+  add({"second lamp", "light.second-source", light, place, 0.03, 0.2});
+  add({"diverging light",
+       "light.inverse-square",
+       light,
+       {"light.distance", "surface.incidence-angle", "scene.x", "scene.y"},
+       1,
+       1.0001})
+      .only_for("believed parallel");
+  add({"rings of a Fresnel lens", "", light, {}, 0.03, 0.1});
   return k;
 }
 

@@ -8,67 +8,53 @@
 namespace gonio::sealed {
 namespace {
 
+// Counts: nulls, distractors, singles (of each effect), pairs, specials (of each), effects outside the library (of
+// each).
 const std::vector<WorldEntry>& entries() {
   static const std::vector<WorldEntry> list{
       {"boards",
        boards_world,
        {{Kind::alike, {"fisheye"}, ""}, {Kind::alike, {"bent board"}, "frontal"}},
-       {.nulls = 16, .distractors = 8, .singles = 6, .pairs = 10, .specials = 4, .outside = 5},
-       {.nulls = 4, .distractors = 2, .singles = 1, .pairs = 2, .specials = 1, .outside = 1}},
-      {"exposures",
-       exposures_world,
-       {{Kind::invisible, {"glare"}, "usual"}},
-       {.nulls = 6, .distractors = 3, .singles = 3, .pairs = 3, .specials = 2, .outside = 3},
-       {.nulls = 2, .distractors = 1, .singles = 1, .pairs = 1, .specials = 1, .outside = 1}},
+       {16, 8, 6, 10, 4, 5},
+       {4, 2, 1, 2, 1, 1}},
+      {"exposures", exposures_world, {{Kind::invisible, {"glare"}, ""}}, {8, 4, 4, 4, 3, 4}, {2, 1, 1, 1, 1, 1}},
       {"photometric",
        photometric_world,
-       {{Kind::invisible, {"vignetting"}, "usual"}},
-       {.nulls = 6, .distractors = 3, .singles = 3, .pairs = 2, .specials = 2, .outside = 0},
-       {.nulls = 2, .distractors = 1, .singles = 1, .pairs = 0, .specials = 1, .outside = 0}},
-      {"robot",
-       robot_world,
-       {},
-       {.nulls = 8, .distractors = 4, .singles = 3, .pairs = 3, .specials = 0, .outside = 2},
-       {.nulls = 2, .distractors = 1, .singles = 1, .pairs = 0, .specials = 0, .outside = 1}},
+       {{Kind::invisible, {"vignetting"}, ""}},
+       {8, 4, 4, 4, 3, 0},
+       {2, 1, 1, 1, 1, 0}},
+      {"robot", robot_world, {}, {10, 4, 4, 3, 0, 3}, {2, 1, 1, 0, 0, 1}},
       {"images",
        images_world,
        {{Kind::single, {"light between surfaces"}, "direct light only"},
         {Kind::invisible, {"lamp with a size"}, "table alone"}},
-       {.nulls = 6, .distractors = 3, .singles = 2, .pairs = 6, .specials = 2, .outside = 2},
-       {.nulls = 2, .distractors = 1, .singles = 1, .pairs = 0, .specials = 1, .outside = 0, .every = 4}},
+       {6, 3, 2, 6, 2, 2},
+       {1, 1, 1, 0, 0, 0, 4}},
       {"sensor",
        sensor_world,
        {{Kind::alike, {"black offset"}, "one exposure"},
         {Kind::alike, {"slow shutter"}, "exposures in order"},
         {Kind::invisible, {"black offset"}, "one exposure, unknown patches"},
         {Kind::single, {"ambient light"}, "known patches"}},
-       {.nulls = 16, .distractors = 10, .singles = 6, .pairs = 8, .specials = 4, .outside = 5},
-       {.nulls = 5, .distractors = 3, .singles = 3, .pairs = 4, .specials = 2, .outside = 2}},
+       {16, 10, 8, 10, 4, 5},
+       {5, 3, 3, 4, 2, 2}},
       {"expression",
        expression_world,
        {{Kind::invisible, {"inverse square"}, "distance stands still"}},
-       {.nulls = 14, .distractors = 8, .singles = 5, .pairs = 8, .specials = 3, .outside = 5},
-       {.nulls = 5, .distractors = 3, .singles = 2, .pairs = 4, .specials = 1, .outside = 2}},
+       {14, 8, 8, 10, 3, 5},
+       {5, 3, 2, 4, 1, 2}},
       {"surface",
        surface_world,
        {{Kind::alike, {"rough matte"}, "normal incidence"}},
-       {.nulls = 12, .distractors = 6, .singles = 5, .pairs = 5, .specials = 3, .outside = 4},
-       {.nulls = 4, .distractors = 2, .singles = 2, .pairs = 2, .specials = 1, .outside = 2}},
+       {14, 8, 8, 8, 3, 4},
+       {4, 2, 2, 3, 1, 2}},
       {"light",
        light_world,
        {{Kind::single, {"diverging light"}, "believed parallel"}},
-       {.nulls = 12, .distractors = 6, .singles = 5, .pairs = 6, .specials = 3, .outside = 4},
-       {.nulls = 4, .distractors = 2, .singles = 2, .pairs = 3, .specials = 1, .outside = 2}},
-      {"volume",
-       volume_world,
-       {},
-       {.nulls = 12, .distractors = 6, .singles = 5, .pairs = 5, .specials = 0, .outside = 3},
-       {.nulls = 4, .distractors = 2, .singles = 2, .pairs = 2, .specials = 0, .outside = 1}},
-      {"tracks",
-       tracks_world,
-       {},
-       {.nulls = 10, .distractors = 4, .singles = 5, .pairs = 3, .specials = 0, .outside = 4},
-       {.nulls = 3, .distractors = 1, .singles = 2, .pairs = 1, .specials = 0, .outside = 1}}};
+       {14, 8, 8, 8, 3, 4},
+       {4, 2, 2, 3, 1, 2}},
+      {"volume", volume_world, {}, {12, 6, 8, 6, 0, 4}, {4, 2, 2, 2, 0, 1}},
+      {"tracks", tracks_world, {}, {12, 6, 6, 4, 0, 4}, {3, 1, 2, 1, 0, 1}}};
   return list;
 }
 
@@ -87,10 +73,10 @@ class Planner {
     for (const auto& [name, kind] : kinds_) {
       if (!kind.variant.empty()) continue;
       const bool outside = kind.id.empty();
-      const int most = outside ? entry_.whole.outside : entry_.whole.singles, few = outside ? entry_.quick.outside
-                                                                                    : place++ % entry_.quick.every == 0
-                                                                                        ? entry_.quick.singles
-                                                                                        : 0;
+      const bool hurried = !outside && place++ % entry_.quick.every == 0;
+      const int most = outside ? entry_.whole.outside : entry_.whole.singles, few = outside   ? entry_.quick.outside
+                                                                                    : hurried ? entry_.quick.singles
+                                                                                              : 0;
       for (int k = 0; k < most; ++k)
         add(outside ? Kind::outside : Kind::single, {name}, "", outside ? 0 : multiples[k % 6], k < few);
     }

@@ -135,61 +135,19 @@ class RobotWorld final : public World {
 };
 
 std::vector<EffectKind> RobotWorld::effects() const {
+  const std::vector<std::string> joints{"robot.joint-2", "robot.joint-3", "robot.joint-4", "robot.joint-5"},
+      arm{"robot.reach", "robot.joint-2", "robot.joint-3"},
+      board{"camera.distance", "board.x", "board.y", "board.radius"}, pose{"pose"};
   std::vector<EffectKind> k;
-  const std::vector<std::string> joints{"robot.joint-2", "robot.joint-3", "robot.joint-4", "robot.joint-5"};
-  k.push_back({"joint zeros",
-               "robot.joint-offset",
-               {"pose"},
-               joints,
-               4e-4,
-               1.5e-3,
-               true,
-               4,
-               [](const Numbers& s) {
-                 std::vector<TrueValue> values;
-                 for (std::size_t j = 0; j < 4; ++j)
-                   values.push_back({"robot.joint-offset", "joint_" + std::to_string(j + 2) + "_rad", s[j]});
-                 return values;
-               },
-               ""});
-  k.push_back({"hanging arm",
-               "robot.sag",
-               {"pose"},
-               {"robot.reach", "robot.joint-2", "robot.joint-3"},
-               3e-4,
-               1.5e-3,
-               false,
-               1,
-               [](const Numbers& s) {
-                 return std::vector<TrueValue>{{"robot.sag", "joint_2_rad_per_m", s[0]},
-                                               {"robot.sag", "joint_3_rad_per_m", s[0]}};
-               },
-               ""});
-  k.push_back({"longer upper arm",
-               "robot.link-length",
-               {"pose"},
-               {"robot.reach", "robot.joint-2", "robot.joint-3"},
-               3e-4,
-               2e-3,
-               true,
-               1,
-               [](const Numbers& s) {
-                 return std::vector<TrueValue>{{"robot.link-length", "a_2_m", -s[0]}};
-               },
-               ""});
-  k.push_back({"larger board",
-               "board.scale",
-               {"board"},
-               {"camera.distance", "board.x", "board.y", "board.radius"},
-               1e-3,
-               8e-3,
-               true,
-               1,
-               [](const Numbers& s) {
-                 return std::vector<TrueValue>{{"board.scale", "scale_x", s[0]}, {"board.scale", "scale_y", s[0]}};
-               },
-               ""});
-  k.push_back({"yielding table", "", {"pose"}, {"robot.joint-1"}, 5e-4, 2e-3, false, 1, {}, ""});
+  const auto add = [&](EffectKind kind) -> EffectKind& { return k.emplace_back(std::move(kind)); };
+  add({"joint zeros", "robot.joint-offset", pose, joints, 4e-4, 1.5e-3})
+      .of_either_sign()
+      .of_parts(4)
+      .means({"joint_2_rad", "joint_3_rad", "joint_4_rad", "joint_5_rad"});
+  add({"hanging arm", "robot.sag", pose, arm, 3e-4, 1.5e-3}).means({"joint_2_rad_per_m", "joint_3_rad_per_m"});
+  add({"longer upper arm", "robot.link-length", pose, arm, 3e-4, 2e-3}).of_either_sign().means({"a_2_m"}, {-1});
+  add({"larger board", "board.scale", {"board"}, board, 1e-3, 8e-3}).of_either_sign().means({"scale_x", "scale_y"});
+  add({"yielding table", "", pose, {"robot.joint-1"}, 5e-4, 2e-3});
   return k;
 }
 

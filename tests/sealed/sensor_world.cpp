@@ -43,57 +43,20 @@ class SensorWorld final : public RowsWorld {
 };
 
 std::vector<EffectKind> SensorWorld::effects() const {
-  const std::vector<std::string> signal{"image.radiance", "image.exposure", "scene.radiance"}, time{"image.time"};
+  const std::vector<std::string> signal{"image.radiance", "image.exposure", "scene.radiance"}, time{"image.time"},
+      sensor{"sensor"}, light{"light"};
   std::vector<EffectKind> k;
-  const auto exact = [](const char* mechanism, const char* parameter, double scale) {
-    return [=](const Numbers& s) { return std::vector<TrueValue>{{mechanism, parameter, scale * s[0]}}; };
+  const auto add = [&](EffectKind kind) -> EffectKind& { return k.emplace_back(std::move(kind)); };
+  add({"black offset", "sensor.black-offset", sensor, signal, 3, 30}).of_either_sign().means({"offset"});
+  add({"bent response", "sensor.non-linearity", sensor, signal, 0.02, 0.08});
+  add({"full wells", "sensor.saturation", sensor, signal, 0.05, 0.35}).values = [](const Numbers& s) {
+    return std::vector<TrueValue>{{"sensor.saturation", "full_scale", (1 - s[0]) * 0.9 * full_scale}};
   };
-  k.push_back({"black offset",
-               "sensor.black-offset",
-               {"sensor"},
-               signal,
-               3,
-               30,
-               true,
-               1,
-               exact("sensor.black-offset", "offset", 1),
-               ""});
-  k.push_back({"bent response", "sensor.non-linearity", {"sensor"}, signal, 0.02, 0.08, false, 1, {}, ""});
-  k.push_back({"full wells",
-               "sensor.saturation",
-               {"sensor"},
-               signal,
-               0.05,
-               0.35,
-               false,
-               1,
-               [](const Numbers& s) {
-                 return std::vector<TrueValue>{{"sensor.saturation", "full_scale", (1 - s[0]) * 0.9 * full_scale}};
-               },
-               ""});
-  k.push_back({"slow shutter",
-               "sensor.shutter",
-               {"sensor"},
-               {"image.exposure"},
-               2e-5,
-               2e-4,
-               true,
-               1,
-               exact("sensor.shutter", "extra_s", 1),
-               ""});
-  k.push_back({"lamp warming up",
-               "light.drift",
-               {"light"},
-               time,
-               0.02,
-               0.1,
-               true,
-               1,
-               exact("light.drift", "amplitude", 1),
-               ""});
-  k.push_back({"ambient light", "light.ambient", {"light"}, signal, 0.01, 0.05, false, 1, {}, "known patches"});
-  k.push_back({"gain with temperature squared", "", {"sensor"}, {"image.temperature"}, 4e-4, 2e-3, true, 1, {}, ""});
-  k.push_back({"beat with the mains", "", {"light"}, time, 0.03, 0.08, false, 1, {}, ""});
+  add({"slow shutter", "sensor.shutter", sensor, {"image.exposure"}, 2e-5, 2e-4}).of_either_sign().means({"extra_s"});
+  add({"lamp warming up", "light.drift", light, time, 0.02, 0.1}).of_either_sign().means({"amplitude"});
+  add({"ambient light", "light.ambient", light, signal, 0.01, 0.05}).only_for("known patches");
+  add({"gain with temperature squared", "", sensor, {"image.temperature"}, 4e-4, 2e-3}).of_either_sign();
+  add({"beat with the mains", "", light, time, 0.03, 0.08});
   return k;
 }
 

@@ -87,60 +87,21 @@ class StackWorld : public World {
 class Exposures final : public StackWorld {
  public:
   std::vector<EffectKind> effects() const override {
-    const std::vector<std::string> signal{"image.radiance", "image.exposure", "image.reading"};
+    const std::vector<std::string> signal{"image.radiance", "image.exposure", "image.reading"}, sensor{"sensor"};
     std::vector<EffectKind> k;
-    k.push_back({"film", "sensor.non-linearity", {"sensor"}, signal, 0.1, 0.5, false, 1, {}, ""});
-    k.push_back({"bent response", "sensor.non-linearity", {"sensor"}, signal, 0.02, 0.1, false, 1, {}, ""});
-    k.push_back({"black offset",
-                 "sensor.black-offset",
-                 {"sensor"},
-                 signal,
-                 0.004,
-                 0.03,
-                 false,
-                 1,
-                 [](const Numbers& s) {
-                   return std::vector<TrueValue>{{"sensor.black-offset", "offset", s[0]}};
-                 },
-                 ""});
-    k.push_back({"full wells",
-                 "sensor.saturation",
-                 {"sensor"},
-                 signal,
-                 0.1,
-                 0.5,
-                 false,
-                 1,
-                 [](const Numbers& s) {
-                   return std::vector<TrueValue>{{"sensor.saturation", "full_scale", 1 - s[0]}};
-                 },
-                 ""});
-    k.push_back({"slow shutter",
-                 "sensor.shutter",
-                 {"sensor"},
-                 {"image.exposure"},
-                 1e-4,
-                 1e-3,
-                 true,
-                 1,
-                 [](const Numbers& s) {
-                   return std::vector<TrueValue>{{"sensor.shutter", "extra_s", s[0]}};
-                 },
-                 ""});
-    k.push_back({"lamp warming up",
-                 "light.drift",
-                 {"light"},
-                 {"image.time"},
-                 0.03,
-                 0.12,
-                 true,
-                 1,
-                 [](const Numbers& s) {
-                   return std::vector<TrueValue>{{"light.drift", "amplitude", s[0]}};
-                 },
-                 ""});
-    k.push_back({"glare", "optics.veiling-glare", {"optics"}, signal, 0.01, 0.1, false, 1, {}, "only where asked"});
-    k.push_back({"reciprocity failure", "", {"sensor"}, {"image.exposure"}, 0.03, 0.12, false, 1, {}, ""});
+    const auto add = [&](EffectKind kind) -> EffectKind& { return k.emplace_back(std::move(kind)); };
+    add({"film", "sensor.non-linearity", sensor, signal, 0.1, 0.5});
+    add({"bent response", "sensor.non-linearity", sensor, signal, 0.02, 0.1});
+    add({"black offset", "sensor.black-offset", sensor, signal, 0.004, 0.03}).means({"offset"});
+    add({"full wells", "sensor.saturation", sensor, signal, 0.1, 0.5}).values = [](const Numbers& s) {
+      return std::vector<TrueValue>{{"sensor.saturation", "full_scale", 1 - s[0]}};
+    };
+    add({"slow shutter", "sensor.shutter", sensor, {"image.exposure"}, 1e-4, 1e-3}).of_either_sign().means({"extra_s"});
+    add({"lamp warming up", "light.drift", {"light"}, {"image.time"}, 0.03, 0.12})
+        .of_either_sign()
+        .means({"amplitude"});
+    add({"glare", "optics.veiling-glare", {"optics"}, signal, 0.01, 0.1}).only_for("where asked");
+    add({"reciprocity failure", "", sensor, {"image.exposure"}, 0.03, 0.12});
     return k;
   }
   void design(Random& random, const std::string&) override {
@@ -199,73 +160,23 @@ class Exposures final : public StackWorld {
 class Photometric final : public StackWorld {
  public:
   std::vector<EffectKind> effects() const override {
-    const std::vector<std::string> bright{"image.radiance"};
+    const std::vector<std::string> bright{"image.radiance"}, surface{"surface"}, sensor{"sensor"}, light{"light"},
+        angles{"surface.incidence-angle", "surface.exitance-angle", "surface.phase-angle"},
+        gloss{"surface.half-angle", "image.radiance"};
     std::vector<EffectKind> k;
-    k.push_back({"clear coat",
-                 "surface.interface",
-                 {"surface"},
-                 {"surface.half-angle", "image.radiance"},
-                 0.02,
-                 0.06,
-                 false,
-                 1,
-                 [](const Numbers& s) {
-                   return std::vector<TrueValue>{{"surface.interface", "f0", s[0], false}};
-                 },
-                 ""});
-    k.push_back({"rough matte",
-                 "surface.diffuse-roughness",
-                 {"surface"},
-                 {"surface.incidence-angle", "surface.exitance-angle", "surface.phase-angle"},
-                 0.2,
-                 0.6,
-                 false,
-                 1,
-                 {},
-                 ""});
-    k.push_back({"lamps elsewhere",
-                 "light.direction",
-                 {"light"},
-                 {"light.identity", "surface.incidence-angle"},
-                 0.02,
-                 0.1,
-                 false,
-                 1,
-                 {},
-                 ""});
-    k.push_back({"ambient light",
-                 "light.ambient",
-                 {"light"},
-                 {"image.radiance", "scene.ambient-visibility", "surface.incidence-angle"},
-                 0.01,
-                 0.06,
-                 false,
-                 1,
-                 {},
-                 ""});
-    k.push_back({"bent response", "sensor.non-linearity", {"sensor"}, bright, 0.05, 0.2, false, 1, {}, ""});
-    k.push_back({"black offset",
-                 "sensor.black-offset",
-                 {"sensor"},
-                 bright,
-                 0.005,
-                 0.03,
-                 false,
-                 1,
-                 [](const Numbers& s) {
-                   return std::vector<TrueValue>{{"sensor.black-offset", "offset", s[0]}};
-                 },
-                 ""});
-    k.push_back({"vignetting",
-                 "optics.vignetting",
-                 {"optics"},
-                 {"camera.image-radius"},
-                 0.1,
-                 0.4,
-                 false,
-                 1,
-                 {},
-                 "only where asked"});
+    const auto add = [&](EffectKind kind) -> EffectKind& { return k.emplace_back(std::move(kind)); };
+    add({"clear coat", "surface.interface", surface, gloss, 0.02, 0.06}).nearly("f0");
+    add({"rough matte", "surface.diffuse-roughness", surface, angles, 0.2, 0.6});
+    add({"lamps elsewhere", "light.direction", light, {"light.identity", "surface.incidence-angle"}, 0.02, 0.1});
+    add({"ambient light",
+         "light.ambient",
+         light,
+         {"image.radiance", "scene.ambient-visibility", "surface.incidence-angle"},
+         0.01,
+         0.06});
+    add({"bent response", "sensor.non-linearity", sensor, bright, 0.05, 0.2});
+    add({"black offset", "sensor.black-offset", sensor, bright, 0.005, 0.03}).means({"offset"});
+    add({"vignetting", "optics.vignetting", {"optics"}, {"camera.image-radius"}, 0.1, 0.4}).only_for("where asked");
     return k;
   }
   void design(Random& random, const std::string&) override {

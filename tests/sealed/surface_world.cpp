@@ -32,55 +32,21 @@ class SurfaceWorld final : public RowsWorld {
 };
 
 std::vector<EffectKind> SurfaceWorld::effects() const {
-  const std::vector<std::string> half{"surface.half-angle"},
-      grazing{"surface.incidence-angle", "surface.exitance-angle", "surface.phase-angle", "surface.retro-angle"};
+  const std::vector<std::string> angles{"surface.incidence-angle", "surface.exitance-angle", "surface.phase-angle",
+                                        "surface.retro-angle"},
+      surface{"surface"};
   std::vector<EffectKind> k;
-  k.push_back({"clear coat",
-               "surface.interface",
-               {"surface"},
-               half,
-               0.02,
-               0.07,
-               false,
-               1,
-               [this](const Numbers& s) {
-                 return std::vector<TrueValue>{{"surface.interface", "f0", s[0], false},
-                                               {"surface.interface", "alpha", alpha_, false}};
-               },
-               ""});
-  k.push_back({"rough matte",
-               "surface.diffuse-roughness",
-               {"surface"},
-               grazing,
-               0.15,
-               0.5,
-               false,
-               1,
-               [](const Numbers& s) {
-                 return std::vector<TrueValue>{{"surface.diffuse-roughness", "sigma_rad", s[0], false}};
-               },
-               ""});
-  k.push_back({"sent back to the lamp",
-               "surface.retro-reflection",
-               {"surface"},
-               {"surface.phase-angle", "surface.retro-angle"},
-               0.02,
-               0.15,
-               false,
-               1,
-               {},
-               ""});
-  k.push_back({"tile that is no Lambertian one",
-               "reference.tile",
-               {"reference", "surface", "sensor"},
-               grazing,
-               0.05,
-               0.3,
-               false,
-               1,
-               {},
-               ""});
-  k.push_back({"uneven goniometer", "", {}, {}, 0.05, 0.15, false, 1, {}, ""});
+  const auto add = [&](EffectKind kind) -> EffectKind& { return k.emplace_back(std::move(kind)); };
+  add({"clear coat", "surface.interface", surface, {"surface.half-angle"}, 0.02, 0.07}).nearly("f0");
+  add({"rough matte", "surface.diffuse-roughness", surface, angles, 0.15, 0.5}).nearly("sigma_rad");
+  add({"sent back to the lamp",
+       "surface.retro-reflection",
+       surface,
+       {"surface.phase-angle", "surface.retro-angle"},
+       0.02,
+       0.15});
+  add({"tile that is no Lambertian one", "reference.tile", {"reference", "surface", "sensor"}, angles, 0.05, 0.3});
+  add({"uneven goniometer", "", {}, {}, 0.05, 0.15});
   return k;
 }
 

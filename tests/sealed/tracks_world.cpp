@@ -24,28 +24,13 @@ Vec3 turned(Vec3 v, Vec3 p) {
 class TracksWorld final : public World {
  public:
   std::vector<EffectKind> effects() const override {
+    const std::vector<std::string> depth{"tracks.depth", "camera.depth", "track.depth"},
+        stages{"camera", "lens", "tracks"};
     std::vector<EffectKind> k;
-    k.push_back({"near camera",
-                 "tracks.perspective",
-                 {"camera", "lens", "tracks"},
-                 {"tracks.depth", "camera.depth", "track.depth"},
-                 0.05,
-                 0.6,
-                 false,
-                 1,
-                 {},
-                 ""});
-    k.push_back({"slipped tracks",
-                 "tracks.outliers",
-                 {"tracks", "camera", "sensor"},
-                 {"tracks.point", "tracks.identity", "point"},
-                 4,
-                 20,
-                 false,
-                 1,
-                 {},
-                 ""});
-    k.push_back({"rows read late", "", {"sensor"}, {"camera.image-y"}, 0.3, 1.2, false, 1, {}, ""});
+    const auto add = [&](EffectKind kind) -> EffectKind& { return k.emplace_back(std::move(kind)); };
+    add({"near camera", "tracks.perspective", stages, depth, 0.05, 0.6});
+    add({"slipped tracks", "tracks.outliers", stages, {"tracks.point", "tracks.identity", "point"}, 4, 20});
+    add({"rows read late", "", {"sensor"}, {"camera.image-y"}, 0.3, 1.2});
     return k;
   }
   void design(Random& random, const std::string&) override {

@@ -15,56 +15,15 @@ constexpr double believed_index = 1.5;
 class VolumeWorld final : public RowsWorld {
  public:
   std::vector<EffectKind> effects() const override {
+    const std::vector<std::string> inside{"transport", "volume", "surface"}, path{"volume.path-length"},
+        angle{"surface.incidence-angle"};
     std::vector<EffectKind> k;
-    k.push_back({"absorbing glass",
-                 "volume.absorption",
-                 {"transport", "volume", "surface"},
-                 {"volume.path-length"},
-                 1,
-                 10,
-                 false,
-                 1,
-                 [](const Numbers& s) {
-                   return std::vector<TrueValue>{{"volume.absorption", "sigma_a_per_m", s[0], false}};
-                 },
-                 ""});
-    k.push_back({"other glass",
-                 "volume.index",
-                 {"transport", "volume", "surface"},
-                 {"surface.incidence-angle"},
-                 0.04,
-                 0.25,
-                 false,
-                 1,
-                 [](const Numbers& s) {
-                   return std::vector<TrueValue>{{"volume.index", "shift", s[0]}};
-                 },
-                 ""});
-    k.push_back({"lamp warming up",
-                 "light.drift",
-                 {"light"},
-                 {"image.time"},
-                 0.02,
-                 0.1,
-                 true,
-                 1,
-                 [](const Numbers& s) {
-                   return std::vector<TrueValue>{{"light.drift", "amplitude", s[0]}};
-                 },
-                 ""});
-    k.push_back({"dark reading",
-                 "sensor.black-offset",
-                 {"sensor"},
-                 {"image.radiance"},
-                 0.02,
-                 0.08,
-                 false,
-                 1,
-                 [](const Numbers& s) {
-                   return std::vector<TrueValue>{{"sensor.black-offset", "offset", s[0]}};
-                 },
-                 ""});
-    k.push_back({"fringes", "", {}, {"surface.incidence-angle", "volume.path-length"}, 0.02, 0.06, false, 1, {}, ""});
+    const auto add = [&](EffectKind kind) -> EffectKind& { return k.emplace_back(std::move(kind)); };
+    add({"absorbing glass", "volume.absorption", inside, path, 1, 10}).nearly("sigma_a_per_m");
+    add({"other glass", "volume.index", inside, angle, 0.04, 0.25}).means({"shift"});
+    add({"lamp warming up", "light.drift", {"light"}, {"image.time"}, 0.02, 0.1}).of_either_sign().means({"amplitude"});
+    add({"dark reading", "sensor.black-offset", {"sensor"}, {"image.radiance"}, 0.02, 0.08}).means({"offset"});
+    add({"fringes", "", {}, {"surface.incidence-angle", "volume.path-length"}, 0.02, 0.06});
     return k;
   }
   void design(Random& random, const std::string&) override {

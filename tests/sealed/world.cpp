@@ -222,6 +222,35 @@ std::string case_id(const Spec& spec) {
   return id;
 }
 
+EffectKind& EffectKind::of_either_sign() {
+  either_sign = true;
+  return *this;
+}
+EffectKind& EffectKind::of_parts(std::size_t count, double numbers_of_a_test) {
+  parts = count;
+  freedom = numbers_of_a_test;
+  return *this;
+}
+EffectKind& EffectKind::only_for(const std::string& design) {
+  variant = design;
+  return *this;
+}
+EffectKind& EffectKind::means(const std::vector<std::string>& parameters, const Numbers& scale) {
+  values = [=, mechanism = id](const Numbers& size) {
+    std::vector<TrueValue> result;
+    for (std::size_t k = 0; k < parameters.size(); ++k)
+      result.push_back({mechanism, parameters[k], size[std::min(k, size.size() - 1)] * (scale.empty() ? 1 : scale[k])});
+    return result;
+  };
+  return *this;
+}
+EffectKind& EffectKind::nearly(const std::string& parameter) {
+  values = [=, mechanism = id](const Numbers& size) {
+    return std::vector<TrueValue>{{mechanism, parameter, size[0], false}};
+  };
+  return *this;
+}
+
 std::vector<Numbers> World::base_columns() const {
   const Numbers at = base(), steps = base_steps();
   std::vector<Numbers> columns;

@@ -12,14 +12,22 @@ namespace gonio::sealed {
 // An effect that can be left out. Its size has one number or several (p1 and p2), each drawn from [least, most], on a
 // logarithmic scale, with either sign where `either_sign`.
 struct EffectKind {
-  std::string name, id;  // id: canonical, empty for an effect outside the library
-  std::vector<std::string> stages, conditions;
+  std::string name, id;                         // id: canonical, empty for an effect outside the library
+  std::vector<std::string> stages, conditions;  // any of them is right
   double least = 0, most = 0;
   bool either_sign = false;
   std::size_t parts = 1;
-  std::function<std::vector<TrueValue>(const Numbers& size)> values;  // empty: the declaration's numbers mean others
-  std::string variant;  // of the design that it needs; empty: the usual one
-  double freedom = 0;   // numbers that a test for it has (one a view); 0: as many as it has parts
+  std::function<std::vector<TrueValue>(const Numbers& size)> values =
+      {};                    // empty: the declaration's numbers mean others
+  std::string variant = {};  // of the design that it needs; empty: the usual one
+  double freedom = 0;        // numbers that a test for it has (one a view); 0: as many as it has parts
+
+  EffectKind& of_either_sign();
+  EffectKind& of_parts(std::size_t count, double numbers_of_a_test = 0);
+  EffectKind& only_for(const std::string& design);
+  // The declaration's parameters of this name are the parts of the size, times `scale`.
+  EffectKind& means(const std::vector<std::string>& parameters, const Numbers& scale = {});
+  EffectKind& nearly(const std::string& parameter);  // the same to first order: no interval is asked
 };
 using Sizes = std::map<std::string, Numbers>;  // effect's name -> size; left out: absent
 
