@@ -3,14 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/random.h"
 #include "explain/compensation.h"
+#include "explain/judgement.h"
 #include "explain/law.h"
 #include "explain/noise.h"
 #include "explain/plan.h"
 #include "explain/race.h"
 #include "explain/sentence.h"
+#include "stats/intervals.h"
 
 namespace gonio::explain {
 namespace {
@@ -87,10 +90,10 @@ void locate_groups(const System& system, Explanation& e) {
 }
 
 void final_fit(const System& system, const Race& race, const Selection& selection, Explanation& e) {
-  const Model base = race.base(selection.base.fit.values);
-  Model model = base;
-  if (!selection.model.candidates.empty()) {
-    model = race.changed(selection.model, selection.model.candidates);
+  Model base = selection.base, model = selection.model;
+  if (!e.test_groups.empty()) {  // what was set aside joins
+    base = race.base(selection.base.fit.values);
+    model = selection.model.candidates.empty() ? base : race.changed(selection.model, selection.model.candidates);
   }
   e.converged = base.fit.converged && model.fit.converged;
   e.base_values = base.fit.values;
@@ -131,48 +134,43 @@ void final_scores(const System& all, const System& chosen_on, const Selection& s
   e.held_out_after = s.model.candidates.empty() ? e.held_out_before : score(s.model);
 }
 
-// The condition whose free curve still repairs unseen groups by more than matters, or nothing.
-const Hypothesis* structure_left(const Remainder& r, const Options& options) {
-  if (r.global_p > options.level) return nullptr;
-  for (const Hypothesis& h : r.curves)
-    if (h.gain > 2 * h.gain_sigma && h.effect >= options.matters) return &h;
-  return nullptr;
-}
-
-void judge(const Selection& s, const Options& options, Explanation& e) {
-  e.significant = s.before.global_p <= options.level;
-  const Hypothesis* left = structure_left(s.after, options);
-  if (left != nullptr) e.outside = Outside{.condition = left->name};
-  if (s.model.candidates.empty()) {
-    e.verdict = left != nullptr ? Verdict::unknown : Verdict::null;
-    e.important = left != nullptr;
-    return;
-  }
-  e.important = true;
-  const Gain repaired = gain(s.base.held_out, s.model.held_out);
-  const bool minor_part = left != nullptr && left->gain > repaired.mean;
-  const bool failed_test = !(e.held_out_after < e.held_out_before);
-  if (minor_part || failed_test) {
-    e.verdict = Verdict::unknown;
-    return;
-  }
-  e.named = s.model.candidates;
-  e.not_told_apart = s.not_told_apart;
-  e.verdict = s.not_told_apart.empty() ? Verdict::named : Verdict::ambiguous;
-}
-
 void fill_scoreboard(const Selection& s, Explanation& e) {
   e.scoreboard = s.scoreboard;
-  const auto append = [&](const std::vector<Hypothesis>& list, std::size_t most, const char* prefix) {
-    for (std::size_t k = 0; k < std::min(most, list.size()); ++k) {
-      e.scoreboard.push_back(list[k]);
-      e.scoreboard.back().name = prefix + list[k].name;
-    }
+  const auto append = [&](const Hypothesis& h, const char* prefix) {
+    e.scoreboard.push_back(h);
+    e.scoreboard.back().name = prefix + h.name;
   };
-  append(s.before.curves, 2, "a free curve over ");
-  append(s.before.dummies, 1, "best ");
-  std::stable_sort(e.scoreboard.begin(), e.scoreboard.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.held_out < b.held_out; });
+  for (std::size_t k = 0; k < std::min<std::size_t>(2, s.before.curves.size()); ++k)
+    append(s.before.curves[k].hypothesis, "a free curve over ");
+  if (!s.before.dummies.empty()) append(s.before.dummies[0], "best ");
+}
+
+// Best first, with the places of minor effects following.
+void sort_scoreboard(const Selection& s, Explanation& e) {
+  std::vector<std::size_t> order(e.scoreboard.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return e.scoreboard[a].held_out < e.scoreboard[b].held_out; });
+  std::vector<Hypothesis> sorted;
+  for (const std::size_t k : order) {
+    if (std::find(s.minor.begin(), s.minor.end(), k) != s.minor.end()) e.minor.push_back(sorted.size());
+    sorted.push_back(e.scoreboard[k]);
+  }
+  e.scoreboard = std::move(sorted);
+}
+
+// Limits as they stand once what was found no longer counts as noise within blocks.
+std::vector<Isolability> final_isolability(const System& system, const Selection& s, const Options& options) {
+  std::vector<double> inflation = s.before.inflation, known;
+  for (const double v : s.after.inflation)
+    if (v > 0) known.push_back(v);
+  const double typical = known.empty() ? 0 : stats::median(known);
+  for (std::size_t c = 0; c < inflation.size(); ++c) {
+    const double after = s.after.inflation[c] > 0 ? s.after.inflation[c] : typical;
+    if (after > 0) inflation[c] = std::min(inflation[c], after);
+  }
+  const Evidence& e = *s.before.evidence;
+  return isolability(system, e.projection, e.structures, e.scores, inflation, options);
 }
 
 }  // namespace
@@ -194,6 +192,17 @@ double null_test(const Problem& problem, const Options& options) {
   return mismatch_p(system, start, options);
 }
 
+namespace {
+
+void place_stage(const Problem& problem, Explanation& e) {
+  if (!e.named.empty())
+    e.stage = problem.candidates()[e.named[0]].mechanism->stage;
+  else if (e.verdict == Verdict::unknown)
+    e.stage = e.outside ? e.outside->stage : e.conditions.empty() ? "" : e.conditions[0].stage;
+}
+
+}  // namespace
+
 Explanation explain(const Problem& problem, const Options& options) {
   Explanation e;
   e.matters = options.matters;
@@ -207,32 +216,27 @@ Explanation explain(const Problem& problem, const Options& options) {
   System chosen_on = all;
   set_aside_groups(e.test_groups, chosen_on);
   const Race race(chosen_on, options);
-  const Selection selection = select(race, options, start, mismatch_p(all, start, options));
+  std::optional<double> mismatch;
+  if (!e.test_groups.empty()) mismatch = mismatch_p(all, start, options);
+  Selection selection = select(race, options, start, mismatch);
 
   e.global_p = selection.before.global_p;
-  e.isolability = selection.before.isolability;
+  e.isolability = final_isolability(chosen_on, selection, options);
   e.conditions = selection.before.conditions;
   e.false_alarm = selection.after.false_alarm;
   e.dummies = selection.after.dummies.size();
+  e.shortened = selection.shortened;
   final_scores(all, chosen_on, selection, e);
-  judge(selection, options, e);
+  fill_scoreboard(selection, e);
+  judge(problem, selection, options, e);
+  sort_scoreboard(selection, e);
   Selection kept = selection;
   if (e.named.empty()) kept.model = kept.base;
   final_fit(all, Race(all, options), kept, e);
   if (e.named.empty()) e.held_out_after = e.held_out_before;
   locate_groups(all, e);
-  for (LocatedCondition& located : e.conditions) {
-    const auto& conditions = problem.observations().conditions;
-    const auto found =
-        std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return c.name == located.name; });
-    located.curve = residual_curve(all, static_cast<std::size_t>(found - conditions.begin()), e.residual_before,
-                                   e.residual_after, 12);
-  }
-  if (!e.named.empty())
-    e.stage = problem.candidates()[e.named[0]].mechanism->stage;
-  else if (e.verdict == Verdict::unknown && !e.conditions.empty())
-    e.stage = e.conditions[0].stage;
-  fill_scoreboard(selection, e);
+  place_conditions(all, e);
+  place_stage(problem, e);
   compare_with_calibration(problem, e);
   find_law(all, e);
   make_plan(all, e);

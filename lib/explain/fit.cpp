@@ -40,7 +40,8 @@ std::vector<std::size_t> free_columns(const System& system, const Linearisation&
 
 }  // namespace
 
-Fit fit(const System& system, std::vector<double> start, const std::vector<std::size_t>& active, int iterations) {
+Fit fit(const System& system, std::vector<double> start, const std::vector<std::size_t>& active, int iterations,
+        const Slopes* kept) {
   Fit result{std::move(start), active, {}, 0, false};
   for (const std::size_t p : active) result.values[p] = system.clamped(p, result.values[p]);
   result.cost = cost_of(system, result.values, active);
@@ -48,10 +49,12 @@ Fit fit(const System& system, std::vector<double> start, const std::vector<std::
   std::vector<std::size_t> everything(active.size());
   for (std::size_t c = 0; c < active.size(); ++c) everything[c] = c;
   for (int i = 0; i < iterations && !result.converged; ++i) {
-    const Linearisation l = linearise(system, result.values, active);
+    const Linearisation l = linearise(system, result.values, active, {}, {}, kept);
     std::vector<std::size_t> columns = free_columns(system, l, NormalEquations(l, everything).gradient());
     bool accepted = false;
-    while (!accepted && damping < 1e10) {
+    // Chords that lead nowhere will not do so by being shortened.
+    const double most_damping = kept == nullptr ? 1e10 : 1e3 * std::max(damping, 1e-3);
+    while (!accepted && damping < most_damping) {
       const NormalEquations equations(l, columns, NormalEquations::none, damping);
       const Eigen::MatrixXd step = equations.solve(equations.gradient());
       std::vector<double> values = result.values;
@@ -80,6 +83,15 @@ Fit fit(const System& system, std::vector<double> start, const std::vector<std::
     if (result.values[p] > parameter.lower && result.values[p] < parameter.upper) result.inner.push_back(p);
   }
   return result;
+}
+
+double decrement(const System& system, const Fit& fit, const Slopes& slopes) {
+  const Linearisation l = linearise(system, fit.values, fit.active, {}, {}, &slopes);
+  std::vector<std::size_t> everything(fit.active.size());
+  for (std::size_t c = 0; c < everything.size(); ++c) everything[c] = c;
+  const std::vector<std::size_t> columns = free_columns(system, l, NormalEquations(l, everything).gradient());
+  const NormalEquations equations(l, columns, NormalEquations::none, 1e-9);
+  return equations.gradient().dot(equations.solve(equations.gradient()).col(0));
 }
 
 }  // namespace gonio::explain

@@ -16,8 +16,13 @@ struct Fit {
   bool converged = false;
 };
 // Minimises the whitened sum of squares over `active`. Parameters that press against a bound are held there. Marquardt
-// 1963 with columns scaled to unit length; deterministic.
-Fit fit(const System& system, std::vector<double> start, const std::vector<std::size_t>& active, int iterations = 60);
+// 1963 with columns scaled to unit length; deterministic. With `kept` slopes the steps are chords: the result is
+// approximate by as much as those slopes have turned on the way.
+Fit fit(const System& system, std::vector<double> start, const std::vector<std::size_t>& active, int iterations = 60,
+        const Slopes* kept = nullptr);
+
+// Fall of the cost that these slopes promise where the fit stands: g' H^-1 g over what bounds leave free.
+double decrement(const System& system, const Fit& fit, const Slopes& slopes);
 
 // Covariance of a fit, H^-1 M H^-1 with M the sum over blocks of their squared scores (White 1980; Liang & Zeger 1986):
 // honest under any correlation inside a block and any mis-stated sigma. Where leaving out whole groups moves a
@@ -28,7 +33,7 @@ struct Uncertainty {
   std::vector<std::size_t> parameters;
   std::vector<double> degrees;  // for Student's t: large, or groups - 1 where the jackknife rules
 };
-Uncertainty uncertainty(const System& system, const Fit& fit);
+Uncertainty uncertainty(const System& system, const Fit& fit, const Slopes* kept = nullptr);
 std::vector<Estimate> estimates(const System& system, const Fit& fit, const Uncertainty& uncertainty,
                                 const std::vector<std::size_t>& parameters);
 // P-value of "all these parameters are neutral" (Wald).
@@ -40,14 +45,15 @@ double neutral_p(const System& system, const Fit& fit, const Uncertainty& uncert
 struct HeldOut {
   std::vector<double> whitened, raw, norm;
   std::vector<double> rows;
-  double score() const;  // sqrt(sum raw / sum norm), the user's unit
+  std::vector<double> blocks;  // whitened, by block as numbered in the data; empty where judged linearly
+  double score() const;        // sqrt(sum raw / sum norm), the user's unit
 };
 // Leave one group out, by one Gauss-Newton step from the joint optimum, then judged with the real predictions.
-HeldOut held_out_by_step(const System& system, const Fit& fit);
+HeldOut held_out_by_step(const System& system, const Fit& fit, const Slopes* kept = nullptr);
 // The same for any subset of a linearisation's columns, judged linearly: `whitened` and `rows` only.
 HeldOut held_out_linear(const System& system, const Linearisation& linearisation,
                         const std::vector<std::size_t>& columns);
-// Leave one group out with a full fit each.
+// Leave one group out with a fit each, along the chords of the joint fit.
 HeldOut held_out_by_refit(const System& system, const Fit& fit);
 // Groups `unseen` under a fit of the groups in play: nuisance is fitted on halves, everything else stands.
 HeldOut unseen_groups(const System& system, const Fit& fit, const std::vector<std::size_t>& unseen);
@@ -57,5 +63,8 @@ struct Gain {
   double mean = 0, sigma = 0;
 };
 Gain gain(const HeldOut& before, const HeldOut& after);
+// The same fall over its standard error over blocks: what the noise of these very recordings could do, whatever their
+// groups have in common (Vuong, Econometrica 57, 1989).
+double block_z(const HeldOut& before, const HeldOut& after);
 
 }  // namespace gonio::explain

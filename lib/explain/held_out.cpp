@@ -5,6 +5,7 @@
 // once.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "base/parallel.h"
@@ -17,8 +18,9 @@ struct GroupScore {
   double whitened = 0, raw = 0, norm = 0, rows = 0;
 };
 
-// Adds the rows of `group` that belong to `half` (-1: both) under `values`.
-void judge(const System& system, const std::vector<double>& values, std::size_t group, int half, GroupScore& score) {
+// Adds the rows of `group` that belong to `half` (-1: both) under `values`. Blocks never straddle groups.
+void judge(const System& system, const std::vector<double>& values, std::size_t group, int half, GroupScore& score,
+           std::vector<double>& blocks) {
   const Observations& o = system.observations();
   const Eigen::VectorXd r = system.residual(values, group);
   for (std::size_t i = o.first[group]; i < o.first[group + 1]; ++i) {
@@ -29,11 +31,18 @@ void judge(const System& system, const std::vector<double>& values, std::size_t 
     score.raw += z * z / (w * w);
     score.norm += o.norm[i];
     score.rows += 1;
+    blocks[o.block[i]] += z * z;
   }
 }
 
-HeldOut gathered(const std::vector<GroupScore>& scores) {
+std::vector<double> no_blocks(const System& system) {
+  const std::vector<std::uint32_t>& block = system.observations().block;
+  return std::vector<double>(block.empty() ? 0 : *std::max_element(block.begin(), block.end()) + 1, 0.0);
+}
+
+HeldOut gathered(const std::vector<GroupScore>& scores, std::vector<double> blocks = {}) {
   HeldOut result;
+  result.blocks = std::move(blocks);
   for (const GroupScore& s : scores) {
     result.whitened.push_back(s.whitened);
     result.raw.push_back(s.raw);
@@ -97,7 +106,8 @@ Fold fold_step(const Linearisation& l, const std::vector<std::size_t>& columns, 
   return fold;
 }
 
-GroupScore unseen_group(const System& system, const Fit& fit, std::size_t group) {
+GroupScore unseen_group(const System& system, const Fit& fit, std::size_t group, std::vector<double>& blocks,
+                        const Slopes* kept) {
   std::vector<std::size_t> own;
   for (const std::size_t p : fit.active) {
     const auto seen = [&](std::size_t g) { return g != group && system.touches(p, g); };
@@ -105,12 +115,12 @@ GroupScore unseen_group(const System& system, const Fit& fit, std::size_t group)
   }
   GroupScore score;
   if (own.empty()) {
-    judge(system, fit.values, group, -1, score);
+    judge(system, fit.values, group, -1, score, blocks);
     return score;
   }
   for (const int half : {0, 1}) {
-    const Fit local = explain::fit(system.restricted(group, half), fit.values, own);
-    judge(system, local.values, group, 1 - half, score);
+    const Fit local = explain::fit(system.restricted(group, half), fit.values, own, 60, kept);
+    judge(system, local.values, group, 1 - half, score, blocks);
   }
   return score;
 }
@@ -123,8 +133,9 @@ double HeldOut::score() const {
   return total > 0 ? std::sqrt(sum / total) : 0;
 }
 
-HeldOut held_out_by_step(const System& system, const Fit& fit) {
-  const Linearisation l = linearise(system, fit.values, fit.inner);
+HeldOut held_out_by_step(const System& system, const Fit& fit, const Slopes* kept) {
+  const Linearisation l = linearise(system, fit.values, fit.inner, {}, {}, kept);
+  std::vector<double> blocks = no_blocks(system);
   std::vector<std::size_t> columns(l.columns.size());
   for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = c;
   std::vector<GroupScore> scores(l.grams.size());
@@ -141,11 +152,11 @@ HeldOut held_out_by_step(const System& system, const Fit& fit) {
     for (const int half : {0, 1}) {
       const LocalStep own = local_step(l, gram, fold.in_play, fold.in_gram, half);
       for (std::size_t k = 0; k < own.columns.size(); ++k) move(own.columns[k], own.step[static_cast<Eigen::Index>(k)]);
-      judge(system, values, gram.group, own.columns.empty() ? -1 : 1 - half, scores[g]);
+      judge(system, values, gram.group, own.columns.empty() ? -1 : 1 - half, scores[g], blocks);
       if (own.columns.empty()) break;
     }
   });
-  return gathered(scores);
+  return gathered(scores, std::move(blocks));
 }
 
 HeldOut held_out_linear(const System& system, const Linearisation& l, const std::vector<std::size_t>& columns) {
@@ -168,20 +179,23 @@ HeldOut held_out_linear(const System& system, const Linearisation& l, const std:
 }
 
 HeldOut held_out_by_refit(const System& system, const Fit& fit) {
+  const Slopes kept = slopes(system, fit.values, fit.active);
   std::vector<GroupScore> scores;
+  std::vector<double> blocks = no_blocks(system);
   for (const std::size_t group : system.groups) {
     System others = system;
     std::erase(others.groups, group);
-    const Fit fold = explain::fit(others, fit.values, fit.active);
-    scores.push_back(unseen_group(others, fold, group));
+    const Fit fold = explain::fit(others, fit.values, fit.active, 60, &kept);
+    scores.push_back(unseen_group(others, fold, group, blocks, &kept));
   }
-  return gathered(scores);
+  return gathered(scores, std::move(blocks));
 }
 
 HeldOut unseen_groups(const System& system, const Fit& fit, const std::vector<std::size_t>& unseen) {
   std::vector<GroupScore> scores;
-  for (const std::size_t group : unseen) scores.push_back(unseen_group(system, fit, group));
-  return gathered(scores);
+  std::vector<double> blocks = no_blocks(system);
+  for (const std::size_t group : unseen) scores.push_back(unseen_group(system, fit, group, blocks, nullptr));
+  return gathered(scores, std::move(blocks));
 }
 
 Gain gain(const HeldOut& before, const HeldOut& after) {
@@ -198,8 +212,19 @@ Gain gain(const HeldOut& before, const HeldOut& after) {
   }
   double sum = 0;
   for (const double f : fall) sum += (f - g.mean) * (f - g.mean);
+  if (!std::isfinite(g.mean)) return {std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()};
   g.sigma = n > 1 ? std::sqrt(sum / static_cast<double>(n * (n - 1))) : std::abs(g.mean);
   return g;
+}
+
+double block_z(const HeldOut& before, const HeldOut& after) {
+  double sum = 0, squares = 0;
+  for (std::size_t b = 0; b < std::min(before.blocks.size(), after.blocks.size()); ++b) {
+    const double fall = before.blocks[b] - after.blocks[b];
+    sum += fall;
+    squares += fall * fall;
+  }
+  return squares > 0 ? sum / std::sqrt(squares) : 0;
 }
 
 }  // namespace gonio::explain

@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "explain/signature.h"
+#include "stats/distributions.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain {
 namespace {
 
-constexpr double look_alike = 0.9;  // |cos| beyond which two signatures cannot be told apart
+constexpr double alike = 0.9;         // |cos| beyond which two signatures cannot be told apart
+constexpr double least_share = 1e-6;  // of a column's squared length that the free parameters leave
 constexpr double invisible_share = 1e-3;
 
 // G^-1/2 on the range of G.
@@ -21,20 +23,65 @@ Eigen::MatrixXd inverse_root(const Eigen::MatrixXd& gram) {
   return scale.asDiagonal() * eigen.eigenvectors() * root.asDiagonal();
 }
 
-// How much of the smaller of two subspaces the other can imitate: root mean square of the canonical correlations.
-double cosine(const Projection& p, const std::vector<Eigen::Index>& a, const std::vector<Eigen::Index>& b) {
+// Noncentrality of a chi-square with so many degrees which its test at `level` finds with 80 % power: mean degrees + l,
+// variance 2 (degrees + 2 l), taken as normal; exact for one degree.
+double noncentrality(double degrees, double level) {
+  const double power = 0.8;
+  if (degrees <= 1) return std::pow(stats::detectable_z(level, power), 2);
+  const double threshold = stats::chi2_quantile(1 - level, degrees), z = stats::normal_quantile(power);
+  double lower = 0, upper = 10 * threshold + 100;
+  for (int i = 0; i < 60; ++i) {
+    const double l = 0.5 * (lower + upper);
+    (degrees + l - z * std::sqrt(2 * (degrees + 2 * l)) < threshold ? lower : upper) = l;
+  }
+  return upper;
+}
+
+// Squared amplitude of a column at which its effect is what matters.
+double mattering(const System& system, const Projection& p, const BlockScores& scores, Eigen::Index column,
+                 double matters) {
+  if (system.problem().importance() == Importance::share_of_signal) {
+    const double raw = scores.raw_surviving(column, column);
+    return raw > 0 ? matters * matters * scores.norm / raw : 0;
+  }
+  // The score falls by the share m where the effect adds (1 - m)^-2 - 1 of the noise's mean square.
+  const double length = p.surviving(column, column);
+  return length > 0 ? (1 / ((1 - matters) * (1 - matters)) - 1) * p.rows / length : 0;
+}
+
+}  // namespace
+
+double look_alike(const Projection& p, const std::vector<Eigen::Index>& a, const std::vector<Eigen::Index>& b) {
   const Eigen::MatrixXd ga = p.surviving(a, a), gb = p.surviving(b, b);
   const Eigen::MatrixXd c = inverse_root(ga).transpose() * p.surviving(a, b) * inverse_root(gb);
   const double rank = static_cast<double>(std::min(a.size(), b.size()));
   return std::min(1.0, std::sqrt(c.squaredNorm() / rank));
 }
 
-}  // namespace
+std::vector<double> inflation(const System& system, const Projection& p, const Structures& structures,
+                              const BlockScores& scores) {
+  std::vector<double> result(system.problem().candidates().size(), 0.0);
+  for (std::size_t s = 0; s < structures.list.size(); ++s) {
+    if (structures.list[s].kind != Structure::Kind::mechanism) continue;
+    double largest = 1;
+    for (const Eigen::Index c : p.foreign(structures, s))
+      if (p.surviving(c, c) > least_share * p.full(c, c))
+        largest = std::max(largest, scores.variance[c] / p.surviving(c, c));
+    result[structures.list[s].index] = largest;
+  }
+  return result;
+}
 
 std::vector<Isolability> isolability(const System& system, const Projection& p, const Structures& structures,
-                                     double level) {
+                                     const BlockScores& scores, const std::vector<double>& inflation,
+                                     const Options& options) {
   std::vector<Isolability> result;
   std::vector<std::vector<Eigen::Index>> places;
+  const auto looks = std::count_if(structures.list.begin(), structures.list.end(), [](const Structure& s) {
+    return s.kind == Structure::Kind::mechanism || s.kind == Structure::Kind::curve;
+  });
+  const double level =
+      -std::expm1(std::log1p(-options.level) / static_cast<double>(std::max<std::ptrdiff_t>(1, looks)));
   for (std::size_t s = 0; s < structures.list.size(); ++s) {
     if (structures.list[s].kind != Structure::Kind::mechanism) continue;
     Isolability entry;
@@ -46,11 +93,14 @@ std::vector<Isolability> isolability(const System& system, const Projection& p, 
     entry.surviving_share = own.empty() ? 0 : std::sqrt(std::clamp(shares.eigenvalues().maxCoeff(), 0.0, 1.0));
     entry.visible = false;
     const Candidate& candidate = system.problem().candidates()[entry.candidate];
+    const double wanted =
+        noncentrality(static_cast<double>(own.size()), level) * std::max(1.0, inflation[entry.candidate]);
     for (std::size_t k = 0; k < own.size(); ++k) {
       const double length = p.surviving(own[k], own[k]);
       const Parameter& parameter = system.problem().parameters()[candidate.parameters[k]];
-      const double limit =
-          length > 0 ? stats::detectable_z(level, 0.8) / std::sqrt(length) : std::numeric_limits<double>::infinity();
+      const double by_noise =
+          length > least_share * p.full(own[k], own[k]) ? wanted / length : std::numeric_limits<double>::infinity();
+      const double limit = std::sqrt(std::max(by_noise, mattering(system, p, scores, own[k], options.matters)));
       entry.detection_limit.push_back(limit);
       const double reach = std::max(parameter.upper - parameter.neutral, parameter.neutral - parameter.lower);
       if (limit < reach && entry.surviving_share > invisible_share) entry.visible = true;
@@ -60,8 +110,8 @@ std::vector<Isolability> isolability(const System& system, const Projection& p, 
   for (std::size_t a = 0; a < result.size(); ++a)
     for (std::size_t b = 0; b < result.size(); ++b) {
       if (a == b || !result[a].visible || !result[b].visible) continue;
-      const double c = cosine(p, places[a], places[b]);
-      if (c > look_alike) result[a].look_alikes.emplace_back(result[b].candidate, c);
+      const double c = look_alike(p, places[a], places[b]);
+      if (c > alike) result[a].look_alikes.emplace_back(result[b].candidate, c);
     }
   return result;
 }

@@ -12,6 +12,7 @@ namespace gonio::explain {
 namespace {
 
 constexpr double least_survivor = 1e-4;  // of a direction's squared length, after projection
+constexpr double tied_share = 0.8;       // of the first condition's share: not told apart by it
 
 struct Explained {
   double squares = 0, rank = 0;
@@ -39,21 +40,21 @@ Explained explained_by(const Projection& p, const std::vector<Eigen::Index>& pla
   return e;
 }
 
-// The shortest run of bins that holds 80 % of the curve's power.
-void find_range(const Curve& curve, LocatedCondition& located) {
+// The shortest run of bins that holds 80 % of `power`.
+void find_range(const Curve& curve, const std::vector<double>& power, LocatedCondition& located) {
   const std::size_t n = curve.centre.size();
   if (n == 0) return;
-  std::vector<double> power(n);
-  for (std::size_t k = 0; k < n; ++k)
-    power[k] = std::max(0.0, curve.before[k] * curve.before[k] - curve.sigma[k] * curve.sigma[k]);
   const double wanted = 0.8 * std::accumulate(power.begin(), power.end(), 0.0);
   std::size_t best_first = 0, best_last = n - 1;
+  double best_sum = 0;
   for (std::size_t first = 0; first < n; ++first) {
     double sum = 0;
     for (std::size_t last = first; last < n; ++last) {
       sum += power[last];
       if (sum < wanted) continue;
-      if (last - first < best_last - best_first) best_first = first, best_last = last;
+      const bool shorter = last - first < best_last - best_first;
+      if (shorter || (last - first == best_last - best_first && sum > best_sum))
+        best_first = first, best_last = last, best_sum = sum;
       break;
     }
   }
@@ -61,6 +62,21 @@ void find_range(const Curve& curve, LocatedCondition& located) {
       best_first == 0 ? curve.centre.front() : 0.5 * (curve.centre[best_first - 1] + curve.centre[best_first]);
   located.upper =
       best_last + 1 == n ? curve.centre.back() : 0.5 * (curve.centre[best_last] + curve.centre[best_last + 1]);
+  double squares = 0;
+  for (std::size_t k = best_first; k <= best_last; ++k) squares += power[k];
+  located.effect = std::sqrt(squares / static_cast<double>(best_last - best_first + 1));
+}
+
+// Squared mean residual of each bin less its own noise. Where something is named: what it took away, in which the noise
+// of before and after cancels.
+std::vector<double> power_of(const Curve& curve, bool named) {
+  std::vector<double> power(curve.centre.size());
+  for (std::size_t k = 0; k < power.size(); ++k) {
+    const double taken = curve.before[k] - curve.after[k];
+    power[k] =
+        named ? taken * taken : std::max(0.0, curve.before[k] * curve.before[k] - curve.sigma[k] * curve.sigma[k]);
+  }
+  return power;
 }
 
 }  // namespace
@@ -108,7 +124,6 @@ std::vector<LocatedCondition> locate(const System& system, const Projection& p, 
   const double degrees = p.rows - static_cast<double>(p.own.size());
   const double excess = std::max(p.squares - degrees, 1e-9 * p.squares);
   std::vector<LocatedCondition> result;
-  const std::vector<double> residual = system.raw_residual(p.linearisation.values);
   for (std::size_t s = 0; s < structures.list.size(); ++s) {
     if (structures.list[s].kind != Structure::Kind::curve) continue;
     const Condition& condition = system.observations().conditions[structures.list[s].index];
@@ -116,13 +131,44 @@ std::vector<LocatedCondition> locate(const System& system, const Projection& p, 
     located.name = condition.name, located.unit = condition.unit, located.stage = condition.stage;
     const Explained e = explained_by(p, p.foreign(structures, s));
     located.share = std::clamp((e.squares - e.rank) / excess, 0.0, 1.0);
-    located.curve = residual_curve(system, structures.list[s].index, residual, residual, 12);
-    find_range(located.curve, located);
     result.push_back(std::move(located));
   }
   std::stable_sort(result.begin(), result.end(),
                    [](const LocatedCondition& a, const LocatedCondition& b) { return a.share > b.share; });
   return result;
+}
+
+namespace {
+
+// Place in the declarations of the named mechanisms, the most important one's first; past the end: not declared.
+std::size_t declared_place(const Problem& problem, const Explanation& e, const std::string& condition) {
+  std::size_t place = 0;
+  for (const std::size_t c : e.named)
+    for (const std::string& own : problem.candidates()[c].mechanism->conditions) {
+      if (own == condition) return place;
+      ++place;
+    }
+  return place;
+}
+
+}  // namespace
+
+void place_conditions(const System& system, Explanation& e) {
+  const std::vector<Condition>& conditions = system.observations().conditions;
+  for (LocatedCondition& located : e.conditions) {
+    const auto found =
+        std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return c.name == located.name; });
+    located.curve = residual_curve(system, static_cast<std::size_t>(found - conditions.begin()), e.residual_before,
+                                   e.residual_after, 12);
+    find_range(located.curve, power_of(located.curve, !e.named.empty()), located);
+  }
+  if (e.conditions.empty() || e.named.empty()) return;
+  const double tie = tied_share * e.conditions[0].share;
+  const auto end =
+      std::find_if(e.conditions.begin(), e.conditions.end(), [&](const LocatedCondition& c) { return c.share < tie; });
+  std::stable_sort(e.conditions.begin(), end, [&](const LocatedCondition& a, const LocatedCondition& b) {
+    return declared_place(system.problem(), e, a.name) < declared_place(system.problem(), e, b.name);
+  });
 }
 
 }  // namespace gonio::explain

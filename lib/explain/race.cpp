@@ -11,6 +11,10 @@
 namespace gonio::explain {
 namespace {
 
+constexpr int chords = 25;                           // steps of a fit with kept slopes
+constexpr int turns = 3;                             // how often the slopes may be taken anew
+constexpr double small_gain = 0.02, small_cost = 4;  // of the sum of whitened squares: not worth new slopes
+
 std::string family_of(const Candidate& c) {
   if (!c.family.empty()) return c.family;
   std::string family = c.id();
@@ -52,35 +56,99 @@ Model Race::base(const std::vector<double>& start) const {
   return m;
 }
 
-Model Race::changed(const Model& from, std::vector<std::size_t> candidates) const {
+Model Race::changed(const Model& from, std::vector<std::size_t> candidates, const Slopes* kept) const {
   const Problem& problem = system_.problem();
-  const auto has = [](const std::vector<std::size_t>& set, std::size_t c) {
-    return std::find(set.begin(), set.end(), c) != set.end();
-  };
-  std::vector<double> start = from.fit.values;
+  std::vector<double> start;
+  for (const std::size_t c : candidates) {
+    const bool known = std::find(from.candidates.begin(), from.candidates.end(), c) != from.candidates.end();
+    for (const std::size_t p : problem.candidates()[c].parameters)
+      start.push_back(known ? from.fit.values[p] : problem.parameters()[p].start);
+  }
+  return started(from, std::move(candidates), start, kept);
+}
+
+std::pair<std::vector<double>, std::vector<std::size_t>> Race::beginning(const Model& from,
+                                                                         const std::vector<std::size_t>& candidates,
+                                                                         const std::vector<double>& start) const {
+  const Problem& problem = system_.problem();
+  std::vector<double> values = from.fit.values;
   std::vector<std::size_t> active = free_;
   for (const std::size_t c : from.candidates)
-    if (!has(candidates, c))
-      for (const std::size_t p : problem.candidates()[c].parameters) start[p] = problem.parameters()[p].neutral;
+    for (const std::size_t p : problem.candidates()[c].parameters) values[p] = problem.parameters()[p].neutral;
+  std::size_t place = 0;
   for (const std::size_t c : candidates)
     for (const std::size_t p : problem.candidates()[c].parameters) {
-      if (!has(from.candidates, c)) start[p] = problem.parameters()[p].start;
+      values[p] = start[place++];
       active.push_back(p);
     }
+  return {std::move(values), std::move(active)};
+}
+
+double Race::promised_cost(const Model& from, const std::vector<std::size_t>& candidates,
+                           const std::vector<double>& start, const Slopes& kept) const {
+  const auto [values, active] = beginning(from, candidates, start);
+  const Fit there = fit(system_, values, active, 0);
+  return there.cost - decrement(system_, there, kept);
+}
+
+Model Race::started(const Model& from, std::vector<std::size_t> candidates, const std::vector<double>& start,
+                    const Slopes* kept, double promise) const {
+  auto [values, active] = beginning(from, candidates, start);
   Model m{std::move(candidates), {}, {}};
-  m.fit = fit(system_, std::move(start), active);
-  m.held_out = held_out_by_step(system_, m.fit);
+  if (kept == nullptr) {
+    m.fit = fit(system_, std::move(values), active);
+    m.held_out = held_out_by_step(system_, m.fit);
+    return m;
+  }
+  std::optional<Slopes> turned = along_chords(from, values, active, *kept, m.fit);
+  if (from.fit.cost - m.fit.cost < 0.5 * promise) {
+    Fit anew = fit(system_, std::move(values), active);
+    if (anew.cost < m.fit.cost) {
+      m.fit = std::move(anew);
+      turned = slopes(system_, m.fit.values, active);
+    }
+  }
+  m.held_out = held_out_by_step(system_, m.fit, turned ? &*turned : kept);
   return m;
 }
 
+// Where tangents promise more than a small part of what the chords have gained, they take the chords' place.
+std::optional<Slopes> Race::along_chords(const Model& from, std::vector<double> values,
+                                         const std::vector<std::size_t>& active, const Slopes& kept,
+                                         Fit& result) const {
+  std::optional<Slopes> turned;
+  for (int turn = 0;; ++turn) {
+    result = fit(system_, std::move(values), active, chords, turned ? &*turned : &kept);
+    if (turn == turns) return turned;
+    Slopes fresh = slopes(system_, result.values, active);
+    const double promised = decrement(system_, result, fresh);
+    if (promised < small_gain * std::max(0.0, from.fit.cost - result.cost) + small_cost) return turned;
+    values = result.values;
+    turned = std::move(fresh);
+  }
+}
+
+Slopes Race::slopes_at(const Model& model) const {
+  std::vector<std::size_t> parameters = free_;
+  for (const std::size_t c : model.candidates) {
+    const std::vector<std::size_t>& own = system_.problem().candidates()[c].parameters;
+    parameters.insert(parameters.end(), own.begin(), own.end());
+  }
+  return slopes(system_, model.fit.values, std::move(parameters));
+}
+
 std::vector<std::size_t> Race::open_to(const Model& model) const {
-  const std::vector<Candidate>& all = system_.problem().candidates();
   std::vector<std::size_t> result;
   for (const std::size_t c : allowed_) {
-    const auto relative = [&](std::size_t other) { return family_of(all[other]) == family_of(all[c]); };
+    const auto relative = [&](std::size_t other) { return relatives(other, c); };
     if (std::none_of(model.candidates.begin(), model.candidates.end(), relative)) result.push_back(c);
   }
   return result;
+}
+
+bool Race::relatives(std::size_t a, std::size_t b) const {
+  const std::vector<Candidate>& all = system_.problem().candidates();
+  return family_of(all[a]) == family_of(all[b]);
 }
 
 std::string Race::name_of(const std::vector<std::size_t>& candidates) const {
@@ -120,7 +188,7 @@ double Race::effect(const Model& before, const Model& after) const {
 }
 
 Hypothesis Race::judged(const Model& before, const Model& after, const std::vector<std::size_t>& added,
-                        const std::vector<Hypothesis>& dummies, std::size_t looks) const {
+                        const std::vector<Hypothesis>& dummies, std::size_t looks, const Slopes* kept) const {
   Hypothesis h;
   h.kind = Hypothesis::Kind::mechanisms;
   h.candidates = added;
@@ -135,7 +203,7 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
     const std::vector<std::size_t>& own = system_.problem().candidates()[c].parameters;
     parameters.insert(parameters.end(), own.begin(), own.end());
   }
-  const Uncertainty u = uncertainty(system_, after.fit);
+  const Uncertainty u = uncertainty(system_, after.fit, kept);
   h.parameters = estimates(system_, after.fit, u, parameters);
   // The least certain of several added mechanisms decides.
   h.wald_p = 0;

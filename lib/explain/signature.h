@@ -6,19 +6,22 @@
 #include <string>
 #include <vector>
 
+#include "explain/engine.h"
 #include "explain/fit.h"
 #include "stats/sign_flip.h"
 
 namespace gonio::explain {
 
-// One thing that could structure the residuals: a mechanism, a curve over one condition, or a dummy.
+// One thing that could structure the residuals: a mechanism, the finite change that it makes at another point than its
+// start, a curve over one condition, or a dummy.
 struct Structure {
-  enum class Kind { mechanism, curve, dummy };
+  enum class Kind { mechanism, change, curve, dummy };
   Kind kind = Kind::mechanism;
   std::size_t index = 0;  // candidate, condition, or number of the dummy
   std::string name;
   std::size_t first = 0, count = 0;  // its columns among all signature parameters, or among all extras
   std::size_t shape = 0;             // dummies: the candidate whose freedom it has
+  std::vector<double> point{};       // changes: the values of the candidate's parameters
 };
 
 // The columns of all structures, as extras and signatures that linearise() understands. Not copyable: extras point at
@@ -29,6 +32,9 @@ class Structures {
   Structures(const Structures&) = delete;
   Structures& operator=(const Structures&) = delete;
   void add_mechanism(const System& system, const std::vector<double>& values, std::size_t candidate);
+  // Finite changes at several points within the bounds, where the slopes at the start do not span them: what a strongly
+  // nonlinear mechanism could do elsewhere. Mechanisms that all groups share.
+  void add_changes(const System& system, const std::vector<double>& values, std::size_t candidate);
   void add_curve(const System& system, std::size_t condition);
   // Smooth random functions of one or two conditions, as many and on the same groups as the candidate has parameters:
   // the same freedom without the physics.
@@ -63,16 +69,37 @@ struct BlockScores {
   std::size_t blocks = 0;
   double inflation = 1;           // rows over degrees of freedom
   Eigen::MatrixXd raw_surviving;  // Gram matrix of the surviving columns in the data's own unit
-  double norm = 0;                // sum of Observations::norm over the rows in use
+  Eigen::VectorXd variance;       // sum over blocks of the squared contribution to each foreign column's score
+  // For each foreign column the squared score over its variance, without the three blocks that add most to it. The
+  // variance is that of the bulk of blocks (median of u_b^2 / |s_b|^2 over that of chi-square with one degree).
+  Eigen::VectorXd trimmed;
+  double norm = 0;  // sum of Observations::norm over the rows in use
 };
 BlockScores block_scores(const System& system, const Projection& projection, const Structures& structures);
 
+// What sits in a few blocks (readings that clip) can be flipped in too few ways for a sign-flip test to see it: the
+// chance of the largest trimmed score among all mechanisms and curves. Three blocks of dust do not move it.
+double concentrated_p(const Projection& projection, const Structures& structures, const BlockScores& scores);
+
+// Signatures' |cos|: how much of the smaller of two structures' subspaces the other can imitate, root mean square of
+// the canonical correlations.
+double look_alike(const Projection& projection, const std::vector<Eigen::Index>& a, const std::vector<Eigen::Index>& b);
+
+// `inflation`: variance of each candidate's score over that of independent rows, by place in Problem::candidates.
+// A limit is the amplitude that the test finds with 80 % power among all its looks and that matters, whichever is more.
 std::vector<Isolability> isolability(const System& system, const Projection& projection, const Structures& structures,
-                                     double level);
+                                     const BlockScores& scores, const std::vector<double>& inflation,
+                                     const Options& options);
+// Variance inflation of each candidate's score by correlation within blocks, at least 1; 0 where it has no signature.
+std::vector<double> inflation(const System& system, const Projection& projection, const Structures& structures,
+                              const BlockScores& scores);
 
 // Share of the excess over noise that each curve explains, the most telling first, with the range that holds most of
 // it.
 std::vector<LocatedCondition> locate(const System& system, const Projection& projection, const Structures& structures);
+// The final word: curves before and after, the range that holds most of the effect, its size there, and the order.
+// Conditions that tell about as much as the first one stand in the order in which the named mechanisms declare them.
+void place_conditions(const System& system, Explanation& explanation);
 Curve residual_curve(const System& system, std::size_t condition, const std::vector<double>& before,
                      const std::vector<double>& after, std::size_t bins);
 

@@ -98,19 +98,31 @@ Eigen::VectorXd System::residual(std::span<const double> values, std::size_t gro
 }
 
 Eigen::MatrixXd System::jacobian(std::span<const double> values, std::size_t group,
-                                 std::span<const std::size_t> columns) const {
+                                 std::span<const std::size_t> columns, const Slopes* kept) const {
   const Observations& o = observations();
   const std::size_t first = o.first[group], rows = o.first[group + 1] - first;
-  Eigen::MatrixXd j(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns.size()));
-  if (columns.empty()) return j;
-  problem_.jacobian(values, group, columns, {j.data(), rows * columns.size()});
-  for (std::size_t i = 0; i < rows; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    if (weight_[first + i] > 0)
-      j.row(row) *= weight_[first + i];
-    else
-      j.row(row).setZero();
+  const auto height = static_cast<Eigen::Index>(rows);
+  Eigen::MatrixXd j(height, static_cast<Eigen::Index>(columns.size()));
+  std::vector<std::size_t> fresh;
+  std::vector<Eigen::Index> places;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    if (const double* known = kept == nullptr ? nullptr : kept->find(columns[k], group, height)) {
+      j.col(column) = Eigen::Map<const Eigen::VectorXd>(known, height);
+      continue;
+    }
+    fresh.push_back(columns[k]);
+    places.push_back(column);
   }
+  if (!fresh.empty()) {
+    Eigen::MatrixXd taken(height, static_cast<Eigen::Index>(fresh.size()));
+    problem_.jacobian(values, group, fresh, {taken.data(), rows * fresh.size()});
+    const Eigen::Map<const Eigen::VectorXd> weight(weight_.data() + first, height);
+    for (std::size_t k = 0; k < fresh.size(); ++k)
+      j.col(places[k]) = weight.cwiseProduct(taken.col(static_cast<Eigen::Index>(k)));
+  }
+  for (std::size_t i = 0; i < rows; ++i)
+    if (!(weight_[first + i] > 0)) j.row(static_cast<Eigen::Index>(i)).setZero();
   return j;
 }
 
@@ -149,9 +161,38 @@ std::vector<double> System::raw_residual(std::span<const double> values) const {
   return r;
 }
 
+const double* Slopes::find(std::size_t parameter, std::size_t group, Eigen::Index rows) const {
+  const auto place = std::lower_bound(parameters.begin(), parameters.end(), parameter);
+  if (place == parameters.end() || *place != parameter || of_group[group].rows() != rows) return nullptr;
+  const std::vector<std::size_t>& touching = columns[group];
+  const auto wanted = static_cast<std::size_t>(place - parameters.begin());
+  const auto column = std::lower_bound(touching.begin(), touching.end(), wanted);
+  if (column == touching.end() || *column != wanted) return nullptr;
+  return of_group[group].data() + (column - touching.begin()) * rows;
+}
+
+Slopes slopes(const System& system, std::span<const double> values, std::vector<std::size_t> parameters,
+              const Slopes* kept) {
+  Slopes s{std::move(parameters), {}, {}};
+  std::sort(s.parameters.begin(), s.parameters.end());
+  s.of_group.resize(system.observations().groups());
+  s.columns.resize(s.of_group.size());
+  parallel_for(0, system.groups.size(), [&](std::size_t k) {
+    const std::size_t group = system.groups[k];
+    std::vector<std::size_t> touching;
+    for (std::size_t p = 0; p < s.parameters.size(); ++p) {
+      if (!system.touches(s.parameters[p], group)) continue;
+      s.columns[group].push_back(p);
+      touching.push_back(s.parameters[p]);
+    }
+    s.of_group[group] = system.jacobian(values, group, touching, kept);
+  });
+  return s;
+}
+
 Eigen::MatrixXd group_columns(const System& system, const Linearisation& l, std::span<const ExtraColumn> extras,
                               std::span<const Signature> signatures, std::size_t group,
-                              std::vector<std::size_t>& columns) {
+                              std::vector<std::size_t>& columns, const Slopes* kept) {
   std::vector<std::size_t> own;
   std::vector<std::vector<std::size_t>> shifted(signatures.size());
   std::vector<const ExtraColumn*> extra_columns;
@@ -162,7 +203,7 @@ Eigen::MatrixXd group_columns(const System& system, const Linearisation& l, std:
       const std::vector<std::size_t>& on = extras[column.extra].groups;
       if (!on.empty() && std::find(on.begin(), on.end(), group) == on.end()) continue;
       extra_columns.push_back(&extras[column.extra]);
-    } else {
+    } else if (column.parameter != LinearColumn::everywhere) {
       if (!system.touches(column.parameter, group)) continue;
       (column.signature == LinearColumn::everywhere ? own : shifted[column.signature]).push_back(column.parameter);
     }
@@ -175,8 +216,13 @@ Eigen::MatrixXd group_columns(const System& system, const Linearisation& l, std:
     a.middleCols(filled, part.cols()) = part;
     filled += part.cols();
   };
-  append(system.jacobian(l.values, group, own));
-  for (std::size_t s = 0; s < signatures.size(); ++s) append(system.jacobian(signatures[s].values, group, shifted[s]));
+  append(system.jacobian(l.values, group, own, kept));
+  for (std::size_t s = 0; s < signatures.size(); ++s) {
+    if (signatures[s].parameters.empty())
+      append(r - system.residual(signatures[s].values, group));
+    else
+      append(system.jacobian(signatures[s].values, group, shifted[s]));
+  }
   append(system.extra(extra_columns, group));
   append(r);
   return a;
@@ -189,10 +235,10 @@ namespace {
 constexpr double least_survivor = 1e-4;
 
 GroupGram group_gram(const System& system, const Linearisation& l, std::span<const ExtraColumn> extras,
-                     std::span<const Signature> signatures, std::size_t group) {
+                     std::span<const Signature> signatures, std::size_t group, const Slopes* kept) {
   GroupGram gram;
   gram.group = group;
-  const Eigen::MatrixXd a = group_columns(system, l, extras, signatures, group, gram.columns);
+  const Eigen::MatrixXd a = group_columns(system, l, extras, signatures, group, gram.columns, kept);
   const std::size_t first = system.observations().first[group];
   std::vector<Eigen::Index> rows[2];
   for (Eigen::Index i = 0; i < a.rows(); ++i) rows[system.half(first + static_cast<std::size_t>(i))].push_back(i);
@@ -221,16 +267,22 @@ LinearColumn parameter_column(const System& system, std::size_t p, double value)
 }  // namespace
 
 Linearisation linearise(const System& system, std::span<const double> values, std::span<const std::size_t> parameters,
-                        std::span<const ExtraColumn> extras, std::span<const Signature> signatures) {
+                        std::span<const ExtraColumn> extras, std::span<const Signature> signatures,
+                        const Slopes* kept) {
   Linearisation l;
   l.values.assign(values.begin(), values.end());
   l.own = parameters.size();
   for (const std::size_t p : parameters) l.columns.push_back(parameter_column(system, p, values[p]));
-  for (std::size_t s = 0; s < signatures.size(); ++s)
+  for (std::size_t s = 0; s < signatures.size(); ++s) {
     for (const std::size_t p : signatures[s].parameters) {
       l.columns.push_back(parameter_column(system, p, values[p]));
       l.columns.back().signature = s;
     }
+    if (!signatures[s].parameters.empty()) continue;
+    l.columns.emplace_back();
+    l.columns.back().signature = s;
+    if (system.groups.size() == 1) l.columns.back().local = system.groups[0];
+  }
   for (std::size_t e = 0; e < extras.size(); ++e) {
     LinearColumn column;
     column.extra = e;
@@ -239,7 +291,7 @@ Linearisation linearise(const System& system, std::span<const double> values, st
   }
   l.grams.resize(system.groups.size());
   parallel_for(0, system.groups.size(),
-               [&](std::size_t k) { l.grams[k] = group_gram(system, l, extras, signatures, system.groups[k]); });
+               [&](std::size_t k) { l.grams[k] = group_gram(system, l, extras, signatures, system.groups[k], kept); });
   for (const GroupGram& gram : l.grams)
     for (std::size_t k = 0; k < gram.columns.size(); ++k) {
       const auto place = static_cast<Eigen::Index>(k);

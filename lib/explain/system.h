@@ -38,6 +38,8 @@ struct ExtraColumn {
   std::vector<std::size_t> groups;
 };
 
+struct Slopes;
+
 class System {
  public:
   System(const Problem& problem, std::uint64_t seed);
@@ -61,9 +63,9 @@ class System {
 
   // Whitened residuals of one group.
   Eigen::VectorXd residual(std::span<const double> values, std::size_t group) const;
-  // Whitened derivatives of f, one column per entry of `columns`.
-  Eigen::MatrixXd jacobian(std::span<const double> values, std::size_t group,
-                           std::span<const std::size_t> columns) const;
+  // Whitened derivatives of f, one column per entry of `columns`; those that `kept` has are taken from there.
+  Eigen::MatrixXd jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
+                           const Slopes* kept = nullptr) const;
   Eigen::MatrixXd extra(std::span<const ExtraColumn* const> columns, std::size_t group) const;
   // y - f for every row of every group, in play or not.
   std::vector<double> raw_residual(std::span<const double> values) const;
@@ -85,7 +87,7 @@ struct GroupGram {
 struct LinearColumn {
   static constexpr std::size_t everywhere = static_cast<std::size_t>(-1);
   std::size_t parameter = everywhere;          // place in Problem::parameters, or
-  std::size_t signature = everywhere;          // differentiated at the point of this signature
+  std::size_t signature = everywhere;          // differentiated at the point of this signature, or its finite change
   std::size_t extra = everywhere;              // place among the extra columns
   std::size_t local = everywhere;              // the only group it acts on
   double prior_precision = 0, prior_pull = 0;  // 1 / sigma^2 and (start - value) / sigma^2
@@ -97,20 +99,35 @@ struct Linearisation {
   std::vector<GroupGram> grams;       // one per group in play
 };
 // Derivatives taken at another point than the residuals: a mechanism whose slope vanishes at its neutral value shows
-// its signature where its search starts.
+// its signature where its search starts. Without parameters it is one column: the finite change of the prediction from
+// the linearisation's point to `values`, which no slope can stand for where the mechanism is strongly nonlinear.
 struct Signature {
   std::vector<double> values;
   std::vector<std::size_t> parameters;
 };
-// Columns: `parameters`, then the parameters of `signatures`, then `extras`.
+// Whitened derivatives that are kept and used again near the point where they were taken: with them a fit moves along
+// chords instead of tangents, which costs more steps and no derivatives.
+struct Slopes {
+  std::vector<std::size_t> parameters;            // ascending
+  std::vector<Eigen::MatrixXd> of_group;          // [group]: one column for each of `columns`
+  std::vector<std::vector<std::size_t>> columns;  // [group]: places in `parameters` which touch it, ascending
+  const double* find(std::size_t parameter, std::size_t group, Eigen::Index rows) const;  // null: not kept
+};
+// Those that `kept` has are taken from there.
+Slopes slopes(const System& system, std::span<const double> values, std::vector<std::size_t> parameters,
+              const Slopes* kept = nullptr);
+
+// Columns: `parameters`, then the parameters of `signatures`, then `extras`. `kept`: instead of derivatives at
+// `values`, where it has them.
 Linearisation linearise(const System& system, std::span<const double> values, std::span<const std::size_t> parameters,
-                        std::span<const ExtraColumn> extras = {}, std::span<const Signature> signatures = {});
+                        std::span<const ExtraColumn> extras = {}, std::span<const Signature> signatures = {},
+                        const Slopes* kept = nullptr);
 
 // The whitened columns of one group themselves, [columns, residual]; `columns` receives their places in the
 // linearisation.
 Eigen::MatrixXd group_columns(const System& system, const Linearisation& l, std::span<const ExtraColumn> extras,
                               std::span<const Signature> signatures, std::size_t group,
-                              std::vector<std::size_t>& columns);
+                              std::vector<std::size_t>& columns, const Slopes* kept = nullptr);
 
 // (J'J + priors) x = rhs over a subset of columns, without one group, damped. Nuisance of single groups is eliminated
 // group by group (Schur complement); columns are scaled to unit length, so that units do not matter; directions without

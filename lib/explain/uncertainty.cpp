@@ -13,7 +13,7 @@ namespace {
 constexpr double many = 1e6;  // degrees of freedom of a normal law
 
 // Sum over blocks of u u', u = J'r of the block; parameters the group does not touch stay zero.
-Eigen::MatrixXd block_scores(const System& system, const Fit& fit) {
+Eigen::MatrixXd block_scores(const System& system, const Fit& fit, const Slopes* kept) {
   const auto n = static_cast<Eigen::Index>(fit.inner.size());
   const Observations& o = system.observations();
   std::vector<Eigen::MatrixXd> parts(system.groups.size());
@@ -26,7 +26,7 @@ Eigen::MatrixXd block_scores(const System& system, const Fit& fit) {
       parameters.push_back(fit.inner[c]);
       places.push_back(static_cast<Eigen::Index>(c));
     }
-    const Eigen::MatrixXd j = system.jacobian(fit.values, group, parameters);
+    const Eigen::MatrixXd j = system.jacobian(fit.values, group, parameters, kept);
     const Eigen::VectorXd r = system.residual(fit.values, group);
     std::map<std::uint32_t, Eigen::VectorXd> blocks;
     for (Eigen::Index i = 0; i < r.size(); ++i) {
@@ -69,13 +69,16 @@ Eigen::VectorXd jackknife(const System& system, const Linearisation& l, const st
 
 }  // namespace
 
-Uncertainty uncertainty(const System& system, const Fit& fit) {
+Uncertainty uncertainty(const System& system, const Fit& fit, const Slopes* kept) {
+  Slopes own;
+  own = slopes(system, fit.values, fit.inner, kept);  // taken once, used twice
+  kept = &own;
   Uncertainty u;
   u.parameters = fit.inner;
   const auto n = static_cast<Eigen::Index>(fit.inner.size());
   u.degrees.assign(fit.inner.size(), many);
   if (n == 0) return u;
-  const Linearisation l = linearise(system, fit.values, fit.inner);
+  const Linearisation l = linearise(system, fit.values, fit.inner, {}, {}, kept);
   std::vector<std::size_t> columns(fit.inner.size());
   for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = c;
   const NormalEquations equations(l, columns);
@@ -85,7 +88,7 @@ Uncertainty uncertainty(const System& system, const Fit& fit) {
   const double correction = rows / std::max(rows - static_cast<double>(n), 1.0);
   Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index c = 0; c < n; ++c) prior(c, c) = l.columns[static_cast<std::size_t>(c)].prior_precision;
-  u.covariance = inverse * (block_scores(system, fit) * correction + prior) * inverse.transpose();
+  u.covariance = inverse * (block_scores(system, fit, kept) * correction + prior) * inverse.transpose();
   const Eigen::VectorXd by_groups = jackknife(system, l, columns);
   const double degrees = static_cast<double>(system.groups.size()) - 1;
   const double limit = degrees > 0 ? stats::chi2_quantile(0.95, degrees) / degrees : 1;
