@@ -51,7 +51,8 @@ V3 on_board(int column, int row, const BoardTruth& b, const CaseDesign& d) {
   const double half_x = middle_of(d)[0], half_y = middle_of(d)[1];
   const auto x = on_arc(column * d.square_m - half_x, half_x, b.sag_x_m);
   const auto y = on_arc(row * d.square_m - half_y, half_y, b.sag_y_m);
-  return {half_x + x[0] * (1 + b.stretch_x), half_y + y[0], x[1] + y[1]};
+  const double aside = b.uneven_m == 0 ? 0 : b.uneven_m * std::sin(1.9 * column);
+  return {half_x + x[0] * (1 + b.stretch_x) + aside, half_y + y[0], x[1] + y[1]};
 }
 
 std::array<double, 2> through_lens(double x, double y, const LensTruth& lens) {

@@ -24,6 +24,7 @@ struct BoardTruth {
   // The board is bent to a circular arc about its middle with these heights at the middle, along x and along y.
   double sag_x_m = 0, sag_y_m = 0;
   double stretch_x = 0;  // anisotropic print, share of the length
+  double uneven_m = 0;   // columns stand aside by up to this, in a pattern of their own
 };
 struct DriftTruth {  // while the camera warms up: per kelvin
   double focal = 0, x_px = 0, y_px = 0;

@@ -57,24 +57,39 @@ TEST(ExplainBoards, ABoardThatIsNotFlatIsNamedOnHeldOutViews) {
   EXPECT_NEAR(at(at(board, "warp"), "x_m").as_number(), 3.3e-4, 1.5e-4);
 }
 
-// Calibrates the left checkerboard with `model` and explains what is left.
-Value explained(const std::string& model, const std::filesystem::path& folder) {
-  std::vector<std::string> words = {"calib-charuco", "--checkerboard", "9x6", "--square", "25mm", "--model", model};
-  for (const auto& entry : std::filesystem::directory_iterator(data("calibration/opencv_stereo_checkerboard")))
-    if (entry.path().filename().string().starts_with("left") && entry.path().extension() == ".jpg")
+struct Recorded {
+  std::string folder, prefix, ending;
+  std::vector<std::string> board;
+};
+const Recorded left{
+    "calibration/opencv_stereo_checkerboard", "left", ".jpg", {"--checkerboard", "9x6", "--square", "25mm"}},
+    right{"calibration/opencv_stereo_checkerboard", "right", ".jpg", {"--checkerboard", "9x6", "--square", "25mm"}},
+    paper{"calibration/charuco_realsense_mit",
+          "calib",
+          ".png",
+          {"--charuco", "7x5", "--square", "30mm", "--marker", "22mm", "--dictionary", "4X4_50"}};
+
+// Calibrates the photographs with `model`; the manifest as calib-charuco hands it on.
+std::string calibrated(const Recorded& recorded, const std::string& model, const std::filesystem::path& folder) {
+  std::vector<std::string> words = {"calib-charuco", "--model", model};
+  words.insert(words.end(), recorded.board.begin(), recorded.board.end());
+  const auto options = static_cast<std::ptrdiff_t>(words.size());
+  for (const auto& entry : std::filesystem::directory_iterator(data(recorded.folder.c_str())))
+    if (entry.path().filename().string().starts_with(recorded.prefix) && entry.path().extension() == recorded.ending)
       words.push_back(entry.path());
-  std::sort(words.begin() + 7, words.end());
-  const auto calibrated = run(words, folder);
-  EXPECT_TRUE(calibrated.status == 0 || calibrated.status == 2) << calibrated.err;
-  const auto ended = run({"explain", "--allow-outside", "--html", "report.html"}, folder, calibrated.out);
+  std::sort(words.begin() + options, words.end());
+  const auto ended = run(words, folder);
+  EXPECT_TRUE(ended.status == 0 || ended.status == 2) << ended.err;
+  return ended.out;
+}
+Value explained(const Recorded& recorded, const std::string& model, const std::filesystem::path& folder) {
+  const auto ended =
+      run({"explain", "--allow-outside", "--html", "report.html"}, folder, calibrated(recorded, model, folder));
   EXPECT_EQ(ended.status, 0) << ended.err;
   return manifest::parse_json(ended.out, "explain");
 }
 
-TEST(ExplainBoards, APinholeLacksItsRadialTermsFirst) {
-  GONIO_NEEDS_DATA("calibration/opencv_stereo_checkerboard");
-  const gonio::tests::ScratchFolder folder;
-  const Value document = explained("pinhole", folder.path());
+void expect_radial_first(const Value& document) {
   const Value& entry = at(document, "explanations").as_array().at(0);
   ASSERT_FALSE(names(document).empty()) << at(entry, "sentence").as_string();
   EXPECT_EQ(names(document)[0], "lens.radial");
@@ -82,6 +97,14 @@ TEST(ExplainBoards, APinholeLacksItsRadialTermsFirst) {
   EXPECT_EQ(at(at(entry, "located"), "stage").as_string(), "lens");
   EXPECT_GT(at(at(entry, "held_out"), "before").as_number(), 1.0);
   EXPECT_LT(at(at(entry, "held_out"), "after").as_number(), 0.25);
+}
+
+TEST(ExplainBoards, APinholeLacksItsRadialTermsFirst) {
+  GONIO_NEEDS_DATA("calibration/opencv_stereo_checkerboard");
+  const gonio::tests::ScratchFolder folder;
+  const Value document = explained(left, "pinhole", folder.path());
+  expect_radial_first(document);
+  const Value& entry = at(document, "explanations").as_array().at(0);
   const Value& camera = at(document, "cameras").as_object().at(0).second;
   EXPECT_NE(at(camera, "model").as_string(), "pinhole");
   EXPECT_NEAR(at(camera, "fx_px").as_number(), 532.8, 3);
@@ -93,10 +116,38 @@ TEST(ExplainBoards, APinholeLacksItsRadialTermsFirst) {
   EXPECT_NE(page.find(at(entry, "sentence").as_string().substr(0, 40)), std::string::npos);
 }
 
+TEST(ExplainBoards, SoDoesTheOtherCameraOfThePair) {
+  GONIO_NEEDS_DATA("calibration/opencv_stereo_checkerboard");
+  const gonio::tests::ScratchFolder folder;
+  expect_radial_first(explained(right, "pinhole", folder.path()));
+}
+
 TEST(ExplainBoards, TheFullLensLacksNothingButTheBoardsShape) {
   GONIO_NEEDS_DATA("calibration/opencv_stereo_checkerboard");
   const gonio::tests::ScratchFolder folder;
-  for (const std::string& name : names(explained("radial-tangential", folder.path()))) EXPECT_EQ(name, "board.warp");
+  for (const Recorded& camera : {left, right})
+    for (const std::string& name : names(explained(camera, "radial-tangential", folder.path())))
+      EXPECT_EQ(name, "board.warp") << camera.prefix;
+}
+
+// A sheet of paper whose printer stretched it along one side. That it is so, and no lens, a fact tells that the fit was
+// never given: the camera's pixels are square, and become so.
+TEST(ExplainBoards, APaperThatThePrinterStretchedIsNamedAndThePixelsBecomeSquare) {
+  GONIO_NEEDS_DATA("calibration/charuco_realsense_mit");
+  const gonio::tests::ScratchFolder folder;
+  const std::string before = calibrated(paper, "radial-tangential", folder.path());
+  const auto ended = run({"explain", "--allow-outside"}, folder.path(), before);
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const Value document = manifest::parse_json(ended.out, "explain");
+  const Value& entry = at(document, "explanations").as_array().at(0);
+  EXPECT_EQ(names(document), std::vector<std::string>{"board.scale"}) << at(entry, "sentence").as_string();
+  EXPECT_LT(at(at(entry, "held_out"), "after").as_number(), 0.8 * at(at(entry, "held_out"), "before").as_number());
+  const auto aspect = [&](const Value& manifest) {
+    const Value& camera = at(manifest, "cameras").as_object().at(0).second;
+    return at(camera, "fy_px").as_number() / at(camera, "fx_px").as_number();
+  };
+  EXPECT_GT(std::abs(aspect(manifest::parse_json(before, "calibrated")) - 1), 2.5e-3);
+  EXPECT_LT(std::abs(aspect(document) - 1), 1e-3);
 }
 
 // A small rig for derivatives: two views of a 4 x 3 board by a lens with every term.

@@ -56,6 +56,24 @@ CellTruth stretched(std::uint64_t) {
   return truth;
 }
 
+CellTruth loose(std::uint64_t) {
+  CellTruth truth;
+  truth.backlash_rad = {0, 8e-4, 7e-4, 0, 0, 0};
+  return truth;
+}
+CellTruth warming(std::uint64_t) {
+  CellTruth truth;
+  truth.growth_per_K = 2.5e-5;
+  truth.warming_K = 20;
+  return truth;
+}
+CellTruth late(std::uint64_t) {
+  CellTruth truth;
+  truth.in_motion = true;
+  truth.lag_s = 4e-3;
+  return truth;
+}
+
 std::optional<double> true_value(const CellTruth& t, const std::string& parameter) {
   const auto joint = [&](std::size_t at) { return t.joint_offset_rad[static_cast<std::size_t>(parameter[at] - '1')]; };
   if (parameter.starts_with("robot.joint-offset.joint_")) return joint(25);
@@ -63,6 +81,10 @@ std::optional<double> true_value(const CellTruth& t, const std::string& paramete
   if (parameter == "robot.link-length.a_2_m") return -t.longer_upper_arm_m;
   if (parameter.starts_with("robot.link-length.")) return 0.0;
   if (parameter.starts_with("board.scale.")) return t.board_stretch;
+  if (parameter.starts_with("robot.backlash.backlash_"))
+    return t.backlash_rad[static_cast<std::size_t>(parameter[24] - '1')];
+  if (parameter == "robot.thermal.growth_per_K") return t.growth_per_K;
+  if (parameter == "robot.time-offset.lag_s") return t.lag_s;
   return std::nullopt;
 }
 
@@ -106,7 +128,10 @@ int prove(int repeats) {
                         {"joint zeros off by 0.05 degrees", "robot.joint-offset", turned, 16},
                         {"sag of 1 mrad per metre", "robot.sag", hanging, 8},
                         {"upper arm longer by 1 mm", "robot.link-length", longer, 8},
-                        {"board larger by 0.5 %", "board.scale", stretched, 8}};
+                        {"board larger by 0.5 %", "board.scale", stretched, 8},
+                        {"play of 0.8 and 0.7 mrad", "robot.backlash", loose, 4},
+                        {"growth of 25 ppm / K over 20 K", "robot.thermal", warming, 4},
+                        {"poses 4 ms late", "robot.time-offset", late, 4}};
   std::printf("%-34s %5s %6s %6s %9s %6s %8s %9s\n", "effect", "cases", "found", "named", "in answer", "wrong",
               "unknown", "coverage");
   bool met = true;

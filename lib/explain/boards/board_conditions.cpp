@@ -49,11 +49,7 @@ std::vector<Entry> entries(const BoardsInput& input, const BoardsInput::View& vi
   const double radius_px = norm(from_centre), radius = radius_px / std::hypot(half_x, half_y);
   const Vec2 outward = radius_px > 0 ? from_centre * (1 / radius_px) : Vec2{0, 0};
   const Vec3 at = view.camera_from_board * Vec3{corner.board_m.x, corner.board_m.y, 0};
-  // d(u, v) for one millimetre along an axis of the board.
-  const auto millimetre = [&](Vec3 axis) {
-    const Vec3 a = view.camera_from_board.rotate(axis);
-    return Vec2{1e-3 * k.fx_px * (a.x - at.x / at.z * a.z) / at.z, 1e-3 * k.fy_px * (a.y - at.y / at.z * a.z) / at.z};
-  };
+  const auto millimetre = [&](Vec3 axis) { return by_millimetre(input, view, corner, axis); };
   const Vec2 lift = millimetre({0, 0, 1});
   const double x = (corner.board_m.x - board.extent.middle_m.x) / board.extent.half_m.x;
   const double y = (corner.board_m.y - board.extent.middle_m.y) / board.extent.half_m.y;
@@ -89,6 +85,14 @@ bool varies(const Condition& c) {
 }
 
 }  // namespace
+
+Vec2 by_millimetre(const BoardsInput& input, const BoardsInput::View& view, const BoardsInput::Corner& corner,
+                   Vec3 axis) {
+  const camera::Intrinsics& k = input.cameras[view.camera].intrinsics;
+  const Vec3 at = view.camera_from_board * Vec3{corner.board_m.x, corner.board_m.y, 0};
+  const Vec3 a = view.camera_from_board.rotate(axis);
+  return {1e-3 * k.fx_px * (a.x - at.x / at.z * a.z) / at.z, 1e-3 * k.fy_px * (a.y - at.y / at.z * a.z) / at.z};
+}
 
 std::vector<Condition> board_conditions(const BoardsInput& input) {
   std::vector<Condition> conditions = names();

@@ -1,6 +1,7 @@
 // What surrounds the boards problem: its parameters, the conditions of a corner, the upgraded cameras and boards, the
 // pictures. Private to boards/.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "explain/boards/boards_problem.h"
@@ -42,6 +43,13 @@ struct BoardProposal {
   BoardsInput::View view;
 };
 std::vector<BoardProposal> board_proposals(const BoardsInput& input);
+
+// d(u, v) for one millimetre along an axis of the board, at its stated pose, the lens left out.
+Vec2 by_millimetre(const BoardsInput& input, const BoardsInput::View& view, const BoardsInput::Corner& corner,
+                   Vec3 axis);
+
+// Where a board's columns or rows stand beside where they should, by as much in all views: words, or nothing.
+std::string uneven_print(const BoardsInput& input, const Explanation& explanation);
 
 void upgrade_boards(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
                     const Explanation& explanation, manifest::Document& document);

@@ -135,6 +135,7 @@ class BoardsProblem : public Problem {
     return rows;
   }
 
+  std::string remarks(const Explanation& e) const override { return uneven_print(input_, e); }
   void apply(const Explanation& e, manifest::Document& document) const override {
     upgrade_boards(*this, input_, roles_, e, document);
   }
