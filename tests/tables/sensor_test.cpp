@@ -32,8 +32,8 @@ class Injected : public testing::TestWithParam<int> {
     return {{"sensor.black-offset", "sensor.black-offset.offset", 12, [](double f, double, double) { return f + 12; }},
             {"sensor.shutter", "sensor.shutter.extra_s", 2e-4,
              [](double f, double e, double) { return f * (e + 2e-4) / e; }},
-            {"light.drift", "light.drift.amplitude", 0.08,
-             [](double f, double, double t) { return f * (1 + 0.08 * std::exp(-t / 150)); }},
+            {"light.drift", "light.drift.amplitude", 0.12,
+             [](double f, double, double t) { return f * (1 + 0.12 * std::exp(-t / 150)); }},
             {"sensor.saturation", "sensor.saturation.full_scale", 400,
              [](double f, double, double) { return std::min(f, 400.0); }}};
   }
@@ -78,6 +78,21 @@ TEST(SensorTable, AnotherExposureIsProposedAndItsRowsArePredicted) {
   for (std::size_t p = 0; p < values.size(); ++p)
     if (problem.parameters()[p].name == "sensor.black-offset.offset") values[p] = 7;
   EXPECT_NEAR(problem.propose(values, 0).prediction[0] - base.prediction[0], 7, 1e-9);
+}
+
+TEST(SensorTable, APowerLawIsNotTakenForAQuadratic) {
+  const World w = sensor_world(6, [](double f, double, double) { return 1400 * std::pow(f / 1400, 0.85); });
+  const TablesProblem problem = w.problem();
+  const Explanation e = explain(problem, {});
+  EXPECT_EQ(named(problem, e), "sensor.non-linearity") << e.sentence;
+  const Estimate* gamma = estimate_of(problem, e, "sensor.non-linearity.gamma");
+  ASSERT_NE(gamma, nullptr) << e.sentence;
+  EXPECT_NEAR(gamma->value, 0.85, 4 * gamma->sigma);
+  manifest::Document document = w.document();
+  problem.apply(e, document);
+  EXPECT_FALSE(document.mechanisms.at("sensor.non-linearity").parameters.contains("quadratic"));
+  const TablesProblem again(document, "t", {}, false);
+  EXPECT_EQ(named(again, explain(again, {})), "");
 }
 
 TEST(SensorTable, NeutralTermsLeaveThePredictionBitForBit) {

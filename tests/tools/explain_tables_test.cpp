@@ -108,6 +108,11 @@ TEST_F(ExplainTables, HypothesesProtectAndRepeatAreHeard) {
   words.insert(words.end(), {"--protect", "tables/d/a"});
   const Ended held = explain(words);
   EXPECT_EQ(manifest::parse_document(held.out, "o", folder_.path()).tables.at("d").parameters.at("a").scalar(), 1);
+  words = quick("d.csv");
+  words.insert(words.end(), {"--budget", "100ms"});
+  const Ended hurried = explain(words);
+  EXPECT_EQ(hurried.status, 0) << hurried.err;
+  EXPECT_EQ(hurried.out, explain(words).out);  // an amount of work, not a clock
   write("again.csv", csv("theta [deg]", degree, 0.08, 2));
   words = quick("d.csv");
   words.insert(words.end(), {"--repeat", "again.csv"});

@@ -37,11 +37,14 @@ void TablesProblem::apply(const Explanation& e, manifest::Document& document) co
     const mechanism::Mechanism& m = *candidates_[c].mechanism;
     manifest::MechanismUse use;
     use.on = candidates_[c].on;
-    const auto term =
-        std::find_if(of_terms.begin(), of_terms.end(), [&](const Candidate& t) { return t.mechanism == &m; });
+    // What stands fixed beside the fitted numbers, a reference among them, unless it is neutral.
+    const auto term = std::find_if(of_terms.begin(), of_terms.end(), [&](const Candidate& t) {
+      return t.mechanism == &m && t.parameters == candidates_[c].parameters;
+    });
     if (term != of_terms.end()) {
       const std::vector<double> amounts = terms_->amounts(static_cast<std::size_t>(term - of_terms.begin()), e.values);
-      for (std::size_t k = 0; k < amounts.size(); ++k) use.parameters[m.parameters[k].name] = amounts[k];
+      for (std::size_t k = 0; k < amounts.size(); ++k)
+        if (amounts[k] != m.parameters[k].neutral) use.parameters[m.parameters[k].name] = amounts[k];
     }
     for (const std::size_t p : candidates_[c].parameters) {
       const std::string& full = parameters_[p].name;

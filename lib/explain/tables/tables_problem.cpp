@@ -62,21 +62,25 @@ void TablesProblem::assemble(const manifest::Document&) {
 
 // What the manifest switches on already holds at its values; parameters that it sets free join the base model.
 void TablesProblem::switch_on(const manifest::Document& document) {
-  for (const auto& [id, use] : document.mechanisms) {
-    const auto found = std::find_if(candidates_.begin(), candidates_.end(),
-                                    [&, key = &id](const Candidate& c) { return c.id() == *key; });
-    if (found == candidates_.end()) continue;
-    for (const std::size_t place : found->parameters) {
+  std::erase_if(candidates_, [&](const Candidate& candidate) {
+    const auto found = document.mechanisms.find(candidate.id());
+    if (found == document.mechanisms.end()) return false;
+    const manifest::MechanismUse& use = found->second;
+    const auto elsewhere = [&](const std::string& name) {
+      return std::find(use.on.begin(), use.on.end(), name) == use.on.end();
+    };
+    if (!use.on.empty() && !candidate.on.empty() && std::all_of(candidate.on.begin(), candidate.on.end(), elsewhere))
+      return false;
+    for (const std::size_t place : candidate.parameters) {
       Parameter& p = parameters_[place];
-      const std::string name = p.name.substr(p.name.find_last_of("./") + 1);
-      const auto given = use.parameters.find(name);
+      const auto given = use.parameters.find(p.name.substr(p.name.find_last_of("./") + 1));
       if (given == use.parameters.end() || !given->second.given()) continue;
       p.start = p.neutral = given->second.scalar();
       if (given->second.sigma) p.prior_sigma = given->second.sigma;
       if (given->second.free) base_.push_back(place);
     }
-    candidates_.erase(found);
-  }
+    return true;
+  });
 }
 
 void TablesProblem::observe(const manifest::Document& document, const ProblemOptions& options) {

@@ -1,5 +1,5 @@
-// sensor.non-linearity on a predicted reading, stated at the table's largest value. Equation: render/sensor_chain.h,
-// step 6.
+// sensor.non-linearity as a quadratic of a predicted reading, stated at the table's largest value. Equation:
+// render/sensor_chain.h, step 6.
 #include "explain/tables/table_model.h"
 
 namespace gonio::mechanism {
