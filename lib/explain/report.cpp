@@ -23,6 +23,17 @@ std::pair<std::string, std::string> first_sentence(const std::string& text) {
   return {text, ""};
 }
 
+// "board.warp is left out", for pages about several kinds of recordings.
+std::string short_answer(const ReportPart& part) {
+  const Explanation& e = *part.explanation;
+  if (e.verdict == Verdict::unknown) return "a mismatch that nothing in the library repairs";
+  if (e.named.empty()) return "nothing that matters is left out";
+  std::string ids;
+  for (std::size_t k = 0; k < e.named.size(); ++k)
+    ids += (k == 0 ? "" : k + 1 == e.named.size() ? " and " : ", ") + part.problem->candidates()[e.named[k]].id();
+  return ids + (e.named.size() == 1 ? " is left out" : " are left out");
+}
+
 void tell_part(report::Page& page, const ReportPart& part, bool alone) {
   if (!alone) {
     page.section("What was found: " + part.problem->domain());
@@ -44,14 +55,16 @@ std::string report_page(const std::string& name, const std::vector<ReportPart>& 
   std::string headline, lead;
   Verdict worst = Verdict::null;
   for (const ReportPart& p : parts) {
-    headline += (headline.empty() ? "" : " ") + first_sentence(p.explanation->sentence).first;
+    headline += (headline.empty() ? "" : "; ") + p.problem->domain() + ": " + short_answer(p);
     lead += (lead.empty() ? "" : "; ") + std::to_string(p.problem->observations().groups()) + " " +
             p.problem->group_noun() + "s, " + std::to_string(p.problem->observations().rows()) + " observations";
     worst = std::max(worst, p.explanation->verdict);
   }
-  if (parts.size() == 1)
-    if (const std::string rest = first_sentence(parts[0].explanation->sentence).second; !rest.empty())
-      lead = rest + " (" + lead + ")";
+  if (parts.size() == 1) {
+    const auto [first, rest] = first_sentence(parts[0].explanation->sentence);
+    headline = first;
+    if (!rest.empty()) lead = rest + " (" + lead + ")";
+  }
   report::Page page("explain: " + std::filesystem::path(name).filename().string(), headline, lead, tone_of(worst));
   for (const ReportPart& p : parts) tell_part(page, p, parts.size() == 1);
   page.footer(

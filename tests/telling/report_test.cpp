@@ -95,6 +95,17 @@ TEST(Report, WhatTheLibraryLacksIsToldAsALaw) {
   EXPECT_TRUE(other.entry.find("named")->as_array().empty());  // never dressed up as a known effect
 }
 
+TEST(Report, SeveralKindsOfRecordingsShareOnePage) {
+  const Told one({.law = [](double x, double) { return 0.3 * x * x; }}, 1), two({}, 4);
+  const Illustration nothing;
+  const std::string page =
+      report_page("rig.json", {{&one.problem, &one.e, &nothing}, {&two.problem, &two.e, &nothing}});
+  EXPECT_NE(page.find("plates: plate.bow is left out; plates: nothing that matters is left out</h1>"),
+            std::string::npos);
+  EXPECT_NE(page.find(one.e.sentence.substr(0, 60)), std::string::npos);
+  EXPECT_NE(page.find("No mismatch beyond noise"), std::string::npos);
+}
+
 TEST(Report, NothingLeftOutNeedsNoPlan) {
   const Told told({}, 4);
   EXPECT_EQ(told.e.verdict, Verdict::null) << told.e.sentence;
