@@ -6,6 +6,8 @@
 #include "explain/board_world.h"
 #include "explain/boards/boards_problem.h"
 #include "explain/engine.h"
+#include "explain/plan.h"
+#include "explain/sentence.h"
 #include "manifest/document.h"
 
 namespace gonio::explain::tests {
@@ -43,17 +45,29 @@ TEST(BoardsPlan, ProposalsAreViewsInTheManifestsWords) {
   }
 }
 
+// Whatever the race made of it: given that the bent board and the lens are open, the plan parts them.
 TEST(BoardsPlan, WhatSeparatesIsPlanned) {
   const std::unique_ptr<Problem> problem = frontal_views(2);
-  const Explanation e = explain(*problem, {});
-  ASSERT_EQ(e.verdict, Verdict::ambiguous) << e.sentence;
+  Explanation e = explain(*problem, {});
+  ASSERT_EQ(e.named.size(), 1u) << e.sentence;
+  const auto place_of = [&](const std::string& id) {
+    std::size_t c = 0;
+    while (problem->candidates().at(c).id() != id) ++c;
+    return c;
+  };
+  const bool bent = problem->candidates()[e.named[0]].id() == "board.warp";
+  const std::size_t other = place_of(bent ? "lens.radial" : "board.warp");
+  e.not_told_apart = {{e.named[0], other}};
+  e.plan.clear();
+  make_plan(System(*problem, 1), e);
   ASSERT_FALSE(e.plan.empty()) << e.sentence;
   EXPECT_GT(e.plan[0].z, 10) << e.plan[0].sentence;
-  EXPECT_EQ(e.plan[0].separates[0], e.not_told_apart[0][0]);
+  EXPECT_EQ(e.plan[0].separates, (std::vector<std::size_t>{e.named[0], other}));
   for (std::size_t k = 1; k < e.plan.size(); ++k)
     if (e.plan[k].separates.size() > 1) {
       EXPECT_LE(e.plan[k].z, e.plan[k - 1].z);
     }
+  write_sentence(*problem, e);
   EXPECT_NE(e.next_measurement.find(e.plan[0].sentence), std::string::npos) << e.next_measurement;
 }
 
