@@ -109,7 +109,8 @@ std::vector<cli::Option> table_options() {
        .repeat = true},
       {.name = "group",
        .type = Type::text,
-       .help = "Column whose equal values are held out together; default: stretches along the telling condition.",
+       .help = "Column whose equal values are held out together; default: series, else stretches along the telling "
+               "condition.",
        .metavar = "COLUMN"},
       {.name = "block",
        .type = Type::text,

@@ -84,6 +84,21 @@ TEST(LightTable, AmbientLightIsNamedOrToldToLookLikeAnOffset) {
   ASSERT_FALSE(e.not_told_apart.empty());  // one exposure: nothing separates the two
 }
 
+// A window as far away as the lamp. Its declaration may come with pictures; without it nothing can be named.
+TEST(LightTable, ASecondSourceIsNamedAndTheIntensityStaysPositive) {
+  if (mechanism::find_mechanism("light.second-source") == nullptr)
+    GTEST_SKIP() << "light.second-source is not declared";
+  World w = plane_world(5, point_lamp, [](Vec3 p) {
+    return point_at({0.1, -0.05, 0.8}, 2.3, p) + point_at({-0.5, 0.3, 0.6}, 0.5, p);
+  });
+  const auto at = w.sections.find(", \"min\": 0");
+  w.sections.erase(at, 10);  // the lamp's own bounds hold
+  const TablesProblem problem = w.problem();
+  const Explanation e = explain(problem, {});
+  ASSERT_FALSE(e.named.empty()) << e.sentence;
+  EXPECT_EQ(problem.candidates()[e.named[0]].id(), "light.second-source") << e.sentence;
+}
+
 TEST(LightTable, IrradianceOfALampWithoutAClosedFormIsThatOfItsFormula) {
   manifest::Document document = manifest::parse_document(
       R"({"gonio": 1, "lights": {"l": {"model": "disc", "position_m": [0, 0, 0.5], "direction": [0, 0, -1],

@@ -114,8 +114,10 @@ void LampState::free_parameters(const manifest::Document&) {
         Parameter p;
         p.name = "lights/" + lamps()[l].id + "/" + name + (value.value.size() > 1 ? std::string("_") + axes[k] : "");
         p.start = p.neutral = value.value[k];
-        if (value.min) p.lower = *value.min;
-        if (value.max) p.upper = *value.max;
+        for (const manifest::ParameterInfo& info : lamps()[l].model->info().parameters)
+          if (info.name == name) p.lower = info.lower, p.upper = info.upper;
+        if (value.min) p.lower = std::max(p.lower, *value.min);
+        if (value.max) p.upper = std::min(p.upper, *value.max);
         p.prior_sigma = value.sigma;
         double largest = 0;
         for (const double v : value.value) largest = std::max(largest, std::abs(v));

@@ -2,9 +2,9 @@
 // [{column: value, ...}, ...]}, or rows inline. Units come from the manifest's `columns` (SI), and where the file's own
 // heading states one ("theta_i [deg]"), values are converted from that.
 //
-// Groups, which are held out together: equal values (to a millionth of their range) of the table's `group` column, or
-// of the model's; left out, the rows are cut into contiguous stretches along the telling column (equal values stay
-// together), so that a model is judged where it interpolates and at both ends extrapolates.
+// Groups, which are held out together: equal values (to a millionth of their range) of the table's `group` column, of
+// the model's own, or of `series`; without these, the rows are cut into contiguous stretches along the telling column
+// (equal values stay together), so that a model is judged where it interpolates and at both ends extrapolates.
 #pragma once
 #include <filesystem>
 #include <string>

@@ -8,6 +8,7 @@
 #include "explain/tables/read_table.h"
 #include "explain/tables/table_conditions.h"
 #include "explain/tables/table_noise.h"
+#include "explain/tables/unit.h"
 #include "manifest/fields.h"
 
 namespace gonio::explain::tables {
@@ -22,7 +23,8 @@ const Model& model_of(const manifest::Document& document, const std::string& nam
               "\"" + section.model + "\" is no model of a table", manifest::remedy_for(section.model, known));
 }
 
-// Along which rows are cut into groups: the model's columns, then all that are no observations.
+// Along which rows are cut into groups: the model's columns, those that an expression names, then all others that are
+// no observations.
 std::vector<std::string> telling_columns(const Model& model, const manifest::Table& section) {
   std::vector<std::string> telling;
   for (const Column& column : model.columns) telling.push_back(column.name);
@@ -30,6 +32,8 @@ std::vector<std::string> telling_columns(const Model& model, const manifest::Tab
     if (std::find(section.observed.begin(), section.observed.end(), column) == section.observed.end() &&
         std::find(section.sigma.begin(), section.sigma.end(), column) == section.sigma.end())
       telling.push_back(column);
+  std::stable_partition(telling.begin() + static_cast<std::ptrdiff_t>(model.columns.size()), telling.end(),
+                        [&](const std::string& c) { return section.expression.find(stem_of(c)) != std::string::npos; });
   return telling;
 }
 
@@ -39,8 +43,9 @@ TablesProblem::TablesProblem(const manifest::Document& document, const std::stri
                              bool several)
     : model_(&model_of(document, name)), domain_(several ? "tables-" + name : "tables") {
   const manifest::Table& section = document.tables.at(name);
-  table_ = read_table(document, name, model_->group, telling_columns(*model_, section));
-  if (section.group.empty() && table_.place_of(model_->group) == Table::none)
+  const std::string usual = model_->group.empty() ? "series" : model_->group;
+  table_ = read_table(document, name, usual, telling_columns(*model_, section));
+  if (section.group.empty() && table_.place_of(usual) == Table::none)
     grouped_ = "Rows were held out in " + std::to_string(table_.group.size()) + " stretches, " + table_.group.front() +
                " first: name a column with `group` if rows belong together otherwise.";
   bound_ = model_->bind(document, name, table_);
