@@ -17,7 +17,7 @@ const std::vector<WorldEntry>& entries() {
        {{Kind::alike, {"fisheye"}, ""}, {Kind::alike, {"bent board"}, "frontal"}},
        {16, 8, 6, 10, 4, 5},
        {4, 2, 1, 2, 1, 1}},
-      {"exposures", exposures_world, {{Kind::invisible, {"glare"}, ""}}, {8, 4, 4, 4, 3, 4}, {2, 1, 1, 1, 1, 1}},
+      {"exposures", exposures_world, {{Kind::invisible, {"glare"}, ""}}, {8, 4, 4, 4, 3, 4}, {2, 1, 1, 1, 1, 1, 2}},
       {"photometric",
        photometric_world,
        {{Kind::invisible, {"vignetting"}, ""}},

@@ -274,7 +274,9 @@ Case make_case(const Spec& spec) {
   const Stage s(*world, {});
   const bool distracted = spec.kind == Kind::distractor;
   const Sizes sizes = distracted ? harmless(s, random) : sizes_of(spec, s, random);
-  Case made{.id = case_id(spec), .spec = spec};
+  Case made;
+  made.id = case_id(spec);
+  made.spec = spec;
   fill_truth(spec, s, sizes, made.truth);
   const Numbers full = sizes.empty() ? s.clean : world->simulate(s.base, sizes);
   Numbers observed = world->noisy(full, random);
