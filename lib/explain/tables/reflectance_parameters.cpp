@@ -16,9 +16,20 @@ using Kind = ReflectanceSlot::Kind;
 
 constexpr std::array<const char*, 5> rendered = {"surface.diffuse-roughness", "surface.interface", "surface.specular",
                                                  "surface.anisotropy", "surface.retro-reflection"};
-// A fringe at 550 nm is 0.19 um of a film of index 1.45.
-constexpr std::array<double, 8> film_edges_m = {0.02e-6, 0.17e-6, 0.32e-6, 0.47e-6, 0.62e-6, 0.77e-6, 0.95e-6, 1.2e-6};
+// A fringe at 550 nm is 0.2 um of a film of index 1.35 and 0.14 um of one of 2.0. Films of lower and of higher index
+// than the interface's turn the phase the other way, and between the two nothing is seen.
+struct FilmClass {
+  double lowest_eta, start_eta, highest_eta, width_m;  // width: of a range of thickness
+  std::size_t ranges;
+};
+constexpr std::array<FilmClass, 2> film_classes = {{{1.15, 1.35, 1.5, 0.12e-6, 5}, {1.5, 2.0, 2.4, 0.08e-6, 8}}};
+constexpr double thinnest_film_m = 0.02e-6;
+constexpr std::size_t fewest_bands_of_a_film = 5;  // fewer cannot tell fringes from any other colour of the gloss
 constexpr std::size_t ridge_sectors = 4;
+
+void set_component(Rgb& rgb, std::size_t k, double value) {
+  (k == 0 ? rgb.x : k == 1 ? rgb.y : rgb.z) = value;
+}
 
 const mechanism::Mechanism& declared(const std::string& id) {
   const mechanism::Mechanism* m = mechanism::find_mechanism(id);
@@ -43,8 +54,8 @@ class Collector {
     for (const char* id : rendered) rendered_mechanism(declared(id));
     out_.full_model = scratch_.surfaces[0].model;
     const SurfacePlaces places(*out_.full_model);
-    if (places.film() && rows_.band_m.size() > 2) film();
-    if (places.ridges()) ridges();
+    if (places.film() && rows_.band_m.size() >= fewest_bands_of_a_film) film();
+    if (places.ridges() && rotated()) ridges();
     if (!rows_.band_m.empty() && varies(rows_.excitation)) fluorescence();
     return std::move(out_);
   }
@@ -79,16 +90,17 @@ class Collector {
     const auto& infos = out_.base_model->info().parameters;
     const manifest::Parameters& given = document_.surfaces.at(section_.surface).parameters;
     const bool marked = std::any_of(given.begin(), given.end(), [](const auto& p) { return p.second.free; });
-    out_.base_values.assign(rows_.band_name.size(), values);
+    const std::size_t bands = rows_.band_name.size();
+    out_.base_values.assign((bands + 2) / 3, values);
     for (std::size_t i = 0; i < infos.size(); ++i) {
       const auto parameter = given.find(infos[i].name);
       const bool free = marked ? parameter != given.end() && parameter->second.free : infos[i].rgb;
       const manifest::Parameter stated = parameter != given.end() ? parameter->second : manifest::Parameter{};
       const manifest::Parameter* fitted = fitted_bands(infos[i].name);
-      for (std::size_t b = 0; b < out_.base_values.size(); ++b) {
+      for (std::size_t b = 0; b < bands && infos[i].components == 3; ++b) {
         const double value = fitted != nullptr ? fitted->value[b] : values.v[i][rows_.component(b)];
-        if (infos[i].components == 3) out_.base_values[b].v[i] = {value, value, value};
-        if (free && infos[i].components == 3) enter_base(infos[i], value, b, stated);
+        set_component(out_.base_values[b / 3].v[i], b % 3, value);
+        if (free) enter_base(infos[i], value, b, stated);
       }
       if (free && infos[i].components == 1) enter_base(infos[i], values.scalar(i), ReflectanceSlot::all, stated);
     }
@@ -188,18 +200,35 @@ class Collector {
 
   void film() {
     const mechanism::Mechanism& m = declared("surface.thin-film");
-    for (std::size_t k = 0; k + 1 < film_edges_m.size(); ++k) {
-      Parameter thickness = of_mechanism(m, m.parameters[0]), index = of_mechanism(m, m.parameters[1]);
-      thickness.lower = film_edges_m[k], thickness.upper = film_edges_m[k + 1];
-      thickness.start = 0.5 * (thickness.lower + thickness.upper);
-      thickness.size = 1e-8;
-      if (use_of(m) != nullptr) thickness.lower = 0, thickness.upper = film_edges_m.back();
-      enter(m,
-            {{thickness, {Kind::film, "film_m", ReflectanceSlot::all, 0, ""}},
-             {index, {Kind::film, "film_eta", ReflectanceSlot::all, 1, ""}}},
-            m.id);
-      if (use_of(m) != nullptr) return;
+    for (const FilmClass& c : film_classes)
+      for (std::size_t k = 0; k < c.ranges; ++k) {
+        Parameter thickness = of_mechanism(m, m.parameters[0]), index = of_mechanism(m, m.parameters[1]);
+        thickness.lower = thinnest_film_m + c.width_m * static_cast<double>(k);
+        thickness.upper = thickness.lower + c.width_m;
+        thickness.start = 0.5 * (thickness.lower + thickness.upper);
+        thickness.size = 1e-8;
+        index.lower = c.lowest_eta, index.start = c.start_eta, index.upper = c.highest_eta, index.size = 0.05;
+        if (use_of(m) != nullptr) {
+          thickness.lower = 0, thickness.upper = m.parameters[0].upper;
+          index.lower = film_classes[0].lowest_eta, index.upper = film_classes[1].highest_eta;
+        }
+        enter(m,
+              {{thickness, {Kind::film, "film_m", ReflectanceSlot::all, 0, ""}},
+               {index, {Kind::film, "film_eta", ReflectanceSlot::all, 1, ""}}},
+              m.id);
+        if (use_of(m) != nullptr) return;
+      }
+  }
+
+  // Only a sample that was rotated shows what is its own direction and what is the instrument's.
+  bool rotated() const {
+    std::array<std::size_t, ridge_sectors> seen{};
+    for (const Vec3& w : rows_.wi) {
+      if (std::hypot(w.x, w.y) < 0.05) continue;
+      const double turns = std::atan2(w.y, w.x) / pi;
+      ++seen[static_cast<std::size_t>(std::floor((turns - std::floor(turns)) * ridge_sectors + 0.5)) % ridge_sectors];
     }
+    return std::count_if(seen.begin(), seen.end(), [&](std::size_t n) { return 50 * n > rows_.rows(); }) >= 2;
   }
 
   void ridges() {
@@ -269,9 +298,9 @@ ReflectanceState ReflectanceParameters::state(std::span<const double> values) co
   s.model = base_model;
   for (std::size_t p = 0; p < slots.size(); ++p)
     if (slots[p].kind == Kind::mechanism && slots[p].switches && values[p] != slots[p].neutral) s.model = full_model;
-  s.bands = base_values;
+  s.triples = base_values;
   if (s.model != base_model)
-    for (surface::Values& v : s.bands) v = widened(v, *base_model, *s.model);
+    for (surface::Values& v : s.triples) v = widened(v, *base_model, *s.model);
   for (std::size_t p = 0; p < slots.size(); ++p) {
     const ReflectanceSlot& slot = slots[p];
     if (slot.kind == Kind::film && slot.which == 0 && values[p] > 0) s.film = {values[p], values[p + 1]};
@@ -281,10 +310,17 @@ ReflectanceState ReflectanceParameters::state(std::span<const double> values) co
     if (slot.kind != Kind::base && slot.kind != Kind::mechanism) continue;
     const std::optional<std::size_t> at = parameter_place(*s.model, slot.name);
     if (!at) continue;
-    for (std::size_t b = 0; b < s.bands.size(); ++b)
-      if (slot.band == ReflectanceSlot::all || slot.band == b) s.bands[b].v[*at] = {values[p], values[p], values[p]};
+    if (slot.band != ReflectanceSlot::all)
+      set_component(s.triples[slot.band / 3].v[*at], slot.band % 3, values[p]);
+    else
+      for (surface::Values& v : s.triples) v.v[*at] = {values[p], values[p], values[p]};
   }
   return s;
+}
+
+ReflectanceParameters reflectance_parameters(const manifest::Document& document, const std::string& table_name,
+                                             const Table& table, const ReflectanceRows& rows) {
+  return Collector(document, table_name, table, rows).run();
 }
 
 }  // namespace gonio::explain::tables

@@ -28,7 +28,7 @@ struct ReflectanceSlot {
 struct ReflectanceParameters {
   std::string surface, place;                                         // name in "surfaces"; of the table, for messages
   const surface::Model *base_model = nullptr, *full_model = nullptr;  // full: with every mechanism in play
-  std::vector<surface::Values> base_values;                           // of base_model, per band
+  std::vector<surface::Values> base_values;                           // of base_model, per triple of bands
   std::shared_ptr<const surface::Prepared> prepared;
   std::vector<Parameter> parameters;
   std::vector<ReflectanceSlot> slots;  // one per parameter

@@ -36,60 +36,74 @@ SurfacePlaces::SurfacePlaces(const surface::Model& model)
 ReflectanceEvaluation::ReflectanceEvaluation(const ReflectanceState& state, const ReflectanceRows& rows)
     : state_(state), rows_(rows), places_(*state.model) {
   if (state.film.film_m == 0 && state.ridges.share == 0) return;
-  for (const surface::Values& values : state.bands) {
+  for (const surface::Values& values : state.triples) {
     surface::Values bare = values;
     set(bare, places_.albedo, 0);
     set(bare, places_.retro, 0);
     bare_.push_back(bare);
     if (places_.dielectric) set(bare, places_.f0, reference_f0);
     glazed_.push_back(bare);
-    if (state.ridges.share == 0) continue;
-    const double alpha = std::max(0.02, values.scalar(*places_.alpha)), azimuth = state.ridges.azimuth_rad - pi / 2;
-    saws_.push_back({surface::Ridges(state.ridges.tilt_rad, alpha, alpha, azimuth),
-                     surface::Ridges(state.ridges.tilt_rad, alpha, alpha, azimuth + pi)});
   }
+  if (state.ridges.share == 0) return;
+  const double alpha = std::max(0.02, state.triples[0].scalar(*places_.alpha)),
+               azimuth = state.ridges.azimuth_rad - pi / 2;
+  for (const double turn : {0.0, pi}) saws_.emplace_back(state.ridges.tilt_rad, alpha, alpha, azimuth + turn);
+}
+
+const ReflectanceEvaluation::Shared& ReflectanceEvaluation::look(std::size_t row, std::size_t triple) {
+  const Vec3 wo = rows_.wo[row], wi = rows_.wi[row];
+  if (last_.row < rows_.rows() && last_.triple == triple && rows_.wo[last_.row] == wo && rows_.wi[last_.row] == wi)
+    return last_;
+  last_.row = row, last_.triple = triple;
+  last_.f = last_.gloss = last_.lobes = {};
+  if (!(rows_.weight[row] > 0)) return last_;
+  last_.f = state_.model->evaluate(state_.triples[triple], wo, wi);
+  if (state_.ridges.share > 0) last_.gloss = state_.model->evaluate(bare_[triple], wo, wi);
+  if (state_.film.film_m > 0) last_.lobes = state_.model->evaluate(glazed_[triple], wo, wi);
+  return last_;
+}
+
+double ReflectanceEvaluation::f0(std::size_t band) const {
+  return state_.triples[band / 3].rgb(*places_.f0)[static_cast<int>(band % 3)];
 }
 
 double ReflectanceEvaluation::fresnel(std::size_t band, double cosine) const {
-  const double f0 = state_.bands[band].scalar(*places_.f0);
-  if (!places_.dielectric) return surface::fresnel_schlick(cosine, {f0, f0, f0}).x;
-  return surface::fresnel_dielectric(cosine, surface::eta_of_f0(f0));
+  const double at_normal = f0(band);
+  if (places_.dielectric) return surface::fresnel_dielectric(cosine, surface::eta_of_f0(at_normal));
+  return surface::fresnel_schlick(cosine, {at_normal, at_normal, at_normal}).x;
 }
 
-double ReflectanceEvaluation::gloss(std::size_t row, std::size_t band) const {
-  return state_.model->evaluate(bare_[band], rows_.wo[row], rows_.wi[row]).x;
-}
-
-double ReflectanceEvaluation::film(std::size_t row, std::size_t band, double f) const {
+double ReflectanceEvaluation::film(std::size_t row, std::size_t band, double f, const Shared& shared) const {
   const Vec3 wo = rows_.wo[row], wi = rows_.wi[row];
-  const double eta = surface::eta_of_f0(state_.bands[band].scalar(*places_.f0)), wavelength = rows_.band_m[band];
+  const double eta = surface::eta_of_f0(f0(band)), wavelength = rows_.band_m[band];
   const auto plain = [&](double cosine) { return surface::fresnel_dielectric(cosine, eta); };
   const auto coated = [&](double cosine) {
     return surface::fresnel_film(cosine, eta, state_.film.film_eta, state_.film.film_m, wavelength);
   };
   const double cosine = surface::half_cosine(wo, wi);
   const double reference = surface::fresnel_dielectric(cosine, surface::eta_of_f0(reference_f0));
-  const double lobes = state_.model->evaluate(glazed_[band], wo, wi).x / reference;
+  const double lobes = shared.lobes[static_cast<int>(band % 3)] / reference;
   const double base = f - lobes * plain(cosine);
   const double passes = (1 - coated(wi.z)) * (1 - coated(wo.z)) / ((1 - plain(wi.z)) * (1 - plain(wo.z)));
   return f + lobes * (coated(cosine) - plain(cosine)) + base * (passes - 1);
 }
 
-double ReflectanceEvaluation::ridged(std::size_t row, std::size_t band, double gloss_f) const {
+double ReflectanceEvaluation::ridged(std::size_t row, std::size_t band, const Shared& shared) const {
   const Vec3 wo = rows_.wo[row], wi = rows_.wi[row];
   double lobe = 0;
-  for (const surface::Ridges& saw : saws_[band]) {
+  for (const surface::Ridges& saw : saws_) {
     const Vec3 wof = saw.to_facet(wo), wif = saw.to_facet(wi);
     if (wof.z > 0 && wif.z > 0) lobe += 0.5 * saw.lobe(wo, wi, wof, wif);
   }
-  return state_.ridges.share * (fresnel(band, surface::half_cosine(wo, wi)) * lobe - gloss_f);
+  const double gloss = shared.gloss[static_cast<int>(band % 3)];
+  return state_.ridges.share * (fresnel(band, surface::half_cosine(wo, wi)) * lobe - gloss);
 }
 
-double ReflectanceEvaluation::operator()(std::size_t row, std::size_t band) const {
+double ReflectanceEvaluation::value(std::size_t row, std::size_t band, const Shared& shared) const {
   if (!(rows_.weight[row] > 0)) return 0;
-  double f = state_.model->evaluate(state_.bands[band], rows_.wo[row], rows_.wi[row]).x;
-  if (state_.film.film_m > 0) f = film(row, band, f);
-  if (state_.ridges.share > 0) f += ridged(row, band, gloss(row, band));
+  double f = shared.f[static_cast<int>(band % 3)];
+  if (state_.film.film_m > 0) f = film(row, band, f, shared);
+  if (state_.ridges.share > 0) f += ridged(row, band, shared);
   const FluorescenceTerm& glow = state_.fluorescence;
   if (glow.emission > 0) {
     const double off = (rows_.band_m[band] - glow.centre_m) / glow.width_m;

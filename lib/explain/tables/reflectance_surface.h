@@ -38,29 +38,37 @@ std::optional<std::size_t> parameter_place(const surface::Model& model, const st
 
 struct ReflectanceState {
   const surface::Model* model = nullptr;
-  std::vector<surface::Values> bands;  // one per band: every RGB number is that of the band in all components
+  std::vector<surface::Values> triples;  // bands 3 t, 3 t + 1, 3 t + 2 as red, green and blue of values t
   FilmTerm film;
   RidgesTerm ridges;
   FluorescenceTerm fluorescence;
 };
 
-// f of observations: rows first .. last - 1, all columns.
+// f of a row in a band. Rows of one geometry that follow each other share their work: one for each thread.
 class ReflectanceEvaluation {
  public:
   ReflectanceEvaluation(const ReflectanceState& state, const ReflectanceRows& rows);
-  double operator()(std::size_t row, std::size_t band) const;
+  struct Shared {  // what the registered model says at one geometry, of a triple of bands
+    std::size_t row = static_cast<std::size_t>(-1), triple = 0;
+    Rgb f, gloss, lobes;  // lobes: of a reference interface
+  };
+  double operator()(std::size_t row, std::size_t band) { return value(row, band, look(row, band / 3)); }
+  // Where the terms alone have changed, the model's part may come from another evaluation.
+  double value(std::size_t row, std::size_t band, const Shared& shared) const;
+  const Shared& look(std::size_t row, std::size_t triple);
 
  private:
-  double gloss(std::size_t row, std::size_t band) const;
   double fresnel(std::size_t band, double cosine) const;
-  double film(std::size_t row, std::size_t band, double f) const;
-  double ridged(std::size_t row, std::size_t band, double gloss_f) const;
+  double f0(std::size_t band) const;
+  double film(std::size_t row, std::size_t band, double f, const Shared& shared) const;
+  double ridged(std::size_t row, std::size_t band, const Shared& shared) const;
 
   const ReflectanceState& state_;
   const ReflectanceRows& rows_;
   SurfacePlaces places_;
   std::vector<surface::Values> bare_, glazed_;  // without base; the same under a reference interface
-  std::vector<std::array<surface::Ridges, 2>> saws_;
+  std::vector<surface::Ridges> saws_;           // facing either way
+  Shared last_;
 };
 
 }  // namespace gonio::explain::tables

@@ -1,0 +1,210 @@
+// See spectrum_model.h.
+#include "explain/heights/spectrum_model.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geom/vector.h"
+
+namespace gonio::explain::heights {
+namespace {
+
+constexpr std::size_t knot_count = 8;
+constexpr double response_reach = 8;  // bins beyond which the window passes less than 1e-6 of a line
+constexpr std::size_t tried_lines = 8;
+constexpr double a_line_too = 12;  // noise variances by which a line of twice or three times the period must help alone
+
+// Mean over tiles of ln P, freed of its bias.
+std::vector<double> mean_log(const std::vector<Tile>& tiles, std::size_t ordinates) {
+  std::vector<double> mean(ordinates, euler_gamma);
+  for (const Tile& tile : tiles)
+    for (std::size_t i = 0; i < ordinates; ++i) mean[i] += tile.log_power[i] / static_cast<double>(tiles.size());
+  return mean;
+}
+
+// Of every ordinate, the median over the ring of its frequency: lines fill little of a ring.
+std::vector<double> ring_medians(const TileSpectra& spectra, const std::vector<double>& mean) {
+  std::vector<std::vector<double>> rings;
+  std::vector<std::size_t> ring;
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    const Ordinate& o = spectra.ordinates[i];
+    const double cycles = std::hypot(o.fx * spectra.step_x_m, o.fy * spectra.step_y_m) * static_cast<double>(spectra.n);
+    ring.push_back(static_cast<std::size_t>(cycles + 0.5));
+    if (ring.back() >= rings.size()) rings.resize(ring.back() + 1);
+    rings[ring.back()].push_back(mean[i]);
+  }
+  for (std::vector<double>& values : rings) {
+    if (values.empty()) continue;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    values = {*middle};
+  }
+  std::vector<double> result;
+  for (std::size_t i = 0; i < mean.size(); ++i) result.push_back(rings[ring[i]][0]);
+  return result;
+}
+
+}  // namespace
+
+SpectrumModel::SpectrumModel(const TileSpectra& spectra) : spectra_(spectra) {
+  for (const Ordinate& o : spectra.ordinates) {
+    const double square = o.fx * o.fx + o.fy * o.fy;
+    log_f_.push_back(0.5 * std::log(square));
+    cos_2.push_back((o.fx * o.fx - o.fy * o.fy) / square);
+    sin_2.push_back(2 * o.fx * o.fy / square);
+  }
+  const auto [low, high] = std::minmax_element(log_f_.begin(), log_f_.end());
+  for (std::size_t k = 0; k < knot_count; ++k)
+    knots_.push_back(*low + (*high - *low) * static_cast<double>(k) / (knot_count - 1));
+}
+
+double SpectrumModel::knot_per_m(std::size_t k) const {
+  return std::exp(knots_[k]);
+}
+
+// Beyond the knots the last two are continued.
+double SpectrumModel::curve(const std::vector<double>& log_density, double log_f) const {
+  const double step = knots_[1] - knots_[0];
+  const double place = (log_f - knots_[0]) / step;
+  const auto k = static_cast<std::size_t>(std::clamp(std::floor(place), 0.0, static_cast<double>(knot_count - 2)));
+  const double t = place - static_cast<double>(k);
+  return (1 - t) * log_density[k] + t * log_density[k + 1];
+}
+
+void SpectrumModel::predict(const SpectrumState& s, double level, std::span<double> log_power) const {
+  const double nx = static_cast<double>(spectra_.n) * spectra_.step_x_m,
+               ny = static_cast<double>(spectra_.n) * spectra_.step_y_m;
+  const bool stretched = s.a0 != 0 || s.a45 != 0;
+  const double gain = spectra_.line_gain(), points = static_cast<double>(spectra_.n);
+  const double gx = std::cos(s.grating.azimuth_rad) / s.grating.period_m * nx,
+               gy = std::sin(s.grating.azimuth_rad) / s.grating.period_m * ny;  // in bins
+  for (std::size_t i = 0; i < spectra_.ordinates.size(); ++i) {
+    const Ordinate& o = spectra_.ordinates[i];
+    const double log_f = stretched ? log_f_[i] - (s.a0 * cos_2[i] + s.a45 * sin_2[i]) : log_f_[i];
+    const double log_density = curve(s.log_density, log_f) + level;
+    double more = 0;
+    if (s.grating.amplitude_m > 0)
+      for (int k = 1; k <= static_cast<int>(harmonics); ++k) {
+        const double amplitude =
+            s.grating.amplitude_m * (k == 1 ? 1 : s.grating.harmonic[static_cast<std::size_t>(k - 2)]);
+        for (const double side : {k, -k}) {
+          const double x = o.kx - side * gx, y = o.ky - side * gy;
+          if (std::abs(x) > response_reach || std::abs(y) > response_reach) continue;
+          const double w = hann_response(x) * hann_response(y);
+          more += gain * amplitude * amplitude * w * w;
+        }
+      }
+    if (s.row_variance_m2 > 0) {
+      // |sum_y w_y e_y|^2 = R^2 sum w^2, |sum_x w_x|^2 = (n / 2)^2 W^2, over sum w^2 of both axes: 2 n / 3.
+      const double w = hann_response(o.kx);
+      more += s.row_variance_m2 * w * w * (2.0 / 3) * points * spectra_.step_x_m * spectra_.step_y_m;
+    }
+    log_power[i] = (more > 0 ? std::log(std::exp(log_density) + more) : log_density) - euler_gamma;
+  }
+}
+
+std::vector<double> SpectrumModel::start(const std::vector<Tile>& tiles) const {
+  const std::vector<double> mean = ring_medians(spectra_, mean_log(tiles, log_f_.size()));
+  Eigen::MatrixXd h = Eigen::MatrixXd::Identity(knot_count, knot_count) * 1e-9;
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(knot_count);
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    Eigen::VectorXd row(knot_count);
+    for (std::size_t k = 0; k < knot_count; ++k) {
+      std::vector<double> unit(knot_count, 0.0);
+      unit[k] = 1;
+      row[static_cast<Eigen::Index>(k)] = curve(unit, log_f_[i]);
+    }
+    h += row * row.transpose();
+    b += row * mean[i];
+  }
+  const Eigen::VectorXd solution = h.ldlt().solve(b);
+  return {solution.data(), solution.data() + solution.size()};
+}
+
+// Amplitudes by least squares of the power over the curve about the frequency and its multiples.
+Grating SpectrumModel::grating_at(double fx, double fy, const std::vector<double>& mean,
+                                  const std::vector<double>& base) const {
+  Grating g;
+  g.period_m = 1 / std::hypot(fx, fy);
+  g.azimuth_rad = std::atan2(fy, fx);
+  std::array<double, harmonics> power{}, weight{};
+  const double length_x = static_cast<double>(spectra_.n) * spectra_.step_x_m,
+               length_y = static_cast<double>(spectra_.n) * spectra_.step_y_m;
+  for (std::size_t i = 0; i < mean.size(); ++i)
+    for (std::size_t k = 0; k < harmonics; ++k) {
+      const double times = static_cast<double>(k + 1), x = spectra_.ordinates[i].kx - times * fx * length_x,
+                   y = spectra_.ordinates[i].ky - times * fy * length_y;
+      if (std::abs(x) > 1.5 || std::abs(y) > 1.5) continue;
+      const double w = std::pow(hann_response(x) * hann_response(y), 2);
+      power[k] += w * (std::exp(mean[i]) - std::exp(curve(base, log_f_[i])));
+      weight[k] += w * w;
+    }
+  for (std::size_t k = 0; k < harmonics; ++k) power[k] = weight[k] > 0 ? std::max(0.0, power[k] / weight[k]) : 0;
+  g.amplitude_m = std::sqrt(power[0] / spectra_.line_gain());
+  for (std::size_t k = 1; k < harmonics; ++k)
+    g.harmonic[k - 1] = power[0] > 0 ? std::min(2.0, std::sqrt(power[k] / power[0])) : 0;
+  return g;
+}
+
+double SpectrumModel::misfit(const SpectrumState& state, const std::vector<double>& mean) const {
+  std::vector<double> predicted(mean.size());
+  predict(state, euler_gamma, predicted);
+  double sum = 0;
+  for (std::size_t i = 0; i < mean.size(); ++i) sum += (mean[i] - predicted[i]) * (mean[i] - predicted[i]);
+  return sum;
+}
+
+Grating SpectrumModel::search() const {
+  const std::vector<double> mean = mean_log(spectra_.searched, log_f_.size());
+  SpectrumState state;
+  state.log_density = start(spectra_.searched);
+  std::vector<std::size_t> strongest(mean.size()), outstanding;
+  for (std::size_t i = 0; i < mean.size(); ++i) strongest[i] = i;
+  outstanding = strongest;
+  const auto excess = [&](std::size_t i) { return mean[i] - curve(state.log_density, log_f_[i]); };
+  std::sort(strongest.begin(), strongest.end(), [&](std::size_t a, std::size_t b) { return mean[a] > mean[b]; });
+  std::sort(outstanding.begin(), outstanding.end(),
+            [&](std::size_t a, std::size_t b) { return excess(a) > excess(b); });
+  strongest.resize(std::min(tried_lines, strongest.size()));
+  strongest.insert(strongest.end(), outstanding.begin(),
+                   outstanding.begin() + static_cast<std::ptrdiff_t>(std::min(tried_lines, outstanding.size())));
+  Grating best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::size_t peak : strongest) {
+    // The place between ordinates: the middle of the power about the peak.
+    double sum = 0, fx = 0, fy = 0;
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      const Ordinate &o = spectra_.ordinates[i], &at = spectra_.ordinates[peak];
+      if (std::abs(o.kx - at.kx) > 1 || std::abs(o.ky - at.ky) > 1) continue;
+      const double power = std::exp(mean[i]);
+      sum += power, fx += power * o.fx, fy += power * o.fy;
+    }
+    state.grating = grating_at(fx / sum, fy / sum, mean, state.log_density);
+    if (!(state.grating.amplitude_m > 0)) continue;
+    const double found = misfit(state, mean);
+    if (found < least) least = found, best = state.grating;
+  }
+  return longest(best, state, mean);
+}
+
+// Harmonics may help more than their fundamental, of which fewer multiples are looked at: where two or three times the
+// period has a line of its own, and a higher one, it is the period.
+Grating SpectrumModel::longest(const Grating& found, SpectrumState state, const std::vector<double>& mean) const {
+  state.grating = {};
+  const double without = misfit(state, mean),
+               variance = log_sigma * log_sigma / static_cast<double>(spectra_.searched.size());
+  for (const double times : {3.0, 2.0}) {
+    const double f = 1 / (times * found.period_m);
+    const Grating longer =
+        grating_at(f * std::cos(found.azimuth_rad), f * std::sin(found.azimuth_rad), mean, state.log_density);
+    if (!(longer.amplitude_m > found.amplitude_m)) continue;
+    state.grating = longer;
+    state.grating.harmonic = {};
+    if (without - misfit(state, mean) > a_line_too * variance) return longer;
+  }
+  return found;
+}
+
+}  // namespace gonio::explain::heights
