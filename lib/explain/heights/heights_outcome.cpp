@@ -98,8 +98,8 @@ std::string heights_remarks(const HeightsInput& input, const TileSpectra& spectr
   return text + seen;
 }
 
-void upgrade_heights(const HeightsInput& input, const Problem& problem, const Explanation& e,
-                     manifest::Document& document) {
+void upgrade_heights(const HeightsInput& input, std::span<const double> harmonic, const Problem& problem,
+                     const Explanation& e, manifest::Document& document) {
   for (std::size_t p = 0; p < problem.parameters().size(); ++p) {
     const std::string& name = problem.parameters()[p].name;
     const std::size_t dot = name.rfind('.');
@@ -110,6 +110,9 @@ void upgrade_heights(const HeightsInput& input, const Problem& problem, const Ex
       use.on.push_back(input.surface);
     use.parameters[name.substr(dot + 1)] = manifest::Parameter(e.values[p]);
     use.sigma[name.substr(dot + 1)] = {e.sigma[p]};
+    if (name.ends_with("ridge_period_m"))
+      for (std::size_t k = 0; k < harmonic.size(); ++k)
+        use.parameters["ridge_harmonic_" + std::to_string(k + 2)] = manifest::Parameter(harmonic[k]);
   }
 }
 

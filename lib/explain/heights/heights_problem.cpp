@@ -41,7 +41,7 @@ class HeightsProblem final : public Problem {
 
   std::string remarks(const Explanation& e) const override { return heights_remarks(input_, spectra_, *this, e); }
   void apply(const Explanation& e, manifest::Document& document) const override {
-    upgrade_heights(input_, *this, e, document);
+    upgrade_heights(input_, harmonic_, *this, e, document);
   }
   Illustration illustrate(const Explanation& e, const std::filesystem::path&, manifest::Document&) const override {
     return illustrate_heights(spectra_, *this, e);
@@ -55,8 +55,7 @@ class HeightsProblem final : public Problem {
     s.row_variance_m2 = v[layout_.rows];
     s.a0 = v[layout_.lay], s.a45 = v[layout_.lay + 1];
     const std::size_t r = layout_.ridges;
-    s.grating = {v[r], v[r + 1], v[r + 2], {}};
-    for (std::size_t k = 0; k + 1 < harmonics; ++k) s.grating.harmonic[k] = v[r + 3 + k];
+    s.grating = {v[r], v[r + 1], v[r + 2], harmonic_};
     return s;
   }
 
@@ -133,10 +132,7 @@ class HeightsProblem final : public Problem {
     own.push_back(parameter("ridge_azimuth_rad", "rad", g.azimuth_rad, g.azimuth_rad, g.azimuth_rad - 0.5,
                             g.azimuth_rad + 0.5, 0.2 * bin));
     own.push_back(parameter("ridge_amplitude_m", "m", g.amplitude_m, 0, 0, 100 * g.amplitude_m, 0.1 * g.amplitude_m));
-    for (std::size_t k = 0; k + 1 < harmonics; ++k) {
-      const std::string name = "ridge_harmonic_" + std::to_string(k + 2);
-      own.push_back(parameter(name.c_str(), "1", g.harmonic[k], 0, 0, 3, 0.1));
-    }
+    harmonic_ = g.harmonic;
     layout_.ridges = own[0];
     enter("surface.micro-ridges", own, input_.has_ridges);
   }
@@ -170,6 +166,7 @@ class HeightsProblem final : public Problem {
   TileSpectra spectra_;
   SpectrumModel model_;
   Layout layout_;
+  std::array<double, harmonics - 1> harmonic_{};
 };
 
 }  // namespace

@@ -11,9 +11,10 @@
 namespace gonio::explain::heights {
 namespace {
 
-constexpr std::size_t knot_count = 8;
+constexpr std::size_t knot_count = 12;
 constexpr double response_reach = 8;  // bins beyond which the window passes less than 1e-6 of a line
 constexpr std::size_t tried_lines = 8;
+constexpr double stands_out = 3;   // times the curve: a harmonic that is there
 constexpr double a_line_too = 12;  // noise variances by which a line of twice or three times the period must help alone
 
 // Mean over tiles of ln P, freed of its bias.
@@ -87,13 +88,13 @@ void SpectrumModel::predict(const SpectrumState& s, double level, std::span<doub
     double more = 0;
     if (s.grating.amplitude_m > 0)
       for (int k = 1; k <= static_cast<int>(harmonics); ++k) {
-        const double amplitude =
-            s.grating.amplitude_m * (k == 1 ? 1 : s.grating.harmonic[static_cast<std::size_t>(k - 2)]);
+        const double share = k == 1 ? 1 : s.grating.harmonic[static_cast<std::size_t>(k - 2)];
+        const double power = gain * s.grating.amplitude_m * s.grating.amplitude_m * share;
         for (const double side : {k, -k}) {
           const double x = o.kx - side * gx, y = o.ky - side * gy;
           if (std::abs(x) > response_reach || std::abs(y) > response_reach) continue;
           const double w = hann_response(x) * hann_response(y);
-          more += gain * amplitude * amplitude * w * w;
+          more += power * w * w;
         }
       }
     if (s.row_variance_m2 > 0) {
@@ -143,8 +144,11 @@ Grating SpectrumModel::grating_at(double fx, double fy, const std::vector<double
     }
   for (std::size_t k = 0; k < harmonics; ++k) power[k] = weight[k] > 0 ? std::max(0.0, power[k] / weight[k]) : 0;
   g.amplitude_m = std::sqrt(power[0] / spectra_.line_gain());
-  for (std::size_t k = 1; k < harmonics; ++k)
-    g.harmonic[k - 1] = power[0] > 0 ? std::min(2.0, std::sqrt(power[k] / power[0])) : 0;
+  const double log_f = 0.5 * std::log(fx * fx + fy * fy);
+  for (std::size_t k = 1; k < harmonics; ++k) {
+    const double beneath = std::exp(curve(base, log_f + std::log(static_cast<double>(k + 1))));
+    g.harmonic[k - 1] = power[k] > stands_out * beneath && power[0] > 0 ? std::min(4.0, power[k] / power[0]) : 0;
+  }
   return g;
 }
 

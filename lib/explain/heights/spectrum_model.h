@@ -1,12 +1,12 @@
 // Forward model of the tiles' spectra:
 //   S(f) = exp(level_t) S0(|f| exp(-(a0 cos 2 phi + a45 sin 2 phi)))                 a surface, rougher along one axis
-//        + gain sum_k (r_k A)^2 W(f - k f_g)^2,  f_g = (cos az, sin az) / period       surface.micro-ridges, k = 1, 2,
+//        + gain A^2 sum_k q_k W(f - k f_g)^2,  f_g = (cos az, sin az) / period       surface.micro-ridges, k = 1, 2,
 //        3
 //        + R^2 W_x(fx)^2 (2 n / 3) dx dy                     rows that the instrument has shifted, each by noise of its
 //        own
 // ln S0 is a curve, linear between knots that are evenly spaced in ln f, and the prediction of ln P is ln S - 0.5772.
-// W: Hann's window in frequency (tile_spectra.h), of f and of -f. phi, az: from the map's x axis towards its y axis,
-// which runs down.
+// q_k, the powers of harmonics over the first's, are those of the tiles that are set apart. W: Hann's window in
+// frequency (tile_spectra.h), of f and of -f. phi, az: from the map's x axis towards its y axis, which runs down.
 #pragma once
 #include <array>
 #include <span>
@@ -20,7 +20,7 @@ namespace gonio::explain::heights {
 inline constexpr std::size_t harmonics = 6;
 struct Grating {
   double period_m = 1, azimuth_rad = 0, amplitude_m = 0;  // of the first harmonic
-  std::array<double, harmonics - 1> harmonic{};           // amplitudes of the second and further over it
+  std::array<double, harmonics - 1> harmonic{};           // powers of the second and further over its
 };
 struct SpectrumState {
   std::vector<double> log_density;  // at the knots
