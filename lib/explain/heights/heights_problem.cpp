@@ -120,6 +120,7 @@ class HeightsProblem final : public Problem {
     }
     const std::string prefix = "surface.micro-ridges.";
     const double bin = g.period_m / (static_cast<double>(spectra_.n) * std::max(spectra_.step_x_m, spectra_.step_y_m));
+    const double reach = 0.5 * bin;  // a line is searched for to half a cycle per tile; beyond is another one
     const auto parameter = [&](const char* name, const char* unit, double start, double neutral, double lower,
                                double upper, double size) {
       Parameter p{prefix + name, unit, start, neutral, lower, upper, size, {}, {}};
@@ -127,10 +128,10 @@ class HeightsProblem final : public Problem {
       return add(std::move(p));
     };
     std::vector<std::size_t> own;
-    own.push_back(parameter("ridge_period_m", "m", g.period_m, g.period_m, 0.5 * g.period_m, 2 * g.period_m,
-                            0.2 * bin * g.period_m));
-    own.push_back(parameter("ridge_azimuth_rad", "rad", g.azimuth_rad, g.azimuth_rad, g.azimuth_rad - 0.5,
-                            g.azimuth_rad + 0.5, 0.2 * bin));
+    own.push_back(parameter("ridge_period_m", "m", g.period_m, g.period_m, g.period_m / (1 + reach),
+                            g.period_m * (1 + reach), 0.2 * bin * g.period_m));
+    own.push_back(parameter("ridge_azimuth_rad", "rad", g.azimuth_rad, g.azimuth_rad, g.azimuth_rad - reach,
+                            g.azimuth_rad + reach, 0.2 * bin));
     own.push_back(parameter("ridge_amplitude_m", "m", g.amplitude_m, 0, 0, 100 * g.amplitude_m, 0.1 * g.amplitude_m));
     harmonic_ = g.harmonic;
     layout_.ridges = own[0];

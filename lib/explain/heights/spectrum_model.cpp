@@ -11,7 +11,7 @@
 namespace gonio::explain::heights {
 namespace {
 
-constexpr std::size_t knot_count = 12;
+constexpr std::size_t knot_count = 10;
 constexpr double response_reach = 8;  // bins beyond which the window passes less than 1e-6 of a line
 constexpr std::size_t tried_lines = 8;
 constexpr double stands_out = 3;   // times the curve: a harmonic that is there
@@ -56,19 +56,20 @@ SpectrumModel::SpectrumModel(const TileSpectra& spectra) : spectra_(spectra) {
     cos_2.push_back((o.fx * o.fx - o.fy * o.fy) / square);
     sin_2.push_back(2 * o.fx * o.fy / square);
   }
-  const auto [low, high] = std::minmax_element(log_f_.begin(), log_f_.end());
+  const auto [least, most] = std::minmax_element(log_f_.begin(), log_f_.end());
+  const double low = std::exp(0.5 * *least), high = std::exp(0.5 * *most);
   for (std::size_t k = 0; k < knot_count; ++k)
-    knots_.push_back(*low + (*high - *low) * static_cast<double>(k) / (knot_count - 1));
+    knots_.push_back(low + (high - low) * static_cast<double>(k) / (knot_count - 1));
 }
 
 double SpectrumModel::knot_per_m(std::size_t k) const {
-  return std::exp(knots_[k]);
+  return knots_[k] * knots_[k];
 }
 
 // Beyond the knots the last two are continued.
 double SpectrumModel::curve(const std::vector<double>& log_density, double log_f) const {
   const double step = knots_[1] - knots_[0];
-  const double place = (log_f - knots_[0]) / step;
+  const double place = (std::exp(0.5 * log_f) - knots_[0]) / step;
   const auto k = static_cast<std::size_t>(std::clamp(std::floor(place), 0.0, static_cast<double>(knot_count - 2)));
   const double t = place - static_cast<double>(k);
   return (1 - t) * log_density[k] + t * log_density[k + 1];

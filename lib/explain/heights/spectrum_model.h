@@ -4,7 +4,7 @@
 //        3
 //        + R^2 W_x(fx)^2 (2 n / 3) dx dy                     rows that the instrument has shifted, each by noise of its
 //        own
-// ln S0 is a curve, linear between knots that are evenly spaced in ln f, and the prediction of ln P is ln S - 0.5772.
+// ln S0 is a curve, linear between knots that are evenly spaced in sqrt f, and the prediction of ln P is ln S - 0.5772.
 // q_k, the powers of harmonics over the first's, are those of the tiles that are set apart. W: Hann's window in
 // frequency (tile_spectra.h), of f and of -f. phi, az: from the map's x axis towards its y axis, which runs down.
 #pragma once
@@ -49,7 +49,7 @@ class SpectrumModel {
   Grating longest(const Grating& found, SpectrumState state, const std::vector<double>& mean) const;
   double misfit(const SpectrumState& state, const std::vector<double>& mean) const;
   const TileSpectra& spectra_;
-  std::vector<double> knots_;                // ln f
+  std::vector<double> knots_;                // sqrt f
   std::vector<double> log_f_, cos_2, sin_2;  // of every ordinate
 };
 
