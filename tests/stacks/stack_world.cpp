@@ -155,7 +155,7 @@ manifest::Document record(const LightWorld& world, const std::filesystem::path& 
               ", " + number(pi * world.scale) + ", " + number(pi * world.scale) + "]}";
     images += (k ? ", " : "") + std::string("{\"id\": \"") + id + "\", \"file\": \"" + id +
               "\", \"camera\": \"c\", \"light\": \"" + id +
-              "\", \"mask\": \"mask\", \"noise\": {\"gain\": 0, \"read\": " + number(world.noise) + "}}";
+              "\", \"mask\": \"mask\", \"noise\": {\"gain\": 1e9, \"read\": " + number(world.noise) + "}}";
   }
   io::write_picture(folder / "mask.png", mask);
   const std::string side = std::to_string(world.size);

@@ -1,6 +1,7 @@
 // Stacks of pictures of one static scene without geometry.
 #include "explain/domain.h"
 #include "explain/stacks/exposures_problem.h"
+#include "explain/stacks/photometric_problem.h"
 
 namespace gonio::explain::domains {
 
@@ -14,11 +15,13 @@ const Domain& stacks() {
       .applies =
           [](const manifest::Document& document) {
             using namespace explain::stacks;
-            return !stacks_of(document, Kind::exposures).empty();
+            return !stacks_of(document, Kind::exposures).empty() || !stacks_of(document, Kind::lights).empty();
           },
       .problems =
           [](const manifest::Document& document, const ProblemOptions&) {
             std::vector<std::unique_ptr<Problem>> problems = explain::stacks::exposures_problems(document);
+            for (std::unique_ptr<Problem>& p : explain::stacks::photometric_problems(document))
+              problems.push_back(std::move(p));
             return problems;
           },
       .files =

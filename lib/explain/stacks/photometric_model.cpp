@@ -1,0 +1,156 @@
+// See photometric_model.h.
+#include "explain/stacks/photometric_model.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "surface/fresnel.h"
+#include "surface/interface_albedo.h"
+#include "surface/microfacet.h"
+#include "surface/oren_nayar.h"
+
+namespace gonio::explain::stacks {
+namespace {
+
+constexpr double grazing = 1e-3, facing = 0.15, hidden_share = 0.5;
+
+double gloss(double f0, double alpha, Vec3 wo, Vec3 wi) {
+  const Vec3 h = surface::half_vector(wo, wi);
+  return surface::fresnel_dielectric(surface::half_cosine(wo, wi), surface::eta_of_f0(f0)) *
+         surface::Ggx(alpha).lobe(wo, wi, h);
+}
+
+Eigen::Vector3d eigen(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+
+// Least squares over the lamps in play that shine on the front.
+Vec3 least_squares(const std::vector<PatchLight>& lights, const std::vector<double>& y, const std::vector<char>& out) {
+  Eigen::Matrix3d a = Eigen::Matrix3d::Identity() * 1e-9;
+  Eigen::Vector3d r = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < y.size(); ++k) {
+    if (out[k]) continue;
+    const Eigen::Vector3d l = eigen(lights[k].towards) * lights[k].white;
+    a += l * l.transpose();
+    r += l * y[k];
+  }
+  const Eigen::Vector3d b = a.ldlt().solve(r);
+  return {b.x(), b.y(), b.z()};
+}
+
+}  // namespace
+
+double PatchModel::operator()(Vec3 b, double tint, const PatchLight& light, double radius) const {
+  const double albedo = norm(b);
+  if (!(albedo > 0)) return response(0) + offset;
+  const Vec3 n = b / albedo;
+  const double ci = dot(n, light.towards), co = dot(n, eye);
+  double u = 0;
+  if (ci > 0) {
+    u = light.white * tint * albedo * ci;
+    if ((sigma_rad > 0 || f0 > 0) && co > grazing) {
+      const Basis basis(n);
+      const Vec3 wo = basis.to_local(eye), wi = basis.to_local(light.towards);
+      if (sigma_rad > 0) u *= surface::OrenNayar(sigma_rad).shape(wo, wi);
+      if (f0 > 0) {
+        const double passes = (1 - surface::dielectric_albedo(wo.z, alpha, f0)) *
+                              (1 - surface::dielectric_albedo(wi.z, alpha, f0)) /
+                              (1 - surface::dielectric_albedo_mean(alpha, f0));
+        u = u * passes + light.white * pi * gloss(f0, alpha, wo, wi) * ci;
+      }
+    }
+  }
+  if (ambient != 0) u += pi * ambient * tint * albedo * light.white;
+  double v = response(u);
+  if (falloff != 0) v *= 1 - falloff * radius * radius;
+  return v + offset;
+}
+
+Patch fitted_patch(const PatchModel& model, const PatchReadings& readings, const Patch& start) {
+  const std::size_t channels = readings.channels;
+  const Eigen::Index unknowns = channels == 1 ? 3 : 5;
+  const auto patch_of = [&](const Eigen::VectorXd& v) {
+    Patch p{{v[0], v[1], v[2]}, {1, 1, 1}};
+    if (channels > 1) p.tint = {v[3], v[4], 3 - v[3] - v[4]};
+    return p;
+  };
+  const auto residuals = [&](const Eigen::VectorXd& v) {
+    const Patch p = patch_of(v);
+    Eigen::VectorXd r(static_cast<Eigen::Index>(readings.y.size()));
+    for (std::size_t i = 0; i < readings.y.size(); ++i) {
+      const double w = readings.weight[i];
+      const double f = w > 0 ? model(p.b, p.tint[i % channels], readings.lights[i / channels], readings.radius) : 0;
+      r[static_cast<Eigen::Index>(i)] = w > 0 ? (readings.y[i] - f) * w : 0;
+    }
+    return r;
+  };
+  Eigen::VectorXd v(unknowns);
+  v.head(3) = eigen(start.b);
+  if (channels > 1) v[3] = start.tint[0], v[4] = start.tint[1];
+  Eigen::VectorXd r = residuals(v);
+  double damping = 1e-3;
+  for (int i = 0; i < 15 && damping < 1e5; ++i) {
+    Eigen::MatrixXd j(r.size(), unknowns);
+    for (Eigen::Index c = 0; c < unknowns; ++c) {
+      Eigen::VectorXd moved = v;
+      const double step = c < 3 ? 1e-5 * std::max(v.head(3).norm(), 1e-6) : 1e-5;
+      moved[c] += step;
+      j.col(c) = (r - residuals(moved)) / step;
+    }
+    Eigen::MatrixXd h = j.transpose() * j;
+    h.diagonal() *= 1 + damping;
+    h.diagonal().array() += 1e-12 * h.trace();
+    const Eigen::VectorXd moved = v + h.ldlt().solve(Eigen::VectorXd(j.transpose() * r));
+    const Eigen::VectorXd then = residuals(moved);
+    if (!(then.squaredNorm() < r.squaredNorm())) {
+      damping *= 10;
+      continue;
+    }
+    const bool done = r.squaredNorm() - then.squaredNorm() < 1e-6 * r.squaredNorm();
+    v = moved;
+    r = then;
+    damping = std::max(1e-9, damping / 10);
+    if (done) break;
+  }
+  return patch_of(v);
+}
+
+Patch matte_patch(const PatchReadings& readings, std::vector<char>& hidden) {
+  const std::vector<PatchLight>& lights = readings.lights;
+  const std::size_t channels = readings.channels;
+  std::vector<double> y(lights.size());
+  for (std::size_t i = 0; i < readings.y.size(); ++i) y[i / channels] += readings.y[i] / static_cast<double>(channels);
+  // To begin with, the brighter half of the readings, without the two brightest that may be gloss.
+  std::vector<std::size_t> order(y.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return y[a] / lights[a].white > y[b] / lights[b].white; });
+  hidden.assign(y.size(), 1);
+  const std::size_t first = y.size() >= 8 ? 2 : 0;
+  for (std::size_t k = first; k < std::max<std::size_t>(first + 4, (y.size() + first + 1) / 2 + 1); ++k)
+    if (k < order.size()) hidden[order[k]] = 0;
+  Patch patch;
+  patch.b = least_squares(lights, y, hidden);
+  std::vector<char> dark(hidden);
+  for (int i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < y.size(); ++k) {
+      const double cosine = dot(patch.b, lights[k].towards) / std::max(norm(patch.b), 1e-12);
+      const double promised = dot(patch.b, lights[k].towards) * lights[k].white;
+      hidden[k] = cosine > facing && y[k] < hidden_share * promised;
+      dark[k] = hidden[k] || cosine <= 0;  // turned away: dark whatever the albedo
+    }
+    if (std::count(dark.begin(), dark.end(), 0) < 3) break;
+    patch.b = least_squares(lights, y, dark);
+  }
+  if (channels == 1) return patch;
+  double all = 0;
+  std::array<double, 3> sum{};
+  for (std::size_t i = 0; i < readings.y.size(); ++i)
+    if (!dark[i / channels]) sum[i % channels] += readings.y[i], all += readings.y[i];
+  if (all > 0)
+    for (std::size_t c = 0; c < 3; ++c) patch.tint[c] = 3 * sum[c] / all;
+  return patch;
+}
+
+}  // namespace gonio::explain::stacks

@@ -1,0 +1,84 @@
+// A stack of lights: one static object photographed under one distant lamp after the other, without geometry
+// (photometric stereo; Woodham, Optical Engineering 19, 1980). Base model: a matte surface that each lamp reaches
+// directly. Unknown: normal times albedo of every site, three numbers, in colour two tints more, and the strength of
+// lamps whose watt_per_m2 is free.
+//
+// Groups are the lamps, blocks the sites: they lie many pixels apart. Blocks that no mechanism explains, such as the
+// edges of cast shadows, are set aside and counted. A lamp that is left out is predicted from the patches that the
+// others show. A site is a pixel with all its channels. Attached shadows are the max(0, n.l) of the model; a reading
+// that stays under half of what the other lamps promise, though the patch faces the lamp, lies in a cast shadow and
+// does not count (photometric_model.h: matte_patch).
+#pragma once
+#include <memory>
+
+#include "explain/problem.h"
+#include "explain/stacks/photometric_model.h"
+#include "explain/stacks/stack_sites.h"
+
+namespace gonio::explain::stacks {
+
+class PhotometricProblem final : public Problem {
+ public:
+  PhotometricProblem(const manifest::Document& document, Stack stack, std::size_t sites = 66);
+
+  void predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const override;
+  void jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
+                std::span<double> derivatives) const override;
+  std::string domain() const override { return "stacks"; }
+  std::string unit() const override { return "1"; }
+  std::string score_name() const override { return "relative RMSE"; }
+  std::string group_noun() const override { return "light"; }
+  Importance importance() const override { return Importance::share_of_signal; }
+  bool sets_outliers_aside() const override { return true; }
+  // From sites and the pixels beside them.
+  std::optional<double> noise_factor(std::span<const double> residual) const override;
+  std::string remarks(const Explanation& explanation) const override;
+  void apply(const Explanation& explanation, manifest::Document& document) const override;
+  Illustration illustrate(const Explanation& explanation, const std::filesystem::path& out,
+                          manifest::Document& document) const override;
+
+  const Stack& stack() const { return stack_; }
+  const std::vector<Site>& sites() const { return sites_; }
+  std::size_t hidden() const { return hidden_; }
+  PatchModel model(std::span<const double> values) const;
+  std::vector<PatchLight> lights(std::span<const double> values) const;  // turned, with their strengths
+
+ private:
+  struct Shared {
+    std::size_t sigma_rad = 0, f0 = 0, alpha = 0, ambient = 0, gamma = 0, quadratic = 0, offset = 0, falloff = 0;
+  };
+  void keep_shown_sites(const std::string& place);
+  void add_patches();
+  void add_rows();
+  void add_conditions();
+  void add_lamps(const manifest::Document& document);
+  void add_candidates(const manifest::Document& document);
+  void propose_candidate(const manifest::Document& document, const std::string& id, std::vector<std::size_t> parameters,
+                         const std::string& target);
+  double radius(int x, int y) const;
+  // Readings of a pixel under all lamps; `seen`: the lamps whose readings count, all by default.
+  PatchReadings readings(int x, int y, std::span<const PatchLight> lights, double noise_factor,
+                         const std::vector<std::size_t>* seen = nullptr) const;
+  std::size_t unknowns() const { return stack_.channels.size() == 1 ? 3 : 5; }
+  Patch patch(std::span<const double> values, std::size_t site) const;
+  std::size_t first_of(std::size_t site) const { return unknowns() * site; }  // of its parameters
+  double beside() const;
+
+  Stack stack_;
+  ReadingNoise noise_;
+  std::vector<PatchLight> lamps_;  // by image, as the manifest says
+  std::vector<Site> sites_;
+  std::vector<Patch> start_;                    // by site
+  std::vector<std::vector<std::size_t>> rows_;  // by image: sites, ascending
+  std::vector<std::array<std::size_t, 2>> tilt_;
+  std::vector<std::size_t> strength_;  // by image: logarithm of a factor on the lamp
+  Shared shared_;
+  Vec3 eye_;                // direction from the scene to the camera
+  std::size_t hidden_ = 0;  // readings in cast shadows
+  double beside_ = 1;
+};
+
+// One problem for every stack of lights in the manifest.
+std::vector<std::unique_ptr<Problem>> photometric_problems(const manifest::Document& document);
+
+}  // namespace gonio::explain::stacks

@@ -1,0 +1,89 @@
+// Stacks of lights made by other code: gloss, rough matte surfaces, lamps that stand elsewhere, and nothing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "data.h"
+#include "explain/engine.h"
+#include "explain/stacks/photometric_problem.h"
+#include "stacks/stack_world.h"
+
+namespace gonio::explain::stacks {
+namespace {
+
+using tests::LightWorld;
+using Names = std::vector<std::string>;
+
+struct Outcome {
+  std::unique_ptr<Problem> problem;
+  Explanation explanation;
+  Names named;
+  double value(const std::string& parameter) const {
+    for (const Estimate& e : explanation.estimates)
+      if (problem->parameters()[e.parameter].name == parameter) return e.value;
+    return std::nan("");
+  }
+  std::string told() const {
+    std::string text = explanation.sentence + "\n";
+    for (const Hypothesis& h : explanation.scoreboard) {
+      text += "  " + h.name + ": held out " + std::to_string(h.held_out) + ", gain " + std::to_string(h.gain) + " +- " +
+              std::to_string(h.gain_sigma) + ", effect " + std::to_string(h.effect) + " " + h.refused;
+      for (std::size_t k = 0; k < std::min<std::size_t>(3, h.parameters.size()); ++k)
+        text +=
+            " " + problem->parameters()[h.parameters[k].parameter].name + "=" + std::to_string(h.parameters[k].value);
+      text += "\n";
+    }
+    return text;
+  }
+};
+
+Outcome run(const LightWorld& world) {
+  const tests::ScratchFolder folder;
+  Outcome o;
+  std::vector<std::unique_ptr<Problem>> problems = photometric_problems(record(world, folder.path()));
+  o.problem = std::move(problems.at(0));
+  o.explanation = explain(*o.problem, Options{});
+  for (const std::size_t c : o.explanation.named) o.named.push_back(o.problem->candidates()[c].id());
+  return o;
+}
+
+TEST(Photometric, NothingIsNamedOfAMatteBall) {
+  const Outcome o = run({});
+  EXPECT_EQ(o.explanation.verdict, Verdict::null) << o.told();
+}
+
+TEST(Photometric, GlossIsNamedWithItsNumbers) {
+  LightWorld world;
+  world.f0 = 0.05;
+  const Outcome o = run(world);
+  ASSERT_EQ(o.named, (Names{"surface.interface"})) << o.told();
+  // The ball's masking is separable and takes more than the height-correlated one that explains it.
+  EXPECT_NEAR(o.value("surface.interface.f0"), world.f0, 0.15 * world.f0);
+  EXPECT_NEAR(o.value("surface.interface.alpha"), world.alpha, 0.15 * world.alpha);
+}
+
+TEST(Photometric, RoughMatteSurfaceIsNamed) {
+  LightWorld world;
+  world.sigma_rad = 0.4;
+  const Outcome o = run(world);
+  ASSERT_EQ(o.named, (Names{"surface.diffuse-roughness"})) << o.told();
+  EXPECT_NEAR(o.value("surface.diffuse-roughness.sigma_rad"), world.sigma_rad, 0.1 * world.sigma_rad);
+}
+
+TEST(Photometric, LampsElsewhereAreNamed) {
+  LightWorld world;
+  world.turn_rad = 0.08;
+  const Outcome o = run(world);
+  EXPECT_EQ(o.named, (Names{"light.direction"})) << o.told();
+}
+
+TEST(Photometric, BlackOffsetIsNamed) {
+  LightWorld world;
+  world.offset = 0.03;
+  const Outcome o = run(world);
+  ASSERT_EQ(o.named, (Names{"sensor.black-offset"})) << o.told();
+  EXPECT_NEAR(o.value("sensor.black-offset.offset"), world.offset, 0.1 * world.offset);
+}
+
+}  // namespace
+}  // namespace gonio::explain::stacks
