@@ -7,13 +7,14 @@
 namespace gonio::explain {
 namespace {
 
-// Of all that can be repaired: what an otherwise right model may leave over its own conditions (a facet is no Gaussian),
-// and what may be left elsewhere beside a named effect.
+// Of all that can be repaired: what an otherwise right model may leave over its own conditions (a facet is no
+// Gaussian), and what may be left elsewhere beside a named effect.
 constexpr double own_share = 0.35, other_share = 0.5;
 // Where a free curve over its own condition takes away most of what is left above the noise, the recordings are clean
 // enough to say that the mechanism is not the law; a lens that is no polynomial leaves less than this share.
 constexpr double clean_share = 0.02, clean_part = 0.5;
-constexpr double clearly_better = 0.1;  // by which a free curve must repair more, as a share of what it repairs
+constexpr double price_of_a_trail = 10;  // as in the null test
+constexpr double clearly_better = 0.1;   // by which a free curve must repair more, as a share of what it repairs
 
 bool repairs(const Hypothesis& h, const Options& options) {
   return h.gain > 2 * h.gain_sigma && h.effect >= options.matters;
@@ -30,10 +31,13 @@ bool declares(const Problem& problem, const std::vector<std::size_t>& candidates
 struct Left {
   const Competitor* any = nullptr;  // the free curve that repairs most of what is left
   const Competitor* own = nullptr;  // the same over a condition that a named mechanism declares
+  const Trail* trail = nullptr;     // what no smooth curve follows
 };
 Left structure_left(const Problem& problem, const Selection& s, const Options& options) {
   Left left;
   if (s.after.global_p > options.level) return left;
+  if (s.after.trail && price_of_a_trail * s.after.trail->p <= options.level && s.after.trail->effect >= options.matters)
+    left.trail = &*s.after.trail;
   for (const Competitor& c : s.after.curves) {
     if (!repairs(c.hypothesis, options)) continue;
     if (left.any == nullptr) left.any = &c;
@@ -64,10 +68,10 @@ const Competitor* better_curve(const Selection& s, const Options& options) {
   return nullptr;
 }
 
-Outside outside_of(const Problem& problem, const Competitor& c) {
+Outside outside_of(const Problem& problem, std::size_t condition) {
   Outside outside;
-  outside.condition = c.hypothesis.name;
-  outside.stage = problem.observations().conditions[c.condition].stage;
+  outside.condition = problem.observations().conditions[condition].name;
+  outside.stage = problem.observations().conditions[condition].stage;
   return outside;
 }
 
@@ -85,10 +89,14 @@ void refuse(const Selection& s, const std::string& why, Explanation& e) {
 void judge(const Problem& problem, Selection& s, const Options& options, Explanation& e) {
   e.significant = s.before.global_p <= options.level;
   const Left left = structure_left(problem, s, options);
-  if (left.any != nullptr) e.outside = outside_of(problem, *left.any);
+  const bool remains = left.any != nullptr || left.trail != nullptr;
+  if (left.any != nullptr)
+    e.outside = outside_of(problem, left.any->condition);
+  else if (left.trail != nullptr)
+    e.outside = outside_of(problem, left.trail->condition);
   if (s.model.candidates.empty()) {
-    e.verdict = left.any != nullptr ? Verdict::unknown : Verdict::null;
-    e.important = left.any != nullptr;
+    e.verdict = remains ? Verdict::unknown : Verdict::null;
+    e.important = remains;
     return;
   }
   e.important = true;
@@ -104,13 +112,16 @@ void judge(const Problem& problem, Selection& s, const Options& options, Explana
     why = "leaves structure over " + left.own->hypothesis.name + ", its own condition: it only imitates in part";
   else if (too_much(left.any, other_share))
     why = "leaves more than it repairs, over " + left.any->hypothesis.name;
+  else if (left.trail != nullptr && left.trail->power > std::max(0.0, repaired))
+    why = "leaves more than it repairs, a fine structure along " +
+          problem.observations().conditions[left.trail->condition].name;
   else if (better != nullptr)
     why = "a free curve over " + better->hypothesis.name + " repairs more on unseen groups: it only imitates in part";
   else if (!(e.held_out_after < e.held_out_before))
     why = "the groups that no choice has seen are not the better for it";
   if (!why.empty()) {
     e.verdict = Verdict::unknown;
-    if (!e.outside) e.outside = outside_of(problem, better != nullptr ? *better : s.before.curves.at(0));
+    if (!e.outside) e.outside = outside_of(problem, (better != nullptr ? *better : s.before.curves.at(0)).condition);
     refuse(s, why, e);
     return;
   }

@@ -10,6 +10,7 @@
 #include "explain/fit.h"
 #include "explain/folds.h"
 #include "explain/signature.h"
+#include "explain/trail.h"
 
 namespace gonio::explain {
 
@@ -89,6 +90,7 @@ struct Remainder {
   std::vector<Competitor> curves;   // largest gain first
   std::vector<Hypothesis> dummies;  // largest gain first
   double false_alarm = 0;           // share of dummies that would have been named
+  std::optional<Trail> trail;       // structure that no smooth curve follows
   std::shared_ptr<const Evidence> evidence;
 };
 Remainder remainder(const Race& race, const Model& model, const Options& options);

@@ -10,8 +10,8 @@
 namespace gonio::explain {
 namespace {
 
-// A second look at the same residuals costs a tenth of the level.
-constexpr double price_of_concentrated = 10;
+// Further looks at the same residuals cost a tenth of the level each.
+constexpr double price_of_further_looks = 10;
 
 // A structure as a hypothesis that enters linearly.
 Competitor linear_competitor(const Race& race, const Evidence& e, std::size_t s) {
@@ -107,7 +107,9 @@ Remainder remainder(const Race& race, const Model& model, const Options& options
   scores.families.clear();
   Remainder r;
   r.global_p = global_p(looks, scores.blocks, scores.inflation, options.draws, options.seed);
-  r.global_p = std::min(r.global_p, price_of_concentrated * concentrated_p(p, structures, scores));
+  r.global_p = std::min(r.global_p, price_of_further_looks * concentrated_p(p, structures, scores));
+  r.trail = trail(system, model.fit.values);
+  if (r.trail) r.global_p = std::min(r.global_p, price_of_further_looks * r.trail->p);
   const stats::SignFlipResult dummy_test =
       stats::sign_flip_test(dummy, scores.blocks, scores.inflation, 1, options.seed);
   r.inflation = inflation(system, p, structures, scores);
