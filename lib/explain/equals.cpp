@@ -9,6 +9,7 @@ namespace gonio::explain {
 namespace {
 
 constexpr double resemblance = 0.5;  // |cos| below which nothing stands in for another
+constexpr double near_share = 0.3;   // of the winner's gain, by chords
 constexpr std::size_t most_exchanges = 8;
 constexpr std::size_t set_size = 3;  // sets beyond it are trimmed by what the noise of single blocks allows
 constexpr double distinct_blocks = 3;
@@ -65,8 +66,10 @@ std::vector<Equal> equals_of(const Race& race, const Effort& effort, const Selec
     if (++tried > std::min(most_exchanges, effort.fits)) break;
     std::vector<std::size_t> candidates = s.model.candidates;
     candidates[place] = other;
-    const Model exchanged = race.changed(rest, candidates, &kept);
-    const Hypothesis h = race.judged(rest, exchanged, {other}, {}, 1, &kept);
+    Model exchanged = race.changed(rest, candidates, &kept);
+    if (gain(rest.held_out, exchanged.held_out).mean > near_share * gain(rest.held_out, s.model.held_out).mean)
+      exchanged = race.changed(exchanged, candidates);  // to the end: chords stop short in long valleys
+    const Hypothesis h = race.judged(rest, exchanged, {other}, {}, 1);
     if (h.refused.empty() && as_good(rest, s.model, exchanged, 2, 0.5))
       equals.push_back({other, h.gain, block_z(exchanged.held_out, s.model.held_out)});
   }

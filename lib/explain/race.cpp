@@ -11,9 +11,9 @@
 namespace gonio::explain {
 namespace {
 
-constexpr int chords = 25;                           // steps of a fit with kept slopes
-constexpr int turns = 3;                             // how often the slopes may be taken anew
-constexpr double small_gain = 0.02, small_cost = 4;  // of the sum of whitened squares: not worth new slopes
+constexpr int chords = 25;                            // steps of a fit with kept slopes
+constexpr int turns = 3;                              // how often the slopes may be taken anew
+constexpr double small_gain = 0.005, small_cost = 4;  // of the sum of whitened squares: not worth new slopes
 
 std::string family_of(const Candidate& c) {
   if (!c.family.empty()) return c.family;

@@ -12,10 +12,13 @@ namespace {
 // overtook in the tests of strongly nonlinear mechanisms.
 constexpr double allowance = 3;
 constexpr std::size_t most_pairs_fitted = 4;
+constexpr std::size_t most_leaders = 4;
+constexpr double leading_share = 0.6;  // of the best gain: may be the winner once fitted to the end
 
 struct Runner {
   Model model;
   Hypothesis hypothesis;
+  bool polished = false;  // fitted to the end with derivatives of its own
 };
 
 std::vector<std::size_t> with(std::vector<std::size_t> set, const std::vector<std::size_t>& more) {
@@ -53,6 +56,7 @@ class Round {
     run_singles();
     run_pairs();
     sort_runners(runners_);
+    polish_leaders();
   }
   std::vector<Runner>& runners() { return runners_; }
   // Those that the screening left behind, as lines of the scoreboard.
@@ -94,7 +98,8 @@ class Round {
 
   // Fitted with derivatives of its own, and judged again.
   Runner polished(const Runner& r) const {
-    Runner result{race_.changed(r.model, r.model.candidates), {}};
+    if (r.polished) return r;
+    Runner result{race_.changed(r.model, r.model.candidates), {}, true};
     const std::size_t looks = screening_.singles().size() + (r.hypothesis.candidates.size() > 1 ? pairs_ : 0);
     result.hypothesis = race_.judged(model_, result.model, r.hypothesis.candidates, left_.dummies, looks);
     return result;
@@ -113,7 +118,7 @@ class Round {
       return start;
     };
     const std::vector<std::size_t> candidates = with(model_.candidates, e.candidates);
-    Runner r{race_.started(model_, candidates, joined(e.start), &kept_, e.reach * rows_), {}};
+    Runner r{race_.started(model_, candidates, joined(e.start), &kept_, e.reach * rows_), {}, false};
     if (e.candidates.size() == 1) {
       double least = race_.promised_cost(model_, candidates, joined(e.start), kept_);
       std::vector<double> best;
@@ -139,6 +144,15 @@ class Round {
       runners_.push_back(fitted(singles[fitted_], singles.size()));
       best = std::max(best, runners_.back().hypothesis.gain);
     }
+    sort_runners(runners_);
+  }
+
+  // Who is near the best is fitted to the end before one is chosen: in a long valley chords stop short.
+  void polish_leaders() {
+    const std::vector<Runner>& all = runners_;
+    const double best = all.empty() ? 0 : all[0].hypothesis.gain;
+    for (std::size_t k = 0; k < std::min(most_leaders, all.size()); ++k)
+      if (best > 0 && all[k].hypothesis.gain > leading_share * best) runners_[k] = polished(all[k]);
     sort_runners(runners_);
   }
 
