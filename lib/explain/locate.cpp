@@ -12,7 +12,8 @@ namespace gonio::explain {
 namespace {
 
 constexpr double least_survivor = 1e-4;  // of a direction's squared length, after projection
-constexpr double tied_share = 0.8;       // of the first condition's share: not told apart by it
+constexpr std::size_t bins_of_a_curve = 12;
+constexpr double tied_share = 0.8;  // of the first condition's share: not told apart by it
 
 struct Explained {
   double squares = 0, rank = 0;
@@ -67,14 +68,21 @@ void find_range(const Curve& curve, const std::vector<double>& power, LocatedCon
   located.effect = std::sqrt(squares / static_cast<double>(best_last - best_first + 1));
 }
 
-// Squared mean residual of each bin less its own noise. Where something is named: what it took away, in which the noise
-// of before and after cancels.
-std::vector<double> power_of(const Curve& curve, bool named) {
+// Squared mean residual of each bin less its own noise.
+std::vector<double> power_of(const Curve& curve) {
   std::vector<double> power(curve.centre.size());
-  for (std::size_t k = 0; k < power.size(); ++k) {
-    const double taken = curve.before[k] - curve.after[k];
-    power[k] =
-        named ? taken * taken : std::max(0.0, curve.before[k] * curve.before[k] - curve.sigma[k] * curve.sigma[k]);
+  for (std::size_t k = 0; k < power.size(); ++k)
+    power[k] = std::max(0.0, curve.before[k] * curve.before[k] - curve.sigma[k] * curve.sigma[k]);
+  return power;
+}
+
+// What the named mechanisms themselves do in each bin: the prediction without them less that with them, everything else
+// being as fitted. The fall of the residual is less telling: free parameters had spread the effect over all bins.
+std::vector<double> power_of_effect(const Curve& without, std::size_t bins) {
+  std::vector<double> power(bins);
+  for (std::size_t k = 0; k < std::min(bins, without.centre.size()); ++k) {
+    const double effect = without.before[k] - without.after[k];
+    power[k] = effect * effect;
   }
   return power;
 }
@@ -155,12 +163,22 @@ std::size_t declared_place(const Problem& problem, const Explanation& e, const s
 
 void place_conditions(const System& system, Explanation& e) {
   const std::vector<Condition>& conditions = system.observations().conditions;
+  std::vector<double> neutral = e.values;
+  for (const std::size_t c : e.named)
+    for (const std::size_t p : system.problem().candidates()[c].parameters)
+      neutral[p] = system.problem().parameters()[p].neutral;
+  const std::vector<double> without = e.named.empty() ? std::vector<double>{} : system.raw_residual(neutral);
   for (LocatedCondition& located : e.conditions) {
     const auto found =
         std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return c.name == located.name; });
-    located.curve = residual_curve(system, static_cast<std::size_t>(found - conditions.begin()), e.residual_before,
-                                   e.residual_after, 12);
-    find_range(located.curve, power_of(located.curve, !e.named.empty()), located);
+    const auto place = static_cast<std::size_t>(found - conditions.begin());
+    located.curve = residual_curve(system, place, e.residual_before, e.residual_after, bins_of_a_curve);
+    if (e.named.empty()) {
+      find_range(located.curve, power_of(located.curve), located);
+      continue;
+    }
+    const Curve effect = residual_curve(system, place, without, e.residual_after, bins_of_a_curve);
+    find_range(located.curve, power_of_effect(effect, located.curve.centre.size()), located);
   }
   if (e.conditions.empty() || e.named.empty()) return;
   const double tie = tied_share * e.conditions[0].share;
