@@ -13,6 +13,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t fewest_shown = 5;  // lamps that must shine on a site
+constexpr double evenness = 0.02;        // share of the light that a lamp called distant may vary by over the object
 constexpr double least_cosine = 0.15;    // of the eye above a site
 
 // The mean over the channels, where all of them count: what sites are chosen by.
@@ -88,10 +89,15 @@ PatchReadings PhotometricProblem::readings(int x, int y, std::span<const PatchLi
     for (std::size_t c = 0; c < r.channels; ++c) {
       const std::size_t i = image.picture.index(x, y, static_cast<int>(c));
       r.y.push_back(image.picture.data[i]);
-      r.weight.push_back(out || !image.counts[i] ? 0 : 1 / (noise_factor * noise_.sigma(g, r.y.back())));
+      r.weight.push_back(out || !image.counts[i] ? 0 : 1 / (noise_factor * sigma(g, r.y.back())));
     }
   }
   return r;
+}
+
+double PhotometricProblem::sigma(std::size_t image, double reading) const {
+  const double noise = noise_.sigma(image, reading);
+  return noise_.stated() ? noise : std::hypot(noise, evenness * reading);
 }
 
 void PhotometricProblem::keep_shown_sites(const std::string& place) {
@@ -149,7 +155,7 @@ void PhotometricProblem::add_rows() {
         o.value.push_back(y);
         o.norm.push_back(y * y);
         o.block.push_back(static_cast<std::uint32_t>(g * sites_.size() + s));
-        o.sigma.push_back(noise_.sigma(g, y));
+        o.sigma.push_back(sigma(g, y));
       }
     }
     o.first.push_back(o.value.size());

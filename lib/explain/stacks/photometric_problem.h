@@ -59,6 +59,9 @@ class PhotometricProblem final : public Problem {
   // Readings of a pixel under all lamps; `seen`: the lamps whose readings count, all by default.
   PatchReadings readings(int x, int y, std::span<const PatchLight> lights, double noise_factor,
                          const std::vector<std::size_t>* seen = nullptr) const;
+  // Of a reading; where it is measured and not stated, with what the light may vary over the object: such errors are
+  // in proportion and common to the channels, and would drown what is seen in a dark channel.
+  double sigma(std::size_t image, double reading) const;
   std::size_t unknowns() const { return stack_.channels.size() == 1 ? 3 : 5; }
   Patch patch(std::span<const double> values, std::size_t site) const;
   std::size_t first_of(std::size_t site) const { return unknowns() * site; }  // of its parameters

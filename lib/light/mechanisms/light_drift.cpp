@@ -13,7 +13,7 @@ const Mechanism& light_drift() {
       .source = "first-order thermal response; CIE 198:2011, stabilisation of lamps",
       .stage = "light",
       .target = Target::scene,
-      .domains = {"tables"},
+      .domains = {"tables", "stacks"},
       .parameters = {{.name = "amplitude",
                       .unit = "1",
                       .neutral = 0,

@@ -12,7 +12,7 @@ const Mechanism& sensor_black_offset() {
       .source = "EMVA Standard 1288, release 4.0, dark signal",
       .stage = "sensor",
       .target = Target::camera,
-      .domains = {"stacks"},
+      .domains = {"tables", "stacks"},
       .parameters = {{.name = "offset",
                       .unit = "W/(m^2 sr)",
                       .neutral = 0,

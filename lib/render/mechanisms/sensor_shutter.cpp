@@ -13,7 +13,7 @@ const Mechanism& sensor_shutter() {
       .source = "EMVA Standard 1288, release 4.0, section 6 (exposure time as the independent variable)",
       .stage = "sensor",
       .target = Target::camera,
-      .domains = {"tables"},
+      .domains = {"tables", "stacks"},
       .parameters = {{.name = "extra_s",
                       .unit = "s",
                       .neutral = 0,

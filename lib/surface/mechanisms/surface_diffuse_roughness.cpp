@@ -14,7 +14,7 @@ const Mechanism& surface_diffuse_roughness() {
       .source = "Oren & Nayar 1994, equation 30",
       .stage = "surface",
       .target = Target::surface,
-      .domains = {"images", "tables"},
+      .domains = {"images", "tables", "stacks"},
       .parameters = {{.name = "sigma_rad",
                       .unit = "rad",
                       .neutral = 0,

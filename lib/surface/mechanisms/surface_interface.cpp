@@ -15,7 +15,7 @@ const Mechanism& surface_interface() {
       .source = "Walter et al. 2007, equations 20, 33, 34; Kelemen & Szirmay-Kalos 2001",
       .stage = "surface",
       .target = Target::surface,
-      .domains = {"images", "tables"},
+      .domains = {"images", "tables", "stacks"},
       .parameters = {{.name = "f0",
                       .unit = "1",
                       .neutral = 0,
