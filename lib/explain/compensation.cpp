@@ -27,8 +27,7 @@ std::string compensation_in_words(const Problem& problem, const Explanation& e) 
     const Shown shown = shown_in(p.unit, most.after);
     const std::string unit = shown.unit.empty() ? "" : " " + shown.unit;
     text = p.name + " moved from " + printed(most.before * shown.factor, 5) + " to " +
-           printed(most.after * shown.factor, 5) + unit + ", by " + standard_errors_in_words(moved) +
-           " of its standard errors.";
+           printed(most.after * shown.factor, 5) + unit + ", by " + plain_number(moved) + " of its standard errors.";
   }
   std::size_t calibrated = 0, towards = 0;
   for (const Compensation& c : e.compensation) {

@@ -10,6 +10,10 @@
 namespace gonio::explain {
 namespace {
 
+bool is_screened(const Hypothesis& h) {
+  return h.refused.find("screened, not fitted") != std::string::npos;
+}
+
 void scoreboard(report::Page& page, const Problem& problem, const Explanation& e) {
   if (e.scoreboard.empty()) return;
   page.open_details("All hypotheses (" + std::to_string(e.scoreboard.size()) + ")");
@@ -22,7 +26,12 @@ void scoreboard(report::Page& page, const Problem& problem, const Explanation& e
        {"effect", ""},
        {"could be named", "", false}},
       {}};
+  std::string screened;
   for (const Hypothesis& h : e.scoreboard) {
+    if (is_screened(h)) {
+      screened += (screened.empty() ? "" : ", ") + h.name;
+      continue;
+    }
     const bool named = std::any_of(h.candidates.begin(), h.candidates.end(), [&](std::size_t c) {
       return h.kind == Hypothesis::Kind::mechanisms && std::find(e.named.begin(), e.named.end(), c) != e.named.end();
     });
@@ -30,10 +39,11 @@ void scoreboard(report::Page& page, const Problem& problem, const Explanation& e
                                : named                                ? "yes"
                                : h.refused.empty()                    ? "could be"
                                                                       : "no: " + h.refused;
-    table.rows.push_back({h.name, printed(h.held_out), printed(h.gain) + " ± " + printed(h.gain_sigma, 2),
+    table.rows.push_back({h.name, printed(h.held_out), plain_number(h.gain, 3) + " ± " + plain_number(h.gain_sigma),
                           share_in_words(h.effect), answer});
   }
   page.table(table);
+  if (!screened.empty()) page.note("By linear algebra out of reach of the best, and not fitted: " + screened + ".");
   page.close_details();
 }
 
@@ -123,10 +133,9 @@ void compensation(report::Page& page, const Problem& problem, const Explanation&
     std::string calibrated;
     if (c.calibrated)
       calibrated = estimate_in_words(*c.calibrated, *c.calibrated_sigma, p.unit) + (c.towards ? ", towards" : ", away");
-    table.rows.push_back(
-        {p.name, printed(c.before * shown.factor, 5), estimate_in_words(c.after, c.sigma, p.unit),
-         (c.after < c.before ? "−" : "") + standard_errors_in_words(std::abs(c.after - c.before) / c.sigma),
-         calibrated});
+    table.rows.push_back({p.name, printed(c.before * shown.factor, 5), estimate_in_words(c.after, c.sigma, p.unit),
+                          (c.after < c.before ? "−" : "") + plain_number(std::abs(c.after - c.before) / c.sigma),
+                          calibrated});
   }
   page.table(table);
   page.close_details();

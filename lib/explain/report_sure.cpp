@@ -43,7 +43,8 @@ void scores(report::Page& page, const Problem& problem, const Explanation& e) {
   page.note(problem.score_name() + " on " + problem.group_noun() + "s that the fit did not see (" +
             (e.test_groups.empty() ? "each left out in turn"
                                    : std::to_string(e.test_groups.size()) + " opened once at the end") +
-            "). The chance of such residuals without a mismatch is " + printed(e.global_p, 2) + "; " +
+            "). The chance of such residuals without a mismatch is " +
+            (e.global_p < 1e-6 ? "below one in a million" : printed(e.global_p, 2)) + "; " +
             (e.false_alarm > 0 ? share_in_words(e.false_alarm) + " of the dummies would have passed for physics."
                                : std::string("no dummy would have passed for physics.")));
 }
@@ -99,7 +100,7 @@ void tell_next(report::Page& page, const ReportPart& part) {
   for (const PlannedMeasurement& p : e.plan) {
     std::string ids = problem.candidates()[p.separates[0]].id();
     ids += p.separates.size() > 1 ? " from " + problem.candidates()[p.separates[1]].id() : " from nothing";
-    table.rows.push_back({p.sentence, ids, standard_errors_in_words(p.z)});
+    table.rows.push_back({p.sentence, ids, plain_number(p.z)});
   }
   page.table(table);
 }

@@ -75,11 +75,9 @@ std::string plain_sentence(const Problem& problem, const Explanation& e) {
   return "No mismatch beyond noise (p = " + printed(e.global_p, 2) + "); no physics is named (" + score + ").";
 }
 
-// Mechanisms that are there but matter too little.
-std::string minor_sentence(const Explanation& e) {
+std::string minor_sentence(const Problem& problem, const Explanation& e) {
   std::string names;
-  for (const std::size_t place : e.minor)
-    if (place < e.scoreboard.size()) names += (names.empty() ? "" : ", ") + e.scoreboard[place].name;
+  for (const std::string& id : minor_mechanisms(problem, e)) names += (names.empty() ? "" : ", ") + id;
   return names.empty() ? "" : " Also there, but smaller than what matters: " + names + ".";
 }
 
@@ -102,7 +100,7 @@ std::string planned(const Problem& problem, const PlannedMeasurement& p) {
   const std::string part = p.separates.size() > 1
                                ? "To tell " + first + " from " + problem.candidates()[p.separates[1]].id()
                                : "To see whether " + first + " is there";
-  return part + ": " + p.sentence + " (expected: " + standard_errors_in_words(p.z) + " standard errors).";
+  return part + ": " + p.sentence + " (expected: " + plain_number(p.z) + " standard errors).";
 }
 
 std::string unseen(const Problem& problem, const Explanation& e) {
@@ -145,7 +143,7 @@ std::string measurement(const Problem& problem, const Explanation& e) {
 
 void write_sentence(const Problem& problem, Explanation& e) {
   e.sentence = e.named.empty() ? plain_sentence(problem, e) : named_sentence(problem, e);
-  e.sentence += minor_sentence(e);
+  e.sentence += minor_sentence(problem, e);
   if (const std::string remarks = problem.remarks(e); !remarks.empty()) e.sentence += " " + remarks;
   if (!e.shortened.empty()) e.sentence += " " + e.shortened;
   e.next_measurement = measurement(problem, e);

@@ -37,8 +37,8 @@ std::string printed(double value, int digits) {
   return text;
 }
 
-std::string standard_errors_in_words(double z) {
-  return z >= 99.5 ? std::to_string(std::lround(z)) : printed(z, 2);
+std::string plain_number(double value, int digits) {
+  return std::abs(value) >= 99.5 && std::abs(value) < 1e9 ? std::to_string(std::lround(value)) : printed(value, digits);
 }
 
 Shown shown_in(const std::string& unit, double size) {
@@ -103,6 +103,20 @@ std::string mechanism_in_words(const Problem& problem, std::size_t candidate) {
   for (std::size_t k = 0; k < c.on.size(); ++k)
     text += (k == 0 ? " on " : k + 1 == c.on.size() ? " and " : ", ") + c.on[k];
   return text;
+}
+
+std::vector<std::string> minor_mechanisms(const Problem& problem, const Explanation& e) {
+  std::vector<std::string> ids;
+  for (const std::size_t place : e.minor) {
+    if (place >= e.scoreboard.size()) continue;
+    for (const std::size_t c : e.scoreboard[place].candidates) {
+      const std::string& id = problem.candidates()[c].id();
+      const auto same = [&](std::size_t named) { return problem.candidates()[named].id() == id; };
+      if (std::find(ids.begin(), ids.end(), id) == ids.end() && std::none_of(e.named.begin(), e.named.end(), same))
+        ids.push_back(id);
+    }
+  }
+  return ids;
 }
 
 std::string parameters_in_words(const Problem& problem, const Explanation& e, std::size_t candidate) {

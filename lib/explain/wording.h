@@ -1,13 +1,14 @@
 // Numbers, units and names as people read them.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "explain/explanation.h"
 
 namespace gonio::explain {
 
-std::string printed(double value, int digits = 3);  // significant digits, no trailing zeros
-std::string standard_errors_in_words(double z);     // "243", "8.1"
+std::string printed(double value, int digits = 3);       // significant digits, no trailing zeros
+std::string plain_number(double value, int digits = 2);  // no exponents for large ones: "243"
 
 // Units as people use them: degrees for angles, millimetres for small lengths, milliseconds for short times. `size`: of
 // the numbers to be shown together.
@@ -25,6 +26,8 @@ std::string condition_in_words(const std::string& name);  // "surface.half-angle
 // "above 0.6 of the half diagonal", "between 20 and 45 degrees"; empty where it is everywhere.
 std::string range_in_words(const LocatedCondition& located);
 std::string mechanism_in_words(const Problem& problem, std::size_t candidate);  // "surface.interface on bunny"
+// Ids of mechanisms that are there, but matter too little; each once, and none that is named.
+std::vector<std::string> minor_mechanisms(const Problem& problem, const Explanation& explanation);
 // "f0 0.043 ± 0.002, alpha 0.10 ± 0.01": of one named candidate, the two clearest.
 std::string parameters_in_words(const Problem& problem, const Explanation& explanation, std::size_t candidate);
 

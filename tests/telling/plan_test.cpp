@@ -131,6 +131,9 @@ TEST(Evidence, EffectsAreInNoiseWidths) {
 TEST(Wording, UnitsThatPeopleUse) {
   EXPECT_EQ(quantity(0.314159, "rad"), "18 degrees");
   EXPECT_EQ(quantity(0.0031, "m"), "3.1 mm");
+  EXPECT_EQ(plain_number(243.15), "243");
+  EXPECT_EQ(plain_number(8.13), "8.1");
+  EXPECT_EQ(estimate_in_words(-3.7e-5, 0.00033, "1"), "-0.00004 ± 0.00033");
   EXPECT_EQ(quantity(0.8, "m"), "0.8 m");
   EXPECT_EQ(quantity(2.5e-6, "m"), "2.5 µm");
   EXPECT_EQ(quantity(0.02, "s"), "20 ms");
