@@ -7,7 +7,7 @@ const Mechanism& surface_thin_film() {
   static const Mechanism declaration{
       .id = "surface.thin-film",
       .sentence = "A transparent film lies on the glossy interface, and its interference colours the gloss.",
-      .typical = "the gloss changes by factors between wavelengths; films of 0.05 to 1.2 um",
+      .typical = "the gloss changes by factors between wavelengths; films of 0.02 to 0.66 um are told apart by range",
       .equation =
           "R = |(r1 + r2 e) / (1 + r1 r2 e)|^2 for both polarizations, e = exp(i 4 pi film_eta film_m cos_t / "
           "wavelength), instead of the Fresnel factor of the gloss",
@@ -19,7 +19,7 @@ const Mechanism& surface_thin_film() {
                       .unit = "m",
                       .neutral = 0,
                       .lower = 0,
-                      .upper = 1.2e-6,
+                      .upper = 0.66e-6,
                       .start = 3e-7,
                       .meaning = "thickness of the film"},
                      {.name = "film_eta",
