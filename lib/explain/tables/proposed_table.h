@@ -20,6 +20,8 @@ class ProposedTable {
                 std::span<const double> sigma);
 
   const std::vector<Proposal>& proposals() const { return proposals_; }
+  // How many parameters its terms have: as many as the problem's own, or `values` means something else here.
+  std::size_t term_parameters() const { return terms_ ? terms_->parameters().size() : 0; }
   // Four readings. `values`: of all the problem's parameters.
   ProposedRows propose(std::span<const double> values, std::size_t proposal) const;
 

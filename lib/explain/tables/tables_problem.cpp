@@ -318,9 +318,16 @@ void TablesProblem::plan(const manifest::Document& document) {
   if (!bound_->proposals().empty() || rescaled_ || !bindable) return;
   std::vector<std::string> done;
   for (const Candidate& c : bound_->candidates()) done.push_back(c.id());
+  // The same terms at the same places: a column that only the proposals vary would let in further ones.
+  for (const Term* term : all_terms()) {
+    const std::string& id = term->mechanism().id;
+    const auto same = [&](const Candidate& c) { return c.id() == id; };
+    if (std::none_of(terms_->candidates().begin(), terms_->candidates().end(), same)) done.push_back(id);
+  }
   std::vector<double> sigma = observations_.sigma;
   for (std::size_t i = 0; i < sigma.size(); ++i) sigma[i] *= reference(i);
   proposed_ = std::make_unique<ProposedTable>(document, *model_, table_, done, prediction_, sigma);
+  if (proposed_->term_parameters() != terms_->parameters().size()) proposed_.reset();
 }
 
 std::vector<Proposal> TablesProblem::proposals() const {
