@@ -53,6 +53,10 @@ function(gonio_finish_library)
   gonio_registry(${GONIO_GENERATED}/table_terms.cpp Term explain/tables/table_model.h
     "std::span<const gonio::explain::tables::Term* const> gonio::explain::tables::all_terms()"
     gonio::explain::tables ${table_term_files})
+  file(GLOB image_term_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/explain/images/terms/*.cpp)
+  gonio_registry(${GONIO_GENERATED}/image_terms.cpp Term explain/images/term.h
+    "std::span<const gonio::explain::images::Term* const> gonio::explain::images::all_terms()"
+    gonio::explain::images::terms ${image_term_files})
   gonio_registry(${GONIO_GENERATED}/domains.cpp Domain explain/domain.h
     "std::span<const gonio::explain::Domain* const> gonio::explain::all_domains()" gonio::explain::domains
     ${domain_files})
@@ -61,7 +65,7 @@ function(gonio_finish_library)
     list(APPEND objects $<TARGET_OBJECTS:${room}>)
   endforeach()
   set(registries ${GONIO_GENERATED}/mechanisms.cpp ${GONIO_GENERATED}/domains.cpp
-      ${GONIO_GENERATED}/table_models.cpp ${GONIO_GENERATED}/table_terms.cpp)
+      ${GONIO_GENERATED}/table_models.cpp ${GONIO_GENERATED}/table_terms.cpp ${GONIO_GENERATED}/image_terms.cpp)
   if(EXISTS ${CMAKE_SOURCE_DIR}/lib/surface/surface.h)
     list(APPEND registries ${GONIO_GENERATED}/surfaces.cpp ${GONIO_GENERATED}/laws.cpp)
   endif()

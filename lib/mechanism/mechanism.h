@@ -23,7 +23,7 @@ struct Confusion {
   std::string with;        // canonical id (or a plain word where the list has none)
   std::string told_apart;  // the cheapest measurement that separates the two
 };
-enum class Target { scene, surface, light, camera, board };  // what one set of parameters belongs to
+enum class Target { scene, surface, light, camera, board, object };  // what one set of parameters belongs to
 
 struct Mechanism {
   std::string id;        // canonical: "lens.radial"

@@ -15,6 +15,8 @@ bool exists(const manifest::Document& d, Target target, const std::string& name)
     case Target::light: return d.lights.contains(name);
     case Target::camera: return d.cameras.contains(name);
     case Target::board: return d.boards.contains(name);
+    case Target::object:
+      return std::ranges::any_of(d.objects, [&](const manifest::Object& o) { return o.id == name; });
     case Target::scene: return false;
   }
   return false;

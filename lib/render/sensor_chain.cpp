@@ -11,6 +11,7 @@
 #include "geom/vector.h"
 #include "render/image_seed.h"
 #include "render/mosaic.h"
+#include "render/sensor_links.h"
 #include "scene/mechanisms.h"
 
 namespace gonio::render {
@@ -20,7 +21,9 @@ using Links = std::vector<double Sensor::*>;  // one per parameter of the mechan
 
 const std::map<std::string, Links>& links() {
   static const std::map<std::string, Links> all = {
+      {"optics.ghost", {&Sensor::ghost_share}},
       {"optics.veiling-glare", {&Sensor::glare_share}},
+      {"sensor.shutter", {&Sensor::shutter_extra_s}},
       {"sensor.crosstalk", {&Sensor::crosstalk_share}},
       {"sensor.prnu", {&Sensor::prnu_sigma}},
       {"sensor.non-linearity", {}},  // response_of()
@@ -61,25 +64,38 @@ io::Image colours(const io::Image& rendered, const std::string& prefix = "") {
   return result;
 }
 
+void add_ghost(io::Image& image, double share) {
+  const io::Image sharp = image;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < static_cast<int>(image.channels.size()); ++c)
+        image.at(x, y, c) = static_cast<float>(
+            with_ghost(sharp.at(x, y, c), share, sharp.at(image.width - 1 - x, image.height - 1 - y, c)));
+}
+
 void add_glare(io::Image& image, double share) {
   const std::size_t channels = image.channels.size();
   std::vector<double> sums(channels);
   for (std::size_t i = 0; i < image.data.size(); ++i) sums[i % channels] += image.data[i];
   for (std::size_t i = 0; i < image.data.size(); ++i)
-    image.data[i] += static_cast<float>(share * sums[i % channels] / static_cast<double>(image.pixels()));
+    image.data[i] =
+        static_cast<float>(with_veil(image.data[i], share, sums[i % channels] / static_cast<double>(image.pixels())));
 }
 
 void mix(io::Image& image, double share) {
   for (std::size_t i = 0; i + 2 < image.data.size(); i += 3) {
     const double sum = double{image.data[i]} + image.data[i + 1] + image.data[i + 2];
     for (std::size_t c = 0; c < 3; ++c)
-      image.data[i + c] = static_cast<float>((1 - 3 * share) * image.data[i + c] + share * sum);
+      image.data[i + c] = static_cast<float>(with_crosstalk(image.data[i + c], share, sum));
   }
 }
 
 // What optics and filters do, linear in all bands: Stokes planes are treated as the radiance is.
 io::Image through_optics(const io::Image& rendered, const Sensor& sensor, const std::string& prefix) {
   io::Image image = colours(rendered, prefix);
+  if (sensor.shutter_extra_s != 0 && sensor.exposure_s > 0)
+    for (float& v : image.data) v = static_cast<float>(with_shutter(v, sensor.shutter_extra_s, sensor.exposure_s));
+  if (sensor.ghost_share != 0) add_ghost(image, sensor.ghost_share);
   if (sensor.glare_share != 0) add_glare(image, sensor.glare_share);
   if (sensor.crosstalk_share != 0) mix(image, sensor.crosstalk_share);
   return image;
@@ -103,13 +119,13 @@ io::Image behind_filters(const io::Image& rendered, const Sensor& sensor) {
 
 // One reading; `fixed` belongs to the pixel of this camera, `random` to this picture.
 double reading(double v, const Sensor& sensor, int row, Random& fixed, Random& random) {
-  if (sensor.prnu_sigma != 0) v *= 1 + sensor.prnu_sigma * fixed.normal();
+  if (sensor.prnu_sigma != 0) v = with_fixed_pattern(v, sensor.prnu_sigma, fixed.normal());
   if (sensor.noise.gain > 0) v = poisson(v * sensor.noise.gain, random) / sensor.noise.gain;
   v = sensor.response(v);
   if (sensor.row_amplitude != 0)
-    v *= 1 + sensor.row_amplitude * std::sin(2 * pi * row / sensor.row_period_px + sensor.row_phase_rad);
+    v = with_rows(v, sensor.row_amplitude, sensor.row_period_px, sensor.row_phase_rad, row);
   v += sensor.black_offset + sensor.noise.read * random.normal();
-  return sensor.full_scale > 0 ? std::min(v, sensor.full_scale) : v;
+  return with_limit(v, sensor.full_scale);
 }
 
 }  // namespace
@@ -125,6 +141,7 @@ Sensor sensor_of(const manifest::Document& document, std::size_t image) {
   if (const auto camera = document.cameras.find(entry.camera); camera != document.cameras.end())
     sensor.mosaic = camera->second.mosaic;
   if (entry.noise) sensor.noise = *entry.noise;
+  sensor.exposure_s = entry.exposure_s.value_or(0);
   for (const auto& [id, use] : document.mechanisms) {
     const auto link = links().find(id);
     if (link == links().end()) continue;

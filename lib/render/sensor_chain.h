@@ -1,7 +1,9 @@
 // From a rendered picture to what a camera records: a chain of mechanisms, each of which vanishes exactly at its
 // neutral value. Values v are linear and in the rendering's unit throughout, black offset and full scale too.
 //
-//   1. optics.veiling-glare   v += share * mean of the picture, channel by channel
+//   0. sensor.shutter         v *= 1 + extra / exposure, where the image states its exposure
+//   1. optics.ghost           v += share * v of the point opposite about the picture's centre
+//      optics.veiling-glare   v += share * mean of the picture, channel by channel
 //   2. sensor.crosstalk       (R, G, B) mixed: 1 - 2 share of the own band, share of each other
 //   3. the camera's mosaic    one channel Y behind colour filters; "polarizers": Y behind polarizers (render/mosaic.h)
 //   4. sensor.prnu            v *= 1 + sigma n, n normal and always the same for a pixel of a camera
@@ -11,8 +13,9 @@
 //   8. sensor.black-offset    v += offset
 //   9. read noise             normal
 //  10. sensor.saturation      v = min(v, full_scale)
-// Negative readings stay. The rendering's own Monte Carlo noise remains: render with enough samples that it is small
-// beside the sensor's. Every image id has noise of its own under one seed.
+// The equations of single values stand in render/sensor_links.h. Negative readings stay. The rendering's own Monte
+// Carlo noise remains: render with enough samples that it is small beside the sensor's. Every image id has noise of its
+// own under one seed.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -28,7 +31,8 @@ struct Sensor {  // as it stands: ideal, three channels, without noise
   std::string camera;
   std::string mosaic;
   manifest::Noise noise;
-  double glare_share = 0, crosstalk_share = 0, prnu_sigma = 0;
+  double shutter_extra_s = 0, exposure_s = 0;
+  double ghost_share = 0, glare_share = 0, crosstalk_share = 0, prnu_sigma = 0;
   Response response;
   double row_amplitude = 0, row_period_px = 100, row_phase_rad = 0;
   double black_offset = 0;

@@ -7,10 +7,12 @@
 #include "base/progress.h"
 #include "io/picture.h"
 #include "io/ply.h"
+#include "light/drift.h"
 #include "mesh/curvature.h"
 #include "optics/colour.h"
 #include "scene/checks.h"
 #include "scene/mechanisms.h"
+#include "scene/placement.h"
 #include "scene/scene.h"
 #include "scene/spectra.h"
 #include "scene/variation.h"
@@ -254,8 +256,32 @@ class Builder {
       const std::string place = at("/mechanisms/" + id);
       if (!mechanism) throw Error(Exit::data, place, "no such mechanism", "gonio-manifest(5) lists them");
       apply_mechanism(scene.appearance, *mechanism, use, scene.centre_m, place);
+      apply_mechanism(scene.instances, *mechanism, use, place);
       for (auto& [name, camera] : cameras) apply_mechanism(camera, name, *mechanism, use, place);
     }
+  }
+
+  // A mechanism's parameter as the manifest has it, for the whole scene.
+  double amount(const std::string& id, const char* parameter, double neutral) const {
+    const auto use = document_.mechanisms.find(id);
+    if (use == document_.mechanisms.end()) return neutral;
+    const auto found = use->second.parameters.find(parameter);
+    return found == use->second.parameters.end() || !found->second.given() ? neutral : found->second.scalar();
+  }
+
+  // light.drift and light.spectrum at the time of an image; 1 where either is not stated.
+  Rgb lamps_at(const manifest::ImageEntry& image) const {
+    if (!image.time_s) return {1, 1, 1};
+    double first_s = *image.time_s, last_s = first_s;
+    for (const manifest::ImageEntry& other : document_.images) {
+      first_s = std::min(first_s, other.time_s.value_or(first_s));
+      last_s = std::max(last_s, other.time_s.value_or(last_s));
+    }
+    const double since_s = *image.time_s - first_s, along = last_s > first_s ? since_s / (last_s - first_s) : 0;
+    const Rgb shift{1 + amount("light.spectrum", "red_share", 0) * along, 1,
+                    1 + amount("light.spectrum", "blue_share", 0) * along};
+    return shift *
+           light::drift(amount("light.drift", "amplitude", 0), amount("light.drift", "time_constant_s", 600), since_s);
   }
 
   std::vector<std::size_t> lights_of(const Scene& scene, const manifest::ImageEntry& image,
@@ -268,8 +294,8 @@ class Builder {
         throw Error(Exit::data, at(pointer + "/light"), "no light \"" + name + "\"", "name one of `lights`");
       lights.push_back(static_cast<std::size_t>(found - all.begin()));
     }
-    if (image.light.empty())
-      for (std::size_t i = 0; i < all.size(); ++i) lights.push_back(i);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (image.light.empty() || all[i].id == second_source) lights.push_back(i);
     return lights;
   }
 
@@ -288,6 +314,7 @@ class Builder {
            optics::upsampled(image.gain && image.gain->given() ? image.gain->rgb() : Rgb{1, 1, 1}, reading_.bands),
            {},
            image.camera});
+      scene.views.back().gain *= lamps_at(image);
       for (const auto& [id, use] : document_.mechanisms)
         apply_mechanism(scene.views.back(), *mechanism::find_mechanism(id), use, at("/mechanisms/" + id));
     }

@@ -2,6 +2,7 @@
 #include "scene/mechanisms.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 
@@ -9,6 +10,10 @@
 #include "base/text.h"
 #include "camera/intrinsics.h"
 #include "light/turn.h"
+#include "scene/placement.h"
+#include "scene/variation.h"
+#include "surface/dipole_model.h"
+#include "surface/stain.h"
 
 namespace gonio::scene {
 namespace {
@@ -71,9 +76,23 @@ void set_indirect(Appearance& appearance, const Amounts& amounts, const std::str
 void set_vignetting(Appearance& appearance, const Amounts& amounts, const std::string&) {
   appearance.vignetting_falloff = amounts[0];
 }
+void add_second_source(Appearance& appearance, const Amounts& a, const std::string& place) {
+  if (a[0] == 0) return;
+  Light light;
+  light.id = second_source;
+  light.model = light::find("directional");
+  light.parameters["towards"] = manifest::Parameter(
+      std::vector<double>{std::cos(a[2]) * std::cos(a[1]), std::cos(a[2]) * std::sin(a[1]), std::sin(a[2])});
+  light.parameters["watt_per_m2"] = manifest::Parameter(std::vector<double>{a[0], a[0], a[0]});
+  if (!appearance.lights.empty()) light.bands = appearance.lights[0].bands;
+  refresh(light, place);
+  appearance.lights.push_back(std::move(light));
+}
 const std::map<std::string, SceneEdit>& scene_edits() {
-  static const std::map<std::string, SceneEdit> edits = {
-      {"light.ambient", set_ambient}, {"optics.vignetting", set_vignetting}, {"transport.indirect", set_indirect}};
+  static const std::map<std::string, SceneEdit> edits = {{"light.ambient", set_ambient},
+                                                         {"light.second-source", add_second_source},
+                                                         {"optics.vignetting", set_vignetting},
+                                                         {"transport.indirect", set_indirect}};
   return edits;
 }
 const manifest::ParameterInfo* find_parameter(const manifest::ModelInfo& info, const std::string& name) {
@@ -163,13 +182,102 @@ void narrow(Light& light, const Mechanism& mechanism, const Amounts& amounts, Ve
   direction = manifest::Parameter(components(axis));
 }
 
+bool can_shift(const Light& light, const Mechanism&) {
+  return find_parameter(light.model->info(), "position_m") != nullptr;
+}
+void shift(Light& light, const Mechanism&, const Amounts& amounts, Vec3, const std::string&) {
+  manifest::Parameter& position = light.parameters.at("position_m");
+  position.value = components(position.vector() + Vec3{amounts[0], amounts[1], amounts[2]});
+}
+
+// light.inverse-square: a lamp at 1 / nearness from the centre that gives a plane there what the distant one gave.
+bool can_come_near(const Light& light, const Mechanism&) {
+  return light.model->info().id == "directional";
+}
+void come_near(Light& light, const Mechanism&, const Amounts& amounts, Vec3 centre_m, const std::string&) {
+  const double distance_m = 1 / amounts[0];
+  const Vec3 towards = normalized(light.parameters.at("towards").vector());
+  const Rgb intensity = light.parameters.at("watt_per_m2").rgb() * (distance_m * distance_m);
+  light.model = light::find("point");
+  light.parameters = {{"position_m", manifest::Parameter(components(centre_m + towards * distance_m))},
+                      {"watt_per_sr", manifest::Parameter(components(intensity))}};
+}
+
 const std::map<std::string, LightEdit>& light_edits() {
   static const std::map<std::string, LightEdit> edits = {{"light.direction", {can_turn, turn}},
-                                                         {"light.lobe", {can_narrow, narrow}}};
+                                                         {"light.inverse-square", {can_come_near, come_near}},
+                                                         {"light.lobe", {can_narrow, narrow}},
+                                                         {"light.position", {can_shift, shift}}};
+  return edits;
+}
+
+// surface.subsurface: a matte surface becomes a half space of the same albedo with the given diffuse mean free paths
+// and no interface; the standard dipole spreads the light.
+bool can_scatter(const Surface& surface) {
+  return surface.model->info().id == "diffuse" && !surface.varies() && !surface.base;
+}
+double single_albedo(double albedo) {  // the alpha' at which diffusion theory sends back `albedo`
+  const surface::InteriorFresnel interior(1);
+  double low = 0, high = 1;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (surface::standard_reflectance({1 - middle, middle, 0}, interior) < albedo ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+void scatter(Surface& surface, const Amounts& amounts) {
+  constexpr double shortest_m = 1e-6;  // of a band without: far below any pixel
+  const Rgb albedo = surface.values.rgb(0);
+  std::vector<double> absorbs, scatters;
+  for (int c = 0; c < 3; ++c) {
+    const double a = std::min(single_albedo(albedo[c]), 1 - 1e-6);
+    const double per_m = 1 / (std::max(shortest_m, amounts[static_cast<std::size_t>(c)]) * std::sqrt(3 * (1 - a)));
+    absorbs.push_back((1 - a) * per_m);
+    scatters.push_back(a * per_m);
+  }
+  surface.model = surface::find("dipole");
+  surface.parameters = {{"eta", manifest::Parameter(1.0)},
+                        {"sigma_a_per_m", manifest::Parameter(absorbs)},
+                        {"sigma_s_per_m", manifest::Parameter(scatters)}};
+}
+
+// surface.spatial-variation: the albedo of a uniform surface with a stain.
+class StainedAlbedo final : public Rule {
+ public:
+  StainedAlbedo(Rgb albedo, const Amounts& amounts) : albedo_(albedo), a_(amounts) {}
+  Rgb at(const Place& place) const override {
+    return albedo_ * surface::stain(place.position_m, {a_[0], a_[1], a_[2]}, a_[3], a_[4]);
+  }
+  void fits(const mesh::Mesh*, const manifest::ParameterInfo&, const std::string&) const override {}
+
+ private:
+  Rgb albedo_;
+  Amounts a_;
+};
+bool can_stain(const Surface& surface) {
+  return find_parameter(surface.model->info(), "albedo") && !surface.varies();
+}
+void stain(Surface& surface, const Amounts& amounts) {
+  const auto& own = surface.model->info().parameters;
+  const auto albedo = std::find_if(own.begin(), own.end(), [](const auto& p) { return p.name == "albedo"; });
+  const Rgb value = surface.values.rgb(static_cast<std::size_t>(albedo - own.begin()));
+  surface.varying.push_back({"albedo", std::make_shared<const StainedAlbedo>(value, amounts)});
+}
+
+// Edits of surfaces that are not parameters of a model.
+struct SurfaceEdit {
+  bool (*applies)(const Surface&);
+  void (*edit)(Surface&, const Amounts&);
+};
+const std::map<std::string, SurfaceEdit>& surface_edits() {
+  static const std::map<std::string, SurfaceEdit> edits = {{"surface.subsurface", {can_scatter, scatter}},
+                                                           {"surface.spatial-variation", {can_stain, stain}}};
   return edits;
 }
 
 bool can_apply(const Surface& surface, const Mechanism& mechanism) {
+  const auto special = surface_edits().find(mechanism.id);
+  if (special != surface_edits().end()) return special->second.applies(surface);
   return model_for(surface, mechanism) != nullptr;
 }
 bool can_apply(const Light& light, const Mechanism& mechanism) {
@@ -187,6 +295,11 @@ void set_parameters(Thing& thing, const Mechanism& mechanism, const Amounts& amo
 }
 
 void edit(Surface& surface, const Mechanism& mechanism, const Amounts& amounts, Vec3, const std::string& place) {
+  const auto special = surface_edits().find(mechanism.id);
+  if (special != surface_edits().end()) {
+    special->second.edit(surface, amounts);
+    return refresh(surface, place);
+  }
   set_parameters(surface, mechanism, amounts, place);
 }
 void edit(Light& light, const Mechanism& mechanism, const Amounts& amounts, Vec3 centre_m, const std::string& place) {
@@ -235,8 +348,9 @@ bool applies_to_scenes(const Mechanism& mechanism) {
   };
   switch (mechanism.target) {
     case Target::scene: return scene_edits().contains(mechanism.id);
-    case Target::surface: return expressed(surface::all_models());
+    case Target::surface: return surface_edits().contains(mechanism.id) || expressed(surface::all_models());
     case Target::light: return light_edits().contains(mechanism.id) || expressed(light::all_models());
+    case Target::object: return applies_to_objects(mechanism);
     default: return false;
   }
 }

@@ -22,13 +22,16 @@ manifest::Document document(const std::string& camera = "") {
                                         "cx_px": 5.5, "cy_px": 4.5)" +
       camera + R"(}},
          "meshes": {"ball": {"sphere": {"radius_m": 0.1}}, "floor": {"plane": {"size_m": [2, 2]}}},
-         "surfaces": {"clay": {"model": "diffuse", "albedo": [0.6, 0.5, 0.3]}},
-         "lights": {"lamp": {"model": "point", "position_m": [0.3, 0.2, 0], "watt_per_sr": [3, 2, 4]}},
-         "objects": [{"id": "ball", "mesh": "ball", "surface": "clay",
+         "surfaces": {"clay": {"model": "diffuse", "albedo": [0.6, 0.5, 0.3]},
+                      "glaze": {"model": "coated-diffuse", "albedo": [0.6, 0.5, 0.3], "f0": 0.05, "alpha": 0.3}},
+         "lights": {"sun": {"model": "directional", "towards": [0.2, 0.1, -1], "watt_per_m2": [0.3, 0.3, 0.3]},
+                    "lamp": {"model": "point", "position_m": [0.3, 0.2, 0], "watt_per_sr": [3, 2, 4]}},
+         "objects": [{"id": "ball", "mesh": "ball", "surface": "glaze",
                       "world_from_object": {"rotation": [1, 0, 0, 0], "translation_m": [0, 0, 0.5]}},
                      {"id": "floor", "mesh": "floor", "surface": "clay",
                       "world_from_object": {"rotation": [0, 1, 0, 0], "translation_m": [0, 0, 0.7]}}],
-         "images": [{"id": "i", "camera": "c"}]})";
+         "images": [{"id": "i", "camera": "c", "exposure_s": 0.1, "time_s": 5},
+                    {"id": "earlier", "camera": "c", "time_s": 3}]})";
   return manifest::parse_document(text, "s.json", {});
 }
 
@@ -42,7 +45,10 @@ std::vector<float> photograph(const manifest::Document& document) {
 bool concerns_pictures(const Mechanism& m) {
   const auto is_for = [&](const char* domain) { return std::ranges::find(m.domains, domain) != m.domains.end(); };
   const bool lens = m.stage == "lens" && m.target == Target::camera;
-  const bool tables_alone = m.domains == std::vector<std::string>{"tables"};  // acts through columns that no picture has
+  // Acts through columns or height maps, which no picture has.
+  const bool tables_alone = !m.domains.empty() && std::ranges::all_of(m.domains, [](const std::string& domain) {
+    return domain == "tables" || domain == "heights";
+  });
   return lens || !(is_for("boards") || is_for("robot") || tables_alone);
 }
 
@@ -50,6 +56,10 @@ manifest::MechanismUse use(const Mechanism& m, bool neutral) {
   manifest::MechanismUse use;
   for (const auto& p : m.parameters)
     use.parameters[p.name] = neutral ? p.neutral : p.start != p.neutral ? p.start : 0.5 * (p.start + p.upper);
+  // Where the camera sees it: a light on its own side, a stain on the ball.
+  if (!neutral && m.id == "light.second-source") use.parameters["elevation_rad"] = -0.8;
+  if (!neutral && m.id == "surface.spatial-variation")
+    for (const char* name : {"x_m", "y_m", "z_m"}) use.parameters[name] = 0.0;
   return use;
 }
 

@@ -10,9 +10,11 @@ const Domain& images() {
                              .order = 2,
                              .applies = explain::images::has_recordings,
                              .problems =
-                                 [](const manifest::Document& document, const ProblemOptions&) {
+                                 [](const manifest::Document& document, const ProblemOptions& options) {
                                    std::vector<std::unique_ptr<Problem>> problems;
-                                   problems.push_back(std::make_unique<explain::images::ImagesProblem>(document));
+                                   explain::images::Options own;
+                                   own.repeats = options.repeats;
+                                   problems.push_back(std::make_unique<explain::images::ImagesProblem>(document, own));
                                    return problems;
                                  },
                              .files =

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "explain/images/uses.h"
 
 namespace gonio::explain::images {
 namespace {
@@ -31,8 +32,9 @@ void put(Rgb& rgb, int component, double value) {
 // Collects parameters; those that share a name become one.
 class Collector {
  public:
-  Collector(const manifest::Document& document, const Recordings& recordings, const SceneLayout& layout)
-      : document_(document), recordings_(recordings), layout_(layout) {}
+  Collector(const manifest::Document& document, const Recordings& recordings, const SceneLayout& layout,
+            std::span<const Use> uses, std::size_t given)
+      : document_(document), recordings_(recordings), layout_(layout), uses_(uses), given_(given) {}
 
   Bindings run() {
     surfaces();
@@ -41,8 +43,7 @@ class Collector {
       each_free(recordings_.images[i].gain, {Kind::gain, i, 0, -1},
                 {Origin::Section::images, recordings_.images[i].id, "gain", recordings_.images[i].entry, 0},
                 "images/" + recordings_.images[i].id + "/gain", "1", {i}, 1e-6);
-    for (const mechanism::Mechanism* m : mechanism::all_mechanisms())
-      if (std::find(m->domains.begin(), m->domains.end(), "images") != m->domains.end()) mechanism(*m);
+    for (std::size_t u = 0; u < uses_.size(); ++u) u < given_ ? given(uses_[u]) : candidate(uses_[u]);
     return std::move(out_);
   }
 
@@ -73,18 +74,9 @@ class Collector {
           throw Error(Exit::data, manifest::place(document_, "/lights/" + name + "/" + key), "cannot be free on images",
                       "free the intensity; light.direction searches the place by itself");
         each_free(parameter, {Kind::intensity, l, 0, -1}, {Origin::Section::lights, name, key, 0, 0},
-                  "lights/" + name + "/" + key, key == "watt_per_sr" ? "W/sr" : "W/m^2", lit_by(l), 0);
+                  "lights/" + name + "/" + key, key == "watt_per_sr" ? "W/sr" : "W/m^2", lit_by(recordings_, l), 0);
       }
     }
-  }
-
-  std::vector<std::size_t> lit_by(std::size_t light) const {
-    std::vector<std::size_t> groups;
-    for (std::size_t i = 0; i < recordings_.images.size(); ++i) {
-      const std::vector<std::size_t>& lights = recordings_.images[i].lights;
-      if (std::find(lights.begin(), lights.end(), light) != lights.end()) groups.push_back(i);
-    }
-    return groups.size() == recordings_.images.size() ? std::vector<std::size_t>{} : groups;
   }
 
   // Enters every component of a free manifest parameter.
@@ -135,85 +127,60 @@ class Collector {
     return out_.parameters.size() - 1;
   }
 
-  // A parameter of a mechanism as a number of the search; nothing where the base model has the mechanism already.
-  void enter(const mechanism::Mechanism& m, const mechanism::Parameter& info, std::vector<Place> places,
-             const std::string& target, const std::vector<std::size_t>& groups, Candidate& candidate) {
-    Parameter p;
-    p.name = m.id + (target.empty() ? "" : "@" + target) + "." + info.name;
-    p.unit = info.unit;
-    p.start = info.start;
-    p.neutral = info.neutral;
-    p.lower = info.lower;
-    p.upper = info.upper;
-    p.size = std::max({std::abs(info.start - info.neutral), 0.02 * (info.upper - info.lower), 1e-9});
-    p.groups = groups;
-    candidate.parameters.push_back(add(p, std::move(places), {}));
-  }
-
-  void mechanism(const mechanism::Mechanism& m) {
-    Candidate candidate;
-    candidate.mechanism = &m;
-    if (m.target == mechanism::Target::surface) {
-      for (std::size_t s = 0; s < layout_.surfaces.size(); ++s) of_surface(m, s);
-    } else if (m.id == "light.finite-size") {
-      of_lamp_size(m, candidate);
-    } else if (m.id == "light.direction") {
-      of_direction(m, candidate);
-    } else if (m.id == "light.ambient") {
-      if (max_component(layout_.start.ambient) > 0) return;
-      for (std::size_t k = 0; k < m.parameters.size(); ++k)
-        enter(m, m.parameters[k], {{Kind::ambient, 0, 0, static_cast<int>(k)}}, "", {}, candidate);
-    } else if (m.id == "optics.vignetting") {
-      if (layout_.start.falloff != 0) return;
-      enter(m, m.parameters[0], {{Kind::falloff, 0, 0, -1}}, "", {}, candidate);
-    } else if (m.id == "transport.indirect") {
-      if (layout_.start.indirect != 0) return;
-      enter(m, m.parameters[0], {{Kind::indirect, 0, 0, -1}}, "", {}, candidate);
+  // A free number of a mechanism that the manifest has switched on.
+  void given(const Use& use) {
+    const std::vector<mechanism::Parameter>& infos = use.mechanism->parameters;
+    for (std::size_t i = 0; i < use.numbers.size(); ++i) {
+      if (!use.numbers[i].free) continue;
+      const std::string& key = infos[i % infos.size()].name;
+      const manifest::Parameter& entry = document_.mechanisms.at(use.mechanism->id).parameters.at(key);
+      Parameter p = searched(use, i);
+      p.neutral = p.start;
+      p.lower = entry.min.value_or(p.lower);
+      p.upper = entry.max.value_or(p.upper);
+      p.prior_sigma = entry.sigma;
+      const Origin origin{Origin::Section::mechanisms, use.mechanism->id, key, 0,
+                          entry.value.size() > 1 ? i / infos.size() : 0};
+      out_.base.push_back(add(p, {{Kind::amount, use.place, i, -1}}, {origin}));
     }
-    if (!candidate.parameters.empty()) out_.candidates.push_back(std::move(candidate));
   }
 
-  void of_surface(const mechanism::Mechanism& m, std::size_t s) {
-    const SurfaceState& surface = layout_.start.surfaces[s];
-    for (const mechanism::Parameter& info : m.parameters)
-      if (!has_parameter(*surface.model, info.name)) return;
-    const double first = surface.values.scalar(parameter_index(*surface.model, m.parameters[0].name));
-    if (first != m.parameters[0].neutral) return;
+  void candidate(const Use& use) {
     Candidate candidate;
-    candidate.mechanism = &m;
-    candidate.on = {layout_.surfaces[s]};
-    for (const mechanism::Parameter& info : m.parameters)
-      enter(m, info, {{Kind::surface, s, parameter_index(*surface.model, info.name), -1}}, layout_.surfaces[s], {},
-            candidate);
+    candidate.mechanism = use.mechanism;
+    candidate.on = use.on;
+    candidate.family = use.family;
+    for (std::size_t i = 0; i < use.numbers.size(); ++i)
+      if (use.numbers[i].free)
+        candidate.parameters.push_back(add(searched(use, i), {{Kind::amount, use.place, i, -1}}, {}));
+    if (candidate.parameters.empty()) return;
     out_.candidates.push_back(std::move(candidate));
+    out_.use_of.push_back(use.place);
   }
 
-  void of_lamp_size(const mechanism::Mechanism& m, Candidate& candidate) {
-    std::vector<Place> places;
-    for (std::size_t l = 0; l < layout_.lights.size(); ++l) {
-      if (layout_.lights[l].directional || layout_.start.lights[l].radius_m > 0) continue;
-      places.push_back({Kind::radius, l, 0, -1});
-      candidate.on.push_back(recordings_.lights[l]);
-    }
-    if (places.empty()) return;
-    enter(m, m.parameters[0], places, "", {}, candidate);
-    Parameter& radius = out_.parameters[candidate.parameters[0]];
-    radius.upper = std::min(radius.upper, radii_m.back());
-  }
-
-  void of_direction(const mechanism::Mechanism& m, Candidate& candidate) {
-    for (std::size_t l = 0; l < layout_.lights.size(); ++l) {
-      const LightState& light = layout_.start.lights[l];
-      if (light.tilt_x_rad != 0 || light.tilt_y_rad != 0) continue;
-      candidate.on.push_back(recordings_.lights[l]);
-      enter(m, m.parameters[0], {{Kind::tilt_x, l, 0, -1}}, recordings_.lights[l], lit_by(l), candidate);
-      enter(m, m.parameters[1], {{Kind::tilt_y, l, 0, -1}}, recordings_.lights[l], lit_by(l), candidate);
-    }
+  static Parameter searched(const Use& use, std::size_t i) {
+    const std::size_t n = use.mechanism->parameters.size();
+    const mechanism::Parameter& info = use.mechanism->parameters[i % n];
+    const Number& number = use.numbers[i];
+    const bool one_target = use.on.size() == 1 || use.sets > 1;
+    Parameter p;
+    p.name = use.mechanism->id + (one_target ? "@" + use.on[i / n] : "") + "." + info.name;
+    p.unit = info.unit;
+    p.start = number.start;
+    p.neutral = number.neutral;
+    p.lower = number.lower;
+    p.upper = number.upper;
+    p.size =
+        std::max({std::abs(number.start - number.neutral), 0.02 * std::min(number.upper - number.lower, 1e6), 1e-9});
+    p.groups = number.groups;
+    return p;
   }
 
   const manifest::Document& document_;
   const Recordings& recordings_;
   const SceneLayout& layout_;
+  std::span<const Use> uses_;
+  std::size_t given_;
   Bindings out_;
   std::map<std::string, std::size_t> shared_;
 };
@@ -224,13 +191,8 @@ double value_at(const SceneState& state, const Place& p) {
   switch (p.kind) {
     case Kind::surface: return get(state.surfaces[p.target].values.v[p.parameter], p.component);
     case Kind::intensity: return get(state.lights[p.target].intensity, p.component);
-    case Kind::radius: return state.lights[p.target].radius_m;
-    case Kind::tilt_x: return state.lights[p.target].tilt_x_rad;
-    case Kind::tilt_y: return state.lights[p.target].tilt_y_rad;
-    case Kind::ambient: return get(state.ambient, p.component);
-    case Kind::falloff: return state.falloff;
-    case Kind::indirect: return state.indirect;
     case Kind::gain: return get(state.gain[p.target], p.component);
+    case Kind::amount: return state.amounts[p.target][p.parameter];
   }
   return 0;
 }
@@ -239,13 +201,8 @@ void set_value(SceneState& state, const Place& p, double value) {
   switch (p.kind) {
     case Kind::surface: return put(state.surfaces[p.target].values.v[p.parameter], p.component, value);
     case Kind::intensity: return put(state.lights[p.target].intensity, p.component, value);
-    case Kind::radius: state.lights[p.target].radius_m = value; return;
-    case Kind::tilt_x: state.lights[p.target].tilt_x_rad = value; return;
-    case Kind::tilt_y: state.lights[p.target].tilt_y_rad = value; return;
-    case Kind::ambient: return put(state.ambient, p.component, value);
-    case Kind::falloff: state.falloff = value; return;
-    case Kind::indirect: state.indirect = value; return;
     case Kind::gain: return put(state.gain[p.target], p.component, value);
+    case Kind::amount: state.amounts[p.target][p.parameter] = value; return;
   }
 }
 
@@ -254,8 +211,9 @@ void Bindings::set(SceneState& state, std::span<const double> values) const {
     for (const Place& place : places[p]) set_value(state, place, values[p]);
 }
 
-Bindings bind_parameters(const manifest::Document& document, const Recordings& recordings, const SceneLayout& layout) {
-  return Collector(document, recordings, layout).run();
+Bindings bind_parameters(const manifest::Document& document, const Recordings& recordings, const SceneLayout& layout,
+                         std::span<const Use> uses, std::size_t given) {
+  return Collector(document, recordings, layout, uses, given).run();
 }
 
 }  // namespace gonio::explain::images

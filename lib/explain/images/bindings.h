@@ -1,10 +1,11 @@
 // The numbers of the search and what each of them sets: free parameters of the base model (surfaces, lights, images,
-// mechanisms that the manifest switches on) and the parameters of candidate mechanisms.
+// mechanisms that the manifest switches on) and the amounts of candidate terms.
 #pragma once
 #include <string>
 #include <vector>
 
 #include "explain/images/scene_state.h"
+#include "explain/images/term.h"
 #include "explain/problem.h"
 #include "manifest/document.h"
 
@@ -12,9 +13,9 @@ namespace gonio::explain::images {
 
 // One number in the scene's state.
 struct Place {
-  enum class Kind { surface, intensity, radius, tilt_x, tilt_y, ambient, falloff, indirect, gain } kind = Kind::surface;
-  std::size_t target = 0;     // surface, light or image
-  std::size_t parameter = 0;  // of the surface's model
+  enum class Kind { surface, intensity, gain, amount } kind = Kind::surface;
+  std::size_t target = 0;     // surface, light, image or use
+  std::size_t parameter = 0;  // of the surface's model; of the use's amounts
   int component = -1;         // of an RGB value; -1: all three
 };
 double value_at(const SceneState& state, const Place& place);
@@ -35,13 +36,17 @@ struct Bindings {
   std::vector<std::vector<Origin>> origins;  // empty for candidates' parameters
   std::vector<std::size_t> base;
   std::vector<Candidate> candidates;
+  std::vector<std::size_t> use_of;  // candidate -> place among the uses
 
   void set(SceneState& state, std::span<const double> values) const;
 };
 
-Bindings bind_parameters(const manifest::Document& document, const Recordings& recordings, const SceneLayout& layout);
+// `uses`: the first `given` of them are the manifest's, the others are candidates.
+Bindings bind_parameters(const manifest::Document& document, const Recordings& recordings, const SceneLayout& layout,
+                         std::span<const Use> uses, std::size_t given);
 
 // Fitted values, their sigmas and the named mechanisms into the document's sections.
-void write_back(const Bindings& bindings, const Explanation& explanation, manifest::Document& document);
+void write_back(const Bindings& bindings, std::span<const Use> uses, const Explanation& explanation,
+                manifest::Document& document);
 
 }  // namespace gonio::explain::images

@@ -1,84 +1,185 @@
 #include "explain/images/conditions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+
+#include "explain/images/observed.h"
 
 namespace gonio::explain::images {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-struct PixelConditions {
-  double image_radius = none, incidence = none, exitance = none, half = none, phase = none, light_distance = none,
-         shadow_edge = none, visibility = none, open_sky = none, light = none;
+enum Which : std::size_t {
+  image_radius_at,
+  half_at,
+  exitance_at,
+  incidence_at,
+  phase_at,
+  shadow_edge_at,
+  distance_at,
+  visibility_at,
+  open_sky_at,
+  radiance_at,
+  identity_at,
+  emission_at,
+  indirect_at,
+  row_at,
+  mean_at,
+  mirrored_at,
+  hue_at,
+  edge_at,
+  depth_at,
+  exposure_at,
+  time_at,
+  temperature_at,
+  x_at,
+  y_at,
+  z_at,
+  count
 };
+// In the order of Which. Structure of those with `relative` scales with the signal.
+struct Description {
+  const char *name, *unit, *stage;
+  bool relative;
+};
+constexpr std::array<Description, count> descriptions{{
+    {"camera.image-radius", "half width", "optics", true},
+    {"surface.half-angle", "rad", "surface", true},
+    {"surface.exitance-angle", "rad", "surface", true},
+    {"surface.incidence-angle", "rad", "surface", true},
+    {"surface.phase-angle", "rad", "surface", true},
+    {"light.shadow-edge-distance", "rad", "light", false},
+    {"light.distance", "m", "light", true},
+    {"light.visibility", "1", "light", false},
+    {"scene.ambient-visibility", "1", "light", false},
+    {"image.radiance", "W/(m^2 sr)", "sensor", false},
+    {"light.identity", "1", "light", true},
+    {"light.emission-angle", "rad", "light", true},
+    {"scene.indirect-irradiance", "1", "transport", false},
+    {"camera.image-y", "px", "sensor", true},
+    {"image.mean", "W/(m^2 sr)", "optics", false},
+    {"image.mirrored-radiance", "W/(m^2 sr)", "optics", false},
+    {"image.hue", "1", "sensor", false},
+    {"image.edge-distance", "px", "optics", false},
+    {"scene.depth", "m", "optics", true},
+    {"image.exposure", "s", "sensor", true},
+    {"image.time", "s", "light", true},
+    {"image.temperature", "K", "sensor", true},
+    {"scene.x", "m", "surface", true},
+    {"scene.y", "m", "surface", true},
+    {"scene.z", "m", "surface", true},
+}};
+using Known = std::array<double, count>;
 
 double angle(double cosine) {
   return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
-// The largest facet of the pixel stands for it.
-PixelConditions of_pixel(const ImageModel& model, const Recording& image, const ViewCache& cache, const Pixel& pixel,
-                         std::size_t terms) {
-  PixelConditions c;
-  c.image_radius = image_radius(image.picture, pixel.x, pixel.y);
-  if (!image.lights.empty()) c.light = static_cast<double>(image.lights[0]);
-  if (pixel.facets == 0) return c;
-  std::size_t f = pixel.first_facet;
-  for (std::size_t k = 1; k < pixel.facets; ++k)
-    if (cache.facets[pixel.first_facet + k].weight > cache.facets[f].weight) f = pixel.first_facet + k;
-  const std::size_t lights = model.layout().lights.size();
-  const Patch& patch = cache.patches[cache.facets[f].first_patch];
-  c.exitance = angle(dot(patch.normal, patch.wo));
-  c.open_sky = cache.indirect[(f * (lights + 1) + lights) * terms] / pi;
-  if (image.lights.empty()) return c;
-  const std::size_t l = image.lights[0];
-  const LightSource& light = model.layout().lights[l];
-  Vec3 wi = light.direction;
-  if (!light.directional) {
-    const Vec3 to_light = light.position_m - patch.position_m;
-    c.light_distance = norm(to_light);
-    wi = to_light / c.light_distance;
-    const float margin = cache.margin[f * lights + l];
-    c.shadow_edge = std::isnan(margin) ? none : margin;
-  }
-  c.visibility = cache.visible[cache.facets[f].first_patch * lights + l];
-  c.incidence = angle(dot(patch.normal, wi));
-  c.phase = angle(dot(wi, patch.wo));
-  if (c.visibility > 0 && c.incidence < pi / 2) c.half = angle(dot(patch.normal, normalized(wi + patch.wo)));
-  return c;
+// Distance of a pixel from the nearest place, within reach, where another surface or none is seen: only as far as its
+// own sub-samples and those of the pixels around it that were computed tell. 0: the pixel itself shows two things.
+double edge_distance(const Pixel& pixel) {
+  return pixel.facets == 1 && pixel.sky == 0 ? 1 : 0;
 }
+
+class Describer {
+ public:
+  Describer(const ImageModel& model, const Recording& image, const manifest::ImageEntry& entry)
+      : model_(model), image_(image), cache_(model.cache(image.view)), entry_(entry) {}
+
+  // Conditions of a pixel that do not depend on the colour; the largest facet stands for it.
+  Known of(const Pixel& pixel) const {
+    Known c;
+    c.fill(none);
+    c[image_radius_at] = image_radius(image_.picture, pixel.x, pixel.y);
+    if (!image_.lights.empty()) c[identity_at] = static_cast<double>(image_.lights[0]);
+    c[row_at] = pixel.y;
+    c[edge_at] = edge_distance(pixel);
+    c[exposure_at] = entry_.exposure_s.value_or(none);
+    c[time_at] = entry_.time_s.value_or(none);
+    c[temperature_at] = entry_.temperature_K.value_or(none);
+    if (pixel.facets > 0) of_facet(largest(pixel), c);
+    return c;
+  }
+
+ private:
+  std::size_t largest(const Pixel& pixel) const {
+    std::size_t f = pixel.first_facet;
+    for (std::size_t k = 1; k < pixel.facets; ++k)
+      if (cache_.facets[pixel.first_facet + k].weight > cache_.facets[f].weight) f = pixel.first_facet + k;
+    return f;
+  }
+
+  void of_facet(std::size_t f, Known& c) const {
+    const std::size_t lights = model_.layout().lights.size(), terms = model_.monomials().size();
+    const Patch& patch = cache_.patches[cache_.facets[f].first_patch];
+    const auto& pose = model_.recordings().views[image_.view].world_from_camera;
+    c[exitance_at] = angle(dot(patch.normal, patch.wo));
+    c[open_sky_at] = cache_.indirect[(f * (lights + 1) + lights) * terms] / pi;
+    c[x_at] = patch.position_m.x;
+    c[y_at] = patch.position_m.y;
+    c[z_at] = patch.position_m.z;
+    c[depth_at] = (inverse(pose) * patch.position_m).z;
+    if (image_.lights.empty()) return;
+    const std::size_t l = image_.lights[0];
+    const LightSource& light = model_.layout().lights[l];
+    Vec3 wi = light.direction;
+    if (!light.directional) {
+      const Vec3 to_light = light.position_m - patch.position_m;
+      c[distance_at] = norm(to_light);
+      wi = to_light / c[distance_at];
+      const float margin = cache_.margin[f * lights + l];
+      c[shadow_edge_at] = std::isnan(margin) ? none : margin;
+      c[emission_at] = angle(-dot(wi, normalized(model_.layout().centre_m - light.position_m)));
+    }
+    c[visibility_at] = cache_.visible[cache_.facets[f].first_patch * lights + l];
+    c[incidence_at] = angle(dot(patch.normal, wi));
+    c[phase_at] = angle(dot(wi, patch.wo));
+    if (c[visibility_at] > 0 && c[incidence_at] < pi / 2)
+      c[half_at] = angle(dot(patch.normal, normalized(wi + patch.wo)));
+    double indirect = 0;  // at albedo 1/2, over what a lamp overhead at the centre's distance gives
+    const float* terms_of = &cache_.indirect[(f * (lights + 1) + l) * terms];
+    for (std::size_t m = 1; m < terms; ++m) {
+      int degree = 0;
+      for (const std::uint8_t e : model_.monomials().exponents(m)) degree += e;
+      indirect += terms_of[m] * std::pow(0.5, degree);
+    }
+    const double d = light.directional ? 1 : norm(light.position_m - model_.layout().centre_m);
+    c[indirect_at] = indirect * d * d;
+  }
+
+  const ImageModel& model_;
+  const Recording& image_;
+  const ViewCache& cache_;
+  const manifest::ImageEntry& entry_;
+};
 
 }  // namespace
 
-std::vector<Condition> image_conditions(const Recordings& recordings, const ImageModel& model,
+std::vector<Condition> image_conditions(const manifest::Document& document, const ImageModel& model,
                                         const std::vector<std::vector<std::uint32_t>>& picked,
                                         std::span<const double> prediction) {
   const std::vector<double> relative(prediction.begin(), prediction.end());
-  std::vector<Condition> all = {
-      {"camera.image-radius", "half width", "optics", {}, relative},
-      {"surface.half-angle", "rad", "surface", {}, relative},
-      {"surface.exitance-angle", "rad", "surface", {}, relative},
-      {"surface.incidence-angle", "rad", "surface", {}, relative},
-      {"surface.phase-angle", "rad", "surface", {}, relative},
-      {"light.shadow-edge-distance", "rad", "light", {}, {}},
-      {"light.distance", "m", "light", {}, relative},
-      {"light.visibility", "1", "light", {}, {}},
-      {"scene.ambient-visibility", "1", "light", {}, {}},
-      {"image.radiance", "W/(m^2 sr)", "sensor", {}, {}},
-      {"light.identity", "1", "light", {}, relative},
-  };
+  std::vector<Condition> all;
+  for (const Description& d : descriptions)
+    all.push_back({d.name, d.unit, d.stage, {}, d.relative ? relative : std::vector<double>{}});
   std::size_t row = 0;
   for (std::size_t g = 0; g < picked.size(); ++g) {
-    const Recording& image = recordings.images[g];
+    const Recording& image = model.recordings().images[g];
     const ViewCache& cache = model.cache(image.view);
+    const Describer describe(model, image, document.images[image.entry]);
     for (const std::uint32_t p : picked[g]) {
-      const PixelConditions c = of_pixel(model, image, cache, cache.pixels[p], model.monomials().size());
+      Known known = describe.of(cache.pixels[p]);
+      const Rgb mirrored = opposite(image, cache.pixels[p]);
+      const double sum = prediction[row] + prediction[row + 1] + prediction[row + 2];
       for (int k = 0; k < 3; ++k, ++row) {
-        const double values[] = {c.image_radius,   c.half,       c.exitance, c.incidence,     c.phase, c.shadow_edge,
-                                 c.light_distance, c.visibility, c.open_sky, prediction[row], c.light};
-        for (std::size_t i = 0; i < all.size(); ++i) all[i].values.push_back(values[i]);
+        known[radiance_at] = prediction[row];
+        known[mean_at] = image.mean[k];
+        known[mirrored_at] = mirrored[k];
+        known[hue_at] = sum > 0 ? 3 * prediction[row] / sum - 1 : none;
+        for (std::size_t i = 0; i < count; ++i) all[i].values.push_back(known[i]);
       }
     }
   }

@@ -70,15 +70,6 @@ void add_pictures(const std::string& id, const WholeImage& image, bool named, Il
         {id + ": recording minus upgraded model, " + scale, io::encode_png(residual_picture(image, true, full)), ""});
 }
 
-io::Image mask_picture(const std::vector<std::uint8_t>& mask, const WholeImage& image, const io::Image& full) {
-  io::Image picture(full.width, full.height, {"Y"});
-  for (int y = 0; y < full.height; ++y)
-    for (int x = 0; x < full.width; ++x)
-      picture.at(x, y, 0) = mask[static_cast<std::size_t>(y / image.stride) * static_cast<std::size_t>(image.width) +
-                                 static_cast<std::size_t>(x / image.stride)];
-  return picture;
-}
-
 }  // namespace
 
 Illustration ImagesProblem::illustrate(const Explanation& explanation, const std::filesystem::path& out,
@@ -86,7 +77,7 @@ Illustration ImagesProblem::illustrate(const Explanation& explanation, const std
   Illustration result;
   std::vector<ViewCache> caches;
   std::vector<int> strides;
-  CacheOptions coarse{4, 64, cache_options_.seed + 1};
+  CacheOptions coarse{.samples = 4, .paths = 64, .seed = cache_options_.seed + 1};
   for (const View& view : recordings_.views) {
     strides.push_back(stride_for(view));
     std::vector<std::array<int, 2>> grid;
@@ -94,8 +85,13 @@ Illustration ImagesProblem::illustrate(const Explanation& explanation, const std
       for (int x = 0; x < view.model.width_px(); x += strides.back()) grid.push_back({x, y});
     caches.push_back(build_cache(*caster_, view, layout_.lights, *monomials_, grid, coarse));
   }
-  const ImageModel model(recordings_, layout_, *monomials_, std::move(caches));
-  const SceneState before = state(explanation.base_values), after = state(explanation.values);
+  ImageModel model(recordings_, layout_, *monomials_, std::move(caches));
+  const SceneState before = raw_state(explanation.base_values), after = raw_state(explanation.values);
+  const Setting setting{document, *scene_, *caster_, recordings_, layout_, model, &after};
+  std::vector<Use> uses = model_->uses();
+  for (Use& use : uses)
+    if (use.term->prepare && !use.neutral(after)) use.prepared = use.term->prepare(setting, use);
+  model.take_uses(*model_, std::move(uses));
   std::vector<std::string> worst;  // names of the groups that hold most of the excess
   for (std::size_t k = 0; k < std::min(most_pictures, explanation.groups.size()); ++k)
     worst.push_back(explanation.groups[k].name);
@@ -110,10 +106,16 @@ Illustration ImagesProblem::illustrate(const Explanation& explanation, const std
       box.group = image.id;
       result.boxes.push_back(box);
     }
+    const bool named = !explanation.named.empty();
+    const std::vector<double> acts = effect(whole, named);
+    if (std::find(worst.begin(), worst.end(), image.id) != worst.end())
+      result.pictures.push_back({image.id + (named ? ": where it acts, pink at three noise widths"
+                                                   : ": where the mismatch is, pink at three noise widths"),
+                                 io::encode_png(effect_picture(acts, whole)), ""});
     if (out.empty()) continue;
-    const std::filesystem::path path = out / ("mask-" + image.id + ".png");
-    io::write_picture(path, mask_picture(mask, whole, image.picture));
-    result.masks.push_back(manifest::add_file(document, path, "mask-" + image.id));
+    const std::filesystem::path path = out / ("effect-" + image.id + ".exr");
+    io::write_picture(path, spread(acts, whole, image.picture.width, image.picture.height));
+    result.masks.push_back(manifest::add_file(document, path, "effect-" + image.id));
   }
   return result;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "explain/images/uses.h"
 #include "scene/scene.h"
 
 namespace gonio::explain::images {
@@ -59,6 +60,79 @@ Shader ImageModel::shader(std::size_t image) const {
   return Shader(layout_, recording, views_[recording.view], sums_[recording.view]);
 }
 
+void ImageModel::add_uses(std::vector<Use> uses, bool in_play) {
+  for (Use& use : uses) {
+    use.place = uses_.size();
+    std::vector<double> amounts;
+    for (const Number& n : use.numbers) amounts.push_back(in_play || !n.free ? n.start : n.neutral);
+    layout_.start.amounts.push_back(std::move(amounts));
+    ordered_.push_back(use.place);
+    uses_.push_back(std::move(use));
+  }
+  std::stable_sort(ordered_.begin(), ordered_.end(),
+                   [&](std::size_t a, std::size_t b) { return uses_[a].term->order < uses_[b].term->order; });
+}
+
+void ImageModel::take_uses(const ImageModel& other, std::vector<Use> uses) {
+  uses_ = std::move(uses);
+  ordered_ = other.ordered_;
+  layout_.start = other.layout_.start;
+}
+
+SceneState ImageModel::edited(const SceneState& state, std::size_t image) const {
+  SceneState result = state;
+  for (const Use& use : uses_)
+    if (use.term->edit && !use.neutral(state)) use.term->edit(use, image, layout_, recordings_, result);
+  return result;
+}
+
+template <class Hook>
+void ImageModel::run_hooks(const SceneState& edited, std::size_t number, std::span<const std::uint32_t> picked,
+                           const Hook& hook) const {
+  const Recording& image = recordings_.images[number];
+  const Frame frame{number, image, views_[image.view], picked, edited, *this};
+  for (const std::size_t u : ordered_)
+    if (!uses_[u].neutral(edited)) hook(uses_[u], frame);
+}
+
+void ImageModel::shade_terms(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
+                             Shading& shading) const {
+  run_hooks(edited, image, picked, [&](const Use& use, const Frame& frame) {
+    if (use.term->shade) use.term->shade(use, frame, shading);
+  });
+}
+
+void ImageModel::add_terms(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
+                           std::span<double> radiance) const {
+  run_hooks(edited, image, picked, [&](const Use& use, const Frame& frame) {
+    if (use.term->add) use.term->add(use, frame, radiance);
+  });
+}
+
+void ImageModel::record_terms(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
+                              std::span<double> values) const {
+  run_hooks(edited, image, picked, [&](const Use& use, const Frame& frame) {
+    if (use.term->record) use.term->record(use, frame, values);
+  });
+}
+
+void ImageModel::predict(const SceneState& state, std::size_t image, std::span<const std::uint32_t> picked,
+                         std::span<double> radiance) const {
+  const SceneState now = edited(state, image);
+  Shading shading = shade(now, image, picked);
+  shade_terms(now, image, picked, shading);
+  compose(now, image, picked, shading, radiance);
+  add_terms(now, image, picked, radiance);
+  record_terms(now, image, picked, radiance);
+}
+
+void ImageModel::predict_from(const ViewCache& cache, std::span<const float> sums, const SceneState& edited,
+                              std::size_t image, std::span<const std::uint32_t> picked,
+                              std::span<double> radiance) const {
+  const Shading shading = Shader(layout_, recordings_.images[image], cache, sums)(edited, picked);
+  compose_from(cache, edited, image, picked, shading, radiance);
+}
+
 Shading ImageModel::shade(const SceneState& state, std::size_t image, std::span<const std::uint32_t> picked) const {
   return shader(image)(state, picked);
 }
@@ -70,8 +144,13 @@ void ImageModel::shade_again(const SceneState& state, std::size_t image, std::sp
 
 void ImageModel::compose(const SceneState& state, std::size_t number, std::span<const std::uint32_t> picked,
                          const Shading& shading, std::span<double> radiance) const {
+  compose_from(views_[recordings_.images[number].view], state, number, picked, shading, radiance);
+}
+
+void ImageModel::compose_from(const ViewCache& cache, const SceneState& state, std::size_t number,
+                              std::span<const std::uint32_t> picked, const Shading& shading,
+                              std::span<double> radiance) const {
   const Recording& image = recordings_.images[number];
-  const ViewCache& cache = views_[image.view];
   const std::size_t lights = layout_.lights.size();
   const Transport transport(state, monomials_);
   std::vector<Rgb> albedos;
@@ -101,8 +180,7 @@ void ImageModel::compose(const SceneState& state, std::size_t number, std::span<
       if (ambient) add_source(lights, state.ambient);
       sum += (albedo * irradiance * sent_on.base + sent_on.gloss * mirrored) * (facet.weight / pi);
     }
-    const Vec2 place{static_cast<double>(pixel.x), static_cast<double>(pixel.y)};
-    sum *= state.gain[number] * scene::vignetting(state.falloff, image.picture.width, image.picture.height, place);
+    sum *= exposure_of(state, image, number, pixel);
     for (int c = 0; c < 3; ++c) radiance[3 * i + static_cast<std::size_t>(c)] = sum[c];
   }
 }
@@ -137,6 +215,11 @@ void ImageModel::variance(const SceneState& state, std::size_t number, std::span
     const Rgb gain2 = state.gain[number] * state.gain[number];
     for (int k = 0; k < 3; ++k) variance[3 * i + static_cast<std::size_t>(k)] = std::max(0.0, (sum * gain2)[k]);
   }
+}
+
+Rgb exposure_of(const SceneState& state, const Recording& image, std::size_t number, const Pixel& pixel) {
+  const Vec2 place{static_cast<double>(pixel.x), static_cast<double>(pixel.y)};
+  return state.gain[number] * scene::vignetting(state.falloff, image.picture.width, image.picture.height, place);
 }
 
 double image_radius(const io::Image& picture, int x, int y) {

@@ -8,6 +8,8 @@
 #include "base/random.h"
 #include "explain/explanation.h"
 #include "explain/images/conditions.h"
+#include "explain/images/repeats.h"
+#include "explain/images/uses.h"
 #include "scene/scene.h"
 
 namespace gonio::explain::images {
@@ -49,16 +51,14 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
   if (recordings_.images.empty())
     throw Error(Exit::data, manifest::place(document, "/images"), "holds no recording",
                 "give at least one image with a weight");
-  const scene::Scene scene = scene::build_scene(document);
+  measure_noise(options.repeats, document, recordings_);
+  scene_ = std::make_unique<scene::Scene>(scene::build_scene(document));
+  const scene::Scene& scene = *scene_;
   caster_ = std::make_unique<render::RayCaster>(scene.instances);
   std::vector<std::string> surfaces;
   for (const scene::Surface& surface : scene.appearance.surfaces) surfaces.push_back(surface.id);
   layout_ = read_scene(document, recordings_, surfaces, scene.centre_m);
   monomials_ = std::make_unique<render::Monomials>(surfaces.size(), degree_for(surfaces.size()));
-  bindings_ = bind_parameters(document, recordings_, layout_);
-  parameters_ = bindings_.parameters;
-  base_ = bindings_.base;
-  candidates_ = bindings_.candidates;
   std::vector<std::vector<std::array<int, 2>>> chosen(recordings_.views.size());
   choose_pixels(options.pixels, chosen);
   std::vector<ViewCache> caches;
@@ -66,7 +66,25 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
     caches.push_back(
         build_cache(*caster_, recordings_.views[v], layout_.lights, *monomials_, chosen[v], cache_options_));
   model_ = std::make_unique<ImageModel>(recordings_, layout_, *monomials_, std::move(caches));
-  fill_rows();
+  bind(document);
+  fill_rows(document);
+}
+
+void ImagesProblem::bind(const manifest::Document& document) {
+  const Setting setting{document, *scene_, *caster_, recordings_, layout_, *model_};
+  const auto prepared = [&](std::vector<Use> uses) {
+    for (Use& use : uses)
+      if (use.term->prepare) use.prepared = use.term->prepare(setting, use);
+    return uses;
+  };
+  model_->add_uses(prepared(given_uses(setting)), true);
+  const std::size_t given = model_->uses().size();
+  model_->add_uses(prepared(candidate_uses(setting)), false);
+  layout_.start = model_->layout().start;
+  bindings_ = bind_parameters(document, recordings_, layout_, model_->uses(), given);
+  parameters_ = bindings_.parameters;
+  base_ = bindings_.base;
+  candidates_ = bindings_.candidates;
 }
 
 ImagesProblem::~ImagesProblem() = default;
@@ -100,7 +118,7 @@ void ImagesProblem::choose_pixels(std::size_t pixels, std::vector<std::vector<st
   }
 }
 
-void ImagesProblem::fill_rows() {
+void ImagesProblem::fill_rows(const manifest::Document& document) {
   Observations& o = observations_;
   o.first.push_back(0);
   std::uint32_t blocks = 0;
@@ -141,72 +159,170 @@ void ImagesProblem::fill_rows() {
     o.group.push_back(image.id);
     picked_.push_back(std::move(mine));
   }
-  o.conditions = image_conditions(recordings_, *model_, picked_, prediction);
+  o.conditions = image_conditions(document, *model_, picked_, prediction);
 }
 
-SceneState ImagesProblem::state(std::span<const double> values) const {
+SceneState ImagesProblem::raw_state(std::span<const double> values) const {
   SceneState s = layout_.start;
   bindings_.set(s, values);
   return s;
 }
 
+SceneState ImagesProblem::state(std::span<const double> values, std::size_t image) const {
+  return model_->edited(raw_state(values), image);
+}
+
 void ImagesProblem::predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const {
-  model_->predict(state(values), group, picked_[group], prediction);
+  model_->predict(raw_state(values), group, picked_[group], prediction);
 }
 
 namespace {
 
-// What of an image's direct light depends on a parameter.
-struct Reach {
-  bool all = false;
+// What of an image has to be computed anew for a parameter.
+struct Touched {
+  Reach reach = Reach::record;
   std::vector<std::uint32_t> surfaces;
 };
-Reach reach_of(const std::vector<Place>& places, const SceneState& state) {
-  Reach reach;
-  for (const Place& p : places) {
-    if (p.kind == Place::Kind::radius || p.kind == Place::Kind::tilt_x || p.kind == Place::Kind::tilt_y)
-      reach.all = true;
-    if (p.kind != Place::Kind::surface) continue;
-    const surface::Model& model = *state.surfaces[p.target].model;
-    if (!has_parameter(model, "albedo") || p.parameter != parameter_index(model, "albedo"))
-      reach.surfaces.push_back(static_cast<std::uint32_t>(p.target));
-  }
-  return reach;
+Touched touched_by(const std::vector<Place>& places, const SceneState& state, const std::vector<Use>& uses) {
+  Touched t;
+  const bool shaded =
+      std::any_of(uses.begin(), uses.end(), [&](const Use& use) { return use.term->shade && !use.neutral(state); });
+  const auto at_least = [&](Reach reach) { t.reach = std::max(t.reach, reach); };
+  for (const Place& p : places) switch (p.kind) {
+      case Place::Kind::surface: {
+        const surface::Model& model = *state.surfaces[p.target].model;
+        at_least(Reach::compose);
+        if (has_parameter(model, "albedo") && p.parameter == parameter_index(model, "albedo")) {
+          at_least(shaded ? Reach::surfaces : Reach::compose);  // terms there may depend on it; no facet does
+          break;
+        }
+        at_least(Reach::surfaces);
+        t.surfaces.push_back(static_cast<std::uint32_t>(p.target));
+        break;
+      }
+      case Place::Kind::intensity:
+      case Place::Kind::gain: at_least(Reach::compose); break;
+      case Place::Kind::amount: {
+        const Use& use = uses[p.target];
+        at_least(use.term->reach);
+        if (use.term->reach != Reach::surfaces) break;
+        for (const std::size_t s : use.targets) t.surfaces.push_back(static_cast<std::uint32_t>(s));
+        break;
+      }
+    }
+  return t;
 }
+
+// The use that knows the slopes of what this number adds.
+const Use* sloped(const std::vector<Place>& places, const std::vector<Use>& uses) {
+  if (places.size() != 1 || places[0].kind != Place::Kind::amount) return nullptr;
+  const Use& use = uses[places[0].target];
+  return use.term->slopes ? &use : nullptr;
+}
+
+// An image at one state, and what of it can be kept where a little of the state changes.
+class Derivatives {
+ public:
+  Derivatives(const ImageModel& model, SceneState centre, std::size_t image, std::span<const std::uint32_t> picked)
+      : model_(model), centre_(std::move(centre)), image_(image), picked_(picked), composed_(3 * picked.size()) {
+    const SceneState now = model_.edited(centre_, image_);
+    plain_ = model_.shade(now, image_, picked_);
+    shaded_ = plain_;
+    model_.shade_terms(now, image_, picked_, shaded_);
+    model_.compose(now, image_, picked_, shaded_, composed_);
+    added_ = composed_;
+    model_.add_terms(now, image_, picked_, added_);
+  }
+  const SceneState& centre() const { return centre_; }
+
+  void at(const SceneState& raw, const Touched& touched, std::span<double> out) const {
+    const SceneState now = model_.edited(raw, image_);
+    if (touched.reach == Reach::record) {
+      std::copy(added_.begin(), added_.end(), out.begin());
+    } else if (touched.reach == Reach::add) {
+      std::copy(composed_.begin(), composed_.end(), out.begin());
+      model_.add_terms(now, image_, picked_, out);
+    } else {
+      composed(now, touched, out);
+      // What terms add goes along with what it is added to: their own scenes are not simulated anew for every number.
+      for (std::size_t i = 0; i < out.size(); ++i)
+        if (composed_[i] > 0) out[i] *= added_[i] / composed_[i];
+    }
+    model_.record_terms(now, image_, picked_, out);
+  }
+
+  // Derivatives by numbers of a term that knows the slopes of what it adds, sent on through the camera.
+  void slopes(const Use& use, std::span<const std::size_t> numbers, std::span<double> columns) const {
+    const SceneState now = model_.edited(centre_, image_);
+    const Recording& image = model_.recordings().images[image_];
+    use.term->slopes(use, {image_, image, model_.cache(image.view), picked_, now, model_}, numbers, columns);
+    const std::size_t rows = composed_.size();
+    std::vector<double> above(rows), below(rows);
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      const std::span<double> column = columns.subspan(k * rows, rows);
+      const double step = 1e-4 * use.numbers[numbers[k]].upper;
+      for (std::size_t i = 0; i < rows; ++i)
+        above[i] = added_[i] + step * column[i], below[i] = added_[i] - step * column[i];
+      model_.record_terms(now, image_, picked_, above);
+      model_.record_terms(now, image_, picked_, below);
+      for (std::size_t i = 0; i < rows; ++i) column[i] = (above[i] - below[i]) / (2 * step);
+    }
+  }
+
+ private:
+  void composed(const SceneState& now, const Touched& touched, std::span<double> out) const {
+    if (touched.reach == Reach::compose) return model_.compose(now, image_, picked_, shaded_, out);
+    Shading shading = touched.reach == Reach::all ? model_.shade(now, image_, picked_) : plain_;
+    if (touched.reach == Reach::surfaces)
+      for (const std::uint32_t s : touched.surfaces) model_.shade_again(now, image_, picked_, s, shading);
+    model_.shade_terms(now, image_, picked_, shading);
+    model_.compose(now, image_, picked_, shading, out);
+  }
+
+  const ImageModel& model_;
+  SceneState centre_;
+  std::size_t image_;
+  std::span<const std::uint32_t> picked_;
+  Shading plain_, shaded_;
+  std::vector<double> composed_, added_;
+};
 
 }  // namespace
 
 void ImagesProblem::jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
                              std::span<double> derivatives) const {
-  const std::vector<std::uint32_t>& picked = picked_[group];
-  const std::size_t rows = 3 * picked.size();
-  const SceneState centre = state(values);
-  const Shading shading = model_->shade(centre, group, picked);
+  const std::size_t rows = 3 * picked_[group].size();
+  const Derivatives near(*model_, raw_state(values), group, picked_[group]);
   std::vector<double> above(rows), below(rows);
-  const auto moved = [&](std::size_t column, const Reach& reach, double value, std::vector<double>& out) {
-    SceneState there = centre;
-    for (const Place& place : bindings_.places[column]) set_value(there, place, value);
-    if (reach.all) return model_->predict(there, group, picked, out);
-    if (reach.surfaces.empty()) return model_->compose(there, group, picked, shading, out);
-    Shading changed = shading;
-    for (const std::uint32_t s : reach.surfaces) model_->shade_again(there, group, picked, s, changed);
-    model_->compose(there, group, picked, changed, out);
-  };
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const Parameter& p = parameters_[columns[k]];
-    const Reach reach = reach_of(bindings_.places[columns[k]], centre);
+    const std::span<double> column = derivatives.subspan(k * rows, rows);
+    if (!p.groups.empty() && !std::binary_search(p.groups.begin(), p.groups.end(), group)) {
+      std::fill(column.begin(), column.end(), 0.0);
+      continue;
+    }
+    const std::vector<Place>& places = bindings_.places[columns[k]];
+    if (const Use* use = sloped(places, model_->uses())) {
+      const std::size_t number[1] = {places[0].parameter};
+      near.slopes(*use, number, column);
+      continue;
+    }
+    const Touched touched = touched_by(places, near.centre(), model_->uses());
     const double value = values[columns[k]], step = 1e-4 * p.size;
     const double upper = std::min(value + step, std::max(p.upper, value));
     const double lower = std::max(value - step, std::min(p.lower, value));
-    moved(columns[k], reach, upper, above);
-    moved(columns[k], reach, lower, below);
+    SceneState there = near.centre();
+    for (const Place& place : places) set_value(there, place, upper);
+    near.at(there, touched, above);
+    for (const Place& place : places) set_value(there, place, lower);
+    near.at(there, touched, below);
     const double scale = upper > lower ? 1 / (upper - lower) : 0;
-    for (std::size_t i = 0; i < rows; ++i) derivatives[k * rows + i] = (above[i] - below[i]) * scale;
+    for (std::size_t i = 0; i < rows; ++i) column[i] = (above[i] - below[i]) * scale;
   }
 }
 
 void ImagesProblem::apply(const Explanation& explanation, manifest::Document& document) const {
-  write_back(bindings_, explanation, document);
+  write_back(bindings_, model_->uses(), explanation, document);
 }
 
 }  // namespace gonio::explain::images

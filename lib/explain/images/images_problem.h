@@ -16,7 +16,8 @@
 namespace gonio::explain::images {
 
 struct Options {
-  std::size_t pixels = 15000;  // sampled over all images together
+  std::size_t pixels = 15000;                  // sampled over all images together
+  std::vector<std::filesystem::path> repeats;  // further takes, from which noise is measured
   CacheOptions cache;
 };
 
@@ -34,6 +35,9 @@ class ImagesProblem final : public Problem {
   std::string score_name() const override { return "relative RMSE"; }
   std::string group_noun() const override { return "image"; }
   Importance importance() const override { return Importance::share_of_signal; }
+  // Each of the first images again at four times and a quarter of its exposure, and with the lamps off.
+  std::vector<Proposal> proposals() const override;
+  ProposedRows propose(std::span<const double> values, std::size_t proposal) const override;
   void apply(const Explanation& explanation, manifest::Document& document) const override;
   Illustration illustrate(const Explanation& explanation, const std::filesystem::path& out,
                           manifest::Document& document) const override;
@@ -42,17 +46,21 @@ class ImagesProblem final : public Problem {
   const Bindings& bindings() const { return bindings_; }
   const std::vector<std::uint32_t>& picked(std::size_t group) const { return picked_[group]; }
   const ImageModel& model() const { return *model_; }
-  SceneState state(std::span<const double> values) const;
+  // The scene that the values amount to, as one image is simulated with it.
+  SceneState state(std::span<const double> values, std::size_t image = 0) const;
 
  private:
+  SceneState raw_state(std::span<const double> values) const;
+  void bind(const manifest::Document& document);
   void choose_pixels(std::size_t pixels, std::vector<std::vector<std::array<int, 2>>>& chosen) const;
-  void fill_rows();
+  void fill_rows(const manifest::Document& document);
 
   Recordings recordings_;
   SceneLayout layout_;
   std::unique_ptr<render::Monomials> monomials_;
   Bindings bindings_;
   CacheOptions cache_options_;
+  std::unique_ptr<scene::Scene> scene_;
   std::unique_ptr<render::RayCaster> caster_;
   std::unique_ptr<ImageModel> model_;
   std::vector<std::vector<std::uint32_t>> picked_;  // per image: places in its view's cache, ascending

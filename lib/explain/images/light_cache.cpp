@@ -23,7 +23,6 @@ using render::RayCaster;
 using render::SurfacePoint;
 
 constexpr std::size_t radius_count = radii_m.size();
-constexpr int patch_side = 4;           // patches of a pixel, along each side
 constexpr double gloss_alpha = 0.1;     // roughness of the lobe that `mirrored` is collected from
 constexpr double margin_change = 0.02;  // relative change of the irradiance that tells that an edge is near
 
@@ -147,7 +146,8 @@ class PixelBuilder {
             view_.model.ray({x - 0.5 + (i + random.uniform()) / side, y - 0.5 + (j + random.uniform()) / side});
         const Vec3 direction = view_.world_from_camera.rotate(ray.direction);
         const auto met = caster_.closest(view_.world_from_camera * ray.origin_m, direction);
-        samples.push_back({met.has_value(), patch_side * i / side + patch_side * (patch_side * j / side),
+        samples.push_back({met.has_value(),
+                           options_.patches * i / side + options_.patches * (options_.patches * j / side),
                            met.value_or(SurfacePoint{}), -direction});
       }
     return samples;
@@ -155,7 +155,7 @@ class PixelBuilder {
 
   void add_facet(const std::vector<SubSample>& samples, std::uint32_t surface, Random& random, ViewCache& out) const {
     std::vector<const SubSample*> mine;
-    std::vector<std::vector<const SubSample*>> patches(patch_side * patch_side);
+    std::vector<std::vector<const SubSample*>> patches(static_cast<std::size_t>(options_.patches * options_.patches));
     for (const SubSample& s : samples) {
       if (!s.found || s.point.surface != surface) continue;
       mine.push_back(&s);
@@ -165,7 +165,8 @@ class PixelBuilder {
     if (flat(mine)) patches = {mine};
     std::vector<Edges> edges;
     for (const LightSource& light : lights_)
-      edges.push_back(light.directional ? Edges::none : edges_near(caster_, mine, light, random));
+      edges.push_back(light.directional || !options_.penumbrae ? Edges::none
+                                                               : edges_near(caster_, mine, light, random));
     Facet facet{surface, 0, static_cast<std::uint32_t>(out.patches.size()), static_cast<std::uint32_t>(patches.size())};
     Spread spread(lights_.size());
     for (const auto& patch : patches) {
@@ -292,7 +293,7 @@ class PixelBuilder {
       ++reflected;
       follow(from.point, basis.to_world(wi), random, gloss);
     }
-    const double n = options_.paths, m = std::max(1, reflected);
+    const double n = std::max(1, options_.paths), m = std::max(1, reflected);
     for (const double c : diffuse.coefficient) out.indirect.push_back(static_cast<float>(c / n));
     for (const double c : gloss.coefficient) out.mirrored.push_back(static_cast<float>(c / m));
     for (std::size_t s = 0; s < diffuse.sum.size(); ++s) {

@@ -37,6 +37,9 @@ struct LightSource {
   bool directional = false;
   Vec3 position_m;  // small and spherical lights
   Vec3 direction;   // directional lights: unit, from the scene to the light
+  // A directional light that is near after all stands at 1 / nearness from the centre (light.inverse-square).
+  Vec3 centre_m;
+  double nearness_per_m = 0;
 };
 
 struct Patch {
@@ -70,8 +73,10 @@ struct ViewCache {
 };
 
 struct CacheOptions {
-  int samples = 8;  // sub-samples of a pixel, along each side
-  int paths = 512;  // a facet
+  int samples = 8;        // sub-samples of a pixel, along each side
+  int paths = 512;        // a facet; 0: no light by way of surfaces
+  int patches = 4;        // of a pixel, along each side
+  bool penumbrae = true;  // false: small lights only, at every radius
   std::uint64_t seed = 1;
 };
 

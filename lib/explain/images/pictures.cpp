@@ -38,6 +38,32 @@ std::vector<double> excess(const WholeImage& image, bool after) {
   return result;
 }
 
+std::vector<double> effect(const WholeImage& image, bool named) {
+  constexpr double half = 3;
+  std::vector<double> result(image.counts.size());
+  const std::vector<double> significance = named ? std::vector<double>{} : excess(image, false);
+  constexpr double values_of_window = 3 * (2 * reach + 1) * (2 * reach + 1);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    double e = 0;
+    if (named) {
+      for (std::size_t c = 3 * i; c < 3 * i + 3; ++c)
+        e += std::abs(image.after[c] - image.before[c]) / image.sigma[c] / 3;
+    } else if (image.counts[i]) {
+      e = std::sqrt(std::max(0.0, significance[i]) * std::sqrt(2 / values_of_window));
+    }
+    result[i] = e / (e + half);
+  }
+  return result;
+}
+
+io::Image spread(const std::vector<double>& values, const WholeImage& image, int width, int height) {
+  io::Image picture(width, height, {"Y"});
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      picture.at(x, y, 0) = static_cast<float>(values[at(image, x / image.stride, y / image.stride)]);
+  return picture;
+}
+
 std::vector<std::uint8_t> mismatch_mask(const WholeImage& image, double limit, double matters) {
   const std::vector<double> significance = excess(image, false);
   double square = 0, n = 0;
@@ -88,6 +114,33 @@ std::vector<Box> boxes_of(const std::vector<std::uint8_t>& mask, const WholeImag
   return boxes;
 }
 
+namespace {
+
+constexpr int shown_px = 480;
+
+io::Image enlarged(const io::Image& small) {
+  const int factor = std::max(1, shown_px / std::max(1, small.width));
+  if (factor == 1) return small;
+  io::Image large(small.width * factor, small.height * factor, small.channels);
+  const int channels = static_cast<int>(small.channels.size());
+  for (int y = 0; y < large.height; ++y)
+    for (int x = 0; x < large.width; ++x)
+      for (int c = 0; c < channels; ++c) large.at(x, y, c) = small.at(x / factor, y / factor, c);
+  return large;
+}
+
+}  // namespace
+
+io::Image effect_picture(const std::vector<double>& effect, const WholeImage& image) {
+  io::Image picture(image.width, image.height, {"R", "G", "B"});
+  for (std::size_t i = 0; i < effect.size(); ++i) {
+    const auto strength = static_cast<float>(effect[i]);
+    picture.data[3 * i] = 1 - 0.5f * strength;
+    picture.data[3 * i + 1] = picture.data[3 * i + 2] = 1 - strength;
+  }
+  return enlarged(picture);
+}
+
 io::Image residual_picture(const WholeImage& image, bool after, double scale) {
   io::Image picture(image.width, image.height, {"R", "G", "B"});
   for (std::size_t i = 0; i < image.counts.size(); ++i) {
@@ -100,7 +153,7 @@ io::Image residual_picture(const WholeImage& image, bool after, double scale) {
     picture.data[3 * i + 1] = fade;
     picture.data[3 * i + 2] = strength <= 0 ? 1 : fade;
   }
-  return picture;
+  return enlarged(picture);
 }
 
 }  // namespace gonio::explain::images

@@ -22,10 +22,20 @@ std::vector<double> excess(const WholeImage& image, bool after);
 // 1 where the excess is above `limit` standard errors and the residual above `matters` of the picture's rms.
 std::vector<std::uint8_t> mismatch_mask(const WholeImage& image, double limit, double matters);
 
+// Where the named physics acts: |after - before| over the noise, the mean of the colours, e; where nothing was named
+// (`after` equals `before`), the root of the excess per value of a window of 5 x 5. Shown as e / (e + 3): 0 where
+// nothing happens, one half at three standard deviations.
+std::vector<double> effect(const WholeImage& image, bool named);
+
 // Boxes around the connected parts of a mask (eight neighbours), the largest first, at most `most`; parts under `least`
 // pixels are left out. In full pixels.
 std::vector<Box> boxes_of(const std::vector<std::uint8_t>& mask, const WholeImage& image, std::size_t least,
                           std::size_t most);
+
+// One value a pixel of the full picture.
+io::Image spread(const std::vector<double>& values, const WholeImage& image, int width, int height);
+// White to dark red; enlarged by a whole factor to about 480 pixels width, like the other pictures.
+io::Image effect_picture(const std::vector<double>& effect, const WholeImage& image);
 
 // Signed residual, red where the recording is brighter and blue where it is darker than the simulation; full colour at
 // `scale`.

@@ -86,6 +86,18 @@ void read_pixels(const manifest::Document& document, const std::filesystem::path
       }
 }
 
+Rgb mean_of_finite(const io::Image& picture) {
+  Rgb sum;
+  double n = 0;
+  for (std::size_t i = 0; i + 2 < picture.data.size(); i += 3) {
+    const Rgb value{picture.data[i], picture.data[i + 1], picture.data[i + 2]};
+    if (!std::isfinite(value.x + value.y + value.z)) continue;
+    sum += value;
+    n += 1;
+  }
+  return n > 0 ? sum / n : sum;
+}
+
 void read_mask(const manifest::Document& document, Recording& image) {
   const manifest::ImageEntry& entry = document.images[image.entry];
   if (entry.mask.empty()) return;
@@ -141,6 +153,7 @@ bool has_recordings(const manifest::Document& document) {
 
 Recordings read_recordings(const manifest::Document& document) {
   Recordings recordings;
+  bool timed = false;
   for (const auto& [name, light] : document.lights) recordings.lights.push_back(name);
   for (std::size_t i = 0; i < document.images.size(); ++i) {
     const manifest::ImageEntry& entry = document.images[i];
@@ -162,12 +175,27 @@ Recordings read_recordings(const manifest::Document& document) {
              "is " + std::to_string(image.picture.width) + "x" + std::to_string(image.picture.height) +
                  " pixels, the camera " + std::to_string(camera.width_px()) + "x" + std::to_string(camera.height_px()),
              "give the camera the size of its pictures");
+    image.mean = mean_of_finite(image.picture);
     read_mask(document, image);
     image.noise = entry.noise ? *entry.noise : measured_noise(image);
     image.gain = entry.gain ? *entry.gain : manifest::Parameter(1.0);
+    image.exposure_s = entry.exposure_s;
+    image.time_s = entry.time_s;
+    image.temperature_K = entry.temperature_K;
+    if (image.time_s)
+      recordings.first_time_s = timed ? std::min(recordings.first_time_s, *image.time_s) : *image.time_s;
+    if (image.time_s) recordings.last_time_s = timed ? std::max(recordings.last_time_s, *image.time_s) : *image.time_s;
+    timed = timed || image.time_s;
     recordings.images.push_back(std::move(image));
   }
   return recordings;
+}
+
+io::Image read_take(const manifest::Document& document, const Recording& image, const std::filesystem::path& path) {
+  Recording take;
+  take.entry = image.entry;
+  read_pixels(document, path, take);
+  return take.picture;
 }
 
 double noise_sigma(const Recording& image, double value) {

@@ -50,53 +50,6 @@ void read_light(const manifest::Document& document, const std::string& name, Sce
   layout.start.lights.push_back(state);
 }
 
-double given(const manifest::MechanismUse& use, const std::string& parameter, std::size_t i, double neutral) {
-  const auto found = use.parameters.find(parameter);
-  if (found == use.parameters.end() || !found->second.given()) return neutral;
-  return found->second.value.size() > i ? found->second.value[i] : found->second.value[0];
-}
-
-// Calls set(target, place in `on`) for all targets that a use of a mechanism names.
-template <class Set>
-void for_targets(const std::vector<std::string>& on, const std::vector<std::string>& all, const Set& set) {
-  for (std::size_t t = 0; t < all.size(); ++t) {
-    const auto found = std::find(on.begin(), on.end(), all[t]);
-    if (on.empty() || found != on.end()) set(t, on.empty() ? 0 : static_cast<std::size_t>(found - on.begin()));
-  }
-}
-
-void set_if_present(SurfaceState& surface, const std::string& parameter, double value) {
-  if (has_parameter(*surface.model, parameter))
-    surface.values.v[parameter_index(*surface.model, parameter)] = {value, value, value};
-}
-
-// The mechanisms that the manifest already switches on belong to the base model.
-void read_mechanisms(const manifest::Document& document, const Recordings& recordings, SceneLayout& layout) {
-  SceneState& start = layout.start;
-  for (const auto& [id, use] : document.mechanisms) {
-    if (id == "surface.diffuse-roughness" || id == "surface.interface") {
-      for_targets(use.on, layout.surfaces, [&](std::size_t s, std::size_t i) {
-        for (const auto& [parameter, value] : use.parameters)
-          set_if_present(start.surfaces[s], parameter, given(use, parameter, i, 0));
-      });
-    } else if (id == "light.finite-size") {
-      for_targets(use.on, recordings.lights,
-                  [&](std::size_t l, std::size_t i) { start.lights[l].radius_m = given(use, "radius_m", i, 0); });
-    } else if (id == "light.direction") {
-      for_targets(use.on, recordings.lights, [&](std::size_t l, std::size_t i) {
-        start.lights[l].tilt_x_rad = given(use, "tilt_x_rad", i, 0);
-        start.lights[l].tilt_y_rad = given(use, "tilt_y_rad", i, 0);
-      });
-    } else if (id == "light.ambient") {
-      start.ambient = {given(use, "radiance_r", 0, 0), given(use, "radiance_g", 0, 0), given(use, "radiance_b", 0, 0)};
-    } else if (id == "optics.vignetting") {
-      start.falloff = given(use, "falloff", 0, 0);
-    } else if (id == "transport.indirect") {
-      start.indirect = given(use, "strength", 0, 1);
-    }
-  }
-}
-
 }  // namespace
 
 bool SurfaceState::lambertian() const {
@@ -125,7 +78,9 @@ SceneLayout read_scene(const manifest::Document& document, const Recordings& rec
   for (const std::string& name : surfaces) layout.start.surfaces.push_back(surface_state(document, name));
   for (const std::string& name : recordings.lights) read_light(document, name, layout);
   for (const Recording& image : recordings.images) layout.start.gain.push_back(image.gain.rgb());
-  read_mechanisms(document, recordings, layout);
+  const auto indirect = document.mechanisms.find("transport.indirect");
+  if (indirect != document.mechanisms.end() && indirect->second.parameters.contains("strength"))
+    layout.start.indirect = indirect->second.parameters.at("strength").scalar();
   return layout;
 }
 

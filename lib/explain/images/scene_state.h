@@ -22,6 +22,9 @@ struct LightState {
   Rgb intensity;  // W/sr, or W/m^2 on a facing plane for a directional light
   double radius_m = 0;
   double tilt_x_rad = 0, tilt_y_rad = 0;
+  Vec3 shift_m;               // of a lamp at a finite distance
+  double nearness_per_m = 0;  // directional lights: one over the distance from the scene's centre
+  double exponent = 0;        // of the lobe about the direction to the scene's centre
 };
 struct SceneState {
   std::vector<SurfaceState> surfaces;
@@ -30,6 +33,7 @@ struct SceneState {
   double falloff = 0;     // vignetting: 1 - falloff r^2, r = distance from the image's centre over half its width
   double indirect = 1;    // share of light between surfaces that is simulated
   std::vector<Rgb> gain;  // one per image
+  std::vector<std::vector<double>> amounts;  // of the terms' uses (explain/images/term.h)
 };
 
 // The parts of a scene that images need, in a fixed order.

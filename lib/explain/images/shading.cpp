@@ -21,7 +21,12 @@ struct Aim {
   double falloff;
 };
 Aim aim(const LightSource& light, Vec3 point_m) {
-  if (light.directional) return {light.direction, 1};
+  if (light.directional) {
+    if (light.nearness_per_m == 0) return {light.direction, 1};
+    const Vec3 to_light = light.direction - (point_m - light.centre_m) * light.nearness_per_m;  // times nearness
+    const double square = dot(to_light, to_light);
+    return {to_light / std::sqrt(square), 1 / square};
+  }
   const Vec3 to_light = light.position_m - point_m;
   const double square = dot(to_light, to_light);
   return {to_light / std::sqrt(square), 1 / square};
@@ -41,7 +46,8 @@ struct Extremes {
   template <class F>  // F: Values -> Rgb, affine in the albedo
   Scattered split(const F& f) const {
     const Rgb gloss = f(black);
-    return {has_base ? mean(f(white) - gloss) : 0, gloss};
+    const double base = has_base ? mean(f(white) - gloss) : 0;
+    return {{base, base, base}, gloss};
   }
 };
 
@@ -84,20 +90,30 @@ std::vector<float> facet_sums(const ViewCache& cache) {
 struct Shader::Lamp {
   std::size_t light;
   RadiusWeights radius;
-  LightSource source;  // turned
+  LightSource source;  // turned and moved
   bool turned;
+  double exponent;  // of the lobe about `axis`
+  Vec3 axis;        // from the lamp to the scene's centre
+  double lobe(Vec3 wi) const { return exponent == 0 ? 1 : std::pow(std::max(0.0, -dot(wi, axis)), exponent); }
 };
 
 std::vector<Shader::Lamp> Shader::lamps(const SceneState& state) const {
   std::vector<Lamp> all;
   for (const std::size_t l : image_.lights) {
     const LightState& light = state.lights[l];
-    Lamp lamp{l, RadiusWeights(light.radius_m), layout_.lights[l], light.tilt_x_rad != 0 || light.tilt_y_rad != 0};
-    if (lamp.turned && lamp.source.directional)
-      lamp.source.direction = light::turned(lamp.source.direction, light.tilt_x_rad, light.tilt_y_rad);
-    else if (lamp.turned)
+    const LightSource& given = layout_.lights[l];
+    const bool moves = light.tilt_x_rad != 0 || light.tilt_y_rad != 0 || !(light.shift_m == Vec3{}) ||
+                       light.nearness_per_m != 0 || light.exponent != 0;
+    Lamp lamp{l, RadiusWeights(light.radius_m), given, moves, light.exponent, {}};
+    if (given.directional) {
+      lamp.source.direction = light::turned(given.direction, light.tilt_x_rad, light.tilt_y_rad);
+      lamp.source.centre_m = layout_.centre_m;
+      lamp.source.nearness_per_m = light.nearness_per_m;
+    } else {
       lamp.source.position_m =
-          light::turned_about(lamp.source.position_m, light.tilt_x_rad, light.tilt_y_rad, layout_.centre_m);
+          light::turned_about(given.position_m, light.tilt_x_rad, light.tilt_y_rad, layout_.centre_m) + light.shift_m;
+      if (light.exponent != 0) lamp.axis = normalized(layout_.centre_m - lamp.source.position_m);
+    }
     all.push_back(lamp);
   }
   return all;
@@ -106,7 +122,10 @@ std::vector<Shader::Lamp> Shader::lamps(const SceneState& state) const {
 Scattered Shader::direct(const SurfaceState& surface, std::size_t f, const Lamp& lamp) const {
   const std::size_t lights = layout_.lights.size(), l = lamp.light;
   const bool lambertian = surface.lambertian();
-  if (lambertian && !lamp.turned) return {lamp.radius.of(&sums_[(f * lights + l) * radius_count]) / pi, {}};
+  if (lambertian && !lamp.turned) {
+    const double base = lamp.radius.of(&sums_[(f * lights + l) * radius_count]) / pi;
+    return {{base, base, base}, {}};
+  }
   const Facet& facet = cache_.facets[f];
   const Extremes extremes(surface);
   Scattered sum;
@@ -118,12 +137,12 @@ Scattered Shader::direct(const SurfaceState& surface, std::size_t f, const Lamp&
       const Aim was = aim(layout_.lights[l], patch.position_m);
       const double change = std::max(0.0, dot(patch.normal, now.wi)) * now.falloff -
                             std::max(0.0, dot(patch.normal, was.wi)) * was.falloff;
-      irradiance = std::max(0.0, irradiance + cache_.visible[place * lights + l] * change);
+      irradiance = std::max(0.0, irradiance + cache_.visible[place * lights + l] * change) * lamp.lobe(now.wi);
     }
     if (irradiance <= 0) continue;
     const double weighted = irradiance * patch.weight;
     if (lambertian) {
-      sum.base += weighted / pi;
+      sum.base += Rgb{1, 1, 1} * (weighted / pi);
       continue;
     }
     const Basis basis(patch.normal);
@@ -137,7 +156,7 @@ Scattered Shader::direct(const SurfaceState& surface, std::size_t f, const Lamp&
 }
 
 Scattered Shader::scattered(const SurfaceState& surface, const Facet& facet) const {
-  if (surface.lambertian()) return {1, {}};
+  if (surface.lambertian()) return {{1, 1, 1}, {}};
   const Patch& patch = cache_.patches[facet.first_patch];
   const Vec3 wo = above_horizon(Basis(patch.normal).to_local(patch.wo));
   return Extremes(surface).split([&](const surface::Values& v) { return surface.model->albedo(v, wo); });

@@ -5,7 +5,9 @@
 // the facet's share of the pixel. Per facet: the share of irregular incident light that is sent on is albedo * base +
 // gloss. For models without a diffuse base (metals) everything is gloss.
 //   base, gloss = sum over patches weight f(wo, wi) V cos(theta) / d^2,  f from lib/surface at albedo 0 and 1
-// A light that is turned keeps the shadows that it cast; cosines and distances follow it.
+// A light that is turned or moved keeps the shadows that it cast; cosines and distances follow it. Lamps with a lobe
+// shine cos^exponent about the direction to the scene's centre (light.lobe); a directional light of finite nearness
+// stands at 1 / nearness from the centre, where its irradiance is what the base model says, and falls with the square.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -18,8 +20,7 @@
 namespace gonio::explain::images {
 
 struct Scattered {
-  double base = 0;
-  Rgb gloss;
+  Rgb base, gloss;
 };
 struct Shading {
   std::size_t lights = 0;           // on in this image

@@ -39,34 +39,36 @@ void write_base(const Origin& origin, double value, double sigma, manifest::Docu
   }
 }
 
-// Values of one mechanism, target by target. Parameters of a candidate that acts on several targets at once are listed
-// target by target, the mechanism's parameters within (light.direction), or once for all (light.finite-size).
+// Values of one mechanism, target by target.
 struct Entry {
   std::vector<std::string> on;
   std::map<std::string, std::vector<double>> value, sigma;
 };
 
-void add_candidate(const Candidate& candidate, const Explanation& explanation, Entry& entry) {
-  const std::vector<mechanism::Parameter>& infos = candidate.mechanism->parameters;
-  const std::size_t sets = candidate.parameters.size() / infos.size();
-  entry.on.insert(entry.on.end(), candidate.on.begin(), candidate.on.end());
-  for (std::size_t s = 0; s < sets; ++s)
-    for (std::size_t k = 0; k < infos.size(); ++k) {
-      const std::size_t p = candidate.parameters[s * infos.size() + k];
-      entry.value[infos[k].name].push_back(explanation.values[p]);
-      entry.sigma[infos[k].name].push_back(explanation.sigma[p]);
-    }
+void add_candidate(const Bindings& bindings, std::size_t candidate, const Use& use, const Explanation& explanation,
+                   Entry& entry) {
+  const std::vector<mechanism::Parameter>& infos = use.mechanism->parameters;
+  entry.on.insert(entry.on.end(), use.on.begin(), use.on.end());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < use.numbers.size(); ++i) {
+    const std::string& name = infos[i % infos.size()].name;
+    const bool free = use.numbers[i].free;
+    const std::size_t p = free ? bindings.candidates[candidate].parameters[next++] : 0;
+    entry.value[name].push_back(free ? explanation.values[p] : use.numbers[i].start);
+    entry.sigma[name].push_back(free ? explanation.sigma[p] : 0);
+  }
 }
 
 }  // namespace
 
-void write_back(const Bindings& bindings, const Explanation& explanation, manifest::Document& document) {
+void write_back(const Bindings& bindings, std::span<const Use> uses, const Explanation& explanation,
+                manifest::Document& document) {
   for (std::size_t p = 0; p < bindings.origins.size(); ++p)
     for (const Origin& origin : bindings.origins[p])
       write_base(origin, explanation.values[p], explanation.sigma.empty() ? 0 : explanation.sigma[p], document);
   std::map<std::string, Entry> entries;
   for (const std::size_t c : explanation.named)
-    add_candidate(bindings.candidates[c], explanation, entries[bindings.candidates[c].id()]);
+    add_candidate(bindings, c, uses[bindings.use_of[c]], explanation, entries[bindings.candidates[c].id()]);
   for (auto& [id, entry] : entries) {
     manifest::MechanismUse& use = document.mechanisms[id];
     use.on = std::move(entry.on);

@@ -132,6 +132,7 @@ void LampState::free_parameters(const manifest::Document&) {
 void LampState::mechanisms_of_lamps() {
   for (const mechanism::Mechanism* m : mechanism::all_mechanisms()) {
     if (m->target != mechanism::Target::light) continue;
+    if (m->id == "light.position") continue;  // places of lamps are the base model's own parameters here
     const std::vector<std::string> targets = scene::mechanism_targets(appearance_, *m);
     for (std::size_t l = 0; l < lamps().size(); ++l) {
       const bool by_scene = std::find(targets.begin(), targets.end(), lamps()[l].id) != targets.end();

@@ -1,5 +1,5 @@
-// light.drift: lamps change as they warm up. Equation below; explain/tables/terms/light_drift.cpp. Pictures that
-// `render` makes have no time, so that it has nothing to apply there.
+// light.drift: lamps change as they warm up. Equation below; explain/tables/terms/light_drift.cpp. It acts on
+// images that state their time (scene/build.cpp).
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {
@@ -13,7 +13,7 @@ const Mechanism& light_drift() {
       .source = "first-order thermal response; CIE 198:2011, stabilisation of lamps",
       .stage = "light",
       .target = Target::scene,
-      .domains = {"tables", "stacks"},
+      .domains = {"tables", "stacks", "images"},
       .parameters = {{.name = "amplitude",
                       .unit = "1",
                       .neutral = 0,

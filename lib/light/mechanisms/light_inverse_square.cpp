@@ -14,7 +14,7 @@ const Mechanism& light_inverse_square() {
       .source = "Lambert 1760",
       .stage = "light",
       .target = Target::light,
-      .domains = {"tables"},
+      .domains = {"tables", "images"},
       .parameters = {{.name = "nearness_per_m",
                       .unit = "1/m",
                       .neutral = 0,

@@ -1,5 +1,5 @@
-// light.spectrum: the colour of a lamp changes. Equation below; explain/tables/terms/light_spectrum.cpp. Pictures that
-// `render` makes have no time, so that it has nothing to apply there.
+// light.spectrum: the colour of a lamp changes. Equation below; explain/tables/terms/light_spectrum.cpp. It acts on
+// images that state their time (scene/build.cpp).
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {
@@ -14,7 +14,7 @@ const Mechanism& light_spectrum() {
       .source = "first order in the shift of the peak; LEDs: Chhajed et al. 2005",
       .stage = "light",
       .target = Target::scene,
-      .domains = {"tables"},
+      .domains = {"tables", "images"},
       .parameters = {{.name = "red_share",
                       .unit = "1",
                       .neutral = 0,

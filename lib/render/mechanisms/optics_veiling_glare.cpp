@@ -12,7 +12,7 @@ const Mechanism& optics_veiling_glare() {
       .source = "ISO 9358:1994, veiling glare index; Talvala et al. 2007 (uniform part)",
       .stage = "optics",
       .target = Target::camera,
-      .domains = {"stacks"},
+      .domains = {"stacks", "images"},
       .parameters = {{.name = "share",
                       .unit = "1",
                       .neutral = 0,
@@ -20,7 +20,7 @@ const Mechanism& optics_veiling_glare() {
                       .upper = 0.2,
                       .start = 0.02,
                       .meaning = "share of the picture's mean that is added to every pixel"}},
-      .conditions = {"image.radiance", "image.mean"},
+      .conditions = {"image.mean", "image.radiance"},
       .mistaken_for = {{.with = "light.ambient", .told_apart = "mask the bright areas"},
                        {.with = "sensor.black-offset", .told_apart = "mask the bright areas: an offset stays"}},
   };

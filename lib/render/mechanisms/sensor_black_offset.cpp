@@ -12,7 +12,7 @@ const Mechanism& sensor_black_offset() {
       .source = "EMVA Standard 1288, release 4.0, dark signal",
       .stage = "sensor",
       .target = Target::camera,
-      .domains = {"tables", "stacks"},
+      .domains = {"tables", "stacks", "images"},
       .parameters = {{.name = "offset",
                       .unit = "W/(m^2 sr)",
                       .neutral = 0,
@@ -20,7 +20,7 @@ const Mechanism& sensor_black_offset() {
                       .upper = 1000,
                       .start = 0.01,
                       .meaning = "reading in the dark, in the unit of the picture"}},
-      .conditions = {"image.radiance"},
+      .conditions = {"image.radiance", "image.exposure"},
       .mistaken_for = {{.with = "light.ambient", .told_apart = "lens cap, or the same scene at two exposures"},
                        {.with = "optics.veiling-glare", .told_apart = "lens cap"}},
   };

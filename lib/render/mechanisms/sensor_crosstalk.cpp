@@ -12,7 +12,7 @@ const Mechanism& sensor_crosstalk() {
       .source = "Hirakawa 2008, Cross-talk explained (symmetric, without the spatial part)",
       .stage = "sensor",
       .target = Target::camera,
-      .domains = {},
+      .domains = {"images"},
       .parameters = {{.name = "share",
                       .unit = "1",
                       .neutral = 0,
@@ -20,7 +20,7 @@ const Mechanism& sensor_crosstalk() {
                       .upper = 0.2,
                       .start = 0.03,
                       .meaning = "share of each other band in a band's reading"}},
-      .conditions = {"image.hue", "image.edge-distance"},
+      .conditions = {"image.hue"},
       .mistaken_for = {{.with = "dispersion", .told_apart = "light of one colour"},
                        {.with = "surface albedo", .told_apart = "light of one colour"}},
   };

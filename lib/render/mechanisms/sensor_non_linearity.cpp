@@ -65,7 +65,7 @@ const Mechanism& sensor_non_linearity() {
       .source = "EMVA Standard 1288, release 4.0, linearity (second order); Debevec & Malik 1997, equation 3",
       .stage = "sensor",
       .target = Target::camera,
-      .domains = {"tables", "stacks"},
+      .domains = {"tables", "stacks", "images"},
       .parameters = parameters_of_response(),
       .conditions = {"image.radiance"},
       .mistaken_for = {{.with = "surface.specular", .told_apart = "exposure ramp"},

@@ -12,7 +12,7 @@ const Mechanism& sensor_saturation() {
       .source = "EMVA Standard 1288, release 4.0, saturation capacity",
       .stage = "sensor",
       .target = Target::camera,
-      .domains = {"tables", "stacks"},
+      .domains = {"tables", "stacks", "images"},
       .parameters = {{.name = "full_scale",
                       .unit = "W/(m^2 sr)",
                       .neutral = 0,

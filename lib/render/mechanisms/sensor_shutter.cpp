@@ -1,5 +1,5 @@
-// sensor.shutter: the exposure is not what was set. Equation below; explain/tables/terms/sensor_shutter.cpp. Pictures
-// that `render` makes carry no exposure time, so that it has nothing to apply there.
+// sensor.shutter: the exposure is not what was set. Equation below; explain/tables/terms/sensor_shutter.cpp. It acts on
+// images that state their exposure (render/sensor_links.h).
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {
@@ -13,7 +13,7 @@ const Mechanism& sensor_shutter() {
       .source = "EMVA Standard 1288, release 4.0, section 6 (exposure time as the independent variable)",
       .stage = "sensor",
       .target = Target::camera,
-      .domains = {"tables", "stacks"},
+      .domains = {"tables", "stacks", "images"},
       .parameters = {{.name = "extra_s",
                       .unit = "s",
                       .neutral = 0,

@@ -44,15 +44,22 @@ TEST(Practice, ACoatOnTheBunny) {
   EXPECT_EQ(two.problem.candidates()[two.explanation.named[0]].on, std::vector<std::string>{"bunny"});
   EXPECT_GT(two.fitted(0), 0.02);
   EXPECT_LT(two.fitted(0), 0.08);
+  EXPECT_NEAR(two.fitted(1), 0.1024, 0.15 * 0.1024);
   EXPECT_GE(two.repaired(), 0.7);
 }
 
-// Light beneath the surface is not in the library: no name may be given to it.
-TEST(Practice, WhatTheLibraryLacksIsNotNamed) {
+// Another scattering model recorded it (a random walk in a body whose thin parts glow): free paths come out short, the
+// red one most. scripts/proofs/explain-practice holds them to a factor 1.5; here they must not fall further behind.
+TEST(Practice, LightBeneathTheSurface) {
   GONIO_NEEDS_DATA("recordings");
   const Outcome three("practice-3.json");
-  EXPECT_EQ(three.explanation.verdict, Verdict::unknown) << three.explanation.sentence;
-  EXPECT_TRUE(three.explanation.named.empty());
+  ASSERT_EQ(three.first(), "surface.subsurface") << three.explanation.sentence;
+  EXPECT_EQ(three.problem.candidates()[three.explanation.named[0]].on, std::vector<std::string>{"bunny"});
+  const double paths_m[3] = {0.012, 0.005, 0.003};
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_GT(three.fitted(c), paths_m[c] / 2) << c;
+    EXPECT_LT(three.fitted(c), paths_m[c] * 2) << c;
+  }
 }
 
 TEST(Practice, LightOfTheRoom) {

@@ -5,75 +5,14 @@
 #include <cmath>
 #include <string>
 
-#include "base/random.h"
-#include "data.h"
+#include "ball_world.h"
 #include "explain/engine.h"
 #include "explain/images/images_problem.h"
-#include "io/picture.h"
-#include "render/path_tracer.h"
-#include "render/ray_caster.h"
-#include "scene/scene.h"
 
 namespace gonio::explain {
 namespace {
 
-constexpr int side_px = 48;
-constexpr double noise = 0.002;
-
-// `mechanisms`: the section's content. Images 00 .. 12 are two cameras times three lamps.
-std::string manifest_text(const std::string& mechanisms) {
-  std::string files, images, lights;
-  const char* poses[2] = {"[[1,0,0,0],[0,-0.5,0.8660254037844386,-0.5],[0,-0.8660254037844386,-0.5,0.32],[0,0,0,1]]",
-                          "[[0,0.5,-0.8660254037844386,0.5],[1,0,0,0],[0,-0.8660254037844386,-0.5,0.32],[0,0,0,1]]"};
-  const char* places[3] = {"[0.3,-0.3,0.4]", "[-0.35,-0.1,0.45]", "[0.05,0.25,0.5]"};
-  for (int l = 0; l < 3; ++l)
-    lights += std::string(l ? "," : "") + "\"lamp-" + std::to_string(l) +
-              "\":{\"model\":\"point\",\"position_m\":" + places[l] +
-              ",\"watt_per_sr\":{\"value\":[0.6,0.6,0.6],\"free\":true,\"share\":\"lamp\"}}";
-  for (int c = 0; c < 2; ++c)
-    for (int l = 0; l < 3; ++l) {
-      const std::string id = std::to_string(c) + std::to_string(l), comma = c + l ? "," : "";
-      files += comma + "\"" + id + "\":{\"path\":\"" + id + ".exr\"}";
-      images += comma + "{\"id\":\"" + id + "\",\"file\":\"" + id + "\",\"camera\":\"camera\"," +
-                "\"world_from_camera\":{\"matrix\":" + poses[c] + "},\"light\":\"lamp-" + std::to_string(l) +
-                "\",\"noise\":{\"gain\":1e9,\"read\":" + std::to_string(noise) + "}}";
-    }
-  return "{\"gonio\":1,\"files\":{" + files +
-         "},\"cameras\":{\"camera\":{\"width_px\":48,\"height_px\":48,\"fx_px\":85,\"fy_px\":85,\"cx_px\":23.5,\"cy_"
-         "px\":23.5}},"
-         "\"meshes\":{\"ball\":{\"sphere\":{\"radius_m\":0.08}},\"table\":{\"plane\":{\"size_m\":[1.5,1.5]}}},"
-         "\"surfaces\":{\"ball\":{\"model\":\"diffuse\",\"albedo\":{\"value\":[0.5,0.4,0.3],\"free\":true}},"
-         "\"table\":{\"model\":\"diffuse\",\"albedo\":{\"value\":[0.5,0.5,0.5],\"free\":true}}},\"lights\":{" +
-         lights +
-         "},\"objects\":[{\"id\":\"ball\",\"mesh\":\"ball\",\"surface\":\"ball\",\"world_from_object\":{\"rotation\":["
-         "1,0,0,0],"
-         "\"translation_m\":[0,0,0.081]}},{\"id\":\"table\",\"mesh\":\"table\",\"surface\":\"table\"}],\"images\":[" +
-         images + "],\"mechanisms\":{" + mechanisms + "}}";
-}
-
-// Renders the manifest with `truth` switched on, adds noise, and returns the manifest with `believed` instead.
-manifest::Document record(const tests::ScratchFolder& folder, const std::string& truth, const std::string& believed,
-                          int spp, std::uint64_t seed, std::vector<io::Image>* renderings = nullptr) {
-  const manifest::Document full = manifest::parse_document(manifest_text(truth), "truth", folder.path());
-  const scene::Scene scene = scene::build_scene(full);
-  const render::RayCaster caster(scene.instances);
-  render::Options options;
-  options.spp = spp;
-  options.seed = seed;
-  options.geometry = false;
-  for (std::size_t v = 0; v < scene.views.size(); ++v) {
-    const io::Image rendered = render::render(scene, v, caster, options);
-    io::Image picture(side_px, side_px, {"R", "G", "B"});
-    Random random(seed, v);
-    for (std::size_t i = 0; i < picture.pixels(); ++i)
-      for (std::size_t c = 0; c < 3; ++c)
-        picture.data[3 * i + c] =
-            rendered.data[i * rendered.channels.size() + c] + static_cast<float>(noise * random.normal());
-    io::write_picture(folder / (full.images[v].file + ".exr"), picture);
-    if (renderings) renderings->push_back(rendered);
-  }
-  return manifest::parse_document(manifest_text(believed), "believed", folder.path());
-}
+using tests::record_ball;
 
 std::vector<double> neutral_values(const Problem& problem) {
   std::vector<double> values;
@@ -86,7 +25,7 @@ std::vector<double> neutral_values(const Problem& problem) {
 double mean_square(const std::string& mechanisms) {
   const tests::ScratchFolder folder;
   std::vector<io::Image> renderings;
-  const images::ImagesProblem problem(record(folder, mechanisms, mechanisms, 1024, 5, &renderings));
+  const images::ImagesProblem problem(record_ball(folder, mechanisms, mechanisms, 1024, 5, &renderings));
   const Observations& o = problem.observations();
   double sum = 0;
   for (std::size_t g = 0; g < o.groups(); ++g) {
@@ -120,7 +59,7 @@ TEST(ImagesModel, AgreesWithThePathTracer) {
 
 TEST(ImagesModel, NeutralMechanismsChangeNoBit) {
   const tests::ScratchFolder folder;
-  const images::ImagesProblem problem(record(folder, "", "", 16, 3));
+  const images::ImagesProblem problem(record_ball(folder, "", "", 16, 3));
   const std::vector<double> values = neutral_values(problem);
   images::SceneState bare = problem.model().layout().start;
   for (std::size_t g = 0; g < problem.observations().groups(); ++g) {
@@ -140,7 +79,7 @@ class ImagesInjected : public testing::TestWithParam<Injected> {};
 
 TEST_P(ImagesInjected, IsNamed) {
   const tests::ScratchFolder folder;
-  const images::ImagesProblem problem(record(folder, GetParam().truth, GetParam().believed, 256, 7));
+  const images::ImagesProblem problem(record_ball(folder, GetParam().truth, GetParam().believed, 256, 7));
   const Explanation e = explain(problem, Options{});
   ASSERT_FALSE(e.named.empty()) << verdict_name(e.verdict) << ": " << e.sentence;
   EXPECT_EQ(problem.candidates()[e.named[0]].id(), GetParam().id) << e.sentence;
@@ -159,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ImagesModel, NothingInjectedNothingNamed) {
   for (const std::uint64_t seed : {11, 12, 13}) {
     const tests::ScratchFolder folder;
-    const images::ImagesProblem problem(record(folder, "", "", 256, seed));
+    const images::ImagesProblem problem(record_ball(folder, "", "", 256, seed));
     EXPECT_TRUE(explain(problem, Options{}).named.empty());
   }
 }

@@ -1,0 +1,28 @@
+// light.ambient: equation in light/models/uniform.cpp; open sky and light by way of surfaces from the cache.
+#include "explain/images/uses.h"
+
+namespace gonio::mechanism {
+const Mechanism& light_ambient();
+}
+
+namespace gonio::explain::images::terms {
+
+const Term& light_ambient() {
+  static const Term term{
+      .mechanism = mechanism::light_ambient,
+      .reach = Reach::compose,
+      .candidates =
+          [](const Setting& s) {
+            if (switched_on(s.document, "light.ambient")) return std::vector<Use>{};
+            return std::vector{scene_use(mechanism::light_ambient())};
+          },
+      .edit =
+          [](const Use& use, std::size_t, const SceneLayout&, const Recordings&, SceneState& state) {
+            const std::span<const double> radiance = use.amounts(state);
+            state.ambient += Rgb{radiance[0], radiance[1], radiance[2]};
+          },
+  };
+  return term;
+}
+
+}  // namespace gonio::explain::images::terms

@@ -1,0 +1,45 @@
+// light.direction: lamps turned about the scene's centre; their shadows stay where they fell.
+#include "explain/images/uses.h"
+
+namespace gonio::mechanism {
+const Mechanism& light_direction();
+}
+
+namespace gonio::explain::images::terms {
+namespace {
+
+std::vector<Use> candidates(const Setting& s) {
+  std::vector<std::string> on;
+  std::vector<std::size_t> lights;
+  for (std::size_t l = 0; l < s.layout.lights.size(); ++l) {
+    if (switched_on(s.document, "light.direction", s.recordings.lights[l])) continue;
+    on.push_back(s.recordings.lights[l]);
+    lights.push_back(l);
+  }
+  if (on.empty()) return {};
+  Use use = target_use(mechanism::light_direction(), on, lights, false);
+  for (std::size_t i = 0; i < use.numbers.size(); ++i) use.numbers[i].groups = lit_by(s.recordings, lights[i / 2]);
+  use.family = lamps_place;
+  return {use};
+}
+
+}  // namespace
+
+const Term& light_direction() {
+  static const Term term{
+      .mechanism = mechanism::light_direction,
+      .reach = Reach::all,
+      .candidates = candidates,
+      .edit =
+          [](const Use& use, std::size_t, const SceneLayout&, const Recordings&, SceneState& state) {
+            for (std::size_t t = 0; t < use.targets.size(); ++t) {
+              LightState& light = state.lights[use.targets[t]];
+              light.tilt_x_rad = use.amounts(state, t)[0];
+              light.tilt_y_rad = use.amounts(state, t)[1];
+            }
+          },
+  };
+  return term;
+}
+
+}  // namespace gonio::explain::images::terms

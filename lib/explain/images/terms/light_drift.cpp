@@ -1,0 +1,46 @@
+// light.drift: all lamps together, by the time of each picture.
+#include <set>
+
+#include "explain/images/uses.h"
+#include "light/drift.h"
+
+namespace gonio::mechanism {
+const Mechanism& light_drift();
+}
+
+namespace gonio::explain::images::terms {
+namespace {
+
+// Two numbers need three moments, and the time constant is sought between the shortest and ten times the whole time.
+std::vector<Use> candidates(const Setting& s) {
+  std::set<double> times;
+  for (const Recording& image : s.recordings.images)
+    if (image.time_s) times.insert(*image.time_s);
+  if (times.size() < 3 || switched_on(s.document, "light.drift")) return {};
+  const double whole = *times.rbegin() - *times.begin();
+  Use use = scene_use(mechanism::light_drift());
+  use.numbers[1].lower = whole / static_cast<double>(2 * times.size());
+  use.numbers[1].upper = 10 * whole;
+  use.numbers[1].start = 0.5 * whole;
+  return {use};
+}
+
+void edit(const Use& use, std::size_t image, const SceneLayout&, const Recordings& recordings, SceneState& state) {
+  const std::span<const double> amounts = use.amounts(state);
+  if (const auto time = recordings.images[image].time_s)
+    state.gain[image] *= light::drift(amounts[0], amounts[1], *time - recordings.first_time_s);
+}
+
+}  // namespace
+
+const Term& light_drift() {
+  static const Term term{
+      .mechanism = mechanism::light_drift,
+      .reach = Reach::compose,
+      .candidates = candidates,
+      .edit = edit,
+  };
+  return term;
+}
+
+}  // namespace gonio::explain::images::terms

@@ -1,0 +1,45 @@
+// light.position: lamps moved; their shadows stay where they fell. An alternative to light.direction for lamps at a
+// finite distance: three numbers a lamp instead of two.
+#include "explain/images/uses.h"
+
+namespace gonio::mechanism {
+const Mechanism& light_position();
+}
+
+namespace gonio::explain::images::terms {
+namespace {
+
+std::vector<Use> candidates(const Setting& s) {
+  std::vector<std::string> on;
+  std::vector<std::size_t> lights;
+  for (std::size_t l = 0; l < s.layout.lights.size(); ++l) {
+    if (s.layout.lights[l].directional || switched_on(s.document, "light.position", s.recordings.lights[l])) continue;
+    on.push_back(s.recordings.lights[l]);
+    lights.push_back(l);
+  }
+  if (on.empty()) return {};
+  Use use = target_use(mechanism::light_position(), on, lights, false);
+  for (std::size_t i = 0; i < use.numbers.size(); ++i) use.numbers[i].groups = lit_by(s.recordings, lights[i / 3]);
+  use.family = lamps_place;
+  return {use};
+}
+
+}  // namespace
+
+const Term& light_position() {
+  static const Term term{
+      .mechanism = mechanism::light_position,
+      .reach = Reach::all,
+      .candidates = candidates,
+      .edit =
+          [](const Use& use, std::size_t, const SceneLayout&, const Recordings&, SceneState& state) {
+            for (std::size_t t = 0; t < use.targets.size(); ++t) {
+              const std::span<const double> shift = use.amounts(state, t);
+              state.lights[use.targets[t]].shift_m = {shift[0], shift[1], shift[2]};
+            }
+          },
+  };
+  return term;
+}
+
+}  // namespace gonio::explain::images::terms

@@ -1,0 +1,49 @@
+// light.second-source: a window, another lamp. Equation: scene/mechanisms.cpp, add_second_source().
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+
+const Mechanism& light_second_source() {
+  static const Mechanism declaration{
+      .id = "light.second-source",
+      .sentence = "A further light that nobody wrote down shines in all pictures from one direction.",
+      .typical = "0.1 to 20 % of the lamp",
+      .equation =
+          "E += watt_per_m2 V max(0, n.d), d = (cos(el) cos(az), cos(el) sin(az), sin(el)), V 1 where nothing is in "
+          "the way",
+      .source = "Lambert 1760; a distant source",
+      .stage = "light",
+      .target = Target::scene,
+      .domains = {"images"},
+      .parameters = {{.name = "watt_per_m2",
+                      .unit = "W/m^2",
+                      .neutral = 0,
+                      .lower = 0,
+                      .upper = 1000,
+                      .start = 0.05,
+                      .meaning = "irradiance that it gives a plane facing it, all colours alike"},
+                     {.name = "azimuth_rad",
+                      .unit = "rad",
+                      .neutral = 0,
+                      .lower = -6.3,
+                      .upper = 6.3,
+                      .start = 0,
+                      .meaning =
+                          "of the direction to it, about the world's z from x; without effect where watt_per_m2 is 0"},
+                     {.name = "elevation_rad",
+                      .unit = "rad",
+                      .neutral = 0.8,
+                      .lower = -1.5,
+                      .upper = 1.6,
+                      .start = 0.8,
+                      .meaning =
+                          "of the direction to it, above the world's xy plane; without effect where watt_per_m2 is 0"}},
+      .conditions = {"light.visibility", "scene.ambient-visibility", "surface.exitance-angle"},
+      .mistaken_for = {{.with = "transport.indirect", .told_apart = "cover it"},
+                       {.with = "light.ambient", .told_apart = "cover it; or look for second shadows"},
+                       {.with = "surface.interface", .told_apart = "cover it"}},
+  };
+  return declaration;
+}
+
+}  // namespace gonio::mechanism

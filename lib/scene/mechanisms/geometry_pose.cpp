@@ -1,0 +1,65 @@
+// geometry.pose: an object stands a little off. Equation: scene/placement.cpp.
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+
+const Mechanism& geometry_pose() {
+  static const Mechanism declaration{
+      .id = "geometry.pose",
+      .sentence = "The object stands, or is turned, a little otherwise than was written down.",
+      .typical = "0.1 to 5 mm",
+      .equation = "x' = middle + R(turn) (x - middle) + shift, middle that of the object's box",
+      .source = "Rodrigues 1840",
+      .stage = "geometry",
+      .target = Target::object,
+      .domains = {"images"},
+      .parameters = {{.name = "shift_x_m",
+                      .unit = "m",
+                      .neutral = 0,
+                      .lower = -0.01,
+                      .upper = 0.01,
+                      .start = 0.0005,
+                      .meaning = "by which the object stands further along the world's x"},
+                     {.name = "shift_y_m",
+                      .unit = "m",
+                      .neutral = 0,
+                      .lower = -0.01,
+                      .upper = 0.01,
+                      .start = 0.0005,
+                      .meaning = "by which the object stands further along the world's y"},
+                     {.name = "shift_z_m",
+                      .unit = "m",
+                      .neutral = 0,
+                      .lower = -0.01,
+                      .upper = 0.01,
+                      .start = 0.0005,
+                      .meaning = "by which the object stands further along the world's z"},
+                     {.name = "turn_x_rad",
+                      .unit = "rad",
+                      .neutral = 0,
+                      .lower = -0.1,
+                      .upper = 0.1,
+                      .start = 0.002,
+                      .meaning = "rotation vector about the middle of the object's box, its world x"},
+                     {.name = "turn_y_rad",
+                      .unit = "rad",
+                      .neutral = 0,
+                      .lower = -0.1,
+                      .upper = 0.1,
+                      .start = 0.002,
+                      .meaning = "rotation vector about the middle of the object's box, its world y"},
+                     {.name = "turn_z_rad",
+                      .unit = "rad",
+                      .neutral = 0,
+                      .lower = -0.1,
+                      .upper = 0.1,
+                      .start = 0.002,
+                      .meaning = "rotation vector about the middle of the object's box, its world z"}},
+      .conditions = {"image.edge-distance", "surface.exitance-angle", "light.shadow-edge-distance"},
+      .mistaken_for = {{.with = "geometry.scale", .told_apart = "a second view"},
+                       {.with = "light.direction", .told_apart = "a second object that did not move"}},
+  };
+  return declaration;
+}
+
+}  // namespace gonio::mechanism

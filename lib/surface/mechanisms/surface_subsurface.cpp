@@ -1,0 +1,43 @@
+// surface.subsurface: light leaves a translucent body beside where it entered. Equation: surface/diffusion_profile.h.
+#include <string>
+
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+namespace {
+
+Parameter path_of(const char* name, const char* colour) {
+  return {.name = name,
+          .unit = "m",
+          .neutral = 0,
+          .lower = 0,
+          .upper = 0.05,
+          .start = 0.003,
+          .meaning = std::string("diffuse mean free path 1 / sqrt(3 sigma_a sigma_t') in ") + colour};
+}
+
+}  // namespace
+
+const Mechanism& surface_subsurface() {
+  static const Mechanism declaration{
+      .id = "surface.subsurface",
+      .sentence = "Light enters the body and leaves it some way off: shadow edges are soft and thin parts glow.",
+      .typical = "diffuse mean free path of 0.1 to 10 mm",
+      .equation =
+          "E'(x) = integral of R(|x - y|) E(y) dA(y) / integral of R, R(r) = s (exp(-s r / l) + exp(-s r / (3 l))) / "
+          "(8 pi l r), l the diffuse mean free path and s = 3.5 + 100 (A - 0.33)^4 of the albedo A",
+      .source = "Christensen & Burley 2015, diffuse mean free path; normalised over what surface there is",
+      .stage = "surface",
+      .target = Target::surface,
+      .domains = {"images"},
+      .parameters = {path_of("mean_free_path_r_m", "red"), path_of("mean_free_path_g_m", "green"),
+                     path_of("mean_free_path_b_m", "blue")},
+      .conditions = {"light.shadow-edge-distance", "surface.incidence-angle", "light.visibility"},
+      .mistaken_for = {{.with = "light.finite-size", .told_apart = "the profile of a point spot on the surface"},
+                       {.with = "optics.defocus", .told_apart = "the profile of a point spot on the surface"},
+                       {.with = "light.ambient", .told_apart = "switch the lamp off"}},
+  };
+  return declaration;
+}
+
+}  // namespace gonio::mechanism
