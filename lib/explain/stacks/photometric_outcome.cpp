@@ -129,7 +129,7 @@ void PhotometricProblem::apply(const Explanation& e, manifest::Document& documen
     if (std::find(base_.begin(), base_.end(), p) == base_.end()) continue;
     manifest::Light& light = document.lights.at(stack_.images[g].light);
     manifest::Parameter& watt = light.parameters.at("watt_per_m2");
-    for (double& v : watt.value) v *= std::exp(e.values[p]);
+    for (double& v : watt.value) v *= lamps_[g].white / stated_[g] * std::exp(e.values[p]);
     light.sigma["watt_per_m2"] = std::vector<double>(watt.value.size(), e.sigma[p] * mean(watt.rgb()));
   }
 }

@@ -13,8 +13,9 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t fewest_shown = 5;  // lamps that must shine on a site
-constexpr double evenness = 0.02;        // share of the light that a lamp called distant may vary by over the object
-constexpr double least_cosine = 0.15;    // of the eye above a site
+constexpr int alternations = 12;
+constexpr double evenness = 0.02;      // share of the light that a lamp called distant may vary by over the object
+constexpr double least_cosine = 0.15;  // of the eye above a site
 
 // The mean over the channels, where all of them count: what sites are chosen by.
 Stack grey(const Stack& stack) {
@@ -61,6 +62,8 @@ PhotometricProblem::PhotometricProblem(const manifest::Document& document, Stack
   const std::string place = manifest::place(document, "/images/" + std::to_string(stack_.images[0].entry));
   for (const StackImage& image : stack_.images) {
     lamps_.push_back(lamp(document, image));
+    stated_.push_back(lamps_.back().white);
+    free_.push_back(document.lights.at(image.light).parameters.at("watt_per_m2").free);
     if (!(lamps_.back().white > 0))
       throw Error(Exit::data, manifest::place(document, "/lights/" + image.light), "gives no light",
                   "state watt_per_m2 above zero");
@@ -69,6 +72,7 @@ PhotometricProblem::PhotometricProblem(const manifest::Document& document, Stack
   const Stack mean = grey(stack_);
   sites_ = choose_sites(mean, ReadingNoise(mean), {.sites = sites, .fewest = fewest_shown}, place);
   keep_shown_sites(place);
+  if (std::any_of(free_.begin(), free_.end(), [](char f) { return f != 0; })) start_strengths();
   add_patches();
   add_rows();
   add_lamps(document);
@@ -123,6 +127,31 @@ void PhotometricProblem::keep_shown_sites(const std::string& place) {
   if (sites_.size() < 24)
     throw Error(Exit::data, place, "shows only " + std::to_string(sites_.size()) + " places that five lamps reach",
                 "add lamps, or a mask of the object");
+}
+
+// Patches and the strengths of free lamps in turn, so that conditions are stated along what the base model's fit reads.
+void PhotometricProblem::start_strengths() {
+  const PatchModel matte{.eye = eye_};
+  const std::size_t channels = stack_.channels.size();
+  for (int i = 0; i < alternations; ++i) {
+    std::vector<double> top(lamps_.size()), bottom(lamps_.size());
+    for (std::size_t s = 0; s < sites_.size(); ++s) {
+      const PatchReadings r = readings(sites_[s].x, sites_[s].y, lamps_, 1, &sites_[s].seen);
+      start_[s] = fitted_patch(matte, r, start_[s]);
+      for (std::size_t k = 0; k < r.y.size(); ++k) {
+        const std::size_t g = k / channels;
+        const double f = matte(start_[s].b, start_[s].tint[k % channels], lamps_[g], 0) * r.weight[k];
+        top[g] += f * r.y[k] * r.weight[k];
+        bottom[g] += f * f;
+      }
+    }
+    double common = 0, count = 0;  // belongs to the albedo
+    for (std::size_t g = 0; g < lamps_.size(); ++g)
+      if (free_[g] && top[g] > 0 && bottom[g] > 0) common += std::log(top[g] / bottom[g]), count += 1;
+    for (std::size_t g = 0; g < lamps_.size(); ++g)
+      if (free_[g] && top[g] > 0 && bottom[g] > 0)
+        lamps_[g].white *= top[g] / bottom[g] / std::exp(common / std::max(1.0, count));
+  }
 }
 
 void PhotometricProblem::add_patches() {

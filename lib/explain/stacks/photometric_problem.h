@@ -48,6 +48,7 @@ class PhotometricProblem final : public Problem {
     std::size_t sigma_rad = 0, f0 = 0, alpha = 0, ambient = 0, gamma = 0, quadratic = 0, offset = 0, falloff = 0;
   };
   void keep_shown_sites(const std::string& place);
+  void start_strengths();
   void add_patches();
   void add_rows();
   void add_conditions();
@@ -69,7 +70,9 @@ class PhotometricProblem final : public Problem {
 
   Stack stack_;
   ReadingNoise noise_;
-  std::vector<PatchLight> lamps_;  // by image, as the manifest says
+  std::vector<PatchLight> lamps_;  // by image, as the manifest says; free ones with a first estimate of their strength
+  std::vector<double> stated_;     // by image: white as the manifest says
+  std::vector<char> free_;
   std::vector<Site> sites_;
   std::vector<Patch> start_;                    // by site
   std::vector<std::vector<std::size_t>> rows_;  // by image: sites, ascending
