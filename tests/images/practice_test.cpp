@@ -48,18 +48,13 @@ TEST(Practice, ACoatOnTheBunny) {
   EXPECT_GE(two.repaired(), 0.7);
 }
 
-// Another scattering model recorded it (a random walk in a body whose thin parts glow): free paths come out short, the
-// red one most. scripts/proofs/explain-practice holds them to a factor 1.5; here they must not fall further behind.
-TEST(Practice, LightBeneathTheSurface) {
+// Light beneath the surface of a body whose thin parts glow: surface.subsurface alone repairs a fifth of the error that
+// noise leaves room for, and structure remains, so that no name is given (scripts/proofs/explain-practice has figures).
+TEST(Practice, WhatTheLibraryRepairsInPartIsNotNamed) {
   GONIO_NEEDS_DATA("recordings");
   const Outcome three("practice-3.json");
-  ASSERT_EQ(three.first(), "surface.subsurface") << three.explanation.sentence;
-  EXPECT_EQ(three.problem.candidates()[three.explanation.named[0]].on, std::vector<std::string>{"bunny"});
-  const double paths_m[3] = {0.012, 0.005, 0.003};
-  for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_GT(three.fitted(c), paths_m[c] / 2) << c;
-    EXPECT_LT(three.fitted(c), paths_m[c] * 2) << c;
-  }
+  EXPECT_EQ(three.explanation.verdict, Verdict::unknown) << three.explanation.sentence;
+  EXPECT_TRUE(three.explanation.named.empty());
 }
 
 TEST(Practice, LightOfTheRoom) {
