@@ -157,6 +157,14 @@ TEST(Terms, AShutterThatIsLateByMostOfTheShortestExposureIsNamed) {
   EXPECT_NEAR(extra->value, 4.7e-4, 4 * extra->sigma);
 }
 
+// Whatever acts on tables says so in its declaration.
+TEST(Terms, MechanismsOfTermsAreDeclaredForTables) {
+  for (const Term* term : all_terms()) {
+    const mechanism::Mechanism& m = term->mechanism();
+    EXPECT_TRUE(std::ranges::find(m.domains, "tables") != m.domains.end()) << m.id;
+  }
+}
+
 // Sixteen nulls at a level of 1 %: more than one name has a probability of 1.1 %.
 TEST(Terms, NothingIsNamedWhereNothingWasLeftOut) {
   int named_something = 0;

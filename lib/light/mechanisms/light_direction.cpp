@@ -14,7 +14,7 @@ const Mechanism& light_direction() {
       .source = "Rodrigues 1840; calibrated from a mirror ball: Powell, Sarkar & Goldgof 2001",
       .stage = "light",
       .target = Target::light,
-      .domains = {"images", "stacks"},
+      .domains = {"tables", "images", "stacks"},
       .parameters = {{.name = "tilt_x_rad",
                       .unit = "rad",
                       .neutral = 0,

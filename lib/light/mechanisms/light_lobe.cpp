@@ -14,7 +14,7 @@ const Mechanism& light_lobe() {
       .source = "Moreno, Avendano-Alejo & Tzonchev 2006, equation 1",
       .stage = "light",
       .target = Target::light,
-      .domains = {"images"},
+      .domains = {"tables", "images"},
       .parameters = {{.name = "exponent",
                       .unit = "1",
                       .neutral = 0,

@@ -14,7 +14,7 @@ const Mechanism& light_second_source() {
       .source = "Lambert 1760; a distant source",
       .stage = "light",
       .target = Target::scene,
-      .domains = {"images"},
+      .domains = {"tables", "images"},
       .parameters = {{.name = "watt_per_m2",
                       .unit = "W/m^2",
                       .neutral = 0,

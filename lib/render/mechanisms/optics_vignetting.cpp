@@ -13,7 +13,7 @@ const Mechanism& optics_vignetting() {
       .source = "Kang & Weiss 2000, equation 6 (geometric part, first order in r^2); Goldman 2010, equation 2",
       .stage = "optics",
       .target = Target::scene,
-      .domains = {"images", "stacks"},
+      .domains = {"tables", "images", "stacks"},
       .parameters = {{.name = "falloff",
                       .unit = "1",
                       .neutral = 0,

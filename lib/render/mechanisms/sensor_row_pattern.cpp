@@ -12,7 +12,7 @@ const Mechanism& sensor_row_pattern() {
       .source = "first harmonic of mains flicker; Sheinin, Schechner & Kutulakos 2017",
       .stage = "sensor",
       .target = Target::camera,
-      .domains = {"images"},
+      .domains = {"tables", "images"},
       .parameters = {{.name = "amplitude",
                       .unit = "1",
                       .neutral = 0,
