@@ -25,7 +25,7 @@ class LightWorld final : public RowsWorld {
   void describe(Value& manifest, Value& table) const override;
 
  private:
-  Vec3 lamp_, other_, push_;
+  Vec3 lamp_, other_, push_, middle_;  // middle_: of all places of the diode
   double watt_ = 1, relative_ = 0.003;
   bool believes_parallel_ = false;
 };
@@ -53,6 +53,7 @@ std::vector<EffectKind> LightWorld::effects() const {
        1,
        1.0001})
       .only_for("believed parallel");
+  add({"dark reading", "sensor.black-offset", {"sensor"}, {"image.radiance"}, 0.02, 0.2}).only_for("a rival");
   add({"rings of a Fresnel lens", "", light, {}, 0.03, 0.1});
   return k;
 }
@@ -76,19 +77,22 @@ void LightWorld::design(Random& random, const std::string& variant) {
       add_row({random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), 0.08 * (series % 3), clock,
                static_cast<double>(series)});
     }
+  for (std::size_t r = 0; r < rows(); ++r)
+    middle_ += Vec3{at("x_m", r), at("y_m", r), at("z_m", r)} / static_cast<double>(rows());
 }
 
 double LightWorld::reading(const Numbers& base, const Sizes& sizes, std::size_t row) const {
   const Vec3 at_diode{at("x_m", row), at("y_m", row), at("z_m", row)};
   // A lamp that is narrower sideways faces the middle of what it lights.
   const auto from = [&](Vec3 lamp, double exponent) {
-    const Vec3 to = lamp - at_diode, axis = lamp - Vec3{0, 0, 0.08};
+    const Vec3 to = lamp - at_diode, axis = lamp - middle_;
     const double d2 = dot(to, to), off = dot(to, axis) / std::sqrt(d2 * dot(axis, axis));
     return to.z / std::pow(d2, 1.5) * std::pow(std::max(0.0, off), exponent);
   };
   double e = 0;
   if (believes_parallel_ && size_of(sizes, "diverging light") == 0) {
-    e = base[0] * lamp_.z / std::pow(dot(lamp_, lamp_), 1.5);
+    const Vec3 to = lamp_ - middle_;
+    e = base[0] * to.z / std::pow(dot(to, to), 1.5);
   } else {
     e = base[0] * from(lamp_ + push_ * size_of(sizes, "lamp elsewhere"), size_of(sizes, "narrow lamp"));
   }
@@ -98,14 +102,14 @@ double LightWorld::reading(const Numbers& base, const Sizes& sizes, std::size_t 
   }
   e += base[0] * size_of(sizes, "second lamp") * from(other_, 0);
   e *= 1 + size_of(sizes, "lamp warming up") * std::exp(-at("time_s", row) / 150);
-  return e + base[0] * size_of(sizes, "room light");
+  return e + base[0] * (size_of(sizes, "room light") + size_of(sizes, "dark reading"));
 }
 
 void LightWorld::describe(Value& manifest, Value& table) const {
   const auto three = [](Vec3 v) { return Value(std::vector<double>{v.x, v.y, v.z}); };
   Value light = Value::object();
   if (believes_parallel_) {
-    light = Value::object({{"model", "directional"}, {"towards", three(lamp_ / std::sqrt(dot(lamp_, lamp_)))}});
+    light = Value::object({{"model", "directional"}, {"towards", three(lamp_ - middle_)}});
     light["watt_per_m2"] = free_parameter(1);
   } else {
     light = Value::object({{"model", "point"}, {"position_m", three(lamp_)}});
