@@ -238,7 +238,7 @@ class Photometric final : public StackWorld {
       m["lights"][format("light-%02zu", k)] =
           Value::object({{"model", "directional"},
                          {"towards", Value(std::vector<double>{towards_[k].x, towards_[k].y, towards_[k].z})},
-                         {"watt_per_m2", Value(std::vector<double>{1, 1, 1})}});
+                         {"watt_per_m2", Value(std::vector<double>{pi, pi, pi})}});
   }
 
  private:
