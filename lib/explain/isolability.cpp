@@ -93,17 +93,20 @@ std::vector<Isolability> isolability(const System& system, const Projection& p, 
     entry.surviving_share = own.empty() ? 0 : std::sqrt(std::clamp(shares.eigenvalues().maxCoeff(), 0.0, 1.0));
     entry.visible = false;
     const Candidate& candidate = system.problem().candidates()[entry.candidate];
-    const double wanted =
-        noncentrality(static_cast<double>(own.size()), level) * std::max(1.0, inflation[entry.candidate]);
+    const double white = noncentrality(static_cast<double>(own.size()), level);
+    const double inflated = std::max(1.0, inflation[entry.candidate]);
     for (std::size_t k = 0; k < own.size(); ++k) {
       const double length = p.surviving(own[k], own[k]);
       const Parameter& parameter = system.problem().parameters()[candidate.parameters[k]];
       const double by_noise =
-          length > least_share * p.full(own[k], own[k]) ? wanted / length : std::numeric_limits<double>::infinity();
-      const double limit = std::sqrt(std::max(by_noise, mattering(system, p, scores, own[k], options.matters)));
-      entry.detection_limit.push_back(limit);
+          length > least_share * p.full(own[k], own[k]) ? white / length : std::numeric_limits<double>::infinity();
+      const double matters = mattering(system, p, scores, own[k], options.matters);
+      entry.detection_limit.push_back(std::sqrt(std::max(by_noise * inflated, matters)));
       const double reach = std::max(parameter.upper - parameter.neutral, parameter.neutral - parameter.lower);
-      if (limit < reach && entry.surviving_share > invisible_share) entry.visible = true;
+      // Whether it could be seen is asked of the noise alone: an effect that is there, and strong, is itself what
+      // correlates the residuals of a block, and must not hide itself.
+      if (std::sqrt(std::max(by_noise, matters)) < reach && entry.surviving_share > invisible_share)
+        entry.visible = true;
     }
     result.push_back(std::move(entry));
   }
