@@ -93,8 +93,7 @@ std::vector<cli::Option> table_options() {
        .help = "Explain this table, CSV or JSON ({\"units\": {...}, \"rows\": [{...}, ...]}), instead of a manifest."},
       {.name = "model",
        .type = Type::text,
-       .help = "What predicts the table: sensor, light, volume, surface, tracks, or an expression over its columns "
-               "such as a*cos(theta)+b.",
+       .help = "What predicts the table: sensor, light, volume, surface, tracks, or an expression over columns.",
        .metavar = "MODEL"},
       {.name = "observed",
        .type = Type::text,
@@ -103,14 +102,12 @@ std::vector<cli::Option> table_options() {
        .repeat = true},
       {.name = "sigma",
        .type = Type::text,
-       .help = "Column with one standard deviation of it, in the same order; default: from repeats, else from "
-               "differences between neighbouring rows.",
+       .help = "Column with one standard deviation of it; default: from repeats, else neighbouring rows.",
        .metavar = "COLUMN",
        .repeat = true},
       {.name = "group",
        .type = Type::text,
-       .help = "Column whose equal values are held out together; default: series, else stretches along the telling "
-               "condition.",
+       .help = "Column whose equal values are held out together; default: series, else stretches of rows.",
        .metavar = "COLUMN"},
       {.name = "block",
        .type = Type::text,

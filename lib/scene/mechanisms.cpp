@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "camera/intrinsics.h"
 #include "light/turn.h"
+#include "scene/amounts.h"
 #include "scene/placement.h"
 #include "scene/variation.h"
 #include "surface/dipole_model.h"
@@ -20,42 +21,6 @@ namespace {
 
 using mechanism::Mechanism;
 using mechanism::Target;
-using Amounts = std::vector<double>;  // one per parameter of the mechanism, in its order
-
-std::string place_of(const std::string& place, const std::string& name) {
-  return place + "/" + name;
-}
-
-// One target's amounts: number `index` of `count` names; what is left out is neutral.
-Amounts amounts_of(const Mechanism& mechanism, const manifest::MechanismUse& use, std::size_t index, std::size_t count,
-                   const std::string& place) {
-  for (const auto& [name, parameter] : use.parameters)
-    if (std::none_of(mechanism.parameters.begin(), mechanism.parameters.end(),
-                     [&, key = &name](const mechanism::Parameter& p) { return p.name == *key; }))
-      throw Error(Exit::data, place_of(place, name), mechanism.id + " has no such parameter", "see gonio-manifest(5)");
-  Amounts amounts;
-  for (const mechanism::Parameter& p : mechanism.parameters) {
-    const auto found = use.parameters.find(p.name);
-    if (found == use.parameters.end() || !found->second.given()) {
-      amounts.push_back(p.neutral);
-      continue;
-    }
-    const std::vector<double>& value = found->second.value;
-    if (value.size() != 1 && value.size() != count)
-      throw Error(Exit::data, place_of(place, p.name),
-                  std::to_string(value.size()) + " numbers for " + std::to_string(count) + " targets",
-                  "give one number, or one per name in \"on\"");
-    amounts.push_back(value[value.size() == 1 ? 0 : index]);
-  }
-  return amounts;
-}
-
-bool neutral(const Mechanism& mechanism, const Amounts& amounts) {
-  for (std::size_t i = 0; i < amounts.size(); ++i)
-    if (amounts[i] != mechanism.parameters[i].neutral) return false;
-  return true;
-}
-
 // What has no parameter of a model to set.
 using SceneEdit = void (*)(Appearance&, const Amounts&, const std::string& place);
 struct LightEdit {
@@ -362,51 +327,6 @@ void apply_mechanism(Appearance& appearance, const Mechanism& mechanism, const m
   if (mechanism.target == Target::light) return edit_each(appearance.lights, mechanism, use, on, centre_m, place);
   const auto found = scene_edits().find(mechanism.id);
   if (found != scene_edits().end()) found->second(appearance, amounts_of(mechanism, use, 0, 1, place), place);
-}
-
-std::optional<Amounts> camera_amounts(const Mechanism& mechanism, const manifest::MechanismUse& use,
-                                      const std::string& name, const std::string& place) {
-  if (mechanism.target != Target::camera) return {};
-  const auto found = std::find(use.on.begin(), use.on.end(), name);
-  if (!use.on.empty() && found == use.on.end()) return {};
-  const std::size_t count = std::max<std::size_t>(1, use.on.size());
-  const Amounts amounts =
-      amounts_of(mechanism, use, use.on.empty() ? 0 : static_cast<std::size_t>(found - use.on.begin()), count, place);
-  if (neutral(mechanism, amounts)) return {};
-  for (std::size_t i = 0; i < amounts.size(); ++i) {
-    const mechanism::Parameter& p = mechanism.parameters[i];
-    if (mechanism.stage != "lens" && amounts[i] != p.neutral && !(amounts[i] >= p.lower && amounts[i] <= p.upper))
-      throw Error(Exit::data, place_of(place, p.name),
-                  "value " + shortest_text(amounts[i]) + " is outside " + shortest_text(p.lower) + " to " +
-                      shortest_text(p.upper),
-                  p.meaning);
-  }
-  return amounts;
-}
-
-void apply_mechanism(View& view, const Mechanism& mechanism, const manifest::MechanismUse& use,
-                     const std::string& place) {
-  if (mechanism.id != "optics.defocus") return;
-  const auto amounts = camera_amounts(mechanism, use, view.camera_name, place);
-  if (amounts) view.lens = {.aperture_radius_m = (*amounts)[0], .focus_m = (*amounts)[1]};
-}
-
-void apply_mechanism(manifest::Camera& camera, const std::string& name, const Mechanism& mechanism,
-                     const manifest::MechanismUse& use, const std::string& place) {
-  if (mechanism.stage != "lens") return;
-  const auto given = camera_amounts(mechanism, use, name, place);
-  if (!given) return;
-  const Amounts& amounts = *given;
-  if (camera.model == "orthographic")
-    throw Error(Exit::data, place, mechanism.id + " does not apply to the orthographic camera \"" + name + "\"",
-                "name perspective cameras in \"on\"");
-  camera::TermSet terms;
-  for (std::size_t i = 0; i < amounts.size(); ++i) {
-    const std::string& term = mechanism.parameters[i].name;
-    camera.distortion[term] = manifest::Parameter(amounts[i]);
-    terms.add(camera::distortion_index(term, place));
-  }
-  camera.model = camera::model_with(camera.model, terms);
 }
 
 }  // namespace gonio::scene

@@ -5,75 +5,30 @@
 
 #include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <set>
+#include <sstream>
 
 namespace gonio::mechanism {
 namespace {
 
-const std::set<std::string> owed = {
-    "lens.radial",
-    "lens.tangential",
-    "lens.thin-prism",
-    "lens.fisheye",
-    "lens.lateral-colour",
-    "lens.non-central",
-    "optics.vignetting",
-    "optics.veiling-glare",
-    "optics.ghost",
-    "optics.defocus",
-    "sensor.black-offset",
-    "sensor.non-linearity",
-    "sensor.saturation",
-    "sensor.clipped-resampling",
-    "sensor.prnu",
-    "sensor.row-pattern",
-    "sensor.shutter",
-    "sensor.crosstalk",
-    "camera.rolling-shutter",
-    "camera.thermal",
-    "board.warp",
-    "board.scale",
-    "board.corner-bias",
-    "light.direction",
-    "light.position",
-    "light.inverse-square",
-    "light.finite-size",
-    "light.lobe",
-    "light.ambient",
-    "light.second-source",
-    "light.drift",
-    "light.spectrum",
-    "light.near-environment",
-    "light.polarization",
-    "surface.diffuse-roughness",
-    "surface.interface",
-    "surface.specular",
-    "surface.anisotropy",
-    "surface.retro-reflection",
-    "surface.thin-film",
-    "surface.spatial-variation",
-    "surface.subsurface",
-    "surface.fluorescence",
-    "surface.micro-ridges",
-    "volume.absorption",
-    "volume.index",
-    "volume.dispersion",
-    "geometry.pose",
-    "geometry.scale",
-    "geometry.offset",
-    "geometry.contact",
-    "transport.indirect",
-    "transport.caustic",
-    "robot.joint-offset",
-    "robot.link-length",
-    "robot.sag",
-    "robot.backlash",
-    "robot.thermal",
-    "robot.time-offset",
-    "tracks.perspective",
-    "tracks.outliers",
-    "reference.tile",
-};
+std::set<std::string> words(const std::string& text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
+const std::set<std::string> owed = words(
+    "lens.radial lens.tangential lens.thin-prism lens.fisheye lens.lateral-colour lens.non-central "
+    "optics.vignetting optics.veiling-glare optics.ghost optics.defocus sensor.black-offset "
+    "sensor.non-linearity sensor.saturation sensor.clipped-resampling sensor.prnu sensor.row-pattern "
+    "sensor.shutter sensor.crosstalk camera.rolling-shutter camera.thermal board.warp board.scale "
+    "board.corner-bias light.direction light.position light.inverse-square light.finite-size light.lobe "
+    "light.ambient light.second-source light.drift light.spectrum light.near-environment light.polarization "
+    "surface.diffuse-roughness surface.interface surface.specular surface.anisotropy surface.retro-reflection "
+    "surface.thin-film surface.spatial-variation surface.subsurface surface.fluorescence surface.micro-ridges "
+    "volume.absorption volume.index volume.dispersion geometry.pose geometry.scale geometry.offset "
+    "geometry.contact transport.indirect transport.caustic robot.joint-offset robot.link-length robot.sag "
+    "robot.backlash robot.thermal robot.time-offset tracks.perspective tracks.outliers reference.tile");
 // Terms of simulators that do not exist yet; they are declared with them.
 const std::set<std::string> of_other_simulators = {"print.growth", "print.light-bleed", "print.overcure",
                                                    "geometry.beam-hardening"};

@@ -16,7 +16,7 @@
 namespace gonio::explain::images {
 
 struct Options {
-  std::size_t pixels = 15000;                  // sampled over all images together
+  std::size_t pixels = 9000;                  // sampled over all images together
   std::vector<std::filesystem::path> repeats;  // further takes, from which noise is measured
   CacheOptions cache;
 };

@@ -36,15 +36,27 @@ Aim aim(const LightSource& light, Vec3 point_m) {
 struct Extremes {
   surface::Values black, white;
   bool has_base = false;
+  // Where nothing but the albedo has a colour, a band sees the albedo of its own alone: one evaluation with a base that
+  // is black in red and white in green yields both.
+  bool at_once = false;
   explicit Extremes(const SurfaceState& surface) : black(surface.values), white(surface.values) {
     has_base = has_parameter(*surface.model, "albedo");
     if (!has_base) return;
     const std::size_t albedo = parameter_index(*surface.model, "albedo");
     black.v[albedo] = {0, 0, 0};
     white.v[albedo] = {1, 1, 1};
+    const auto& parameters = surface.model->info().parameters;
+    at_once = std::count_if(parameters.begin(), parameters.end(),
+                            [](const manifest::ParameterInfo& p) { return p.components == 3; }) == 1;
+    if (at_once) white.v[albedo] = {0, 1, 1};
   }
   template <class F>  // F: Values -> Rgb, affine in the albedo
   Scattered split(const F& f) const {
+    if (at_once) {
+      const Rgb both = f(white);
+      const double gloss = both.x, base = both.y - both.x;
+      return {{base, base, base}, {gloss, gloss, gloss}};
+    }
     const Rgb gloss = f(black);
     const double base = has_base ? mean(f(white) - gloss) : 0;
     return {{base, base, base}, gloss};

@@ -1,0 +1,60 @@
+// See mechanisms.h: what mechanisms do to cameras and their views.
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "camera/intrinsics.h"
+#include "scene/amounts.h"
+#include "scene/mechanisms.h"
+
+namespace gonio::scene {
+
+using mechanism::Mechanism;
+using mechanism::Target;
+
+std::optional<Amounts> camera_amounts(const Mechanism& mechanism, const manifest::MechanismUse& use,
+                                      const std::string& name, const std::string& place) {
+  if (mechanism.target != Target::camera) return {};
+  const auto found = std::find(use.on.begin(), use.on.end(), name);
+  if (!use.on.empty() && found == use.on.end()) return {};
+  const std::size_t count = std::max<std::size_t>(1, use.on.size());
+  const Amounts amounts =
+      amounts_of(mechanism, use, use.on.empty() ? 0 : static_cast<std::size_t>(found - use.on.begin()), count, place);
+  if (neutral(mechanism, amounts)) return {};
+  for (std::size_t i = 0; i < amounts.size(); ++i) {
+    const mechanism::Parameter& p = mechanism.parameters[i];
+    if (mechanism.stage != "lens" && amounts[i] != p.neutral && !(amounts[i] >= p.lower && amounts[i] <= p.upper))
+      throw Error(Exit::data, place_of(place, p.name),
+                  "value " + shortest_text(amounts[i]) + " is outside " + shortest_text(p.lower) + " to " +
+                      shortest_text(p.upper),
+                  p.meaning);
+  }
+  return amounts;
+}
+
+void apply_mechanism(View& view, const Mechanism& mechanism, const manifest::MechanismUse& use,
+                     const std::string& place) {
+  if (mechanism.id != "optics.defocus") return;
+  const auto amounts = camera_amounts(mechanism, use, view.camera_name, place);
+  if (amounts) view.lens = {.aperture_radius_m = (*amounts)[0], .focus_m = (*amounts)[1]};
+}
+
+void apply_mechanism(manifest::Camera& camera, const std::string& name, const Mechanism& mechanism,
+                     const manifest::MechanismUse& use, const std::string& place) {
+  if (mechanism.stage != "lens") return;
+  const auto given = camera_amounts(mechanism, use, name, place);
+  if (!given) return;
+  const Amounts& amounts = *given;
+  if (camera.model == "orthographic")
+    throw Error(Exit::data, place, mechanism.id + " does not apply to the orthographic camera \"" + name + "\"",
+                "name perspective cameras in \"on\"");
+  camera::TermSet terms;
+  for (std::size_t i = 0; i < amounts.size(); ++i) {
+    const std::string& term = mechanism.parameters[i].name;
+    camera.distortion[term] = manifest::Parameter(amounts[i]);
+    terms.add(camera::distortion_index(term, place));
+  }
+  camera.model = camera::model_with(camera.model, terms);
+}
+
+}  // namespace gonio::scene
