@@ -2,6 +2,7 @@
 // a ball on a table, two cameras, three lamps. Nothing is shared between the two but surfaces, lights and rays.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -93,7 +94,13 @@ INSTANTIATE_TEST_SUITE_P(
         Injected{"optics.vignetting", R"("optics.vignetting":{"falloff":0.2})", ""},
         Injected{"surface.diffuse-roughness", R"("surface.diffuse-roughness":{"on":["ball"],"sigma_rad":0.5})", ""},
         Injected{"surface.interface", R"("surface.interface":{"on":["ball"],"f0":0.05,"alpha":0.2})", ""},
-        Injected{"transport.indirect", "", R"("transport.indirect":{"strength":0})"}));
+        Injected{"transport.indirect", "", R"("transport.indirect":{"strength":0})"}),
+    [](const testing::TestParamInfo<Injected>& info) {
+      std::string name = info.param.id;
+      std::replace_if(
+          name.begin(), name.end(), [](char c) { return c == '.' || c == '-'; }, '_');
+      return name;
+    });
 
 TEST(ImagesModel, NothingInjectedNothingNamed) {
   for (const std::uint64_t seed : {11, 12, 13}) {

@@ -95,12 +95,20 @@ void make_matte(Look& look, const Named& named) {
   if (look.own_albedo) look.colour = albedo_through(look.colour, mean_internal_reflectance(look.eta));
 }
 
-// Models whose parameters say more than a look can hold are none of those below.
-bool says_more(const manifest::ModelInfo& info) {
+// Surfaces whose parameters say more than a look can hold are none of those below; what stands at its preset says
+// nothing.
+bool says_more(const Surface& surface) {
   static const std::set<std::string_view> known = {
       "albedo", "alpha",         "alpha_x",       "alpha_y",   "anisotropy",  "azimuth_rad",      "eta", "f0", "g",
       "k",      "sigma_a_per_m", "sigma_s_per_m", "sigma_rad", "thickness_m", "single_scattering"};
-  return std::ranges::any_of(info.parameters, [](const auto& p) { return !known.contains(p.name); });
+  const auto at_preset = [&](const manifest::ParameterInfo& p) {
+    if (!p.preset) return false;
+    const auto found = surface.parameters.find(p.name);
+    if (found == surface.parameters.end() || !found->second.given()) return true;
+    return std::ranges::all_of(found->second.value, [&](double v) { return v == *p.preset; });
+  };
+  return std::ranges::any_of(surface.model->info().parameters,
+                             [&](const auto& p) { return !known.contains(p.name) && !at_preset(p); });
 }
 
 void lose(std::vector<Loss>& losses, const std::string& pointer, std::string what, std::string instead) {
@@ -181,7 +189,7 @@ Look look_of(const Appearance& appearance, const Surface& surface, std::vector<L
   const std::string pointer = "/surfaces/" + surface.id;
   Look look;
   add_roughness(look, named, model);
-  if (says_more(model.info())) {
+  if (says_more(surface)) {
     make_unlike(look, appearance, surface, losses);
   } else if (surface.base) {
     make_coat(look, named, look_of(appearance, appearance.surfaces[*surface.base], losses), pointer, losses);
