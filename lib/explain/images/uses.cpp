@@ -94,6 +94,20 @@ Use target_use(const Mechanism& mechanism, std::vector<std::string> on, std::vec
   return use;
 }
 
+std::optional<Use> lamps_use(const Setting& setting, const Mechanism& mechanism, bool shared,
+                             bool (*fits)(const Setting& setting, std::size_t light)) {
+  std::vector<std::string> on;
+  std::vector<std::size_t> lights;
+  for (std::size_t l = 0; l < setting.layout.lights.size(); ++l) {
+    const std::string& name = setting.recordings.lights[l];
+    if (!fits(setting, l) || switched_on(setting.document, mechanism.id, name)) continue;
+    on.push_back(name);
+    lights.push_back(l);
+  }
+  if (on.empty()) return {};
+  return target_use(mechanism, on, lights, shared);
+}
+
 std::vector<std::size_t> lit_by(const Recordings& recordings, std::size_t light) {
   std::vector<std::size_t> groups;
   for (std::size_t i = 0; i < recordings.images.size(); ++i) {

@@ -1,5 +1,7 @@
 // Uses of terms: those that the manifest switches on, those that may be asked, and the rule for surfaces.
 #pragma once
+#include <optional>
+
 #include "explain/images/term.h"
 
 namespace gonio::explain::images {
@@ -9,6 +11,10 @@ Use scene_use(const mechanism::Mechanism& mechanism);
 // One use for several targets; `shared`: one set of numbers for all.
 Use target_use(const mechanism::Mechanism& mechanism, std::vector<std::string> on, std::vector<std::size_t> targets,
                bool shared);
+
+// A use for the lamps that `fits` and on which the manifest has not switched the mechanism on; nothing where none is.
+std::optional<Use> lamps_use(const Setting& setting, const mechanism::Mechanism& mechanism, bool shared,
+                             bool (*fits)(const Setting& setting, std::size_t light));
 
 // Terms that move the same lamps are alternatives.
 inline constexpr const char* lamps_place = "place of the lamps";

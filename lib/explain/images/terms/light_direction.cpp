@@ -9,18 +9,13 @@ namespace gonio::explain::images::terms {
 namespace {
 
 std::vector<Use> candidates(const Setting& s) {
-  std::vector<std::string> on;
-  std::vector<std::size_t> lights;
-  for (std::size_t l = 0; l < s.layout.lights.size(); ++l) {
-    if (switched_on(s.document, "light.direction", s.recordings.lights[l])) continue;
-    on.push_back(s.recordings.lights[l]);
-    lights.push_back(l);
-  }
-  if (on.empty()) return {};
-  Use use = target_use(mechanism::light_direction(), on, lights, false);
-  for (std::size_t i = 0; i < use.numbers.size(); ++i) use.numbers[i].groups = lit_by(s.recordings, lights[i / 2]);
-  use.family = lamps_place;
-  return {use};
+  std::optional<Use> use =
+      lamps_use(s, mechanism::light_direction(), false, [](const Setting&, std::size_t) { return true; });
+  if (!use) return {};
+  for (std::size_t i = 0; i < use->numbers.size(); ++i)
+    use->numbers[i].groups = lit_by(s.recordings, use->targets[i / 2]);
+  use->family = lamps_place;
+  return {*use};
 }
 
 }  // namespace

@@ -9,18 +9,13 @@ namespace gonio::explain::images::terms {
 namespace {
 
 std::vector<Use> candidates(const Setting& s) {
-  std::vector<std::string> on;
-  std::vector<std::size_t> lights;
-  for (std::size_t l = 0; l < s.layout.lights.size(); ++l) {
-    if (s.layout.lights[l].directional || s.layout.start.lights[l].radius_m > 0) continue;
-    if (switched_on(s.document, "light.finite-size", s.recordings.lights[l])) continue;
-    on.push_back(s.recordings.lights[l]);
-    lights.push_back(l);
-  }
-  if (on.empty()) return {};
-  Use use = target_use(mechanism::light_finite_size(), on, lights, true);
-  use.numbers[0].upper = std::min(use.numbers[0].upper, radii_m.back());
-  return {use};
+  std::optional<Use> use =
+      lamps_use(s, mechanism::light_finite_size(), true, [](const Setting& here, std::size_t light) {
+        return !here.layout.lights[light].directional && !(here.layout.start.lights[light].radius_m > 0);
+      });
+  if (!use) return {};
+  use->numbers[0].upper = std::min(use->numbers[0].upper, radii_m.back());
+  return {*use};
 }
 
 }  // namespace

@@ -11,18 +11,12 @@ namespace {
 
 // One nearness for all: lamps about an object stand at one distance.
 std::vector<Use> candidates(const Setting& s) {
-  std::vector<std::string> on;
-  std::vector<std::size_t> lights;
-  for (std::size_t l = 0; l < s.layout.lights.size(); ++l) {
-    if (!s.layout.lights[l].directional || switched_on(s.document, "light.inverse-square", s.recordings.lights[l]))
-      continue;
-    on.push_back(s.recordings.lights[l]);
-    lights.push_back(l);
-  }
-  if (on.empty()) return {};
-  std::vector<Use> uses = {target_use(mechanism::light_inverse_square(), on, lights, true)};
-  uses[0].family = "nearness of the lamps";
-  return uses;
+  std::optional<Use> use =
+      lamps_use(s, mechanism::light_inverse_square(), true,
+                [](const Setting& here, std::size_t light) { return here.layout.lights[light].directional; });
+  if (!use) return {};
+  use->family = "nearness of the lamps";
+  return {*use};
 }
 
 }  // namespace

@@ -10,15 +10,10 @@ namespace gonio::explain::images::terms {
 namespace {
 
 std::vector<Use> candidates(const Setting& s) {
-  std::vector<std::string> on;
-  std::vector<std::size_t> lights;
-  for (std::size_t l = 0; l < s.layout.lights.size(); ++l) {
-    if (s.layout.lights[l].directional || switched_on(s.document, "light.lobe", s.recordings.lights[l])) continue;
-    on.push_back(s.recordings.lights[l]);
-    lights.push_back(l);
-  }
-  if (on.empty()) return {};
-  return {target_use(mechanism::light_lobe(), on, lights, true)};
+  const std::optional<Use> use =
+      lamps_use(s, mechanism::light_lobe(), true,
+                [](const Setting& here, std::size_t light) { return !here.layout.lights[light].directional; });
+  return use ? std::vector<Use>{*use} : std::vector<Use>{};
 }
 
 }  // namespace

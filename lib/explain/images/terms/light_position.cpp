@@ -10,18 +10,14 @@ namespace gonio::explain::images::terms {
 namespace {
 
 std::vector<Use> candidates(const Setting& s) {
-  std::vector<std::string> on;
-  std::vector<std::size_t> lights;
-  for (std::size_t l = 0; l < s.layout.lights.size(); ++l) {
-    if (s.layout.lights[l].directional || switched_on(s.document, "light.position", s.recordings.lights[l])) continue;
-    on.push_back(s.recordings.lights[l]);
-    lights.push_back(l);
-  }
-  if (on.empty()) return {};
-  Use use = target_use(mechanism::light_position(), on, lights, false);
-  for (std::size_t i = 0; i < use.numbers.size(); ++i) use.numbers[i].groups = lit_by(s.recordings, lights[i / 3]);
-  use.family = lamps_place;
-  return {use};
+  std::optional<Use> use = lamps_use(s, mechanism::light_position(), false, [](const Setting& here, std::size_t light) {
+    return !here.layout.lights[light].directional;
+  });
+  if (!use) return {};
+  for (std::size_t i = 0; i < use->numbers.size(); ++i)
+    use->numbers[i].groups = lit_by(s.recordings, use->targets[i / 3]);
+  use->family = lamps_place;
+  return {*use};
 }
 
 }  // namespace
