@@ -107,7 +107,8 @@ std::vector<std::string> split(const std::string& line) {
 
 // What explain calls the domain of a world.
 std::string domain_of(const Spec& spec) {
-  if (spec.domain == "boards" || spec.domain == "robot" || spec.domain == "images") return spec.domain;
+  for (const char* same : {"boards", "robot", "images", "heights"})
+    if (spec.domain == same) return spec.domain;
   return spec.domain == "exposures" || spec.domain == "photometric" ? "stacks" : "tables";
 }
 

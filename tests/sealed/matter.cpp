@@ -13,6 +13,18 @@ double fresnel(double cosine, double f0) {  // dielectric, unpolarized, exact
   return 0.5 * (s * s + p * p);
 }
 
+// GGX facets, stretched along x (Heitz 2014, equations 71 and 86), height-correlated shadowing.
+double facets(double ax, double ay, Vec3 n, Vec3 x, Vec3 wi, Vec3 wo) {
+  const Vec3 y = cross(n, x), h = normalized(wi + wo);
+  const double u = dot(h, x) / ax, v = dot(h, y) / ay, w = dot(h, n), sum = u * u + v * v + w * w;
+  const double d = 1 / (pi * ax * ay * sum * sum);
+  const auto lambda = [&](Vec3 k) {
+    const double p = ax * dot(k, x), q = ay * dot(k, y), c = dot(k, n);
+    return 0.5 * (std::sqrt(1 + (p * p + q * q) / (c * c)) - 1);
+  };
+  return d / (1 + lambda(wi) + lambda(wo)) / (4 * dot(n, wi) * dot(n, wo));
+}
+
 namespace {
 
 double oren_nayar(Vec3 n, Vec3 wi, Vec3 wo, double slope, double albedo) {  // times pi / albedo
@@ -30,22 +42,10 @@ double oren_nayar(Vec3 n, Vec3 wi, Vec3 wo, double slope, double albedo) {  // t
   return one + two;
 }
 
-// GGX facets, stretched along x (Heitz 2014, equations 71 and 86), height-correlated shadowing.
-double lobe(double ax, double ay, Vec3 n, Vec3 x, Vec3 wi, Vec3 wo) {
-  const Vec3 y = cross(n, x), h = normalized(wi + wo);
-  const double u = dot(h, x) / ax, v = dot(h, y) / ay, w = dot(h, n), sum = u * u + v * v + w * w;
-  const double d = 1 / (pi * ax * ay * sum * sum);
-  const auto lambda = [&](Vec3 k) {
-    const double p = ax * dot(k, x), q = ay * dot(k, y), c = dot(k, n);
-    return 0.5 * (std::sqrt(1 + (p * p + q * q) / (c * c)) - 1);
-  };
-  return d / (1 + lambda(wi) + lambda(wo)) / (4 * dot(n, wi) * dot(n, wo));
-}
-
 double gloss(const Matter& m, Vec3 n, Vec3 x, Vec3 wi, Vec3 wo) {
   const double root = std::sqrt(m.stretch);
-  double f = (1 - m.tail) * lobe(m.alpha * root, m.alpha / root, n, x, wi, wo);
-  if (m.tail > 0) f += m.tail * lobe(m.tail_alpha, m.tail_alpha, n, x, wi, wo);
+  double f = (1 - m.tail) * facets(m.alpha * root, m.alpha / root, n, x, wi, wo);
+  if (m.tail > 0) f += m.tail * facets(m.tail_alpha, m.tail_alpha, n, x, wi, wo);
   return fresnel(dot(wi, normalized(wi + wo)), m.f0) * f;
 }
 

@@ -21,5 +21,7 @@ struct Scattering {
 // Directions from the surface, unit; `x`: the surface's own direction, across n.
 Scattering scatter(const Matter& m, Vec3 n, Vec3 x, Vec3 wi, Vec3 wo);
 double fresnel(double cosine, double f0);  // dielectric, unpolarized, exact
+// What facets of GGX would send back if each reflected all light, 1/sr; roughness ax along x, ay across.
+double facets(double ax, double ay, Vec3 n, Vec3 x, Vec3 wi, Vec3 wo);
 
 }  // namespace gonio::sealed

@@ -14,7 +14,17 @@ const std::vector<WorldEntry>& entries() {
   static const std::vector<WorldEntry> list{
       {"boards",
        boards_world,
-       {{Kind::alike, {"fisheye"}, ""}, {Kind::alike, {"bent board"}, "frontal"}},
+       {{Kind::alike, {"fisheye"}, ""},
+        {Kind::alike, {"bent board"}, "frontal"},
+        {Kind::null, {}, "three colours"},
+        {Kind::single, {"coloured lens"}, "three colours"},
+        {Kind::pair, {"coloured lens", "radial"}, "three colours"},
+        {Kind::null, {}, "two ranges"},
+        {Kind::single, {"moving pupil"}, "two ranges"},
+        {Kind::null, {}, "turned pictures"},
+        {Kind::single, {"other pixel centre"}, "turned pictures"},
+        {Kind::null, {}, "warm-up"},
+        {Kind::single, {"cold start"}, "warm-up"}},
        {16, 8, 6, 10, 4, 5},
        {4, 2, 1, 2, 1, 1}},
       {"exposures", exposures_world, {{Kind::invisible, {"glare"}, ""}}, {8, 4, 4, 4, 3, 4}, {2, 1, 1, 1, 1, 1, 2}},
@@ -23,7 +33,11 @@ const std::vector<WorldEntry>& entries() {
        {{Kind::invisible, {"vignetting"}, ""}},
        {8, 4, 4, 4, 3, 0},
        {2, 1, 1, 1, 1, 0}},
-      {"robot", robot_world, {}, {10, 4, 4, 3, 0, 3}, {2, 1, 1, 0, 0, 1}},
+      {"robot",
+       robot_world,
+       {{Kind::null, {}, "in motion"}, {Kind::single, {"late poses"}, "in motion"}},
+       {10, 4, 4, 3, 4, 3},
+       {2, 1, 1, 0, 1, 1}},
       {"images",
        images_world,
        {{Kind::single, {"light between surfaces"}, "direct light only"},
@@ -48,6 +62,15 @@ const std::vector<WorldEntry>& entries() {
        {{Kind::alike, {"rough matte"}, "normal incidence"}},
        {14, 8, 8, 8, 3, 4},
        {4, 2, 2, 3, 1, 2}},
+      {"gloss",
+       gloss_world,
+       {{Kind::null, {}, "bands"},
+        {Kind::single, {"iridescent film"}, "bands"},
+        {Kind::null, {}, "two lamps"},
+        {Kind::single, {"dye"}, "two lamps"}},
+       {8, 4, 6, 4, 4, 4},
+       {2, 1, 1, 1, 1, 1}},
+      {"heights", heights_world, {}, {8, 0, 6, 3, 0, 4}, {2, 0, 1, 0, 0, 1}},
       {"light",
        light_world,
        {{Kind::single, {"diverging light"}, "believed parallel"}},
@@ -80,8 +103,12 @@ class Planner {
       for (int k = 0; k < most; ++k)
         add(outside ? Kind::outside : Kind::single, {name}, "", outside ? 0 : multiples[k % 6], k < few);
     }
-    for (const Special& s : entry_.specials)
-      for (int k = 0; k < entry_.whole.specials; ++k) add(s.kind, s.effects, s.variant, 0, k < entry_.quick.specials);
+    for (const Special& s : entry_.specials) {
+      const int most = s.whole < 0 ? entry_.whole.specials : s.whole,
+                few = s.quick < 0 ? entry_.quick.specials : s.quick;
+      for (int k = 0; k < most; ++k)
+        add(s.kind, s.effects, s.variant, s.kind == Kind::single ? multiples[k % 6] : 0, k < few);
+    }
     for (int k = 0; k < entry_.whole.pairs; ++k) add(Kind::pair, pair(), "", 0, k < entry_.quick.pairs);
     return std::move(specs_);
   }
@@ -92,8 +119,11 @@ class Planner {
     for (const char c : text) hash = split_mix(hash ^ static_cast<unsigned char>(c));
     return hash;
   }
+  // The seed depends on what the case is, not on what else is made.
   void add(Kind kind, std::vector<std::string> effects, const std::string& variant, double multiple, bool quick) {
-    const std::uint64_t seed = hash_of(entry_.domain) + specs_.size();
+    std::string what = entry_.domain + "/" + variant + "/" + std::string(kind_name(kind));
+    for (const std::string& e : effects) what += "/" + e;
+    const std::uint64_t seed = hash_of(what + "/" + std::to_string(made_[what]++));
     specs_.push_back({entry_.domain, kind, std::move(effects), variant, multiple, seed, quick});
   }
   std::vector<std::string> pair() {
@@ -110,6 +140,7 @@ class Planner {
   const WorldEntry& entry_;
   Random random_;
   std::map<std::string, EffectKind> kinds_;
+  std::map<std::string, int> made_;
   std::vector<Spec> specs_;
 };
 

@@ -1,6 +1,8 @@
 // A camera in the hand of an arm of UR5e's dimensions, before a board on the table. The arm is a product of rotations
-// about axes read off its drawing (Lynch & Park 2017, section 4.1.1), not a chain of Denavit and Hartenberg.
+// about axes read off its drawing (Lynch & Park 2017, section 4.1.1), not a chain of Denavit and Hartenberg. It stops
+// for every photograph while it warms up; in the design "in motion" it photographs on its way, four times a second.
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -25,8 +27,10 @@ struct Arm {
   Pose home = Pose::Identity();
 };
 // At zero: stretched along -x at the height of the shoulder, wrist below, tool looking along -y.
-Arm ur5e(double longer_upper_arm) {
-  const double shoulder = 0.1625, elbow = -0.425 - longer_upper_arm, wrist = elbow - 0.3922;
+Arm ur5e(double longer_upper_arm, double grown = 0) {
+  const double more = 1 + grown;  // of all lengths
+  const double shoulder = 0.1625 * more, elbow = -0.425 * more - longer_upper_arm, wrist = elbow - 0.3922 * more;
+  const double side_1 = -0.1333 * more, side_2 = -0.0996 * more, drop = 0.0997 * more;
   const Vector up(0, 0, 1), side(0, -1, 0);
   Arm a;
   a.axis = {up, side, side, side, -up, side};
@@ -34,9 +38,9 @@ Arm ur5e(double longer_upper_arm) {
                Vector(0, 0, shoulder),
                Vector(elbow, 0, shoulder),
                Vector(wrist, 0, shoulder),
-               Vector(wrist, -0.1333, 0),
-               Vector(wrist, 0, shoulder - 0.0997)};
-  a.home.translation() = Vector(wrist, -0.1333 - 0.0996, shoulder - 0.0997);
+               Vector(wrist, side_1, 0),
+               Vector(wrist, 0, shoulder - drop)};
+  a.home.translation() = Vector(wrist, side_1 + side_2, shoulder - drop);
   a.home.linear() << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   return a;
 }
@@ -102,6 +106,7 @@ Six hanging(const Arm& a, Six q, double rad_per_m) {
 struct View {
   Six joints;
   std::array<double, 6> shaken{};  // how far the arm stands from where its model puts it: noise
+  double time_s = 0, warmer = 0;   // K above the first
 };
 
 class RobotWorld final : public World {
@@ -128,7 +133,11 @@ class RobotWorld final : public World {
   void write(const Numbers& observed, const Numbers& stated, Case& into) const override;
 
  private:
-  Pose camera_from_board(const View& view, const Numbers& base, const Sizes& sizes) const;
+  Pose camera_from_board(const View& view, Six joints, const Numbers& base, const Sizes& sizes) const;
+  std::vector<Six> stood(const Sizes& sizes) const;
+  Pose tool_on_the_way(double time_s) const;
+  bool moves_ = false;
+  double phase_ = 0;
   std::vector<View> views_;
   Pose tool_from_camera_ = Pose::Identity(), base_from_board_ = Pose::Identity();
   double noise_m_ = 5e-5, noise_rad_ = 5e-5;
@@ -147,16 +156,60 @@ std::vector<EffectKind> RobotWorld::effects() const {
   add({"hanging arm", "robot.sag", pose, arm, 3e-4, 1.5e-3}).means({"joint_2_rad_per_m", "joint_3_rad_per_m"});
   add({"longer upper arm", "robot.link-length", pose, arm, 3e-4, 2e-3}).of_either_sign().means({"a_2_m"}, {-1});
   add({"larger board", "board.scale", {"board"}, board, 1e-3, 8e-3}).of_either_sign().means({"scale_x", "scale_y"});
+  add({"play of the gears",
+       "robot.backlash",
+       pose,
+       {"robot.approach-1", "robot.approach-2", "robot.approach-3", "robot.approach-4", "robot.approach-5"},
+       2e-4,
+       1e-3})
+      .of_parts(4)
+      .means({"backlash_2_rad", "backlash_3_rad", "backlash_4_rad", "backlash_5_rad"}, {-1, -1, -1, -1});
+  add({"cold start", "robot.thermal", pose, {"robot.temperature", "robot.reach"}, 1e-5, 5e-5}).means({"growth_per_K"});
+  add({"late poses", "robot.time-offset", pose, {"robot.speed"}, 2e-3, 3e-2})
+      .of_either_sign()
+      .means({"lag_s"})
+      .only_for("in motion");
   add({"yielding table", "", pose, {"robot.joint-1"}, 5e-4, 2e-3});
   return k;
 }
 
-// The pose in which an image was taken: zeros off, links longer, joints hanging, and the base tilting to where the arm
-// points (outside the library).
-Pose RobotWorld::camera_from_board(const View& view, const Numbers& base, const Sizes& sizes) const {
-  Six q = view.joints;
+// Where the camera goes when it does not stop: tilted, turned and lifted by slow waves.
+Pose RobotWorld::tool_on_the_way(double t) const {
+  const Vector middle(0.5 * (columns - 1) * square, 0.5 * (rows - 1) * square, 0);
+  const double tilt = 0.35 + 0.3 * std::sin(0.9 * t + phase_), around = 0.5 * t + phase_, roll = std::sin(0.7 * t);
+  Pose from_camera = Pose::Identity();
+  from_camera.rotate(Eigen::AngleAxisd(around, Vector::UnitZ())).rotate(Eigen::AngleAxisd(tilt, Vector::UnitX()));
+  from_camera.rotate(Eigen::AngleAxisd(roll - around, Vector::UnitZ()));
+  from_camera.translation() = middle - from_camera.linear() * Vector(0, 0, 0.5 + 0.12 * std::sin(1.1 * t));
+  return base_from_board_ * from_camera * tool_from_camera_.inverse();
+}
+
+// The joints behind the gears. Those with play stand still until the motor has taken it up (the play operator of
+// hysteresis); a moving arm has gone on by the time its pose is read.
+std::vector<Six> RobotWorld::stood(const Sizes& sizes) const {
+  const double late = size_of(sizes, "late poses");
+  std::vector<Six> joints;
+  for (const View& view : views_) {
+    joints.push_back(view.joints);
+    if (late != 0) reach(ur5e(0), tool_on_the_way(view.time_s + late), joints.back());
+  }
+  if (!sizes.contains("play of the gears")) return joints;
+  Six driven = joints[0];
+  for (std::size_t v = 0; v < joints.size(); ++v)
+    for (std::size_t j = 0; j < 4; ++j) {
+      const double half = 0.5 * size_of(sizes, "play of the gears", j);
+      double& q = joints[v][static_cast<int>(j) + 1];
+      double& stands = driven[static_cast<int>(j) + 1];
+      q = stands = std::clamp(stands, q - half, q + half);
+    }
+  return joints;
+}
+
+// The pose in which an image was taken: zeros off, links longer or warmer, joints hanging, and the base tilting to
+// where the arm points (outside the library).
+Pose RobotWorld::camera_from_board(const View& view, Six q, const Numbers& base, const Sizes& sizes) const {
   for (std::size_t j = 0; j < 4; ++j) q[static_cast<int>(j) + 1] += size_of(sizes, "joint zeros", j);
-  const Arm real = ur5e(size_of(sizes, "longer upper arm"));
+  const Arm real = ur5e(size_of(sizes, "longer upper arm"), size_of(sizes, "cold start") * (view.warmer - 8));
   q = hanging(real, q, size_of(sizes, "hanging arm"));
   Pose stands = moved(tool(real, q), view.shaken.data());
   if (const double tilt = size_of(sizes, "yielding table"); tilt > 0) {
@@ -169,8 +222,9 @@ Pose RobotWorld::camera_from_board(const View& view, const Numbers& base, const 
 Numbers RobotWorld::simulate(const Numbers& base, const Sizes& sizes) const {
   Numbers pixels;
   const double larger = 1 + size_of(sizes, "larger board");
-  for (const View& view : views_) {
-    const Pose pose = camera_from_board(view, base, sizes);
+  const std::vector<Six> joints = stood(sizes);
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    const Pose pose = camera_from_board(views_[v], joints[v], base, sizes);
     for (int r = 0; r < rows; ++r)
       for (int c = 0; c < columns; ++c) {
         const Vector p = pose * Vector(c * square * larger, r * square * larger, 0);
@@ -181,7 +235,9 @@ Numbers RobotWorld::simulate(const Numbers& base, const Sizes& sizes) const {
   return pixels;
 }
 
-void RobotWorld::design(Random& random, const std::string&) {
+void RobotWorld::design(Random& random, const std::string& variant) {
+  moves_ = variant == "in motion";
+  phase_ = random.uniform(0, 2 * pi);
   noise_m_ = random.uniform(3e-5, 1.5e-4);
   noise_rad_ = random.uniform(3e-5, 1.5e-4);
   tool_from_camera_.translate(Vector(0.03, -0.06, 0.05));
@@ -191,15 +247,19 @@ void RobotWorld::design(Random& random, const std::string&) {
   const Vector middle(0.5 * (columns - 1) * square, 0.5 * (rows - 1) * square, 0);
   const Arm nominal = ur5e(0);
   const std::size_t wanted = 30 + random.below(16);
+  Six posture;
+  posture << -0.3, -1.5, 1.4, -1.5, -1.57, 0.3;
+  double clock = 0;
   for (int tries = 0; views_.size() < wanted && tries < 10000; ++tries) {
+    clock += moves_ ? 0.25 : random.uniform(20, 40);
     const double tilt = random.uniform(0, 0.7), around = random.uniform(0, 2 * pi), roll = random.uniform(-1, 1);
     Pose from_camera = Pose::Identity();
     from_camera.rotate(Eigen::AngleAxisd(around, Vector::UnitZ())).rotate(Eigen::AngleAxisd(tilt, Vector::UnitX()));
     from_camera.rotate(Eigen::AngleAxisd(roll - around, Vector::UnitZ()));
     from_camera.translation() = middle - from_camera.linear() * Vector(0, 0, random.uniform(0.35, 0.7));
-    View view;
-    view.joints << -0.3, -1.5, 1.4, -1.5, -1.57, 0.3;
-    if (!reach(nominal, base_from_board_ * from_camera * tool_from_camera_.inverse(), view.joints)) continue;
+    View view{.joints = posture, .time_s = clock, .warmer = 16 * (1 - std::exp(-clock / 500))};
+    const Pose goal = base_from_board_ * from_camera * tool_from_camera_.inverse();
+    if (!reach(nominal, moves_ ? tool_on_the_way(clock) : goal, view.joints)) continue;
     for (std::size_t k = 0; k < 6; ++k) view.shaken[k] = (k < 3 ? noise_rad_ : noise_m_) * random.normal();
     views_.push_back(view);
   }
@@ -227,7 +287,9 @@ void RobotWorld::write(const Numbers& observed, const Numbers&, Case& into) cons
     Value image = Value::object({{"id", id}, {"camera", "cam"}, {"board", "board"}, {"robot", "arm"}});
     image["base_from_tool"] = matrix_of(tool(nominal, views_[v].joints));
     image["joints_rad"] = Value(std::vector<double>(views_[v].joints.data(), views_[v].joints.data() + 6));
-    image["camera_from_board"] = nearly(camera_from_board(views_[v], base(), {}), 1e-3, 1e-3);
+    image["camera_from_board"] = nearly(camera_from_board(views_[v], views_[v].joints, base(), {}), 1e-3, 1e-3);
+    image["time_s"] = views_[v].time_s;
+    if (!moves_) image["temperature_K"] = 294 + views_[v].warmer;
     images.push_back(image);
     for (int k = 0; k < rows * columns; ++k, i += 2)
       lines.push_back(Value(Value::Array{id, k, (k % columns) * square, (k / columns) * square, observed[i],

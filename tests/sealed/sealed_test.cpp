@@ -9,7 +9,9 @@
 #include <fstream>
 #include <set>
 
+#include "sealed/film.h"
 #include "sealed/judge.h"
+#include "sealed/matter.h"
 #include "sealed/surviving.h"
 #include "sealed/traced_lens.h"
 #include "sealed/worlds.h"
@@ -77,6 +79,41 @@ TEST(TracedLens, BarrelGrowsWithTheDistanceToTheStop) {
     last = ratio;
   }
   EXPECT_LT(last, 0.99);
+}
+
+// Schott's data sheet: n = 1.51680 at 587.56 nm. Colour shifts grow with the lens's distance from the stop, and the
+// pupil moves with the square of the angle first.
+TEST(TracedLens, ColoursPartAndThePupilMoves) {
+  EXPECT_NEAR(crown_glass(0.58756), 1.51680, 1e-5);
+  const Singlet lens{.stop_m = 2e-3};
+  EXPECT_NEAR(colour_ratio(lens, lens.index, 0.5), 1, 1e-12);
+  const double red = colour_ratio(lens, crown_glass(0.65), 0.3), blue = colour_ratio(lens, crown_glass(0.45), 0.3);
+  EXPECT_GT(red, 1);
+  EXPECT_LT(blue, 1);
+  EXPECT_LT(colour_ratio({.stop_m = 1e-3}, crown_glass(0.65), 0.3), red);
+  const Singlet front{.stop_m = 1e-3, .front_m = -8e-3, .back_m = 8e-3};
+  EXPECT_NEAR(pupil_shift(front, 0.1) / pupil_shift(front, 0.05), 4, 0.1);
+}
+
+// A film half a wave thick is not there; a quarter of a wave of the root of the glass's index reflects nothing (Born &
+// Wolf 1999, section 1.6.4). The band of 20 nm leaves a little.
+TEST(Film, VanishesAtHalfAWaveAndCoatsAtAQuarter) {
+  const double f0 = 0.04, glass = 1.5;
+  EXPECT_NEAR(film_reflectance({0, 1.9}, f0, 0.6, 5.5e-7), fresnel(0.6, f0), 1e-12);
+  EXPECT_NEAR(film_reflectance({5.5e-7 / (2 * 1.9), 1.9}, f0, 1, 5.5e-7), f0, 1e-3);
+  EXPECT_NEAR(film_reflectance({5.5e-7 / (4 * std::sqrt(glass)), std::sqrt(glass)}, f0, 1, 5.5e-7), 0, 1e-4);
+  EXPECT_NEAR(film_reflectance({5.5e-7 / (4 * 1.9), 1.9}, f0, 1, 5.5e-7),
+              std::pow((1.9 * 1.9 - glass) / (1.9 * 1.9 + glass), 2), 1e-3);
+}
+
+TEST(Sealed, EveryDesignHasCases) {
+  std::map<std::string, int> numbers;
+  for (const Spec& s : all_specs()) numbers[s.domain + "/" + s.variant + "/" + std::string(kind_name(s.kind))] += 1;
+  EXPECT_GE(numbers.size(), 40u);
+  for (const WorldEntry& w : all_worlds())
+    for (const Special& special : w.specials)
+      EXPECT_TRUE(numbers.contains(w.domain + "/" + special.variant + "/" + std::string(kind_name(special.kind))))
+          << w.domain << " " << special.variant;
 }
 
 TEST(AreaUnderCurve, IsOneForAPerfectOrderAndAHalfForNone) {

@@ -14,4 +14,13 @@ struct Singlet {
 // Height on the image plane over its paraxial height, for a ray through the stop's centre at tan(angle) = t.
 double image_height_ratio(const Singlet& lens, double t);
 
+// Magnification in a colour for which the glass has another index, over that in the lens's own, on the plane where its
+// own is sharp, for a ray through the stop's centre at tan(angle) = t.
+double colour_ratio(const Singlet& lens, double index, double t);
+double crown_glass(double wavelength_um);  // index of BK7 (Sellmeier's equation, Schott's coefficients)
+
+// Where a ray that leaves through the lens at tan(angle) = t towards the scene seems to come from, along the axis
+// towards the scene, counted from where those near the axis do: the stop's centre seen through the lens (m).
+double pupil_shift(const Singlet& lens, double t);
+
 }  // namespace gonio::sealed

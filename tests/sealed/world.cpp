@@ -138,7 +138,8 @@ Sizes sizes_of(const Spec& spec, const Stage& s, Random& random) {
   Sizes sizes;
   for (const std::string& name : spec.effects) {
     Numbers size = drawn(find(s.kinds, name), random);
-    if (spec.multiple > 0) scale_to(s, spec.multiple * limit_of(freedom(find(s.kinds, name))), size, name);
+    const EffectKind& kind = find(s.kinds, name);
+    if (spec.multiple > 0 && kind.scales) scale_to(s, spec.multiple * limit_of(freedom(kind)), size, name);
     sizes[name] = size;
   }
   return sizes;
@@ -148,7 +149,7 @@ Sizes sizes_of(const Spec& spec, const Stage& s, Random& random) {
 Sizes harmless(const Stage& s, Random& random) {
   std::vector<EffectKind> known;
   for (const EffectKind& k : s.kinds)
-    if (!k.id.empty() && k.variant.empty()) known.push_back(k);
+    if (!k.id.empty() && k.variant.empty() && k.scales) known.push_back(k);
   if (known.empty()) return {};
   for (int tries = 0; tries < 20; ++tries) {  // some effects have a least size
     const EffectKind& kind = known[random.below(static_cast<std::uint32_t>(known.size()))];
@@ -233,6 +234,10 @@ EffectKind& EffectKind::of_parts(std::size_t count, double numbers_of_a_test) {
 }
 EffectKind& EffectKind::only_for(const std::string& design) {
   variant = design;
+  return *this;
+}
+EffectKind& EffectKind::as_drawn() {
+  scales = false;
   return *this;
 }
 EffectKind& EffectKind::means(const std::vector<std::string>& parameters, const Numbers& scale) {

@@ -21,10 +21,12 @@ struct EffectKind {
       {};                    // empty: the declaration's numbers mean others
   std::string variant = {};  // of the design that it needs; empty: the usual one
   double freedom = 0;        // numbers that a test for it has (one a view); 0: as many as it has parts
+  bool scales = true;        // false: what it does is not in proportion to its size, so that it is never scaled
 
   EffectKind& of_either_sign();
   EffectKind& of_parts(std::size_t count, double numbers_of_a_test = 0);
   EffectKind& only_for(const std::string& design);
+  EffectKind& as_drawn();  // never scaled
   // The declaration's parameters of this name are the parts of the size, times `scale`.
   EffectKind& means(const std::vector<std::string>& parameters, const Numbers& scale = {});
   EffectKind& nearly(const std::string& parameter);  // the same to first order: no interval is asked

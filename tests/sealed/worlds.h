@@ -12,6 +12,7 @@ struct Special {
   Kind kind;
   std::vector<std::string> effects;
   std::string variant;
+  int whole = -1, quick = -1;  // cases; below zero: as the world's share says
 };
 struct Share {  // how many cases of a domain, in all and in the ten minutes
   int nulls = 0, distractors = 0, singles = 0, pairs = 0, specials = 0, outside = 0;
@@ -37,5 +38,7 @@ std::unique_ptr<World> tracks_world();
 std::unique_ptr<World> volume_world();
 std::unique_ptr<World> exposures_world();
 std::unique_ptr<World> photometric_world();
+std::unique_ptr<World> gloss_world();
+std::unique_ptr<World> heights_world();
 
 }  // namespace gonio::sealed
