@@ -3,8 +3,10 @@
 #include "surface/interface_albedo.h"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "surface/fresnel.h"
@@ -119,14 +121,53 @@ const Table& table() {
   return t;
 }
 
+// Where an interface lies between the nodes, and what it returned lately: one direction after another meets the same
+// interface, and one row of a measured table after another the same cosine. Remembered by each thread; a value is the
+// same, to the bit, whether it is found here or in the table.
+struct Place {
+  static constexpr std::size_t directions = 64;
+  double alpha = -1, f0 = -1, mean = 0;
+  Cell a, f;
+  std::array<double, directions> cosine{}, value{};
+
+  void move_to(double new_alpha, double new_f0) {
+    alpha = new_alpha, f0 = new_f0;
+    a = alpha_cell(alpha), f = f0_cell(f0);
+    mean = std::nan("");
+    cosine.fill(std::nan(""));
+  }
+};
+
+std::uint64_t mixed(double x) {
+  return std::bit_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u;
+}
+
+Place& place_of(double alpha, double f0) {
+  constexpr int bits = 2;
+  thread_local std::array<Place, 1u << bits> remembered;
+  Place& place = remembered[(mixed(alpha) ^ mixed(f0)) >> (64 - bits)];
+  if (place.alpha != alpha || place.f0 != f0) place.move_to(alpha, f0);
+  return place;
+}
+
 }  // namespace
 
 double dielectric_albedo(double cosine, double alpha, double f0) {
-  const Cell a = alpha_cell(alpha), c = cosine_cell(cosine), f = f0_cell(f0);
-  return between(table().value(f.low, a, c), table().value(f.low + 1, a, c), f.share);
+  Place& place = place_of(alpha, f0);
+  const std::size_t slot = mixed(cosine) >> 58;
+  if (place.cosine[slot] == cosine) return place.value[slot];
+  const Cell c = cosine_cell(cosine);
+  const Table& t = table();
+  place.cosine[slot] = cosine;
+  return place.value[slot] =
+             between(t.value(place.f.low, place.a, c), t.value(place.f.low + 1, place.a, c), place.f.share);
 }
+
 double dielectric_albedo_mean(double alpha, double f0) {
-  const Cell a = alpha_cell(alpha), f = f0_cell(f0);
-  return between(table().mean(f.low, a), table().mean(f.low + 1, a), f.share);
+  Place& place = place_of(alpha, f0);
+  if (std::isnan(place.mean))
+    place.mean = between(table().mean(place.f.low, place.a), table().mean(place.f.low + 1, place.a), place.f.share);
+  return place.mean;
 }
+
 }  // namespace gonio::surface

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "explain/tables/model_parameters.h"
 #include "manifest/reference.h"
 #include "scene/mechanisms.h"
 
@@ -41,13 +42,19 @@ class Collector {
  public:
   Collector(const manifest::Document& document, const std::string& table_name, const Table& table,
             const ReflectanceRows& rows)
-      : document_(document), table_(table), section_(document.tables.at(table_name)), rows_(rows) {}
+      : document_(document),
+        name_(table_name),
+        table_(table),
+        section_(document.tables.at(table_name)),
+        rows_(rows),
+        gain_(model_parameter(section_, name_, "gain", "1", 1, false)) {}
 
   ReflectanceParameters run() {
     out_.surface = section_.surface;
     out_.place = table_.place;
     read_surface();
     base_parameters();
+    gain();
     // Tables that a model has prepared hold for the values that it was given.
     if (!out_.base.empty() && out_.base_model->info().attachment == manifest::Attachment::none)
       for (surface::Values& v : out_.base_values) v.prepared = nullptr;
@@ -89,7 +96,8 @@ class Collector {
     const surface::Values& values = scratch_.surfaces[0].values;
     const auto& infos = out_.base_model->info().parameters;
     const manifest::Parameters& given = document_.surfaces.at(section_.surface).parameters;
-    const bool marked = std::any_of(given.begin(), given.end(), [](const auto& p) { return p.second.free; });
+    const bool marked =
+        gain_.free || std::any_of(given.begin(), given.end(), [](const auto& p) { return p.second.free; });
     const std::size_t bands = rows_.band_name.size();
     out_.base_values.assign((bands + 2) / 3, values);
     for (std::size_t i = 0; i < infos.size(); ++i) {
@@ -104,6 +112,13 @@ class Collector {
       }
       if (free && infos[i].components == 1) enter_base(infos[i], values.scalar(i), ReflectanceSlot::all, stated);
     }
+  }
+  void gain() {
+    out_.gain = gain_.parameter.start;
+    if (!(out_.gain > 0)) throw Error(Exit::data, table_.place + "/parameters/gain", "is not above 0");
+    if (!gain_.free) return;
+    gain_.parameter.lower = std::max(gain_.parameter.lower, 0.0);
+    out_.base.push_back(add(gain_.parameter, {Kind::gain, "gain", ReflectanceSlot::all, 0, ""}));
   }
   // What an earlier explanation found per band.
   const manifest::Parameter* fitted_bands(const std::string& name) const {
@@ -267,9 +282,11 @@ class Collector {
   }
 
   const manifest::Document& document_;
+  const std::string& name_;
   const Table& table_;
   const manifest::Table& section_;
   const ReflectanceRows& rows_;
+  ModelParameter gain_;
   scene::Appearance scratch_;  // the surface alone: its model grows with every mechanism that it takes
   ReflectanceParameters out_;
 };
@@ -296,6 +313,7 @@ surface::Values widened(const surface::Values& base, const surface::Model& from,
 ReflectanceState ReflectanceParameters::state(std::span<const double> values) const {
   ReflectanceState s;
   s.model = base_model;
+  s.gain = gain;
   for (std::size_t p = 0; p < slots.size(); ++p)
     if (slots[p].kind == Kind::mechanism && slots[p].switches && values[p] != slots[p].neutral) s.model = full_model;
   s.triples = base_values;
@@ -303,6 +321,7 @@ ReflectanceState ReflectanceParameters::state(std::span<const double> values) co
     for (surface::Values& v : s.triples) v = widened(v, *base_model, *s.model);
   for (std::size_t p = 0; p < slots.size(); ++p) {
     const ReflectanceSlot& slot = slots[p];
+    if (slot.kind == Kind::gain) s.gain = values[p];
     if (slot.kind == Kind::film && slot.which == 0 && values[p] > 0) s.film = {values[p], values[p + 1]};
     if (slot.kind == Kind::ridges && slot.which == 0 && values[p] > 0)
       s.ridges = {values[p], values[p + 1], values[p + 2]};

@@ -5,6 +5,8 @@
 // parameters of registered models, as `render` does (scene/mechanisms.h): the base model gives way to the smallest that
 // can express them all. surface.thin-film and surface.micro-ridges come as several candidates of one family, each with
 // its own range of thickness or azimuth: fringes and lobes have many local minima, and a range holds one of them.
+//
+// A table whose scale is not trusted states a `gain` among its parameters, by which every reflectance is multiplied.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,7 +16,7 @@
 namespace gonio::explain::tables {
 
 struct ReflectanceSlot {
-  enum class Kind { base, mechanism, film, ridges, fluorescence };
+  enum class Kind { base, gain, mechanism, film, ridges, fluorescence };
   Kind kind = Kind::base;
   std::string name;        // of the surface model's parameter
   std::size_t band = all;  // base: a colour's band
@@ -34,6 +36,7 @@ struct ReflectanceParameters {
   std::vector<ReflectanceSlot> slots;  // one per parameter
   std::vector<std::size_t> base;
   std::vector<Candidate> candidates;
+  double gain = 1;  // where it is not free
 
   ReflectanceState state(std::span<const double> values) const;
 };

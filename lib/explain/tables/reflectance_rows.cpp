@@ -130,20 +130,23 @@ ReflectanceRows reflectance_rows(const Table& table) {
   return rows;
 }
 
+// The difference angle is half the phase angle: the one that people set stands before it.
 std::vector<Condition> reflectance_conditions(const ReflectanceRows& rows) {
   std::vector<Condition> all = {{"surface.half-angle", "rad", "surface", {}, {}, "ln"},
-                                {"surface.difference-angle", "rad", "surface", {}, {}, "ln"},
                                 {"surface.incidence-angle", "rad", "surface", {}, {}, "ln"},
                                 {"surface.exitance-angle", "rad", "surface", {}, {}, "ln"},
                                 {"surface.phase-angle", "rad", "surface", {}, {}, "ln"},
+                                {"surface.difference-angle", "rad", "surface", {}, {}, "ln"},
                                 {"surface.azimuth", "rad", "surface", {}, {}, "ln"}};
   for (std::size_t r = 0; r < rows.rows(); ++r) {
     const Vec3 wi = rows.wi[r], wo = rows.wo[r], h = surface::half_vector(wo, wi);
     const double azimuth = std::hypot(h.x, h.y) > 1e-6 ? std::remainder(std::atan2(h.y, h.x), pi) : std::nan("");
-    const std::array<double, 6> at = {
-        std::acos(std::clamp(h.z, -1.0, 1.0)),         std::acos(std::clamp(norm(wo + wi) / 2, 0.0, 1.0)),
-        std::acos(std::clamp(wi.z, -1.0, 1.0)),        std::acos(std::clamp(wo.z, -1.0, 1.0)),
-        std::acos(std::clamp(dot(wi, wo), -1.0, 1.0)), azimuth};
+    const std::array<double, 6> at = {std::acos(std::clamp(h.z, -1.0, 1.0)),
+                                      std::acos(std::clamp(wi.z, -1.0, 1.0)),
+                                      std::acos(std::clamp(wo.z, -1.0, 1.0)),
+                                      std::acos(std::clamp(dot(wi, wo), -1.0, 1.0)),
+                                      std::acos(std::clamp(norm(wo + wi) / 2, 0.0, 1.0)),
+                                      azimuth};
     for (std::size_t k = 0; k < at.size(); ++k) all[k].values.push_back(at[k]);
   }
   if (rows.observed == 1 && rows.band_m.size() > 1) {

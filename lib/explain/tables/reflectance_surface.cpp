@@ -109,7 +109,7 @@ double ReflectanceEvaluation::value(std::size_t row, std::size_t band, const Sha
     const double off = (rows_.band_m[band] - glow.centre_m) / glow.width_m;
     f += glow.emission * rows_.excitation[row] * std::exp(-0.5 * off * off) / pi;
   }
-  return f;
+  return state_.gain * f;
 }
 
 }  // namespace gonio::explain::tables

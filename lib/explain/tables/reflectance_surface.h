@@ -4,6 +4,7 @@
 //     + lobes (F_film - F) + base (T_film / T - 1)              surface.thin-film      surface/thin_film.h
 //     + ridge_share (F ridges - gloss)                          surface.micro-ridges   surface/ridges.h
 //     + emission excitation exp(-(w - centre)^2 / 2 width^2) / pi                      surface.fluorescence
+// all of it times the gain of the table, 1 where reflectances are absolute.
 // gloss = lobes F is the model without its base, T = (1 - F(wi)) (1 - F(wo)), ridges the mean of saws that face either
 // way. Every term is skipped, to the bit, where its amount is zero.
 #pragma once
@@ -42,6 +43,7 @@ struct ReflectanceState {
   FilmTerm film;
   RidgesTerm ridges;
   FluorescenceTerm fluorescence;
+  double gain = 1;
 };
 
 // f of a row in a band. Rows of one geometry that follow each other share their work: one for each thread.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "explain/tables/model_parameters.h"
 #include "explain/tables/reflectance_parameters.h"
 
 namespace gonio::explain::tables {
@@ -85,7 +86,9 @@ class BoundSurface final : public BoundModel {
     manifest::Table& table = document.tables.at(name_);
     for (std::size_t p = 0; p < p_.slots.size(); ++p) {
       const ReflectanceSlot& slot = p_.slots[p];
-      if (slot.kind != Kind::base)
+      if (slot.kind == Kind::gain)
+        store_parameter(table, slot.name, values[p], sigma[p]);
+      else if (slot.kind != Kind::base)
         apply_mechanism(p, values, sigma, document);
       else if (slot.band == ReflectanceSlot::all)
         surface.parameters[slot.name].value = {values[p]}, surface.sigma[slot.name] = {sigma[p]};

@@ -1,4 +1,4 @@
-// reference.tile on readings whose angles are known.
+// reference.tile on readings whose angles are known; tables of reflectance: explain/tables/tile_term.h.
 #include <cmath>
 
 #include "explain/tables/table_model.h"
@@ -14,7 +14,7 @@ const Term& reference_tile() {
                          .order = term_order::reference,
                          .columns = {{"theta_i", "rad", "incidence"},
                                      {.name = "theta_o", .unit = "rad", .meaning = "exitance", .needed = false}},
-                         .models = {"surface", "expression"},
+                         .models = {"expression"},
                          .act =
                              [](double f, std::span<const double> at, std::span<const double> p) {
                                const double in = 1 - std::cos(at[0]), out = std::isnan(at[1]) ? 0 : 1 - std::cos(at[1]);

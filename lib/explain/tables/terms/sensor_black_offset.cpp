@@ -1,4 +1,6 @@
-// sensor.black-offset on a predicted reading. Equation: render/sensor_chain.h, step 8.
+// sensor.black-offset on a predicted reading. Equation: render/sensor_chain.h, step 8. Reflectances are readings that
+// were divided by what fell on the sample: an offset of the readings is none of theirs, and a table of reflectances
+// does not say by how much each was divided.
 #include "explain/tables/table_model.h"
 
 namespace gonio::mechanism {
@@ -10,7 +12,7 @@ namespace gonio::explain::tables {
 const Term& sensor_black_offset() {
   static const Term term{.mechanism = mechanism::sensor_black_offset,
                          .order = term_order::black_offset,
-                         .models = {"sensor", "light", "volume", "surface", "expression"},
+                         .models = {"sensor", "light", "volume", "expression"},
                          .applies = [](const Table&) { return true; },
                          .act = [](double f, std::span<const double>, std::span<const double> p) { return f + p[0]; },
                          .adapt =
