@@ -1,13 +1,15 @@
 // scripts/proofs/sealed: makes the sealed cases, and judges the answers when all are in.
 //   prove-sealed make FOLDER quick|full [DOMAIN...]    folders with recording.json; prints the seal of every truth
 //   prove-sealed list FOLDER quick|full [DOMAIN...]    the cases' folders, one a line
-//   prove-sealed judge FOLDER quick|full [DOMAIN...]   table on stdout; FOLDER.html, FOLDER.truth.json beside it
+//   prove-sealed judge FOLDER quick|full [DOMAIN...]   table on stdout; FOLDER.html, FOLDER.truth.json beside it;
+//                                                      FOLDER/list.txt: what explain --list prints, if it is there
 // Between the two no truth exists on any disk: judge computes it again from the same seeds and holds it against the
 // seal.
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <thread>
 
 #include "base/atomic_file.h"
@@ -46,6 +48,19 @@ std::vector<Spec> chosen(bool quick, const std::vector<std::string>& domains) {
   return specs;
 }
 
+// Every domain spread evenly over the list: however far a run comes, it has asked a fair share.
+std::vector<Spec> spread(std::vector<Spec> specs) {
+  std::map<std::string, double> count, met;
+  for (const Spec& s : specs) ++count[s.domain];
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t k = 0; k < specs.size(); ++k)
+    order.emplace_back((++met[specs[k].domain] - 0.5) / count[specs[k].domain], k);
+  std::sort(order.begin(), order.end());
+  std::vector<Spec> sorted;
+  for (const auto& [place, k] : order) sorted.push_back(std::move(specs[k]));
+  return sorted;
+}
+
 void make(const path& folder, const std::vector<Spec>& specs) {
   for_all(specs.size(), [&](std::size_t k) {
     const path own = folder / case_id(specs[k]);
@@ -62,10 +77,15 @@ void make(const path& folder, const std::vector<Spec>& specs) {
 
 int judge_all(const path& folder, const std::vector<Spec>& specs, const std::string& mode) {
   std::vector<Judged> cases(specs.size());
+  const path list = folder / "list.txt";
+  const Declared declared = declared_conditions(std::filesystem::exists(list) ? read_file(list) : "");
   std::atomic<int> broken{0};
   for_all(specs.size(), [&](std::size_t k) {
     const Case made = make_case(specs[k]);
     cases[k] = {made.spec, made.truth, made.id, read_answer(folder / made.id, made)};
+    for (const std::string& id : made.truth.mechanisms)  // what the library says of the mechanism is right, too
+      if (const auto said = declared.find(id); said != declared.end())
+        for (const std::string& condition : said->second) cases[k].truth.conditions.push_back(condition);
     const path seal = folder / "seals" / made.id;
     if (!std::filesystem::exists(seal) || read_file(seal) != seal_of(made) + "\n") ++broken;
   });
@@ -91,7 +111,7 @@ int run(const std::vector<std::string>& words) {
   }
   const std::vector<Spec> specs = chosen(words[2] == "quick", {words.begin() + 3, words.end()});
   if (words[0] == "list")
-    for (const Spec& s : specs) std::printf("%s\n", (path(words[1]) / case_id(s)).c_str());
+    for (const Spec& s : spread(specs)) std::printf("%s\n", (path(words[1]) / case_id(s)).c_str());
   if (words[0] == "judge") return judge_all(words[1], specs, words[2]);
   if (words[0] == "make") {
     make_folder(path(words[1]) / "seals");

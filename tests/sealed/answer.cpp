@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "base/atomic_file.h"
 #include "io/exr.h"
@@ -114,11 +115,12 @@ std::string domain_of(const Spec& spec) {
 
 struct Evidence {
   Numbers observed, effect;
+  std::vector<std::string> group;
 };
 Evidence read_evidence(const std::filesystem::path& file) {
   const std::string text = read_file(file);
   Evidence e;
-  std::size_t observed = 0, effect = 0;
+  std::size_t observed = 0, effect = 0, group = 0;
   for (std::size_t at = 0, line = 0; at < text.size(); ++line) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::vector<std::string> fields = split(text.substr(at, end - at));
@@ -127,57 +129,86 @@ Evidence read_evidence(const std::filesystem::path& file) {
       const auto place = [&](const char* name) {
         return static_cast<std::size_t>(std::find(fields.begin(), fields.end(), name) - fields.begin());
       };
-      observed = place("observed"), effect = place("effect");
+      observed = place("observed"), effect = place("effect"), group = place("group");
       continue;
     }
-    if (fields.size() <= std::max(observed, effect)) continue;
+    if (fields.size() <= std::max({observed, effect, group})) continue;
     e.observed.push_back(std::atof(fields[observed].c_str()));
     e.effect.push_back(std::atof(fields[effect].c_str()));
+    e.group.push_back(fields[group]);
   }
   return e;
 }
 
+// Root mean squares of `count` runs of equal length.
+Numbers of_runs(const Numbers& values, std::size_t count) {
+  Numbers rms(count);
+  for (std::size_t i = 0; i < values.size(); ++i) rms[i * count / values.size()] += values[i] * values[i];
+  for (double& v : rms) v = std::sqrt(v * static_cast<double>(count) / static_cast<double>(values.size()));
+  return rms;
+}
+
+struct Ranked {
+  Numbers score, effect;  // the answer's, the truth's
+};
+void set_areas(const Ranked& r, Answer& a) {
+  a.auc = area_under_curve(r.score, affected(r.effect, true));
+  a.auc_any = area_under_curve(r.score, affected(r.effect, false));
+}
+
 // Rows of the evidence are the case's rows, known by the value that was observed where that is written in its own unit,
-// else by their order: the makers write groups one after the other.
-std::optional<double> auc_of(const std::filesystem::path& file, const Case& sealed) {
+// else by their order: the makers write groups one after the other. Where they are not as many (a robot's poses against
+// corners), groups are compared.
+void ask_evidence(const std::filesystem::path& file, const Case& sealed, Answer& a) {
   const Evidence e = read_evidence(file);
   std::vector<std::pair<double, double>> truth;
-  for (const Observed& o : sealed.observed) truth.emplace_back(o.value, std::abs(o.effect));
+  Numbers in_order;
+  for (const Observed& o : sealed.observed) {
+    truth.emplace_back(o.value, std::abs(o.effect));
+    in_order.push_back(std::abs(o.effect));
+  }
   std::sort(truth.begin(), truth.end());
-  Numbers score;
-  std::vector<bool> affected;
+  Ranked known;
   for (std::size_t k = 0; k < e.observed.size(); ++k) {
     const double value = e.observed[k], slack = 1e-6 * std::abs(value) + 1e-300;
     const auto near = std::lower_bound(truth.begin(), truth.end(), std::pair{value - slack, 0.0});
     if (near == truth.end() || near->first > value + slack) continue;
-    score.push_back(e.effect[k]);
-    affected.push_back(near->second >= 1);
+    known.score.push_back(e.effect[k]);
+    known.effect.push_back(near->second);
   }
-  if (10 * score.size() > 9 * truth.size()) return area_under_curve(score, affected);
-  if (e.effect.size() != sealed.observed.size()) return {};
-  affected.clear();
-  for (const Observed& o : sealed.observed) affected.push_back(std::abs(o.effect) >= 1);
-  return area_under_curve(e.effect, affected);
+  if (!truth.empty() && 10 * known.score.size() > 9 * truth.size()) return set_areas(known, a);
+  if (e.effect.size() == in_order.size()) return set_areas({e.effect, in_order}, a);
+  const std::size_t groups = std::set<std::string>(e.group.begin(), e.group.end()).size();
+  if (groups == 0 || in_order.empty() || e.effect.size() % groups != 0 || in_order.size() % groups != 0) return;
+  set_areas({of_runs(e.effect, groups), of_runs(in_order, groups)}, a);
 }
 
 // Masks that images and stacks write, effect-ID.exr, against the effect on every pixel.
-std::optional<double> auc_of_masks(const std::filesystem::path& folder, const Case& sealed) {
-  Numbers score;
-  std::vector<bool> affected;
+void ask_masks(const std::filesystem::path& folder, const Case& sealed, Answer& a) {
+  Ranked r;
   for (const auto& [id, effect] : sealed.pixels) {
     const std::filesystem::path file = folder / ("effect-" + id + ".exr");
     if (!std::filesystem::exists(file)) continue;
     const io::Image mask = io::decode_exr(read_file(file), file.string());
     if (mask.pixels() != effect.size()) continue;
     for (std::size_t p = 0; p < effect.size(); ++p) {
-      score.push_back(mask.data[p * mask.channels.size()]);
-      affected.push_back(effect[p] >= 1);
+      r.score.push_back(mask.data[p * mask.channels.size()]);
+      r.effect.push_back(effect[p]);
     }
   }
-  return score.empty() ? std::nullopt : area_under_curve(score, affected);
+  if (!r.score.empty()) set_areas(r, a);
 }
 
 }  // namespace
+
+std::vector<bool> affected(const Numbers& effect, bool most) {
+  double squares = 0;
+  for (const double e : effect) squares += e * e;
+  const double least = most ? std::sqrt(squares / std::max<double>(1, static_cast<double>(effect.size()))) : 0;
+  std::vector<bool> marks;
+  for (const double e : effect) marks.push_back(e >= std::max(1.0, least));
+  return marks;
+}
 
 std::optional<double> area_under_curve(const Numbers& score, const std::vector<bool>& affected) {
   const auto positive = static_cast<double>(std::count(affected.begin(), affected.end(), true));
@@ -197,11 +228,37 @@ std::optional<double> area_under_curve(const Numbers& score, const std::vector<b
   return (ranks - 0.5 * positive * (positive + 1)) / (positive * negative);
 }
 
+Declared declared_conditions(const std::string& list) {
+  Declared declared;
+  std::string id;
+  bool seen = false;
+  for (std::size_t at = 0; at < list.size();) {
+    const std::size_t end = std::min(list.find('\n', at), list.size());
+    const std::string line = list.substr(at, end - at);
+    at = end + 1;
+    const std::size_t first = line.find_first_not_of(' ');
+    if (first == std::string::npos) continue;
+    if (first == 0) id = line.find(' ') == std::string::npos ? line : "";
+    if (first < 6) seen = line.starts_with("    seen in: ");
+    if (!seen || id.empty()) continue;
+    const std::string text = line.substr(line.starts_with("    seen in: ") ? 13 : first);
+    for (std::size_t from = 0; from < text.size();) {
+      const std::size_t to = std::min(text.find(',', from), text.size()), start = text.find_first_not_of(' ', from);
+      if (start < to) declared[id].push_back(text.substr(start, to - start));
+      from = to + 1;
+    }
+  }
+  return declared;
+}
+
 Answer read_answer(const std::filesystem::path& folder, const Case& sealed) {
   Answer a;
   if (std::filesystem::exists(folder / "status.txt")) {
     const std::string status = read_file(folder / "status.txt");
-    if (std::sscanf(status.c_str(), "%d %lf", &a.exit, &a.seconds) < 1) a.exit = 70;
+    double user = 0, system = 0;
+    a.begun = true;
+    if (std::sscanf(status.c_str(), "%d %lf %lf %lf", &a.exit, &a.seconds, &user, &system) < 1) a.exit = 70;
+    a.processor_seconds = user + system;
   }
   const std::filesystem::path out = folder / "out.json";
   if (!std::filesystem::exists(out)) {
@@ -220,10 +277,10 @@ Answer read_answer(const std::filesystem::path& folder, const Case& sealed) {
     for (const Value& n : list(explanations[k].find("named")))
       if (k != own) add_unique(a.elsewhere, text_or_nothing(n.find("mechanism")));
   if (!sealed.pixels.empty()) {
-    a.auc = auc_of_masks(folder / "out", sealed);
+    ask_masks(folder / "out", sealed, a);
   } else if (const auto file = folder / "out" / ("evidence-" + domain_of(sealed.spec) + ".csv");
              std::filesystem::exists(file)) {
-    a.auc = auc_of(file, sealed);
+    ask_evidence(file, sealed, a);
   }
   return a;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <set>
 
 #include "base/text.h"
@@ -80,6 +81,9 @@ std::vector<Asked> questions() {
       {share_question("where", "AUC of the evidence >= 0.9", ">= 90 % of cases", 0.9, false),
        [](const Judged& j) { return single(j) && clear(j) && j.answer.auc.has_value(); },
        [](const Judged& j) { return *j.answer.auc >= 0.9; }},
+      {share_question("where", "the same, all observations above one noise width", "", 0.9, false, false),
+       [](const Judged& j) { return single(j) && clear(j) && j.answer.auc_any.has_value(); },
+       [](const Judged& j) { return *j.answer.auc_any >= 0.9; }},
       {share_question("which, where it can be told apart", "named first", ">= 90 %", 0.9, false), apart,
        [](const Judged& j) { return !j.answer.named.empty() && j.answer.named[0] == j.truth.mechanisms[0]; }},
       {share_question("which, where it cannot", "truth in the reported set", ">= 95 %", 0.95, false), alike,
@@ -209,12 +213,15 @@ std::string Question::measured() const {
 }
 
 Judgement judge(const std::vector<Judged>& as_read) {
-  std::vector<Judged> cases = as_read;
+  std::vector<Judged> cases;
+  std::copy_if(as_read.begin(), as_read.end(), std::back_inserter(cases),
+               [](const Judged& j) { return j.answer.begun || j.answer.ran; });
   for (Judged& j : cases)
     for (std::vector<std::string>* ids : {&j.truth.mechanisms, &j.answer.named, &j.answer.reported})
       *ids = physics_of(*ids);
   Judgement result;
   result.cases = cases.size();
+  result.not_begun = as_read.size() - cases.size();
   const std::vector<Asked> asked = questions();
   for (const Asked& a : asked) {
     result.questions.push_back(a.question);
@@ -231,7 +238,7 @@ Judgement judge(const std::vector<Judged>& as_read) {
   for (const Judged& j : cases) {
     ++result.confusion[j.truth.mechanisms.empty() ? "(" + std::string(kind_name(j.truth.kind)) + ")"
                                                   : joined(j.truth.mechanisms)][first_answer(j)];
-    result.seconds[j.spec.domain].push_back(j.answer.seconds);
+    result.seconds[j.spec.domain].push_back(j.answer.processor_seconds);
     if (j.answer.ran) continue;
     ++result.unanswered;
     add_failure(j, "no answer", result);

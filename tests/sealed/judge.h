@@ -44,8 +44,8 @@ struct Judgement {
   std::vector<Question> questions;
   std::map<std::string, std::map<std::string, int>> confusion;  // truth -> first answer -> cases
   std::vector<Failure> failures;
-  std::size_t cases = 0, unanswered = 0;
-  std::map<std::string, Numbers> seconds;  // domain -> of each case
+  std::size_t cases = 0, unanswered = 0, not_begun = 0;
+  std::map<std::string, Numbers> seconds;  // domain -> of the processor for each case
 };
 
 // How far the effect is above what explain says it can see: |true - neutral| over the printed limit; the maker's own

@@ -1,6 +1,7 @@
 // The judgement as text for a terminal and as a page for a sceptic.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/text.h"
 #include "report/number_text.h"
@@ -76,13 +77,13 @@ report::TableText case_table(const std::vector<Judged>& cases) {
   report::TableText table;
   table.columns = {{"case", "", false},   {"domain", "", false}, {"kind", "", false},   {"left out", "", false},
                    {"x limit", "", true}, {"share", "", true},   {"answer", "", false}, {"before", "", true},
-                   {"after", "", true},   {"floor", "", true},   {"AUC", "", true},     {"time", "s", true}};
+                   {"after", "", true},   {"floor", "", true},   {"AUC", "", true},     {"processor", "s", true}};
   for (const Judged& j : cases)
     table.rows.push_back({j.id, j.spec.domain, std::string(kind_name(j.truth.kind)), j.truth.world,
                           format("%.1f", times_the_limit(j)), format("%.2g", j.truth.share), j.answer.sentence,
                           format("%.4g", j.answer.before), format("%.4g", j.answer.after),
                           format("%.4g", j.truth.floor), j.answer.auc ? format("%.2f", *j.answer.auc) : "",
-                          format("%.1f", j.answer.seconds)});
+                          format("%.1f", j.answer.processor_seconds)});
   return table;
 }
 
@@ -93,7 +94,9 @@ std::string headline(const Judgement& j) {
     ++asked;
     met += q.met();
   }
-  return format("%d of %d figures of the proof are reached on %zu sealed cases", met, asked, j.cases);
+  std::string text = format("%d of %d figures of the proof are reached on %zu sealed cases", met, asked, j.cases);
+  if (j.not_begun > 0) text += format("; %zu more were not begun for want of time", j.not_begun);
+  return text;
 }
 
 }  // namespace
@@ -106,8 +109,8 @@ std::string table_text(const Judgement& j) {
   text += "\nby domain:\n";
   for (const std::string& d : domains_of(j)) {
     const Numbers& s = j.seconds.at(d);
-    text += format("  %s: %zu cases, median %.1f s, longest %.1f s\n", d.c_str(), s.size(), stats::median(s),
-                   *std::max_element(s.begin(), s.end()));
+    text += format("  %s: %zu cases, processor: median %.1f s, longest %.1f s, in all %.0f s\n", d.c_str(), s.size(),
+                   stats::median(s), *std::max_element(s.begin(), s.end()), std::accumulate(s.begin(), s.end(), 0.0));
     for (const Question& q : j.questions)
       if (!cell(q, d).empty())
         text += format("    %-37s %-52s %s\n", q.question.c_str(), q.measure.c_str(), cell(q, d).c_str());
@@ -116,7 +119,7 @@ std::string table_text(const Judgement& j) {
   for (const auto& [truth, answers] : j.confusion)
     for (const auto& [answer, count] : answers)
       text += format("  %4d  %-60s %s\n", count, truth.c_str(), answer.c_str());
-  text += format("\n%zu cases, %zu without an answer; failures:\n", j.cases, j.unanswered);
+  text += format("\n%zu cases, %zu without an answer, %zu not begun; failures:\n", j.cases, j.unanswered, j.not_begun);
   for (const Failure& f : j.failures)
     text +=
         "  " + f.id + " " + f.domain + " " + f.kind + " " + f.world + "\n      " + f.what + " -> " + f.answer + "\n";
@@ -136,7 +139,9 @@ std::string page_html(const Judgement& j, const std::vector<Judged>& cases, cons
       "An effect counts as present where its size is at least three times the detection limit that explain "
       "printed for it, and its share of the signal at least what --matters asks. Whether effects can be told "
       "apart is the maker's count: the best other mechanism, at its best size, must leave at least five standard "
-      "deviations of the effect (yes) or at most three (no).");
+      "deviations of the effect (yes) or at most three (no). A condition counts as right if the maker or the "
+      "library's own declaration of the true mechanism lists it. An observation counts as affected where the effect, "
+      "after the fair refit, is at least one noise width and at least its own root mean square.");
   page.table(domain_table(j));
   page.section("Confusions");
   page.table(confusion_table(j));

@@ -131,6 +131,24 @@ TEST(AreaUnderCurve, IsOneForAPerfectOrderAndAHalfForNone) {
   EXPECT_FALSE(area_under_curve(score, std::vector<bool>(400, true)).has_value());
 }
 
+// An effect that a refit balances crosses zero somewhere; what is left there does not say that the place was missed.
+TEST(Affected, IsWhatHoldsMostOfTheEffectAndAtLeastTheNoise) {
+  const Numbers effect{0.2, 0.9, 1.5, 2, 10, 12};
+  EXPECT_EQ(affected(effect, false), (std::vector<bool>{false, false, true, true, true, true}));
+  EXPECT_EQ(affected(effect, true), (std::vector<bool>{false, false, false, false, true, true}));
+  EXPECT_EQ(affected({0.1, 0.3}, true), (std::vector<bool>{false, false}));
+}
+
+TEST(Declared, ConditionsAreReadFromTheListAsItIsPrinted) {
+  const Declared d = declared_conditions(
+      "Lights: what leaves the lamps\n\nlight.ambient\n    Weak light arrives.\n    seen in: light.visibility, "
+      "image.radiance,\n      scene.depth\n    mistaken for a, told apart by: b\n      c, d\n\nlens.radial\n"
+      "    seen in: camera.image-radius\n");
+  ASSERT_EQ(d.size(), 2u);
+  EXPECT_EQ(d.at("light.ambient"), (std::vector<std::string>{"light.visibility", "image.radiance", "scene.depth"}));
+  EXPECT_EQ(d.at("lens.radial"), (std::vector<std::string>{"camera.image-radius"}));
+}
+
 Judged answered(Kind kind, const std::string& effect, const std::vector<std::string>& named) {
   Judged j;
   j.spec.domain = "boards";
@@ -178,6 +196,17 @@ TEST(Judge, CountsWhatIsRightAndWhatIsWrong) {
   EXPECT_EQ(j.failures.size(), 3u);
   EXPECT_EQ(j.confusion.at("lens.radial").at("board.warp"), 1);
   EXPECT_NE(page_html(j, cases, "quick").find("board.warp"), std::string::npos);
+}
+
+TEST(Judge, CasesThatWereNotBegunAreCountedAndNotAsked) {
+  Judged waiting = answered(Kind::null, "", {});
+  waiting.answer = {};
+  const Judgement j = judge({waiting, answered(Kind::null, "", {})});
+  EXPECT_EQ(j.cases, 1u);
+  EXPECT_EQ(j.not_begun, 1u);
+  EXPECT_EQ(j.unanswered, 0u);
+  waiting.answer.begun = true;
+  EXPECT_EQ(judge({waiting}).unanswered, 1u);
 }
 
 TEST(Judge, EffectsBelowThreeTimesThePrintedLimitAreNotAsked) {

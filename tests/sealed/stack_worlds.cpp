@@ -177,6 +177,7 @@ class Photometric final : public StackWorld {
     add({"bent response", "sensor.non-linearity", sensor, bright, 0.05, 0.2});
     add({"black offset", "sensor.black-offset", sensor, bright, 0.005, 0.03}).means({"offset"});
     add({"vignetting", "optics.vignetting", {"optics"}, {"camera.image-radius"}, 0.1, 0.4}).only_for("where asked");
+    add({"shadow of a wire", "", light, {}, 0.15, 0.5});
     return k;
   }
   void design(Random& random, const std::string&) override {
@@ -216,6 +217,11 @@ class Photometric final : public StackWorld {
           const Vec3 x = normalized(cross(normal_[p], Vec3{0.3, 1, 0.2}));
           const Scattering f = scatter(m, normal_[p], x, l, eye);
           v = pi * (albedo_[p] * f.base.x + f.coat) * cosine;
+        }
+        if (const double depth = size_of(sizes, "shadow of a wire"); depth > 0) {  // falls elsewhere for each lamp
+          const double across =
+              static_cast<double>(p % side) - 0.3 * static_cast<double>(p / side) - 22 + 18 * l.x / l.z;
+          v *= 1 - depth * std::exp(-0.5 * across * across / 6);
         }
         v += albedo_[p] * size_of(sizes, "ambient light") * 0.5 * (1 + normal_[p].z);
         if (const double falloff = size_of(sizes, "vignetting"); falloff > 0) {
