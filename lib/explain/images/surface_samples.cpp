@@ -86,6 +86,8 @@ scene::Shape clipped(const scene::Instance& instance, Vec3 lower, Vec3 upper, Ve
   return scene::Plane{high[0] - low[0], high[1] - low[1]};
 }
 
+}  // namespace
+
 float received(const render::RayCaster& caster, const render::SurfacePoint& at, const LightSource& light) {
   Vec3 wi = light.direction;
   double distance_m = render::far_away, falloff = 1;
@@ -99,8 +101,6 @@ float received(const render::RayCaster& caster, const render::SurfacePoint& at, 
   if (cosine <= 0 || caster.occluded(at, wi, distance_m)) return 0;
   return static_cast<float>(cosine * falloff);
 }
-
-}  // namespace
 
 SurfaceSamples surface_samples(const Setting& setting, std::size_t surface, Vec3 lower_m, Vec3 upper_m,
                                std::size_t count) {

@@ -17,4 +17,7 @@ struct SurfaceSamples {
 SurfaceSamples surface_samples(const Setting& setting, std::size_t surface, Vec3 lower_m, Vec3 upper_m,
                                std::size_t count);
 
+// V cos / d^2 (directional lights: V cos) at a point from a small light.
+float received(const render::RayCaster& caster, const render::SurfacePoint& at, const LightSource& light);
+
 }  // namespace gonio::explain::images

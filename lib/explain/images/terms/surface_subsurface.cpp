@@ -1,13 +1,18 @@
-// surface.subsurface on cached geometry: the direct irradiance of a facet becomes its mean over the surface around it,
-// weighted by the diffusion profile (surface/diffusion_profile.h). Rings of distance about every facet hold the mean
-// irradiance from each lamp of points spread evenly over the surface, its far side included (thin parts), so that any
-// mean free path costs one weighted sum a facet. Distances are straight. The innermost ring is the facet's own light;
-// rings without points give their weight to the others. Light between surfaces is not spread.
+// surface.subsurface on cached geometry: the direct irradiance of a facet becomes that of where the light entered.
+// Light between surfaces is not spread.
+//
+// Closed bodies (spheres, meshes): random walks within them (explain/images/body_walks.h).
+// What has a front alone (planes, open meshes) is taken for the face of a half space: the mean irradiance around a
+// facet, weighted by the diffusion profile (surface/diffusion_profile.h). Rings of distance about every facet hold the
+// mean irradiance from each lamp of points spread evenly over the surface, so that any mean free path costs one
+// weighted sum a facet. The innermost ring is the facet's own light; rings without points give their weight to the
+// others.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "base/parallel.h"
+#include "explain/images/body_walks.h"
 #include "explain/images/image_model.h"
 #include "explain/images/surface_samples.h"
 #include "explain/images/uses.h"
@@ -28,6 +33,13 @@ double outer(std::size_t ring) {
 }
 constexpr double pairs = 3e8;  // of facets and points: what bounds the points
 constexpr std::size_t most_points = 60000, least_points = 4000;
+
+constexpr std::size_t walks = 384, walks_of_pictures = 64;
+
+struct Bodies final : Prepared {
+  Bodies(const Setting& s, std::size_t surface, std::size_t count) : light(s, surface, count) {}
+  BodyWalks light;
+};
 
 struct Rings final : Prepared {
   std::vector<std::vector<float>> mean;         // [view][facet][light][ring]
@@ -56,6 +68,7 @@ void gather(const Vec3& at, const SurfaceSamples& samples, std::size_t lights, f
 
 std::shared_ptr<const Prepared> prepare(const Setting& s, const Use& use) {
   const std::size_t surface = use.targets[0], lights = s.layout.lights.size();
+  if (are_bodies(s, surface)) return std::make_shared<Bodies>(s, surface, s.fitted ? walks_of_pictures : walks);
   Vec3 lower{1e30, 1e30, 1e30}, upper = -lower;
   std::size_t facets = 0;
   for (std::size_t v = 0; v < s.model.views(); ++v)
@@ -118,12 +131,11 @@ RingWeights ring_weights(std::span<const double> paths_m, Rgb albedo) {
   return weights;
 }
 
-void shade(const Use& use, const Frame& frame, Shading& shading) {
-  const auto& table = static_cast<const Rings&>(*use.prepared);
-  const std::size_t lights = frame.model.layout().lights.size(), view = frame.image.view;
-  const SurfaceState& surface = frame.state.surfaces[use.targets[0]];
-  const Rgb albedo = surface.values.rgb(parameter_index(*surface.model, "albedo"));
-  const RingWeights weights = ring_weights(use.amounts(frame.state), albedo);
+// Calls change(view, facet, light, own) for every facet of the surface under every light of the image: what is added to
+// the irradiance, per unit of intensity.
+template <class Change>
+void change_irradiance(const Use& use, const Frame& frame, Shading& shading, const Change& change) {
+  const std::size_t view = frame.image.view;
   std::size_t slot = 0;
   for (const std::uint32_t p : frame.picked)
     for (std::size_t k = 0; k < frame.cache.pixels[p].facets; ++k, ++slot) {
@@ -131,18 +143,39 @@ void shade(const Use& use, const Frame& frame, Shading& shading) {
       if (frame.cache.facets[f].surface != use.targets[0]) continue;
       for (std::size_t j = 0; j < shading.lights; ++j) {
         const std::size_t l = frame.image.lights[j];
-        const float* mean = &table.mean[view][(f * lights + l) * rings];
-        const double own = frame.model.small_light(view, f, l);
-        Rgb change, total = weights[0];
-        for (std::size_t r = 1; r < rings; ++r) {
-          if (!table.seen[view][f * rings + r]) continue;
-          change += weights[r] * (double{mean[r]} - own);
-          total += weights[r];
-        }
-        change = {change.x / total.x, change.y / total.y, change.z / total.z};
-        shading.direct[slot * shading.lights + j].base += change * (frame.cache.facets[f].weight / pi);
+        shading.direct[slot * shading.lights + j].base +=
+            change(view, f, l, frame.model.small_light(view, f, l)) * (frame.cache.facets[f].weight / pi);
       }
     }
+}
+
+void shade(const Use& use, const Frame& frame, Shading& shading) {
+  const SurfaceState& surface = frame.state.surfaces[use.targets[0]];
+  const Rgb albedo = surface.values.rgb(parameter_index(*surface.model, "albedo"));
+  const std::span<const double> paths_m = use.amounts(frame.state);
+  if (const auto* bodies = dynamic_cast<const Bodies*>(use.prepared.get())) {
+    const BodyWalks& light = bodies->light;
+    const BodyWalks::Weights w[3] = {light.weights(paths_m[0], albedo.x), light.weights(paths_m[1], albedo.y),
+                                     light.weights(paths_m[2], albedo.z)};
+    change_irradiance(use, frame, shading, [&](std::size_t view, std::size_t f, std::size_t l, double own) {
+      return Rgb{light.spread(w[0], view, f, l, own) - own, light.spread(w[1], view, f, l, own) - own,
+                 light.spread(w[2], view, f, l, own) - own};
+    });
+    return;
+  }
+  const auto& table = static_cast<const Rings&>(*use.prepared);
+  const std::size_t lights = frame.model.layout().lights.size();
+  const RingWeights weights = ring_weights(paths_m, albedo);
+  change_irradiance(use, frame, shading, [&](std::size_t view, std::size_t f, std::size_t l, double own) {
+    const float* mean = &table.mean[view][(f * lights + l) * rings];
+    Rgb change, total = weights[0];
+    for (std::size_t r = 1; r < rings; ++r) {
+      if (!table.seen[view][f * rings + r]) continue;
+      change += weights[r] * (double{mean[r]} - own);
+      total += weights[r];
+    }
+    return Rgb{change.x / total.x, change.y / total.y, change.z / total.z};
+  });
 }
 
 }  // namespace
