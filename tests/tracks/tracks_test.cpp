@@ -20,7 +20,8 @@ using tests::Film;
 
 struct FilmTruth {
   double focal_px = 900, distance_m = 0.6, noise_px = 0.3, k1 = 0;
-  std::size_t frames = 10, slipped = 0;  // so many tracks slip by 4 px from the fifth frame on
+  std::size_t frames = 10, slipped = 0;  // so many tracks slip from the fifth frame on
+  double slip_px = 4;                    // in u, and against v
 };
 // A wavy sheet of 0.3 m that bends from frame to frame, turned about, before a pinhole camera.
 Film film(const FilmTruth& truth, std::uint64_t seed) {
@@ -40,7 +41,7 @@ Film film(const FilmTruth& truth, std::uint64_t seed) {
       const double yt = y * std::cos(tilt) - zt * std::sin(tilt);
       const double far = zt * std::cos(tilt) + y * std::sin(tilt) + zoom;
       const double r2 = (xt * xt + yt * yt) / (far * far), bow = 1 + truth.k1 * r2;
-      const double slip = k < truth.slipped && f >= 4 ? 4 : 0;
+      const double slip = k < truth.slipped && f >= 4 ? truth.slip_px : 0;
       result.pixels.back().push_back({319.5 + truth.focal_px * xt / far * bow + truth.noise_px * normal() + slip,
                                       239.5 + truth.focal_px * yt / far * bow + truth.noise_px * normal() - slip});
       result.places.back().push_back({x, y, z});
@@ -121,6 +122,31 @@ TEST(Tracks, SlippedTracksAreFoundAmongThoseThatHold) {
     EXPECT_NEAR(a.estimate(std::string(point) + "slip_u_px").value, 4, 0.5);
     EXPECT_NEAR(a.estimate(std::string(point) + "slip_v_px").value, -4, 0.5);
   }
+  EXPECT_EQ(a.e.conditions.at(0).name, "tracks.point") << a.e.sentence;
+}
+
+// Slips of three noise widths are less than a frame's own jumps and more than what eight frames leave of them; the
+// upgraded manifest holds both numbers of every track, and nothing is left over it.
+TEST(Tracks, SmallSlipsAreFoundAndTheUpgradedManifestHoldsThemAll) {
+  FilmTruth truth;
+  truth.focal_px = 9e6, truth.distance_m = 6000, truth.slipped = 2, truth.frames = 16, truth.slip_px = 1;
+  const Answer a = explained(tests::film_manifest(film(truth, 5), 1));
+  ASSERT_THAT(a.named, testing::ElementsAre("tracks.outliers")) << a.e.sentence;
+  manifest::Document upgraded = manifest::parse_document(tests::film_manifest(film(truth, 5), 1), "film", ".");
+  a.problem->apply(a.e, upgraded);
+  const manifest::MechanismUse& use = upgraded.mechanisms.at("tracks.outliers");
+  ASSERT_EQ(use.on.size(), 2u);
+  ASSERT_EQ(use.parameters.at("slip_u_px").value.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(use.parameters.at("slip_u_px").value[k], 1, 0.4);
+    EXPECT_NEAR(use.parameters.at("slip_v_px").value[k], -1, 0.4);
+    EXPECT_GT(use.sigma.at("slip_v_px")[k], 0);
+  }
+  const TablesProblem again(upgraded, "film", {}, false);
+  for (const Candidate& c : again.candidates()) EXPECT_NE(c.id(), "tracks.outliers");
+  const Explanation e = explain::explain(again, {});
+  EXPECT_TRUE(e.named.empty()) << e.sentence;
+  EXPECT_NEAR(e.held_out_after, a.e.held_out_after, 0.02);
 }
 
 TEST(Tracks, ALensShowsBesideAKnownPerspective) {

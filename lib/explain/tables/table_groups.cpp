@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "explain/tables/read_table.h"
+#include "explain/tables/unit.h"
 
 namespace gonio::explain::tables {
 namespace {
@@ -145,6 +146,19 @@ void use_labels_of(const std::vector<std::string>& known, const std::vector<std:
   }
 }
 
+// Of every observed column the one that is named after it: "f_sigma" of "f", "u_sigma_px" or "u_px_sigma" of "u_px".
+// All of them, or none: a table states its noise whole.
+std::vector<std::size_t> sigma_by_name(const Table& table) {
+  std::vector<std::size_t> found;
+  for (const std::size_t c : table.observed) {
+    const std::string& own = table.columns[c];
+    std::size_t place = table.place_of(own + "_sigma");
+    if (place == Table::none) place = table.place_of(stem_of(own) + "_sigma");
+    if (place != Table::none && table.labels[place].empty()) found.push_back(place);
+  }
+  return found.size() == table.observed.size() ? found : std::vector<std::size_t>{};
+}
+
 }  // namespace
 
 Table read_table(const manifest::Document& document, const std::string& name, const std::string& usual,
@@ -165,6 +179,7 @@ Table read_table(const manifest::Document& document, const std::string& name, co
     table.observed.push_back(column_of(table, column, table.place + "/observed"));
   for (const std::string& column : section.sigma)
     table.sigma.push_back(column_of(table, column, table.place + "/sigma"));
+  if (section.sigma.empty()) table.sigma = sigma_by_name(table);
   check_observed(table, section);
   sort_rows(grouping_of(raw, table, section, usual, telling), table);
   if (table.group.size() < fewest_groups)

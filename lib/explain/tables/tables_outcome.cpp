@@ -49,8 +49,9 @@ void TablesProblem::apply(const Explanation& e, manifest::Document& document) co
     for (const std::size_t p : candidates_[c].parameters) {
       const std::string& full = parameters_[p].name;
       const std::string name = full.substr(full.find_last_of("./") + 1);
-      use.parameters[name] = e.values[p];
-      use.sigma[name] = std::vector<double>{e.sigma[p]};
+      if (!of_single_targets(candidates_[c])) use.parameters[name].value.clear(), use.sigma[name].clear();
+      use.parameters[name].value.push_back(e.values[p]);
+      use.sigma[name].push_back(e.sigma[p]);
     }
     document.mechanisms[m.id] = std::move(use);
   }

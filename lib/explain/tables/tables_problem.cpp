@@ -30,7 +30,8 @@ std::vector<std::string> telling_columns(const Model& model, const manifest::Tab
   for (const Column& column : model.columns) telling.push_back(column.name);
   for (const auto& [column, unit] : section.columns)
     if (std::find(section.observed.begin(), section.observed.end(), column) == section.observed.end() &&
-        std::find(section.sigma.begin(), section.sigma.end(), column) == section.sigma.end())
+        std::find(section.sigma.begin(), section.sigma.end(), column) == section.sigma.end() &&
+        !stem_of(column).ends_with("_sigma"))
       telling.push_back(column);
   std::stable_partition(telling.begin() + static_cast<std::ptrdiff_t>(model.columns.size()), telling.end(),
                         [&](const std::string& c) { return section.expression.find(stem_of(c)) != std::string::npos; });
@@ -65,6 +66,24 @@ void TablesProblem::assemble(const manifest::Document&) {
   candidates_.insert(candidates_.end(), terms_->candidates().begin(), terms_->candidates().end());
 }
 
+// Which number of a parameter's list is candidate parameter k's: the place of its target among those that the manifest
+// names. Candidates with the numbers of several targets hold them target by target.
+std::optional<std::size_t> TablesProblem::number_of(const Candidate& candidate, std::size_t k,
+                                                    const manifest::MechanismUse& use) const {
+  if (!of_single_targets(candidate)) return 0;
+  const std::size_t own = k / candidate.mechanism->parameters.size();
+  if (use.on.empty()) return own;
+  const std::string& target = candidate.on[own];
+  const auto found = std::find(use.on.begin(), use.on.end(), target);
+  if (found == use.on.end()) return {};
+  return static_cast<std::size_t>(found - use.on.begin());
+}
+
+bool TablesProblem::of_single_targets(const Candidate& candidate) {
+  return candidate.on.size() > 1 &&
+         candidate.parameters.size() == candidate.on.size() * candidate.mechanism->parameters.size();
+}
+
 // What the manifest switches on already holds at its values; parameters that it sets free join the base model.
 void TablesProblem::switch_on(const manifest::Document& document) {
   std::erase_if(candidates_, [&](const Candidate& candidate) {
@@ -76,11 +95,14 @@ void TablesProblem::switch_on(const manifest::Document& document) {
     };
     if (!use.on.empty() && !candidate.on.empty() && std::all_of(candidate.on.begin(), candidate.on.end(), elsewhere))
       return false;
-    for (const std::size_t place : candidate.parameters) {
+    for (std::size_t k = 0; k < candidate.parameters.size(); ++k) {
+      const std::size_t place = candidate.parameters[k];
       Parameter& p = parameters_[place];
       const auto given = use.parameters.find(p.name.substr(p.name.find_last_of("./") + 1));
       if (given == use.parameters.end() || !given->second.given()) continue;
-      p.start = p.neutral = given->second.scalar();
+      const std::optional<std::size_t> number = number_of(candidate, k, use);
+      if (!number || *number >= given->second.value.size()) continue;
+      p.start = p.neutral = given->second.value[*number];
       if (given->second.sigma) p.prior_sigma = given->second.sigma;
       if (given->second.free) base_.push_back(place);
     }

@@ -8,6 +8,7 @@
 // own, keep their unit.
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "explain/domain.h"
@@ -48,6 +49,9 @@ class TablesProblem final : public Problem {
  private:
   void assemble(const manifest::Document& document);
   void switch_on(const manifest::Document& document);
+  std::optional<std::size_t> number_of(const Candidate& candidate, std::size_t k,
+                                       const manifest::MechanismUse& use) const;
+  static bool of_single_targets(const Candidate& candidate);  // has it numbers of its own for each name in `on`?
   void observe(const manifest::Document& document, const ProblemOptions& options);
   void add_conditions(const manifest::Table& section);
   void set_blocks(const manifest::Table& section);

@@ -1,5 +1,4 @@
-// See tracks_slips.h. A slip lasts: the mean residual over the frames from it on differs from that before by at least
-// half of the jump, in its direction.
+// See tracks_slips.h.
 #include "explain/tables/tracks_slips.h"
 
 #include <algorithm>
@@ -25,9 +24,18 @@ std::optional<Vec2> mean_over(const Residuals& r, std::size_t point, std::size_t
   return sum * (1 / count);
 }
 
-bool lasts(const Residuals& r, std::size_t point, std::size_t from, Vec2 jump) {
-  const auto before = mean_over(r, point, 0, from), after = mean_over(r, point, from, r.size());
-  return before && after && dot(*after - *before, jump) > 0.5 * dot(jump, jump);
+struct Step {
+  std::size_t point = 0;
+  Vec2 by;
+};
+// Of every point that is seen on both sides of frame `from`.
+std::vector<Step> steps_at(const Residuals& r, std::size_t from, std::size_t points) {
+  std::vector<Step> steps;
+  for (std::size_t p = 0; p < points; ++p) {
+    const auto before = mean_over(r, p, 0, from), after = mean_over(r, p, from, r.size());
+    if (before && after) steps.push_back({p, *after - *before});
+  }
+  return steps;
 }
 
 }  // namespace
@@ -37,21 +45,15 @@ std::vector<Slip> find_slips(const std::vector<TrackPoint>& track_points, std::s
   for (const TrackPoint& t : track_points) r[t.frame][t.point] = t.residual_px;
   std::vector<std::pair<double, Slip>> found;
   for (std::size_t f = 1; f < frames; ++f) {
+    const std::vector<Step> steps = steps_at(r, f, points);
+    if (steps.size() < fewest_points) continue;
     std::vector<double> along_x, along_y;
-    std::vector<std::size_t> who;
-    for (std::size_t p = 0; p < points; ++p) {
-      if (!r[f][p] || !r[f - 1][p]) continue;
-      const Vec2 jump = *r[f][p] - *r[f - 1][p];
-      along_x.push_back(jump.x);
-      along_y.push_back(jump.y);
-      who.push_back(p);
-    }
-    if (who.size() < fewest_points) continue;
+    for (const Step& s : steps) along_x.push_back(s.by.x), along_y.push_back(s.by.y);
     const double wide_x = stats::robust_sigma(along_x), wide_y = stats::robust_sigma(along_y);
     if (!(wide_x > 0 && wide_y > 0)) continue;
-    for (std::size_t k = 0; k < who.size(); ++k) {
-      const double size = std::hypot(along_x[k] / wide_x, along_y[k] / wide_y);
-      if (size > beyond && lasts(r, who[k], f, {along_x[k], along_y[k]})) found.push_back({size, {who[k], f}});
+    for (const Step& s : steps) {
+      const double size = std::hypot(s.by.x / wide_x, s.by.y / wide_y);
+      if (size > beyond) found.push_back({size, {s.point, f, s.by * (1 / std::hypot(s.by.x, s.by.y))}});
     }
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });

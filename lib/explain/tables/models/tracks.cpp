@@ -75,6 +75,7 @@ class Tracks final : public BoundModel {
     for (auto& [key, place] : points) {
       place = point_names_.size();
       point_names_.push_back(shortest_text(key));
+      point_numbers_.push_back(key);
     }
     std::map<double, std::size_t> frames;
     for (const double f : frame) frames.try_emplace(f, 0);
@@ -248,7 +249,6 @@ class Tracks final : public BoundModel {
   void bind_conditions() {
     Condition depth{"tracks.depth", "m", "pose", {}, {}, "1"};
     Condition radius{"camera.image-radius", "half width", "lens", {}, {}, "px"};
-    Condition point{"tracks.point", "1", "sensor", {}, {}, "px"};
     std::vector<double> values, prediction(2 * rows_.size());
     for (const Parameter& p : parameters_) values.push_back(p.neutral);
     predict(values, 0, rows_.size(), prediction);
@@ -263,9 +263,25 @@ class Tracks final : public BoundModel {
       };
       append(depth, (matrix_of(frame.rotation) * (rows_[r].point_m - frame.centre_m)).z, at);
       append(radius, length / (0.5 * nominal_focal_), length > 0 ? at * (1 / length) : Vec2{0, 0});
-      append(point, static_cast<double>(rows_[r].point), {1, 0});
     }
-    conditions_ = {std::move(depth), std::move(radius), std::move(point)};
+    conditions_ = {std::move(depth), std::move(radius)};
+    bind_slipped();
+  }
+  // Which of the tracks that may have slipped: the point's number, from its frame on, along its own step. Made of the
+  // base model's residuals like the candidate itself, whose six widths are what noise hardly does; absent without it.
+  void bind_slipped() {
+    if (slips_.empty()) return;
+    Condition point{"tracks.point", "1", "sensor", {}, {}, "px"};
+    for (const Row& row : rows_) {
+      point.values.push_back(std::nan(""));
+      Vec2 towards;
+      for (const auto& [slip, place] : slips_)
+        if (row.point == slip.point && row.frame >= slip.from)
+          point.values.back() = point_numbers_[row.point], towards = slip.towards;
+      point.direction.push_back(towards.x);
+      point.direction.push_back(towards.y);
+    }
+    conditions_.push_back(std::move(point));
   }
   static double norm_of(Vec2 v) { return std::hypot(v.x, v.y); }
 
@@ -273,6 +289,7 @@ class Tracks final : public BoundModel {
   std::string name_, camera_;
   std::vector<Row> rows_;
   std::vector<std::string> point_names_, frame_names_;
+  std::vector<double> point_numbers_;
   std::vector<WeakPose> frames_;
   std::vector<std::pair<Slip, std::size_t>> slips_;  // and the place of its parameters
   Vec2 centre_;
