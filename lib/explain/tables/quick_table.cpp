@@ -2,12 +2,14 @@
 #include "explain/tables/quick_table.h"
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 
 #include "base/error.h"
 #include "base/quantity.h"
 #include "base/text.h"
 #include "explain/tables/read_table.h"
+#include "explain/tables/table_model.h"
 #include "io/height_map.h"
 #include "manifest/fields.h"
 
@@ -103,6 +105,21 @@ manifest::Document height_map_document(const std::filesystem::path& file) {
   return document;
 }
 
+// A name alone that is neither a model's nor a column's is more likely a model misspelt than a model of one constant.
+void check_model(const QuickTable& quick, const RawTable& raw) {
+  const auto is_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_'; };
+  const auto known = [&](const std::string& column) { return stem_of(column) == stem_of(quick.model); };
+  const auto free = [&](const auto& parameter) { return parameter.first == quick.model; };
+  if (find_model(quick.model) != nullptr || !std::all_of(quick.model.begin(), quick.model.end(), is_name) ||
+      std::any_of(raw.columns.begin(), raw.columns.end(), known) ||
+      std::any_of(quick.free.begin(), quick.free.end(), free))
+    return;
+  std::vector<std::string> models;
+  for (const Model* model : all_models()) models.push_back(model->name);
+  throw Error(Exit::usage, "--model", "\"" + quick.model + "\" is no model, no column and no free parameter",
+              manifest::remedy_for(quick.model, models));
+}
+
 manifest::Document quick_document(const QuickTable& quick) {
   manifest::Document document;
   document.name = quick.file.string();
@@ -111,6 +128,7 @@ manifest::Document quick_document(const QuickTable& quick) {
   section.model = find_model(quick.model) != nullptr ? quick.model : "expression";
   if (section.model == "expression") section.expression = quick.model;
   RawTable raw = read_raw(quick.file, section, quick.file.filename().string());
+  check_model(quick, raw);
   const bool converted = set_units(quick.units, raw);
   for (const std::string& name : quick.observed)
     section.observed.push_back(raw.columns[column_of(raw, name, "--observed")]);

@@ -97,6 +97,12 @@ void check_observed(const Table& table, const manifest::Table& section) {
   for (const std::size_t c : table.observed)
     if (!table.labels[c].empty())
       throw Error(Exit::data, table.place + "/observed", "column \"" + table.columns[c] + "\" holds no numbers");
+  for (const std::size_t c : table.observed)
+    if (!table.varies(table.columns[c]) && table.rows() > 1)
+      throw Error(Exit::data, table.place + "/observed",
+                  "column \"" + table.columns[c] + "\" is " + shortest_text(table.values[c][0]) + " in all " +
+                      std::to_string(table.rows()) + " rows: there is nothing in it to explain",
+                  "name the column that was measured");
   for (const std::size_t c : table.sigma)
     for (std::size_t r = 0; r < table.rows(); ++r)
       if (!(table.values[c][r] > 0))

@@ -11,7 +11,7 @@ namespace gonio::explain::tables {
 namespace {
 
 constexpr double beyond = 6;
-constexpr std::size_t fewest_points = 8, most_slips = 8;
+constexpr std::size_t fewest_points = 8;
 
 using Residuals = std::vector<std::vector<std::optional<Vec2>>>;  // [frame][point]
 

@@ -14,12 +14,14 @@ struct TrackPoint {                  // one row of the table
   std::size_t frame = 0, point = 0;  // places in their orders
   Vec2 residual_px;                  // of the base model
 };
+inline constexpr std::size_t most_slips = 8;
+
 struct Slip {
   std::size_t point = 0, from = 0;  // frame
   Vec2 towards;                     // unit vector
 };
-// Steps beyond six robust widths, each point's widest, the largest first, no more than eight. Sixty points of Gaussian
-// noise have one in some 10^5 films of sixteen frames.
+// Steps beyond six robust widths, each point's widest, the largest first, no more than most_slips. Sixty points of
+// Gaussian noise have one in some 10^5 films of sixteen frames.
 std::vector<Slip> find_slips(const std::vector<TrackPoint>& track_points, std::size_t frames, std::size_t points);
 
 }  // namespace gonio::explain::tables

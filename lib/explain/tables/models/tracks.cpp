@@ -196,12 +196,8 @@ class Tracks final : public BoundModel {
   }
 
   void bind_slips(const Table& table) {
-    const std::vector<double> residual = base_residuals();
-    std::vector<TrackPoint> track_points;
-    for (std::size_t r = 0; r < rows_.size(); ++r)
-      track_points.push_back({rows_[r].frame, rows_[r].point, {residual[2 * r], residual[2 * r + 1]}});
     Candidate c{&mechanism_of("tracks.outliers"), {}, {}, {}};
-    for (const Slip& slip : find_slips(track_points, frames_.size(), point_names_.size())) {
+    for (const Slip& slip : suspects()) {
       std::vector<std::size_t> groups;
       for (std::size_t g = 0; g < table.group.size(); ++g)
         for (std::size_t r = table.first[g]; r < table.first[g + 1]; ++r)
@@ -214,6 +210,51 @@ class Tracks final : public BoundModel {
       slips_.push_back({slip, declare(*c.mechanism, "point-" + name + "/", 1, groups, c)});
     }
     if (!c.parameters.empty()) candidates_.push_back(std::move(c));
+  }
+
+  // Slips of the base model's residuals; then, since a perspective or a lens hides them there, those of what smooth
+  // functions of the shape's coordinates leave frame by frame: one after the other, as each bends these functions.
+  std::vector<Slip> suspects() const {
+    const std::vector<double> residual = base_residuals();
+    std::vector<TrackPoint> plain;
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      plain.push_back({rows_[r].frame, rows_[r].point, {residual[2 * r], residual[2 * r + 1]}});
+    std::vector<Slip> slips = find_slips(plain, frames_.size(), point_names_.size());
+    while (slips.size() < most_slips) {
+      const std::vector<Slip> more = find_slips(beyond_projections(slips), frames_.size(), point_names_.size());
+      if (more.empty()) break;
+      slips.push_back(more[0]);
+    }
+    return slips;
+  }
+  std::vector<TrackPoint> beyond_projections(const std::vector<Slip>& without) const {
+    std::vector<TrackPoint> result;
+    for (std::size_t f = 0; f < frames_.size(); ++f) {
+      const FrameRows frame = rows_of(f, without);
+      const std::vector<double> left = beyond_quadratic(frame.points, frame.pixels);
+      for (std::size_t k = 0; 2 * k < left.size(); ++k)
+        result.push_back({f, rows_[frame.rows[k]].point, {left[k], left[frame.rows.size() + k]}});
+    }
+    return result;
+  }
+  // Of one frame, in pixels about its middle: places in the camera's axes, and where they are seen.
+  struct FrameRows {
+    std::vector<std::size_t> rows;
+    std::vector<Vec3> points;
+    std::vector<Vec2> pixels;
+  };
+  FrameRows rows_of(std::size_t frame, const std::vector<Slip>& without) const {
+    FrameRows result;
+    const WeakPose& pose = frames_[frame];
+    const Mat3 rotation = matrix_of(pose.rotation);
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const auto slipped = [&](const Slip& s) { return s.point == rows_[r].point; };
+      if (rows_[r].frame != frame || std::any_of(without.begin(), without.end(), slipped)) continue;
+      result.rows.push_back(r);
+      result.points.push_back(rotation * (rows_[r].point_m - pose.centre_m) * pose.scale_px_per_m);
+      result.pixels.push_back(rows_[r].pixel - pose.shift_px);
+    }
+    return result;
   }
 
   std::vector<double> base_residuals() const {
@@ -249,6 +290,7 @@ class Tracks final : public BoundModel {
   void bind_conditions() {
     Condition depth{"tracks.depth", "m", "pose", {}, {}, "1"};
     Condition radius{"camera.image-radius", "half width", "lens", {}, {}, "px"};
+    Condition row{"camera.image-y", "px", "sensor", {}, {}, "px"};  // what a row shifts along itself: read out late
     std::vector<double> values, prediction(2 * rows_.size());
     for (const Parameter& p : parameters_) values.push_back(p.neutral);
     predict(values, 0, rows_.size(), prediction);
@@ -263,8 +305,9 @@ class Tracks final : public BoundModel {
       };
       append(depth, (matrix_of(frame.rotation) * (rows_[r].point_m - frame.centre_m)).z, at);
       append(radius, length / (0.5 * nominal_focal_), length > 0 ? at * (1 / length) : Vec2{0, 0});
+      append(row, prediction[2 * r + 1], {1, 0});
     }
-    conditions_ = {std::move(depth), std::move(radius)};
+    conditions_ = {std::move(depth), std::move(radius), std::move(row)};
     bind_slipped();
   }
   // Which of the tracks that may have slipped: the point's number, from its frame on, along its own step. Made of the
@@ -302,15 +345,8 @@ class Tracks final : public BoundModel {
 double Tracks::noise_px() const {
   std::vector<double> left;
   for (std::size_t f = 0; f < frames_.size(); ++f) {
-    std::vector<Vec3> points;
-    std::vector<Vec2> pixels;
-    const Mat3 rotation = matrix_of(frames_[f].rotation);
-    for (const Row& row : rows_) {
-      if (row.frame != f) continue;
-      points.push_back(rotation * (row.point_m - frames_[f].centre_m) * frames_[f].scale_px_per_m);
-      pixels.push_back(row.pixel - frames_[f].shift_px);
-    }
-    const std::vector<double> own = beyond_quadratic(points, pixels);
+    const FrameRows frame = rows_of(f, {});
+    const std::vector<double> own = beyond_quadratic(frame.points, frame.pixels);
     left.insert(left.end(), own.begin(), own.end());
   }
   return left.size() < 30 ? 1 : std::max(1e-6, stats::robust_sigma(left));
