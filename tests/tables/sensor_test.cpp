@@ -123,8 +123,8 @@ TEST(SensorTable, NoiseIsFoundFromNeighboursWithin30Percent) {
   const Table& t = problem.table();
   double ratio = 0;
   for (std::size_t r = 0; r < t.rows(); ++r)
-    ratio += problem.observations().sigma[r] * problem.reference(r) / (*t.find("value_sigma"))[r] /
-             static_cast<double>(t.rows());
+    ratio +=
+        problem.observations().sigma[r] * problem.reference(r) / (*t.find("truth"))[r] / static_cast<double>(t.rows());
   EXPECT_NEAR(ratio, 1, 0.3);
 }
 

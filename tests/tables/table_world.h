@@ -35,12 +35,15 @@ struct World {
 };
 
 // Readings of 6 grey patches at 12 exposures, shot noise and read noise, 12 bits. `reading` of the ideal value, the
-// exposure and the time.
+// exposure and the time. Where sigma is not stated, the column `truth` holds it.
 inline World sensor_world(std::uint64_t seed, const std::function<double(double, double, double)>& reading,
                           bool states_sigma = true) {
   World w;
-  w.columns = {{"patch", ""}, {"exposure_s", "s"}, {"time_s", "s"}, {"value", "1"}};
-  if (states_sigma) w.columns.emplace_back("value_sigma", "1");
+  w.columns = {{"patch", ""},
+               {"exposure_s", "s"},
+               {"time_s", "s"},
+               {"value", "1"},
+               {states_sigma ? "value_sigma" : "truth", "1"}};
   w.rest = R"("model": "sensor", "observed": ["value"])";
   if (states_sigma) w.rest += R"(, "sigma": ["value_sigma"])";
   Random random(seed, 3);
@@ -52,8 +55,7 @@ inline World sensor_world(std::uint64_t seed, const std::function<double(double,
       const double time = 10.0 * n++, ideal = radiance * exposure;
       const double f = reading(ideal, exposure, time);
       const double sigma = std::sqrt(0.5 * 0.5 + 0.05 * std::abs(f));
-      w.rows.push_back({static_cast<double>(p), exposure, time, f + sigma * random.normal()});
-      if (states_sigma) w.rows.back().push_back(sigma);
+      w.rows.push_back({static_cast<double>(p), exposure, time, f + sigma * random.normal(), sigma});
     }
   return w;
 }
