@@ -81,6 +81,10 @@ int judge_all(const path& folder, const std::vector<Spec>& specs, const std::str
   const Declared declared = declared_conditions(std::filesystem::exists(list) ? read_file(list) : "");
   std::atomic<int> broken{0};
   for_all(specs.size(), [&](std::size_t k) {
+    if (!std::filesystem::exists(folder / case_id(specs[k]) / "status.txt")) {  // not begun: nothing to judge
+      cases[k] = {specs[k], {}, case_id(specs[k]), {}};
+      return;
+    }
     const Case made = make_case(specs[k]);
     cases[k] = {made.spec, made.truth, made.id, read_answer(folder / made.id, made)};
     for (const std::string& id : made.truth.mechanisms)  // what the library says of the mechanism is right, too

@@ -67,7 +67,8 @@ void through_camera(Numbers& rgb, int width, int height, const Sizes& sizes, std
   through_lens(rgb, width, height, sizes);
   const double mix = size_of(sizes, "crosstalk"), swing = size_of(sizes, "mains ripple"),
                bend = size_of(sizes, "bent response"), offset = size_of(sizes, "black offset") * white,
-               full = (1 - size_of(sizes, "saturation")) * white, columns = size_of(sizes, "uneven columns");
+               uneven = size_of(sizes, "uneven pixels"), full = (1 - size_of(sizes, "saturation")) * white,
+               columns = size_of(sizes, "uneven columns");
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       double* p = &rgb[at(x, y, width)];
@@ -75,6 +76,7 @@ void through_camera(Numbers& rgb, int width, int height, const Sizes& sizes, std
       const double mains = 1 + swing * std::sin(2 * pi * y / 37.0 + 2.4 * static_cast<double>(picture));
       for (int c = 0; c < 3; ++c) {
         double v = (1 - 3 * mix) * p[c] + mix * sum;
+        if (uneven > 0) v *= 1 + uneven * Random(0x70726e75u, at(x, y, width) + static_cast<std::size_t>(c)).normal();
         v *= mains * (1 + columns * std::sin(2 * pi * x / 11.0));
         if (bend != 0) v = white / (2 * bend) * (1 - std::exp(-2 * bend * v / white));
         p[c] = std::min(v + offset, size_of(sizes, "saturation") > 0 ? full : 1e300);

@@ -7,10 +7,10 @@ namespace gonio::sealed {
 
 double size_of(const Sizes& sizes, const std::string& name, std::size_t part = 0);  // 0 where it is absent
 
-// Falloff after cos^4 of the field angle, glare with a wide kernel, crosstalk, ripple of the mains over rows, a
-// response that bends as charge fills the wells, an offset, saturation; and, outside every library, amplifiers of
-// columns that differ periodically. `picture`: which of a series (phases differ). `white`: the brightest reading of the
-// series.
+// Falloff after cos^4 of the field angle, glare with a wide kernel, crosstalk, ripple of the mains over rows,
+// pixels that differ, a response that bends as charge fills the wells, an offset, saturation; and, outside every
+// library, amplifiers of columns that differ periodically. `picture`: which of a series (phases differ). `white`: the
+// brightest reading of the series.
 void through_camera(Numbers& rgb, int width, int height, const Sizes& sizes, std::size_t picture, double white);
 
 // Photons (Poisson), read noise, gains of pixels that differ by 0.2 % and stay, 14 bits.

@@ -2,7 +2,6 @@
 // about its normal in steps of 45 degrees (the usual one), "bands" of wavelengths, "two lamps", one of which has the
 // ultraviolet that excites.
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "geom/vector.h"
@@ -15,30 +14,6 @@ namespace gonio::sealed {
 namespace {
 
 constexpr double f0 = 0.045, degree = pi / 180;
-constexpr int nodes = 24;
-
-// What varnish of this roughness sends back altogether, at cosines (k + 0.5) / nodes: facets drawn by their slopes on a
-// lattice.
-std::array<double, nodes> sent_back(double alpha) {
-  std::array<double, nodes> sums{};
-  constexpr int count = 3000;
-  for (int k = 0; k < nodes; ++k) {
-    const double c = (k + 0.5) / nodes;
-    const Vec3 wi{std::sqrt(1 - c * c), 0, c};
-    for (int i = 0; i < count; ++i) {
-      const double u = (i + 0.5) / count, phi = 2 * pi * std::fmod(i * 0.6180339887498949, 1.0);
-      const double tangent = alpha * std::sqrt(u / (1 - u)), z = 1 / std::sqrt(1 + tangent * tangent);
-      const Vec3 h{z * tangent * std::cos(phi), z * tangent * std::sin(phi), z};
-      const Vec3 wo = h * (2 * dot(wi, h)) - wi;
-      if (dot(wi, h) <= 0 || wo.z <= 0) continue;
-      const double bend = 1 + tangent * tangent / (alpha * alpha);
-      const double density = 1 / (pi * alpha * alpha * z * z * z * bend * bend) / (4 * dot(wi, h));  // of wo, 1/sr
-      const double f = fresnel(dot(wi, h), f0) * facets(alpha, alpha, {0, 0, 1}, {1, 0, 0}, wi, wo);
-      sums[static_cast<std::size_t>(k)] += f * wo.z / density / count;
-    }
-  }
-  return sums;
-}
 
 // Roofs whose flanks rise by `tilt` to either side of v, level crests: a point is seen from where the next crest does
 // not hide it. Facets of roughness alpha on the flanks.
@@ -94,8 +69,8 @@ class GlossWorld final : public RowsWorld {
   double albedo_ = 0.1, relative_ = 0.01, alpha_ = 0.15, lay_ = 0, tilt_ = 0.25, film_index_ = 1.7, centre_m_ = 5.2e-7;
   Numbers wavelength_m_;
   bool excites_ = false;
-  mutable double tabled_ = 0;
-  mutable std::array<double, nodes> table_{};
+  mutable double tabled_ = 0.2;
+  mutable CoatAlbedo table_{f0, 0.2};
 };
 
 std::vector<EffectKind> GlossWorld::effects() const {
@@ -175,15 +150,8 @@ double GlossWorld::varnish(double alpha, const Sizes& sizes, double wavelength_m
 
 // Lambertian under the varnish: what it lets in, out again, and back down (Kelemen & Szirmay-Kalos 2001).
 double GlossWorld::matte(double albedo, double alpha, Vec3 wi, Vec3 wo) const {
-  if (tabled_ != alpha) table_ = sent_back(alpha), tabled_ = alpha;
-  const auto lost = [&](double cosine) {
-    const double place = std::clamp(cosine * nodes - 0.5, 0.0, nodes - 1.001);
-    const auto k = static_cast<std::size_t>(place);
-    return table_[k] + (place - static_cast<double>(k)) * (table_[k + 1] - table_[k]);
-  };
-  double mean = 0;
-  for (std::size_t k = 0; k < nodes; ++k) mean += 2 * table_[k] * (static_cast<double>(k) + 0.5) / nodes / nodes;
-  return albedo / pi * (1 - lost(wi.z)) * (1 - lost(wo.z)) / (1 - mean);
+  if (tabled_ != alpha) table_ = CoatAlbedo(f0, alpha), tabled_ = alpha;
+  return albedo / pi * (1 - table_.at(wi.z)) * (1 - table_.at(wo.z)) / (1 - table_.mean());
 }
 
 double GlossWorld::reading(const Numbers& base, const Sizes& sizes, std::size_t row) const {

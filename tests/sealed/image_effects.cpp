@@ -28,6 +28,16 @@ std::vector<EffectKind> image_effects(const double* white) {
     return std::vector<TrueValue>{{"sensor.saturation", "full_scale", (1 - s[0]) * *white}};
   };
   add({"mains ripple", "sensor.row-pattern", sensor, {"camera.image-y"}, 0.01, 0.1});
+  add({"uneven pixels", "sensor.prnu", sensor, {"camera.pixel"}, 0.015, 0.05}).means({"sigma"});
+  add({"polarized lamps",
+       "light.polarization",
+       light,
+       {"light.plane-azimuth", "surface.incidence-angle", "light.identity"},
+       0.3,
+       0.9})
+      .only_for("varnished");
+  add({"brushed table", "surface.anisotropy", surface, {"surface.azimuth", "surface.half-angle"}, 0.3, 1})
+      .only_for("varnished");
   add({"crosstalk", "sensor.crosstalk", sensor, {"image.hue"}, 0.01, 0.05}).means({"share"});
   add({"second lamp",
        "light.second-source",

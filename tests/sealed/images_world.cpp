@@ -1,6 +1,9 @@
-// Photographs of balls and a box on a table under three lamps from three views, traced by traced_scene.h.
+// Photographs of balls and a box on a table under three lamps from three views, traced by traced_scene.h. Designs:
+// "direct light only" (the base model knows of no other), "table alone", "varnished" (everything under a clear coat,
+// without light between surfaces, in truth and in the base model).
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "base/text.h"
 #include "io/exr.h"
@@ -15,6 +18,7 @@ namespace {
 
 constexpr int size = 96;
 constexpr double focal = 204;
+constexpr double varnish_f0 = 0.045;
 constexpr std::size_t views = 3, lamps = 3;
 
 class Images final : public World {
@@ -60,7 +64,9 @@ class Images final : public World {
   Vec3 second_{}, push_{};
   Sensor sensor_;
   double white_ = 1;
-  bool believes_direct_ = false;
+  bool believes_direct_ = false, varnished_ = false;
+  std::shared_ptr<const CoatAlbedo> coat_;
+  double plane_ = 0;  // of polarization, about the way to the scene
   mutable Numbers clean_;
   mutable std::vector<Numbers> of_matter_;
 };
@@ -73,6 +79,14 @@ void Images::design(Random& random, const std::string& variant) {
   };
   for (int m = 0; m < 3; ++m) scene_.matters.push_back({.albedo = albedo()});
   scene_.table_matter = 0;
+  varnished_ = variant == "varnished";
+  if (varnished_) {
+    const double alpha = random.uniform(0.15, 0.25);
+    coat_ = std::make_shared<CoatAlbedo>(varnish_f0, alpha);
+    for (Matter& m : scene_.matters) m.f0 = varnish_f0, m.alpha = alpha, m.coat = coat_.get();
+    scene_.table_lay = random.uniform(0, pi);
+    plane_ = random.uniform(0, pi);
+  }
   if (variant != "table alone") {
     const double r = random.uniform(0.045, 0.06), small = random.uniform(0.025, 0.035);
     scene_.balls.push_back({{random.uniform(-0.04, -0.01), random.uniform(-0.02, 0.02), r}, r, 1});
@@ -113,7 +127,12 @@ Scene Images::altered(const Sizes& sizes, std::size_t lamp) const {
     const Vec3 k = turns_[lamp], p = on.position;
     on.position = p * std::cos(angle) + cross(k, p) * std::sin(angle) + k * (dot(k, p) * (1 - std::cos(angle)));
   }
+  if (const double degree = size_of(sizes, "polarized lamps"); degree > 0) {
+    const Vec3 way = normalized(on.position), a = normalized(cross(way, Vec3{0.2, 1, 0.1})), b = cross(way, a);
+    on.light = {a * std::cos(plane_) + b * std::sin(plane_), degree};
+  }
   s.lamps = {on};
+  s.matters[0].stretch = std::exp(size_of(sizes, "brushed table"));
   if (const double share = size_of(sizes, "second lamp"); share > 0)
     s.lamps.push_back({second_, 0, on.intensity * share});
   const double sky = size_of(sizes, "ambient light");
@@ -121,7 +140,7 @@ Scene Images::altered(const Sizes& sizes, std::size_t lamp) const {
   if (const double f0 = size_of(sizes, "clear coat"); f0 > 0) s.matters[1].f0 = f0, s.matters[1].alpha = 0.15;
   s.matters[1].slope_rad = size_of(sizes, "rough matte");
   s.stain = {{0.02, -0.09, 0}, 0.03, size_of(sizes, "stain")};
-  s.indirect = !believes_direct_ || sizes.contains("light between surfaces");
+  s.indirect = (!believes_direct_ && !varnished_) || sizes.contains("light between surfaces");
   if (!s.balls.empty()) {
     Ball& ball = s.balls[0];
     ball.centre += push_ * size_of(sizes, "moved ball");
@@ -242,8 +261,11 @@ void Images::write(const Numbers& observed, const Numbers& stated, Case& into) c
     m["meshes"]["box"] = Value::object({{"file", "box"}, {"normals", "flat"}});
     objects.push_back(object_entry("box", "box", "s2", {}));
   }
-  for (std::size_t s = 0; s < (scene_.balls.empty() ? 1u : 3u); ++s)
-    m["surfaces"]["s" + std::to_string(s)] = Value::object({{"model", "diffuse"}, {"albedo", free_rgb(0.5, "")}});
+  for (std::size_t s = 0; s < (scene_.balls.empty() ? 1u : 3u); ++s) {
+    Value& surface = m["surfaces"]["s" + std::to_string(s)];
+    surface = Value::object({{"model", varnished_ ? "coated-diffuse" : "diffuse"}, {"albedo", free_rgb(0.5, "")}});
+    if (varnished_) surface["f0"] = varnish_f0, surface["alpha"] = free_parameter(0.2);
+  }
   for (std::size_t l = 0; l < lamps; ++l)
     m["lights"]["light-" + std::to_string(l)] = Value::object(
         {{"model", "point"}, {"position_m", numbers3(scene_.lamps[l].position)}, {"watt_per_sr", free_rgb(1, "i")}});
@@ -265,7 +287,7 @@ void Images::write(const Numbers& observed, const Numbers& stated, Case& into) c
   }
   m["objects"] = objects;
   m["images"] = images;
-  if (believes_direct_) m["mechanisms"]["transport.indirect"]["strength"] = 0;
+  if (believes_direct_ || varnished_) m["mechanisms"]["transport.indirect"]["strength"] = 0;
   finish(m, into);
 }
 

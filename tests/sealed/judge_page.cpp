@@ -78,12 +78,14 @@ report::TableText case_table(const std::vector<Judged>& cases) {
   table.columns = {{"case", "", false},   {"domain", "", false}, {"kind", "", false},   {"left out", "", false},
                    {"x limit", "", true}, {"share", "", true},   {"answer", "", false}, {"before", "", true},
                    {"after", "", true},   {"floor", "", true},   {"AUC", "", true},     {"processor", "s", true}};
-  for (const Judged& j : cases)
+  for (const Judged& j : cases) {
+    if (!j.answer.begun && !j.answer.ran) continue;
     table.rows.push_back({j.id, j.spec.domain, std::string(kind_name(j.truth.kind)), j.truth.world,
                           format("%.1f", times_the_limit(j)), format("%.2g", j.truth.share), j.answer.sentence,
                           format("%.4g", j.answer.before), format("%.4g", j.answer.after),
                           format("%.4g", j.truth.floor), j.answer.auc ? format("%.2f", *j.answer.auc) : "",
                           format("%.1f", j.answer.processor_seconds)});
+  }
   return table;
 }
 

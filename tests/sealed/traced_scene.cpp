@@ -98,9 +98,10 @@ std::array<Vec3, 2> across(Vec3 n) {
   return {a, cross(n, a)};
 }
 
-Rgb sent_back(const Scene& s, const Hit& h, Vec3 wi, Vec3 wo) {
+Rgb sent_back(const Scene& s, const Hit& h, Vec3 wi, Vec3 wo, const Polarized& light = {}) {
   const Matter& m = s.matters[h.matter];
-  const Scattering f = scatter(m, h.normal, across(h.normal)[0], wi, wo);
+  const Vec3 lay = h.table ? Vec3{std::cos(s.table_lay), std::sin(s.table_lay), 0} : across(h.normal)[0];
+  const Scattering f = scatter(m, h.normal, lay, wi, wo, light);
   Rgb result = m.albedo * f.base;
   result += {f.coat, f.coat, f.coat};
   if (h.table && s.stain.depth != 0) {
@@ -128,7 +129,7 @@ Rgb by_lamp(const Scene& s, const Hit& h, const Lamp& lamp, Vec3 wo, double u, d
   if (cosine <= 0 || dot(h.normal, wo) <= 0) return {};
   const Vec3 from = h.point + h.normal * near_m;
   if (!visible(s, from, lamp.radius > 0 ? from + wi * (d - lamp.radius) : lamp.position)) return {};
-  return lamp.intensity * sent_back(s, h, wi, wo) * (cosine / arrives);
+  return lamp.intensity * sent_back(s, h, wi, wo, lamp.light) * (cosine / arrives);
 }
 
 Rgb direct(const Scene& s, const Hit& h, Vec3 wo, int samples, Random& random) {

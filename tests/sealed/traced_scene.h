@@ -24,6 +24,7 @@ struct Lamp {
   Vec3 position;
   double radius = 0;
   Rgb intensity{1, 1, 1};
+  Polarized light = {};
 };
 struct Wire {  // a thin cylinder that only casts shadows
   Vec3 from, to;
@@ -35,6 +36,7 @@ struct Scene {
   std::size_t box_matter = 0;
   double table_half = 0.6;  // of its side
   std::size_t table_matter = 0;
+  double table_lay = 0;  // direction of what is drawn out on the table, from x
   std::vector<Matter> matters;
   std::vector<Lamp> lamps;  // all that are on
   Rgb ambient;
