@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "base/error.h"
+#include "explain/tables/quick_table.h"
 #include "explain/tables/reflectance_surface.h"
 #include "reflectance/paint_world.h"
 #include "surface/fresnel.h"
@@ -194,6 +198,32 @@ TEST(ThinFilm, LimitsOfAiry) {
   }
   const double root = std::sqrt(1.5);
   EXPECT_NEAR(surface::fresnel_film(1, 1.5, root, 550e-9 / (4 * root), 550e-9), 0, 1e-12);
+}
+
+// A table alone stands on Lambert's law; one whose scale is not trusted finds it as its gain.
+TEST(Reflectance, ATableAloneIsHeldAgainstLambert) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "gonio_reflectance_alone.csv";
+  std::ofstream(file) << "theta_i [rad],phi_i [rad],theta_o [rad],phi_o [rad],f [1/sr]\n0.1,0,0.2,0,0.3\n";
+  const manifest::Document document = quick_document({.file = file, .model = "surface", .observed = {"f"}});
+  const manifest::Table& table = document.tables.begin()->second;
+  ASSERT_TRUE(document.surfaces.contains(table.surface));
+  EXPECT_EQ(document.surfaces.at(table.surface).model, "diffuse");
+  EXPECT_TRUE(document.surfaces.at(table.surface).parameters.at("albedo").free);
+  std::filesystem::remove(file);
+}
+
+TEST(Reflectance, AGainIsFittedBesideAKnownColour) {
+  const auto bright = registered("coated-diffuse", {{"albedo", 0.5}, {"f0", 0.04}, {"alpha", 0.2}});
+  World world = paint_world(
+      {.base = R"({"model": "coated-diffuse", "albedo": 0.5, "f0": 0.04, "alpha": 0.2})"},
+      [&](Vec3 wo, Vec3 wi, double w, double e) { return 0.37 * bright(wo, wi, w, e); }, 12);
+  world.rest += R"(, "parameters": {"gain": {"value": 1, "free": true}})";
+  const TablesProblem problem = world.problem();
+  const Explanation e = explain(problem, {.dummies = 8});
+  EXPECT_EQ(named(problem, e), "") << e.sentence;
+  manifest::Document document = world.document();
+  problem.apply(e, document);
+  EXPECT_NEAR(document.tables.at("t").parameters.at("gain").scalar(), 0.37, 0.005);
 }
 
 }  // namespace

@@ -142,6 +142,13 @@ manifest::Document quick_document(const QuickTable& quick) {
     p.free = true;
     section.parameters[name] = p;
   }
+  if (section.model == "surface") {  // Lambert's law, its colour free
+    section.surface = "sample";
+    manifest::Surface& sample = document.surfaces[section.surface];
+    sample.model = "diffuse";
+    sample.parameters["albedo"] = manifest::Parameter(0.5);
+    sample.parameters["albedo"].free = true;
+  }
   const std::string name = file_stem(quick.file.stem().string());
   if (converted)
     section.rows = rows_of(raw);

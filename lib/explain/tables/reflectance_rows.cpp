@@ -130,7 +130,7 @@ ReflectanceRows reflectance_rows(const Table& table) {
   return rows;
 }
 
-// The difference angle is half the phase angle: the one that people set stands before it.
+// The difference angle is half the phase angle, to the bit: the one that people set stands before it.
 std::vector<Condition> reflectance_conditions(const ReflectanceRows& rows) {
   std::vector<Condition> all = {{"surface.half-angle", "rad", "surface", {}, {}, "ln"},
                                 {"surface.incidence-angle", "rad", "surface", {}, {}, "ln"},
@@ -141,11 +141,12 @@ std::vector<Condition> reflectance_conditions(const ReflectanceRows& rows) {
   for (std::size_t r = 0; r < rows.rows(); ++r) {
     const Vec3 wi = rows.wi[r], wo = rows.wo[r], h = surface::half_vector(wo, wi);
     const double azimuth = std::hypot(h.x, h.y) > 1e-6 ? std::remainder(std::atan2(h.y, h.x), pi) : std::nan("");
+    const double phase = std::acos(std::clamp(dot(wi, wo), -1.0, 1.0));
     const std::array<double, 6> at = {std::acos(std::clamp(h.z, -1.0, 1.0)),
                                       std::acos(std::clamp(wi.z, -1.0, 1.0)),
                                       std::acos(std::clamp(wo.z, -1.0, 1.0)),
-                                      std::acos(std::clamp(dot(wi, wo), -1.0, 1.0)),
-                                      std::acos(std::clamp(norm(wo + wi) / 2, 0.0, 1.0)),
+                                      phase,
+                                      0.5 * phase,
                                       azimuth};
     for (std::size_t k = 0; k < at.size(); ++k) all[k].values.push_back(at[k]);
   }

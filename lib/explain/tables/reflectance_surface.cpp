@@ -36,6 +36,7 @@ SurfacePlaces::SurfacePlaces(const surface::Model& model)
 ReflectanceEvaluation::ReflectanceEvaluation(const ReflectanceState& state, const ReflectanceRows& rows)
     : state_(state), rows_(rows), places_(*state.model) {
   if (state.film.film_m == 0 && state.ridges.share == 0) return;
+  incidence_.resize(rows.band_name.size());
   for (const surface::Values& values : state.triples) {
     surface::Values bare = values;
     set(bare, places_.albedo, 0);
@@ -59,8 +60,18 @@ const ReflectanceEvaluation::Shared& ReflectanceEvaluation::look(std::size_t row
   if (!(rows_.weight[row] > 0)) return last_;
   last_.f = state_.model->evaluate(state_.triples[triple], wo, wi);
   if (state_.ridges.share > 0) last_.gloss = state_.model->evaluate(bare_[triple], wo, wi);
-  if (state_.film.film_m > 0) last_.lobes = state_.model->evaluate(glazed_[triple], wo, wi);
+  if (state_.film.film_m > 0) look_beneath_film(row, triple);
   return last_;
+}
+
+void ReflectanceEvaluation::look_beneath_film(std::size_t row, std::size_t triple) {
+  const Vec3 wo = rows_.wo[row], wi = rows_.wi[row];
+  const double eta = surface::eta_of_f0(f0(3 * triple));  // of a clear interface, the same in all bands
+  last_.lobes = state_.model->evaluate(glazed_[triple], wo, wi);
+  last_.half_cosine = surface::half_cosine(wo, wi);
+  last_.reference = surface::fresnel_dielectric(last_.half_cosine, surface::eta_of_f0(reference_f0));
+  last_.plain = surface::fresnel_dielectric(last_.half_cosine, eta);
+  last_.passes = (1 - surface::fresnel_dielectric(wi.z, eta)) * (1 - surface::fresnel_dielectric(wo.z, eta));
 }
 
 double ReflectanceEvaluation::f0(std::size_t band) const {
@@ -73,19 +84,18 @@ double ReflectanceEvaluation::fresnel(std::size_t band, double cosine) const {
   return surface::fresnel_schlick(cosine, {at_normal, at_normal, at_normal}).x;
 }
 
+double ReflectanceEvaluation::coated(std::size_t band, double cosine) const {
+  return surface::fresnel_film(cosine, surface::eta_of_f0(f0(band)), state_.film.film_eta, state_.film.film_m,
+                               rows_.band_m[band]);
+}
+
 double ReflectanceEvaluation::film(std::size_t row, std::size_t band, double f, const Shared& shared) const {
-  const Vec3 wo = rows_.wo[row], wi = rows_.wi[row];
-  const double eta = surface::eta_of_f0(f0(band)), wavelength = rows_.band_m[band];
-  const auto plain = [&](double cosine) { return surface::fresnel_dielectric(cosine, eta); };
-  const auto coated = [&](double cosine) {
-    return surface::fresnel_film(cosine, eta, state_.film.film_eta, state_.film.film_m, wavelength);
-  };
-  const double cosine = surface::half_cosine(wo, wi);
-  const double reference = surface::fresnel_dielectric(cosine, surface::eta_of_f0(reference_f0));
-  const double lobes = shared.lobes[static_cast<int>(band % 3)] / reference;
-  const double base = f - lobes * plain(cosine);
-  const double passes = (1 - coated(wi.z)) * (1 - coated(wo.z)) / ((1 - plain(wi.z)) * (1 - plain(wo.z)));
-  return f + lobes * (coated(cosine) - plain(cosine)) + base * (passes - 1);
+  Incidence& in = incidence_[band];
+  if (in.cosine != rows_.wi[row].z) in = {rows_.wi[row].z, coated(band, rows_.wi[row].z)};
+  const double lobes = shared.lobes[static_cast<int>(band % 3)] / shared.reference;
+  const double base = f - lobes * shared.plain;
+  const double passes = (1 - in.coated) * (1 - coated(band, rows_.wo[row].z)) / shared.passes;
+  return f + lobes * (coated(band, shared.half_cosine) - shared.plain) + base * (passes - 1);
 }
 
 double ReflectanceEvaluation::ridged(std::size_t row, std::size_t band, const Shared& shared) const {

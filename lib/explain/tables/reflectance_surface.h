@@ -53,6 +53,9 @@ class ReflectanceEvaluation {
   struct Shared {  // what the registered model says at one geometry, of a triple of bands
     std::size_t row = static_cast<std::size_t>(-1), triple = 0;
     Rgb f, gloss, lobes;  // lobes: of a reference interface
+    // Where a film lies on it: of the half vector; Fresnel factors of the bare interface, of the reference's and of
+    // this one's facets; what passes it, there and back.
+    double half_cosine = 1, reference = 1, plain = 0, passes = 1;
   };
   double operator()(std::size_t row, std::size_t band) { return value(row, band, look(row, band / 3)); }
   // Where the terms alone have changed, the model's part may come from another evaluation.
@@ -62,7 +65,9 @@ class ReflectanceEvaluation {
  private:
   double fresnel(std::size_t band, double cosine) const;
   double f0(std::size_t band) const;
+  void look_beneath_film(std::size_t row, std::size_t triple);
   double film(std::size_t row, std::size_t band, double f, const Shared& shared) const;
+  double coated(std::size_t band, double cosine) const;  // Fresnel factor of film and interface
   double ridged(std::size_t row, std::size_t band, const Shared& shared) const;
 
   const ReflectanceState& state_;
@@ -71,6 +76,10 @@ class ReflectanceEvaluation {
   std::vector<surface::Values> bare_, glazed_;  // without base; the same under a reference interface
   std::vector<surface::Ridges> saws_;           // facing either way
   Shared last_;
+  struct Incidence {  // one series shares it
+    double cosine = -1, coated = 0;
+  };
+  mutable std::vector<Incidence> incidence_;  // per band
 };
 
 }  // namespace gonio::explain::tables

@@ -36,14 +36,16 @@ const std::vector<double>& Table::needed(const std::string& column, const std::s
     const std::string bare = stem_of(column);
     for (std::size_t k = 0; k < columns.size(); ++k)
       if (columns[k] == bare)
-        throw Error(Exit::data, place, "column \"" + bare + "\" is in " + units[k] + ", needed in " + unit,
-                    "state its unit in the heading, \"" + bare + " [" + unit + "]\", or in the manifest's columns");
+        throw Error(
+            Exit::data, place, "column \"" + bare + "\" is in " + units[k] + ", needed in " + unit,
+            "state its unit in the heading, \"" + bare + " [" + unit + "]\", by --units, or in the manifest's columns");
     throw Error(Exit::data, place, "has no column \"" + column + "\"" + (unit.empty() ? "" : " [" + unit + "]"),
                 manifest::remedy_for(column, columns));
   }
   if (!unit.empty() && parse_unit(units[c], place).powers != parse_unit(unit, place).powers)
     throw Error(Exit::data, place, "column \"" + columns[c] + "\" is in " + units[c] + ", needed in " + unit,
-                "state its unit in the heading, \"" + columns[c] + " [" + unit + "]\", or in the manifest's columns");
+                "state its unit in the heading, \"" + columns[c] + " [" + unit +
+                    "]\", by --units, or in the manifest's columns");
   return values[c];
 }
 
