@@ -42,9 +42,8 @@ bool matter(const Judged& j) {
 bool too_small(const Judged& j) {
   return j.truth.share < matters / margin;
 }
-// Present, above what can be seen, and large enough to be worth a name.
 bool clear(const Judged& j) {
-  return matter(j) && times_the_limit(j) >= clearly;
+  return clearly_there(j);
 }
 bool single(const Judged& j) {
   return j.truth.kind == Kind::single || j.truth.kind == Kind::alike;
@@ -173,6 +172,10 @@ std::string first_answer(const Judged& j) {
 
 }  // namespace
 
+bool clearly_there(const Judged& j) {
+  return matter(j) && times_the_limit(j) >= clearly;
+}
+
 double times_the_limit(const Judged& judged) {
   double times = 0;
   bool known = false;
@@ -243,6 +246,7 @@ Judgement judge(const std::vector<Judged>& as_read) {
     ++result.unanswered;
     add_failure(j, "no answer", result);
   }
+  result.effects = effect_rows(cases);
   Question error = median_question("how much", "parameter error (median)", "<= 10 %", 0.1, true);
   Question coverage = share_question("how much", "95 % interval covers", "90-98 %", 0.9, false);
   ask_numbers(cases, error, coverage);

@@ -40,10 +40,17 @@ struct Question {
 struct Failure {
   std::string id, domain, kind, world, what, answer;
 };
+// One mechanism in one domain: single effects that are clearly there.
+struct EffectRow {
+  std::string domain, mechanism;
+  int cases = 0, found = 0, located = 0, first = 0;  // located: the right condition stands first
+  Numbers area, error, before, after, floor;         // error: relative, of each number
+};
 struct Judgement {
   std::vector<Question> questions;
   std::map<std::string, std::map<std::string, int>> confusion;  // truth -> first answer -> cases
   std::vector<Failure> failures;
+  std::vector<EffectRow> effects;
   std::size_t cases = 0, unanswered = 0, not_begun = 0;
   std::map<std::string, Numbers> seconds;  // domain -> of the processor for each case
 };
@@ -51,6 +58,9 @@ struct Judgement {
 // How far the effect is above what explain says it can see: |true - neutral| over the printed limit; the maker's own
 // count where the declaration's numbers are not the maker's.
 double times_the_limit(const Judged& judged);
+// Present, above what can be seen, and large enough to be worth a name.
+bool clearly_there(const Judged& judged);
+std::vector<EffectRow> effect_rows(const std::vector<Judged>& cases);
 Judgement judge(const std::vector<Judged>& cases);
 std::string table_text(const Judgement& judgement);
 std::string page_html(const Judgement& judgement, const std::vector<Judged>& cases, const std::string& mode);

@@ -56,6 +56,48 @@ report::TableText domain_table(const Judgement& j) {
   return table;
 }
 
+std::string middle(const Numbers& values, const char* how) {
+  return values.empty() ? "" : format(how, stats::median(values));
+}
+std::vector<std::string> effect_cells(const EffectRow& e) {
+  const auto of = [&](int count) { return format("%d/%d", count, e.cases); };
+  return {e.domain,
+          e.mechanism,
+          of(e.found),
+          of(e.located),
+          middle(e.area, "%.2f"),
+          of(e.first),
+          e.error.empty() ? "" : format("%.1f %%", 100 * stats::median(e.error)),
+          middle(e.before, "%.3g"),
+          middle(e.after, "%.3g"),
+          middle(e.floor, "%.3g")};
+}
+constexpr const char* effect_heads[] = {"domain",      "left out",        "found",  "located", "AUC",
+                                        "named first", "parameter error", "before", "after",   "true model"};
+
+report::TableText effect_table(const Judgement& j) {
+  report::TableText table;
+  table.caption =
+      "Each mechanism alone where it is clearly there: cases, medians, and the error on held-out groups before, after, "
+      "and of the true model, in the domain's unit.";
+  for (const char* head : effect_heads) table.columns.push_back({head, "", table.columns.size() > 1});
+  for (const EffectRow& e : j.effects) table.rows.push_back(effect_cells(e));
+  return table;
+}
+
+std::string effect_text(const Judgement& j) {
+  static constexpr const char* widths = "  %-12s %-26s %6s %8s %5s %12s %16s %9s %9s %10s\n";
+  const auto& h = effect_heads;
+  std::string text = "\neach alone, where it is clearly there:\n";
+  text += format(widths, h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8], h[9]);
+  for (const EffectRow& e : j.effects) {
+    const std::vector<std::string> c = effect_cells(e);
+    text += format(widths, c[0].c_str(), c[1].c_str(), c[2].c_str(), c[3].c_str(), c[4].c_str(), c[5].c_str(),
+                   c[6].c_str(), c[7].c_str(), c[8].c_str(), c[9].c_str());
+  }
+  return text;
+}
+
 report::TableText confusion_table(const Judgement& j) {
   report::TableText table;
   table.caption = "What was left out, and what was named. In brackets: verdicts without a name.";
@@ -117,6 +159,7 @@ std::string table_text(const Judgement& j) {
       if (!cell(q, d).empty())
         text += format("    %-37s %-52s %s\n", q.question.c_str(), q.measure.c_str(), cell(q, d).c_str());
   }
+  text += effect_text(j);
   text += "\nleft out -> named:\n";
   for (const auto& [truth, answers] : j.confusion)
     for (const auto& [answer, count] : answers)
@@ -145,6 +188,7 @@ std::string page_html(const Judgement& j, const std::vector<Judged>& cases, cons
       "library's own declaration of the true mechanism lists it. An observation counts as affected where the effect, "
       "after the fair refit, is at least one noise width and at least its own root mean square.");
   page.table(domain_table(j));
+  page.table(effect_table(j));
   page.section("Confusions");
   page.table(confusion_table(j));
   page.section("Failures");

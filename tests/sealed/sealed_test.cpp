@@ -194,6 +194,12 @@ TEST(Judge, CountsWhatIsRightAndWhatIsWrong) {
   EXPECT_EQ(question(j, "how much", "95 %").all().right, 9);
   EXPECT_NEAR(question(j, "repaired", "(before").figure(), 0.95, 1e-9);
   EXPECT_EQ(j.failures.size(), 3u);
+  ASSERT_EQ(j.effects.size(), 1u);
+  EXPECT_EQ(j.effects[0].mechanism, "lens.radial");
+  EXPECT_EQ(j.effects[0].cases, 10);
+  EXPECT_EQ(j.effects[0].first, 9);
+  EXPECT_EQ(j.effects[0].error.size(), 9u);
+  EXPECT_NEAR(j.effects[0].floor[0], 1, 1e-12);
   EXPECT_EQ(j.confusion.at("lens.radial").at("board.warp"), 1);
   EXPECT_NE(page_html(j, cases, "quick").find("board.warp"), std::string::npos);
 }
