@@ -49,7 +49,7 @@ class LampState {
   std::vector<Candidate> candidates_;
 };
 
-// light.second-source in a table: a point as far from the centre as the first lamp is (a directional one: parallel
+// light.second-source in a table, as declared: a point as far from the centre as the first lamp is (a directional one: parallel
 // light), so that its irradiance of a plane differs from that of even ambient light. Its direction is not found by
 // small steps: four quarters of the horizon are alternatives of one family.
 //

@@ -9,8 +9,9 @@ const Mechanism& light_second_source() {
       .sentence = "A further light that nobody wrote down shines in all pictures from one direction.",
       .typical = "0.1 to 20 % of the lamp",
       .equation =
-          "E += watt_per_m2 V max(0, n.d), d = (cos(el) cos(az), cos(el) sin(az), sin(el)), V 1 where nothing is in "
-          "the way",
+          "E += watt_per_m2 V max(0, n.l) (D / r)^2, V 1 where nothing is in the way; D, r and l lead to it from the "
+          "middle and from the point: D along (cos(el) cos(az), cos(el) sin(az), sin(el)), without end in pictures and "
+          "under a directional lamp, as far as the first lamp in other tables",
       .source = "Lambert 1760; a distant source",
       .stage = "light",
       .target = Target::scene,
@@ -21,7 +22,7 @@ const Mechanism& light_second_source() {
                       .lower = 0,
                       .upper = 1000,
                       .start = 0.05,
-                      .meaning = "irradiance that it gives a plane facing it, all colours alike"},
+                      .meaning = "irradiance that it gives a plane facing it in the middle, all colours alike"},
                      {.name = "azimuth_rad",
                       .unit = "rad",
                       .neutral = 0,
