@@ -59,12 +59,14 @@ double rms_of(const WholeImage& image) {
   return std::sqrt(sum / std::max(1.0, n));
 }
 
-void add_pictures(const std::string& id, const WholeImage& image, bool named, Illustration& result) {
+void add_pictures(const std::string& id, const WholeImage& image, const std::vector<Box>& boxes, bool named,
+                  Illustration& result) {
   char scale[48];
   const double full = 0.1 * rms_of(image);
   std::snprintf(scale, sizeof scale, "full colour at %.3g", full);
-  result.pictures.push_back(
-      {id + ": recording minus base model, " + scale, io::encode_png(residual_picture(image, false, full)), ""});
+  io::Image before = residual_picture(image, false, full);
+  outline(boxes, image, before);
+  result.pictures.push_back({id + ": recording minus base model, " + scale, io::encode_png(before), ""});
   if (named)
     result.pictures.push_back(
         {id + ": recording minus upgraded model, " + scale, io::encode_png(residual_picture(image, true, full)), ""});
@@ -98,17 +100,16 @@ Illustration ImagesProblem::illustrate(const Explanation& explanation, const std
   for (std::size_t g = 0; g < recordings_.images.size(); ++g) {
     const Recording& image = recordings_.images[g];
     const WholeImage whole = whole_image(image, model, g, strides[image.view], before, after);
-    if (std::find(worst.begin(), worst.end(), image.id) != worst.end())
-      add_pictures(image.id, whole, !explanation.named.empty(), result);
+    const bool named = !explanation.named.empty(), shown = std::ranges::find(worst, image.id) != worst.end();
+    std::vector<Box> boxes;
+    if (explanation.verdict != Verdict::null)
+      boxes = boxes_of(mismatch_mask(whole, mask_limit, explanation.matters), whole, least_box, most_boxes);
+    for (Box& box : boxes) box.group = image.id;
+    if (shown) add_pictures(image.id, whole, boxes, named, result);
     if (explanation.verdict == Verdict::null) continue;
-    const std::vector<std::uint8_t> mask = mismatch_mask(whole, mask_limit, explanation.matters);
-    for (Box& box : boxes_of(mask, whole, least_box, most_boxes)) {
-      box.group = image.id;
-      result.boxes.push_back(box);
-    }
-    const bool named = !explanation.named.empty();
+    result.boxes.insert(result.boxes.end(), boxes.begin(), boxes.end());
     const std::vector<double> acts = effect(whole, named);
-    if (std::find(worst.begin(), worst.end(), image.id) != worst.end())
+    if (shown)
       result.pictures.push_back({image.id + (named ? ": where it acts, pink at three noise widths"
                                                    : ": where the mismatch is, pink at three noise widths"),
                                  io::encode_png(effect_picture(acts, whole)), ""});

@@ -156,4 +156,30 @@ io::Image residual_picture(const WholeImage& image, bool after, double scale) {
   return enlarged(picture);
 }
 
+namespace {
+
+void put(io::Image& picture, int x, int y, bool yellow) {
+  if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) return;
+  picture.at(x, y, 0) = picture.at(x, y, 1) = yellow ? 1.0f : 0.0f;
+  picture.at(x, y, 2) = 0;
+}
+
+// The border of the rectangle from (left, top) to (right, bottom), one pixel wide.
+void border(io::Image& picture, int left, int top, int right, int bottom, bool yellow) {
+  for (int x = left; x <= right; ++x) put(picture, x, top, yellow), put(picture, x, bottom, yellow);
+  for (int y = top; y <= bottom; ++y) put(picture, left, y, yellow), put(picture, right, y, yellow);
+}
+
+}  // namespace
+
+void outline(const std::vector<Box>& boxes, const WholeImage& image, io::Image& picture) {
+  const double scale = static_cast<double>(picture.width) / (image.width * image.stride);
+  for (const Box& box : boxes) {
+    const int left = static_cast<int>(box.x * scale), right = static_cast<int>((box.x + box.width) * scale) - 1;
+    const int top = static_cast<int>(box.y * scale), bottom = static_cast<int>((box.y + box.height) * scale) - 1;
+    for (const int outside : {2, 1, 0, -1})
+      border(picture, left - outside, top - outside, right + outside, bottom + outside, outside == 1 || outside == 0);
+  }
+}
+
 }  // namespace gonio::explain::images

@@ -41,4 +41,7 @@ io::Image effect_picture(const std::vector<double>& effect, const WholeImage& im
 // `scale`.
 io::Image residual_picture(const WholeImage& image, bool after, double scale);
 
+// Outlines of boxes on one of these pictures: two pixels of yellow between black ones.
+void outline(const std::vector<Box>& boxes, const WholeImage& image, io::Image& picture);
+
 }  // namespace gonio::explain::images

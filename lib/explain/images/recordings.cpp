@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "io/picture.h"
+#include "metric/linear_picture.h"
 
 namespace gonio::explain::images {
 namespace {
@@ -21,40 +22,6 @@ constexpr double saturation = 1.0 - 0.5 / 255;  // full scale of an integer file
   throw Error(Exit::data, manifest::place(document, "/images/" + std::to_string(entry) + key), problem, remedy);
 }
 
-// The stated response as a function of the code value in [0, 1].
-class Response {
- public:
-  Response(const manifest::Value& response, const manifest::Document& document, std::size_t entry) {
-    if (response.is_null() || (response.is_string() && response.as_string() == "linear")) return;
-    if (response.is_string() && response.as_string() == "srgb") {
-      srgb_ = true;
-      return;
-    }
-    if (!response.is_array() || response.as_array().size() < 2)
-      refuse(document, entry, "/response", "is neither \"linear\", \"srgb\" nor a table", "give [[code, linear], ...]");
-    for (const manifest::Value& row : response.as_array()) {
-      if (!row.is_array() || row.as_array().size() != 2)
-        refuse(document, entry, "/response", "has a row that is not a pair", "give [[code, linear], ...]");
-      table_.emplace_back(row.as_array()[0].as_number(), row.as_array()[1].as_number());
-    }
-    std::sort(table_.begin(), table_.end());
-  }
-  float operator()(float code) const {
-    if (srgb_) return io::linear_from_srgb(code);
-    if (table_.empty()) return code;
-    const auto above = std::upper_bound(table_.begin(), table_.end(), std::pair<double, double>(code, 1e300));
-    if (above == table_.begin()) return static_cast<float>(table_.front().second);
-    if (above == table_.end()) return static_cast<float>(table_.back().second);
-    const auto below = above - 1;
-    const double share = (code - below->first) / (above->first - below->first);
-    return static_cast<float>(below->second + share * (above->second - below->second));
-  }
-
- private:
-  bool srgb_ = false;
-  std::vector<std::pair<double, double>> table_;
-};
-
 bool integer_file(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -65,11 +32,14 @@ bool integer_file(const std::filesystem::path& path) {
 void read_pixels(const manifest::Document& document, const std::filesystem::path& path, Recording& image) {
   const io::Image raw = io::read_picture(path);
   const manifest::ImageEntry& entry = document.images[image.entry];
-  const Response response(entry.response, document, image.entry);
+  const std::string place = manifest::place(document, "/images/" + std::to_string(image.entry) + "/response");
   const bool grey = raw.channel("G") < 0;
   const int channel[3] = {grey ? 0 : raw.channel("R"), grey ? 0 : raw.channel("G"), grey ? 0 : raw.channel("B")};
   if (!grey && (channel[0] < 0 || channel[2] < 0))
     refuse(document, image.entry, "/file", "names a picture without channels R, G, B or Y", "record one of them");
+  std::vector<metric::Response> response;
+  for (const char* name : {"R", "G", "B"})
+    response.emplace_back(metric::response_of_channel(entry.response, grey ? "Y" : name, place), place);
   image.picture = io::Image(raw.width, raw.height, {"R", "G", "B"});
   image.counts.assign(raw.pixels(), 1);
   const bool integer = integer_file(path);
@@ -77,7 +47,7 @@ void read_pixels(const manifest::Document& document, const std::filesystem::path
     for (int x = 0; x < raw.width; ++x)
       for (int c = 0; c < 3; ++c) {
         const float code = raw.at(x, y, channel[c]);
-        const float value = response(code);
+        const float value = response[static_cast<std::size_t>(c)](code);
         image.picture.at(x, y, c) = value;
         if (!std::isfinite(value) || (integer && code >= saturation))
           image
