@@ -29,7 +29,8 @@ const std::map<std::string, Links>& links() {
       {"sensor.non-linearity", {}},  // response_of()
       {"sensor.row-pattern", {&Sensor::row_amplitude, &Sensor::row_period_px, &Sensor::row_phase_rad}},
       {"sensor.black-offset", {&Sensor::black_offset}},
-      {"sensor.saturation", {&Sensor::full_scale}}};
+      {"sensor.saturation", {&Sensor::full_scale}},
+      {"sensor.clipped-resampling", {&Sensor::resampled_full_scale, &Sensor::resampling_px}}};
   return all;
 }
 
@@ -128,6 +129,21 @@ double reading(double v, const Sensor& sensor, int row, Random& fixed, Random& r
   return with_limit(v, sensor.full_scale);
 }
 
+// Beyond the picture's border there is what lies on it.
+void resample_clipped(io::Image& image, double full_scale, double width_px) {
+  const io::Image native = image;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < static_cast<int>(image.channels.size()); ++c)
+        for (int dy = -1; dy <= 1; ++dy)
+          for (int dx = -1; dx <= 1; ++dx) {
+            const double v =
+                native.at(std::clamp(x + dx, 0, image.width - 1), std::clamp(y + dy, 0, image.height - 1), c);
+            const double weight = resampling_weight(dx, width_px) * resampling_weight(dy, width_px);
+            image.at(x, y, c) -= static_cast<float>(weight * (v - with_limit(v, full_scale)));
+          }
+}
+
 }  // namespace
 
 bool in_sensor_chain(const mechanism::Mechanism& mechanism) {
@@ -167,6 +183,8 @@ io::Image recorded(const io::Image& rendered, const Sensor& sensor, const std::s
       for (int c = 0; c < channels; ++c)
         image.at(x, y, c) = static_cast<float>(reading(image.at(x, y, c), sensor, y, fixed, random));
     }
+  if (sensor.resampled_full_scale > 0 && sensor.mosaic.empty())
+    resample_clipped(image, sensor.resampled_full_scale, sensor.resampling_px);
   return image;
 }
 

@@ -13,6 +13,8 @@
 //   8. sensor.black-offset    v += offset
 //   9. read noise             normal
 //  10. sensor.saturation      v = min(v, full_scale)
+//  11. sensor.clipped-resampling   v -= mean of max(0, v - full_scale) over a box about the pixel; not behind a mosaic,
+//                             whose neighbours are of other colours
 // The equations of single values stand in render/sensor_links.h. Negative readings stay. The rendering's own Monte
 // Carlo noise remains: render with enough samples that it is small beside the sensor's. Every image id has noise of its
 // own under one seed.
@@ -37,6 +39,7 @@ struct Sensor {  // as it stands: ideal, three channels, without noise
   double row_amplitude = 0, row_period_px = 100, row_phase_rad = 0;
   double black_offset = 0;
   double full_scale = 0;  // 0: no limit
+  double resampled_full_scale = 0, resampling_px = 1;
 };
 
 // Is it a link of the chain, so that sensor_of() understands it?

@@ -32,5 +32,9 @@ inline double with_rows(double v, double amplitude, double period_px, double pha
 inline double with_limit(double v, double full_scale) {
   return full_scale > 0 ? std::min(v, full_scale) : v;
 }
+// What the pixel at `offset` (-1, 0, 1) weighs along one axis in a box of `width_px` pixels, 1 to 3.
+inline double resampling_weight(int offset, double width_px) {
+  return (offset == 0 ? 1 : 0.5 * (width_px - 1)) / width_px;
+}
 
 }  // namespace gonio::render

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/light_covers.h"
 #include "scene/scene.h"
 #include "scene/spectra.h"
 #include "scene/variation.h"
@@ -75,8 +76,9 @@ void refresh(Surface& surface, const std::string& place) {
 }
 
 void refresh(Light& light, const std::string& place) {
-  light.emitter = light.model->prepare(in_bands(light.parameters, light.model->info(), light.bands),
-                                       {light.picture, light.file}, place);
+  light.emitter =
+      covered_as(light.emitter, light.model->prepare(in_bands(light.parameters, light.model->info(), light.bands),
+                                                     {light.picture, light.file}, place));
 }
 
 double vignetting(double falloff, int width_px, int height_px, Vec2 pixel) {

@@ -255,6 +255,7 @@ class Builder {
       const mechanism::Mechanism* mechanism = mechanism::find_mechanism(id);
       const std::string place = at("/mechanisms/" + id);
       if (!mechanism) throw Error(Exit::data, place, "no such mechanism", "gonio-manifest(5) lists them");
+      if (beyond_rendering(*mechanism)) warn(id + " is not rendered; the picture is without it");
       apply_mechanism(scene.appearance, *mechanism, use, scene.centre_m, place);
       apply_mechanism(scene.instances, *mechanism, use, place);
       for (auto& [name, camera] : cameras) apply_mechanism(camera, name, *mechanism, use, place);

@@ -11,6 +11,7 @@
 #include "camera/intrinsics.h"
 #include "light/turn.h"
 #include "scene/amounts.h"
+#include "scene/light_covers.h"
 #include "scene/placement.h"
 #include "scene/variation.h"
 #include "surface/dipole_model.h"
@@ -246,6 +247,7 @@ bool can_apply(const Surface& surface, const Mechanism& mechanism) {
   return model_for(surface, mechanism) != nullptr;
 }
 bool can_apply(const Light& light, const Mechanism& mechanism) {
+  if (covers(mechanism)) return can_cover(light, mechanism);
   const auto special = light_edits().find(mechanism.id);
   return special != light_edits().end() ? special->second.applies(light, mechanism)
                                         : model_for(light, mechanism) != nullptr;
@@ -268,6 +270,7 @@ void edit(Surface& surface, const Mechanism& mechanism, const Amounts& amounts, 
   set_parameters(surface, mechanism, amounts, place);
 }
 void edit(Light& light, const Mechanism& mechanism, const Amounts& amounts, Vec3 centre_m, const std::string& place) {
+  if (covers(mechanism)) return cover(light, mechanism, amounts, centre_m);
   const auto special = light_edits().find(mechanism.id);
   if (special == light_edits().end()) return set_parameters(light, mechanism, amounts, place);
   special->second.edit(light, mechanism, amounts, centre_m, place);
@@ -314,14 +317,20 @@ bool applies_to_scenes(const Mechanism& mechanism) {
   switch (mechanism.target) {
     case Target::scene: return scene_edits().contains(mechanism.id);
     case Target::surface: return surface_edits().contains(mechanism.id) || expressed(surface::all_models());
-    case Target::light: return light_edits().contains(mechanism.id) || expressed(light::all_models());
+    case Target::light:
+      return covers(mechanism) || light_edits().contains(mechanism.id) || expressed(light::all_models());
     case Target::object: return applies_to_objects(mechanism);
     default: return false;
   }
 }
 
+bool beyond_rendering(const Mechanism& mechanism) {
+  return mechanism.id == "surface.fluorescence" || mechanism.id == "transport.caustic";
+}
+
 void apply_mechanism(Appearance& appearance, const Mechanism& mechanism, const manifest::MechanismUse& use,
                      Vec3 centre_m, const std::string& place) {
+  if (beyond_rendering(mechanism)) return;
   const std::vector<std::string> on = use.on.empty() ? mechanism_targets(appearance, mechanism) : use.on;
   if (mechanism.target == Target::surface) return edit_each(appearance.surfaces, mechanism, use, on, centre_m, place);
   if (mechanism.target == Target::light) return edit_each(appearance.lights, mechanism, use, on, centre_m, place);

@@ -31,6 +31,10 @@ std::vector<std::string> mechanism_targets(const Appearance& appearance, const m
 // Does this room know how to apply it to a scene's appearance (targets scene, surface, light)?
 bool applies_to_scenes(const mechanism::Mechanism& mechanism);
 
+// Mechanisms that explain simulates and a path tracer of this kind cannot: re-radiation from band to band, and a share
+// of the caustics that it finds or does not find by itself. They leave scenes as they are.
+bool beyond_rendering(const mechanism::Mechanism& mechanism);
+
 // Edits `appearance`. `use.on` empty: all that it can apply to; a parameter is one number, or one per name in `on`;
 // parameters left out are neutral. `centre_m`: Scene::centre_m. Error(data) at `place` for unknown names and wrong
 // counts.

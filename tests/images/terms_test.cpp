@@ -93,7 +93,7 @@ TEST_F(BallOnATable, JacobianIsTheDifferenceOfPredictions) {
       const Parameter& q = problem_->parameters()[p];
       if (c.id() != "surface.interface" && c.id() != "light.finite-size" && c.id() != "light.direction" &&
           c.id() != "sensor.saturation" && c.id() != "surface.specular" && c.mechanism->stage != "geometry" &&
-          c.id() != "light.second-source")
+          c.id() != "light.second-source" && c.id() != "optics.defocus")
         values[p] = q.neutral + 0.3 * (q.start - q.neutral);
       columns.push_back(p);
     }

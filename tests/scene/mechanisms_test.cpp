@@ -59,6 +59,8 @@ std::vector<Vec3> numbers_of(const Appearance& a) {
   for (const Light& l : a.lights) {
     const light::Sample sample = l.emitter->sample(point_m, {0.3, 0.6});
     numbers.insert(numbers.end(), {sample.direction, sample.weight});
+    if (const auto sent = l.emitter->polarization(-sample.direction))
+      numbers.insert(numbers.end(), {sent->x, {sent->stokes.s[1], sent->stokes.s[2], sent->stokes.s[3]}});
   }
   numbers.push_back({a.indirect_strength, a.vignetting_falloff, a.ambient ? 1.0 : 0.0});
   return numbers;
@@ -73,6 +75,14 @@ TEST(Registry, EveryMechanismOfImagesAppliesAndVanishesAtNeutral) {
     if (m->target == Target::camera || m->target == Target::object || m->id == "light.drift" ||
         m->id == "light.spectrum")
       continue;
+    if (beyond_rendering(*m)) {
+      Appearance base = appearance(), edited = base;
+      manifest::Parameters other;
+      for (const auto& p : m->parameters) other[p.name] = p.start != p.neutral ? p.start : 0.5 * (p.start + p.upper);
+      apply_mechanism(edited, *m, use(other), {}, "here");
+      EXPECT_EQ(numbers_of(edited), numbers_of(base)) << m->id;
+      continue;
+    }
     ++count;
     EXPECT_TRUE(applies_to_scenes(*m)) << m->id;
     Appearance base = appearance(), edited;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "explain/images/fixed_pattern.h"
 #include "explain/images/observed.h"
+#include "light/polarized_emitter.h"
 
 namespace gonio::explain::images {
 namespace {
@@ -38,6 +40,9 @@ enum Which : std::size_t {
   x_at,
   y_at,
   z_at,
+  pixel_at,
+  plane_at,
+  excitation_at,
   count
 };
 // In the order of Which. Structure of those with `relative` scales with the signal.
@@ -71,6 +76,9 @@ constexpr std::array<Description, count> descriptions{{
     {"scene.x", "m", "surface", true},
     {"scene.y", "m", "surface", true},
     {"scene.z", "m", "surface", true},
+    {"camera.pixel", "1", "sensor", true},
+    {"light.plane-azimuth", "rad", "light", true},
+    {"surface.excitation", "1", "surface", false},
 }};
 using Known = std::array<double, count>;
 
@@ -82,6 +90,17 @@ double angle(double cosine) {
 // own sub-samples and those of the pixels around it that were computed tell. 0: the pixel itself shows two things.
 double edge_distance(const Pixel& pixel) {
   return pixel.facets == 1 && pixel.sky == 0 ? 1 : 0;
+}
+
+// Of the s axis of incidence and exitance about the light's way, from the lamp's own axis (light/polarized_emitter.h):
+// an axis has no sign, 0 to pi.
+double plane_azimuth(const LightSource& light, Vec3 wi, const Patch& patch, Vec3 centre_m) {
+  const Vec3 towards = light.directional ? light.direction : light.position_m - centre_m;
+  if (!(norm(towards) > 0)) return none;
+  const Vec3 x = light::Sheet::before(normalized(towards), 0, 0).of(-wi).x;
+  const Vec3 s = optics::scattering_axis(wi, patch.wo);
+  const double azimuth = std::atan2(dot(s, cross(-wi, x)), dot(s, x));
+  return azimuth < 0 ? azimuth + pi : azimuth;
 }
 
 class Describer {
@@ -137,6 +156,7 @@ class Describer {
     c[visibility_at] = cache_.visible[cache_.facets[f].first_patch * lights + l];
     c[incidence_at] = angle(dot(patch.normal, wi));
     c[phase_at] = angle(dot(wi, patch.wo));
+    c[plane_at] = plane_azimuth(light, wi, patch, model_.layout().centre_m);
     if (c[visibility_at] > 0 && c[incidence_at] < pi / 2)
       c[half_at] = angle(dot(patch.normal, normalized(wi + patch.wo)));
     double indirect = 0;  // at albedo 1/2, over what a lamp overhead at the centre's distance gives
@@ -165,6 +185,7 @@ std::vector<Condition> image_conditions(const manifest::Document& document, cons
   std::vector<Condition> all;
   for (const Description& d : descriptions)
     all.push_back({d.name, d.unit, d.stage, {}, d.relative ? relative : std::vector<double>{}});
+  const FixedPattern pattern = fixed_pattern(model.recordings());
   std::size_t row = 0;
   for (std::size_t g = 0; g < picked.size(); ++g) {
     const Recording& image = model.recordings().images[g];
@@ -173,11 +194,17 @@ std::vector<Condition> image_conditions(const manifest::Document& document, cons
     for (const std::uint32_t p : picked[g]) {
       Known known = describe.of(cache.pixels[p]);
       const Rgb mirrored = opposite(image, cache.pixels[p]);
+      const std::size_t place =
+          3 * (static_cast<std::size_t>(cache.pixels[p].y) * static_cast<std::size_t>(image.picture.width) +
+               static_cast<std::size_t>(cache.pixels[p].x));
       const double sum = prediction[row] + prediction[row + 1] + prediction[row + 2];
+      const Rgb lamp = image.lights.empty() ? Rgb{} : model.layout().start.lights[image.lights[0]].intensity;
       for (int k = 0; k < 3; ++k, ++row) {
+        known[excitation_at] = lamp[k] > 0 ? lamp.z / lamp[k] : none;  // what blue brings for what the band brings
         known[radiance_at] = prediction[row];
         known[mean_at] = image.mean[k];
         known[mirrored_at] = mirrored[k];
+        known[pixel_at] = pattern.views[image.view].deviation[place + static_cast<std::size_t>(k)];
         known[hue_at] = sum > 0 ? 3 * prediction[row] / sum - 1 : none;
         for (std::size_t i = 0; i < count; ++i) all[i].values.push_back(known[i]);
       }

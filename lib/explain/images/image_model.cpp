@@ -19,7 +19,8 @@ class Transport {
       : strength_(state.indirect), terms_(monomials.size()) {
     const Vec3 oblique{std::sqrt(0.5), 0, std::sqrt(0.5)};
     std::vector<Rgb> albedos;
-    for (const SurfaceState& s : state.surfaces) albedos.push_back(s.model->albedo(s.values, oblique));
+    for (const SurfaceState& s : state.surfaces)  // what lets light through does not spread it
+      albedos.push_back(s.model->transmits() ? Rgb{} : s.model->albedo(s.values, oblique));
     std::array<std::vector<double>, 3> values;
     for (int k = 0; k < 3; ++k) {
       std::vector<double> albedo;

@@ -44,6 +44,13 @@ Rgb local_mean(const Recording& image, int x, int y) {
   return n > 0 ? sum / n : sum;
 }
 
+// What is seen through glass is not simulated here.
+bool shows_glass(const ViewCache& cache, const Pixel& pixel, const SceneState& state) {
+  for (std::size_t f = pixel.first_facet; f < pixel.first_facet + pixel.facets; ++f)
+    if (state.surfaces[cache.facets[f].surface].model->transmits()) return true;
+  return false;
+}
+
 }  // namespace
 
 ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& options)
@@ -129,7 +136,9 @@ void ImagesProblem::fill_rows(const manifest::Document& document) {
     std::map<std::pair<int, int>, std::uint32_t> tiles;
     std::vector<std::uint32_t> mine;
     for (std::uint32_t p = 0; p < cache.pixels.size(); ++p)
-      if (image.counts[at(image.picture, cache.pixels[p].x, cache.pixels[p].y)]) mine.push_back(p);
+      if (image.counts[at(image.picture, cache.pixels[p].x, cache.pixels[p].y)] &&
+          !shows_glass(cache, cache.pixels[p], layout_.start))
+        mine.push_back(p);
     std::vector<double> start(3 * mine.size()), own(3 * mine.size());
     model_->predict(layout_.start, g, mine, start);
     model_->variance(layout_.start, g, mine, own);

@@ -142,8 +142,9 @@ class PixelBuilder {
     samples.reserve(static_cast<std::size_t>(side * side));
     for (int j = 0; j < side; ++j)
       for (int i = 0; i < side; ++i) {
-        const camera::Ray ray =
-            view_.model.ray({x - 0.5 + (i + random.uniform()) / side, y - 0.5 + (j + random.uniform()) / side});
+        Vec2 at{x - 0.5 + (i + random.uniform()) / side, y - 0.5 + (j + random.uniform()) / side};
+        if (options_.outer_px > 0) at = beside(x, y, i, j, random);
+        const camera::Ray ray = view_.model.ray(at);
         const Vec3 direction = view_.world_from_camera.rotate(ray.direction);
         const auto met = caster_.closest(view_.world_from_camera * ray.origin_m, direction);
         samples.push_back({met.has_value(),
@@ -151,6 +152,16 @@ class PixelBuilder {
                            met.value_or(SurfacePoint{}), -direction});
       }
     return samples;
+  }
+
+  // Anywhere in the pixel, moved into sector i and band j of the ring; both are stratified, in another order.
+  Vec2 beside(int x, int y, int i, int j, Random& random) const {
+    const int n = options_.samples;
+    const double inner2 = options_.inner_px * options_.inner_px, outer2 = options_.outer_px * options_.outer_px;
+    const double r = std::sqrt(inner2 + (j + random.uniform()) / n * (outer2 - inner2));
+    const double phi = 2 * pi * (i + random.uniform()) / n;
+    const double u = ((i + j) % n + random.uniform()) / n, v = ((i + 2 * j) % n + random.uniform()) / n;
+    return {x - 0.5 + u + r * std::cos(phi), y - 0.5 + v + r * std::sin(phi)};
   }
 
   void add_facet(const std::vector<SubSample>& samples, std::uint32_t surface, Random& random, ViewCache& out) const {

@@ -77,6 +77,9 @@ struct CacheOptions {
   int paths = 512;        // a facet; 0: no light by way of surfaces
   int patches = 4;        // of a pixel, along each side
   bool penumbrae = true;  // false: small lights only, at every radius
+  // Sub-samples are moved by this far at least and at most, evenly over that ring of the picture: what lies about a
+  // pixel.
+  double inner_px = 0, outer_px = 0;
   std::uint64_t seed = 1;
 };
 

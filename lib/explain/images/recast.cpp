@@ -15,32 +15,6 @@ constexpr CacheOptions coarse{.samples = 4, .paths = 0, .patches = 1, .penumbrae
 
 using Facets = std::map<std::uint32_t, std::size_t>;  // surface -> facet seen last
 
-// Light by way of surfaces from the unmoved scene: of the same pixel's facet of the same surface, else of the one seen
-// last.
-void lend_indirect(const ViewCache& from, ViewCache& to) {
-  const auto lend = [](const std::vector<float>& source, std::vector<float>& target, std::size_t facets_from,
-                       std::size_t facets_to, std::size_t a, std::size_t b) {
-    const std::size_t stride = source.size() / std::max<std::size_t>(1, facets_from);
-    target.resize(stride * facets_to);
-    for (std::size_t k = 0; k < stride; ++k) target[b * stride + k] = source[a * stride + k];
-  };
-  to.indirect.clear(), to.mirrored.clear(), to.indirect_sigma.clear();
-  Facets last;
-  for (std::size_t f = 0; f < from.facets.size(); ++f) last.try_emplace(from.facets[f].surface, f);
-  for (std::size_t p = 0; p < to.pixels.size(); ++p) {
-    for (std::size_t k = 0; k < from.pixels[p].facets; ++k)
-      last[from.facets[from.pixels[p].first_facet + k].surface] = from.pixels[p].first_facet + k;
-    for (std::size_t k = 0; k < to.pixels[p].facets; ++k) {
-      const std::size_t f = to.pixels[p].first_facet + k;
-      const auto found = last.find(to.facets[f].surface);
-      if (found == last.end()) continue;
-      lend(from.indirect, to.indirect, from.facets.size(), to.facets.size(), found->second, f);
-      lend(from.mirrored, to.mirrored, from.facets.size(), to.facets.size(), found->second, f);
-      lend(from.indirect_sigma, to.indirect_sigma, from.facets.size(), to.facets.size(), found->second, f);
-    }
-  }
-}
-
 Recasts::Node cast(const Setting& s, const std::vector<scene::Instance>& instances) {
   const render::RayCaster caster(instances);
   Recasts::Node node;
@@ -131,6 +105,30 @@ class Change {
 };
 
 }  // namespace
+
+void lend_indirect(const ViewCache& from, ViewCache& to) {
+  const auto lend = [](const std::vector<float>& source, std::vector<float>& target, std::size_t facets_from,
+                       std::size_t facets_to, std::size_t a, std::size_t b) {
+    const std::size_t stride = source.size() / std::max<std::size_t>(1, facets_from);
+    target.resize(stride * facets_to);
+    for (std::size_t k = 0; k < stride; ++k) target[b * stride + k] = source[a * stride + k];
+  };
+  to.indirect.clear(), to.mirrored.clear(), to.indirect_sigma.clear();
+  Facets last;
+  for (std::size_t f = 0; f < from.facets.size(); ++f) last.try_emplace(from.facets[f].surface, f);
+  for (std::size_t p = 0; p < to.pixels.size(); ++p) {
+    for (std::size_t k = 0; k < from.pixels[p].facets; ++k)
+      last[from.facets[from.pixels[p].first_facet + k].surface] = from.pixels[p].first_facet + k;
+    for (std::size_t k = 0; k < to.pixels[p].facets; ++k) {
+      const std::size_t f = to.pixels[p].first_facet + k;
+      const auto found = last.find(to.facets[f].surface);
+      if (found == last.end()) continue;
+      lend(from.indirect, to.indirect, from.facets.size(), to.facets.size(), found->second, f);
+      lend(from.mirrored, to.mirrored, from.facets.size(), to.facets.size(), found->second, f);
+      lend(from.indirect_sigma, to.indirect_sigma, from.facets.size(), to.facets.size(), found->second, f);
+    }
+  }
+}
 
 std::vector<Use> object_uses(const Setting& s, const mechanism::Mechanism& mechanism) {
   std::vector<Use> uses;

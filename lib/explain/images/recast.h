@@ -27,6 +27,10 @@ std::shared_ptr<const Prepared> prepare_recasts(const Setting& setting, const Us
 void add_recasts(const Use& use, const Frame& frame, std::span<double> radiance);
 void recast_slopes(const Use& use, const Frame& frame, std::span<const std::size_t> numbers, std::span<double> columns);
 
+// Light by way of surfaces for another cache of the same pixels: that of the same pixel's facet of the same surface,
+// else of the one seen last.
+void lend_indirect(const ViewCache& from, ViewCache& to);
+
 // A term that moves objects.
 Term recast_term(const mechanism::Mechanism& (*mechanism)(), std::vector<Use> (*candidates)(const Setting&));
 

@@ -60,15 +60,6 @@ const std::vector<const surface::Model*>& simple_models() {
   return all;
 }
 
-void widen(SurfaceState& surface, const surface::Model& model) {
-  if (surface.model == &model) return;
-  SurfaceState wide{&model, presets(model)};
-  const std::vector<manifest::ParameterInfo>& own = surface.model->info().parameters;
-  for (std::size_t i = 0; i < own.size(); ++i)
-    if (has_parameter(model, own[i].name)) wide.values.v[parameter_index(model, own[i].name)] = surface.values.v[i];
-  surface = wide;
-}
-
 void edit(const Use& use, std::size_t, const SceneLayout&, const Recordings&, SceneState& state) {
   for (std::size_t t = 0; t < use.targets.size(); ++t) {
     SurfaceState& surface = state.surfaces[use.targets[t]];
@@ -83,6 +74,15 @@ void edit(const Use& use, std::size_t, const SceneLayout&, const Recordings&, Sc
 }
 
 }  // namespace
+
+void widen(SurfaceState& surface, const surface::Model& model) {
+  if (surface.model == &model) return;
+  SurfaceState wide{&model, presets(model)};
+  const std::vector<manifest::ParameterInfo>& own = surface.model->info().parameters;
+  for (std::size_t i = 0; i < own.size(); ++i)
+    if (has_parameter(model, own[i].name)) wide.values.v[parameter_index(model, own[i].name)] = surface.values.v[i];
+  surface = wide;
+}
 
 const surface::Model* widened(const SurfaceState& surface, const Mechanism& mechanism) {
   if (expresses(*surface.model, mechanism)) return surface.model;

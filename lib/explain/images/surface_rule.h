@@ -12,5 +12,7 @@ std::vector<Use> surface_candidates(const Setting& setting, const mechanism::Mec
 
 // The model that can express `mechanism` on this surface, or null.
 const surface::Model* widened(const SurfaceState& surface, const mechanism::Mechanism& mechanism);
+// The same surface in that model; what the present one lacks stands at its preset.
+void widen(SurfaceState& surface, const surface::Model& model);
 
 }  // namespace gonio::explain::images

@@ -108,6 +108,14 @@ std::optional<Use> lamps_use(const Setting& setting, const Mechanism& mechanism,
   return target_use(mechanism, on, lights, shared);
 }
 
+bool lamps_surround(const Setting& setting) {
+  constexpr std::ptrdiff_t least = 3;
+  return std::ranges::any_of(setting.recordings.images, [&](const Recording& image) {
+    return std::ranges::count_if(image.lights, [&](std::size_t l) { return setting.layout.lights[l].directional; }) >=
+           least;
+  });
+}
+
 std::vector<std::size_t> lit_by(const Recordings& recordings, std::size_t light) {
   std::vector<std::size_t> groups;
   for (std::size_t i = 0; i < recordings.images.size(); ++i) {

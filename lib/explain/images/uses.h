@@ -16,6 +16,9 @@ Use target_use(const mechanism::Mechanism& mechanism, std::vector<std::string> o
 std::optional<Use> lamps_use(const Setting& setting, const mechanism::Mechanism& mechanism, bool shared,
                              bool (*fits)(const Setting& setting, std::size_t light));
 
+// Do distant lamps stand for surroundings: three or more at once in a picture?
+bool lamps_surround(const Setting& setting);
+
 // Terms that move the same lamps are alternatives.
 inline constexpr const char* lamps_place = "place of the lamps";
 

@@ -14,7 +14,7 @@ const Mechanism& optics_defocus() {
       .source = "Cook, Porter & Carpenter 1984; Kolb, Mitchell & Hanrahan 1995, section 2 (thin lens)",
       .stage = "optics",
       .target = Target::camera,
-      .domains = {},
+      .domains = {"images"},
       .parameters = {{.name = "aperture_radius_m",
                       .unit = "m",
                       .neutral = 0,

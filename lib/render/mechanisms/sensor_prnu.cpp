@@ -12,7 +12,7 @@ const Mechanism& sensor_prnu() {
       .source = "EMVA Standard 1288, release 4.0, PRNU_1288; Janesick 2007, chapter 3",
       .stage = "sensor",
       .target = Target::camera,
-      .domains = {},
+      .domains = {"images"},
       .parameters = {{.name = "sigma",
                       .unit = "1",
                       .neutral = 0,
@@ -21,7 +21,8 @@ const Mechanism& sensor_prnu() {
                       .start = 0.01,
                       .meaning = "standard deviation of the pixels' sensitivity over its mean"}},
       .conditions = {"camera.pixel"},
-      .mistaken_for = {{.with = "texture", .told_apart = "shift the object by some pixels: the pattern stays"}},
+      .mistaken_for = {{.with = "texture", .told_apart = "shift the object by some pixels: the pattern stays"},
+                       {.with = "sensor.row-pattern", .told_apart = "direct current for the lamps: rows vanish"}},
   };
   return declaration;
 }

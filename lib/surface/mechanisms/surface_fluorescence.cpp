@@ -1,4 +1,5 @@
-// surface.fluorescence: light that is absorbed returns at longer wavelengths.
+// surface.fluorescence: light that is absorbed returns at longer wavelengths. render does not simulate it: its paths
+// carry every band by itself.
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {
@@ -14,7 +15,7 @@ const Mechanism& surface_fluorescence() {
       .source = "Donaldson 1954; Hullin et al. 2010, section 3",
       .stage = "surface",
       .target = Target::surface,
-      .domains = {"tables"},
+      .domains = {"tables", "images"},
       .parameters = {{.name = "emission",
                       .unit = "1",
                       .neutral = 0,

@@ -9,8 +9,10 @@ const Mechanism& light_inverse_square();
 namespace gonio::explain::images::terms {
 namespace {
 
-// One nearness for all: lamps about an object stand at one distance.
+// One nearness for all: lamps about an object stand at one distance. Many at once are surroundings, the matter of
+// light.near-environment.
 std::vector<Use> candidates(const Setting& s) {
+  if (lamps_surround(s)) return {};
   std::optional<Use> use =
       lamps_use(s, mechanism::light_inverse_square(), true,
                 [](const Setting& here, std::size_t light) { return here.layout.lights[light].directional; });

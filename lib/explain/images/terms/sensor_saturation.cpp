@@ -17,8 +17,10 @@ std::vector<Use> candidates(const Setting& s) {
   const double full = largest_value(s.recordings);
   if (readings_near(s.recordings, full) < least_readings) return {};
   std::vector<Use> uses = camera_uses(s, mechanism::sensor_saturation());
-  for (Use& use : uses)
+  for (Use& use : uses) {
+    use.family = "full scale of " + use.on[0];  // clipped-resampling has it, too
     for (Number& n : use.numbers) n.start = full, n.lower = 0.5 * full, n.upper = 1.2 * full;
+  }
   return uses;
 }
 
