@@ -27,6 +27,7 @@ constexpr std::array<FilmClass, 2> film_classes = {{{1.15, 1.35, 1.5, 0.12e-6, 5
 constexpr double thinnest_film_m = 0.02e-6;
 constexpr std::size_t fewest_bands_of_a_film = 5;  // fewer cannot tell fringes from any other colour of the gloss
 constexpr std::size_t ridge_sectors = 4;
+constexpr double overlap = 1.5;  // of sectors: no azimuth lies at the limit of all that hold it
 
 void set_component(Rgb& rgb, std::size_t k, double value) {
   (k == 0 ? rgb.x : k == 1 ? rgb.y : rgb.z) = value;
@@ -253,7 +254,7 @@ class Collector {
       Parameter share = of_mechanism(m, m.parameters[0]), tilt = of_mechanism(m, m.parameters[1]),
                 azimuth = of_mechanism(m, m.parameters[2]);
       azimuth.start = azimuth.neutral = 2 * half * static_cast<double>(k);
-      azimuth.lower = azimuth.start - half, azimuth.upper = azimuth.start + half;
+      azimuth.lower = azimuth.start - overlap * half, azimuth.upper = azimuth.start + overlap * half;
       azimuth.size = 0.1, tilt.size = 0.05, tilt.neutral = tilt.start;
       if (use_of(m) != nullptr) azimuth.lower = -half, azimuth.upper = pi - half;
       enter(m,
