@@ -102,7 +102,7 @@ std::vector<cli::Option> table_options() {
        .repeat = true},
       {.name = "sigma",
        .type = Type::text,
-       .help = "Column with one standard deviation of it; default: from repeats, else neighbouring rows.",
+       .help = "Column with one standard deviation of it; default: COLUMN_sigma, else from repeats or neighbouring rows.",
        .metavar = "COLUMN",
        .repeat = true},
       {.name = "group",

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "base/error.h"
+#include "explain/tables/quick_table.h"
 #include "table_world.h"
 
 namespace gonio::explain::tables::tests {
@@ -152,6 +155,24 @@ TEST(Columns, ThatNeverVaryAreNotWorthAQuestion) {
     EXPECT_EQ(e.code(), Exit::data);
     EXPECT_THAT(e.what(), testing::HasSubstr("column \"value\" is 12.5 in all 72 rows"));
   }
+}
+
+TEST(QuickTables, AModelThatIsMisspeltIsNotTakenForAConstant) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "gonio_tables_misspelt.csv";
+  std::ofstream(file) << "exposure_s,value\n1,2\n";
+  try {
+    quick_document({.file = file, .model = "sensr", .observed = {"value"}});
+    FAIL() << "was accepted";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Exit::usage);
+    EXPECT_STREQ(e.what(), "--model: \"sensr\" is no model, no column and no free parameter; did you mean \"sensor\"?");
+  }
+  // A free parameter alone is a model: a constant.
+  EXPECT_EQ(quick_document({.file = file, .model = "a", .observed = {"value"}, .free = {{"a", 1}}})
+                .tables.begin()
+                ->second.expression,
+            "a");
+  std::filesystem::remove(file);
 }
 
 }  // namespace

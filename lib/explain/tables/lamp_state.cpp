@@ -128,10 +128,11 @@ void LampState::free_parameters(const manifest::Document&) {
     }
 }
 
-// Every registered mechanism of lamps that the scene can apply to this one.
+// Every registered mechanism of lamps that tables show and that the scene can apply to this one.
 void LampState::mechanisms_of_lamps() {
   for (const mechanism::Mechanism* m : mechanism::all_mechanisms()) {
     if (m->target != mechanism::Target::light) continue;
+    if (std::find(m->domains.begin(), m->domains.end(), "tables") == m->domains.end()) continue;
     if (m->id == "light.position") continue;  // places of lamps are the base model's own parameters here
     const std::vector<std::string> targets = scene::mechanism_targets(appearance_, *m);
     for (std::size_t l = 0; l < lamps().size(); ++l) {
