@@ -22,8 +22,11 @@ class Heights final : public World {
         surface{"surface"};
     std::vector<EffectKind> k;
     const auto add = [&](EffectKind kind) -> EffectKind& { return k.emplace_back(std::move(kind)); };
-    add({"grating", "surface.micro-ridges", surface, lay, 0.15, 0.8}).as_drawn().values = [this](const Numbers&) {
-      return std::vector<TrueValue>{{"surface.micro-ridges", "ridge_period_m", period_m_}};
+    add({"grating", "surface.micro-ridges", surface, lay, 0.25, 0.9}).as_drawn().values = [this](const Numbers& size) {
+      constexpr double first_harmonic = 1.09;  // of flanks over 0.3 of a period
+      return std::vector<TrueValue>{
+          {"surface.micro-ridges", "ridge_period_m", period_m_, true, false},
+          {"surface.micro-ridges", "ridge_amplitude_m", first_harmonic * size[0] * rough_m, false}};
     };
     add({"drawn out", "surface.anisotropy", surface, lay, 0.15, 0.6}).as_drawn();
     add({"scratches", "", surface, {}, 2, 6});

@@ -45,6 +45,10 @@ bool too_small(const Judged& j) {
 bool clear(const Judged& j) {
   return clearly_there(j);
 }
+bool all_clear(const Judged& j) {  // of a pair: neither is too weak to be seen
+  const auto each = times_each_limit(j);
+  return std::all_of(each.begin(), each.end(), [](const auto& t) { return t.second >= clearly; });
+}
 bool single(const Judged& j) {
   return j.truth.kind == Kind::single || j.truth.kind == Kind::alike;
 }
@@ -90,7 +94,9 @@ std::vector<Asked> questions() {
       {share_question("which, where it cannot", "set of at most 3", "all", 1, false), alike,
        [](const Judged& j) { return j.answer.set_size <= 3; }},
       {share_question("two at once", "both named", ">= 80 %", 0.8, false),
-       [](const Judged& j) { return j.truth.kind == Kind::pair && j.truth.apart == Apart::yes && matter(j); },
+       [](const Judged& j) {
+         return j.truth.kind == Kind::pair && j.truth.apart == Apart::yes && matter(j) && all_clear(j);
+       },
        [](const Judged& j) { return has_all(j.answer.named, j.truth.mechanisms); }},
       {share_question("outside the library", "wrongly named as a known one", "<= 5 %", 0.05, true),
        [](const Judged& j) { return j.truth.kind == Kind::outside && j.truth.apart == Apart::yes; }, wrongly_named},
@@ -176,18 +182,24 @@ bool clearly_there(const Judged& j) {
   return matter(j) && times_the_limit(j) >= clearly;
 }
 
-double times_the_limit(const Judged& judged) {
-  double times = 0;
-  bool known = false;
+std::map<std::string, double> times_each_limit(const Judged& judged) {
+  std::map<std::string, double> times;
   for (const TrueValue& t : judged.truth.values) {
     const auto limits = judged.answer.limit.find(t.mechanism);
-    if (limits == judged.answer.limit.end()) continue;
+    if (!t.is_size || limits == judged.answer.limit.end()) continue;
     const auto limit = limits->second.find(t.parameter);
     if (limit == limits->second.end() || !(limit->second > 0)) continue;
-    times = std::max(times, std::abs(t.value) / limit->second);
-    known = true;
+    double& most = times[t.mechanism];
+    most = std::max(most, std::abs(t.value) / limit->second);
   }
-  return known ? times : judged.truth.strength / judged.truth.limit;
+  return times;
+}
+
+double times_the_limit(const Judged& judged) {
+  double times = 0;
+  const std::map<std::string, double> each = times_each_limit(judged);
+  for (const auto& [mechanism, its] : each) times = std::max(times, its);
+  return each.empty() ? judged.truth.strength / judged.truth.limit : times;
 }
 
 Tally Question::all() const {

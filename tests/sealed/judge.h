@@ -58,6 +58,7 @@ struct Judgement {
 // How far the effect is above what explain says it can see: |true - neutral| over the printed limit; the maker's own
 // count where the declaration's numbers are not the maker's.
 double times_the_limit(const Judged& judged);
+std::map<std::string, double> times_each_limit(const Judged& judged);  // of mechanisms whose limits are known
 // Present, above what can be seen, and large enough to be worth a name.
 bool clearly_there(const Judged& judged);
 std::vector<EffectRow> effect_rows(const std::vector<Judged>& cases);

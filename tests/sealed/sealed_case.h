@@ -42,7 +42,8 @@ std::string case_id(const Spec& spec);  // says nothing about the case
 struct TrueValue {
   std::string mechanism, parameter;
   double value = 0;
-  bool exact = true;  // false: another equation; the number is the nearest equivalent, and its interval is not asked
+  bool exact = true;    // false: another equation; the number is the nearest equivalent, and its interval is not asked
+  bool is_size = true;  // false: a place or a period, which says nothing of how strong the effect is
 };
 
 // Whether another mechanism could explain the same recordings, by the maker's own count: what the best rival leaves of

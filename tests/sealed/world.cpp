@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "base/text.h"
 #include "sealed/surviving.h"
 
 namespace gonio::sealed {
@@ -192,7 +193,7 @@ void fill_truth(const Spec& spec, const Stage& s, const Sizes& sizes, Truth& tru
     truth.stages.insert(truth.stages.end(), kind.stages.begin(), kind.stages.end());
     truth.conditions.insert(truth.conditions.end(), kind.conditions.begin(), kind.conditions.end());
     truth.world += (truth.world.empty() ? "" : " + ") + name;
-    for (const double v : size) truth.world += " " + std::to_string(v);
+    for (const double v : size) truth.world += format(" %.4g", v);
   }
   if (spec.kind == Kind::outside) {  // what a known effect imitates for the most part is rightly called by its name
     truth.apart = outside_left(s, sizes) >= surely_outside ? Apart::yes : Apart::unclear;
