@@ -102,7 +102,7 @@ std::vector<cli::Option> table_options() {
        .repeat = true},
       {.name = "sigma",
        .type = Type::text,
-       .help = "Column with one standard deviation of it; default: COLUMN_sigma, else from repeats or neighbouring rows.",
+       .help = "Column with one standard deviation of it; default: COLUMN_sigma, else repeats or neighbours.",
        .metavar = "COLUMN",
        .repeat = true},
       {.name = "group",
