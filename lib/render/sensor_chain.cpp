@@ -132,16 +132,18 @@ double reading(double v, const Sensor& sensor, int row, Random& fixed, Random& r
 // Beyond the picture's border there is what lies on it.
 void resample_clipped(io::Image& image, double full_scale, double width_px) {
   const io::Image native = image;
+  const auto reading = [&](int x, int y, int c) {
+    return with_limit(native.at(std::clamp(x, 0, image.width - 1), std::clamp(y, 0, image.height - 1), c), full_scale);
+  };
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
-      for (int c = 0; c < static_cast<int>(image.channels.size()); ++c)
+      for (int c = 0; c < static_cast<int>(image.channels.size()); ++c) {
+        double sum = 0;
         for (int dy = -1; dy <= 1; ++dy)
-          for (int dx = -1; dx <= 1; ++dx) {
-            const double v =
-                native.at(std::clamp(x + dx, 0, image.width - 1), std::clamp(y + dy, 0, image.height - 1), c);
-            const double weight = resampling_weight(dx, width_px) * resampling_weight(dy, width_px);
-            image.at(x, y, c) -= static_cast<float>(weight * (v - with_limit(v, full_scale)));
-          }
+          for (int dx = -1; dx <= 1; ++dx)
+            sum += resampling_weight(dx, width_px) * resampling_weight(dy, width_px) * reading(x + dx, y + dy, c);
+        image.at(x, y, c) = static_cast<float>(sum);
+      }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/random.h"
@@ -49,6 +50,32 @@ TEST(Prnu, CannotBeSeenFromOneView) {
   for (const explain::Isolability& i : outcome.explanation.isolability)
     if (outcome.problem.candidates()[i.candidate].id() == "sensor.prnu") said = !i.visible;
   EXPECT_TRUE(said);
+}
+
+// Cut off, then resampled by half a pixel to one side and back again, as undistortion does in the worst place.
+void clip_and_resample(io::Image& picture, float full_scale) {
+  for (float& v : picture.data) v = std::min(v, full_scale);
+  for (const int step : {1, -1})
+    for (const bool along_x : {true, false}) {
+      const io::Image from = picture;
+      for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+          const int u = std::clamp(x + (along_x ? step : 0), 0, picture.width - 1);
+          const int v = std::clamp(y + (along_x ? 0 : step), 0, picture.height - 1);
+          for (int c = 0; c < 3; ++c) picture.at(x, y, c) = 0.5f * (from.at(x, y, c) + from.at(u, v, c));
+        }
+    }
+}
+
+TEST(ClippedResampling, IsNamedAndNotSaturation) {
+  EffectWorld world;
+  world.ball = R"({"model":"coated-diffuse","albedo":{"value":[0.5,0.4,0.3],"free":true},"f0":0.08,"alpha":0.2})";
+  world.change = [](std::size_t, std::size_t, io::Image& picture) { clip_and_resample(picture, 0.32f); };
+  const EffectOutcome outcome(world, {"sensor.clipped-resampling", "sensor.saturation", "sensor.non-linearity",
+                                      "surface.specular", "surface.diffuse-roughness", "optics.defocus"});
+  ASSERT_THAT(outcome.named(), ElementsAre("sensor.clipped-resampling")) << outcome.explanation.sentence;
+  EXPECT_NEAR(outcome.fitted("full_scale"), 0.32, 0.01);
+  EXPECT_NEAR(outcome.fitted("width_px"), 2, 0.3);
 }
 
 }  // namespace

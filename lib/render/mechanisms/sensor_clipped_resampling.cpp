@@ -10,9 +10,7 @@ const Mechanism& sensor_clipped_resampling() {
           "Highlights were cut off at full scale before the picture was resampled: what they lost is missing around "
           "them.",
       .typical = "up to 27 % at the edges of highlights (measured)",
-      .equation =
-          "v(x) = mean over a box of width_px native pixels about x of min(v, full_scale), less what the box alone "
-          "does: v(x) - mean of max(0, v - full_scale)",
+      .equation = "v(x) = mean over a box of width_px native pixels about x of min(v, full_scale)",
       .source = "Debevec & Malik 1997, section 2.1 (saturated pixels hold no value); box filter, Heckbert 1989",
       .stage = "sensor",
       .target = Target::camera,

@@ -65,14 +65,13 @@ void record(const Use& use, const Frame& frame, std::span<double> values) {
   if (!(full_scale > 0)) return;
   const std::size_t v = frame.image.view;
   const double own = render::resampling_weight(0, width_px);
-  for (double& value : values) value -= own * own * (value - render::with_limit(value, full_scale));
+  for (double& value : values) value = own * own * render::with_limit(value, full_scale);
   std::vector<double> beside(values.size());
   for (const Neighbours::One& n : static_cast<const Neighbours&>(*use.prepared).all) {
     const double weight = render::resampling_weight(n.dx, width_px) * render::resampling_weight(n.dy, width_px);
     if (weight == 0) continue;
     frame.model.predict_from(n.views[v], n.sums[v], frame.state, frame.number, frame.picked, beside);
-    for (std::size_t i = 0; i < values.size(); ++i)
-      values[i] -= weight * (beside[i] - render::with_limit(beside[i], full_scale));
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += weight * render::with_limit(beside[i], full_scale);
   }
 }
 
