@@ -53,17 +53,18 @@ ReflectanceEvaluation::ReflectanceEvaluation(const ReflectanceState& state, cons
 
 const ReflectanceEvaluation::Shared& ReflectanceEvaluation::look(std::size_t row, std::size_t triple) {
   const Vec3 wo = rows_.wo[row], wi = rows_.wi[row];
-  if (last_.row < rows_.rows() && last_.triple == triple && rows_.wo[last_.row] == wo && rows_.wi[last_.row] == wi)
-    return last_;
+  const bool seen = last_.row < rows_.rows() && rows_.wo[last_.row] == wo && rows_.wi[last_.row] == wi;
+  if (seen && last_.triple == triple) return last_;
   last_.row = row, last_.triple = triple;
-  last_.f = last_.gloss = last_.lobes = {};
+  last_.f = last_.gloss = {};
   if (!(rows_.weight[row] > 0)) return last_;
   last_.f = state_.model->evaluate(state_.triples[triple], wo, wi);
   if (state_.ridges.share > 0) last_.gloss = state_.model->evaluate(bare_[triple], wo, wi);
-  if (state_.film.film_m > 0) look_beneath_film(row, triple);
+  if (state_.film.film_m > 0 && !seen) look_beneath_film(row, triple);
   return last_;
 }
 
+// What a clear interface without its base is like is the same in all bands.
 void ReflectanceEvaluation::look_beneath_film(std::size_t row, std::size_t triple) {
   const Vec3 wo = rows_.wo[row], wi = rows_.wi[row];
   const double eta = surface::eta_of_f0(f0(3 * triple));  // of a clear interface, the same in all bands
