@@ -58,7 +58,7 @@ void read_named(const Value& entry, Answer& a) {
         if (inner.is_string()) add_unique(ids, inner.as_string());
     }
     for (const std::string& id : ids) add_unique(a.reported, id);
-    a.set_size = std::max(a.set_size, ids.size());
+    a.set_size = std::max(a.set_size, list(&set).size());
   }
 }
 
@@ -67,10 +67,12 @@ void read_isolability(const Value& entry, Answer& a) {
     const std::string id = text_or_nothing(i.find("mechanism"));
     if (const Value* visible = i.find("visible"); visible && visible->is_bool() && !visible->as_bool())
       add_unique(a.invisible, id);
-    for (const auto& [name, limit] : members(i.find("detection_limit"))) {
-      double& least = a.limit[id].try_emplace(last_part(name), INFINITY).first->second;
-      least = std::min(least, number_or(&limit, INFINITY));
-    }
+    for (const auto& [key, into] :
+         {std::pair{"detection_limit", &a.limit}, {"limit_with_others", &a.limit_with_others}})
+      for (const auto& [name, limit] : members(i.find(key))) {
+        double& least = (*into)[id].try_emplace(last_part(name), INFINITY).first->second;
+        least = std::min(least, number_or(&limit, INFINITY));
+      }
   }
 }
 

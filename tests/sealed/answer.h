@@ -23,7 +23,8 @@ struct Answer {
   std::vector<std::string> named, reported, minor;  // reported: named and what is not told apart from them
   std::size_t set_size = 0;                         // of the largest set in the answer
   std::vector<Fitted> fitted;
-  std::map<std::string, std::map<std::string, double>> limit;  // mechanism -> parameter -> detection limit
+  // mechanism -> parameter -> detection limit: of a number alone, and whatever the mechanism's other numbers do.
+  std::map<std::string, std::map<std::string, double>> limit, limit_with_others;
   std::vector<std::string> invisible;
   std::string condition, stage, sentence;
   double before = 0, after = 0;

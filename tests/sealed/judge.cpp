@@ -185,12 +185,19 @@ bool clearly_there(const Judged& j) {
 std::map<std::string, double> times_each_limit(const Judged& judged) {
   std::map<std::string, double> times;
   for (const TrueValue& t : judged.truth.values) {
-    const auto limits = judged.answer.limit.find(t.mechanism);
-    if (!t.is_size || limits == judged.answer.limit.end()) continue;
-    const auto limit = limits->second.find(t.parameter);
-    if (limit == limits->second.end() || !(limit->second > 0)) continue;
+    const auto same = [&](const TrueValue& v) { return v.is_size && v.mechanism == t.mechanism; };
+    const bool several = std::count_if(judged.truth.values.begin(), judged.truth.values.end(), same) > 1;
+    const auto limit_in = [&](const auto& limits) {
+      const auto of = limits.find(t.mechanism);
+      if (of == limits.end()) return 0.0;
+      const auto found = of->second.find(t.parameter);
+      return found == of->second.end() ? 0.0 : found->second;
+    };
+    double limit = several ? limit_in(judged.answer.limit_with_others) : 0;
+    if (!(limit > 0)) limit = limit_in(judged.answer.limit);
+    if (!t.is_size || !(limit > 0)) continue;
     double& most = times[t.mechanism];
-    most = std::max(most, std::abs(t.value) / limit->second);
+    most = std::max(most, std::abs(t.value) / limit);
   }
   return times;
 }
