@@ -9,11 +9,11 @@ namespace gonio::explain {
 
 void compare_with_calibration(const Problem& problem, Explanation& e) {
   for (Compensation& c : e.compensation) {
-    const Parameter& p = problem.parameters()[c.parameter];
-    if (!p.prior_sigma) continue;
-    c.calibrated = p.start;
-    c.calibrated_sigma = *p.prior_sigma;
-    c.towards = std::abs(c.after - p.start) < std::abs(c.before - p.start);
+    const std::optional<Calibration> stated = problem.calibration(c.parameter);
+    if (!stated) continue;
+    c.calibrated = stated->value;
+    c.calibrated_sigma = stated->sigma;
+    c.towards = std::abs(c.after - stated->value) < std::abs(c.before - stated->value);
   }
 }
 

@@ -110,9 +110,11 @@ Value isolability(const Problem& problem, const Explanation& e) {
   Value list = Value::array();
   for (const Isolability& i : e.isolability) {
     const Candidate& c = problem.candidates()[i.candidate];
-    Value limits = Value::object(), look_alikes = Value::array();
-    for (std::size_t k = 0; k < i.detection_limit.size(); ++k)
+    Value limits = Value::object(), with_others = Value::object(), look_alikes = Value::array();
+    for (std::size_t k = 0; k < i.detection_limit.size(); ++k) {
       limits[problem.parameters()[c.parameters[k]].name] = number(i.detection_limit[k]);
+      with_others[problem.parameters()[c.parameters[k]].name] = number(i.limit_with_others[k]);
+    }
     for (const auto& [other, cosine] : i.look_alikes)
       look_alikes.push_back(
           Value::object({{"mechanism", problem.candidates()[other].id()}, {"cosine", number(cosine)}}));
@@ -120,6 +122,7 @@ Value isolability(const Problem& problem, const Explanation& e) {
     if (!c.on.empty()) entry["on"] = c.on;
     entry["surviving_share"] = number(i.surviving_share);
     entry["detection_limit"] = limits;
+    entry["limit_with_others"] = with_others;
     entry["looks_like"] = look_alikes;
     entry["visible"] = i.visible;
     list.push_back(entry);
@@ -136,7 +139,8 @@ Value compensation(const Problem& problem, const Explanation& e) {
                                  {"sigma", number(c.sigma)},
                                  {"unit", problem.parameters()[c.parameter].unit}});
     if (c.calibrated) {
-      entry["calibrated"] = Value::object({{"value", number(*c.calibrated)}, {"sigma", number(*c.calibrated_sigma)}});
+      entry["calibrated"] = Value::object({{"value", number(*c.calibrated)}});
+      if (c.calibrated_sigma) entry["calibrated"]["sigma"] = number(*c.calibrated_sigma);
       entry["towards"] = c.towards;
     }
     list.push_back(entry);
@@ -194,11 +198,15 @@ Value next_measurement(const Problem& problem, const Explanation& e) {
 Value entry_of(const Problem& problem, const Explanation& e, const Illustration& illustration) {
   Value named = Value::array(), apart = Value::array(), tests = Value::array();
   for (const std::size_t c : e.named) named.push_back(named_mechanism(problem, e, c));
-  for (const std::vector<std::size_t>& set : e.not_told_apart) {
+  const auto ids_of = [&](const std::vector<std::size_t>& set) {
     std::vector<std::string> ids;
     for (const std::size_t c : set) ids.push_back(problem.candidates()[c].id());
-    apart.push_back(ids);
-  }
+    return ids;
+  };
+  for (const std::vector<std::size_t>& set : e.not_told_apart) apart.push_back(ids_of(set));
+  // Whole explanations, each a list of its own.
+  for (const std::vector<std::size_t>& set : e.instead)
+    apart.push_back(Value(Value::Array{ids_of(e.named), ids_of(set)}));
   for (const std::size_t g : e.test_groups) tests.push_back(problem.observations().group[g]);
   Value entry = Value::object({{"domain", problem.domain()}, {"verdict", verdict_name(e.verdict)}});
   entry["named"] = named;

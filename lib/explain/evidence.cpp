@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "base/atomic_file.h"
+#include "explain/law_data.h"
 
 namespace gonio::explain {
 namespace {
@@ -30,6 +31,16 @@ std::vector<double> along_the_curve(const Observations& o, const LocatedConditio
   return change;
 }
 
+// What the free parameters leave of a law: the part that they take is no mismatch anywhere.
+std::vector<double> surviving(const Problem& problem, const Explanation& e, const std::vector<double>& law) {
+  const System system(problem, 1);
+  const Eigen::MatrixXd projected = LawData(system, e.values, e.active).projected({law});
+  std::vector<double> left(law.size(), 0.0);
+  for (std::size_t i = 0; i < left.size(); ++i)
+    if (system.weight(i) > 0) left[i] = projected(static_cast<Eigen::Index>(i), 0) / system.weight(i);
+  return left;
+}
+
 // Quotes where commas or quotes would break the row.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
@@ -50,7 +61,7 @@ std::vector<double> effects(const Problem& problem, const Explanation& e) {
   if (!e.named.empty()) {
     for (std::size_t i = 0; i < change.size(); ++i) change[i] = e.residual_before[i] - e.residual_after[i];
   } else if (e.outside && e.outside->per_row.size() == change.size()) {
-    change = e.outside->per_row;
+    change = surviving(problem, e, e.outside->per_row);
   } else if (e.outside && located(e.outside->condition) != e.conditions.end()) {
     change = along_the_curve(o, *located(e.outside->condition));
   } else if (!e.conditions.empty()) {

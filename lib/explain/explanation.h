@@ -42,7 +42,11 @@ struct Hypothesis {
 struct Isolability {
   std::size_t candidate = 0;
   double surviving_share = 0;           // of the signature's length, after free parameters are projected out
-  std::vector<double> detection_limit;  // per parameter: amplitude seen with 80 % power at the test's level
+  std::vector<double> detection_limit;  // per parameter, the others at neutral: amplitude seen with 80 % power at the
+                                        // test's level
+  // The same whatever the mechanism's other numbers do: the most that this one can be in an effect that stays unseen. A
+  // board stretched along one axis shows where the same stretch of both hides in the focal length.
+  std::vector<double> limit_with_others;
   std::vector<std::pair<std::size_t, double>>
       look_alikes;      // other candidates with |cos| > 0.9 between the projected signatures
   bool visible = true;  // false: "these recordings cannot show it"
@@ -70,7 +74,8 @@ struct LocatedGroup {
 struct Compensation {  // a free parameter that the missing physics had bent
   std::size_t parameter = 0;
   double before = 0, after = 0, sigma = 0;
-  // What an independent calibration says of it, where the manifest has one, and whether the parameter moved towards it.
+  // What an independent calibration says of it, where the manifest has one (its sigma where that is stated), and whether
+  // the parameter moved towards it.
   std::optional<double> calibrated{}, calibrated_sigma{};
   bool towards = false;
 };
@@ -110,7 +115,8 @@ struct Explanation {
   Verdict verdict = Verdict::null;
   std::vector<std::size_t> named;  // candidates, the most important first
   std::vector<std::vector<std::size_t>>
-      not_told_apart;   // sets of candidates, each set an explanation as good as the winner
+      not_told_apart;  // sets of candidates: the first is named, each of the others could stand in its place
+  std::vector<std::vector<std::size_t>> instead;  // whole sets, each as good an explanation as all that is named
   double global_p = 1;  // of the null test
   bool significant = false, important = false;
   double noise_factor = 1;

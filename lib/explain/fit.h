@@ -24,21 +24,23 @@ Fit fit(const System& system, std::vector<double> start, const std::vector<std::
 // Fall of the cost that these slopes promise where the fit stands: g' H^-1 g over what bounds leave free.
 double decrement(const System& system, const Fit& fit, const Slopes& slopes);
 
-// Covariance of a fit, H^-1 M H^-1 with M the sum over blocks of their squared scores (White 1980; Liang & Zeger 1986):
-// honest under any correlation inside a block and any mis-stated sigma. Where leaving out whole groups moves a
+// Covariance of a fit, H^-1 M H^-1 with M the sum over blocks of their squared scores (White 1980; Liang & Zeger 1986),
+// each freed of its own pull on the fit (Bell & McCaffrey 2002): honest under any correlation inside a block and any
+// mis-stated sigma. Intervals are Student's with the effective number of blocks behind a parameter. Where leaving out whole groups moves a
 // parameter by more than that explains (variance ratio beyond its 95 % point), the jackknife over groups stands
 // instead.
 struct Uncertainty {
   Eigen::MatrixXd covariance;  // of `parameters`
+  Eigen::MatrixXd by_blocks;   // the same before the jackknife over groups has a say
   std::vector<std::size_t> parameters;
-  std::vector<double> degrees;  // for Student's t: large, or groups - 1 where the jackknife rules
+  std::vector<double> degrees;  // for Student's t: of the blocks, or groups - 1 where the jackknife rules
 };
 Uncertainty uncertainty(const System& system, const Fit& fit, const Slopes* kept = nullptr);
 std::vector<Estimate> estimates(const System& system, const Fit& fit, const Uncertainty& uncertainty,
                                 const std::vector<std::size_t>& parameters);
 // P-value of "all these parameters are neutral" (Wald).
 double neutral_p(const System& system, const Fit& fit, const Uncertainty& uncertainty,
-                 const std::vector<std::size_t>& parameters);
+                 const std::vector<std::size_t>& parameters, bool by_blocks = false);
 
 // Sums of squares per group in play (in the order of System::groups), on rows whose group took no part in the shared
 // parameters and whose half took no part in the group's own nuisance.

@@ -49,6 +49,39 @@ double mattering(const System& system, const Projection& p, const BlockScores& s
   return length > 0 ? (1 / ((1 - matters) * (1 - matters)) - 1) * p.rows / length : 0;
 }
 
+// Diagonal of G^-1: the largest squared component of an effect of unit length, whatever the other components are.
+// Infinite where a direction has no length.
+Eigen::VectorXd largest_components(const Eigen::MatrixXd& gram, const Eigen::VectorXd& full) {
+  const Eigen::VectorXd scale = full.unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(gram.rows());
+  for (Eigen::Index k = 0; k < gram.rows(); ++k)
+    for (Eigen::Index d = 0; d < gram.rows(); ++d) {
+      const double part = std::pow(scale[k] * eigen.eigenvectors()(k, d), 2), length = eigen.eigenvalues()[d];
+      if (length > least_share)
+        result[k] += part / length;
+      else if (part > 1e-9 * scale[k] * scale[k])
+        result[k] = std::numeric_limits<double>::infinity();
+    }
+  return result;
+}
+
+// Limits of numbers that are not alone: by noise and by what matters, as for a single one.
+std::vector<double> limits_with_others(const System& system, const Projection& p, const BlockScores& scores,
+                                       const std::vector<Eigen::Index>& own, double white, double matters) {
+  const Eigen::VectorXd full = p.full.diagonal()(own);
+  const Eigen::VectorXd seen = largest_components(p.surviving(own, own), full);
+  const bool of_signal = system.problem().importance() == Importance::share_of_signal;
+  const Eigen::VectorXd raw =
+      of_signal ? largest_components(scores.raw_surviving(own, own), scores.raw_surviving.diagonal()(own)) : seen;
+  const double least =
+      of_signal ? matters * matters * scores.norm : (1 / ((1 - matters) * (1 - matters)) - 1) * p.rows;
+  std::vector<double> limits;
+  for (Eigen::Index k = 0; k < seen.size(); ++k)
+    limits.push_back(std::sqrt(std::max(white * seen[k], least * raw[k])));
+  return limits;
+}
+
 }  // namespace
 
 double look_alike(const Projection& p, const std::vector<Eigen::Index>& a, const std::vector<Eigen::Index>& b) {
@@ -108,6 +141,9 @@ std::vector<Isolability> isolability(const System& system, const Projection& p, 
       if (std::sqrt(std::max(by_noise, matters)) < reach && entry.surviving_share > invisible_share)
         entry.visible = true;
     }
+    entry.limit_with_others = own.size() > 1
+                                  ? limits_with_others(system, p, scores, own, white * inflated, options.matters)
+                                  : entry.detection_limit;
     result.push_back(std::move(entry));
   }
   for (std::size_t a = 0; a < result.size(); ++a)

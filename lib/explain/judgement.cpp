@@ -13,7 +13,7 @@ constexpr double own_share = 0.35, other_share = 0.5;
 // Where a free curve over its own condition takes away most of what is left above the noise, the recordings are clean
 // enough to say that the mechanism is not the law; a lens that is no polynomial leaves less than this share.
 constexpr double clean_share = 0.02, clean_part = 0.5;
-constexpr double price_of_a_trail = 10;  // as in the null test
+constexpr double price_of_a_look = 10;   // as in the null test
 constexpr double clearly_better = 0.1;   // by which a free curve must repair more, as a share of what it repairs
 
 bool repairs(const Hypothesis& h, const Options& options) {
@@ -32,12 +32,16 @@ struct Left {
   const Competitor* any = nullptr;  // the free curve that repairs most of what is left
   const Competitor* own = nullptr;  // the same over a condition that a named mechanism declares
   const Trail* trail = nullptr;     // what no smooth curve follows
+  const Crossing* crossing = nullptr;  // what turns round from one condition to another
 };
 Left structure_left(const Problem& problem, const Selection& s, const Options& options) {
   Left left;
   if (s.after.global_p > options.level) return left;
-  if (s.after.trail && price_of_a_trail * s.after.trail->p <= options.level && s.after.trail->effect >= options.matters)
-    left.trail = &*s.after.trail;
+  const auto tells = [&](const auto& look) {
+    return look && price_of_a_look * look->p <= options.level && look->effect >= options.matters;
+  };
+  if (tells(s.after.trail)) left.trail = &*s.after.trail;
+  if (tells(s.after.crossing)) left.crossing = &*s.after.crossing;
   for (const Competitor& c : s.after.curves) {
     if (!repairs(c.hypothesis, options)) continue;
     if (left.any == nullptr) left.any = &c;
@@ -75,59 +79,85 @@ Outside outside_of(const Problem& problem, std::size_t condition) {
   return outside;
 }
 
-void refuse(const Selection& s, const std::string& why, Explanation& e) {
+std::string objection_to(const Problem& problem, const Selection& s, const Left& left, const Competitor* better) {
+  const double repaired = gain(s.base.held_out, s.model.held_out).mean;
+  const auto too_much = [&](const Competitor* c, double share) {
+    return c != nullptr && c->hypothesis.gain > share * (c->hypothesis.gain + std::max(0.0, repaired));
+  };
+  const bool clean =
+      left.own != nullptr && left.own->hypothesis.gain > clean_part * std::max(0.0, excess(s.model.held_out));
+  if (too_much(left.own, clean ? clean_share : own_share))
+    return "leaves structure over " + left.own->hypothesis.name + ", its own condition: it only imitates in part";
+  if (too_much(left.any, other_share)) return "leaves more than it repairs, over " + left.any->hypothesis.name;
+  if (left.trail != nullptr && left.trail->power > std::max(0.0, repaired))
+    return "leaves more than it repairs, a fine structure along " +
+           problem.observations().conditions[left.trail->condition].name;
+  if (left.crossing != nullptr && left.crossing->power > std::max(0.0, repaired))
+    return "leaves more than it repairs, over the product of " +
+           problem.observations().conditions[left.crossing->first].name + " and " +
+           problem.observations().conditions[left.crossing->second].name;
+  if (better != nullptr)
+    return "a free curve over " + better->hypothesis.name + " repairs more on unseen groups: it only imitates in part";
+  return "";
+}
+
+// Marks what is part of the set and of no set that stands.
+void refuse(const std::vector<std::size_t>& set, const std::vector<std::size_t>& standing, const std::string& why,
+            Explanation& e) {
+  const auto within = [](const std::vector<std::size_t>& some, const std::vector<std::size_t>& all) {
+    return std::all_of(some.begin(), some.end(),
+                       [&](std::size_t c) { return std::find(all.begin(), all.end(), c) != all.end(); });
+  };
   for (Hypothesis& h : e.scoreboard)
     if (h.refused.empty() && h.kind == Hypothesis::Kind::mechanisms && !h.candidates.empty() &&
-        std::all_of(h.candidates.begin(), h.candidates.end(), [&](std::size_t c) {
-          return std::find(s.model.candidates.begin(), s.model.candidates.end(), c) != s.model.candidates.end();
-        }))
+        within(h.candidates, set) && !within(h.candidates, standing))
       h.refused = why;
 }
 
 }  // namespace
 
+std::string objection(const Problem& problem, const Selection& s, const Options& options) {
+  if (s.model.candidates.empty()) return "";
+  return objection_to(problem, s, structure_left(problem, s, options), better_curve(s, options));
+}
+
 void judge(const Problem& problem, Selection& s, const Options& options, Explanation& e) {
   e.significant = s.before.global_p <= options.level;
   const Left left = structure_left(problem, s, options);
-  const bool remains = left.any != nullptr || left.trail != nullptr;
+  const bool remains = left.any != nullptr || left.trail != nullptr || left.crossing != nullptr;
   if (left.any != nullptr)
     e.outside = outside_of(problem, left.any->condition);
   else if (left.trail != nullptr)
     e.outside = outside_of(problem, left.trail->condition);
+  else if (left.crossing != nullptr)
+    e.outside = outside_of(problem, left.crossing->first);
   if (s.model.candidates.empty()) {
     e.verdict = remains ? Verdict::unknown : Verdict::null;
     e.important = remains;
     return;
   }
   e.important = true;
-  const double repaired = gain(s.base.held_out, s.model.held_out).mean;
-  const auto too_much = [&](const Competitor* c, double share) {
-    return c != nullptr && c->hypothesis.gain > share * (c->hypothesis.gain + std::max(0.0, repaired));
-  };
   const Competitor* better = better_curve(s, options);
-  std::string why;
-  const bool clean =
-      left.own != nullptr && left.own->hypothesis.gain > clean_part * std::max(0.0, excess(s.model.held_out));
-  if (too_much(left.own, clean ? clean_share : own_share))
-    why = "leaves structure over " + left.own->hypothesis.name + ", its own condition: it only imitates in part";
-  else if (too_much(left.any, other_share))
-    why = "leaves more than it repairs, over " + left.any->hypothesis.name;
-  else if (left.trail != nullptr && left.trail->power > std::max(0.0, repaired))
-    why = "leaves more than it repairs, a fine structure along " +
-          problem.observations().conditions[left.trail->condition].name;
-  else if (better != nullptr)
-    why = "a free curve over " + better->hypothesis.name + " repairs more on unseen groups: it only imitates in part";
-  else if (!(e.held_out_after < e.held_out_before))
+  std::string why = objection_to(problem, s, left, better);
+  if (why.empty() && !(e.held_out_after < e.held_out_before))
     why = "the groups that no choice has seen are not the better for it";
+  for (const PutAside& p : s.put_aside)
+    refuse(p.candidates, why.empty() ? s.model.candidates : std::vector<std::size_t>{}, p.why, e);
   if (!why.empty()) {
     e.verdict = Verdict::unknown;
     if (!e.outside) e.outside = outside_of(problem, (better != nullptr ? *better : s.before.curves.at(0)).condition);
-    refuse(s, why, e);
+    refuse(s.model.candidates, {}, why, e);
     return;
   }
   e.named = s.model.candidates;
   e.not_told_apart = s.not_told_apart;
-  e.verdict = s.not_told_apart.empty() ? Verdict::named : Verdict::ambiguous;
+  e.instead = s.instead;
+  // Finer forms of what is named stand beside it and are no other physics.
+  const auto is_form = [&](std::size_t c) { return problem.candidates()[c].finer; };
+  const bool only_forms =
+      std::all_of(e.not_told_apart.begin(), e.not_told_apart.end(),
+                  [&](const auto& set) { return std::all_of(set.begin() + 1, set.end(), is_form); });
+  e.verdict = only_forms && s.instead.empty() ? Verdict::named : Verdict::ambiguous;
 }
 
 }  // namespace gonio::explain

@@ -10,6 +10,10 @@
 
 namespace gonio::explain {
 
+// What speaks against the selection's model once it is all that there is: one of the first three; empty: nothing. The
+// groups that were never opened are not asked.
+std::string objection(const Problem& problem, const Selection& selection, const Options& options);
+
 // Fills the verdict, `named`, `not_told_apart`, `significant`, `important` and the beginning of `outside`. The held-out
 // scores must be there already. Marks what only imitates in the scoreboard.
 void judge(const Problem& problem, Selection& selection, const Options& options, Explanation& e);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "explain/law_search.h"
+#include "explain/law_wave.h"
 #include "explain/signature.h"
 #include "explain/wording.h"
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::size_t most_terms = 3, most_leaders = 3;
 constexpr double level = 0.01;  // of a term, all looks counted
+constexpr double clearly_more = 1.1;
 
 std::size_t place_of(const Observations& o, const std::string& condition) {
   const auto found =
@@ -54,10 +56,10 @@ struct Judged {
   Extrapolation leading;
   bool kept = false;
 };
-Judged judged(const LawData& data, const std::vector<Term>& terms, std::size_t preferred) {
+Judged judged(const LawData& data, const std::vector<Term>& terms, std::size_t preferred, const Tuned& tuned = {}) {
   Judged result{terms, {}, false};
   const std::vector<std::size_t> conditions = conditions_of(terms, preferred);
-  result.leading = extrapolate(data, terms, conditions[0]);
+  result.leading = extrapolate(data, terms, conditions[0], tuned);
   if (!result.leading.passes) return result;
   for (std::size_t k = 1; k < conditions.size(); ++k) {
     const Extrapolation other = extrapolate(data, terms, conditions[k]);
@@ -90,6 +92,23 @@ Judged best_law(const LawData& data, const std::vector<Term>& possible, std::siz
   return best;
 }
 
+// Fall of chi-square that a law brings on all rows.
+double fall_of(const LawData& data, const std::vector<Term>& terms) {
+  const RawColumns columns = columns_of(data, terms);
+  const Eigen::MatrixXd all = data.projected(columns);
+  const Eigen::VectorXd moved = all.leftCols(all.cols() - 1) * data.coefficients(columns, {});
+  return 2 * all.rightCols(1).col(0).dot(moved) - moved.squaredNorm();
+}
+
+// A periodic law, where it says clearly more than `other` does.
+Judged or_wave(const LawData& data, const std::vector<std::size_t>& leaders, Judged other) {
+  const Wave wave = find_wave(data, leaders, level);
+  if (wave.terms.empty()) return other;
+  if (other.kept && wave.fall < clearly_more * fall_of(data, other.terms)) return other;
+  Judged law = judged(data, wave.terms, leaders[0], wave.tuned);
+  return law.kept ? law : other;
+}
+
 // d(term)/d(scale), for the scale's uncertainty.
 std::vector<double> slope_of_scale(const System& system, const Term& term) {
   Term above = term, below = term;
@@ -112,6 +131,12 @@ void tell_terms(const LawData& data, const std::vector<Term>& terms, Outside& ou
     if (!terms[k].fitted_scale) continue;
     std::vector<double> slope = slope_of_scale(system, terms[k]);
     for (double& v : slope) v *= c[static_cast<Eigen::Index>(k)];
+    if (k > 0 && shares_scale(terms[k - 1], terms[k])) {
+      scale_at[k] = scale_at[k - 1];
+      std::vector<double>& common = columns[static_cast<std::size_t>(scale_at[k])];
+      for (std::size_t i = 0; i < slope.size(); ++i) common[i] += slope[i];
+      continue;
+    }
     scale_at[k] = static_cast<Eigen::Index>(columns.size());
     columns.push_back(std::move(slope));
     all.conservativeResize(all.size() + 1);
@@ -164,9 +189,9 @@ void find_law(const System& system, Explanation& e) {
   if (!e.outside) return;
   const std::vector<std::size_t> leaders = leaders_of(system, e);
   if (leaders.empty()) return;
-  const LawData data(system, e);
+  const LawData data(system, e.values, e.active);
   e.outside->stage = system.observations().conditions[leaders[0]].stage;
-  const Judged law = best_law(data, possible_terms(system, leaders), leaders[0]);
+  const Judged law = or_wave(data, leaders, best_law(data, possible_terms(system, leaders), leaders[0]));
   if (law.kept) tell(data, law, e);
 }
 

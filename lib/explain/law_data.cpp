@@ -7,8 +7,9 @@
 
 namespace gonio::explain {
 
-LawData::LawData(const System& system, const Explanation& e) : system_(system) {
-  own_ = linearise(system, e.values, e.active);
+LawData::LawData(const System& system, const std::vector<double>& values, const std::vector<std::size_t>& active)
+    : system_(system) {
+  own_ = linearise(system, values, active);
   groups_.resize(system.groups.size());
   parallel_for(0, groups_.size(), [&](std::size_t k) {
     Group& g = groups_[k];

@@ -21,7 +21,8 @@ struct Score {
 
 class LawData {
  public:
-  LawData(const System& system, const Explanation& explanation);
+  // The fit stands at `values`; `active` were free in it.
+  LawData(const System& system, const std::vector<double>& values, const std::vector<std::size_t>& active);
   const System& system() const { return system_; }
   std::size_t blocks() const { return blocks_; }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "stats/distributions.h"
 #include "stats/intervals.h"
@@ -272,36 +273,53 @@ std::vector<Term> with_one_more(const LawData& data, const std::vector<Term>& po
   return terms;
 }
 
-Extrapolation extrapolate(const LawData& data, const std::vector<Term>& terms, std::size_t condition) {
+namespace {
+
+Law law_of(const LawData& data, const std::vector<Term>& terms) {
+  Law law{columns_of(data, terms), {}, {}};
+  law.projected = data.projected(law.columns);
+  law.coefficients = data.coefficients(law.columns, {});
+  return law;
+}
+
+struct Split {
+  double at = 0, told = -1;
+  Mask inner, outer;
+  std::shared_ptr<const Law> of_inner, of_outer;  // as either side would have it
+  Way outwards, inwards;
+  Eigen::VectorXd inner_c, outer_c;
+};
+
+}  // namespace
+
+Extrapolation extrapolate(const LawData& data, const std::vector<Term>& terms, std::size_t condition,
+                          const Tuned& tuned) {
   const System& system = data.system();
   Extrapolation x{.condition = condition};
   const std::vector<double> value = split_values(system, x);
   std::vector<double> used;
   for (const double v : value)
     if (std::isfinite(v)) used.push_back(v);
-  Law law{columns_of(data, terms), {}, {}};
-  law.projected = data.projected(law.columns);
-  law.coefficients = data.coefficients(law.columns, {});
-  const double spread = inflation(data, terms.back(), {law.columns.begin(), law.columns.end() - 1});
-  struct Split {
-    double at = 0, told = -1;
-    Mask inner, outer;
-    Way outwards, inwards;
-    Eigen::VectorXd inner_c, outer_c;
-  } best;
+  const auto law = std::make_shared<const Law>(law_of(data, terms));
+  const auto law_on = [&](const Mask& mask) {
+    return tuned ? std::make_shared<const Law>(law_of(data, tuned(mask))) : law;
+  };
+  const double spread = inflation(data, terms.back(), {law->columns.begin(), law->columns.end() - 1});
+  Split best;
   for (const double q : splits) {
-    Split s{stats::quantile(used, q), 0, Mask(value.size(), 0), Mask(value.size(), 0), {}, {}, {}, {}};
+    Split s{stats::quantile(used, q), 0, Mask(value.size(), 0), Mask(value.size(), 0), {}, {}, {}, {}, {}, {}};
     for (std::size_t i = 0; i < value.size(); ++i)
       if (std::isfinite(value[i])) (value[i] <= s.at ? s.inner : s.outer)[i] = 1;
-    s.outwards = expectation(data, law, s.inner, s.outer, spread, s.inner_c);
-    s.inwards = expectation(data, law, s.outer, s.inner, spread, s.outer_c);
+    s.of_inner = law_on(s.inner), s.of_outer = law_on(s.outer);
+    s.outwards = expectation(data, *s.of_inner, s.inner, s.outer, spread, s.inner_c);
+    s.inwards = expectation(data, *s.of_outer, s.outer, s.inner, spread, s.outer_c);
     for (const Way* way : {&s.outwards, &s.inwards})
       if (way->tells()) s.told += way->expected / (way->expected + way->unsure);
     if (s.told > best.told) best = std::move(s);
   }
   const RawColumns hats = curve_columns(system, condition, value, best.inner);
-  judge(data, law, best.inner_c, hats, best.inner, best.outer, best.outwards);
-  judge(data, law, best.outer_c, curve_columns(system, condition, value, best.outer), best.outer, best.inner,
+  judge(data, *best.of_inner, best.inner_c, hats, best.inner, best.outer, best.outwards);
+  judge(data, *best.of_outer, best.outer_c, curve_columns(system, condition, value, best.outer), best.outer, best.inner,
         best.inwards);
   x.split = best.at;
   x.outwards = std::move(best.outwards);

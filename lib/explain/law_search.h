@@ -1,5 +1,6 @@
 // Which terms a law has, and whether it extrapolates. Private to the law.
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "explain/law_data.h"
@@ -28,8 +29,11 @@ struct Extrapolation {
   double law = 0, sigma = 0;  // fall over the ways that tell, and its standard error over blocks
   bool passes = false;
 };
+// The terms as the rows of a mask want them: scales that the fitted side is to choose by itself.
+using Tuned = std::function<std::vector<Term>(const Mask&)>;
 // The split is where both sides have most to tell, which does not look at how well the law does there.
-Extrapolation extrapolate(const LawData& data, const std::vector<Term>& terms, std::size_t condition);
+Extrapolation extrapolate(const LawData& data, const std::vector<Term>& terms, std::size_t condition,
+                          const Tuned& tuned = {});
 
 // The best law with one more term than `terms`, the earlier ones exchanged where others now serve better; empty: no
 // term is significant at `level` among all that were looked at.

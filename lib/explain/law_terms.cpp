@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/unit.h"
 #include "explain/wording.h"
@@ -99,7 +100,26 @@ std::string term_in_words(const LawTerm& t) {
   return text;
 }
 
+// c cos(x / s) + d sin(x / s) = A cos(2 pi x / P - phase).
+bool is_wave(const std::vector<LawTerm>& terms, std::size_t k) {
+  if (k + 1 >= terms.size()) return false;
+  const LawTerm &c = terms[k], &s = terms[k + 1];
+  return c.shape == "cos" && s.shape == "sin" && c.shape_of == s.shape_of && c.scale == s.scale && c.scale_sigma > 0;
+}
+std::string wave_in_words(const LawTerm& c, const LawTerm& s) {
+  const double size = std::hypot(c.coefficient, s.coefficient), turn = 2 * std::numbers::pi;
+  const double sigma = std::hypot(c.coefficient * c.sigma, s.coefficient * s.sigma) / size;
+  return number_in_words(size, sigma) + (c.unit != "1" ? " " + c.unit : "") + " * cos(2 pi " + c.shape_of + " / " +
+         number_in_words(turn * c.scale, turn * c.scale_sigma) + (c.scale_unit == "1" ? "" : " " + c.scale_unit) +
+         " - " + printed(std::atan2(s.coefficient, c.coefficient), 2) + ")";
+}
+
 }  // namespace
+
+bool shares_scale(const Term& cosine, const Term& sine) {
+  return cosine.shape == "cos" && sine.shape == "sin" && cosine.fitted_scale && sine.fitted_scale &&
+         cosine.shape_of == sine.shape_of && cosine.scale == sine.scale;
+}
 
 ConditionKind kind_of(const System& system, std::size_t condition) {
   const Condition& c = system.observations().conditions[condition];
@@ -211,9 +231,12 @@ std::string in_words(const Problem& problem, const std::vector<LawTerm>& terms) 
   else if (!terms[0].along.empty() && !relative(terms[0]))
     text = "residual along " + terms[0].along;
   text += " =";
-  for (std::size_t k = 0; k < terms.size(); ++k)
-    text +=
-        (k == 0 ? " " : " + ") + term_in_words(terms[k]) + (relative(terms[k]) && !all_relative ? " * prediction" : "");
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const bool wave = is_wave(terms, k);
+    text += (k == 0 ? " " : " + ") + (wave ? wave_in_words(terms[k], terms[k + 1]) : term_in_words(terms[k])) +
+            (relative(terms[k]) && !all_relative ? " * prediction" : "");
+    k += wave;
+  }
   return text;
 }
 

@@ -23,6 +23,9 @@ struct Term {
   bool operator==(const Term&) const = default;
 };
 
+// The sine beside a cosine of the same fitted scale: one wave.
+bool shares_scale(const Term& cosine, const Term& sine);
+
 // What a condition admits. Azimuths repeat themselves: no powers of them.
 struct ConditionKind {
   bool usable = false, crosses_zero = false, periodic = false, angle = false;

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double least_survivor = 1e-4;  // of a direction's squared length, after projection
 constexpr std::size_t bins_of_a_curve = 12;
-constexpr double tied_share = 0.8;  // of the first condition's share: not told apart by it
+constexpr double tied_share = 0.8;   // of the first condition's share: not told apart by it
+constexpr double same_share = 0.98;  // one condition in another's clothes (an angle and its half)
 
 struct Explained {
   double squares = 0, rank = 0;
@@ -148,10 +149,20 @@ std::vector<LocatedCondition> locate(const System& system, const Projection& p, 
 
 namespace {
 
-// Place in the declarations of the named mechanisms, the most important one's first; past the end: not declared.
-std::size_t declared_place(const Problem& problem, const Explanation& e, const std::string& condition) {
+// Whose declarations order the conditions that tell equally much: the named mechanisms', the most important one's
+// first; where nothing is named, those of the best that ran.
+std::vector<std::size_t> speakers(const Explanation& e) {
+  if (!e.named.empty()) return e.named;
+  for (const Hypothesis& h : e.scoreboard)
+    if (h.kind == Hypothesis::Kind::mechanisms && h.gain > 0) return h.candidates;
+  return {};
+}
+
+// Place in those declarations; past the end: not declared.
+std::size_t declared_place(const Problem& problem, const std::vector<std::size_t>& candidates,
+                           const std::string& condition) {
   std::size_t place = 0;
-  for (const std::size_t c : e.named)
+  for (const std::size_t c : candidates)
     for (const std::string& own : problem.candidates()[c].mechanism->conditions) {
       if (own == condition) return place;
       ++place;
@@ -180,12 +191,13 @@ void place_conditions(const System& system, Explanation& e) {
     const Curve effect = residual_curve(system, place, without, e.residual_after, bins_of_a_curve);
     find_range(located.curve, power_of_effect(effect, located.curve.centre.size()), located);
   }
-  if (e.conditions.empty() || e.named.empty()) return;
-  const double tie = tied_share * e.conditions[0].share;
+  if (e.conditions.empty()) return;
+  const std::vector<std::size_t> order = speakers(e);
+  const double tie = (e.named.empty() ? same_share : tied_share) * e.conditions[0].share;
   const auto end =
       std::find_if(e.conditions.begin(), e.conditions.end(), [&](const LocatedCondition& c) { return c.share < tie; });
   std::stable_sort(e.conditions.begin(), end, [&](const LocatedCondition& a, const LocatedCondition& b) {
-    return declared_place(system.problem(), e, a.name) < declared_place(system.problem(), e, b.name);
+    return declared_place(system.problem(), order, a.name) < declared_place(system.problem(), order, b.name);
   });
 }
 

@@ -1,4 +1,4 @@
-// See problem.h: the derivatives of a domain that has none of its own.
+// See problem.h: what a domain has that says nothing of its own.
 #include "explain/problem.h"
 
 #include <algorithm>
@@ -28,6 +28,12 @@ void Problem::jacobian(std::span<const double> values, std::size_t group, std::s
 
 std::optional<double> Problem::noise_factor(std::span<const double>) const {
   return std::nullopt;
+}
+
+std::optional<Calibration> Problem::calibration(std::size_t parameter) const {
+  const Parameter& p = parameters_[parameter];
+  if (!p.prior_sigma) return std::nullopt;
+  return Calibration{p.start, p.prior_sigma};
 }
 
 std::string Problem::remarks(const Explanation&) const {

@@ -67,7 +67,16 @@ struct Candidate {
   std::vector<std::size_t> parameters;  // places in Problem::parameters
   // Candidates of one family are alternatives (one radius for all lights | one for each): at most one of them is named.
   std::string family;  // empty: the mechanism's id joined with `on`
+  // Another form of what a plainer candidate says (an equidistant lens beside a radial polynomial): where both are as
+  // good the plainer one is named, and this one stands beside it.
+  bool finer = false;
   const std::string& id() const { return mechanism->id; }
+};
+
+// What an independent measurement says of a parameter.
+struct Calibration {
+  double value = 0;
+  std::optional<double> sigma;  // one standard deviation, where it is stated
 };
 
 // What `--matters` is a share of: the signal (rms of the effect over sqrt(sum norm), images) or the held-out score that
@@ -124,6 +133,10 @@ class Problem {
   // & Fedorov, Biometrika 62, 1975).
   virtual std::vector<Proposal> proposals() const { return {}; }
   virtual ProposedRows propose(std::span<const double> values, std::size_t proposal) const;
+
+  // What calibrations that these recordings had no part in say of a parameter: the physics that was left out had bent
+  // the fit away from it. By default the prior, where there is one.
+  virtual std::optional<Calibration> calibration(std::size_t parameter) const;
 
   // What the domain has to say beside the verdict, in sentences; joins the explanation's own.
   virtual std::string remarks(const Explanation& explanation) const;

@@ -205,10 +205,12 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
   }
   const Uncertainty u = uncertainty(system_, after.fit, kept);
   h.parameters = estimates(system_, after.fit, u, parameters);
-  // The least certain of several added mechanisms decides.
+  // The least certain of several added mechanisms decides. Groups that disagree about the size of an effect do not say
+  // that there is none where they agree that it helps: there blocks alone speak.
+  const bool helps = added.size() == 1 && g.mean > 2 * g.sigma;
   h.wald_p = 0;
   for (const std::size_t c : added)
-    h.wald_p = std::max(h.wald_p, neutral_p(system_, after.fit, u, system_.problem().candidates()[c].parameters));
+    h.wald_p = std::max(h.wald_p, neutral_p(system_, after.fit, u, system_.problem().candidates()[c].parameters, helps));
   // A free hand in every group beats physics that all groups share: dummies are held against mechanisms of their own
   // kind.
   const bool grouped = has_numbers_of_groups(system_, added);

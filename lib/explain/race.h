@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "explain/crossing.h"
 #include "explain/engine.h"
 #include "explain/fit.h"
 #include "explain/folds.h"
@@ -91,6 +92,7 @@ struct Remainder {
   std::vector<Hypothesis> dummies;  // largest gain first
   double false_alarm = 0;           // share of dummies that would have been named
   std::optional<Trail> trail;       // structure that no smooth curve follows
+  std::optional<Crossing> crossing; // structure in a product of conditions; asked where nothing else is found
   std::shared_ptr<const Evidence> evidence;
 };
 Remainder remainder(const Race& race, const Model& model, const Options& options);
@@ -101,27 +103,44 @@ struct Effort {
   std::size_t least = 4;      // of them whatever the screening says
   std::size_t pairs = 20000;  // screened in a round
   std::size_t effects = 5;    // at once
+  std::size_t runners_up = 4;  // tried where the last judgement refuses the first choice
   std::string shortened;      // what a budget has cost, in a sentence
 };
 Effort effort_for(const Race& race, const Options& options);
 
+// A set of candidates that won its race and that the last judgement refused.
+struct PutAside {
+  std::vector<std::size_t> candidates;
+  std::string why;
+};
 struct Selection {
   Model base, model;
   Remainder before, after;
   std::vector<Hypothesis> scoreboard;
   std::vector<std::size_t> minor;  // places in `scoreboard`
   std::vector<std::vector<std::size_t>> not_told_apart;
+  std::vector<std::vector<std::size_t>> instead;  // whole sets that do as well as all of the model's candidates
+  std::vector<PutAside> put_aside;
   std::string shortened;
 };
+// Selection and judgement are one search: where objection() (judgement.h) refuses what forward selection has come to,
+// the choice of one round is changed for the next that passes there, and selection goes on from it: first the one that
+// falls least short of what was chosen, in whichever round, and a bounded number of them (limited discrepancy search,
+// Harvey & Ginsberg, IJCAI 1995). One that judges well wins, unless what was refused repairs clearly more; where none
+// does, the first choice stands, refused.
 // `mismatch_p`: of the null test on the base model, where it was asked of more groups than these; above the level
 // nothing is added to it.
 Selection select(const Race& race, const Options& options, const std::vector<double>& start,
                  std::optional<double> mismatch_p);
 
-// For each named effect, what could stand in its place: within two standard errors of the winner.
-void find_equals(const Race& race, const Effort& effort, Selection& selection);
+// For each named effect, what could stand in its place: within two standard errors of the winner. For several together
+// also other sets, no larger, that have none of them and judge as well.
+void find_equals(const Race& race, const Options& options, const Effort& effort, Selection& selection);
 // Is `other` as good as `best`, both extending `before`? Within `errors` standard errors of the paired difference over
 // groups, not beyond what the noise of single blocks could do, and with at least `share` of what the best one gained.
 bool as_good(const Model& before, const Model& best, const Model& other, double errors, double share);
+// Does `other` gain all but a hundredth of what `best` does? Two forms of one thing are not parted by what is left,
+// however surely the noise would show it: neither need be the form of the thing itself.
+bool nearly_all(const Model& before, const Model& best, const Model& other);
 
 }  // namespace gonio::explain

@@ -110,6 +110,8 @@ Remainder remainder(const Race& race, const Model& model, const Options& options
   r.global_p = std::min(r.global_p, price_of_further_looks * concentrated_p(p, structures, scores));
   r.trail = trail(system, model.fit.values);
   if (r.trail) r.global_p = std::min(r.global_p, price_of_further_looks * r.trail->p);
+  if (r.global_p > options.level) r.crossing = crossing(system, model.fit);
+  if (r.crossing) r.global_p = std::min(r.global_p, price_of_further_looks * r.crossing->p);
   const stats::SignFlipResult dummy_test =
       stats::sign_flip_test(dummy, scores.blocks, scores.inflation, 1, options.seed);
   r.inflation = inflation(system, p, structures, scores);

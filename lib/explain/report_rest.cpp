@@ -59,6 +59,8 @@ double blindness(const Problem& problem, const Isolability& i) {
   return least;
 }
 
+constexpr double told_beside = 1.5;  // limits that differ by less are told as one
+
 std::vector<std::string> isolability_row(const Problem& problem, const Isolability& i) {
   std::string limits, alike;
   const std::vector<std::size_t>& own = problem.candidates()[i.candidate].parameters;
@@ -66,6 +68,9 @@ std::vector<std::string> isolability_row(const Problem& problem, const Isolabili
     const Parameter& p = problem.parameters()[own[k]];
     limits += (k == 0 ? "" : ", ") + p.name.substr(p.name.find_last_of("./") + 1) + " " +
               (std::isfinite(i.detection_limit[k]) ? quantity(i.detection_limit[k], p.unit) : "none");
+    const bool any = k < i.limit_with_others.size() && std::isfinite(i.limit_with_others[k]);
+    if (any && i.limit_with_others[k] > told_beside * i.detection_limit[k])
+      limits += " (beside others " + quantity(i.limit_with_others[k], p.unit) + ")";
   }
   if (own.size() > 3) limits += ", ...";
   for (const auto& [other, cosine] : i.look_alikes)
@@ -89,7 +94,8 @@ void isolability(report::Page& page, const Problem& problem, const Explanation& 
   });
   report::TableText table{
       "Before any residual is judged: how much of each signature the free parameters leave, and the "
-      "smallest amplitude that would be seen. The easiest to see come first.",
+      "smallest amplitude that would be seen, alone and, where that differs, whatever the mechanism's other numbers do. "
+      "The easiest to see come first.",
       {{"mechanism", "", false},
        {"survives", ""},
        {"smallest amplitude seen", "", false},
@@ -132,7 +138,7 @@ void compensation(report::Page& page, const Problem& problem, const Explanation&
     const Shown shown = shown_in(p.unit, std::max(std::abs(c.after), std::abs(c.before)));
     std::string calibrated;
     if (c.calibrated)
-      calibrated = estimate_in_words(*c.calibrated, *c.calibrated_sigma, p.unit) + (c.towards ? ", towards" : ", away");
+      calibrated = estimate_in_words(*c.calibrated, c.calibrated_sigma.value_or(0), p.unit) + (c.towards ? ", towards" : ", away");
     table.rows.push_back({p.name, printed(c.before * shown.factor, 5), estimate_in_words(c.after, c.sigma, p.unit),
                           (c.after < c.before ? "−" : "") + plain_number(std::abs(c.after - c.before) / c.sigma),
                           calibrated});

@@ -75,12 +75,16 @@ void tell_sure(report::Page& page, const ReportPart& part) {
   page.paragraph(verdict_in_words(problem, e));
   scores(page, problem, e);
   parameters(page, problem, e);
-  std::vector<std::string> sets;
-  for (const std::vector<std::size_t>& set : e.not_told_apart) {
+  const auto words = [&](const std::vector<std::size_t>& set, const char* between) {
     std::string ids;
-    for (const std::size_t c : set) ids += (ids.empty() ? "" : ", ") + mechanism_in_words(problem, c);
-    sets.push_back("Not told apart: " + ids + ".");
-  }
+    for (const std::size_t c : set) ids += (ids.empty() ? "" : between) + mechanism_in_words(problem, c);
+    return ids;
+  };
+  std::vector<std::string> sets;
+  for (const std::vector<std::size_t>& set : e.not_told_apart)
+    sets.push_back("Not told apart: " + words(set, ", ") + ".");
+  for (const std::vector<std::size_t>& set : e.instead)
+    sets.push_back("As good in the place of all that is named: " + words(set, " with ") + ".");
   if (!sets.empty()) page.list(sets);
   if (!e.converged) page.note("The final fit did not converge: take the numbers with care.");
 }

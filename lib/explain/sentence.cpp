@@ -48,6 +48,9 @@ std::string named_sentence(const Problem& problem, const Explanation& e) {
   for (const std::vector<std::size_t>& set : e.not_told_apart)
     text += " As good an explanation as " + problem.candidates()[set[0]].id() + " is " +
             listed(problem, set, 1, " or ") + ": these recordings cannot tell them apart.";
+  for (const std::vector<std::size_t>& set : e.instead)
+    text += " As good an explanation as " + listed(problem, e.named, 0, " and ") + " is " +
+            listed(problem, set, 0, " with ") + ", in the place of both.";
   if (e.outside)
     text += " Structure over the " + condition_in_words(e.outside->condition) +
             " remains that nothing in the library repairs." + law_sentence(problem, *e.outside);

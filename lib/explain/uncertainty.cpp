@@ -12,36 +12,82 @@ namespace {
 
 constexpr double many = 1e6;  // degrees of freedom of a normal law
 
-// Sum over blocks of u u', u = J'r of the block; parameters the group does not touch stay zero.
-Eigen::MatrixXd block_scores(const System& system, const Fit& fit, const Slopes* kept) {
-  const auto n = static_cast<Eigen::Index>(fit.inner.size());
+constexpr double least_left = 0.1;  // of a block's residual that the fit leaves it, for the correction
+
+// Sum over blocks of u u', u the block's score J'(I - H)^-1/2 r with H = J C J' its share of the fit that it has pulled
+// towards itself (CR2: Bell & McCaffrey, Survey Methodology 28, 2002); and for every parameter the effective number of
+// blocks that it rests on, (sum a)^2 / sum a^2 with a the variance that each of them brings: Satterthwaite's degrees of
+// freedom.
+struct Meat {
+  Eigen::MatrixXd scores;
+  Eigen::VectorXd sum, squares;  // of a
+};
+
+// V sqrt(d) of C = V d V'.
+Eigen::MatrixXd root_of(const Eigen::MatrixXd& c) {
+  const Eigen::VectorXd scale = c.diagonal().unaryExpr([](double d) { return d > 0 ? std::sqrt(d) : 0.0; });
+  const Eigen::VectorXd inverse = scale.unaryExpr([](double d) { return d > 0 ? 1 / d : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * c * inverse.asDiagonal());
+  return scale.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+// J'(I - H)^-1/2 r of one block, H = A A' with A = J L: in the block's rows or in the parameters, whichever are fewer.
+Eigen::VectorXd corrected_score(const Eigen::MatrixXd& j, const Eigen::MatrixXd& l, const Eigen::VectorXd& r) {
+  const Eigen::MatrixXd a = j * l;
+  const auto root = [](const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& eigen) {
+    return Eigen::VectorXd((1 - eigen.eigenvalues().array()).max(least_left).rsqrt());
+  };
+  if (a.rows() <= a.cols()) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a * a.transpose());
+    return j.transpose() * (eigen.eigenvectors() * (root(eigen).asDiagonal() * (eigen.eigenvectors().transpose() * r)));
+  }
+  // (I - A A')^-1/2 = I + A V ((1 - d)^-1/2 - 1) / d V' A' with A'A = V d V'.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a.transpose() * a);
+  Eigen::VectorXd factor = root(eigen).array() - 1;
+  for (Eigen::Index k = 0; k < factor.size(); ++k)
+    factor[k] = eigen.eigenvalues()[k] > 1e-12 ? factor[k] / eigen.eigenvalues()[k] : 0.5;
+  const Eigen::VectorXd pulled = eigen.eigenvectors().transpose() * (a.transpose() * r);
+  return j.transpose() * (r + a * (eigen.eigenvectors() * (factor.asDiagonal() * pulled)));
+}
+
+Meat meat_of_group(const System& system, const Fit& fit, const Eigen::MatrixXd& inverse, std::size_t group,
+                   const Slopes* kept) {
   const Observations& o = system.observations();
-  std::vector<Eigen::MatrixXd> parts(system.groups.size());
-  parallel_for(0, parts.size(), [&](std::size_t k) {
-    const std::size_t group = system.groups[k];
-    std::vector<std::size_t> parameters;
-    std::vector<Eigen::Index> places;
-    for (std::size_t c = 0; c < fit.inner.size(); ++c) {
-      if (!system.touches(fit.inner[c], group)) continue;
-      parameters.push_back(fit.inner[c]);
-      places.push_back(static_cast<Eigen::Index>(c));
-    }
-    const Eigen::MatrixXd j = system.jacobian(fit.values, group, parameters, kept);
-    const Eigen::VectorXd r = system.residual(fit.values, group);
-    std::map<std::uint32_t, Eigen::VectorXd> blocks;
-    for (Eigen::Index i = 0; i < r.size(); ++i) {
-      auto& u =
-          blocks.try_emplace(o.block[o.first[group] + static_cast<std::size_t>(i)], Eigen::VectorXd::Zero(j.cols()))
-              .first->second;
-      u += j.row(i).transpose() * r[i];
-    }
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(j.cols(), j.cols());
-    for (const auto& [block, u] : blocks) sum.noalias() += u * u.transpose();
-    parts[k] = Eigen::MatrixXd::Zero(n, n);
-    parts[k](places, places) = sum;
-  });
-  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(n, n);
-  for (const Eigen::MatrixXd& part : parts) total += part;
+  const auto n = static_cast<Eigen::Index>(fit.inner.size());
+  std::vector<std::size_t> parameters;
+  std::vector<Eigen::Index> places;
+  for (std::size_t c = 0; c < fit.inner.size(); ++c) {
+    if (!system.touches(fit.inner[c], group)) continue;
+    parameters.push_back(fit.inner[c]);
+    places.push_back(static_cast<Eigen::Index>(c));
+  }
+  const Eigen::MatrixXd j = system.jacobian(fit.values, group, parameters, kept);
+  const Eigen::VectorXd r = system.residual(fit.values, group);
+  const Eigen::MatrixXd root = root_of(inverse(places, places)), reach = inverse(Eigen::all, places);
+  std::map<std::uint32_t, std::vector<Eigen::Index>> blocks;
+  for (Eigen::Index i = 0; i < r.size(); ++i)
+    blocks[o.block[o.first[group] + static_cast<std::size_t>(i)]].push_back(i);
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(j.cols(), j.cols());
+  Meat meat{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+  for (const auto& [block, rows] : blocks) {
+    const Eigen::MatrixXd own = j(rows, Eigen::all);
+    const Eigen::VectorXd u = corrected_score(own, root, r(rows));
+    sum.noalias() += u * u.transpose();
+    const Eigen::VectorXd brings = (reach * own.transpose()).rowwise().squaredNorm();
+    meat.sum += brings;
+    meat.squares += brings.cwiseAbs2();
+  }
+  meat.scores(places, places) = sum;
+  return meat;
+}
+
+Meat meat_of(const System& system, const Fit& fit, const Eigen::MatrixXd& inverse, const Slopes* kept) {
+  std::vector<Meat> parts(system.groups.size());
+  parallel_for(0, parts.size(),
+               [&](std::size_t k) { parts[k] = meat_of_group(system, fit, inverse, system.groups[k], kept); });
+  const auto n = static_cast<Eigen::Index>(fit.inner.size());
+  Meat total{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+  for (const Meat& part : parts) total.scores += part.scores, total.sum += part.sum, total.squares += part.squares;
   return total;
 }
 
@@ -83,12 +129,14 @@ Uncertainty uncertainty(const System& system, const Fit& fit, const Slopes* kept
   for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = c;
   const NormalEquations equations(l, columns);
   const Eigen::MatrixXd inverse = equations.solve(Eigen::MatrixXd::Identity(n, n));
-  double rows = 0;
-  for (const std::size_t g : system.groups) rows += static_cast<double>(system.used_rows(g));
-  const double correction = rows / std::max(rows - static_cast<double>(n), 1.0);
   Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index c = 0; c < n; ++c) prior(c, c) = l.columns[static_cast<std::size_t>(c)].prior_precision;
-  u.covariance = inverse * (block_scores(system, fit, kept) * correction + prior) * inverse.transpose();
+  const Meat meat = meat_of(system, fit, inverse, kept);
+  u.covariance = inverse * (meat.scores + prior) * inverse.transpose();
+  u.by_blocks = u.covariance;
+  for (Eigen::Index c = 0; c < n; ++c)
+    if (meat.squares[c] > 0)
+      u.degrees[static_cast<std::size_t>(c)] = std::max(1.0, meat.sum[c] * meat.sum[c] / meat.squares[c]);
   const Eigen::VectorXd by_groups = jackknife(system, l, columns);
   const double degrees = static_cast<double>(system.groups.size()) - 1;
   const double limit = degrees > 0 ? stats::chi2_quantile(0.95, degrees) / degrees : 1;
@@ -124,7 +172,7 @@ std::vector<Estimate> estimates(const System& system, const Fit& fit, const Unce
 }
 
 double neutral_p(const System& system, const Fit& fit, const Uncertainty& u,
-                 const std::vector<std::size_t>& parameters) {
+                 const std::vector<std::size_t>& parameters, bool by_blocks) {
   std::vector<Eigen::Index> places;
   std::vector<double> distance;
   for (const std::size_t p : parameters) {
@@ -134,7 +182,7 @@ double neutral_p(const System& system, const Fit& fit, const Uncertainty& u,
     distance.push_back(fit.values[p] - system.problem().parameters()[p].neutral);
   }
   if (places.empty()) return 1;
-  const Eigen::MatrixXd c = u.covariance(places, places);
+  const Eigen::MatrixXd c = (by_blocks ? u.by_blocks : u.covariance)(places, places);
   const Eigen::VectorXd scale = c.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
   const Eigen::Map<const Eigen::VectorXd> d(distance.data(), static_cast<Eigen::Index>(distance.size()));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * c * scale.asDiagonal());

@@ -2,14 +2,7 @@
 // what spoils real recordings: dust, an odd block, a misstated sigma.
 //   y = offset_g + slope x + sum over effects shape(p; x, z) + noise
 #pragma once
-#include <cmath>
-#include <functional>
-#include <string>
-#include <vector>
-
-#include "base/random.h"
-#include "explain/explanation.h"
-#include "explain/problem.h"
+#include "explain/toy_frame.h"
 
 namespace gonio::explain::tests {
 
@@ -33,75 +26,45 @@ struct Size {
   std::size_t groups = 10, blocks = 20, rows_of_a_block = 2;
 };
 
-class NonlinearToy : public Problem {
+class NonlinearToy : public ToyFrame {
  public:
   // `truth`: for every effect its numbers; empty: neutral.
   NonlinearToy(std::vector<Effect> effects, std::vector<std::vector<double>> truth, Spoiled spoiled, std::uint64_t seed,
                Size size = {})
       : effects_(std::move(effects)) {
     Random random(seed, 11);
-    declare(size.groups);
+    declare_base(size.groups);
+    declare_effects();
     truth.resize(effects_.size());
-    observations_.first.push_back(0);
-    Condition cx{"x", "m", "toy", {}, {}}, cz{"z", "m", "toy", {}, {}};
-    const double sigma = std::hypot(spoiled.noise, spoiled.block_noise);
-    for (std::size_t g = 0; g < size.groups; ++g) {
-      observations_.group.push_back("group-" + std::to_string(g));
-      const double offset = random.normal();
-      for (std::size_t b = 0; b < size.blocks; ++b) {
-        double common = spoiled.block_noise * random.normal();
-        if (g == 1 && b == 3) common += spoiled.odd_block * sigma;
-        for (std::size_t i = 0; i < size.rows_of_a_block; ++i) {
-          const double x = random.uniform(-1, 1), z = random.uniform(-1, 1);
-          double y = offset + 0.7 * x + common + spoiled.noise * random.normal();
-          for (std::size_t k = 0; k < effects_.size(); ++k)
-            if (!truth[k].empty()) y += effects_[k].shape(truth[k], x, z);
-          if (spoiled.outside) y += spoiled.outside(x, z);
-          observations_.value.push_back(y);
-          observations_.sigma.push_back(sigma * spoiled.stated);
-          observations_.norm.push_back(1);
-          observations_.block.push_back(static_cast<std::uint32_t>(g * size.blocks + b));
-          cx.values.push_back(x);
-          cz.values.push_back(z);
-        }
-      }
-      observations_.first.push_back(observations_.value.size());
-    }
+    const Design design{size.groups,         size.blocks,    size.rows_of_a_block, spoiled.noise,
+                        spoiled.block_noise, spoiled.stated, spoiled.odd_block};
+    record(random, design, [&](double x, double z) {
+      double sum = spoiled.outside ? spoiled.outside(x, z) : 0;
+      for (std::size_t k = 0; k < effects_.size(); ++k)
+        if (!truth[k].empty()) sum += effects_[k].shape(truth[k], x, z);
+      return sum;
+    });
     for (std::size_t d = 0; d < spoiled.dust_rows; ++d) {
       const auto row = random.below(static_cast<std::uint32_t>(observations_.rows()));
-      observations_.value[row] += sigma * random.uniform(8, 20) * (random.uniform() < 0.5 ? -1 : 1);
+      observations_.value[row] += std::hypot(spoiled.noise, spoiled.block_noise) * random.uniform(8, 20) *
+                                  (random.uniform() < 0.5 ? -1 : 1);
     }
-    observations_.conditions = {cx, cz};
   }
   void predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const override {
-    const std::vector<double>&x = observations_.conditions[0].values, &z = observations_.conditions[1].values;
     for (std::size_t i = 0; i < prediction.size(); ++i) {
       const std::size_t row = observations_.first[group] + i;
-      double f = values[0] * x[row] + values[1 + group];
+      double f = plain(values, group, row);
       for (std::size_t k = 0; k < effects_.size(); ++k)
-        f += effects_[k].shape(values.subspan(candidates_[k].parameters[0], candidates_[k].parameters.size()), x[row],
-                               z[row]);
+        f += effects_[k].shape(values.subspan(candidates_[k].parameters[0], candidates_[k].parameters.size()),
+                               at(0, row), at(1, row));
       prediction[i] = f;
     }
   }
-  std::string domain() const override { return "toy"; }
-  std::string unit() const override { return "m"; }
-  std::string score_name() const override { return "RMS"; }
-  std::string group_noun() const override { return "group"; }
-  Importance importance() const override { return Importance::share_of_residual; }
-  void apply(const Explanation&, manifest::Document&) const override {}
-  Illustration illustrate(const Explanation&, const std::filesystem::path&, manifest::Document&) const override {
-    return {};
-  }
+  // Says of an effect that it is another form of a plainer one.
+  void make_finer(std::size_t effect) { candidates_[effect].finer = true; }
 
  private:
-  void declare(std::size_t groups) {
-    parameters_.push_back({"slope", "1", 0, 0, -10, 10, 1, {}, {}});
-    base_.push_back(0);
-    for (std::size_t g = 0; g < groups; ++g) {
-      parameters_.push_back({"group-" + std::to_string(g) + "/offset", "m", 0, 0, -10, 10, 1, {}, {g}});
-      base_.push_back(1 + g);
-    }
+  void declare_effects() {
     mechanisms_.resize(effects_.size());
     for (std::size_t k = 0; k < effects_.size(); ++k) {
       mechanism::Mechanism& m = mechanisms_[k];

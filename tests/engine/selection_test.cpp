@@ -157,6 +157,76 @@ TEST(Selection, TwinsAreReportedTogetherTheNamedOneFirst) {
   }
 }
 
+std::string refusal(const Explanation& e, const std::string& name) {
+  for (const Hypothesis& h : e.scoreboard)
+    if (h.name == name) return h.refused;
+  return "";
+}
+
+// One mechanism repairs more at first, but leaves structure over its own condition: it is put aside with its reason, and
+// the one that it had outrun is named.
+TEST(Selection, WhatTheLastJudgementRefusesMakesWayForTheNext) {
+  std::vector<Effect> effects = library();
+  effects.erase(effects.begin() + 2, effects.end());
+  effects.push_back({"toy.impostor", {amplitude()}, {"x", "z"}, [](Numbers p, double x, double z) {
+                       return p[0] * (x * x * x + 0.08 * std::sin(3 * z + 0.9));
+                     }});
+  const auto beside = [](double, double z) { return 0.05 * std::sin(3 * z); };
+  int right = 0;
+  std::string wrong;
+  const int runs = 6;
+  for (int run = 0; run < runs; ++run) {
+    const NonlinearToy problem(effects, {{}, {0.6}}, {beside, 0.03}, 5000 + run, {10, 30, 2});
+    const Explanation e = explain(problem, quick(run));
+    const bool named = names(problem, e) == std::set<std::string>{"toy.cube"};
+    right += named && refusal(e, "toy.impostor").find("its own condition") != std::string::npos;
+    if (!named) wrong += e.sentence + "\n" + race(e);
+  }
+  EXPECT_GE(right, runs - 1) << wrong;
+}
+
+// Two forms of one thing: the plainer one is named while it does as well, the other one stands beside it and leaves the
+// verdict as it is; alone where it does clearly better.
+TEST(Selection, AFinerFormIsNamedOnlyWhereItIsClearlyBetter) {
+  for (const double bend : {0.03, 3.0}) {
+    std::vector<Effect> effects = library();
+    effects.push_back({"toy.form", {amplitude()}, {"x"}, [bend](Numbers p, double x, double) {
+                         return p[0] * (x * x + bend * x * x * x * x * x * x);
+                       }});
+    std::vector<std::vector<double>> truth(effects.size());
+    truth.back() = {0.4};
+    NonlinearToy problem(effects, truth, {{}, 0.05}, 6000, {10, 30, 2});
+    problem.make_finer(effects.size() - 1);
+    const Explanation e = explain(problem, quick(1));
+    EXPECT_EQ(e.verdict, Verdict::named) << e.sentence;
+    EXPECT_EQ(names(problem, e), std::set<std::string>{bend < 1 ? "toy.square" : "toy.form"}) << e.sentence;
+    const std::vector<std::vector<std::size_t>> beside = {{0, effects.size() - 1}};
+    EXPECT_TRUE(bend > 1 || e.not_told_apart == beside) << e.sentence;
+  }
+}
+
+// Any two of four mechanisms do for the other two: beside the pair that is named stands the one that shares nothing with
+// it.
+TEST(Selection, AnotherPairIsReportedInThePlaceOfBoth) {
+  const auto cube = [](Numbers p, double x, double) { return p[0] * x * x * x; };
+  const auto product = [](Numbers p, double x, double z) { return p[0] * x * z; };
+  const std::vector<Effect> effects = {
+      {"toy.cube", {amplitude()}, {"x"}, cube},
+      {"toy.product", {amplitude()}, {"x", "z"}, product},
+      {"toy.sum", {amplitude()}, {"x", "z"},
+       [&](Numbers p, double x, double z) { return 2 * cube(p, x, z) + product(p, x, z); }},
+      {"toy.difference", {amplitude()}, {"x", "z"},
+       [&](Numbers p, double x, double z) { return 2 * cube(p, x, z) - 0.9 * product(p, x, z); }}};
+  const NonlinearToy problem(effects, {{0.8}, {0.3}, {}, {}}, {{}, 0.05}, 7000, {10, 30, 2});
+  const Explanation e = explain(problem, quick(1));
+  EXPECT_EQ(e.verdict, Verdict::ambiguous) << e.sentence << race(e);
+  ASSERT_EQ(e.named.size(), 2u) << e.sentence;
+  ASSERT_EQ(e.instead.size(), 1u) << e.sentence;
+  std::set<std::size_t> all(e.named.begin(), e.named.end());
+  all.insert(e.instead[0].begin(), e.instead[0].end());
+  EXPECT_EQ(all.size(), 4u) << e.sentence;
+}
+
 // A budget is an amount of work: it gives the same answer every time and says what it left out.
 TEST(Selection, ABudgetIsDeterministicAndSaysWhatItCost) {
   std::vector<std::vector<double>> truth(library().size());

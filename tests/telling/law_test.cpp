@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "explain/engine.h"
 #include "explain/fit.h"
 #include "telling/law_world.h"
 
@@ -108,6 +109,50 @@ TEST(Law, AWiggleDoesNotExtrapolate) {
     EXPECT_TRUE(e.outside->law.empty() == e.outside->terms.empty());
   }
   EXPECT_LE(laws, 0.05 * runs);
+}
+
+// Seven periods in the range, of which either side has to say the period by itself.
+TEST(Law, APeriodIsRecoveredWithItsAmplitude) {
+  int right = 0, covered = 0;
+  const int runs = 20;
+  const double period = 0.29;
+  for (int run = 0; run < runs; ++run) {
+    const auto ripple = [&](double, double z) { return 0.12 * std::cos(2 * 3.14159265358979 * z / period + 0.4); };
+    const Explanation e = law_of(LawProblem({.law = ripple}, 1500 + run), "clock.time");
+    if (e.outside->terms.size() != 2 || e.outside->terms[0].shape != "cos" || e.outside->terms[1].shape != "sin") continue;
+    const LawTerm &c = e.outside->terms[0], &s = e.outside->terms[1];
+    EXPECT_EQ(c.unit, "px");
+    EXPECT_EQ(c.scale_unit, "s");
+    EXPECT_EQ(c.scale, s.scale);
+    EXPECT_NE(e.outside->law.find("cos(2 pi clock.time / (0."), std::string::npos) << e.outside->law;
+    EXPECT_LT(e.outside->held_out_after, e.outside->held_out_before);
+    const double turn = 2 * 3.14159265358979;
+    right += std::abs(std::hypot(c.coefficient, s.coefficient) - 0.12) < 0.012;
+    covered += std::abs(turn * c.scale - period) < 1.96 * turn * c.scale_sigma;
+  }
+  EXPECT_GE(right, 0.9 * runs);
+  EXPECT_GE(covered, 0.8 * runs);  // 95 % intervals: fewer with less than 1 % chance
+}
+
+// Curves over either condition are flat: the product itself has to be looked for, and no law over one of them will do.
+TEST(Law, AProductWithFlatCurvesIsUnknownAndItsLawIsFound) {
+  int found = 0;
+  std::string told;
+  const int runs = 6;
+  for (int run = 0; run < runs; ++run) {
+    const LawProblem problem({.law = [](double x, double z) { return 0.12 * x * z; }}, 1700 + run);
+    Options options;
+    options.draws = 299;
+    options.seed = static_cast<std::uint64_t>(run);
+    const Explanation e = explain(problem, options);
+    EXPECT_EQ(e.verdict, Verdict::unknown) << e.sentence;
+    told += e.sentence + "\n";
+    if (!e.outside || e.outside->terms.size() != 1) continue;
+    Powers powers = e.outside->terms[0].powers;
+    std::sort(powers.begin(), powers.end());
+    found += powers == Powers{{"clock.time", 1}, {"plate.height", 1}} && e.outside->terms[0].unit == "px m^-1 s^-1";
+  }
+  EXPECT_GE(found, runs - 1) << told;
 }
 
 // A bump in one place is no law either.

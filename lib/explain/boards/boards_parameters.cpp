@@ -171,6 +171,7 @@ class Declaration {
                     "mechanism " + m.id + " has no term " + p.name + " in tables of corners");
       const BoardRole role = role_of(of_board, target, *column);
       if (rate_of(p) != rate || !can_be_shown(role)) continue;
+      candidate.finer = *column == BoardColumn::distortion + LensTerm::fisheye;
       if (is_motion(*column)) {
         motions.emplace_back(&p, *column);
         continue;
@@ -220,17 +221,18 @@ class Declaration {
     return true;
   }
 
-  // A denominator, or another projection, says how the polynomial falls short: over a moderate field all of them bow
-  // lines alike, and the plain one is to be named first. An equidistant lens has neither of them: its term is at the
-  // end of the range, and the denominators have faded.
+  // A denominator says how the polynomial falls short: over a moderate field both bow lines alike, and the plain one is
+  // to be named first. An equidistant lens has no denominators: they have faded there. Another projection is tried where
+  // the lens has none; beside a polynomial it is the finer name (Candidate::finer).
   static bool lacks_lens_term(const BoardsInput::Camera& camera, std::size_t term) {
     const auto has = [&](std::size_t t) {
       return std::find(camera.terms.begin(), camera.terms.end(), t) != camera.terms.end();
     };
     if (has(term)) return false;
-    const bool finer = (term >= LensTerm::k4 && term <= LensTerm::k6) || term == LensTerm::fisheye;
     const std::array<double, camera::distortion_terms>& lens = camera.intrinsics.distortion;
-    return !finer || (has(LensTerm::k1) && lens[term] == 0 && lens[LensTerm::fisheye] < 1);
+    if (term == LensTerm::fisheye) return lens[term] == 0;
+    const bool denominator = term >= LensTerm::k4 && term <= LensTerm::k6;
+    return !denominator || (has(LensTerm::k1) && lens[term] == 0 && lens[LensTerm::fisheye] < 1);
   }
 
   // Red and blue against green; where there is no green, blue against red.
