@@ -1,6 +1,6 @@
 // How far free parameters moved when the missing physics came in. Where an independent calibration says what they are
-// (Problem::calibration: the prior of the fit, or a value that the manifest states and the fit did not use), the physics
-// that was left out had bent them away from it, and they should come back.
+// (Problem::calibration: the prior of the fit, or a value that the manifest states and the fit did not use), the
+// physics that was left out had bent them away from it, and they should come back.
 #pragma once
 #include <string>
 

@@ -1,10 +1,10 @@
-// Structure in the product of two conditions: where the effect of one turns round with the other, a curve over either of
-// them is flat and sees nothing.
+// Structure in the product of two conditions: where the effect of one turns round with the other, a curve over either
+// of them is flat and sees nothing.
 //
-// For each pair the column direction * u v, with u and v the conditions' ranks from -1 to 1, less what the free parameters
-// imitate, is held against the residuals: T = (sum of scores of blocks)^2 / sum of their squares. Under the null every
-// block's score has a sign of its own, and the tail of T is not heavier than that of chi-square with one degree, whatever
-// the noise (Efron, J. Am. Stat. Assoc. 64, 1969).
+// For each pair the column direction * u v, with u and v the conditions' ranks from -1 to 1, less what the free
+// parameters imitate, is held against the residuals: T = (sum of scores of blocks)^2 / sum of their squares. Under the
+// null every block's score has a sign of its own, and the tail of T is not heavier than that of chi-square with one
+// degree, whatever the noise (Efron, J. Am. Stat. Assoc. 64, 1969).
 #pragma once
 #include <optional>
 

@@ -74,8 +74,8 @@ struct LocatedGroup {
 struct Compensation {  // a free parameter that the missing physics had bent
   std::size_t parameter = 0;
   double before = 0, after = 0, sigma = 0;
-  // What an independent calibration says of it, where the manifest has one (its sigma where that is stated), and whether
-  // the parameter moved towards it.
+  // What an independent calibration says of it, where the manifest has one (its sigma where that is stated), and
+  // whether the parameter moved towards it.
   std::optional<double> calibrated{}, calibrated_sigma{};
   bool towards = false;
 };
@@ -117,7 +117,7 @@ struct Explanation {
   std::vector<std::vector<std::size_t>>
       not_told_apart;  // sets of candidates: the first is named, each of the others could stand in its place
   std::vector<std::vector<std::size_t>> instead;  // whole sets, each as good an explanation as all that is named
-  double global_p = 1;  // of the null test
+  double global_p = 1;                            // of the null test
   bool significant = false, important = false;
   double noise_factor = 1;
   std::size_t outlier_blocks = 0;

@@ -26,9 +26,9 @@ double decrement(const System& system, const Fit& fit, const Slopes& slopes);
 
 // Covariance of a fit, H^-1 M H^-1 with M the sum over blocks of their squared scores (White 1980; Liang & Zeger 1986),
 // each freed of its own pull on the fit (Bell & McCaffrey 2002): honest under any correlation inside a block and any
-// mis-stated sigma. Intervals are Student's with the effective number of blocks behind a parameter. Where leaving out whole groups moves a
-// parameter by more than that explains (variance ratio beyond its 95 % point), the jackknife over groups stands
-// instead.
+// mis-stated sigma. Intervals are Student's with the effective number of blocks behind a parameter. Where leaving out
+// whole groups moves a parameter by more than that explains (variance ratio beyond its 95 % point), the jackknife over
+// groups stands instead.
 struct Uncertainty {
   Eigen::MatrixXd covariance;  // of `parameters`
   Eigen::MatrixXd by_blocks;   // the same before the jackknife over groups has a say

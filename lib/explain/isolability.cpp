@@ -74,11 +74,9 @@ std::vector<double> limits_with_others(const System& system, const Projection& p
   const bool of_signal = system.problem().importance() == Importance::share_of_signal;
   const Eigen::VectorXd raw =
       of_signal ? largest_components(scores.raw_surviving(own, own), scores.raw_surviving.diagonal()(own)) : seen;
-  const double least =
-      of_signal ? matters * matters * scores.norm : (1 / ((1 - matters) * (1 - matters)) - 1) * p.rows;
+  const double least = of_signal ? matters * matters * scores.norm : (1 / ((1 - matters) * (1 - matters)) - 1) * p.rows;
   std::vector<double> limits;
-  for (Eigen::Index k = 0; k < seen.size(); ++k)
-    limits.push_back(std::sqrt(std::max(white * seen[k], least * raw[k])));
+  for (Eigen::Index k = 0; k < seen.size(); ++k) limits.push_back(std::sqrt(std::max(white * seen[k], least * raw[k])));
   return limits;
 }
 

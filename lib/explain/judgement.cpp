@@ -13,8 +13,8 @@ constexpr double own_share = 0.35, other_share = 0.5;
 // Where a free curve over its own condition takes away most of what is left above the noise, the recordings are clean
 // enough to say that the mechanism is not the law; a lens that is no polynomial leaves less than this share.
 constexpr double clean_share = 0.02, clean_part = 0.5;
-constexpr double price_of_a_look = 10;   // as in the null test
-constexpr double clearly_better = 0.1;   // by which a free curve must repair more, as a share of what it repairs
+constexpr double price_of_a_look = 10;  // as in the null test
+constexpr double clearly_better = 0.1;  // by which a free curve must repair more, as a share of what it repairs
 
 bool repairs(const Hypothesis& h, const Options& options) {
   return h.gain > 2 * h.gain_sigma && h.effect >= options.matters;
@@ -29,9 +29,9 @@ bool declares(const Problem& problem, const std::vector<std::size_t>& candidates
 }
 
 struct Left {
-  const Competitor* any = nullptr;  // the free curve that repairs most of what is left
-  const Competitor* own = nullptr;  // the same over a condition that a named mechanism declares
-  const Trail* trail = nullptr;     // what no smooth curve follows
+  const Competitor* any = nullptr;     // the free curve that repairs most of what is left
+  const Competitor* own = nullptr;     // the same over a condition that a named mechanism declares
+  const Trail* trail = nullptr;        // what no smooth curve follows
   const Crossing* crossing = nullptr;  // what turns round from one condition to another
 };
 Left structure_left(const Problem& problem, const Selection& s, const Options& options) {
@@ -154,9 +154,9 @@ void judge(const Problem& problem, Selection& s, const Options& options, Explana
   e.instead = s.instead;
   // Finer forms of what is named stand beside it and are no other physics.
   const auto is_form = [&](std::size_t c) { return problem.candidates()[c].finer; };
-  const bool only_forms =
-      std::all_of(e.not_told_apart.begin(), e.not_told_apart.end(),
-                  [&](const auto& set) { return std::all_of(set.begin() + 1, set.end(), is_form); });
+  const bool only_forms = std::all_of(e.not_told_apart.begin(), e.not_told_apart.end(), [&](const auto& set) {
+    return std::all_of(set.begin() + 1, set.end(), is_form);
+  });
   e.verdict = only_forms && s.instead.empty() ? Verdict::named : Verdict::ambiguous;
 }
 

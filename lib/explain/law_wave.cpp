@@ -126,9 +126,7 @@ Wave find_wave(const LawData& data, const std::vector<std::size_t>& conditions, 
   }
   if (!(best.fall > 0)) return {};
   const double lower = least_periods * best.resolved;
-  const auto about_it = [&](double centre, double reach) {
-    return tuning(data, best.condition, centre, reach, lower);
-  };
+  const auto about_it = [&](double centre, double reach) { return tuning(data, best.condition, centre, reach, lower); };
   const double near = about_it(best.frequency, best.resolved / steps).at({});
   const double frequency = about_it(near, best.resolved / (steps * fine_steps)).at({});
   if (!(frequency > lower)) return {};  // a longer wave would serve better

@@ -12,8 +12,8 @@
 
 namespace gonio::explain {
 
-// A cosine and a sine with one scale, the period over 2 pi; no terms where no period is significant at `level` among all
-// that were looked at.
+// A cosine and a sine with one scale, the period over 2 pi; no terms where no period is significant at `level` among
+// all that were looked at.
 struct Wave {
   std::vector<Term> terms;
   double fall = 0;  // of chi-square, that it brings on all rows

@@ -210,7 +210,8 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
   const bool helps = added.size() == 1 && g.mean > 2 * g.sigma;
   h.wald_p = 0;
   for (const std::size_t c : added)
-    h.wald_p = std::max(h.wald_p, neutral_p(system_, after.fit, u, system_.problem().candidates()[c].parameters, helps));
+    h.wald_p =
+        std::max(h.wald_p, neutral_p(system_, after.fit, u, system_.problem().candidates()[c].parameters, helps));
   // A free hand in every group beats physics that all groups share: dummies are held against mechanisms of their own
   // kind.
   const bool grouped = has_numbers_of_groups(system_, added);

@@ -87,24 +87,24 @@ struct Remainder {
   double global_p = 1;
   std::vector<LocatedCondition> conditions;  // the most telling first
   std::vector<Isolability> isolability;
-  std::vector<double> inflation;    // see signature.h
-  std::vector<Competitor> curves;   // largest gain first
-  std::vector<Hypothesis> dummies;  // largest gain first
-  double false_alarm = 0;           // share of dummies that would have been named
-  std::optional<Trail> trail;       // structure that no smooth curve follows
-  std::optional<Crossing> crossing; // structure in a product of conditions; asked where nothing else is found
+  std::vector<double> inflation;     // see signature.h
+  std::vector<Competitor> curves;    // largest gain first
+  std::vector<Hypothesis> dummies;   // largest gain first
+  double false_alarm = 0;            // share of dummies that would have been named
+  std::optional<Trail> trail;        // structure that no smooth curve follows
+  std::optional<Crossing> crossing;  // structure in a product of conditions; asked where nothing else is found
   std::shared_ptr<const Evidence> evidence;
 };
 Remainder remainder(const Race& race, const Model& model, const Options& options);
 
 // How much may be tried: a number of fits and of pairs, never a time.
 struct Effort {
-  std::size_t fits = 14;      // hypotheses fitted in a round
-  std::size_t least = 4;      // of them whatever the screening says
-  std::size_t pairs = 20000;  // screened in a round
-  std::size_t effects = 5;    // at once
+  std::size_t fits = 14;       // hypotheses fitted in a round
+  std::size_t least = 4;       // of them whatever the screening says
+  std::size_t pairs = 20000;   // screened in a round
+  std::size_t effects = 5;     // at once
   std::size_t runners_up = 4;  // tried where the last judgement refuses the first choice
-  std::string shortened;      // what a budget has cost, in a sentence
+  std::string shortened;       // what a budget has cost, in a sentence
 };
 Effort effort_for(const Race& race, const Options& options);
 

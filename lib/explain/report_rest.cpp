@@ -94,7 +94,8 @@ void isolability(report::Page& page, const Problem& problem, const Explanation& 
   });
   report::TableText table{
       "Before any residual is judged: how much of each signature the free parameters leave, and the "
-      "smallest amplitude that would be seen, alone and, where that differs, whatever the mechanism's other numbers do. "
+      "smallest amplitude that would be seen, alone and, where that differs, whatever the mechanism's other numbers "
+      "do. "
       "The easiest to see come first.",
       {{"mechanism", "", false},
        {"survives", ""},
@@ -138,7 +139,8 @@ void compensation(report::Page& page, const Problem& problem, const Explanation&
     const Shown shown = shown_in(p.unit, std::max(std::abs(c.after), std::abs(c.before)));
     std::string calibrated;
     if (c.calibrated)
-      calibrated = estimate_in_words(*c.calibrated, c.calibrated_sigma.value_or(0), p.unit) + (c.towards ? ", towards" : ", away");
+      calibrated = estimate_in_words(*c.calibrated, c.calibrated_sigma.value_or(0), p.unit) +
+                   (c.towards ? ", towards" : ", away");
     table.rows.push_back({p.name, printed(c.before * shown.factor, 5), estimate_in_words(c.after, c.sigma, p.unit),
                           (c.after < c.before ? "−" : "") + plain_number(std::abs(c.after - c.before) / c.sigma),
                           calibrated});

@@ -171,8 +171,8 @@ std::vector<Estimate> estimates(const System& system, const Fit& fit, const Unce
   return result;
 }
 
-double neutral_p(const System& system, const Fit& fit, const Uncertainty& u,
-                 const std::vector<std::size_t>& parameters, bool by_blocks) {
+double neutral_p(const System& system, const Fit& fit, const Uncertainty& u, const std::vector<std::size_t>& parameters,
+                 bool by_blocks) {
   std::vector<Eigen::Index> places;
   std::vector<double> distance;
   for (const std::size_t p : parameters) {

@@ -56,16 +56,15 @@ TEST(Honesty, DetectionLimitsAreKept) {
   EXPECT_LE(early, runs / 10) << early << " of " << runs;
 }
 
-// A mechanism of two numbers whose signatures are all but the same: either alone is seen ten times as soon as the change
-// of one against the other, 1 / sqrt(1 - cos^2) with cos^2 = 1 / 1.01. Two that have nothing in common: no difference.
+// A mechanism of two numbers whose signatures are all but the same: either alone is seen ten times as soon as the
+// change of one against the other, 1 / sqrt(1 - cos^2) with cos^2 = 1 / 1.01. Two that have nothing in common: no
+// difference.
 TEST(Honesty, LimitsSayWhatOtherNumbersHide) {
   for (const bool apart : {false, true}) {
-    const std::vector<Effect> effects = {{"toy.two",
-                                          {amplitude(), number("b", 0, -5, 5, 0.05)},
-                                          {"x"},
-                                          [apart](Numbers p, double x, double z) {
-                                            return p[0] * x * x + p[1] * (apart ? z * z : x * x + 0.1 * z * z);
-                                          }}};
+    const std::vector<Effect> effects = {
+        {"toy.two", {amplitude(), number("b", 0, -5, 5, 0.05)}, {"x"}, [apart](Numbers p, double x, double z) {
+           return p[0] * x * x + p[1] * (apart ? z * z : x * x + 0.1 * z * z);
+         }}};
     const NonlinearToy problem(effects, {}, {{}, 0.1}, 31, {10, 100, 2});
     const Explanation e = explain(problem, quick(1));
     const Isolability& i = e.isolability.at(0);

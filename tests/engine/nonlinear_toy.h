@@ -46,8 +46,8 @@ class NonlinearToy : public ToyFrame {
     });
     for (std::size_t d = 0; d < spoiled.dust_rows; ++d) {
       const auto row = random.below(static_cast<std::uint32_t>(observations_.rows()));
-      observations_.value[row] += std::hypot(spoiled.noise, spoiled.block_noise) * random.uniform(8, 20) *
-                                  (random.uniform() < 0.5 ? -1 : 1);
+      observations_.value[row] +=
+          std::hypot(spoiled.noise, spoiled.block_noise) * random.uniform(8, 20) * (random.uniform() < 0.5 ? -1 : 1);
     }
   }
   void predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const override {

@@ -163,8 +163,8 @@ std::string refusal(const Explanation& e, const std::string& name) {
   return "";
 }
 
-// One mechanism repairs more at first, but leaves structure over its own condition: it is put aside with its reason, and
-// the one that it had outrun is named.
+// One mechanism repairs more at first, but leaves structure over its own condition: it is put aside with its reason,
+// and the one that it had outrun is named.
 TEST(Selection, WhatTheLastJudgementRefusesMakesWayForTheNext) {
   std::vector<Effect> effects = library();
   effects.erase(effects.begin() + 2, effects.end());
@@ -205,18 +205,21 @@ TEST(Selection, AFinerFormIsNamedOnlyWhereItIsClearlyBetter) {
   }
 }
 
-// Any two of four mechanisms do for the other two: beside the pair that is named stands the one that shares nothing with
-// it.
+// Any two of four mechanisms do for the other two: beside the pair that is named stands the one that shares nothing
+// with it.
 TEST(Selection, AnotherPairIsReportedInThePlaceOfBoth) {
   const auto cube = [](Numbers p, double x, double) { return p[0] * x * x * x; };
   const auto product = [](Numbers p, double x, double z) { return p[0] * x * z; };
   const std::vector<Effect> effects = {
       {"toy.cube", {amplitude()}, {"x"}, cube},
       {"toy.product", {amplitude()}, {"x", "z"}, product},
-      {"toy.sum", {amplitude()}, {"x", "z"},
+      {"toy.sum",
+       {amplitude()},
+       {"x", "z"},
        [&](Numbers p, double x, double z) { return 2 * cube(p, x, z) + product(p, x, z); }},
-      {"toy.difference", {amplitude()}, {"x", "z"},
-       [&](Numbers p, double x, double z) { return 2 * cube(p, x, z) - 0.9 * product(p, x, z); }}};
+      {"toy.difference", {amplitude()}, {"x", "z"}, [&](Numbers p, double x, double z) {
+         return 2 * cube(p, x, z) - 0.9 * product(p, x, z);
+       }}};
   const NonlinearToy problem(effects, {{0.8}, {0.3}, {}, {}}, {{}, 0.05}, 7000, {10, 30, 2});
   const Explanation e = explain(problem, quick(1));
   EXPECT_EQ(e.verdict, Verdict::ambiguous) << e.sentence << race(e);

@@ -1,5 +1,5 @@
-// What problems of known truth have in common: y = offset_g + 0.7 x + effect(x, z) + noise, x and z uniform in (-1, 1), an
-// offset per group as nuisance and a slope that all share.
+// What problems of known truth have in common: y = offset_g + 0.7 x + effect(x, z) + noise, x and z uniform in (-1, 1),
+// an offset per group as nuisance and a slope that all share.
 #pragma once
 #include <cmath>
 #include <functional>

@@ -119,7 +119,8 @@ TEST(Law, APeriodIsRecoveredWithItsAmplitude) {
   for (int run = 0; run < runs; ++run) {
     const auto ripple = [&](double, double z) { return 0.12 * std::cos(2 * 3.14159265358979 * z / period + 0.4); };
     const Explanation e = law_of(LawProblem({.law = ripple}, 1500 + run), "clock.time");
-    if (e.outside->terms.size() != 2 || e.outside->terms[0].shape != "cos" || e.outside->terms[1].shape != "sin") continue;
+    if (e.outside->terms.size() != 2 || e.outside->terms[0].shape != "cos" || e.outside->terms[1].shape != "sin")
+      continue;
     const LawTerm &c = e.outside->terms[0], &s = e.outside->terms[1];
     EXPECT_EQ(c.unit, "px");
     EXPECT_EQ(c.scale_unit, "s");

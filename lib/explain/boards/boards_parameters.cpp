@@ -222,8 +222,8 @@ class Declaration {
   }
 
   // A denominator says how the polynomial falls short: over a moderate field both bow lines alike, and the plain one is
-  // to be named first. An equidistant lens has no denominators: they have faded there. Another projection is tried where
-  // the lens has none; beside a polynomial it is the finer name (Candidate::finer).
+  // to be named first. An equidistant lens has no denominators: they have faded there. Another projection is tried
+  // where the lens has none; beside a polynomial it is the finer name (Candidate::finer).
   static bool lacks_lens_term(const BoardsInput::Camera& camera, std::size_t term) {
     const auto has = [&](std::size_t t) {
       return std::find(camera.terms.begin(), camera.terms.end(), t) != camera.terms.end();
