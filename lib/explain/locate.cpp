@@ -150,12 +150,13 @@ std::vector<LocatedCondition> locate(const System& system, const Projection& p, 
 namespace {
 
 // Whose declarations order the conditions that tell equally much: the named mechanisms', the most important one's
-// first; where nothing is named, those of the best that ran.
+// first; where nothing is named, those of the one that gained most.
 std::vector<std::size_t> speakers(const Explanation& e) {
   if (!e.named.empty()) return e.named;
+  const Hypothesis* best = nullptr;
   for (const Hypothesis& h : e.scoreboard)
-    if (h.kind == Hypothesis::Kind::mechanisms && h.gain > 0) return h.candidates;
-  return {};
+    if (h.kind == Hypothesis::Kind::mechanisms && h.gain > (best == nullptr ? 0 : best->gain)) best = &h;
+  return best == nullptr ? std::vector<std::size_t>{} : best->candidates;
 }
 
 // Place in those declarations; past the end: not declared.
