@@ -58,7 +58,7 @@ def picture(albedo, principled, sun_deg, view_deg, wall):
         bpy.context.object.scale = (0.002, 1.5, 0.2)
         bpy.context.object.data.materials.append(black())
     sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
-    sun.data.angle = 0
+    sun.data.angle, sun.data.energy = 0, 1
     sun.rotation_euler = (0, -math.radians(sun_deg), 0)
     eye = bpy.data.objects.new("eye", bpy.data.cameras.new("eye"))
     eye.data.type = "ORTHO"

@@ -88,7 +88,7 @@ const std::vector<Practice>& practices() {
       {"practice-3",
        "surface.subsurface",
        {path("radius, red, m", 0.012, "r"), path("radius, green, m", 0.005, "g"), path("radius, blue, m", 0.003, "b")},
-       0.5},
+       0.7},
       {"practice-4",
        "light.ambient",
        {ambient("radiance at 3 W, red", 0.050, "r"), ambient("radiance at 3 W, green", 0.050, "g"),

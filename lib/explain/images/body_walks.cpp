@@ -190,16 +190,17 @@ BodyWalks::Weights BodyWalks::weights(double path_m, double albedo) const {
   const double a = std::clamp(albedo, 0.01, 0.99), alpha = scattering_albedo(a);
   const double mean_path_m = path_m * std::sqrt(3 * (1 - alpha));
   for (std::size_t b = 0; b < orders; ++b) w.of_order[b] = std::pow(alpha, tables_->mean[b]) / a;
-  const double octaves = 2 * std::log2(std::max(mean_path_m, 1e-9) / shortest_m);
-  if (octaves < 0) {
-    w.own_share = 1 - mean_path_m / shortest_m;
-  } else {
-    const double place = std::min(octaves, static_cast<double>(table_count - 1));
-    w.lower = std::min(static_cast<std::size_t>(place), table_count - 2);
-    w.upper_share = place - static_cast<double>(w.lower);
-  }
-  tables_->need(w.lower);
-  if (w.upper_share > 0) tables_->need(w.lower + 1);
+  const double last = static_cast<double>(table_count - 1);
+  const double halves = 2 * std::log2(std::max(mean_path_m, 1e-9) / shortest_m);
+  if (halves < 0) w.own_share = 1 - mean_path_m / shortest_m;
+  const double place = std::clamp(halves, 0.0, last);
+  const auto lower = std::min(static_cast<std::size_t>(place), table_count - 2);
+  const double t = place - static_cast<double>(lower);
+  w.of_table = {0.5 * t * (t * (2 - t) - 1), 0.5 * (t * t * (3 * t - 5) + 2), 0.5 * t * (t * (4 - 3 * t) + 1),
+                0.5 * t * t * (t - 1)};
+  w.tables = {lower > 0 ? lower - 1 : 0, lower, lower + 1, std::min(lower + 2, table_count - 1)};
+  for (std::size_t k = 0; k < 4; ++k)
+    if (w.of_table[k] != 0) tables_->need(w.tables[k]);
   return w;
 }
 
@@ -207,13 +208,12 @@ double BodyWalks::spread(const Weights& w, std::size_t view, std::size_t facet, 
   const std::uint32_t start = tables_->place[view][facet];
   if (start == Tables::none) return own;
   const std::size_t row = (start * tables_->lights + light) * orders;
-  const auto from = [&](std::size_t table) {
-    double sum = 0;
-    for (std::size_t b = 0; b < orders; ++b) sum += w.of_order[b] * double{tables_->made[table][row + b]};
-    return sum;
-  };
-  double spread = from(w.lower);
-  if (w.upper_share > 0) spread += w.upper_share * (from(w.lower + 1) - spread);
+  double spread = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (w.of_table[k] == 0) continue;
+    const float* rows = &tables_->made[w.tables[k]][row];
+    for (std::size_t b = 0; b < orders; ++b) spread += w.of_table[k] * w.of_order[b] * double{rows[b]};
+  }
   return spread + w.own_share * (own - spread);
 }
 

@@ -10,8 +10,8 @@
 // "Practical and controllable subsurface scattering for production path tracing", equation 5):
 //   alpha = 1 - exp(-5.09406 A + 2.61188 A^2 - 4.31805 A^3)
 // and the diffuse mean free path l of the declaration, 1 / sqrt(3 sigma_a sigma_t'), fixes l_s = l sqrt(3 (1 - alpha)).
-// Tables are made when asked for, on a grid of l_s in half octaves with the same random numbers, and interpolated in
-// log l_s. Thin parts glow, ridges are brighter and creases darker: what no profile of a half space holds.
+// Tables are made when asked for, on a grid of l_s in half octaves with the same random numbers, and interpolated
+// smoothly in log l_s. Thin parts glow, ridges are brighter and creases darker: what no profile of a half space holds.
 #pragma once
 #include <array>
 #include <cmath>
@@ -34,9 +34,9 @@ class BodyWalks {
   // For one colour: what S_n is weighted with, and where l_s lies among the tables.
   struct Weights {
     std::array<double, orders> of_order{};  // alpha^n / A
-    std::size_t lower = 0;                  // table below l_s
-    double upper_share = 0;                 // of the table above
-    double own_share = 0;                   // l_s below all tables: of the facet's own light
+    std::array<std::size_t, 4> tables{};    // around l_s, and their weights: Catmull & Rom 1974, no kinks for a fit
+    std::array<double, 4> of_table{};
+    double own_share = 0;  // l_s below all tables: of the facet's own light
   };
 
   // Of the facets that bear `surface`; `walks` of each facet for each table.

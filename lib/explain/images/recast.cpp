@@ -29,6 +29,40 @@ Recasts::Node cast(const Setting& s, const std::vector<scene::Instance>& instanc
   return node;
 }
 
+bool same(const Patch& a, const Patch& b) {
+  const auto equal = [](Vec3 p, Vec3 q) { return p.x == q.x && p.y == q.y && p.z == q.z; };
+  return a.weight == b.weight && equal(a.position_m, b.position_m) && equal(a.normal, b.normal) && equal(a.wo, b.wo);
+}
+
+// Sub-samples are drawn pixel by pixel: where nothing has moved, on the object or in its shadow, all is the same to the
+// last bit.
+bool same_pixel(const Recasts::Node& a, const Recasts::Node& b, std::size_t view, std::size_t pixel) {
+  const ViewCache &u = a.views[view], &w = b.views[view];
+  const Pixel &p = u.pixels[pixel], &q = w.pixels[pixel];
+  if (p.facets != q.facets || p.sky != q.sky) return false;
+  const std::size_t numbers = a.sums[view].size() / std::max<std::size_t>(1, u.facets.size());
+  for (std::size_t k = 0; k < p.facets; ++k) {
+    const std::size_t i = p.first_facet + k, j = q.first_facet + k;
+    const Facet &f = u.facets[i], &g = w.facets[j];
+    if (f.surface != g.surface || f.weight != g.weight || f.patches != g.patches) return false;
+    for (std::size_t n = 0; n < f.patches; ++n)
+      if (!same(u.patches[f.first_patch + n], w.patches[g.first_patch + n])) return false;
+    const auto lit = a.sums[view].begin() + static_cast<std::ptrdiff_t>(i * numbers);
+    if (!std::equal(lit, lit + static_cast<std::ptrdiff_t>(numbers),
+                    b.sums[view].begin() + static_cast<std::ptrdiff_t>(j * numbers)))
+      return false;
+  }
+  return true;
+}
+
+void mark_differences(const Recasts::Node& unmoved, Recasts::Node& node) {
+  for (std::size_t v = 0; v < node.views.size(); ++v) {
+    node.differs.emplace_back();
+    for (std::size_t p = 0; p < node.views[v].pixels.size(); ++p)
+      node.differs.back().push_back(!same_pixel(unmoved, node, v, p));
+  }
+}
+
 std::vector<scene::Instance> moved_scene(const Setting& s, const Use& use, std::span<const double> amounts) {
   std::vector<scene::Instance> instances = s.scene.instances;
   instances[use.targets[0]] = scene::moved(instances[use.targets[0]], *use.mechanism, amounts);
@@ -80,28 +114,30 @@ double step_of(const mechanism::Parameter& p, const Extent& e) {
   return step_m / (p.unit == "rad" ? e.radius_m : e.reach_m);
 }
 
-// Adds weight * (P(node) - P(unmoved)) for one image.
+// Adds weight * (P(node) - P(unmoved)) for one image, where the two differ.
 class Change {
  public:
   Change(const Use& use, const Frame& frame, std::span<double> radiance)
-      : table_(static_cast<const Recasts&>(*use.prepared)), frame_(frame), out_(radiance), unmoved_(radiance.size()) {
-    predict(table_.unmoved, unmoved_);
-  }
+      : table_(static_cast<const Recasts&>(*use.prepared)), frame_(frame), out_(radiance) {}
   void add(const Recasts::Node& node, double weight) {
-    std::vector<double> there(out_.size());
-    predict(node, there);
-    for (std::size_t i = 0; i < out_.size(); ++i) out_[i] += weight * (there[i] - unmoved_[i]);
+    std::vector<std::uint32_t> picked;
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < frame_.picked.size(); ++i)
+      if (node.differs[frame_.image.view][frame_.picked[i]]) picked.push_back(frame_.picked[i]), rows.push_back(3 * i);
+    std::vector<double> there(3 * picked.size()), unmoved(3 * picked.size());
+    predict(node, picked, there);
+    predict(table_.unmoved, picked, unmoved);
+    for (std::size_t i = 0; i < there.size(); ++i) out_[rows[i / 3] + i % 3] += weight * (there[i] - unmoved[i]);
   }
 
  private:
-  void predict(const Recasts::Node& node, std::span<double> out) const {
+  void predict(const Recasts::Node& node, std::span<const std::uint32_t> picked, std::span<double> out) const {
     const std::size_t v = frame_.image.view;
-    frame_.model.predict_from(node.views[v], node.sums[v], frame_.state, frame_.number, frame_.picked, out);
+    frame_.model.predict_from(node.views[v], node.sums[v], frame_.state, frame_.number, picked, out);
   }
   const Recasts& table_;
   const Frame& frame_;
   std::span<double> out_;
-  std::vector<double> unmoved_;
 };
 
 }  // namespace
@@ -144,6 +180,9 @@ std::vector<Use> object_uses(const Setting& s, const mechanism::Mechanism& mecha
       n.lower = std::max(n.lower, -most);
       n.upper = std::min(n.upper, most);
       n.start = std::min(n.start, 0.25 * n.upper);
+      // A ball that turns about its centre is the same ball.
+      if (std::holds_alternative<scene::Sphere>(instance.shape) && mechanism.parameters[k].unit == "rad")
+        n.free = false, n.start = n.neutral;
     }
     uses.push_back(use);
   }
@@ -156,6 +195,7 @@ std::shared_ptr<const Prepared> prepare_recasts(const Setting& s, const Use& use
   if (s.fitted) {
     result->exact = true;
     result->plus.push_back(cast(s, moved_scene(s, use, use.amounts(*s.fitted))));
+    mark_differences(result->unmoved, result->plus[0]);
     return result;
   }
   const Extent e = extent_of(s, s.scene.instances[use.targets[0]]);
@@ -168,6 +208,8 @@ std::shared_ptr<const Prepared> prepare_recasts(const Setting& s, const Use& use
     amounts[k] = step;
     result->plus.push_back(cast(s, moved_scene(s, use, amounts)));
     amounts[k] = 0;
+    mark_differences(result->unmoved, result->minus.back());
+    mark_differences(result->unmoved, result->plus.back());
   }
   return result;
 }

@@ -13,7 +13,8 @@ namespace gonio::explain::images {
 struct Recasts final : Prepared {
   struct Node {
     std::vector<ViewCache> views;
-    std::vector<std::vector<float>> sums;  // [view]: facet_sums()
+    std::vector<std::vector<float>> sums;            // [view]: facet_sums()
+    std::vector<std::vector<std::uint8_t>> differs;  // [view][pixel]: 1 where anything is not that of the unmoved scene
   };
   Node unmoved;
   std::vector<double> step;       // one per parameter
