@@ -38,14 +38,31 @@ struct Found {
   std::string named;
 };
 
-Found explained(std::unique_ptr<Problem> problem, double matters = 0.01) {
+// Where, how much it repairs on unseen groups, and what else ran.
+void print_evidence(const Found& f) {
+  const Explanation& e = f.e;
+  if (!e.conditions.empty())
+    std::printf("  located: %s, stage %s, between %.3g and %.3g %s\n", e.conditions[0].name.c_str(), e.stage.c_str(),
+                e.conditions[0].lower, e.conditions[0].upper, e.conditions[0].unit.c_str());
+  std::printf("  held out: %s %.4g -> %.4g\n", f.problem->score_name().c_str(), e.held_out_before, e.held_out_after);
+  for (const Hypothesis& h : e.scoreboard) {
+    std::printf("  %-44s held out %.4g, gain %.3g +- %.2g, %.2f %% of the signal, p %.1g", h.name.c_str(), h.held_out,
+                h.gain, h.gain_sigma, 100 * h.effect, h.wald_p);
+    for (std::size_t k = 0; k < std::min<std::size_t>(4, h.parameters.size()); ++k)
+      std::printf(", %s %.3g(%.2g)", f.problem->parameters()[h.parameters[k].parameter].name.c_str(),
+                  h.parameters[k].value, h.parameters[k].sigma);
+    std::printf("%s%s\n", h.refused.empty() ? "" : "; ", h.refused.c_str());
+  }
+}
+
+Found explained(std::unique_ptr<Problem> problem) {
   Found f;
   f.problem = std::move(problem);
-  Options options;
-  options.matters = matters;
+  const Options options;
   f.e = explain(*f.problem, options);
   for (const std::size_t c : f.e.named) f.named += (f.named.empty() ? "" : " + ") + f.problem->candidates()[c].id();
   std::printf("%s\n", f.e.sentence.c_str());
+  print_evidence(f);
   return f;
 }
 
@@ -188,9 +205,6 @@ Vec3 towards_by_mirror(const fs::path& folder, std::size_t i) {
   return normal * (2 * dot(normal, view)) - view;
 }
 
-// Highlights are small: gloss changes 0.7 % of the whole signal, which 1 %, the default, would not call worth a name.
-constexpr double small_highlights = 0.005;
-
 int cat(const fs::path& folder) {
   Value files = Value::object({{"mask", Value::object({{"path", (folder / "cat/cat.mask.png").string()}})}});
   Value lights = Value::object(), images = Value::array();
@@ -207,7 +221,7 @@ int cat(const fs::path& folder) {
   }
   const manifest::Document document =
       parsed(Value::object({{"gonio", 1}, {"files", files}, {"lights", lights}, {"images", images}}), folder);
-  const Found f = explained(std::move(photometric_problems(document).at(0)), small_highlights);
+  const Found f = explained(std::move(photometric_problems(document).at(0)));
   const bool gloss = f.named.find("surface.interface") != std::string::npos;
   claim("cat: gloss is named", gloss, "=", 1, gloss);
   for (const Hypothesis& h : f.e.scoreboard)
@@ -221,11 +235,12 @@ int cat(const fs::path& folder) {
 }  // namespace gonio::explain::stacks
 
 int main(int argc, char** argv) {
+  namespace fs = std::filesystem;
   const std::string what = argc == 3 ? argv[1] : "";
   try {
-    if (what == "memorial") return gonio::explain::stacks::memorial(argv[2]);
-    if (what == "flea3") return gonio::explain::stacks::flea3(argv[2]);
-    if (what == "cat") return gonio::explain::stacks::cat(argv[2]);
+    if (what == "memorial") return gonio::explain::stacks::memorial(fs::absolute(argv[2]));
+    if (what == "flea3") return gonio::explain::stacks::flea3(fs::absolute(argv[2]));
+    if (what == "cat") return gonio::explain::stacks::cat(fs::absolute(argv[2]));
   } catch (const std::exception& e) {
     std::cerr << "prove-stacks: " << e.what() << "\n";
     return 65;

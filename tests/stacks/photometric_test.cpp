@@ -77,6 +77,33 @@ TEST(Photometric, LampsElsewhereAreNamed) {
   EXPECT_EQ(o.named, (Names{"light.direction"})) << o.told();
 }
 
+// Lamps that nobody measured lie unevenly over the picture: no missing physics, and gloss is found beside it.
+TEST(Photometric, UnevenLampsOfFreeStrengthAreNotNamed) {
+  LightWorld world;
+  world.uneven = 0.15;
+  const Outcome o = run(world);
+  EXPECT_EQ(o.explanation.verdict, Verdict::null) << o.told();
+  const auto slope = [&](const std::string& lamp) {
+    for (std::size_t p = 0; p < o.problem->parameters().size(); ++p)
+      if (o.problem->parameters()[p].name == "lights/" + lamp + "/slope_down") return o.explanation.base_values[p];
+    return std::nan("");
+  };
+  // What all lamps have in common belongs to the albedo.
+  EXPECT_NEAR(slope("l0") - slope("l1"), -world.uneven, 0.1 * world.uneven);
+}
+
+TEST(Photometric, NearLampIsAPointSource) {
+  const PatchLight far{normalized(Vec3{0.3, -0.5, -0.8}), 0.9};
+  const Vec3 at{0.4, -0.7, 0};
+  EXPECT_EQ(seen_from(far, at, 0).white, far.white);
+  EXPECT_EQ(seen_from(far, at, 0).towards.x, far.towards.x);
+  const double distance = 4;
+  const Vec3 there = far.towards * distance - at;
+  const PatchLight near = seen_from(far, at, 1 / distance);
+  EXPECT_NEAR(norm(near.towards - normalized(there)), 0, 1e-12);
+  EXPECT_NEAR(near.white, far.white * distance * distance / dot(there, there), 1e-12);
+}
+
 TEST(Photometric, BlackOffsetIsNamed) {
   LightWorld world;
   world.offset = 0.03;

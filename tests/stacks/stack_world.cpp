@@ -144,15 +144,17 @@ manifest::Document record(const LightWorld& world, const std::filesystem::path& 
         const double albedo = 0.45 + 0.2 * std::sin(7 * u) * std::cos(5 * v);
         double value =
             n.z > 0 ? world.scale * (pi * reflected(n, l, albedo, world) + world.ambient * albedo * (1 + n.z) / 2) : 0;
+        if (k % 3 == 0) value *= std::exp(-world.uneven * v / 1.1);
         value = std::pow(std::max(0.0, value), world.gamma) + world.offset;
         picture.at(x, y, 0) = static_cast<float>(value + world.noise * normal(random));
       }
     const std::string id = "l" + std::to_string(k);
     io::write_picture(folder / (id + ".exr"), picture);
     files += ", \"" + id + "\": {\"path\": \"" + id + ".exr\"}";
+    const std::string w = number(pi * world.scale), white = "[" + w + ", " + w + ", " + w + "]";
     lights += (k ? ", \"" : "\"") + id + "\": {\"model\": \"directional\", \"towards\": [" + number(believed.x) + ", " +
-              number(believed.y) + ", " + number(-believed.z) + "], \"watt_per_m2\": [" + number(pi * world.scale) +
-              ", " + number(pi * world.scale) + ", " + number(pi * world.scale) + "]}";
+              number(believed.y) + ", " + number(-believed.z) + "], \"watt_per_m2\": " +
+              (world.uneven != 0 ? "{\"value\": " + white + ", \"free\": true, \"min\": 0}" : white) + "}";
     images += (k ? ", " : "") + std::string("{\"id\": \"") + id + "\", \"file\": \"" + id +
               "\", \"camera\": \"c\", \"light\": \"" + id +
               "\", \"mask\": \"mask\", \"noise\": {\"gain\": 1e9, \"read\": " + number(world.noise) + "}}";

@@ -29,6 +29,7 @@ struct LightWorld {
   int size = 96, lights = 10;
   double f0 = 0, alpha = 0.2, sigma_rad = 0;  // gloss and roughness of the ball
   double gamma = 1, offset = 0, ambient = 0;
+  double uneven = 0;  // every third lamp falls off down the picture, by this logarithm over half of it; strengths free
   double turn_rad = 0;  // of every lamp against the manifest, in random directions
   double scale = 0.8;   // reading of a white matte plate that faces the lamp
   double noise = 0.002;

@@ -41,6 +41,13 @@ Vec3 least_squares(const std::vector<PatchLight>& lights, const std::vector<doub
 
 }  // namespace
 
+PatchLight seen_from(const PatchLight& light, Vec3 position, double nearness) {
+  if (nearness == 0) return light;
+  const Vec3 q = light.towards - position * nearness;
+  const double squared = dot(q, q);
+  return {q / std::sqrt(squared), light.white / squared};
+}
+
 double PatchModel::operator()(Vec3 b, double tint, const PatchLight& light, double radius) const {
   const double albedo = norm(b);
   if (!(albedo > 0)) return response(0) + offset;

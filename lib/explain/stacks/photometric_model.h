@@ -18,10 +18,17 @@
 
 namespace gonio::explain::stacks {
 
+inline constexpr double evenness = 0.02;  // share of the light that a lamp called distant may vary by over the object
+
 struct PatchLight {  // one picture's lamp, already turned
   Vec3 towards;      // unit
   double white = 1;  // w
 };
+
+// The same lamp as `position` sees it, where it stands at 1 / nearness from the origin along `towards` and gives its
+// white there (light.inverse-square): q = towards - nearness position; towards' = q / |q|, white' = white / |q|^2.
+// Unchanged at nearness 0. Positions are in units of half the picture's width, which a stack without geometry has.
+PatchLight seen_from(const PatchLight& light, Vec3 position, double nearness);
 
 struct Patch {
   Vec3 b;

@@ -14,7 +14,10 @@ namespace {
 
 constexpr double likely_turn_rad = 0.1;  // of a lamp; also holds all of them, which could turn with all normals
 constexpr double likely_strength = 0.3;  // of a free lamp's logarithm; albedo takes what is common
+constexpr double likely_slope = 0.2;     // of the same, over half the picture's width
 constexpr double highest_f0 = 0.2;       // readings need not be on an absolute scale
+
+constexpr double nearest = 0.7;  // half widths' inverse: a lamp just outside the picture
 
 constexpr std::size_t fewest_lamps = 5;  // that must show a pixel of the whole picture
 
@@ -41,8 +44,21 @@ void PhotometricProblem::add_lamps(const manifest::Document& document) {
     strength.prior_sigma = likely_strength;
     strength.groups = {g};
     strength_.push_back(parameters_.size());
-    if (document.lights.at(name).parameters.at("watt_per_m2").free) base_.push_back(parameters_.size());
+    if (free_[g]) base_.push_back(parameters_.size());
     parameters_.push_back(std::move(strength));
+    std::array<std::size_t, 2> slope{};
+    for (int axis = 0; axis < 2; ++axis) {
+      Parameter p;
+      p.name = "lights/" + name + (axis == 0 ? "/slope_right" : "/slope_down");
+      p.unit = "1";
+      p.size = 0.05;
+      p.prior_sigma = likely_slope;
+      p.groups = {g};
+      slope[static_cast<std::size_t>(axis)] = parameters_.size();
+      if (free_[g]) base_.push_back(parameters_.size());
+      parameters_.push_back(std::move(p));
+    }
+    slope_.push_back(slope);
   }
 }
 
@@ -74,6 +90,8 @@ void PhotometricProblem::add_candidates(const manifest::Document& document) {
   parameters_.back().lower = -stack_.full_scale, parameters_.back().upper = stack_.full_scale;
   parameters_.back().start = 0.005 * stack_.full_scale;
   shared_.falloff = add("optics.vignetting", "falloff", 0.1);
+  shared_.nearness = add("light.inverse-square", "nearness_per_m", 0.1);
+  parameters_.back().upper = nearest;
   propose_candidate(document, "surface.interface", {shared_.f0, shared_.alpha}, "");
   propose_candidate(document, "surface.diffuse-roughness", {shared_.sigma_rad}, "");
   std::vector<std::size_t> tilts;
@@ -82,6 +100,7 @@ void PhotometricProblem::add_candidates(const manifest::Document& document) {
   for (const StackImage& image : stack_.images)
     if (!candidates_.empty() && candidates_.back().id() == "light.direction")
       candidates_.back().on.push_back(image.light);
+  propose_candidate(document, "light.inverse-square", {shared_.nearness}, stack_.images[0].light);
   propose_candidate(document, "light.ambient", {shared_.ambient}, "");
   propose_candidate(document, "sensor.non-linearity", {shared_.gamma}, stack_.camera);
   propose_candidate(document, "sensor.non-linearity", {shared_.quadratic}, stack_.camera);
@@ -94,6 +113,16 @@ std::string PhotometricProblem::remarks(const Explanation& e) const {
   if (hidden_ > 0)
     text = std::to_string(hidden_) + " of " + std::to_string(hidden_ + observations_.rows()) +
            " readings lie in cast shadows and were left out.";
+  std::size_t worst = 0;
+  const auto slope = [&](std::size_t g) { return std::hypot(e.values[slope_[g][0]], e.values[slope_[g][1]]); };
+  for (std::size_t g = 0; g < slope_.size(); ++g)
+    if (slope(g) > slope(worst)) worst = g;
+  if (slope(worst) > evenness)
+    text += (text.empty() ? "" : " ") + std::string("The light of ") + stack_.images[worst].light + " changes by " +
+            printed(100 * slope(worst)) + " % over half the picture's width.";
+  if (is_named(*this, e, "light.inverse-square"))
+    text += (text.empty() ? "" : " ") + std::string("The lamps stand ") + printed(1 / e.values[shared_.nearness]) +
+            " half widths of the picture away; without a scale the manifest cannot say so in metres.";
   if (!is_named(*this, e, "light.direction")) return text;
   double sum = 0;
   for (const std::array<std::size_t, 2>& t : tilt_) sum += std::hypot(e.values[t[0]], e.values[t[1]]);
@@ -112,6 +141,7 @@ void PhotometricProblem::apply(const Explanation& e, manifest::Document& documen
   }
   for (const std::size_t c : e.named) {
     const std::string& id = candidates_[c].id();
+    if (id == "light.inverse-square") continue;  // a stack without geometry has no metre
     if (id == "sensor.non-linearity" || (bent && id == "sensor.black-offset")) continue;
     std::vector<std::string> on;
     if (id == "light.direction") on = candidates_[c].on;
@@ -140,7 +170,6 @@ Illustration PhotometricProblem::illustrate(const Explanation& e, const std::fil
   if (e.verdict == Verdict::null) return result;
   Effects effects = empty_effects(stack_);
   const PatchModel before = model(e.base_values), after = model(e.values);
-  const std::vector<PatchLight> lights_before = lights(e.base_values), lights_after = lights(e.values);
   std::vector<double> rms;
   for (const StackImage& image : stack_.images) {
     double sum = 1e-30, n = 1e-30;
@@ -152,7 +181,7 @@ Illustration PhotometricProblem::illustrate(const Explanation& e, const std::fil
   parallel_for(0, static_cast<std::size_t>(effects.height), [&](std::size_t row) {
     for (int column = 0; column < effects.width; ++column) {
       const int x = column * effects.stride, y = static_cast<int>(row) * effects.stride;
-      PatchReadings was = readings(x, y, lights_before, e.noise_factor);
+      PatchReadings was = readings(x, y, lights(e.base_values, x, y), e.noise_factor);
       const auto shown = std::count_if(was.weight.begin(), was.weight.end(), [](double w) { return w > 0; });
       if (static_cast<std::size_t>(shown) < channels * fewest_lamps) continue;
       std::vector<char> dark;
@@ -160,7 +189,7 @@ Illustration PhotometricProblem::illustrate(const Explanation& e, const std::fil
       for (std::size_t i = 0; i < was.weight.size(); ++i)
         if (dark[i / channels]) was.weight[i] = 0;  // cast shadows say nothing
       PatchReadings is = was;
-      is.lights = lights_after;
+      is.lights = lights(e.values, x, y);
       const Patch b = fitted_patch(before, was, start);
       const Patch a = e.named.empty() ? b : fitted_patch(after, is, b);
       const std::size_t place = row * static_cast<std::size_t>(effects.width) + static_cast<std::size_t>(column);

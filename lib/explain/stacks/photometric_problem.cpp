@@ -14,7 +14,7 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t fewest_shown = 5;  // lamps that must shine on a site
 constexpr int alternations = 12;
-constexpr double evenness = 0.02;      // share of the light that a lamp called distant may vary by over the object
+constexpr double indirect = 0.03;      // share of a patch's brightest reading that its surroundings may reflect onto it
 constexpr double least_cosine = 0.15;  // of the eye above a site
 
 // The mean over the channels, where all of them count: what sites are chosen by.
@@ -69,6 +69,9 @@ PhotometricProblem::PhotometricProblem(const manifest::Document& document, Stack
                   "state watt_per_m2 above zero");
   }
   eye_ = direction_to_eye(document, stack_.images[0], lamps_);
+  right_ = {1, 0, 0}, down_ = {0, -eye_.z, 0};
+  if (const auto& pose = document.images[stack_.images[0].entry].world_from_camera)
+    right_ = pose->rotate({1, 0, 0}), down_ = pose->rotate({0, 1, 0});
   const Stack mean = grey(stack_);
   sites_ = choose_sites(mean, ReadingNoise(mean), {.sites = sites, .fewest = fewest_shown}, place);
   keep_shown_sites(place);
@@ -93,15 +96,20 @@ PatchReadings PhotometricProblem::readings(int x, int y, std::span<const PatchLi
     for (std::size_t c = 0; c < r.channels; ++c) {
       const std::size_t i = image.picture.index(x, y, static_cast<int>(c));
       r.y.push_back(image.picture.data[i]);
-      r.weight.push_back(out || !image.counts[i] ? 0 : 1 / (noise_factor * sigma(g, r.y.back())));
+      r.weight.push_back(out || !image.counts[i] ? 0 : 1);
     }
   }
+  std::vector<double> brightest(r.channels);
+  for (std::size_t k = 0; k < r.y.size(); ++k)
+    if (r.weight[k] > 0) brightest[k % r.channels] = std::max(brightest[k % r.channels], r.y[k]);
+  for (std::size_t k = 0; k < r.y.size(); ++k)
+    if (r.weight[k] > 0) r.weight[k] = 1 / (noise_factor * sigma(k / r.channels, r.y[k], brightest[k % r.channels]));
   return r;
 }
 
-double PhotometricProblem::sigma(std::size_t image, double reading) const {
+double PhotometricProblem::sigma(std::size_t image, double reading, double brightest) const {
   const double noise = noise_.sigma(image, reading);
-  return noise_.stated() ? noise : std::hypot(noise, evenness * reading);
+  return noise_.stated() ? noise : std::hypot(noise, evenness * reading, indirect * brightest);
 }
 
 void PhotometricProblem::keep_shown_sites(const std::string& place) {
@@ -175,16 +183,18 @@ void PhotometricProblem::add_rows() {
   Observations& o = observations_;
   rows_.resize(stack_.images.size());
   o.first.push_back(0);
+  std::vector<PatchReadings> shown;
+  for (const Site& site : sites_) shown.push_back(readings(site.x, site.y, lamps_, 1, &site.seen));
   for (std::size_t g = 0; g < rows_.size(); ++g) {
     for (std::size_t s = 0; s < sites_.size(); ++s) {
       if (!std::binary_search(sites_[s].seen.begin(), sites_[s].seen.end(), g)) continue;
       rows_[g].push_back(s);
       for (std::size_t c = 0; c < stack_.channels.size(); ++c) {
-        const double y = stack_.images[g].picture.at(sites_[s].x, sites_[s].y, static_cast<int>(c));
-        o.value.push_back(y);
-        o.norm.push_back(y * y);
+        const std::size_t k = g * stack_.channels.size() + c;
+        o.value.push_back(shown[s].y[k]);
+        o.norm.push_back(shown[s].y[k] * shown[s].y[k]);
         o.block.push_back(static_cast<std::uint32_t>(g * sites_.size() + s));
-        o.sigma.push_back(sigma(g, y));
+        o.sigma.push_back(1 / shown[s].weight[k]);
       }
     }
     o.first.push_back(o.value.size());
@@ -192,6 +202,7 @@ void PhotometricProblem::add_rows() {
   }
 }
 
+// The channel is none of them: with a tint free at every site nothing can follow it.
 void PhotometricProblem::add_conditions() {
   const std::size_t channels = stack_.channels.size();
   const PatchModel base{.eye = eye_};
@@ -207,7 +218,7 @@ void PhotometricProblem::add_conditions() {
                                 {"light.identity", "1", "light", {}, matte, "1"},
                                 {"camera.image-radius", "half width", "optics", {}, matte, "1"},
                                 {"camera.image-y", "px", "sensor", {}, matte, "1"},
-                                {"image.channel", "1", "sensor", {}, matte, "1"}};
+                                {"light.distance", "half width", "light", {}, matte, "1"}};
   for (std::size_t g = 0; g < rows_.size(); ++g)
     for (const std::size_t s : rows_[g]) {
       const Vec3 n = normalized(start_[s].b), l = lamps_[g].towards;
@@ -220,7 +231,7 @@ void PhotometricProblem::add_conditions() {
                                  static_cast<double>(g),
                                  radius(sites_[s].x, sites_[s].y),
                                  static_cast<double>(sites_[s].y),
-                                 static_cast<double>(c)};
+                                 -dot(l, position(sites_[s].x, sites_[s].y))};  // beyond the scene's centre
         for (std::size_t k = 1; k < all.size(); ++k) all[k].values.push_back(values[k - 1]);
       }
     }
@@ -258,26 +269,37 @@ PatchModel PhotometricProblem::model(std::span<const double> values) const {
   return m;
 }
 
-std::vector<PatchLight> PhotometricProblem::lights(std::span<const double> values) const {
-  std::vector<PatchLight> all = lamps_;
-  for (std::size_t g = 0; g < all.size(); ++g) {
-    const double x = values[tilt_[g][0]], y = values[tilt_[g][1]];
-    if (x != 0 || y != 0) all[g].towards = light::turned(all[g].towards, x, y);
-    if (values[strength_[g]] != 0) all[g].white *= std::exp(values[strength_[g]]);
-  }
+Vec3 PhotometricProblem::position(int x, int y) const {
+  const double half = 0.5 * stack_.width();
+  return right_ * ((x - half + 0.5) / half) + down_ * ((y - 0.5 * stack_.height() + 0.5) / half);
+}
+
+PatchLight PhotometricProblem::light(std::span<const double> values, std::size_t group, Vec3 at) const {
+  PatchLight lamp = lamps_[group];
+  const double x = values[tilt_[group][0]], y = values[tilt_[group][1]];
+  if (x != 0 || y != 0) lamp.towards = light::turned(lamp.towards, x, y);
+  const double strength =
+      values[strength_[group]] + values[slope_[group][0]] * dot(at, right_) + values[slope_[group][1]] * dot(at, down_);
+  if (strength != 0) lamp.white *= std::exp(strength);
+  return seen_from(lamp, at, values[shared_.nearness]);
+}
+
+std::vector<PatchLight> PhotometricProblem::lights(std::span<const double> values, int x, int y) const {
+  std::vector<PatchLight> all;
+  for (std::size_t g = 0; g < lamps_.size(); ++g) all.push_back(light(values, g, position(x, y)));
   return all;
 }
 
 void PhotometricProblem::predict(std::span<const double> values, std::size_t group,
                                  std::span<double> prediction) const {
   const PatchModel now = model(values);
-  const PatchLight light = lights(values)[group];
   const std::size_t channels = stack_.channels.size();
   for (std::size_t i = 0; i < rows_[group].size(); ++i) {
     const Site& site = sites_[rows_[group][i]];
     const Patch p = patch(values, rows_[group][i]);
+    const PatchLight lamp = light(values, group, position(site.x, site.y));
     for (std::size_t c = 0; c < channels; ++c)
-      prediction[channels * i + c] = now(p.b, p.tint[c], light, radius(site.x, site.y));
+      prediction[channels * i + c] = now(p.b, p.tint[c], lamp, radius(site.x, site.y));
   }
 }
 
@@ -299,11 +321,11 @@ void PhotometricProblem::jacobian(std::span<const double> values, std::size_t gr
     std::copy_n(own.begin() + static_cast<std::ptrdiff_t>(k * rows), rows,
                 derivatives.begin() + static_cast<std::ptrdiff_t>(places[k] * rows));
   const PatchModel now = model(values);
-  const PatchLight light = lights(values)[group];
   std::vector<double> moved(values.begin(), values.end());
   for (std::size_t i = 0; i < rows_[group].size(); ++i) {
     const std::size_t s = rows_[group][i];
     const double r = radius(sites_[s].x, sites_[s].y);
+    const PatchLight lamp = light(values, group, position(sites_[s].x, sites_[s].y));
     for (std::size_t u = 0; u < unknowns(); ++u) {
       const std::size_t p = first_of(s) + u;
       if (column_of[p] == columns.size()) continue;
@@ -315,7 +337,7 @@ void PhotometricProblem::jacobian(std::span<const double> values, std::size_t gr
       moved[p] = values[p];
       for (std::size_t c = 0; c < channels; ++c)
         derivatives[column_of[p] * rows + channels * i + c] =
-            (now(above.b, above.tint[c], light, r) - now(below.b, below.tint[c], light, r)) / (2 * step);
+            (now(above.b, above.tint[c], lamp, r) - now(below.b, below.tint[c], lamp, r)) / (2 * step);
     }
   }
 }

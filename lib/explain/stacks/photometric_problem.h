@@ -1,7 +1,8 @@
 // A stack of lights: one static object photographed under one distant lamp after the other, without geometry
 // (photometric stereo; Woodham, Optical Engineering 19, 1980). Base model: a matte surface that each lamp reaches
-// directly. Unknown: normal times albedo of every site, three numbers, in colour two tints more, and the strength of
-// lamps whose watt_per_m2 is free.
+// directly. Unknown: normal times albedo of every site, three numbers, in colour two tints more, and of lamps whose
+// watt_per_m2 is free the strength and how evenly it lies over the picture, exp(s + a X + b Y): a lamp that nobody
+// measured is not aimed to the percent either.
 //
 // Groups are the lamps, blocks the sites: they lie many pixels apart. Blocks that no mechanism explains, such as the
 // edges of cast shadows, are set aside and counted. A lamp that is left out is predicted from the patches that the
@@ -41,11 +42,13 @@ class PhotometricProblem final : public Problem {
   const std::vector<Site>& sites() const { return sites_; }
   std::size_t hidden() const { return hidden_; }
   PatchModel model(std::span<const double> values) const;
-  std::vector<PatchLight> lights(std::span<const double> values) const;  // turned, with their strengths
+  // Turned, with their strengths, as pixel (x, y) sees them.
+  std::vector<PatchLight> lights(std::span<const double> values, int x, int y) const;
 
  private:
   struct Shared {
-    std::size_t sigma_rad = 0, f0 = 0, alpha = 0, ambient = 0, gamma = 0, quadratic = 0, offset = 0, falloff = 0;
+    std::size_t sigma_rad = 0, f0 = 0, alpha = 0, ambient = 0, gamma = 0, quadratic = 0, offset = 0, falloff = 0,
+                nearness = 0;
   };
   void keep_shown_sites(const std::string& place);
   void start_strengths();
@@ -57,12 +60,15 @@ class PhotometricProblem final : public Problem {
   void propose_candidate(const manifest::Document& document, const std::string& id, std::vector<std::size_t> parameters,
                          const std::string& target);
   double radius(int x, int y) const;
+  Vec3 position(int x, int y) const;  // of what a pixel shows, in half widths, were the scene flat
+  PatchLight light(std::span<const double> values, std::size_t group, Vec3 at) const;
   // Readings of a pixel under all lamps; `seen`: the lamps whose readings count, all by default.
   PatchReadings readings(int x, int y, std::span<const PatchLight> lights, double noise_factor,
                          const std::vector<std::size_t>* seen = nullptr) const;
   // Of a reading; where it is measured and not stated, with what the light may vary over the object: such errors are
-  // in proportion and common to the channels, and would drown what is seen in a dark channel.
-  double sigma(std::size_t image, double reading) const;
+  // in proportion and common to the channels, and would drown what is seen in a dark channel. And with what the
+  // object's other parts reflect onto the patch, a share of its brightest reading, which is all that a shadow shows.
+  double sigma(std::size_t image, double reading, double brightest) const;
   std::size_t unknowns() const { return stack_.channels.size() == 1 ? 3 : 5; }
   Patch patch(std::span<const double> values, std::size_t site) const;
   std::size_t first_of(std::size_t site) const { return unknowns() * site; }  // of its parameters
@@ -77,8 +83,10 @@ class PhotometricProblem final : public Problem {
   std::vector<Patch> start_;                    // by site
   std::vector<std::vector<std::size_t>> rows_;  // by image: sites, ascending
   std::vector<std::array<std::size_t, 2>> tilt_;
-  std::vector<std::size_t> strength_;  // by image: logarithm of a factor on the lamp
+  std::vector<std::size_t> strength_;              // by image: logarithm of a factor on the lamp
+  std::vector<std::array<std::size_t, 2>> slope_;  // by image: of that logarithm, to the right and down
   Shared shared_;
+  Vec3 right_, down_;       // of the picture's axes
   Vec3 eye_;                // direction from the scene to the camera
   std::size_t hidden_ = 0;  // readings in cast shadows
   double beside_ = 1;
