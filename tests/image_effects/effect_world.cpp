@@ -93,7 +93,7 @@ manifest::Document EffectWorld::record(const ScratchFolder& folder) const {
 }
 
 EffectOutcome::EffectOutcome(const EffectWorld& world, const std::vector<std::string>& hypotheses)
-    : problem(world.record(folder), {.pixels = 3000}),
+    : problem(world.record(folder), {.pixels = 1500}),
       explanation(explain::explain(problem, {.hypotheses = hypotheses})) {}
 
 std::vector<std::string> EffectOutcome::named() const {

@@ -14,7 +14,7 @@
 namespace gonio::tests {
 
 struct EffectWorld {
-  int size_px = 48, views = 3, lamps = 2, spp = 144;
+  int size_px = 48, views = 3, lamps = 2, spp = 100;
   double noise = 0.002;
   std::uint64_t seed = 7, noise_seed = 7;
   // JSON of the entries; empty: the usual ones.
