@@ -11,7 +11,7 @@ complete -c explain -l list -d 'Print the mechanisms with their conditions and c
 complete -c explain -l table -r -d 'Explain this table, CSV or JSON ({"units": {...}, "rows": [{...}, ...]}), instead of a manifest.'
 complete -c explain -l model -x -d 'What predicts the table: sensor, light, volume, surface, tracks, or an expression over columns.'
 complete -c explain -l observed -x -d 'Column that was measured; may be repeated.'
-complete -c explain -l sigma -x -d 'Column with one standard deviation of it; default: from repeats, else neighbouring rows.'
+complete -c explain -l sigma -x -d 'Column with one standard deviation of it; default: COLUMN_sigma, else repeats or neighbours.'
 complete -c explain -l group -x -d 'Column whose equal values are held out together; default: series, else stretches of rows.'
 complete -c explain -l block -x -d 'Column whose equal values share their noise; default: single rows.'
 complete -c explain -l units -x -d 'Units that the headings do not state: theta=deg,f=1/sr.'

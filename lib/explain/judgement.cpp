@@ -11,8 +11,10 @@ namespace {
 // Gaussian), and what may be left elsewhere beside a named effect.
 constexpr double own_share = 0.35, other_share = 0.5;
 // Where a free curve over its own condition takes away most of what is left above the noise, the recordings are clean
-// enough to say that the mechanism is not the law; a lens that is no polynomial leaves less than this share.
-constexpr double clean_share = 0.02, clean_part = 0.5;
+// enough to ask for more. While others wait: a law that is the right one leaves next to nothing. When no other is
+// content: a law of the right kind in another form (a lobe that is no GGX, a lens that is no polynomial) repairs four
+// fifths of what can be repaired over its condition, an imitator less; what it leaves is reported beside it.
+constexpr double clean_share_first = 0.02, clean_share_last = 0.2, clean_part = 0.5;
 constexpr double price_of_a_look = 10;  // as in the null test
 constexpr double clearly_better = 0.1;  // by which a free curve must repair more, as a share of what it repairs
 
@@ -79,7 +81,8 @@ Outside outside_of(const Problem& problem, std::size_t condition) {
   return outside;
 }
 
-std::string objection_to(const Problem& problem, const Selection& s, const Left& left, const Competitor* better) {
+std::string objection_to(const Problem& problem, const Selection& s, const Left& left, const Competitor* better,
+                         double clean_share) {
   const double repaired = gain(s.base.held_out, s.model.held_out).mean;
   const auto too_much = [&](const Competitor* c, double share) {
     return c != nullptr && c->hypothesis.gain > share * (c->hypothesis.gain + std::max(0.0, repaired));
@@ -118,7 +121,7 @@ void refuse(const std::vector<std::size_t>& set, const std::vector<std::size_t>&
 
 std::string objection(const Problem& problem, const Selection& s, const Options& options) {
   if (s.model.candidates.empty()) return "";
-  return objection_to(problem, s, structure_left(problem, s, options), better_curve(s, options));
+  return objection_to(problem, s, structure_left(problem, s, options), better_curve(s, options), clean_share_first);
 }
 
 void judge(const Problem& problem, Selection& s, const Options& options, Explanation& e) {
@@ -138,7 +141,7 @@ void judge(const Problem& problem, Selection& s, const Options& options, Explana
   }
   e.important = true;
   const Competitor* better = better_curve(s, options);
-  std::string why = objection_to(problem, s, left, better);
+  std::string why = objection_to(problem, s, left, better, clean_share_last);
   if (why.empty() && !(e.held_out_after < e.held_out_before))
     why = "the groups that no choice has seen are not the better for it";
   for (const PutAside& p : s.put_aside)

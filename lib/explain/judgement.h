@@ -10,8 +10,9 @@
 
 namespace gonio::explain {
 
-// What speaks against the selection's model once it is all that there is: one of the first three; empty: nothing. The
-// groups that were never opened are not asked.
+// What speaks against the selection's model while others could take its place: one of the first three; empty: nothing.
+// The groups that were never opened are not asked. Stricter than judge(), which asks once no other is left, about
+// structure over a mechanism's own condition: a right law in another form may stand where nothing does better.
 std::string objection(const Problem& problem, const Selection& selection, const Options& options);
 
 // Fills the verdict, `named`, `not_told_apart`, `significant`, `important` and the beginning of `outside`. The held-out

@@ -13,8 +13,8 @@
 //   8. sensor.black-offset    v += offset
 //   9. read noise             normal
 //  10. sensor.saturation      v = min(v, full_scale)
-//  11. sensor.clipped-resampling   v = mean of min(v, full_scale) over a box about the pixel; not behind a mosaic, whose
-//                             neighbours are of other colours
+//  11. sensor.clipped-resampling   v = mean of min(v, full_scale) over a box about the pixel; not behind a mosaic,
+//                             whose neighbours are of other colours
 // The equations of single values stand in render/sensor_links.h. Negative readings stay. The rendering's own Monte
 // Carlo noise remains: render with enough samples that it is small beside the sensor's. Every image id has noise of its
 // own under one seed.

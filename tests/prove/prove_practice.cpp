@@ -63,41 +63,41 @@ struct Practice {
 };
 
 Claim path(const char* what, double truth, const std::string& colour) {
-  return {what, truth, 1.5, [colour](const Result& r) {
-            return recorder_radius(r.value("surface.subsurface@bunny.mean_free_path_" + colour + "_m"),
-                                   r.value("surfaces/bunny/albedo/" + colour));
-          }};
+  const auto ours = [colour](const Result& r) {
+    return recorder_radius(r.value("surface.subsurface@bunny.mean_free_path_" + colour + "_m"),
+                           r.value("surfaces/bunny/albedo/" + colour));
+  };
+  return {what, truth, 1.5, ours};
 }
 Claim ambient(const char* what, double truth, const std::string& colour) {
-  return {what, truth, 1.15, [colour](const Result& r) {
-            return r.value("light.ambient.radiance_" + colour) / r.value("intensity/" + colour) * 3 / (4 * pi);
-          }};
+  const auto ours = [colour](const Result& r) {
+    return r.value("light.ambient.radiance_" + colour) / r.value("intensity/" + colour) * 3 / (4 * pi);
+  };
+  return {what, truth, 1.15, ours};
 }
 Claim plain(const char* what, double truth, const std::string& parameter) {
-  return {what, truth, 1.15, [parameter](const Result& r) { return r.value(parameter); }};
+  const auto ours = [parameter](const Result& r) { return r.value(parameter); };
+  return {what, truth, 1.15, ours};
 }
 
-const std::vector<Practice>& practices() {
-  static const std::vector<Practice> all = {
-      {"practice-1", nullptr, {}, 0},
-      {"practice-2",
-       "surface.interface",
-       {plain("roughness alpha", 0.1024, "surface.interface@bunny.alpha"),
-        plain("F0 of index 1.5", 0.04, "surface.interface@bunny.f0")},
-       0.7},
-      {"practice-3",
-       "surface.subsurface",
-       {path("radius, red, m", 0.012, "r"), path("radius, green, m", 0.005, "g"), path("radius, blue, m", 0.003, "b")},
-       0.7},
-      {"practice-4",
-       "light.ambient",
-       {ambient("radiance at 3 W, red", 0.050, "r"), ambient("radiance at 3 W, green", 0.050, "g"),
-        ambient("radiance at 3 W, blue", 0.055, "b")},
-       0.9},
-      {"practice-5", "light.finite-size", {plain("radius, m", 0.035, "light.finite-size.radius_m")}, 0.7},
-      {"practice-6", "optics.vignetting", {plain("falloff", 0.22, "optics.vignetting.falloff")}, 0.9}};
-  return all;
-}
+const std::vector<Practice> practices{
+    {"practice-1", nullptr, {}, 0},
+    {"practice-2",
+     "surface.interface",
+     {plain("roughness alpha", 0.1024, "surface.interface@bunny.alpha"),
+      plain("F0 of index 1.5", 0.04, "surface.interface@bunny.f0")},
+     0.7},
+    {"practice-3",
+     "surface.subsurface",
+     {path("radius, red, m", 0.012, "r"), path("radius, green, m", 0.005, "g"), path("radius, blue, m", 0.003, "b")},
+     0.7},
+    {"practice-4",
+     "light.ambient",
+     {ambient("radiance at 3 W, red", 0.050, "r"), ambient("radiance at 3 W, green", 0.050, "g"),
+      ambient("radiance at 3 W, blue", 0.055, "b")},
+     0.9},
+    {"practice-5", "light.finite-size", {plain("radius, m", 0.035, "light.finite-size.radius_m")}, 0.7},
+    {"practice-6", "optics.vignetting", {plain("falloff", 0.22, "optics.vignetting.falloff")}, 0.9}};
 
 double floor_of(const Observations& o) {
   double noise = 0, norm = 0;
@@ -197,7 +197,7 @@ int main(int count, char** names) {
     return 66;
   }
   bool good = true;
-  for (const auto& practice : gonio::prove::practices()) {
+  for (const auto& practice : gonio::prove::practices) {
     bool wanted = count < 2;
     for (int i = 1; i < count; ++i) wanted = wanted || practice.name == std::string(names[i]);
     if (wanted) good &= gonio::prove::run(practice, root);

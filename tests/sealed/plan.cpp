@@ -11,79 +11,72 @@ namespace {
 // Counts: nulls, distractors, singles (of each effect), pairs, specials (of each), effects outside the library (of
 // each); in all, and in the ten minutes. Pictures take half a minute of a processor each, stacks and robots some
 // seconds, tables less than half a second.
-const std::vector<WorldEntry>& entries() {
-  static const std::vector<WorldEntry> list{
-      {"boards",
-       boards_world,
-       {{Kind::alike, {"fisheye"}, ""},
-        {Kind::alike, {"bent board"}, "frontal"},
-        {Kind::null, {}, "three colours"},
-        {Kind::single, {"coloured lens"}, "three colours"},
-        {Kind::pair, {"coloured lens", "radial"}, "three colours"},
-        {Kind::null, {}, "two ranges"},
-        {Kind::single, {"moving pupil"}, "two ranges"},
-        {Kind::null, {}, "turned pictures"},
-        {Kind::single, {"other pixel centre"}, "turned pictures"},
-        {Kind::null, {}, "warm-up"},
-        {Kind::single, {"cold start"}, "warm-up"}},
-       {16, 8, 6, 12, 4, 5},
-       {5, 3, 2, 4, 2, 2}},
-      {"exposures", exposures_world, {{Kind::invisible, {"glare"}, ""}}, {10, 6, 5, 8, 3, 4}, {4, 2, 2, 3, 1, 2}},
-      {"photometric",
-       photometric_world,
-       {{Kind::invisible, {"vignetting"}, ""}},
-       {8, 4, 4, 6, 3, 3},
-       {2, 1, 2, 2, 1, 1}},
-      {"robot",
-       robot_world,
-       {{Kind::null, {}, "in motion", 3, 1}, {Kind::single, {"late poses"}, "in motion"}},
-       {10, 4, 4, 6, 4, 3},
-       {3, 1, 2, 3, 1, 1}},
-      {"images",
-       images_world,
-       {{Kind::single, {"light between surfaces"}, "direct light only", 3, 1},
-        {Kind::invisible, {"lamp with a size"}, "table alone", 2, 0},
-        {Kind::null, {}, "varnished", 2, 0},
-        {Kind::single, {"polarized lamps"}, "varnished", 3, 1},
-        {Kind::single, {"brushed table"}, "varnished", 3, 1}},
-       {6, 3, 2, 6, 2, 2},
-       {1, 1, 1, 1, 0, 0, 4}},
-      {"sensor",
-       sensor_world,
-       {{Kind::alike, {"black offset"}, "one exposure"},
-        {Kind::alike, {"slow shutter"}, "exposures in order"},
-        {Kind::invisible, {"black offset"}, "one exposure, unknown patches"},
-        {Kind::single, {"ambient light"}, "known patches"}},
-       {20, 12, 10, 12, 6, 6},
-       {10, 6, 4, 8, 4, 4}},
-      {"expression",
-       expression_world,
-       {{Kind::invisible, {"inverse square"}, "distance stands still"}},
-       {20, 10, 8, 12, 3, 6},
-       {10, 5, 4, 8, 2, 4}},
-      {"surface",
-       surface_world,
-       {{Kind::alike, {"rough matte"}, "normal incidence"}},
-       {14, 8, 8, 8, 4, 4},
-       {7, 3, 4, 6, 2, 4}},
-      {"gloss",
-       gloss_world,
-       {{Kind::null, {}, "bands", 4, 2},
-        {Kind::single, {"iridescent film"}, "bands", 6, 3},
-        {Kind::null, {}, "two lamps", 4, 2},
-        {Kind::single, {"dye"}, "two lamps", 6, 3}},
-       {8, 4, 8, 6, 4, 5},
-       {4, 2, 4, 3, 2, 3}},
-      {"heights", heights_world, {}, {10, 0, 6, 4, 0, 5}, {4, 0, 3, 2, 0, 2}},
-      {"light",
-       light_world,
-       {{Kind::single, {"diverging light"}, "believed parallel"}},
-       {16, 8, 8, 8, 4, 5},
-       {8, 4, 4, 6, 2, 4}},
-      {"volume", volume_world, {}, {16, 8, 8, 8, 0, 5}, {8, 4, 4, 5, 0, 4}},
-      {"tracks", tracks_world, {}, {14, 6, 8, 5, 0, 5}, {7, 3, 5, 3, 0, 4}}};
-  return list;
-}
+const std::vector<WorldEntry> entries{
+    {"boards",
+     boards_world,
+     {{Kind::alike, {"fisheye"}, ""},
+      {Kind::alike, {"bent board"}, "frontal"},
+      {Kind::null, {}, "three colours"},
+      {Kind::single, {"coloured lens"}, "three colours"},
+      {Kind::pair, {"coloured lens", "radial"}, "three colours"},
+      {Kind::null, {}, "two ranges"},
+      {Kind::single, {"moving pupil"}, "two ranges"},
+      {Kind::null, {}, "turned pictures"},
+      {Kind::single, {"other pixel centre"}, "turned pictures"},
+      {Kind::null, {}, "warm-up"},
+      {Kind::single, {"cold start"}, "warm-up"}},
+     {16, 8, 6, 12, 4, 5},
+     {5, 3, 2, 4, 2, 2}},
+    {"exposures", exposures_world, {{Kind::invisible, {"glare"}, ""}}, {10, 6, 5, 8, 3, 4}, {4, 2, 2, 3, 1, 2}},
+    {"photometric", photometric_world, {{Kind::invisible, {"vignetting"}, ""}}, {8, 4, 4, 6, 3, 3}, {2, 1, 2, 2, 1, 1}},
+    {"robot",
+     robot_world,
+     {{Kind::null, {}, "in motion", 3, 1}, {Kind::single, {"late poses"}, "in motion"}},
+     {10, 4, 4, 6, 4, 3},
+     {3, 1, 2, 3, 1, 1}},
+    {"images",
+     images_world,
+     {{Kind::single, {"light between surfaces"}, "direct light only", 3, 1},
+      {Kind::invisible, {"lamp with a size"}, "table alone", 2, 0},
+      {Kind::null, {}, "varnished", 2, 0},
+      {Kind::single, {"polarized lamps"}, "varnished", 3, 1},
+      {Kind::single, {"brushed table"}, "varnished", 3, 1}},
+     {6, 3, 2, 6, 2, 2},
+     {1, 1, 1, 1, 0, 0, 4}},
+    {"sensor",
+     sensor_world,
+     {{Kind::alike, {"black offset"}, "one exposure"},
+      {Kind::alike, {"slow shutter"}, "exposures in order"},
+      {Kind::invisible, {"black offset"}, "one exposure, unknown patches"},
+      {Kind::single, {"ambient light"}, "known patches"}},
+     {20, 12, 10, 12, 6, 6},
+     {10, 6, 4, 8, 4, 4}},
+    {"expression",
+     expression_world,
+     {{Kind::invisible, {"inverse square"}, "distance stands still"}},
+     {20, 10, 8, 12, 3, 6},
+     {10, 5, 4, 8, 2, 4}},
+    {"surface",
+     surface_world,
+     {{Kind::alike, {"rough matte"}, "normal incidence"}},
+     {14, 8, 8, 8, 4, 4},
+     {7, 3, 4, 6, 2, 4}},
+    {"gloss",
+     gloss_world,
+     {{Kind::null, {}, "bands", 4, 2},
+      {Kind::single, {"iridescent film"}, "bands", 6, 3},
+      {Kind::null, {}, "two lamps", 4, 2},
+      {Kind::single, {"dye"}, "two lamps", 6, 3}},
+     {8, 4, 8, 6, 4, 5},
+     {4, 2, 4, 3, 2, 3}},
+    {"heights", heights_world, {}, {10, 0, 6, 4, 0, 5}, {4, 0, 3, 2, 0, 2}},
+    {"light",
+     light_world,
+     {{Kind::single, {"diverging light"}, "believed parallel"}},
+     {16, 8, 8, 8, 4, 5},
+     {8, 4, 4, 6, 2, 4}},
+    {"volume", volume_world, {}, {16, 8, 8, 8, 0, 5}, {8, 4, 4, 5, 0, 4}},
+    {"tracks", tracks_world, {}, {14, 6, 8, 5, 0, 5}, {7, 3, 5, 3, 0, 4}}};
 
 // Sizes in detection limits, in turn: 0 draws what occurs in practice.
 constexpr double multiples[] = {0, 4, 0, 8, 0, 0};
@@ -151,18 +144,18 @@ class Planner {
 }  // namespace
 
 std::span<const WorldEntry> all_worlds() {
-  return entries();
+  return entries;
 }
 
 std::unique_ptr<World> make_world(const std::string& domain) {
-  for (const WorldEntry& entry : entries())
+  for (const WorldEntry& entry : entries)
     if (entry.domain == domain) return entry.make();
   return nullptr;
 }
 
 std::vector<Spec> all_specs() {
   std::vector<Spec> specs;
-  for (const WorldEntry& entry : entries())
+  for (const WorldEntry& entry : entries)
     for (Spec& spec : Planner(entry).specs()) specs.push_back(std::move(spec));
   std::sort(specs.begin(), specs.end(), [](const Spec& a, const Spec& b) { return case_id(a) < case_id(b); });
   return specs;

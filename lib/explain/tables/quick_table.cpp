@@ -110,7 +110,8 @@ void check_model(const QuickTable& quick, const RawTable& raw) {
   const auto is_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_'; };
   const auto known = [&](const std::string& column) { return stem_of(column) == stem_of(quick.model); };
   const auto free = [&](const auto& parameter) { return parameter.first == quick.model; };
-  if (find_model(quick.model) != nullptr || !std::all_of(quick.model.begin(), quick.model.end(), is_name) ||
+  const bool number = !quick.model.empty() && std::isdigit(static_cast<unsigned char>(quick.model[0]));
+  if (number || find_model(quick.model) != nullptr || !std::all_of(quick.model.begin(), quick.model.end(), is_name) ||
       std::any_of(raw.columns.begin(), raw.columns.end(), known) ||
       std::any_of(quick.free.begin(), quick.free.end(), free))
     return;
