@@ -61,15 +61,16 @@ double rms_of(const WholeImage& image) {
 
 void add_pictures(const std::string& id, const WholeImage& image, const std::vector<Box>& boxes, bool named,
                   Illustration& result) {
-  char scale[48];
+  char scale[96];
   const double full = 0.1 * rms_of(image);
-  std::snprintf(scale, sizeof scale, "full colour at %.3g", full);
+  std::snprintf(scale, sizeof scale, "red brighter, blue darker; full colour at %.3g, a tenth of the picture's rms",
+                full);
   io::Image before = residual_picture(image, false, full);
   outline(boxes, image, before);
-  result.pictures.push_back({id + ": recording minus base model, " + scale, io::encode_png(before), ""});
+  result.pictures.push_back({id + ": recording minus base model: " + scale, io::encode_png(before), ""});
   if (named)
     result.pictures.push_back(
-        {id + ": recording minus upgraded model, " + scale, io::encode_png(residual_picture(image, true, full)), ""});
+        {id + ": recording minus upgraded model: " + scale, io::encode_png(residual_picture(image, true, full)), ""});
 }
 
 }  // namespace
