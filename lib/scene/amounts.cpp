@@ -36,7 +36,7 @@ Amounts amounts_of(const Mechanism& mechanism, const manifest::MechanismUse& use
   return amounts;
 }
 
-bool neutral(const Mechanism& mechanism, const Amounts& amounts) {
+bool neutral(const Mechanism& mechanism, std::span<const double> amounts) {
   for (std::size_t i = 0; i < amounts.size(); ++i)
     if (amounts[i] != mechanism.parameters[i].neutral) return false;
   return true;

@@ -1,5 +1,6 @@
 // The numbers of a mechanism as a manifest states them, for one of the targets that it names.
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,6 @@ std::string place_of(const std::string& place, const std::string& name);
 Amounts amounts_of(const mechanism::Mechanism& mechanism, const manifest::MechanismUse& use, std::size_t index,
                    std::size_t count, const std::string& place);
 
-bool neutral(const mechanism::Mechanism& mechanism, const Amounts& amounts);
+bool neutral(const mechanism::Mechanism& mechanism, std::span<const double> amounts);
 
 }  // namespace gonio::scene

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "scene/amounts.h"
 
 namespace gonio::scene {
 namespace {
@@ -68,32 +69,6 @@ const std::map<std::string, Edit>& edits() {
   static const std::map<std::string, Edit> all = {
       {"geometry.contact", sink}, {"geometry.offset", offset}, {"geometry.pose", move}, {"geometry.scale", grow}};
   return all;
-}
-
-bool neutral(const Mechanism& mechanism, std::span<const double> amounts) {
-  for (std::size_t i = 0; i < amounts.size(); ++i)
-    if (amounts[i] != mechanism.parameters[i].neutral) return false;
-  return true;
-}
-
-// Of the object number `index` of `count`; what is left out is neutral.
-std::vector<double> amounts_of(const Mechanism& mechanism, const manifest::MechanismUse& use, std::size_t index,
-                               std::size_t count, const std::string& place) {
-  std::vector<double> amounts;
-  for (const mechanism::Parameter& p : mechanism.parameters) {
-    const auto found = use.parameters.find(p.name);
-    if (found == use.parameters.end() || !found->second.given()) {
-      amounts.push_back(p.neutral);
-      continue;
-    }
-    const std::vector<double>& value = found->second.value;
-    if (value.size() != 1 && value.size() != count)
-      throw Error(Exit::data, place + "/" + p.name,
-                  std::to_string(value.size()) + " numbers for " + std::to_string(count) + " objects",
-                  "give one number, or one per name in \"on\"");
-    amounts.push_back(value[value.size() == 1 ? 0 : index]);
-  }
-  return amounts;
 }
 
 }  // namespace
