@@ -72,6 +72,10 @@ class Model {
   virtual ~Model() = default;
   virtual const manifest::ModelInfo& info() const = 0;
   virtual Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const = 0;
+  // evaluate(), and its derivative by every parameter, in the order of info().parameters: of a colour, band c's value
+  // by band c's number; of a scalar, all bands' values. Central differences within the bounds where a model does not
+  // say better; a test holds the two against each other.
+  virtual Rgb evaluate_with_slopes(const Values& values, Vec3 wo, Vec3 wi, std::span<Rgb> slopes) const;
   virtual Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const = 0;
   virtual double pdf(const Values& values, Vec3 wo, Vec3 wi) const = 0;
   // Directional-hemispherical reflectance towards wo (an approximation where the file says so); of models that
