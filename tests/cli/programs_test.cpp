@@ -117,20 +117,30 @@ std::vector<std::string> examples_of(const std::string& prose) {
   return blocks;
 }
 
-TEST(Programs, ExamplesOfManPagesRun) {
+class Examples : public testing::TestWithParam<std::string> {};
+std::vector<std::string> names_of_programs() {
+  std::vector<std::string> names;
+  for (const auto* program : cli::all_programs()) names.push_back(program->name);
+  return names;
+}
+std::string as_identifier(const testing::TestParamInfo<std::string>& program) {
+  std::string name = program.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+TEST_P(Examples, OfTheManPageRun) {
   const std::string path = std::string("PATH=") + GONIO_BIN + ":$PATH\n";
-  for (const auto* program : cli::all_programs()) {
-    const std::string prose =
-        read_file(std::filesystem::path(GONIO_SOURCE) / "man" / "prose" / (program->name + ".md"));
-    const auto blocks = examples_of(prose);
-    EXPECT_FALSE(blocks.empty()) << program->name;
-    ScratchFolder folder;  // the examples of one page build on each other
-    for (const auto& block : blocks) {
-      const Ended ended = run({"bash", "-euc", path + block}, folder.path());
-      EXPECT_EQ(ended.status, 0) << program->name << ": " << block << ended.err;
-    }
+  const auto blocks =
+      examples_of(read_file(std::filesystem::path(GONIO_SOURCE) / "man" / "prose" / (GetParam() + ".md")));
+  EXPECT_FALSE(blocks.empty());
+  ScratchFolder folder;  // the examples of one page build on each other
+  for (const auto& block : blocks) {
+    const Ended ended = run({"bash", "-euc", path + block}, folder.path());
+    EXPECT_EQ(ended.status, 0) << block << ended.err;
   }
 }
+INSTANTIATE_TEST_SUITE_P(Programs, Examples, testing::ValuesIn(names_of_programs()), as_identifier);
 
 }  // namespace
 }  // namespace gonio::tests
