@@ -1,0 +1,41 @@
+// Cells that behave unlike their class over the views.
+//
+// Of cell i and view v, z_iv is the deviation from the class's polynomial over the class's scatter in that view. Over
+// all views a cell has the distance d_i^2 = z_i' R^-1 z_i / views, where R is the correlation between views within the
+// class, of z clipped at 3 so that defects do not make themselves normal, and shrunk towards no correlation by the
+// weight that Schaefer & Strimmer 2005 derive (equation 8), so that there may be more views than cells.
+//
+// What sound cells do is simulated: normal z with the correlation R go through the same steps (polynomial taken out,
+// scatter estimated, clipped, R estimated anew), `draws` times. Were the bulk of the cells wider than that (the median
+// of d^2 tells), the null is widened alike. A cell's p is the share of simulated samples whose largest d^2 reaches its
+// own, over both classes together (Sidak): the chance that a sample without defects has any such cell.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "contrast/pattern.h"
+
+namespace gonio::contrast {
+
+struct CellDefect {
+  std::size_t cell = 0;
+  double distance = 0, p = 1;
+  std::size_t view = 0;  // where it deviates most, and by how many scatters
+  double deviation = 0;
+  int brighter = 0, darker = 0;  // views in which it is so by more than 3
+};
+struct Defects {
+  std::vector<double> distance, p;  // per cell; NaN where it was seen in less than half of the views
+  std::vector<CellDefect> found;    // p <= alarm rate, most deviating first
+  double limit = 0;                 // distance from which a cell is found: the larger of the two classes'
+  double alarm_rate = 0.05;
+  int draws = 0;
+  std::vector<double> widening{1, 1};  // of the null, by class
+};
+
+// `deviation[v][cell]`: z of a cell in a view; NaN where it does not count.
+Defects find_defects(const CellPattern& pattern, const std::vector<std::vector<double>>& deviation, double alarm_rate,
+                     std::uint64_t seed);
+
+}  // namespace gonio::contrast
