@@ -1,0 +1,86 @@
+// Lists that people type on the command line (contrast_options.h).
+#include "contrast/contrast_options.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace gonio::contrast {
+namespace {
+
+Dimension dimension_of(const manifest::ParameterInfo& info) {
+  return info.unit == "rad" ? Dimension::angle : info.unit == "m" ? Dimension::length : Dimension::none;
+}
+
+}  // namespace
+
+std::vector<std::string> pieces(const std::string& text, char separator) {
+  std::vector<std::string> all{""};
+  for (const char c : text)
+    if (c == separator)
+      all.emplace_back();
+    else
+      all.back() += c;
+  return all;
+}
+
+std::vector<double> quantities(const std::string& text, Dimension dimension, const std::string& option) {
+  std::vector<double> all;
+  for (const std::string& piece : pieces(text, ',')) {
+    if (piece.empty())
+      throw Error(Exit::usage, option, "has an empty place in \"" + text + "\"", "separate values by single commas");
+    all.push_back(parse_quantity(piece, dimension, option));
+  }
+  return all;
+}
+
+std::vector<std::pair<double, double>> angle_pairs(const std::string& text, const std::string& option) {
+  std::vector<std::pair<double, double>> all;
+  for (const std::string& piece : pieces(text, ',')) {
+    const auto ends = pieces(piece, ':');
+    if (ends.size() != 2)
+      throw Error(Exit::usage, option, "\"" + piece + "\" is no pair of rotations", "write them as 0deg:90deg");
+    all.emplace_back(parse_quantity(ends[0], Dimension::angle, option),
+                     parse_quantity(ends[1], Dimension::angle, option));
+  }
+  return all;
+}
+
+std::vector<Assignment> assignments(const std::vector<std::string>& texts, const std::string& option,
+                                    const manifest::ModelInfo& model, char separator) {
+  std::vector<Assignment> all;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+      throw Error(Exit::usage, option, "\"" + text + "\" is no NAME=VALUE",
+                  "for example " + option + " " + model.parameters.front().name + "=...");
+    Assignment a{text.substr(0, equals), {}};
+    const manifest::ParameterInfo& info = parameter_named(model, a.parameter, option);
+    for (const std::string& piece : pieces(text.substr(equals + 1), separator))
+      a.values.push_back(parse_quantity(piece, dimension_of(info), option + " " + a.parameter));
+    if (separator == ':' && a.values.size() != 2)
+      throw Error(Exit::usage, option + " " + a.parameter, "\"" + text + "\" is no range", "write it as LOW:HIGH");
+    all.push_back(std::move(a));
+  }
+  return all;
+}
+
+const manifest::ModelInfo& model_named(const std::string& id) {
+  if (const manifest::ModelInfo* model = manifest::find_model(manifest::Family::surface, id)) return *model;
+  std::string known;
+  for (const manifest::ModelInfo* m : manifest::models(manifest::Family::surface))
+    known += (known.empty() ? "" : ", ") + m->id;
+  throw Error(Exit::usage, "--model", "\"" + id + "\" is no surface model", "choose one of " + known);
+}
+
+const manifest::ParameterInfo& parameter_named(const manifest::ModelInfo& model, const std::string& name,
+                                               const std::string& option) {
+  const auto found = std::ranges::find(model.parameters, name, &manifest::ParameterInfo::name);
+  if (found != model.parameters.end()) return *found;
+  std::string known;
+  for (const auto& p : model.parameters) known += (known.empty() ? "" : ", ") + p.name;
+  throw Error(Exit::usage, option, "names \"" + name + "\", which model \"" + model.id + "\" has not",
+              "it takes " + known);
+}
+
+}  // namespace gonio::contrast

@@ -1,0 +1,14 @@
+// Pages of `contrast predict`: mean contrasts in the layout of Luongo et al. 2017, figure 8, and every combination.
+#pragma once
+#include <string>
+
+#include "contrast/predict.h"
+#include "report/page.h"
+
+namespace gonio::contrast {
+
+// Plots of the means: tilt, the varied parameters, rotation, side by side.
+std::vector<report::Plot> mean_plots(const Prediction& prediction);
+std::string predict_page(const Prediction& prediction);
+
+}  // namespace gonio::contrast
