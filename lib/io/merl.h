@@ -6,6 +6,8 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
+#include <mutex>
 #include <string_view>
 #include <vector>
 
@@ -21,5 +23,21 @@ struct MerlTable {
 MerlTable read_merl(const std::filesystem::path& path);
 MerlTable parse_merl(std::string_view file, const std::string& place);
 void write_merl(const std::filesystem::path& path, const MerlTable& table);
+
+// Parts of a table, for callers that work on many tables at once. The constructor checks the head and the length as
+// read_merl() does; rings() checks the numbers. May be shared by threads.
+class MerlFile {
+ public:
+  explicit MerlFile(const std::filesystem::path& path);
+  const std::array<std::size_t, 3>& bins() const { return bins_; }
+  // One colour (0 red, 1 green, 2 blue) of the rings first <= theta_h bin < last, [theta_h][theta_d][phi_d], in 1/sr.
+  std::vector<float> rings(std::size_t colour, std::size_t first, std::size_t last) const;
+
+ private:
+  std::filesystem::path path_;
+  std::array<std::size_t, 3> bins_{};
+  mutable std::mutex mutex_;
+  mutable std::ifstream file_;
+};
 
 }  // namespace gonio::io

@@ -1,0 +1,200 @@
+// Principal components of many tables, a block of rings at a time.
+#include "goniometry/basis.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+
+namespace gonio::goniometry {
+namespace {
+
+using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Rows = Eigen::Map<RowMatrix>;
+
+constexpr std::size_t block_numbers = 24'000'000;  // of all samples together: 96 MB
+constexpr std::size_t chunk_cells = 1024, lanes = 4;
+// Of the mean eigenvalue: what keeps (Gram + lambda)^-1 finite, the mean having been taken out.
+constexpr double relative_lambda = 1e-6;
+
+Eigen::Index at(std::size_t i) {
+  return static_cast<Eigen::Index>(i);
+}
+
+}  // namespace
+
+class BasisBuilder {
+ public:
+  BasisBuilder(const Tables& tables, Basis& basis, const BasisOptions& options)
+      : tables_(tables),
+        basis_(basis),
+        options_(options),
+        cells_(tables.cells()),
+        samples_(tables.materials() * tables.channels()),
+        gram_(lanes, Eigen::MatrixXd::Zero(at(samples_), at(samples_))),
+        bar_("basis", 2 * cells_.bins()[0]) {}
+
+  void build() {
+    basis_.log_reference_.resize(cells_.count());
+    basis_.mean_.resize(cells_.count());
+    each_block([this](std::size_t first, std::size_t last) { add_to_gram(first, last); });
+    decompose();
+    basis_.q_.resize(cells_.count() * basis_.components_);
+    basis_.rest_.resize(cells_.count());
+    each_block([this](std::size_t first, std::size_t last) { project(first, last); });
+  }
+
+ private:
+  template <class Body>
+  void each_block(const Body& body) {
+    const std::size_t rings = cells_.bins()[0];
+    for (std::size_t first = 0; first < rings;) {
+      std::size_t last = first + 1;
+      while (last < rings && (cells_.ring_begin(last + 1) - cells_.ring_begin(first)) * samples_ <= block_numbers)
+        ++last;
+      body(cells_.ring_begin(first), read(first, last));
+      bar_.advance(last - first);
+      first = last;
+    }
+  }
+
+  // ln(f w + epsilon) of a block of rings into block_, sample by sample, the mean of every cell taken out.
+  std::size_t read(std::size_t first_ring, std::size_t last_ring) {
+    const std::size_t first = cells_.ring_begin(first_ring), count = cells_.ring_begin(last_ring) - first;
+    block_.resize(samples_ * count);
+    parallel_for(0, samples_, [&](std::size_t s) {
+      const std::span<float> row(block_.data() + s * count, count);
+      tables_.read(s / tables_.channels(), s % tables_.channels(), first_ring, last_ring, row);
+      for (std::size_t c = 0; c < count; ++c)
+        row[c] = static_cast<float>(log_level(static_cast<double>(row[c]), cells_.weight(first + c)));
+    });
+    parallel_for(
+        0, count, [&](std::size_t c) { centre(first + c, c, count); }, 512);
+    return first + count;
+  }
+  void centre(std::size_t cell, std::size_t column, std::size_t count) {
+    thread_local std::vector<float> values;
+    values.resize(samples_);
+    double sum = 0;
+    for (std::size_t s = 0; s < samples_; ++s) {
+      values[s] = block_[s * count + column];
+      sum += static_cast<double>(values[s]);
+    }
+    const auto mean = static_cast<float>(sum / static_cast<double>(samples_));
+    for (std::size_t s = 0; s < samples_; ++s) block_[s * count + column] -= mean;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(samples_ / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    basis_.log_reference_[cell] = *middle;
+    basis_.mean_[cell] = mean - *middle;
+  }
+
+  // Products of single precision over at most chunk_cells, summed in double; one sum per lane, whatever the threads.
+  void add_to_gram(std::size_t first, std::size_t last) {
+    const std::size_t count = last - first;
+    const Rows rows(block_.data(), at(samples_), at(count));
+    parallel_for(0, lanes, [&](std::size_t lane) {
+      RowMatrix product(at(samples_), at(samples_));
+      for (std::size_t c = lane * chunk_cells; c < count; c += lanes * chunk_cells) {
+        const auto part = rows.middleCols(at(c), at(std::min(chunk_cells, count - c)));
+        product.setZero();
+        product.selfadjointView<Eigen::Lower>().rankUpdate(part);
+        gram_[lane].triangularView<Eigen::Lower>() += product.cast<double>();
+      }
+    });
+  }
+
+  void decompose() {
+    Eigen::MatrixXd gram = gram_[0];
+    for (std::size_t lane = 1; lane < lanes; ++lane) gram += gram_[lane];
+    gram = gram.selfadjointView<Eigen::Lower>();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+    const Eigen::VectorXd falling = eigen.eigenvalues().reverse().cwiseMax(0);
+    const double total = falling.sum(), freedom = static_cast<double>(samples_ - 1);
+    double rest = total;
+    std::size_t k = 0;
+    const std::size_t most = std::min(options_.most_components, samples_ - 1);
+    while (k < most && rest > options_.truncation * options_.truncation * total && falling[at(k)] > 1e-10 * falling[0])
+      rest -= falling[at(k++)];
+    basis_.components_ = std::max<std::size_t>(k, 1);
+    basis_.singular_.resize(samples_);
+    for (std::size_t i = 0; i < samples_; ++i) basis_.singular_[i] = std::sqrt(falling[at(i)]);
+    Eigen::MatrixXd u = eigen.eigenvectors().rowwise().reverse().leftCols(at(basis_.components_));
+    for (Eigen::Index i = 0; i < u.cols(); ++i) {  // the sign is free: the largest number is positive
+      Eigen::Index largest = 0;
+      u.col(i).cwiseAbs().maxCoeff(&largest);
+      if (u(largest, i) < 0) u.col(i) *= -1;
+    }
+    basis_.scores_.resize(samples_ * basis_.components_);
+    for (std::size_t s = 0; s < samples_; ++s)
+      for (std::size_t i = 0; i < basis_.components_; ++i)
+        basis_.scores_[s * basis_.components_ + i] = std::sqrt(freedom) * u(at(s), at(i));
+    directions_ = (u / std::sqrt(freedom)).cast<float>();
+    const double lambda = std::max(relative_lambda * total / freedom, 1e-12);
+    left_out_ = remainders(eigen, lambda).cast<float>();
+  }
+
+  // Rows P_JJ^-1 P_J: of every sample what the other materials do not give.
+  template <class Solver>
+  Eigen::MatrixXd remainders(const Solver& eigen, double lambda) const {
+    const Eigen::VectorXd inverse = (eigen.eigenvalues().cwiseMax(0).array() + lambda).inverse();
+    const Eigen::MatrixXd p = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+    Eigen::MatrixXd rows(p.rows(), p.cols());
+    const Eigen::Index group = at(tables_.channels());
+    for (Eigen::Index g = 0; g < p.rows(); g += group)
+      rows.middleRows(g, group) = p.block(g, g, group, group).llt().solve(p.middleRows(g, group));
+    return rows;
+  }
+
+  void project(std::size_t first, std::size_t last) {
+    const std::size_t count = last - first, k = basis_.components_, chunks = (count + chunk_cells - 1) / chunk_cells;
+    const Rows rows(block_.data(), at(samples_), at(count));
+    const auto n = static_cast<float>(samples_);
+    parallel_for(0, chunks, [&](std::size_t chunk) {
+      const std::size_t begin = chunk * chunk_cells, width = std::min(chunk_cells, count - begin);
+      const auto part = rows.middleCols(at(begin), at(width));
+      Rows q(basis_.q_.data() + (first + begin) * k, at(width), at(k));
+      q.noalias() = part.transpose() * directions_;
+      const Eigen::RowVectorXf all = part.colwise().squaredNorm() / (n - 1);
+      const Eigen::RowVectorXf unexplained = (left_out_ * part).colwise().squaredNorm() / n;
+      for (Eigen::Index c = 0; c < at(width); ++c)
+        basis_.rest_[first + begin + static_cast<std::size_t>(c)] =
+            std::sqrt(unexplained[c] + std::max(0.0F, all[c] - q.row(c).squaredNorm()));
+    });
+  }
+
+  const Tables& tables_;
+  Basis& basis_;
+  const BasisOptions& options_;
+  const Cells& cells_;
+  std::size_t samples_;
+  std::vector<float> block_;
+  std::vector<Eigen::MatrixXd> gram_;
+  Eigen::MatrixXf directions_, left_out_;
+  Progress bar_;
+};
+
+Basis::Basis(const Tables& tables, std::string description, const BasisOptions& options)
+    : cells_(std::make_shared<const Cells>(tables.cells())), description_(std::move(description)) {
+  if (tables.materials() < 3)
+    throw Error(Exit::data, description_, "holds " + std::to_string(tables.materials()) + " materials",
+                "a basis needs 3 or more");
+  for (std::size_t m = 0; m < tables.materials(); ++m) {
+    names_.push_back(tables.name(m));
+    material_of_.insert(material_of_.end(), tables.channels(), static_cast<std::uint32_t>(m));
+  }
+  BasisBuilder(tables, *this, options).build();
+}
+
+double Basis::kept_share() const {
+  double all = 0, kept = 0;
+  for (std::size_t i = 0; i < singular_.size(); ++i) {
+    all += singular_[i] * singular_[i];
+    if (i < components_) kept += singular_[i] * singular_[i];
+  }
+  return all > 0 ? kept / all : 1;
+}
+
+}  // namespace gonio::goniometry

@@ -1,0 +1,43 @@
+// Inside of reconstruction.cpp: observations as rows of a basis, their estimator, and its calibration. Notation:
+// goniometry/reconstruction.h.
+#pragma once
+#include <Eigen/Dense>
+#include <cstdint>
+
+#include "goniometry/reconstruction.h"
+
+namespace gonio::goniometry {
+
+struct Observed {
+  Eigen::MatrixXd q;         // m x K
+  Eigen::VectorXd y, noise;  // 1 / W
+};
+// One band of the samples; what is unusable goes to `dropped`.
+Observed observe(const Basis& basis, const Samples& samples, std::size_t band, const ReconstructOptions& options,
+                 std::vector<Dropped>& dropped);
+
+// c ~ N(mean, factor factor').
+struct Prior {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd factor;
+};
+Prior standard_prior(std::size_t components);
+
+// c = prior.mean + gain (y - q prior.mean); its covariance is factor factor'.
+struct Estimator {
+  Eigen::MatrixXd gain, factor;
+  Eigen::VectorXd estimate(const Observed& observed, const Prior& prior, const Eigen::VectorXd& y) const {
+    return prior.mean + gain * (y - observed.q * prior.mean);
+  }
+};
+Estimator map_estimator(const Observed& observed, const Prior& prior);
+Estimator tikhonov_estimator(const Observed& observed, const Prior& prior, double eta_per_sample);
+Estimator estimator(const Observed& observed, const Prior& prior, const ReconstructOptions& options,
+                    std::size_t samples);
+
+struct Calibration {
+  double widening = 1, covered = 0;
+};
+Calibration calibrate(const Basis& basis, const Observed& observed, const ReconstructOptions& options);
+
+}  // namespace gonio::goniometry
