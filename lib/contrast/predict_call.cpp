@@ -6,9 +6,11 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/progress.h"
 #include "base/quantity.h"
 #include "base/text.h"
 #include "contrast/contrast_options.h"
+#include "contrast/optimize_page.h"
 #include "contrast/predict_page.h"
 
 namespace gonio::contrast {
@@ -78,15 +80,85 @@ std::vector<Varied> varied_of(const cli::Invocation& call, const manifest::Model
   return varied;
 }
 
-void write_tables(cli::Invocation& call, const Prediction& p) {
-  const std::vector<std::pair<std::string, std::string>> tables{{"contrasts.csv", combinations_csv(p)},
-                                                                {"means.csv", means_csv(p)}};
+using Tables = std::vector<std::pair<std::string, std::string>>;  // name, content
+
+void write_tables(cli::Invocation& call, const Tables& tables) {
+  if (call.out.empty()) return;
   std::vector<std::filesystem::path> paths;
   for (const auto& [name, content] : tables) paths.push_back(call.output_path(name));
   for (std::size_t i = 0; i < tables.size(); ++i) {
     write_file(paths[i], tables[i].second);
     manifest::add_file(call.document, paths[i], "predicted-" + file_stem(paths[i].stem().string()));
   }
+}
+
+Prediction predicted(const cli::Invocation& call, const Specimen& specimen, std::vector<Varied> varied) {
+  return predict(specimen, {.experiment = experiment_of(call),
+                            .varied = std::move(varied),
+                            .draws = static_cast<int>(call.integer("draws")),
+                            .seed = call.seed});
+}
+
+Tables tables_of(const Prediction& p) {
+  return {{"contrasts.csv", combinations_csv(p)}, {"means.csv", means_csv(p)}};
+}
+
+// --bound, and where it is left out, of ridged, what can be milled; the pitch ends where it would be seen.
+std::vector<Bound> bounds_of(const cli::Invocation& call, const manifest::ModelInfo& info) {
+  std::vector<Bound> bounds;
+  std::vector<std::string> of_model;
+  const double visible_m = call.number("distance") * call.number("acuity");
+  for (const std::string& text : call.texts("bound")) {
+    if (!text.starts_with(std::string(pitch_name) + "=")) {
+      of_model.push_back(text);
+      continue;
+    }
+    const auto ends = pieces(text.substr(text.find('=') + 1), ':');
+    if (ends.size() != 2) throw Error(Exit::usage, "--bound", "\"" + text + "\" is no range", "write it as LOW:HIGH");
+    const auto length = [](const std::string& t) { return parse_quantity(t, Dimension::length, "--bound pitch_m"); };
+    bounds.push_back({pitch_name, length(ends[0]), std::min(length(ends[1]), visible_m)});
+    if (bounds.back().lower >= visible_m)
+      throw Error(Exit::usage, "--bound pitch_m",
+                  "begins at " + format("%.4g", bounds.back().lower * 1e6) + " um, and ridges of " +
+                      format("%.4g", visible_m * 1e6) + " um are seen one by one at --distance",
+                  "look from further away, or allow a smaller pitch");
+  }
+  for (const Assignment& a : assignments(of_model, "--bound", info, ':'))
+    bounds.push_back({a.parameter, a.values[0], a.values[1]});
+  if (bounds.empty() && info.id == "ridged")
+    bounds = {{"ridge_rad", 1 * degree, 30 * degree}, {"alpha_u", 0.02, 0.3}, {"alpha_v", 0.02, 0.3}};
+  if (call.texts("bound").empty() && info.id == "ridged" && visible_m > 20e-6)
+    bounds.push_back({pitch_name, 20e-6, visible_m});
+  return bounds;
+}
+
+Wish wish_of(const cli::Invocation& call, const manifest::ModelInfo& info) {
+  return {.experiment = experiment_of(call),
+          .bounds = bounds_of(call, info),
+          .least = call.text("over") == "least",
+          .wavelength_m = call.number("wavelength")};
+}
+
+// The surface found goes into the manifest beside the one it was found from.
+Exit optimized(cli::Invocation& call, const Specimen& specimen) {
+  const Wish wish = wish_of(call, specimen.info());
+  const Optimum optimum = optimize(specimen, wish);
+  manifest::Surface best = call.document.surfaces.at(specimen.name());
+  best.parameters = optimum.parameters;
+  best.sigma.clear();
+  const std::string name = specimen.name() + "-optimum";
+  call.document.surfaces[name] = best;
+  const Prediction p = predicted(call, Specimen(call.document, name), {});
+  Tables tables = tables_of(p);
+  tables.emplace_back("optimum.csv", optimum_csv(optimum));
+  write_tables(call, tables);
+  if (call.given("html")) write_file(call.text("html"), optimize_page(optimum, wish, p));
+  log(LogLevel::info, optimum_sentence(optimum, wish));
+  for (const auto& n : optimum.numbers)
+    if (n.at_bound != 0)
+      log(LogLevel::warning, "--bound " + n.parameter + ": its " + (n.at_bound < 0 ? "lower" : "upper") +
+                                 " end holds the optimum; the contrast would grow beyond it");
+  return Exit::done;
 }
 
 }  // namespace
@@ -171,7 +243,49 @@ std::vector<cli::Option> predict_options() {
            .help = "Draws of uncertain parameters.",
            .preset = "400",
            .lower = 20,
-           .upper = 100000}};
+           .upper = 100000},
+          {.name = "optimize",
+           .type = Type::flag,
+           .help = "Find the surface of greatest contrast within --bound, and how "
+                   "much each of its numbers matters.",
+           .conflicts = {"vary"}},
+          {.name = "bound",
+           .type = Type::text,
+           .help = "What --optimize may do to a parameter, or to the pitch_m of ridges.",
+           .metavar = "NAME=LOW:HIGH",
+           .repeat = true,
+           .needs = {"optimize"}},
+          {.name = "over",
+           .type = Type::choice,
+           .help = "What --optimize makes large: the mean over all tilts, or the least "
+                   "contrast of a tilt.",
+           .preset = "mean",
+           .choices = {"mean", "least"},
+           .needs = {"optimize"}},
+          {.name = "wavelength",
+           .type = Type::quantity,
+           .help = "At which diffraction spreads the light of ridges.",
+           .preset = "550nm",
+           .dimension = Dimension::length,
+           .lower = 1e-8,
+           .upper = 1e-4,
+           .needs = {"optimize"}},
+          {.name = "distance",
+           .type = Type::quantity,
+           .help = "From which ridges must not be seen one by one.",
+           .preset = "0.5m",
+           .dimension = Dimension::length,
+           .lower = 1e-3,
+           .upper = 1e3,
+           .needs = {"optimize"}},
+          {.name = "acuity",
+           .type = Type::quantity,
+           .help = "Angle that eye or camera tells apart.",
+           .preset = "0.3mrad",
+           .dimension = Dimension::angle,
+           .lower = 1e-7,
+           .upper = 0.1,
+           .needs = {"optimize"}}};
 }
 
 void predict_check(cli::Invocation& call) {
@@ -186,16 +300,15 @@ void predict_check(cli::Invocation& call) {
   if (!call.has_document) enter_surface(call);
   const std::string name = surface_name(call);
   if (const auto found = call.document.surfaces.find(name); found != call.document.surfaces.end())
-    varied_of(call, model_named(found->second.model));
+    call.flag("optimize") ? static_cast<void>(bounds_of(call, model_named(found->second.model)))
+                          : static_cast<void>(varied_of(call, model_named(found->second.model)));
 }
 
 Exit predict_call(cli::Invocation& call) {
   const Specimen specimen(call.document, surface_name(call));
-  const Prediction p = predict(specimen, {.experiment = experiment_of(call),
-                                          .varied = varied_of(call, specimen.info()),
-                                          .draws = static_cast<int>(call.integer("draws")),
-                                          .seed = call.seed});
-  if (!call.out.empty()) write_tables(call, p);
+  if (call.flag("optimize")) return optimized(call, specimen);
+  const Prediction p = predicted(call, specimen, varied_of(call, specimen.info()));
+  write_tables(call, tables_of(p));
   if (call.given("html")) write_file(call.text("html"), predict_page(p));
   return Exit::done;
 }

@@ -135,16 +135,20 @@ std::vector<Plot> mean_plots(const Prediction& p) {
   return plots;
 }
 
-std::string predict_page(const Prediction& p) {
-  Page page("Predicted contrast of " + p.surface, headline(p),
-            "Contrast of the surface \u201c" + p.surface + "\u201d (model " + p.model +
-                ") before and after a rotation about its normal, " + std::to_string(p.combinations.size()) +
-                " combinations.");
+void add_prediction(Page& page, const Prediction& p) {
   page.section("Mean contrasts");
   page.plots(mean_plots(p));
   for (const Means& m : p.means) page.table(table_of(m, p));
   add_combinations(page, p);
   add_definitions(page, p);
+}
+
+std::string predict_page(const Prediction& p) {
+  Page page("Predicted contrast of " + p.surface, headline(p),
+            "Contrast of the surface \u201c" + p.surface + "\u201d (model " + p.model +
+                ") before and after a rotation about its normal, " + std::to_string(p.combinations.size()) +
+                " combinations.");
+  add_prediction(page, p);
   return page.html();
 }
 

@@ -9,6 +9,8 @@ namespace gonio::contrast {
 
 // Plots of the means: tilt, the varied parameters, rotation, side by side.
 std::vector<report::Plot> mean_plots(const Prediction& prediction);
+// Means, every combination, and how they were found: sections of a page.
+void add_prediction(report::Page& page, const Prediction& prediction);
 std::string predict_page(const Prediction& prediction);
 
 }  // namespace gonio::contrast
