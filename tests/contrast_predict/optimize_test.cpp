@@ -63,11 +63,6 @@ TEST(ContrastOptimum, SaysWhichBoundsHoldIt) {
   EXPECT_EQ(optimum_sentence(optimize(ridged(0.05, 0.05), wish), wish).find("held"), std::string::npos);
 }
 
-TEST(ContrastOptimum, IndifferentParametersAreNotHeld) {
-  const Wish wish{.experiment = untilted(10), .bounds = {{"ridge_rad", 0.01, 0.5}, {"azimuth_rad", -1, -0.9999999}}};
-  EXPECT_EQ(optimize(ridged(0.05, 0.05), wish).numbers[0].at_bound, 0);
-}
-
 // sinc^2 of a slit, and Beckmann's exp(-x^2 / alpha^2) in the half vector's slope, are equally wide at half height.
 TEST(ContrastOptimum, DiffractionIsAsWideAsASlits) {
   const double pitch = 50e-6, ridge = 0.2, lambda = 550e-9, width = pitch * std::cos(ridge);
