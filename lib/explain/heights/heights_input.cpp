@@ -34,7 +34,7 @@ std::vector<HeightsInput> heights_inputs(const manifest::Document& document) {
     input.place = manifest::place(document, "/tables/" + name);
     if (table.file.empty())
       throw Error(Exit::data, input.place, "names no file",
-                  "give the height map: \"file\": id of a .sur, .opd or .nms");
+                  "give the height map: \"file\": id of a .sur, .opd, .nms or .x3p");
     input.map = io::read_height_map(manifest::resolve(document, table.file, "/tables/" + name + "/file"));
     if (const manifest::MechanismUse* use = use_of(document, "surface.micro-ridges", table.surface))
       input.ridges = *use, input.has_ridges = use->parameters.contains("ridge_period_m");
