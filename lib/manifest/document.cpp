@@ -40,6 +40,10 @@ void for_each_section(D& d, const Visit& visit) {
   visit("mountings", d.mountings);
   visit("light_positions", d.light_positions);
   visit("acceptance", d.acceptance);
+  visit("goniometer", d.goniometer);
+  visit("surface_fits", d.surface_fits);
+  visit("patterns", d.patterns);
+  visit("contrasts", d.contrasts);
   visit("explanations", d.explanations);
 }
 
@@ -176,8 +180,35 @@ void check_table(const Table& table, const std::string& at) {
   }
 }
 
+void check_goniometry(const Document& d) {
+  const auto images_exist = [&d](const std::vector<std::string>& ids, const std::string& at) {
+    for (const std::string& id : ids)
+      if (std::ranges::find(d.images, id, &ImageEntry::id) == d.images.end())
+        throw Error(Exit::data, at + "/images", "names \"" + id + "\", which is not in images");
+  };
+  for (const auto& [name, patch] : d.goniometer) {
+    const std::string at = place(d, "/goniometer/" + name);
+    must_exist(d.goniometer, "goniometer", patch.tile, at + "/tile");
+    must_exist(d.surfaces, "surfaces", patch.surface, at + "/surface");
+    if (patch.polygon_m.empty() == !patch.radius_m)
+      throw Error(Exit::data, at, "needs exactly one of \"polygon_m\", \"radius_m\"");
+    images_exist(patch.images, at);
+  }
+  for (const auto& [name, fit] : d.surface_fits)
+    for (const auto& [what, file] : fit.files)
+      must_exist(d.files, "files", file, place(d, "/surface_fits/" + name + "/files/" + what));
+  for (const auto& [name, pattern] : d.patterns) {
+    const std::string at = place(d, "/patterns/" + name);
+    must_exist(d.files, "files", pattern.file, at + "/file");
+    must_exist(d.tables, "tables", pattern.corners, at + "/corners");
+    for (std::size_t i = 0; i < pattern.placements.size(); ++i)
+      images_exist(pattern.placements[i].images, at + "/placements/" + std::to_string(i));
+  }
+}
+
 void check_references(const Document& d) {
   check_images(d);
+  check_goniometry(d);
   unique_ids(d.objects, place(d, "/objects"));
   for (std::size_t i = 0; i < d.objects.size(); ++i) {
     const std::string at = place(d, "/objects/" + std::to_string(i));

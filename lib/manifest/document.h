@@ -31,6 +31,10 @@ struct Document {
   std::map<std::string, Mounting> mountings;
   std::vector<LightPosition> light_positions;
   std::vector<AcceptanceResult> acceptance;
+  std::map<std::string, FlatPatch> goniometer;
+  std::map<std::string, SurfaceFit> surface_fits;
+  std::map<std::string, Pattern> patterns;
+  std::vector<Contrast> contrasts;
   std::vector<Value> explanations;  // written by explain; its shape is checked against the field table
   Value provenance = Value::object();
 

@@ -37,6 +37,21 @@ Value listed() {
   return Codec<std::vector<T>>::schema();
 }
 
+std::string goniometry_text() {
+  return rows("goniometer", "Keyed by name. Flat samples that goniometer images show, and white tiles beside them.",
+              flat_patch_fields()) +
+         rows("surface_fits",
+              "Keyed by the name of the surface, written by brdf-fit. How it was told from measured reflectances.",
+              surface_fit_fields()) +
+         rows("surface_fits: alternatives", "Models that were fitted and not chosen.", alternative_fit_fields()) +
+         rows("surface_fits: dropped", "Rows that were left out.", dropped_rows_fields()) +
+         rows("patterns", "Keyed by name. Flat samples whose cells form a binary pattern.", pattern_fields()) +
+         rows("patterns: placements", "How the sample lay before the camera.", pattern_placement_fields()) +
+         rows("patterns: defects", "Cells that behave unlike their class, written by contrast.",
+              pattern_defect_fields()) +
+         rows("contrasts", "A list, written by contrast.", contrast_fields());
+}
+
 }  // namespace
 
 Value manifest_schema() {
@@ -60,6 +75,10 @@ Value manifest_schema() {
        {"mountings", keyed<Mounting>()},
        {"light_positions", listed<LightPosition>()},
        {"acceptance", listed<AcceptanceResult>()},
+       {"goniometer", keyed<FlatPatch>()},
+       {"surface_fits", keyed<SurfaceFit>()},
+       {"patterns", keyed<Pattern>()},
+       {"contrasts", listed<Contrast>()},
        {"explanations", Value::object({{"type", "array"}, {"items", Value::object({{"type", "object"}})}})},
        {"provenance", Value::object({{"type", "object"}})}});
   return Value::object({{"$schema", "http://json-schema.org/draft-07/schema#"},
@@ -100,7 +119,8 @@ std::string manifest_fields_text() {
          rows("mountings: parts", "Standard deviations of the board's position.", scatter_parts_fields()) +
          rows("light_positions", "A list. Where a light was while its robot stood at a pose.",
               light_position_fields()) +
-         rows("acceptance", "A list, written by vdi2634. Figures of an optical scanner.", acceptance_fields());
+         rows("acceptance", "A list, written by vdi2634. Figures of an optical scanner.", acceptance_fields()) +
+         goniometry_text();
 }
 
 }  // namespace gonio::manifest

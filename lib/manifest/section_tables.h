@@ -1,5 +1,5 @@
 // The field tables of the manifest's sections, and the codecs that follow from them. Defined in sections.cpp,
-// modelled.cpp and instrument_tables.cpp.
+// modelled.cpp, instrument_tables.cpp, goniometry_tables.cpp and contrast_tables.cpp.
 #pragma once
 #include <vector>
 
@@ -29,6 +29,14 @@ const std::vector<Field<ScatterParts>>& scatter_parts_fields();
 const std::vector<Field<Mounting>>& mounting_fields();
 const std::vector<Field<LightPosition>>& light_position_fields();
 const std::vector<Field<AcceptanceResult>>& acceptance_fields();
+const std::vector<Field<FlatPatch>>& flat_patch_fields();
+const std::vector<Field<AlternativeFit>>& alternative_fit_fields();
+const std::vector<Field<DroppedRows>>& dropped_rows_fields();
+const std::vector<Field<SurfaceFit>>& surface_fit_fields();
+const std::vector<Field<PatternPlacement>>& pattern_placement_fields();
+const std::vector<Field<PatternDefect>>& pattern_defect_fields();
+const std::vector<Field<Pattern>>& pattern_fields();
+const std::vector<Field<Contrast>>& contrast_fields();
 
 #define GONIO_RECORD(TYPE, TABLE)                                                                                 \
   template <>                                                                                                     \
@@ -58,6 +66,14 @@ GONIO_RECORD(ScatterParts, scatter_parts_fields);
 GONIO_RECORD(Mounting, mounting_fields);
 GONIO_RECORD(LightPosition, light_position_fields);
 GONIO_RECORD(AcceptanceResult, acceptance_fields);
+GONIO_RECORD(FlatPatch, flat_patch_fields);
+GONIO_RECORD(AlternativeFit, alternative_fit_fields);
+GONIO_RECORD(DroppedRows, dropped_rows_fields);
+GONIO_RECORD(SurfaceFit, surface_fit_fields);
+GONIO_RECORD(PatternPlacement, pattern_placement_fields);
+GONIO_RECORD(PatternDefect, pattern_defect_fields);
+GONIO_RECORD(Pattern, pattern_fields);
+GONIO_RECORD(Contrast, contrast_fields);
 #undef GONIO_RECORD
 
 // Surfaces, lights and mechanisms are read against the registries instead of a table.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "geom/rigid.h"
+#include "manifest/goniometry_sections.h"
 #include "manifest/parameter.h"
 #include "manifest/value.h"
 
