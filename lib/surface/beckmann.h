@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/dual.h"
 #include "geom/vector.h"
 
 namespace gonio::surface {
@@ -18,6 +19,17 @@ inline double beckmann_area_seen(double c, double s) {
   if (c > 6 * s) return c;
   const double a = c / s;
   return (c * (1 + std::erf(a)) + s * std::exp(-a * a) * inverse_root_pi) / 2;
+}
+
+// Of numbers with slopes: dP/dc = (1 + erf(c / s)) / 2, dP/ds = exp(-(c / s)^2) / (2 sqrt(pi)).
+template <class C, std::size_t N>
+Dual<N> beckmann_area_seen(const C& c, const Dual<N>& s) {
+  const Dual<N> cosine(c);
+  const double a = s.v > 0 ? cosine.v / s.v : 1e3;
+  const double by_c = (1 + std::erf(a)) / 2, by_s = std::exp(-a * a) * inverse_root_pi / 2;
+  Dual<N> r(beckmann_area_seen(cosine.v, s.v));
+  for (std::size_t i = 0; i < N; ++i) r.d[i] = by_c * cosine.d[i] + by_s * s.d[i];
+  return r;
 }
 
 // The slope below which lies a share u of what a direction of this cosine and sine sees.

@@ -11,6 +11,10 @@
 namespace gonio::surface {
 
 struct ConductorOptics {
+  static constexpr std::array<double, 5> gauss_node = {0.0469100770306680, 0.2307653449471585, 0.5, 0.7692346550528415,
+                                                       0.9530899229693320};
+  static constexpr std::array<double, 5> gauss_weight = {0.1184634425280945, 0.2393143352496832, 0.2844444444444444,
+                                                         0.2393143352496832, 0.1184634425280945};
   static Roughness roughness(const Values& values) {
     return {values.scalar(alpha_index), values.scalar(anisotropy_index), values.scalar(azimuth_index)};
   }
@@ -20,6 +24,46 @@ struct ConductorOptics {
                  fresnel_metal(cosine, eta.z, k.z)};
     };
   }
+  static constexpr std::size_t colours = 2;
+  template <class T>
+  struct Fresnel {
+    T eta, k;
+    Fresnel(const Values& values, int band)
+        : eta(T::unknown(values.rgb(eta_index)[band], 0)), k(T::unknown(values.rgb(k_index)[band], 1)) {}
+    T operator()(double cosine) const {
+      const Dual<2> f = of(cosine);
+      T r(f.v);
+      r.d[0] = f.d[0], r.d[1] = f.d[1];
+      return r;
+    }
+    // Remembered by each thread, as below.
+    T mean() const {
+      struct Remembered {
+        double eta = -1, k = -1;
+        Dual<2> mean;
+      };
+      thread_local std::array<Remembered, 4> last;
+      thread_local std::size_t next = 0;
+      const Remembered* found = nullptr;
+      for (const Remembered& r : last)
+        if (r.eta == eta.v && r.k == k.v) found = &r;
+      if (found == nullptr) {
+        Dual<2> sum;
+        for (std::size_t i = 0; i < gauss_node.size(); ++i) sum += of(std::sqrt(gauss_node[i])) * gauss_weight[i];
+        last[next] = {eta.v, k.v, sum};
+        found = &last[next];
+        next = (next + 1) % last.size();
+      }
+      T r(found->mean.v);
+      r.d[0] = found->mean.d[0], r.d[1] = found->mean.d[1];
+      return r;
+    }
+
+   private:
+    Dual<2> of(double cosine) const {
+      return fresnel_metal(cosine, Dual<2>::unknown(eta.v, 0), Dual<2>::unknown(k.v, 1));
+    }
+  };
   // Remembered by each thread for the last metal: it takes longer than the rest of the lobe.
   static Rgb fresnel_mean(const Values& values) {
     struct Remembered {
@@ -32,13 +76,9 @@ struct ConductorOptics {
   }
   // 2 integral of F(c) c dc = integral of F(sqrt(t)) dt over [0, 1].
   static Rgb fresnel_mean_by_quadrature(const Values& values) {
-    constexpr std::array<double, 5> node = {0.0469100770306680, 0.2307653449471585, 0.5, 0.7692346550528415,
-                                            0.9530899229693320};
-    constexpr std::array<double, 5> weight = {0.1184634425280945, 0.2393143352496832, 0.2844444444444444,
-                                              0.2393143352496832, 0.1184634425280945};
     const auto reflected = fresnel(values);
     Rgb sum;
-    for (std::size_t i = 0; i < node.size(); ++i) sum += reflected(std::sqrt(node[i])) * weight[i];
+    for (std::size_t i = 0; i < gauss_node.size(); ++i) sum += reflected(std::sqrt(gauss_node[i])) * gauss_weight[i];
     return sum;
   }
   static optics::Complex index(const Values& values, int band) {

@@ -64,17 +64,19 @@ class Table {
   double value(std::size_t layer, Cell a, Cell c) const {
     return between(row(layer, a.low, c), row(layer, a.low + 1, c), a.share);
   }
+  double mean_at(std::size_t layer, std::size_t a) const { return means_[layer * alphas + a]; }
   double mean(std::size_t layer, Cell a) const {
     return between(means_[layer * alphas + a.low], means_[layer * alphas + a.low + 1], a.share);
+  }
+
+  double row(std::size_t layer, std::size_t a, Cell c) const {
+    return between(at(layer, a, c.low), at(layer, a, c.low + 1), c.share);
   }
 
  private:
   double& at(std::size_t layer, std::size_t a, std::size_t c) { return values_[(layer * alphas + a) * cosines + c]; }
   double at(std::size_t layer, std::size_t a, std::size_t c) const {
     return values_[(layer * alphas + a) * cosines + c];
-  }
-  double row(std::size_t layer, std::size_t a, Cell c) const {
-    return between(at(layer, a, c.low), at(layer, a, c.low + 1), c.share);
   }
 
   void fill(std::size_t a, std::size_t c) {
@@ -128,11 +130,15 @@ struct Place {
   static constexpr std::size_t directions = 64;
   double alpha = -1, f0 = -1, mean = 0;
   Cell a, f;
+  double a_rate = 0, f_rate = 0;  // of positions by alpha and f0
   std::array<double, directions> cosine{}, value{};
 
   void move_to(double new_alpha, double new_f0) {
     alpha = new_alpha, f0 = new_f0;
     a = alpha_cell(alpha), f = f0_cell(f0);
+    a_rate = alpha >= min_alpha && alpha < max_alpha ? (alphas - 1) / std::log(max_alpha / min_alpha) / alpha : 0;
+    f_rate =
+        f0 > 0 && f0 < max_dielectric_f0 ? (indices - 1) * std::sqrt(std::sqrt(f0 / max_dielectric_f0)) / (4 * f0) : 0;
     mean = std::nan("");
     cosine.fill(std::nan(""));
   }
@@ -150,7 +156,27 @@ Place& place_of(double alpha, double f0) {
   return place;
 }
 
+// Of a bilinear cell with these corners (f0, alpha).
+AlbedoSlopes slopes_of(const Place& place, double v00, double v01, double v10, double v11) {
+  const double low = between(v00, v01, place.a.share), high = between(v10, v11, place.a.share);
+  return {between(low, high, place.f.share), between(v01 - v00, v11 - v10, place.f.share) * place.a_rate,
+          (high - low) * place.f_rate};
+}
+
 }  // namespace
+
+AlbedoSlopes dielectric_albedo_slopes(double cosine, double alpha, double f0) {
+  const Place& place = place_of(alpha, f0);
+  const Cell c = cosine_cell(cosine);
+  const auto corner = [&](std::size_t f, std::size_t a) { return table().row(place.f.low + f, place.a.low + a, c); };
+  return slopes_of(place, corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1));
+}
+
+AlbedoSlopes dielectric_albedo_mean_slopes(double alpha, double f0) {
+  const Place& place = place_of(alpha, f0);
+  const auto corner = [&](std::size_t f, std::size_t a) { return table().mean_at(place.f.low + f, place.a.low + a); };
+  return slopes_of(place, corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1));
+}
 
 double dielectric_albedo(double cosine, double alpha, double f0) {
   Place& place = place_of(alpha, f0);

@@ -18,26 +18,29 @@ namespace gonio::surface {
 
 inline constexpr double max_coat_eta = 2.6;  // f0 = 0.198, within the tables
 
-class CoatInterface {
+// `T`: double, or a number with slopes (geom/dual.h) for what is reflected and passed from outside.
+template <class T>
+class CoatInterfaceOf {
  public:
-  CoatInterface(double eta, double alpha)
+  CoatInterfaceOf(const T& eta, const T& alpha)
       : eta_(eta), f0_((eta - 1) * (eta - 1) / ((eta + 1) * (eta + 1))), alpha_(alpha) {}
 
-  double eta() const { return eta_; }
+  T eta() const { return eta_; }
   bool smooth() const { return alpha_ < smooth_alpha; }
-  double reflects(double cosine) const {
-    if (eta_ == 1) return 0;
+  T reflects(double cosine) const {
+    if (eta_ == 1.0) return T(0);
     if (alpha_ >= min_alpha) return dielectric_albedo(cosine, alpha_, f0_);
-    return toward_smooth(fresnel_dielectric(cosine, eta_), [&] { return dielectric_albedo(cosine, min_alpha, f0_); });
+    return toward_smooth(fresnel_dielectric(cosine, eta_),
+                         [&] { return dielectric_albedo(cosine, T(min_alpha), f0_); });
   }
-  double reflects_mean() const {
-    if (eta_ == 1) return 0;
+  T reflects_mean() const {
+    if (eta_ == 1.0) return T(0);
     if (alpha_ >= min_alpha) return dielectric_albedo_mean(alpha_, f0_);
-    return toward_smooth(fresnel_dielectric_mean(eta_), [&] { return dielectric_albedo_mean(min_alpha, f0_); });
+    return toward_smooth(fresnel_dielectric_mean(eta_), [&] { return dielectric_albedo_mean(T(min_alpha), f0_); });
   }
-  double reflects_mean_inside() const { return 1 - (1 - reflects_mean()) / (eta_ * eta_); }
-  double passes(double cosine) const { return 1 - reflects(cosine); }
-  double passes_from_inside(double cosine) const {
+  T reflects_mean_inside() const { return 1 - (1 - reflects_mean()) / (eta_ * eta_); }
+  T passes(double cosine) const { return 1 - reflects(cosine); }
+  T passes_from_inside(double cosine) const {
     const double out2 = 1 - eta_ * eta_ * (1 - cosine * cosine);
     return out2 > 0 ? passes(std::sqrt(out2)) : 0;
   }
@@ -53,10 +56,10 @@ class CoatInterface {
   }
 
   // The lobe of a rough interface.
-  double gloss(Vec3 wo, Vec3 wi) const {
-    if (smooth() || eta_ == 1) return 0;
+  T gloss(Vec3 wo, Vec3 wi) const {
+    if (smooth() || eta_ == 1.0) return T(0);
     const Vec3 h = half_vector(wo, wi);
-    return fresnel_dielectric(half_cosine(wo, wi), eta_) * Ggx(alpha_).lobe(wo, wi, h);
+    return fresnel_dielectric(half_cosine(wo, wi), eta_) * GgxOf<T>(alpha_).lobe(wo, wi, h);
   }
   double gloss_pdf(Vec3 wo, Vec3 wi) const { return smooth() ? 0 : Ggx(alpha_).pdf(wo, half_vector(wo, wi)); }
   // Of a smooth interface: is wi where it mirrors wo, and so where its delta goes?
@@ -68,11 +71,12 @@ class CoatInterface {
 
  private:
   template <class Rough>
-  double toward_smooth(double smooth_value, const Rough& rough_value) const {
+  T toward_smooth(const T& smooth_value, const Rough& rough_value) const {
     if (smooth()) return smooth_value;
     return smooth_value + (rough_value() - smooth_value) * (alpha_ / min_alpha);
   }
-  double eta_, f0_, alpha_;
+  T eta_, f0_, alpha_;
 };
+using CoatInterface = CoatInterfaceOf<double>;
 
 }  // namespace gonio::surface

@@ -212,4 +212,66 @@ double InterfaceLoss::towards(Vec3 w) const {
   return sum;
 }
 
+InterfaceLossSlopes::InterfaceLossSlopes(Slopes kind, double alpha, double anisotropy)
+    : table_(&table_of(kind, anisotropy == 0)) {
+  const Grid& grid = table_->grid;
+  const Cell a = cell(std::sqrt(alpha), grid.alphas), s = cell(-std::log10(1 - 0.9 * anisotropy), grid.anisotropies);
+  const double last_a = static_cast<double>(grid.alphas - 1), last_s = static_cast<double>(grid.anisotropies - 1);
+  const double a_rate = alpha > 0 && alpha < 1 ? last_a / (2 * std::sqrt(alpha)) : 0;
+  const double s_rate = anisotropy < 1 ? last_s * 0.9 / ((1 - 0.9 * anisotropy) * std::log(10.0)) : 0;
+  for (std::size_t high_s = 0; high_s < (grid.isotropic() ? 1 : 2); ++high_s)
+    for (std::size_t high_a = 0; high_a < 2; ++high_a) {
+      const LossBlock& block = table_->block(2 * grid.indices, s.low + high_s, a.low + high_a);
+      const double of_a = high_a ? a.share : 1 - a.share, of_s = high_s ? s.share : 1 - s.share;
+      Corner& corner = corners_[count_++];
+      corner = {block.values.data(), of_a * of_s, (high_a ? a_rate : -a_rate) * of_s,
+                grid.isotropic() ? 0 : (high_s ? s_rate : -s_rate) * of_a};
+      mean_.value += corner.share * block.mean;
+      mean_.by_alpha += corner.by_alpha * block.mean;
+      mean_.by_anisotropy += corner.by_anisotropy * block.mean;
+    }
+}
+
+InterfaceLossSlopes InterfaceLossSlopes::of(Slopes kind, double alpha, double anisotropy) {
+  struct Slot {
+    double alpha, anisotropy;
+    Slopes kind;
+    InterfaceLossSlopes loss;
+  };
+  constexpr std::size_t slots = 4;
+  thread_local std::array<std::optional<Slot>, slots> remembered;
+  const std::uint64_t mix =
+      (std::bit_cast<std::uint64_t>(alpha) ^ 3 * std::bit_cast<std::uint64_t>(anisotropy)) * 0x9e3779b97f4a7c15u;
+  std::optional<Slot>& slot = remembered[mix >> 62];
+  if (!slot || slot->alpha != alpha || slot->anisotropy != anisotropy || slot->kind != kind)
+    slot = Slot{alpha, anisotropy, kind, {kind, alpha, anisotropy}};
+  return slot->loss;
+}
+
+LossSlopes InterfaceLossSlopes::towards(Vec3 w) const {
+  const Grid& grid = table_->grid;
+  const Cell c = cell(std::sqrt(std::abs(w.z)), grid.cosines);
+  Cell q;
+  if (!grid.isotropic()) {
+    const double s2 = w.x * w.x + w.y * w.y;
+    q = cell(s2 > 0 ? std::abs(w.x) / std::sqrt(s2) : 1, grid.azimuths);
+  }
+  const std::size_t at = q.low * grid.cosines + c.low;
+  LossSlopes sum;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const double* low = corners_[k].values + at;
+    double value = low[0] + (low[1] - low[0]) * c.share, rise = 0;
+    if (!grid.isotropic()) {
+      const double* high = low + grid.cosines;
+      rise = high[0] + (high[1] - high[0]) * c.share - value;
+      value += rise * q.share;
+    }
+    sum.value += corners_[k].share * value;
+    sum.by_alpha += corners_[k].by_alpha * value;
+    sum.by_anisotropy += corners_[k].by_anisotropy * value;
+    sum.by_cosine += corners_[k].share * rise * static_cast<double>(grid.azimuths - 1);
+  }
+  return sum;
+}
+
 }  // namespace gonio::surface

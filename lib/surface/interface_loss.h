@@ -37,4 +37,28 @@ class InterfaceLoss {
   double mean_ = 0;
 };
 
+// What a mirror's facets lose, with the slopes of the interpolant, to the right at its nodes. `cosine`: of the azimuth
+// in the frame of the facets' axes. Without anisotropy its table has no azimuths, and no slope by anisotropy.
+struct LossSlopes {
+  double value = 0, by_alpha = 0, by_anisotropy = 0, by_cosine = 0;
+};
+class InterfaceLossSlopes {
+ public:
+  InterfaceLossSlopes() = default;
+  InterfaceLossSlopes(Slopes kind, double alpha, double anisotropy);
+  static InterfaceLossSlopes of(Slopes kind, double alpha, double anisotropy);  // remembered, as above
+  LossSlopes towards(Vec3 w) const;
+  const LossSlopes& mean() const { return mean_; }
+
+ private:
+  const LossTable* table_ = nullptr;
+  struct Corner {
+    const double* values = nullptr;
+    double share = 0, by_alpha = 0, by_anisotropy = 0;
+  };
+  std::array<Corner, 4> corners_;
+  std::size_t count_ = 0;
+  LossSlopes mean_;
+};
+
 }  // namespace gonio::surface

@@ -7,6 +7,7 @@
 // light. Sampling picks between visible normals and a cosine-weighted direction by reflected power. Smooth below
 // alpha = 1e-4: then the lobe is a delta of the weight F(woz).
 #pragma once
+#include "surface/facet_slopes.h"
 #include "surface/hemisphere.h"
 #include "surface/interface_loss.h"
 #include "surface/polarization.h"
@@ -92,13 +93,32 @@ class MetalLobe {
 
 // A model that is one such lobe. `Optics` says, for a surface's values: `roughness(values)`, `fresnel(values)`, which
 // takes a cosine to a reflectance per band, its `fresnel_mean(values)`, and `index(values, band)`, the complex index
-// that polarizes. Light that met several facets is unpolarized.
+// that polarizes. With slopes: `colours` numbers per band, then alpha, anisotropy and azimuth; Fresnel(values, band),
+// which takes a cosine to a reflectance and has its `mean`, by those. Light that met several facets is unpolarized.
 template <Slopes kind, class Optics>
 class MetalModel : public Model {
  public:
   Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
     if (wo.z <= 0 || wi.z <= 0 || Optics::roughness(values).smooth()) return {};
     return lobe(values, wo).evaluate(Optics::fresnel(values), wi);
+  }
+  Rgb evaluate_with_slopes(const Values& values, Vec3 wo, Vec3 wi, std::span<Rgb> slopes) const override {
+    constexpr std::size_t first = Optics::colours, all = first + 3;
+    std::fill_n(slopes.begin(), all, Rgb{});
+    if (wo.z <= 0 || wi.z <= 0 || Optics::roughness(values).smooth()) return {};
+    using T = Dual<all>;
+    const T azimuth = T::unknown(values.scalar(first + 2), first + 2);
+    const MetalLobeSlopes<kind, all> lobe(
+        directed(T::unknown(values.scalar(first), first), T::unknown(values.scalar(first + 1), first + 1),
+                 values.inside ? -azimuth : azimuth),
+        wo, wi, half_vector(wo, wi));
+    const double cosine = half_cosine(wo, wi);
+    Rgb value;
+    for (int c = 0; c < 3; ++c) {
+      const typename Optics::template Fresnel<T> fresnel(values, c);
+      put_band(lobe.evaluate(fresnel(cosine), fresnel.mean()), c, value, slopes);
+    }
+    return value;
   }
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
     if (wo.z <= 0) return {};

@@ -36,16 +36,17 @@ inline Vec3 ggx_visible_normal(Vec3 v, Vec2 u) {
   return t1 * a + t2 * b + v * std::sqrt(std::max(0.0, 1 - a * a - b * b));
 }
 
-class Ggx {
+template <class T>
+class GgxOf {
  public:
-  explicit Ggx(double alpha) : alpha_(alpha), alpha2_(alpha * alpha) {}
+  explicit GgxOf(const T& alpha) : alpha_(alpha), alpha2_(alpha * alpha) {}
 
-  double density_of_normals(Vec3 h) const {
-    const double q = alpha2_ * h.z * h.z + h.x * h.x + h.y * h.y;
-    return h.z > 0 ? alpha2_ / (pi * q * q) : 0;
+  T density_of_normals(Vec3 h) const {
+    const T q = alpha2_ * h.z * h.z + h.x * h.x + h.y * h.y;
+    return h.z > 0 ? alpha2_ / (pi * q * q) : T(0);
   }
   // D G2 / (4 wiz woz): the BRDF for a Fresnel factor of one.
-  double lobe(Vec3 wo, Vec3 wi, Vec3 h) const {
+  T lobe(Vec3 wo, Vec3 wi, Vec3 h) const {
     return density_of_normals(h) / (2 * (wo.z * stretch(wi) + wi.z * stretch(wo)));
   }
   // Density of wi per steradian when normals are drawn by visibility: G1(wo) D(h) / (4 woz).
@@ -61,9 +62,13 @@ class Ggx {
   }
 
  private:
-  double stretch(Vec3 w) const { return std::sqrt(w.z * w.z + alpha2_ * (w.x * w.x + w.y * w.y)); }
-  double alpha_, alpha2_;
+  T stretch(Vec3 w) const {
+    using std::sqrt;
+    return sqrt(w.z * w.z + alpha2_ * (w.x * w.x + w.y * w.y));
+  }
+  T alpha_, alpha2_;
 };
+using Ggx = GgxOf<double>;
 
 inline Vec3 mirrored(Vec3 wo, Vec3 h) {
   return h * (2 * dot(wo, h)) - wo;

@@ -15,21 +15,20 @@
 
 namespace gonio::surface {
 
-class OrenNayar {
+template <class T>
+class OrenNayarOf {
  public:
-  explicit OrenNayar(double sigma_rad) {
-    const double s2 = sigma_rad * sigma_rad;
-    const double a = 1 - 0.5 * s2 / (s2 + 0.33), b = 0.45 * s2 / (s2 + 0.09);
-    const double grazing = std::max(1.0, a + b / 2);
+  explicit OrenNayarOf(const T& sigma_rad) {
+    const T s2 = sigma_rad * sigma_rad;
+    const T a = 1 - 0.5 * s2 / (s2 + 0.33), b = 0.45 * s2 / (s2 + 0.09);
+    const T grazing = std::max(T(1.0), a + b / 2);
     a_ = a / grazing;
     b_ = b / grazing;
   }
   // pi f / albedo, for directions above the horizon.
-  double shape(Vec3 wo, Vec3 wi) const {
-    return a_ + b_ * std::max(0.0, wi.x * wo.x + wi.y * wo.y) / std::max(wi.z, wo.z);
-  }
+  T shape(Vec3 wo, Vec3 wi) const { return a_ + b_ * std::max(0.0, wi.x * wo.x + wi.y * wo.y) / std::max(wi.z, wo.z); }
   // Directional-hemispherical reflectance over albedo: the integral of shape cos / pi, in closed form.
-  double reflectance(double cosine) const {
+  T reflectance(double cosine) const {
     const double c = std::clamp(cosine, 0.0, 1.0), s = std::sqrt(1 - c * c);
     // tan(theta) (1 - sin^3(theta)) without its 0 * infinity: 1 - s = c^2 / (1 + s)
     const double beyond = s * c * (1 + s + s * s) / (1 + s);
@@ -37,7 +36,8 @@ class OrenNayar {
   }
 
  private:
-  double a_, b_;
+  T a_, b_;
 };
+using OrenNayar = OrenNayarOf<double>;
 
 }  // namespace gonio::surface

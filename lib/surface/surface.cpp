@@ -27,7 +27,8 @@ Rgb Model::evaluate_with_slopes(const Values& values, Vec3 wo, Vec3 wi, std::spa
     Values below = values, above = values;
     Vec3 width;
     for (int c = 0; c < 3; ++c) {
-      const double at = values.v[i][c], step = share * std::max(std::abs(at), 1e-2);
+      const double at = values.v[i][c], range = parameters[i].upper - parameters[i].lower;
+      const double step = share * std::max(std::abs(at), 1e-2 * std::min(1.0, range));
       const double low = std::max(at - step, parameters[i].lower), high = std::min(at + step, parameters[i].upper);
       const auto put = [c](Vec3& v, double number) { (c == 0 ? v.x : c == 1 ? v.y : v.z) = number; };
       put(below.v[i], low);

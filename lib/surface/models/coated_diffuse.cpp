@@ -84,6 +84,25 @@ class CoatedDiffuse final : public Model {
     return together(Coat(values, wo), base, wo, wi);
   }
 
+  Rgb evaluate_with_slopes(const Values& values, Vec3 wo, Vec3 wi, std::span<Rgb> slopes) const override {
+    std::fill_n(slopes.begin(), 4, Rgb{});
+    if (wo.z <= 0 || wi.z <= 0) return {};
+    using T = Dual<3>;
+    // An interface of nothing is where the slope by f0 begins.
+    const T sigma = T::unknown(values.scalar(sigma_index), 0),
+            f0 = T::unknown(std::max(1e-12, values.scalar(f0_index)), 1),
+            alpha = T::unknown(values.scalar(alpha_index), 2);
+    const T gloss =
+        fresnel_dielectric(half_cosine(wo, wi), eta_of_f0(f0)) * GgxOf<T>(alpha).lobe(wo, wi, half_vector(wo, wi));
+    const T base = OrenNayarOf<T>(sigma).shape(wo, wi) / pi * (1 - dielectric_albedo(wo.z, alpha, f0)) *
+                   (1 - dielectric_albedo(wi.z, alpha, f0)) / (1 - dielectric_albedo_mean(alpha, f0));
+    const Rgb albedo = values.rgb(albedo_index);
+    slopes[albedo_index] = {base.v, base.v, base.v};
+    const auto by = [&](std::size_t i) { return Rgb{gloss.d[i], gloss.d[i], gloss.d[i]} + albedo * base.d[i]; };
+    slopes[sigma_index] = by(0), slopes[f0_index] = by(1), slopes[alpha_index] = by(2);
+    return Rgb{gloss.v, gloss.v, gloss.v} + albedo * base.v;
+  }
+
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
     if (wo.z <= 0) return {};
     const OrenNayar rough(values.scalar(sigma_index));

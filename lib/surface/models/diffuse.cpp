@@ -1,6 +1,7 @@
 // Diffuse surface: Lambert's law, f = albedo / pi, or the Oren-Nayar model (1994; surface/oren_nayar.h) where
 // sigma_rad > 0, scaled where its reflectance would exceed one. Reflects at most albedo; sampling is cosine-weighted;
 // albedo() is exact.
+#include "geom/dual.h"
 #include "surface/hemisphere.h"
 #include "surface/oren_nayar.h"
 #include "surface/surface.h"
@@ -40,6 +41,14 @@ class Diffuse final : public Model {
   Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
     if (wo.z <= 0 || wi.z <= 0) return {};
     return values.rgb(albedo_index) * (OrenNayar(values.scalar(sigma_index)).shape(wo, wi) / pi);
+  }
+  Rgb evaluate_with_slopes(const Values& values, Vec3 wo, Vec3 wi, std::span<Rgb> slopes) const override {
+    slopes[albedo_index] = slopes[sigma_index] = {};
+    if (wo.z <= 0 || wi.z <= 0) return {};
+    const Dual<1> shape = OrenNayarOf(Dual<1>::unknown(values.scalar(sigma_index), 0)).shape(wo, wi) / pi;
+    slopes[albedo_index] = {shape.v, shape.v, shape.v};
+    slopes[sigma_index] = values.rgb(albedo_index) * shape.d[0];
+    return values.rgb(albedo_index) * shape.v;
   }
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double) const override {
     const Vec3 wi = cosine_direction(u);

@@ -6,6 +6,7 @@
 // there. Reciprocal; a mixture of parts none of which returns more than it receives. At second_share = 0,
 // anisotropy = 0 and retro = 0 it is `coated-diffuse`. The base and what is sent back have lost their polarization.
 // albedo() is exact for sigma_rad = 0 up to the tables' error.
+#include "surface/facet_slopes.h"
 #include "surface/fresnel.h"
 #include "surface/gloss_lobes.h"
 #include "surface/hemisphere.h"
@@ -132,6 +133,16 @@ class Glossy final : public Model {
   Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
     return wo.z > 0 && wi.z > 0 ? Here(values, wo).evaluate(wi) : Rgb{};
   }
+  Rgb evaluate_with_slopes(const Values& values, Vec3 wo, Vec3 wi, std::span<Rgb> slopes) const override {
+    std::fill_n(slopes.begin(), unknowns + 1, Rgb{});
+    if (wo.z <= 0 || wi.z <= 0) return {};
+    const Linear at = linear(values, wo, wi);
+    const Rgb albedo = values.rgb(albedo_index);
+    slopes[albedo_index] = {at.base.v, at.base.v, at.base.v};
+    for (std::size_t i = 0; i < unknowns; ++i)
+      slopes[i + 1] = Rgb{at.rest.d[i], at.rest.d[i], at.rest.d[i]} + albedo * at.base.d[i];
+    return Rgb{at.rest.v, at.rest.v, at.rest.v} + albedo * at.base.v;
+  }
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
     if (wo.z <= 0) return {};
     const Here here(values, wo);
@@ -165,6 +176,31 @@ class Glossy final : public Model {
   }
 
  private:
+  // f = rest + albedo base, by the numbers after the albedo.
+  static constexpr std::size_t unknowns = retro_alpha_index;
+  using T = Dual<unknowns>;
+  struct Linear {
+    T rest, base;
+  };
+  static Linear linear(const Values& values, Vec3 wo, Vec3 wi) {
+    const auto number = [&](std::size_t i) { return T::unknown(values.scalar(i), i - 1); };
+    // An interface of nothing is where the slope by f0 begins.
+    const T f0 = T::unknown(std::max(1e-12, values.scalar(f0_index)), f0_index - 1), share = number(share_index),
+            retro = number(retro_index);
+    const FacetForm<Slopes::ggx, unknowns> first({number(alpha_index), number(a0_index), number(a45_index)}),
+        second({number(second_index), number(a0_index), number(a45_index)});
+    const auto both = [&](const auto& of) { return (1 - share) * of(first) + share * of(second); };
+    const auto passes = [&](Vec3 w) {
+      return 1 - both([&](const auto& facets) { return dielectric_albedo(w.z, facets.roughness_towards(w), f0); });
+    };
+    const T mean = both([&](const auto& facets) { return dielectric_albedo_mean(facets.roughness_from_above(), f0); });
+    const Vec3 h = half_vector(wo, wi), from = sent_back(wo);
+    const T gloss = fresnel_dielectric(half_cosine(wo, wi), eta_of_f0(f0)) *
+                    both([&](const auto& facets) { return facets.reflection(wo, wi, h); });
+    const T base = OrenNayarOf<T>(number(sigma_index)).shape(wo, wi) / pi * passes(wo) * passes(wi) / (1 - mean);
+    const T sent = GgxOf<T>(number(retro_alpha_index)).lobe(from, wi, half_vector(from, wi));
+    return {(1 - retro) * gloss + retro * sent, (1 - retro) * base};
+  }
   static std::vector<manifest::ParameterInfo> parameters() {
     std::vector<manifest::ParameterInfo> all = {
         {.name = "albedo",

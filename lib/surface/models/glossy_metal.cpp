@@ -100,6 +100,24 @@ class GlossyMetal final : public Model {
   Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
     return wo.z > 0 && wi.z > 0 ? Here(values, wo).evaluate(wi) : Rgb{};
   }
+  Rgb evaluate_with_slopes(const Values& values, Vec3 wo, Vec3 wi, std::span<Rgb> slopes) const override {
+    std::fill_n(slopes.begin(), unknowns, Rgb{});
+    if (wo.z <= 0 || wi.z <= 0) return {};
+    const auto number = [&](std::size_t i) { return T::unknown(values.scalar(i), i); };
+    const Vec3 h = half_vector(wo, wi), from = sent_back(wo);
+    const MetalLobeSlopes<Slopes::ggx, unknowns> first(directed_of(values, number(alpha_index)), wo, wi, h),
+        second(directed_of(values, number(second_index)), wo, wi, h);
+    const T share = number(share_index), retro = number(retro_index),
+            sent = GgxOf<T>(number(retro_alpha_index)).lobe(from, wi, half_vector(from, wi));
+    const double rise = schlick_rise(half_cosine(wo, wi));
+    Rgb value;
+    for (int c = 0; c < 3; ++c) {
+      const T f0 = T::unknown(values.rgb(f0_index)[c], f0_index), f = f0 + (1 - f0) * rise, mean = f0 + (1 - f0) / 21;
+      const T metal = (1 - share) * first.evaluate(f, mean) + share * second.evaluate(f, mean);
+      put_band((1 - retro) * metal + retro * sent, c, value, slopes);
+    }
+    return value;
+  }
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
     if (wo.z <= 0) return {};
     const Here here(values, wo);
@@ -143,6 +161,18 @@ class GlossyMetal final : public Model {
   }
 
  private:
+  static constexpr std::size_t unknowns = retro_alpha_index + 1;
+  using T = Dual<unknowns>;
+  // roughness_of() above.
+  static DirectedRoughness<unknowns> directed_of(const Values& v, const T& alpha) {
+    const auto number = [&](std::size_t i) { return T::unknown(v.scalar(i), i); };
+    DirectedRoughness<unknowns> all =
+        directed(alpha < least_alpha ? T(least_alpha) : alpha, number(anisotropy_index), number(azimuth_index));
+    all.a0 = all.a0 + number(a0_index), all.a45 = all.a45 + number(a45_index);
+    const T r = hypot(all.a0, all.a45);
+    if (r > largest_stretch) all.a0 = all.a0 * (largest_stretch / r), all.a45 = all.a45 * (largest_stretch / r);
+    return all;
+  }
   static std::vector<manifest::ParameterInfo> parameters() {
     std::vector<manifest::ParameterInfo> all = {
         {.name = "f0",

@@ -11,6 +11,7 @@
 // measured without the interface: a coat of varnish darkens it and deepens its colour, the more the lower the albedo.
 // At eta = 1 it is `diffuse`. The base loses polarization (surface/polarization.h). albedo() is exact up to the tables'
 // error.
+#include "surface/facet_slopes.h"
 #include "surface/interface_coat.h"
 #include "surface/polarization.h"
 #include "surface/surface.h"
@@ -82,6 +83,21 @@ class InterfacedDiffuse final : public Model {
   }
   Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
     return wo.z > 0 && wi.z > 0 ? Interfaced(values, wo).evaluate(wo, wi) : Rgb{};
+  }
+  Rgb evaluate_with_slopes(const Values& values, Vec3 wo, Vec3 wi, std::span<Rgb> slopes) const override {
+    std::fill_n(slopes.begin(), 3, Rgb{});
+    if (wo.z <= 0 || wi.z <= 0) return {};
+    using T = Dual<3>;  // the band's albedo, eta, alpha
+    const T eta = T::unknown(values.scalar(eta_index), eta_index);
+    const CoatInterfaceOf<T> interface(eta, T::unknown(values.scalar(alpha_index), alpha_index));
+    const T gloss = interface.gloss(wo, wi), inside = interface.reflects_mean_inside(),
+            through = interface.passes(wo.z) * interface.passes(wi.z) / (pi * eta * eta);
+    Rgb value;
+    for (int c = 0; c < 3; ++c) {
+      const T albedo = T::unknown(values.rgb(albedo_index)[c], albedo_index);
+      put_band(gloss + albedo / (1 - albedo * inside) * through, c, value, slopes);
+    }
+    return value;
   }
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
     if (wo.z <= 0) return {};

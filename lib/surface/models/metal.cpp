@@ -19,6 +19,14 @@ struct Optics {
   static auto fresnel(const Values& values) {
     return [f0 = values.rgb(f0_index)](double cosine) { return fresnel_schlick(cosine, f0); };
   }
+  static constexpr std::size_t colours = 1;
+  template <class T>
+  struct Fresnel {
+    T f0;
+    Fresnel(const Values& values, int band) : f0(T::unknown(values.rgb(f0_index)[band], 0)) {}
+    T operator()(double cosine) const { return f0 + (1 - f0) * schlick_rise(cosine); }
+    T mean() const { return f0 + (1 - f0) / 21; }
+  };
   static Rgb fresnel_mean(const Values& values) {
     const Rgb f0 = values.rgb(f0_index);
     return f0 + (Rgb{1, 1, 1} - f0) / 21;
