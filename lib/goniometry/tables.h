@@ -26,6 +26,7 @@ namespace gonio::goniometry {
 // sigma (of the f before it, or of the only one), wavelength, channel, series.
 struct ColumnUse {
   std::string quantity, column, unit;  // unit empty: the heading's, else `angles`
+  bool heading_first = false;          // where the heading states a unit, that one holds
 };
 // "theta_i=phi_in:deg,f=brdf:1/sr"; a column is its name or its number from 1, "#3". Error(usage) at `place`.
 std::vector<ColumnUse> parse_columns(const std::string& text, const std::string& place);
