@@ -34,8 +34,6 @@
 
 namespace gonio::contrast {
 
-using metric::Estimate;
-
 struct MeasureOptions {
   double inner = 0.6;             // share of a cell's width and height that counts
   double corner_sigma_px = 0.5;   // of one coordinate of a marked corner that states none
@@ -51,14 +49,15 @@ struct MeasureOptions {
 struct MeasuredView {
   std::string image;
   int placement = 0;                     // 0 before, 1 after the turn
+  std::vector<std::string> lights{};     // that are on; empty: all
   double tilt_rad = 0, azimuth_rad = 0;  // of the camera, in the pattern's frame; tilt 0: along the normal
   double along_rad = 0;                  // tilt, signed along the cameras' main direction: the axis of curves
   CellMeans means;                       // of the cells
   double place_px = 0;                   // one sigma of where a cell lies in this picture
   double margin_px = 0;                  // narrowest strip left out beside the border of cells
   Vec2 shift_px;                         // by refinement, at the pattern's middle
-  Estimate bright, dark;                 // s1: cells of bit 1; s2: cells of bit 0
-  Estimate difference, michelson;
+  metric::Estimate bright, dark;         // s1: cells of bit 1; s2: cells of bit 0
+  metric::Estimate difference, michelson;
   double degrees = 0;                  // of freedom of the sigmas: Student's t
   double right = 0;                    // share of cells on their class's side of the threshold half way
   std::vector<double> ratio;           // of each cell to its class's polynomial; NaN where it does not count
@@ -67,14 +66,14 @@ struct MeasuredView {
 
 // The same view before and after the turn: contrast of one class against itself.
 struct Turn {
-  std::size_t before = 0, after = 0;  // places in views
-  std::array<Estimate, 2> michelson;  // of bit 0 and bit 1
+  std::size_t before = 0, after = 0;          // places in views
+  std::array<metric::Estimate, 2> michelson;  // of bit 0 and bit 1
 };
 
 struct MeasuredCode {  // of a data matrix
   std::string text;
   int wrong_modules = 0;  // of all, that differ from the code after its error correction
-  int quarter_turns = 0;  // clockwise, by which the pattern's corners were numbered differently from the code's
+  int quarter_turns = 0;  // clockwise, by which the code stands turned in the pattern's frame
   bool inverted = false;  // what was taken for 1 is 0 in the code
   int views_read = 0;     // single views from which it could be read alone
 };
@@ -88,13 +87,13 @@ struct Measured {
   std::optional<double> turn_rad;  // between the two poses, about the normal
   std::vector<MeasuredView> views;
   std::vector<Turn> turns;
-  std::vector<Estimate> cell_turn;  // per cell: mean over the turns of (before - after) / (before + after)
+  std::vector<metric::Estimate> cell_turn;  // per cell: mean over the turns of (before - after) / (before + after)
   Defects defects;
   std::optional<MeasuredCode> code;
   std::vector<std::string> notes;    // what a reader must know
   std::vector<std::string> dropped;  // images left out, each with the reason
-  // Root mean square of the signed contrast over the views of a placement, and whether its sign turns.
-  Estimate mean_michelson(int placement) const;
+  // Of the signed contrast over the views of a placement.
+  metric::Estimate mean_michelson(int placement) const;
 };
 
 // `name`: of the pattern; empty: the only one. `marks`: beside those of the pattern's table. Error(data) in one line

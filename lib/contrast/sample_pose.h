@@ -1,7 +1,8 @@
 // Where the sample lies in the world, from corners marked in a few images whose camera poses a robot states.
 //
-// Unknown are the sample's pose X and, for every image with marks, a small error D_i of the camera's stated pose. With
-// corner k at p_k on the sample and the camera's projection P,
+// Unknown are the sample's pose X and, for every image with marks, a small error D_i of the camera's stated pose: a
+// turn about the camera's own axes through its centre, and a shift. With corner k at p_k on the sample and the camera's
+// projection P,
 //     minimise  sum |P(D_i C_i X p_k) - u_ik|^2 / s_ik^2  +  sum |rotation of D_i|^2 / s_r^2 + |shift of D_i|^2 /
 //     s_t^2,
 // by Levenberg-Marquardt. The robot's repeatability (s_r, s_t) thus counts as what it is, and images share out what

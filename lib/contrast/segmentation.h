@@ -12,17 +12,15 @@
 
 #include "contrast/pattern.h"
 #include "contrast/view_map.h"
-#include "manifest/sections.h"
 
 namespace gonio::contrast {
 
 struct GreyView {  // linear radiance, one channel
   int width = 0, height = 0;
   std::vector<float> value;
-  std::vector<float> variance;          // empty: not known
+  std::vector<float> variance;          // of noise, as it is stated; empty: not known
   std::vector<std::uint8_t> saturated;  // per pixel
   std::vector<std::uint8_t> counts;     // per pixel, by the mask; empty: all
-  std::optional<manifest::Noise> noise;
 };
 
 struct CellMeans {

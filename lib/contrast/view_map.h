@@ -19,12 +19,14 @@ class ViewMap {
 
   std::optional<Vec2> pixel(Vec2 plane_m) const;  // nothing behind the camera
   std::optional<Vec2> plane(Vec2 pixel) const;    // nothing where the ray misses the plane
+  ViewMap shifted(Vec2 by_px) const;              // everything lies so much further in the picture
 
  private:
   std::optional<camera::CameraModel> camera_;
   Rigid<frame::Camera, frame::Object> camera_from_pattern_;
   Rigid<frame::Object, frame::Camera> pattern_from_camera_;
   Mat3 pixel_from_plane_, plane_from_pixel_;
+  Vec2 shift_px_;
 };
 
 // Takes from[k] to to[k].
