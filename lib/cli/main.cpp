@@ -183,7 +183,8 @@ void prepare_places(const Invocation& call) {
   for (const bool below : {false, true}) {
     if (below && !call.out.empty()) make_folder(call.out);
     for (const char* option : {"output", "depfile"})
-      if (call.given(option) && call.text(option) != "-" && below_out(call.text(option)) == below)
+      if ((option != std::string_view("output") || call.state->program->writes_manifest) && call.given(option) &&
+          call.text(option) != "-" && below_out(call.text(option)) == below)
         check_writable(call.text(option));
   }
 }
