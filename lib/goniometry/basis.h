@@ -10,10 +10,11 @@
 // block of rings. Components are kept until the rest's standard deviation is `truncation` of the whole's, or up to
 // `most_components`.
 //
-// What no combination of other materials gives: `rest` per cell, the root mean square over materials of the remainder
-// that is left when a material is taken out and projected onto all others. With P = (Gram + lambda 1)^-1 and the rows J
-// of one material the remainder is P_JJ^-1 P_J (X - m) (the leave-one-out residual of a regression, for a group of rows
-// at once); to its square the components that were not kept are added.
+// What no combination of other materials gives: `rest` per cell, of the remainders that are left when a material is
+// taken out and projected onto all others. With P = (Gram + lambda 1)^-1 and the rows J of one material the remainder is
+// P_JJ^-1 P_J (X - m) (the leave-one-out residual of a regression, for a group of rows at once). Few strange materials
+// would rule its root mean square: rest is the 95 % quantile of its magnitude, over 1.96; to its square the components
+// that were not kept are added.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -29,7 +30,7 @@ namespace gonio::goniometry {
 
 struct BasisOptions {
   std::size_t most_components = 48;
-  double truncation = 0.01;
+  double truncation = 0.003;
 };
 
 // Tables that are read ring by ring. Materials of `channels` channels each; values in 1/sr, negative where unknown.
@@ -87,15 +88,6 @@ class Basis {
 // that differ in their bins, are truncated or hold no reflectances.
 Basis basis_of_folder(const std::filesystem::path& folder, const BasisOptions& options = {});
 
-// From gonio's own models, over a seeded spread of plausible parameters: matte, coated, glossy with haze, metals,
-// fabrics. description() says so: it is no collection of measurements.
-struct BuiltinOptions {
-  Bins bins = merl_bins;
-  std::size_t materials = 60;
-  std::uint64_t seed = 1;
-};
-Basis builtin_basis(const BuiltinOptions& builtin = {}, const BasisOptions& options = {});
-
 // Materials given by functions, for studies: f in 1/sr for red, green and blue.
 struct Material {
   std::string name;
@@ -103,5 +95,15 @@ struct Material {
 };
 // Evaluates all cells of all materials with all threads; `channels` 1: red alone.
 std::unique_ptr<Tables> tables_of(const std::vector<Material>& materials, const Bins& bins, std::size_t channels = 3);
+
+// From gonio's own models, over a seeded spread of plausible parameters: matte, coated, glossy with haze, metals,
+// fabrics. description() says so: it is no collection of measurements.
+struct BuiltinOptions {
+  Bins bins = merl_bins;
+  std::size_t materials = 60;
+  std::uint64_t seed = 1;
+};
+std::vector<Material> builtin_materials(const BuiltinOptions& options);
+Basis builtin_basis(const BuiltinOptions& builtin = {}, const BasisOptions& options = {});
 
 }  // namespace gonio::goniometry

@@ -90,9 +90,14 @@ Material material(std::uint64_t seed, std::size_t number) {
 
 }  // namespace
 
-Basis builtin_basis(const BuiltinOptions& builtin, const BasisOptions& options) {
+std::vector<Material> builtin_materials(const BuiltinOptions& options) {
   std::vector<Material> materials;
-  for (std::size_t i = 0; i < builtin.materials; ++i) materials.push_back(material(builtin.seed, i));
+  for (std::size_t i = 0; i < options.materials; ++i) materials.push_back(material(options.seed, i));
+  return materials;
+}
+
+Basis builtin_basis(const BuiltinOptions& builtin, const BasisOptions& options) {
+  const std::vector<Material> materials = builtin_materials(builtin);
   return {
       *tables_of(materials, builtin.bins),
       std::to_string(materials.size()) + " materials drawn from gonio's own surface models (built in, no measurements)",

@@ -201,13 +201,13 @@ Reconstruction reconstruct(const Basis& basis, const Samples& given, const Recon
     const Prior prior = standard_prior(basis.components());
     const Estimator e = estimator(o, prior, options, basis.samples());
     const Eigen::VectorXd c = e.gain * o.y;
-    const Eigen::VectorXd likely =
-        options.method == ReconstructOptions::Method::map ? c : map_estimator(o, prior).gain * o.y;
+    const bool is_map = options.method == ReconstructOptions::Method::map;
+    const Estimator likely = is_map ? e : map_estimator(o, prior);
     ChannelFit& fit = out.channels[band];
     fit.scores.assign(c.data(), c.data() + c.size());
     fit.observations = static_cast<std::size_t>(o.y.size());
-    fit.chi2 = o.y.dot((o.y - o.q * likely).cwiseQuotient(o.noise));
-    fit.misfit = std::max(1.0, std::sqrt(fit.chi2 / static_cast<double>(o.y.size())));
+    fit.chi2 = chi2_of(o, prior, likely, o.y);
+    fit.misfit = misfit_of(o, prior, likely, o.y);
     fit.rms_ln = (o.y - o.q * c).norm() / std::sqrt(static_cast<double>(o.y.size()));
     if (options.uncertainty && options.calibrate && band == samples.bands() / 2) {
       const Calibration calibration = calibrate(basis, o, options);

@@ -13,7 +13,8 @@
 // s makes intervals honest for these very directions: every material of the basis is taken out in turn, reconstructed
 // from its values at the same directions with simulated noise and the others' mean and covariance of c, and s is the
 // 95 % quantile of |error| / sigma over cells and materials, over 1.96. A measurement that fits the basis worse than
-// its variances say, chi^2 of y above its degrees of freedom, widens them by the root of that ratio.
+// its variances say, chi^2 of y above its degrees of freedom, widens them by the root of that ratio, as it does for the
+// materials that are left out.
 //
 // Bands: red, green and blue as they are; one band serves all three. Others become three by averages over the
 // wavelengths above 590 nm, between 480 and 590 nm, and below 480 nm, where nothing lies within, by the band nearest to

@@ -107,6 +107,15 @@ Estimator estimator(const Observed& observed, const Prior& prior, const Reconstr
   return tikhonov_estimator(observed, prior, options.eta / static_cast<double>(samples - 1));
 }
 
+double chi2_of(const Observed& observed, const Prior& prior, const Estimator& map, const Eigen::VectorXd& y) {
+  const Eigen::VectorXd off = y - observed.q * prior.mean;
+  return off.dot((off - observed.q * (map.gain * off)).cwiseQuotient(observed.noise));
+}
+
+double misfit_of(const Observed& observed, const Prior& prior, const Estimator& map, const Eigen::VectorXd& y) {
+  return std::max(1.0, std::sqrt(chi2_of(observed, prior, map, y) / static_cast<double>(y.size())));
+}
+
 Calibration calibrate(const Basis& basis, const Observed& observed, const ReconstructOptions& options) {
   const Others others(basis);
   Random random(17);
@@ -117,16 +126,19 @@ Calibration calibrate(const Basis& basis, const Observed& observed, const Recons
     const std::uint32_t material = basis.material_of()[s];
     const Prior prior = others.without(material);
     const Estimator e = estimator(observed, prior, options, basis.samples());
+    const bool is_map = options.method == ReconstructOptions::Method::map;
+    const Estimator likely = is_map ? e : map_estimator(observed, prior);
     const Eigen::ArrayXd sigma =
         ((e.factor.transpose() * cells.q).colwise().squaredNorm().transpose().array() + cells.rest.array().square())
             .sqrt();
     for (; s < basis.samples() && basis.material_of()[s] == material; ++s) {
       Eigen::VectorXd y = observed.q * others.score(s);
       for (Eigen::Index i = 0; i < y.size(); ++i) y[i] += std::sqrt(observed.noise[i]) * random.normal();
+      const double wider = misfit_of(observed, prior, likely, y);
       Eigen::VectorXd error = cells.q.transpose() * (others.score(s) - e.estimate(observed, prior, y));
       for (Eigen::Index i = 0; i < error.size(); ++i) {
         error[i] += cells.rest[i] * random.normal();
-        ratios.push_back(std::abs(error[i]) / std::max(sigma[i], 1e-12));
+        ratios.push_back(std::abs(error[i]) / std::max(wider * sigma[i], 1e-12));
         within += ratios.back() <= normal_95 ? 1 : 0;
       }
     }

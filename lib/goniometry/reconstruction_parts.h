@@ -35,6 +35,11 @@ Estimator tikhonov_estimator(const Observed& observed, const Prior& prior, doubl
 Estimator estimator(const Observed& observed, const Prior& prior, const ReconstructOptions& options,
                     std::size_t samples);
 
+// Of y under the prior and the noise: y' (Q' L L' Q'' + 1 / W)^-1 y = y' W (y - Q' c) with the most likely c.
+double chi2_of(const Observed& observed, const Prior& prior, const Estimator& map, const Eigen::VectorXd& y);
+// Root of chi^2 per observation, at least 1: what intervals are widened by.
+double misfit_of(const Observed& observed, const Prior& prior, const Estimator& map, const Eigen::VectorXd& y);
+
 struct Calibration {
   double widening = 1, covered = 0;
 };
