@@ -21,6 +21,7 @@ namespace gonio::goniometry {
 namespace {
 
 constexpr int screening = 15, thorough = 60;  // iterations
+constexpr double alike = 1e-4;                // of the mean square: what rounding and steps decide
 
 struct Run {  // of one candidate
   Candidate candidate;
@@ -204,7 +205,9 @@ void rank(std::vector<Run>& runs, double least, const FitOptions& options, Fits&
     Fit& fit = runs[k].fit;
     const Excess over = excess(runs[k].folds, runs[0].folds);
     fit.held_out_excess = over.mean, fit.held_out_excess_sigma = over.sigma;
-    if (over.mean <= over.sigma && fit.numbers.size() < fewest && (k == 0 || !runs[k].folds.empty()))
+    const double negligible = runs[0].folds.empty() ? 0 : alike * score(runs[0]) * score(runs[0]);
+    if (over.mean <= std::max(over.sigma, negligible) && fit.numbers.size() < fewest &&
+        (k == 0 || !runs[k].folds.empty()))
       out.chosen = k, fewest = fit.numbers.size();
   }
   for (Run& run : runs) {

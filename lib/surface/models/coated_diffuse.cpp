@@ -37,6 +37,32 @@ struct Coat {
   }
 };
 
+// What depends on the parameters alone, by sigma, f0 and alpha. Remembered by each thread.
+struct CoatSlopes {
+  using T = Dual<3>;
+  double stated_f0;
+  T f0, alpha, eta, over_passed_mean;
+  OrenNayarOf<T> rough;
+  double sigma;
+
+  // An interface of nothing is where the slope by f0 begins.
+  explicit CoatSlopes(const Values& values)
+      : stated_f0(values.scalar(f0_index)),
+        f0(T::unknown(std::max(1e-12, stated_f0), 1)),
+        alpha(T::unknown(values.scalar(alpha_index), 2)),
+        eta(eta_of_f0(f0)),
+        over_passed_mean(1 / (pi * (1 - dielectric_albedo_mean(alpha, f0)))),
+        rough(T::unknown(values.scalar(sigma_index), 0)),
+        sigma(values.scalar(sigma_index)) {}
+  static const CoatSlopes& of(const Values& values) {
+    thread_local CoatSlopes last(values);
+    if (last.stated_f0 != values.scalar(f0_index) || last.alpha.v != values.scalar(alpha_index) ||
+        last.sigma != values.scalar(sigma_index))
+      last = CoatSlopes(values);
+    return last;
+  }
+};
+
 class CoatedDiffuse final : public Model {
  public:
   const manifest::ModelInfo& info() const override {
@@ -88,14 +114,11 @@ class CoatedDiffuse final : public Model {
     std::fill_n(slopes.begin(), 4, Rgb{});
     if (wo.z <= 0 || wi.z <= 0) return {};
     using T = Dual<3>;
-    // An interface of nothing is where the slope by f0 begins.
-    const T sigma = T::unknown(values.scalar(sigma_index), 0),
-            f0 = T::unknown(std::max(1e-12, values.scalar(f0_index)), 1),
-            alpha = T::unknown(values.scalar(alpha_index), 2);
+    const CoatSlopes& at = CoatSlopes::of(values);
     const T gloss =
-        fresnel_dielectric(half_cosine(wo, wi), eta_of_f0(f0)) * GgxOf<T>(alpha).lobe(wo, wi, half_vector(wo, wi));
-    const T base = OrenNayarOf<T>(sigma).shape(wo, wi) / pi * (1 - dielectric_albedo(wo.z, alpha, f0)) *
-                   (1 - dielectric_albedo(wi.z, alpha, f0)) / (1 - dielectric_albedo_mean(alpha, f0));
+        fresnel_dielectric(half_cosine(wo, wi), at.eta) * GgxOf<T>(at.alpha).lobe(wo, wi, half_vector(wo, wi));
+    const T base = at.rough.shape(wo, wi) * at.over_passed_mean * (1 - dielectric_albedo(wo.z, at.alpha, at.f0)) *
+                   (1 - dielectric_albedo(wi.z, at.alpha, at.f0));
     const Rgb albedo = values.rgb(albedo_index);
     slopes[albedo_index] = {base.v, base.v, base.v};
     const auto by = [&](std::size_t i) { return Rgb{gloss.d[i], gloss.d[i], gloss.d[i]} + albedo * base.d[i]; };
