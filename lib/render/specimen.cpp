@@ -14,6 +14,7 @@
 #include "render/looking_at.h"
 #include "render/specimen_board.h"
 #include "render/specimen_glass.h"
+#include "render/specimen_goniometer.h"
 
 namespace gonio::render {
 namespace {
@@ -160,13 +161,19 @@ const std::vector<Specimen>& specimens() {
                                             {"glass",
                                              "a glass bowl on a cloth under a sky; writes bowl.ply, cloth.exr "
                                              "and sky.exr"},
-                                            {"board", "a calibration board from twelve sides; writes board.png"}};
+                                            {"board", "a calibration board from twelve sides; writes board.png"},
+                                            {"goniometer",
+                                             "a flat sample and a white tile under three lamps on an arc, from 21 "
+                                             "sides"},
+                                            {"arc", "the same in steps of 7.5 degrees, 2783 images"}};
   return all;
 }
 
 manifest::Document specimen(const std::string& name, const std::filesystem::path& out) {
   if (name == "board") return board_specimen(out);
   if (name == "glass") return glass_specimen(out);
+  if (name == "goniometer") return goniometer_specimen({.step_rad = pi / 8});
+  if (name == "arc") return goniometer_specimen({});
   manifest::Document document;
   if (name == "knot")
     add_knot(document, out);
@@ -174,7 +181,7 @@ manifest::Document specimen(const std::string& name, const std::filesystem::path
     add_spheres(document, out);
   else
     throw Error(Exit::usage, "--specimen", "there is no specimen \"" + name + "\"",
-                "choose knot, spheres, glass or board");
+                "choose knot, spheres, glass, board, goniometer or arc");
   add_table(document);
   add_lamps(document);
   add_images(document);

@@ -1,0 +1,66 @@
+// Virtual goniometer recordings: a document is rendered, image by image, as its virtual sensor would record it.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "goniometry/recording.h"
+#include "io/picture.h"
+#include "manifest/document.h"
+#include "render/looking_at.h"
+#include "render/path_tracer.h"
+#include "render/virtual_sensor.h"
+#include "scene/scene.h"
+
+namespace gonio::tests {
+
+inline constexpr double degree = pi / 180;
+
+inline Vec3 direction(double theta_rad, double phi_rad) {
+  return {std::sin(theta_rad) * std::cos(phi_rad), std::sin(theta_rad) * std::sin(phi_rad), std::cos(theta_rad)};
+}
+
+struct Lighted {
+  std::string light;
+  double theta_rad, phi_rad;  // of the camera
+};
+
+inline void add_image(manifest::Document& document, const std::string& id, const Lighted& view, double distance_m,
+                      Vec3 target_m = {}) {
+  manifest::ImageEntry image;
+  image.id = id;
+  image.camera = "camera";
+  image.light = {view.light};
+  image.noise = manifest::Noise{.gain = 16000, .read = 0.0005};
+  static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
+      render::looking_at(target_m + direction(view.theta_rad, view.phi_rad) * distance_m, target_m);
+  document.images.push_back(image);
+}
+
+using Rendered = std::vector<io::Image>;  // radiance, per image of the document
+inline Rendered render_all(const manifest::Document& document, int spp) {
+  const scene::Scene scene = scene::build_scene(document);
+  const render::RayCaster caster(scene.instances);
+  render::Options options{.spp = spp, .seed = 7, .geometry = false};
+  Rendered result;
+  for (std::size_t i = 0; i < scene.views.size(); ++i) result.push_back(render::render(scene, i, caster, options));
+  return result;
+}
+
+// Pictures with the sensor's noise in `folder`; the images name them. `spoil` may touch a picture before it is written.
+using Spoil = std::function<void(std::size_t, io::Image&)>;
+inline void record(manifest::Document& document, const Rendered& rendered, const std::filesystem::path& folder,
+                   std::uint64_t seed, const Spoil& spoil = {}) {
+  document.folder = folder;
+  document.name = "recording.json";
+  for (std::size_t i = 0; i < rendered.size(); ++i) {
+    manifest::ImageEntry& image = document.images[i];
+    io::Image picture = render::recorded(rendered[i], render::sensor_of(document, i), image.id, seed);
+    if (spoil) spoil(i, picture);
+    const auto path = folder / (image.id + ".exr");
+    io::write_picture(path, picture);
+    image.file = manifest::add_file(document, path, image.id);
+  }
+}
+
+}  // namespace gonio::tests
