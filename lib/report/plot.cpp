@@ -227,8 +227,9 @@ std::string html(const HeatStrip& strip) {
       const double v = strip.values.at(r * strip.columns.size() + c);
       const Colour colour = strip.diverging ? signed_colour(v / limit) : magnitude_colour(v / limit);
       const bool pale = 0.2126f * colour[0] + 0.7152f * colour[1] + 0.0722f * colour[2] < 0.45f;
-      text += std::string("<td") + (pale ? " class=\"pale\"" : "") + " style=\"background:" + hex(colour) + "\">" +
-              (std::isfinite(v) ? print("%.2f", v) : "\u2013") + "</td>";
+      text += std::isfinite(v) ? std::string("<td") + (pale ? " class=\"pale\"" : "") + " style=\"background:" +
+                                     hex(colour) + "\">" + print("%.2f", v) + "</td>"
+                               : "<td>\u2013</td>";
     }
     text += "</tr>";
   }

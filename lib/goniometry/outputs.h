@@ -1,0 +1,53 @@
+// What brdf-fit found about one sample, and the files that say it: a table in MERL's format, the samples with what the
+// surface predicts, a sphere of that surface.
+#pragma once
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "goniometry/fit.h"
+#include "goniometry/reconstruction.h"
+#include "goniometry/tables.h"
+#include "io/image.h"
+#include "io/merl.h"
+#include "manifest/document.h"
+#include "surface/merl_table.h"
+
+namespace gonio::goniometry {
+
+struct Outcome {
+  std::string name;    // of the surface
+  std::string source;  // file, table or goniometer sample
+  ReadTable read{};
+  Fits fits{};
+  std::optional<Reconstruction> reconstruction{};
+  std::shared_ptr<const surface::MeasuredTable> table{};  // of the reconstruction
+  std::string basis{};                                    // what it rests on
+  std::map<std::string, std::string> files{};             // file ids of what was written beside it
+
+  const Fit* chosen() const { return fits.chosen < fits.candidates.size() ? &fits.candidates[fits.chosen] : nullptr; }
+};
+
+// Bands that stand for red, green and blue: those named r, g, b; else the ones nearest to 610, 545 and 455 nm; else the
+// first, the middle and the last.
+std::array<std::size_t, 3> written_bands(const Samples& samples);
+// log(1 + 100 f cos theta_i cos theta_o), the scale on which reflectances are compared.
+double compared(double f, Vec3 wi, Vec3 wo);
+// What the surface, or without one the reconstruction, predicts of a band of the samples; NaN where neither is there.
+double predicted(const Outcome& outcome, Vec3 wi, Vec3 wo, std::size_t band);
+
+// The fit in the cells of MERL's database: 90 x 90 x 180, red, green and blue as written_bands() says.
+// Error(usage) at `place` for surfaces that change when they are turned about their normal, which the format cannot
+// hold.
+io::MerlTable merl_of(const Outcome& outcome, const std::string& place);
+// One row per sample and band: directions in rad, the band's wavelength_m or channel, f, its sigma, the model, the
+// residual on the scale above, series and place. Readable by brdf-fit and explain.
+std::string samples_csv(const Outcome& outcome);
+
+// A sphere of the surface of `document` under a lamp and a dim sky, linear. Deterministic.
+io::Image sphere_picture(const manifest::Document& document, const std::string& surface, int pixels = 240);
+
+}  // namespace gonio::goniometry
