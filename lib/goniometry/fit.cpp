@@ -65,6 +65,24 @@ std::vector<std::vector<double>> good_starts(const Problem& all, const Candidate
   return out;
 }
 
+// Two populations of facets have no order of their own: the smoother one comes first.
+void put_in_order(const Problem& problem, const Candidate& candidate, Solution& solution) {
+  std::size_t first = whole_sample, second = whole_sample, share = whole_sample;
+  for (std::size_t i = 0; i < candidate.shared.size(); ++i) {
+    const std::string& name = candidate.name(candidate.shared[i]);
+    if (name == "alpha") first = i;
+    if (name == "second_alpha") second = i;
+    if (name == "second_share") share = i;
+  }
+  if (first == whole_sample || second == whole_sample || share == whole_sample) return;
+  std::vector<double> x = solution.x;
+  if (x[first] <= x[second] || 1 - x[share] > candidate.shared[share].upper) return;
+  std::swap(x[first], x[second]);
+  x[share] = 1 - x[share];
+  Solution swapped = solve(problem, candidate, x, problem.rows(), thorough);
+  if (swapped.at.cost <= solution.at.cost * (1 + alike)) solution = std::move(swapped);
+}
+
 Solution best_solution(const Problem& problem, const Candidate& candidate, const FitOptions& options) {
   Solution best;
   best.at.cost = std::numeric_limits<double>::infinity();
@@ -72,6 +90,7 @@ Solution best_solution(const Problem& problem, const Candidate& candidate, const
     Solution solution = solve(problem, candidate, start, problem.rows(), thorough);
     if (best.x.empty() || solution.at.cost < best.at.cost) best = std::move(solution);
   }
+  if (!best.x.empty()) put_in_order(problem, candidate, best);
   return best;
 }
 

@@ -37,23 +37,23 @@ struct Coat {
   }
 };
 
-// What depends on the parameters alone, by sigma, f0 and alpha. Remembered by each thread.
+// What depends on the parameters alone, each with the slope by what it depends on. Remembered by each thread.
 struct CoatSlopes {
-  using T = Dual<3>;
-  double stated_f0;
-  T f0, alpha, eta, over_passed_mean;
+  using T = Dual<1>;
+  double sigma, stated_f0;
+  T f0, alpha, eta;  // eta by f0
+  AlbedoSlopes mean;
   OrenNayarOf<T> rough;
-  double sigma;
 
   // An interface of nothing is where the slope by f0 begins.
   explicit CoatSlopes(const Values& values)
-      : stated_f0(values.scalar(f0_index)),
-        f0(T::unknown(std::max(1e-12, stated_f0), 1)),
-        alpha(T::unknown(values.scalar(alpha_index), 2)),
+      : sigma(values.scalar(sigma_index)),
+        stated_f0(values.scalar(f0_index)),
+        f0(T::unknown(std::max(1e-12, stated_f0), 0)),
+        alpha(T::unknown(values.scalar(alpha_index), 0)),
         eta(eta_of_f0(f0)),
-        over_passed_mean(1 / (pi * (1 - dielectric_albedo_mean(alpha, f0)))),
-        rough(T::unknown(values.scalar(sigma_index), 0)),
-        sigma(values.scalar(sigma_index)) {}
+        mean(dielectric_albedo_mean_slopes(alpha.v, f0.v)),
+        rough(T::unknown(sigma, 0)) {}
   static const CoatSlopes& of(const Values& values) {
     thread_local CoatSlopes last(values);
     if (last.stated_f0 != values.scalar(f0_index) || last.alpha.v != values.scalar(alpha_index) ||
@@ -113,17 +113,24 @@ class CoatedDiffuse final : public Model {
   Rgb evaluate_with_slopes(const Values& values, Vec3 wo, Vec3 wi, std::span<Rgb> slopes) const override {
     std::fill_n(slopes.begin(), 4, Rgb{});
     if (wo.z <= 0 || wi.z <= 0) return {};
-    using T = Dual<3>;
+    using T = CoatSlopes::T;
     const CoatSlopes& at = CoatSlopes::of(values);
-    const T gloss =
-        fresnel_dielectric(half_cosine(wo, wi), at.eta) * GgxOf<T>(at.alpha).lobe(wo, wi, half_vector(wo, wi));
-    const T base = at.rough.shape(wo, wi) * at.over_passed_mean * (1 - dielectric_albedo(wo.z, at.alpha, at.f0)) *
-                   (1 - dielectric_albedo(wi.z, at.alpha, at.f0));
+    const T fresnel = fresnel_dielectric(half_cosine(wo, wi), at.eta),
+            lobe = GgxOf<T>(at.alpha).lobe(wo, wi, half_vector(wo, wi)), shape = at.rough.shape(wo, wi);
+    const AlbedoSlopes o = dielectric_albedo_slopes(wo.z, at.alpha.v, at.f0.v),
+                       i = dielectric_albedo_slopes(wi.z, at.alpha.v, at.f0.v);
+    const double out = 1 - o.value, in = 1 - i.value, mean = 1 - at.mean.value, through = out * in / (pi * mean);
+    const auto through_by = [&](double by_o, double by_i, double by_mean) {
+      return (through * by_mean - (by_o * in + out * by_i) / pi) / mean;
+    };
     const Rgb albedo = values.rgb(albedo_index);
-    slopes[albedo_index] = {base.v, base.v, base.v};
-    const auto by = [&](std::size_t i) { return Rgb{gloss.d[i], gloss.d[i], gloss.d[i]} + albedo * base.d[i]; };
-    slopes[sigma_index] = by(0), slopes[f0_index] = by(1), slopes[alpha_index] = by(2);
-    return Rgb{gloss.v, gloss.v, gloss.v} + albedo * base.v;
+    const auto sum = [&](double gloss, double base) { return Rgb{gloss, gloss, gloss} + albedo * base; };
+    const double base = shape.v * through;
+    slopes[albedo_index] = {base, base, base};
+    slopes[sigma_index] = albedo * (shape.d[0] * through);
+    slopes[f0_index] = sum(fresnel.d[0] * lobe.v, shape.v * through_by(o.by_f0, i.by_f0, at.mean.by_f0));
+    slopes[alpha_index] = sum(fresnel.v * lobe.d[0], shape.v * through_by(o.by_alpha, i.by_alpha, at.mean.by_alpha));
+    return sum(fresnel.v * lobe.v, base);
   }
 
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
