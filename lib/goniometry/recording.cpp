@@ -39,6 +39,12 @@ void check_size(const io::Image& image, int width, int height, const std::string
               "give the camera of this size, or the picture as it was taken");
 }
 
+std::string left_out(const manifest::ImageEntry& image, const scene::View& seen) {
+  if (image.weight == 0.0) return "its weight is 0";
+  if (seen.lights.empty()) return "no light is on";
+  return seen.lights.size() == 1 ? "" : "lit by " + std::to_string(seen.lights.size()) + " lights at once";
+}
+
 PictureReading read_picture(const Recording& recording, std::size_t number_of_view, const ReduceOptions& options) {
   const scene::View& seen = recording.scene.views[number_of_view];
   const manifest::ImageEntry& image = recording.image(number_of_view);
@@ -46,10 +52,9 @@ PictureReading read_picture(const Recording& recording, std::size_t number_of_vi
   const std::string pointer = "/images/" + std::to_string(recording.images[number_of_view]);
   PictureReading result;
   const bool sample = recording.sample->in[number_of_view], tile = recording.tile && recording.tile->in[number_of_view];
-  if (seen.lights.size() != 1) {
+  if (const std::string reason = left_out(image, seen); !reason.empty()) {
     PatchReading refused;
-    refused.refusal =
-        seen.lights.empty() ? "no light is on" : "lit by " + std::to_string(seen.lights.size()) + " lights at once";
+    refused.refusal = reason;
     if (sample) result.sample = refused;
     if (tile) result.tile = refused;
     return result;

@@ -184,6 +184,40 @@ TEST_F(RecordingTest, ACalibratedLightNeedsNoTile) {
   EXPECT_NEAR(reduce(d).scale_sigma[0], 0.01, 1e-12);
 }
 
+// As explain has it: readings over a Lambertian tile's are 1 + incidence (1 - cos theta_i)^2 times too large.
+TEST_F(RecordingTest, TheTilesMechanismIsUndone) {
+  manifest::Document d = recorded(1);
+  d.goniometer["tile"].surface.clear();
+  d.goniometer["tile"].reflectance = {0.95, 0.94, 0.93};
+  const Reduced plain = reduce(d);
+  d.mechanisms["reference.tile"].parameters = {{"incidence", 0.3}, {"exitance", -0.2}};
+  const Reduced bent = reduce(d);
+  for (std::size_t r = 0; r < plain.samples.rows(); ++r) {
+    const double in = 1 - plain.samples.wi[r].z, out = 1 - plain.samples.wo[r].z;
+    const double expected = 1 / (1 + 0.3 * in * in - 0.2 * out * out);
+    EXPECT_NEAR(bent.samples.f[3 * r] / plain.samples.f[3 * r] / expected, 1, 0.005);
+  }
+}
+
+TEST_F(RecordingTest, MasksAndWeightsLeaveOut) {
+  manifest::Document d = recorded(1);
+  const Reduced plain = reduce(d);
+  io::Image mask(64, 64, {"Y"});
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) mask.at(x, y, 0) = (x + y) % 2;
+  io::write_picture(folder_ / "mask.exr", mask);
+  d.images[0].mask = manifest::add_file(d, folder_ / "mask.exr", "mask");
+  io::write_picture(folder_ / "dark.exr", io::Image(64, 64, {"Y"}));
+  d.images[1].mask = manifest::add_file(d, folder_ / "dark.exr", "dark");
+  d.images[2].weight = 0;
+  const Reduced reduced = reduce(d);
+  EXPECT_NEAR(1.0 * reduced.readings[0].pixels / plain.readings[0].pixels, 0.5, 0.1);
+  EXPECT_NEAR(reduced.samples.f[0] / plain.samples.f[0], 1, 0.01);
+  EXPECT_EQ(reduced.samples.rows(), 25u);
+  EXPECT_EQ(reduced.dropped[0].reason.substr(0, 17), "too few pixels: 0");
+  EXPECT_EQ(reduced.dropped[1].reason, "its weight is 0");
+}
+
 TEST_F(RecordingTest, ExposuresVignettingAndOffsetsAreUndone) {
   manifest::Document d = recorded(1);
   const Reduced plain = reduce(d);

@@ -60,6 +60,7 @@ void measure(const RidgePlate& plate, const char* material, std::uint64_t seed, 
       material, plate.ridge_rad / degree, plate.azimuth_rad / degree, plate.alpha, reduced.samples.rows(),
       angle->value / degree, angle->sigma / degree, azimuth->value / degree, azimuth->sigma / degree,
       fit.number("alpha_v") ? fit.number("alpha_v")->value : NAN, fit.model_error);
+  std::fflush(stdout);
   take(*angle, plate.ridge_rad, worst.angle_deg, worst);
   take(*azimuth, plate.azimuth_rad, worst.azimuth_deg, worst);
   ++worst.plates;
