@@ -129,9 +129,10 @@ void enter_candidates(const Outcome& outcome, manifest::SurfaceFit& out) {
 void enter_samples(const Outcome& outcome, manifest::SurfaceFit& out) {
   const Samples& s = outcome.read.samples;
   out.source = outcome.source;
-  out.bands = s.band_name, out.wavelengths_m = s.band_m;
+  for (const std::string& band : s.band_name) out.bands.push_back(band.empty() ? "f" : band);
+  out.wavelengths_m = s.band_m;
   if (s.bands() > 3)
-    for (const std::size_t b : written_bands(s)) out.written_bands.push_back(s.band_name[b]);
+    for (const std::size_t b : written_bands(s)) out.written_bands.push_back(out.bands[b]);
   out.rows = static_cast<std::int64_t>(s.rows());
   for (const Dropped& d : outcome.read.dropped) {
     const auto same = std::ranges::find(out.dropped, d.reason, &manifest::DroppedRows::reason);
