@@ -53,10 +53,18 @@ io::Image view_map(const Measured& measured, std::size_t view) {
   });
 }
 
+double turn_limit(const Measured& measured) {
+  double most = 0;
+  for (const metric::Estimate& e : measured.cell_turn)
+    if (std::isfinite(e.value)) most = std::max(most, std::abs(e.value));
+  return most > 0 ? most : 1;
+}
+
 io::Image turn_map(const Measured& measured) {
+  const double limit = turn_limit(measured);
   return paint(measured, true, [&](std::size_t cell) {
     const double v = measured.cell_turn[cell].value;
-    return std::isfinite(v) ? report::signed_colour(v) : not_counted;
+    return std::isfinite(v) ? report::signed_colour(v / limit) : not_counted;
   });
 }
 

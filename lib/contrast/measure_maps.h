@@ -8,7 +8,8 @@ namespace gonio::contrast {
 
 io::Image pattern_map(const Measured& measured);                 // bit 1 white
 io::Image view_map(const Measured& measured, std::size_t view);  // means, linear up to the 99th percentile, gamma 2.2
-io::Image turn_map(const Measured& measured);                    // (before - after) / (before + after), red to blue
+io::Image turn_map(const Measured& measured);                    // (before - after) / (before + after); red: positive
+double turn_limit(const Measured& measured);                     // full colour of turn_map
 io::Image distance_map(const Measured& measured);                // robust distance, up to twice the limit
 
 }  // namespace gonio::contrast

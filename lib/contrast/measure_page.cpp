@@ -31,9 +31,18 @@ std::string signed_text(metric::Estimate e) {
   return (e.value > 0 ? "+" : "") + with_sigma(e.value, e.sigma);
 }
 
+// Pairs of the same view whose contrast has either sign, both clearly.
+std::size_t inverted_views(const Measured& m) {
+  std::size_t count = 0;
+  for (const Turn& turn : m.turns) {
+    const auto a = m.views[turn.before].michelson, b = m.views[turn.after].michelson;
+    count += a.value * b.value < 0 && std::abs(a.value) > 2 * a.sigma && std::abs(b.value) > 2 * b.sigma;
+  }
+  return count;
+}
+
 bool inverts(const Measured& m) {
-  const auto a = m.mean_michelson(0), b = m.mean_michelson(1);
-  return a.value * b.value < 0 && std::abs(a.value) > 3 * a.sigma && std::abs(b.value) > 3 * b.sigma;
+  return !m.turns.empty() && inverted_views(m) == m.turns.size();
 }
 
 std::string cell_name(const CellPattern& pattern, std::size_t cell) {
@@ -50,9 +59,13 @@ std::vector<KeyNumber> key_numbers(const Measured& m) {
                        report::value_for_sigma(mean.value, mean.sigma), report::sigma_text(mean.value, mean.sigma),
                        "Michelson, mean of " + std::to_string(views) + " views"});
   }
-  double right = 1;
-  for (const MeasuredView& view : m.views) right = std::min(right, view.right);
-  numbers.push_back({"Cells told apart", percent_text(right, 1), "", "in the worst view, by a threshold half way"});
+  double worst = 1, best = 0;
+  for (const MeasuredView& view : m.views) {
+    worst = std::min(worst, view.right);
+    best = std::max(best, view.right);
+  }
+  numbers.push_back({"Cells told apart", percent_text(best, 1), "",
+                     "in the best view, by a threshold half way; " + percent_text(worst, 1) + " in the worst"});
   const std::size_t bad = m.defects.found.size();
   numbers.push_back({"Defective cells", std::to_string(bad), "of " + std::to_string(m.pattern.cells()),
                      "any false alarm: " + percent_text(m.defects.alarm_rate, 0), bad == 0 ? Tone::good : Tone::bad});
@@ -155,7 +168,10 @@ void add_maps(Page& page, const Measured& m) {
                      .title = "Distance from the class",
                      .caption = "Over all views together, in root mean square scatters. Defects are framed."});
   page.figures(figures, 300);
-  page.colour_scale({"contrast of the turn", "", ramp(true), {"\u22121", "0", "+1"}});
+  page.colour_scale({"contrast of the turn",
+                     "",
+                     ramp(true),
+                     {"\u2212" + number_text(turn_limit(m), 2), "0", "+" + number_text(turn_limit(m), 2)}});
   page.colour_scale({"distance",
                      "",
                      ramp(false),
@@ -265,7 +281,15 @@ void add_places(Page& page, const Measured& m) {
 
 std::string measure_headline(const Measured& m) {
   const auto a = m.mean_michelson(0), b = m.mean_michelson(1);
-  std::string text = inverts(m) ? "The turn inverts the contrast: " : "The turn does not invert the contrast: ";
+  const std::size_t count = inverted_views(m);
+  std::string text = "The contrast before and after the turn: ";
+  if (inverts(m))
+    text = "The turn inverts the contrast in every view: on the mean ";
+  else if (count > 0)
+    text = "The turn inverts the contrast in " + std::to_string(count) + " of " + std::to_string(m.turns.size()) +
+           " views: on the mean ";
+  else if (!m.turns.empty())
+    text = "The turn inverts the contrast in no view: on the mean ";
   text += signed_text(a) + " " + m.placement[0] + ", " + signed_text(b) + " " + m.placement[1] + "; ";
   const std::size_t bad = m.defects.found.size();
   text += bad == 0 ? "no cell of " + std::to_string(m.pattern.cells()) + " is defective"

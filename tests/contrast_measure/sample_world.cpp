@@ -216,7 +216,7 @@ manifest::Document photographed(const SampleWorld& world, const std::filesystem:
   pattern.columns = world.pattern.columns;
   pattern.cell_m = {world.pattern.cell_m.x};
   pattern.corners = "corners";
-  pattern.placements = {{.name = "before"}, {.name = "after"}};
+  pattern.placements = {{"before", {}, {}}, {"after", {}, {}}};
   if (with_text) {
     std::string bits;
     for (std::size_t cell = 0; cell < world.pattern.cells(); ++cell) {
