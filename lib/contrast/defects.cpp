@@ -42,9 +42,12 @@ Eigen::MatrixXd correlation(const Eigen::MatrixXd& z) {
   return r;
 }
 
+// Along the eigenvectors of the correlation, each over its variance, but no variance below that of an independent view.
 Eigen::VectorXd distances2(const Eigen::MatrixXd& z, const Eigen::MatrixXd& r) {
-  const Eigen::MatrixXd half = r.llt().matrixL().solve(z.transpose());
-  return half.colwise().squaredNorm().transpose() / static_cast<double>(z.cols());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(r);
+  const Eigen::MatrixXd along = z * eigen.eigenvectors();
+  return along.array().square().matrix() * eigen.eigenvalues().cwiseMax(1).cwiseInverse() /
+         static_cast<double>(z.cols());
 }
 
 double median_of(const Eigen::VectorXd& values) {

@@ -1,9 +1,12 @@
 // Cells that behave unlike their class over the views.
 //
-// Of cell i and view v, z_iv is the deviation from the class's polynomial over the class's scatter in that view. Over
-// all views a cell has the distance d_i^2 = z_i' R^-1 z_i / views, where R is the correlation between views within the
-// class, of z clipped at 3 so that defects do not make themselves normal, and shrunk towards no correlation by the
-// weight that Schaefer & Strimmer 2005 derive (equation 8), so that there may be more views than cells.
+// Of cell i and view v, z_iv is the deviation from the class's polynomial over the class's scatter in that view. R is
+// the correlation between views within the class, of z clipped at 3 so that defects do not make themselves normal, and
+// shrunk towards no correlation by the weight that Schaefer & Strimmer 2005 derive (equation 8), so that there may be
+// more views than cells. With its eigenvectors e_k and eigenvalues l_k, over all views a cell has the distance
+//     d_i^2 = sum over k of (e_k . z_i)^2 / max(l_k, 1) / views:
+// what sound cells do together in many views is taken at its own size. Directions in which they hardly vary are not
+// enlarged: there what is small and not normal, such as the square of a cell's tilt, would outweigh everything.
 //
 // What sound cells do is simulated: normal z with the correlation R go through the same steps (polynomial taken out,
 // scatter estimated, clipped, R estimated anew), `draws` times. Were the bulk of the cells wider than that (the median

@@ -76,6 +76,7 @@ bool series(const char* name, int runs, bool refine) {
 }  // namespace gonio::prove
 
 int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   const int runs = argc > 1 ? std::atoi(argv[1]) : 60;
   if (argc > 2) {
     const std::filesystem::path folder = argv[2];
