@@ -11,7 +11,7 @@
 // `most_components`.
 //
 // What no combination of other materials gives: `rest` per cell, of the remainders that are left when a material is
-// taken out and projected onto all others. With P = (Gram + lambda 1)^-1 and the rows J of one material the remainder is
+// taken out and projected onto all others. With P = (Gram + lambda 1)^-1 and the rows J of one material they are
 // P_JJ^-1 P_J (X - m) (the leave-one-out residual of a regression, for a group of rows at once). Few strange materials
 // would rule its root mean square: rest is the 95 % quantile of its magnitude, over 1.96; to its square the components
 // that were not kept are added.

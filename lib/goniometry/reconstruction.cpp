@@ -175,16 +175,15 @@ Energy energy_of(const io::MerlTable& table) {
   return energy;
 }
 
+// With E = exp(z sigma_ln): f E + (epsilon / w) (E - 1), and epsilon / w = sigma / sigma_ln - f.
 CellInterval interval(const Reconstruction& reconstruction, std::size_t place, std::size_t band, double z) {
   const std::size_t at = 3 * place + band;
   const auto f = static_cast<double>(reconstruction.table.brdf_per_sr.at(at));
-  const auto sigma = static_cast<double>(reconstruction.sigma_ln.at(at));
-  const double w = f < 0 ? 1 : [&] {  // from sigma = sigma_ln (f + epsilon / w)
-    const auto per_sr = static_cast<double>(reconstruction.sigma.brdf_per_sr.at(at));
-    return sigma > 0 ? mapping_epsilon / std::max(per_sr / sigma - f, 1e-12) : 1;
-  }();
-  const double level = log_level(f, w);
-  return {of_level(level - z * sigma, w), of_level(level + z * sigma, w)};
+  const auto sigma_ln = static_cast<double>(reconstruction.sigma_ln.at(at));
+  if (f < 0 || !(sigma_ln > 0)) return {f, f};
+  const double floor = std::max(0.0, static_cast<double>(reconstruction.sigma.brdf_per_sr.at(at)) / sigma_ln - f);
+  const double up = std::exp(z * sigma_ln);
+  return {std::max(0.0, f / up - floor * (1 - 1 / up)), f * up + floor * (up - 1)};
 }
 
 Reconstruction reconstruct(const Basis& basis, const Samples& given, const ReconstructOptions& options) {
