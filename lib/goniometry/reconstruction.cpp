@@ -26,7 +26,7 @@ struct Mapped {
 struct Solved {
   Eigen::VectorXd scores;
   Eigen::MatrixXd factor;
-  double scale = 1;  // of the standard deviations
+  double rest = 1, scale = 1;  // of rest, of all standard deviations
 };
 
 Mapped map_cells(const Basis& basis, const std::vector<Solved>& solved, bool uncertainty) {
@@ -49,7 +49,7 @@ Mapped map_cells(const Basis& basis, const std::vector<Solved>& solved, bool unc
       if (!uncertainty) continue;
       const Eigen::VectorXf variance = (q * factors[band]).rowwise().squaredNorm();
       for (std::size_t i = 0; i < count; ++i) {
-        const float rest = basis.rest()[first + i];
+        const float rest = static_cast<float>(solved[band].rest) * basis.rest()[first + i];
         mapped.sigma[(first + i) * bands + band] =
             static_cast<float>(solved[band].scale) * std::sqrt(variance[static_cast<Eigen::Index>(i)] + rest * rest);
       }
@@ -90,22 +90,26 @@ void judge(const Basis& basis, const ReconstructOptions& options, std::size_t ba
   std::vector<std::string>& notes = out.notes;
   notes.push_back("The basis: " + basis.description() + "; " + std::to_string(basis.components()) +
                   format(" components hold %.2f %% of the variance.", 100 * basis.kept_share()));
-  double misfit = 1;
-  for (std::size_t b = 0; b < bands; ++b) misfit = std::max(misfit, out.channels[b].misfit);
-  if (misfit > 1.5)
+  double misfit = 1, excess = 1;
+  for (std::size_t b = 0; b < bands; ++b) {
+    misfit = std::max(misfit, out.channels[b].misfit);
+    excess = std::max(excess, out.channels[b].excess);
+  }
+  if (std::max(misfit, excess) > 1.5)
     notes.push_back(
-        format("The measurement lies outside of what the basis knows: its residuals are %.1f times what "
-               "noise and basis explain, and intervals are widened by that.",
-               misfit));
+        format("The material is unlike those of the basis: its components vary %.1f times as much, and "
+               "noise and what the basis leaves open are taken %.1f times as large as stated.",
+               excess, misfit));
   if (options.uncertainty && options.calibrate)
     notes.push_back(
         format("Left out in turn and reconstructed from these directions, the basis' materials lie within "
                "95 %% intervals in %.1f %% of the cells; standard deviations are multiplied by %.2f.",
                100 * out.covered, out.widening));
   const char* colour[] = {"red", "green", "blue"};
-  notes.push_back(format("It reflects at most %.3f of the light (%s, at %.0f degrees)%s.", out.energy.most,
-                         bands == 1 ? "grey" : colour[out.energy.channel], out.energy.theta_rad / degree,
-                         out.energy.most <= 1 ? ": energy is conserved" : ": more than arrives"));
+  if (options.energy)
+    notes.push_back(format("It reflects at most %.3f of the light (%s, at %.0f degrees)%s.", out.energy.most,
+                           bands == 1 ? "grey" : colour[out.energy.channel], out.energy.theta_rad / degree,
+                           out.energy.most <= 1 ? ": energy is conserved" : ": more than arrives"));
   notes.push_back("phi_d and pi - phi_d are the same cell: the table is reciprocal and has no handedness.");
 }
 
@@ -160,8 +164,9 @@ Observed observe(const Basis& basis, const Samples& samples, std::size_t band, c
 }
 
 Energy energy_of(const io::MerlTable& table) {
-  // Far below 1, so that any table can be looked at.
-  constexpr float scale = 1e-3F;
+  // Dark enough to pass the limits of a table to be rendered, whatever it holds: pi times its largest number is
+  // below 1.
+  const float largest = std::max(1e-30F, *std::ranges::max_element(table.brdf_per_sr)), scale = 0.1F / largest;
   io::MerlTable dark = table;
   for (float& f : dark.brdf_per_sr) f = f >= 0 ? f * scale : f;
   const surface::MeasuredTable measured(std::move(dark), "table");
@@ -198,27 +203,27 @@ Reconstruction reconstruct(const Basis& basis, const Samples& given, const Recon
       throw Error(Exit::data, samples.name, "leaves no usable sample in band \"" + samples.band_name[band] + "\"",
                   "directions above the horizon with finite reflectances are needed");
     const Prior prior = standard_prior(basis.components());
-    const Estimator e = estimator(o, prior, options, basis.samples());
+    const Scales scales = likely_scales(o, prior, o.y);
+    const Estimator e = estimator(scaled(o, scales), scaled(prior, scales), options, basis.samples());
     const Eigen::VectorXd c = e.gain * o.y;
-    const bool is_map = options.method == ReconstructOptions::Method::map;
-    const Estimator likely = is_map ? e : map_estimator(o, prior);
     ChannelFit& fit = out.channels[band];
     fit.scores.assign(c.data(), c.data() + c.size());
     fit.observations = static_cast<std::size_t>(o.y.size());
-    fit.chi2 = chi2_of(o, prior, likely, o.y);
-    fit.misfit = misfit_of(o, prior, likely, o.y);
+    fit.chi2 = chi2_of(o, prior, o.y);
+    fit.misfit = std::sqrt(scales.noise);
+    fit.excess = std::sqrt(scales.prior);
     fit.rms_ln = (o.y - o.q * c).norm() / std::sqrt(static_cast<double>(o.y.size()));
     if (options.uncertainty && options.calibrate && band == samples.bands() / 2) {
       const Calibration calibration = calibrate(basis, o, options);
       out.widening = calibration.widening;
       out.covered = calibration.covered;
     }
-    solved.push_back({c, e.factor, fit.misfit});
+    solved.push_back({c, e.factor, fit.misfit, 1});
   }
-  for (Solved& s : solved) s.scale *= out.widening;
+  for (Solved& s : solved) s.scale = out.widening;
   if (samples.bands() == 1) out.channels[1] = out.channels[2] = out.channels[0];
   fill_tables(basis, map_cells(basis, solved, options.uncertainty), solved.size(), out);
-  out.energy = energy_of(out.table);
+  if (options.energy) out.energy = energy_of(out.table);
   judge(basis, options, solved.size(), out);
   return out;
 }

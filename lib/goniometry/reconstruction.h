@@ -4,17 +4,19 @@
 // interpolated linearly between cells as tables are; Q' are the rows of the basis there. With x = m + Q c + rest,
 // c ~ N(0, 1):
 //   y = Q' c + e,  e ~ N(0, 1 / W),  1 / W_k = sigma_k^2 (w_k / (f_k w_k + epsilon))^2 + rest_k^2
-//   c = (Q'' W Q' + 1)^-1 Q'' W y,   S = (Q'' W Q' + 1)^-1,   variance of x per cell = s^2 (q' S q + rest^2)
+//   c = (Q'' W Q' + 1)^-1 Q'' W y,   S = (Q'' W Q' + 1)^-1,   variance of x per cell = s^2 (q' S q + b rest^2)
 // sigma_k: the sample's own, else `relative_noise` f_k. Where several samples share a cell's neighbourhood, rest_k is
 // what they have in common; it is taken as independent, and the interval of the cell keeps it in full.
 // method tikhonov is that of Nielsen et al. 2015 (and the thesis' section 2.C): W = 1, and eta over Q = V S, which is
 // eta / (n - 1) in the units here; its S is taken with the same noise.
 //
+// A material unlike those of the basis: with prior variances a and 1 / W times b, ln a and ln b normal of the width ln
+// 4 and not negative, the most likely pair (of y, c integrated out) replaces a = b = 1. b is what keeps a few precise
+// observations of a strange material from being explained by wild components; rest is taken b times as well.
+//
 // s makes intervals honest for these very directions: every material of the basis is taken out in turn, reconstructed
-// from its values at the same directions with simulated noise and the others' mean and covariance of c, and s is the
-// 95 % quantile of |error| / sigma over cells and materials, over 1.96. A measurement that fits the basis worse than
-// its variances say, chi^2 of y above its degrees of freedom, widens them by the root of that ratio, as it does for the
-// materials that are left out.
+// by the same steps from its values at the same directions with simulated noise and the others' mean and covariance of
+// c, and s is the 95 % quantile of |error| / sigma over cells and materials, over 1.96.
 //
 // Bands: red, green and blue as they are; one band serves all three. Others become three by averages over the
 // wavelengths above 590 nm, between 480 and 590 nm, and below 480 nm, where nothing lies within, by the band nearest to
@@ -37,6 +39,7 @@ struct ReconstructOptions {
   double relative_noise = 0.02;  // of samples that state no sigma
   bool uncertainty = true;       // per cell; left out, only the table is made
   bool calibrate = true;         // s by leaving materials out
+  bool energy = true;            // integrate the table
 };
 
 struct Energy {
@@ -49,8 +52,8 @@ struct ChannelFit {
   std::vector<double> scores;  // c
   double chi2 = 0;             // of y under the basis' own variance and noise
   std::size_t observations = 0;
-  double misfit = 1;  // root of chi2 per observation, at least 1
-  double rms_ln = 0;  // of what is left of y
+  double misfit = 1, excess = 1;  // roots of b and a
+  double rms_ln = 0;              // of what is left of y
 };
 
 struct Reconstruction {

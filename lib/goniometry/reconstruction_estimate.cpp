@@ -107,13 +107,68 @@ Estimator estimator(const Observed& observed, const Prior& prior, const Reconstr
   return tikhonov_estimator(observed, prior, options.eta / static_cast<double>(samples - 1));
 }
 
-double chi2_of(const Observed& observed, const Prior& prior, const Estimator& map, const Eigen::VectorXd& y) {
-  const Eigen::VectorXd off = y - observed.q * prior.mean;
-  return off.dot((off - observed.q * (map.gain * off)).cwiseQuotient(observed.noise));
+// Along the eigenvectors of L' Q'' W Q' L with eigenvalues g, y has the components u with variances a g + b, and what
+// is left of it, in m - r dimensions, the variance b; a and b are the two scales.
+class Evidence {
+ public:
+  Evidence(const Observed& observed, const Prior& prior, const Eigen::VectorXd& y) {
+    const Eigen::VectorXd off = y - observed.q * prior.mean, weights = observed.noise.cwiseInverse();
+    const Eigen::MatrixXd seen = observed.q * prior.factor;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(seen.transpose() * weights.asDiagonal() * seen);
+    const Eigen::VectorXd along = eigen.eigenvectors().transpose() * (seen.transpose() * weights.cwiseProduct(off));
+    const double largest = eigen.eigenvalues().maxCoeff();
+    left_ = off.dot(weights.cwiseProduct(off));
+    freedom_ = static_cast<double>(y.size());
+    for (Eigen::Index i = eigen.eigenvalues().size(); i-- > 0 && freedom_ > 0;) {
+      const double g = eigen.eigenvalues()[i];
+      if (!(g > 1e-12 * largest)) break;
+      gains_.push_back(g);
+      squares_.push_back(along[i] * along[i] / g);
+      left_ -= squares_.back();
+      --freedom_;
+    }
+    left_ = std::max(left_, 0.0);
+  }
+  double chi2(const Scales& s) const {
+    double sum = left_ / s.noise;
+    for (std::size_t i = 0; i < gains_.size(); ++i) sum += squares_[i] / (s.prior * gains_[i] + s.noise);
+    return sum;
+  }
+  // -2 ln of the density of y, with ln of either scale normal of the width ln 4.
+  double cost(const Scales& s) const {
+    constexpr double width = 1.386;
+    const double a = std::log(s.prior) / width, b = std::log(s.noise) / width;
+    double sum = chi2(s) + freedom_ * std::log(s.noise) + a * a + b * b;
+    for (const double g : gains_) sum += std::log(s.prior * g + s.noise);
+    return sum;
+  }
+
+ private:
+  std::vector<double> gains_, squares_;
+  double left_ = 0, freedom_ = 0;
+};
+
+double chi2_of(const Observed& observed, const Prior& prior, const Eigen::VectorXd& y) {
+  return Evidence(observed, prior, y).chi2({});
 }
 
-double misfit_of(const Observed& observed, const Prior& prior, const Estimator& map, const Eigen::VectorXd& y) {
-  return std::max(1.0, std::sqrt(chi2_of(observed, prior, map, y) / static_cast<double>(y.size())));
+Scales likely_scales(const Observed& observed, const Prior& prior, const Eigen::VectorXd& y) {
+  const Evidence evidence(observed, prior, y);
+  Scales best;
+  double least = evidence.cost(best);
+  for (int a = 0; a <= 12; ++a)
+    for (int b = 0; b <= 40; ++b) {
+      const Scales s{std::pow(2.0, a / 2.0), std::pow(2.0, b / 2.0)};
+      if (const double cost = evidence.cost(s); cost < least) best = s, least = cost;
+    }
+  return best;
+}
+
+Observed scaled(const Observed& observed, const Scales& scales) {
+  return {observed.q, observed.y, observed.noise * scales.noise};
+}
+Prior scaled(const Prior& prior, const Scales& scales) {
+  return {prior.mean, prior.factor * std::sqrt(scales.prior)};
 }
 
 Calibration calibrate(const Basis& basis, const Observed& observed, const ReconstructOptions& options) {
@@ -125,20 +180,18 @@ Calibration calibrate(const Basis& basis, const Observed& observed, const Recons
   for (std::size_t s = 0; s < basis.samples();) {
     const std::uint32_t material = basis.material_of()[s];
     const Prior prior = others.without(material);
-    const Estimator e = estimator(observed, prior, options, basis.samples());
-    const bool is_map = options.method == ReconstructOptions::Method::map;
-    const Estimator likely = is_map ? e : map_estimator(observed, prior);
-    const Eigen::ArrayXd sigma =
-        ((e.factor.transpose() * cells.q).colwise().squaredNorm().transpose().array() + cells.rest.array().square())
-            .sqrt();
     for (; s < basis.samples() && basis.material_of()[s] == material; ++s) {
       Eigen::VectorXd y = observed.q * others.score(s);
       for (Eigen::Index i = 0; i < y.size(); ++i) y[i] += std::sqrt(observed.noise[i]) * random.normal();
-      const double wider = misfit_of(observed, prior, likely, y);
+      const Scales scales = likely_scales(observed, prior, y);
+      const Estimator e = estimator(scaled(observed, scales), scaled(prior, scales), options, basis.samples());
+      const Eigen::ArrayXd sigma = ((e.factor.transpose() * cells.q).colwise().squaredNorm().transpose().array() +
+                                    scales.noise * cells.rest.array().square())
+                                       .sqrt();
       Eigen::VectorXd error = cells.q.transpose() * (others.score(s) - e.estimate(observed, prior, y));
       for (Eigen::Index i = 0; i < error.size(); ++i) {
         error[i] += cells.rest[i] * random.normal();
-        ratios.push_back(std::abs(error[i]) / std::max(wider * sigma[i], 1e-12));
+        ratios.push_back(std::abs(error[i]) / std::max(sigma[i], 1e-12));
         within += ratios.back() <= normal_95 ? 1 : 0;
       }
     }

@@ -35,10 +35,15 @@ Estimator tikhonov_estimator(const Observed& observed, const Prior& prior, doubl
 Estimator estimator(const Observed& observed, const Prior& prior, const ReconstructOptions& options,
                     std::size_t samples);
 
-// Of y under the prior and the noise: y' (Q' L L' Q'' + 1 / W)^-1 y = y' W (y - Q' c) with the most likely c.
-double chi2_of(const Observed& observed, const Prior& prior, const Estimator& map, const Eigen::VectorXd& y);
-// Root of chi^2 per observation, at least 1: what intervals are widened by.
-double misfit_of(const Observed& observed, const Prior& prior, const Estimator& map, const Eigen::VectorXd& y);
+// y' (Q' L L' Q'' + 1 / W)^-1 y.
+double chi2_of(const Observed& observed, const Prior& prior, const Eigen::VectorXd& y);
+// By what the variances of the components and of noise and rest are multiplied; at least 1 each.
+struct Scales {
+  double prior = 1, noise = 1;
+};
+Scales likely_scales(const Observed& observed, const Prior& prior, const Eigen::VectorXd& y);
+Observed scaled(const Observed& observed, const Scales& scales);
+Prior scaled(const Prior& prior, const Scales& scales);
 
 struct Calibration {
   double widening = 1, covered = 0;

@@ -117,6 +117,7 @@ Errors leave_out_in_turn(const std::vector<Material>& materials, const std::vect
       for (std::size_t w = 0; w < std::size(ways); ++w) {
         ReconstructOptions options;
         options.method = ways[w].method;
+        options.energy = false;
         options.uncertainty = options.calibrate = ways[w].method == Method::map;
         const auto out = reconstruct(ways[w].builtin ? builtin : without, samples, options);
         errors[w][n].push_back(compare(materials[m], out, places));
@@ -228,7 +229,7 @@ std::string compare_plans(const Basis& basis, const std::vector<Material>& mater
   const auto tell = [&](const char* name, const std::vector<PlannedPair>& pairs) {
     std::vector<double> errors;
     ReconstructOptions options;
-    options.uncertainty = false;
+    options.uncertainty = options.energy = false;
     for (std::size_t m = 0; m < materials.size(); ++m)
       errors.push_back(
           compare(materials[m], reconstruct(basis, measure(materials[m], pairs, m), options), places).log1p);
