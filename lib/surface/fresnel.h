@@ -5,6 +5,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "geom/vector.h"
 
@@ -12,7 +13,7 @@ namespace gonio::surface {
 
 // Relative index with the given reflectance at normal incidence, f0 = ((eta - 1) / (eta + 1))^2; f0 < 1.
 template <class T>
-T eta_of_f0(const T& f0) {
+requires(!std::is_integral_v<T>) T eta_of_f0(const T& f0) {
   using std::sqrt;
   const T r = sqrt(f0);
   return (1 + r) / (1 - r);
@@ -20,7 +21,7 @@ T eta_of_f0(const T& f0) {
 
 // eta: the index beyond over the index on this side. Total reflection is 1. Exactly zero for eta = 1.
 template <class T>
-T fresnel_dielectric(double cosine, const T& eta) {
+requires(!std::is_integral_v<T>) T fresnel_dielectric(double cosine, const T& eta) {
   using std::sqrt;
   if (eta == 1.0) return T(0);
   const double c = std::clamp(cosine, 0.0, 1.0);
@@ -34,7 +35,7 @@ T fresnel_dielectric(double cosine, const T& eta) {
 // Reflectance of a smooth interface to diffuse light from outside, 2 integral of F(c) c dc; eta >= 1. Duntley 1942, as
 // in Egan & Hilgeman 1979, "Optical Properties of Inhomogeneous Materials", appendix.
 template <class T>
-T fresnel_dielectric_mean(const T& eta) {
+requires(!std::is_integral_v<T>) T fresnel_dielectric_mean(const T& eta) {
   using std::log;
   constexpr double near = 1.001;  // the closed form cancels below
   if (eta < near) return eta > 1.0 ? fresnel_dielectric_mean(near) * (eta - 1) / (near - 1) : T(0);
@@ -45,7 +46,7 @@ T fresnel_dielectric_mean(const T& eta) {
 
 // Complex index eta + i k.
 template <class T>
-T fresnel_metal(double cosine, const T& eta, const T& k) {
+requires(!std::is_integral_v<T>) T fresnel_metal(double cosine, const T& eta, const T& k) {
   using std::sqrt;
   const double c = std::clamp(cosine, 0.0, 1.0), c2 = c * c, s2 = 1 - c2;
   const T d = eta * eta - k * k - s2;
@@ -54,6 +55,20 @@ T fresnel_metal(double cosine, const T& eta, const T& k) {
   const T s = (ab + c2 - 2 * a * c) / (ab + c2 + 2 * a * c);
   const T p = s * (c2 * ab + s2 * s2 - 2 * a * c * s2) / (c2 * ab + s2 * s2 + 2 * a * c * s2);
   return std::clamp((s + p) / 2, T(0.0), T(1.0));
+}
+
+// Whole numbers are taken as what they stand for.
+inline double eta_of_f0(double f0) {
+  return eta_of_f0<double>(f0);
+}
+inline double fresnel_dielectric(double cosine, double eta) {
+  return fresnel_dielectric<double>(cosine, eta);
+}
+inline double fresnel_dielectric_mean(double eta) {
+  return fresnel_dielectric_mean<double>(eta);
+}
+inline double fresnel_metal(double cosine, double eta, double k) {
+  return fresnel_metal<double>(cosine, eta, k);
 }
 
 inline double schlick_rise(double cosine) {
