@@ -269,7 +269,9 @@ class Reduction {
     const std::string rows = std::to_string(result_.samples.rows());
     if (recording_.tile)
       note("The white tile stands beside the sample in " + std::to_string(with_own_tile_) + " of " + rows +
-           " pictures that count; the others refer to pictures of it under the same light.");
+           " pictures that count" +
+           (with_own_tile_ < result_.samples.rows() ? "; the others refer to pictures of it under the same light."
+                                                    : "."));
     else
       note("Irradiance is that of the lights as the manifest states them; no white tile was used.");
     double spread_i = 0, spread_o = 0;

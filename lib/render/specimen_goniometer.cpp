@@ -8,7 +8,7 @@
 namespace gonio::render {
 namespace {
 
-constexpr double patch_radius_m = 0.005, plate_m = 0.0125, tile_beside_m = 0.0135, tile_reflectance = 0.98;
+constexpr double patch_radius_m = 0.003, plate_m = 0.0075, tile_beside_m = 0.0085, tile_reflectance = 0.98;
 constexpr double degree = pi / 180;
 
 std::string text(const char* format, double angle_rad) {
@@ -47,7 +47,7 @@ void add_plates(manifest::Document& document) {
 void add_camera(manifest::Document& document, const Arc& arc) {
   manifest::Camera& camera = document.cameras["camera"];
   camera.width_px = camera.height_px = 96;
-  camera.fx_px = camera.fy_px = 96 * arc.camera_distance_m / 0.036;
+  camera.fx_px = camera.fy_px = 96 * arc.camera_distance_m / 0.023;
   camera.cx_px = camera.cy_px = 47.5;
 }
 
