@@ -53,6 +53,11 @@ FitOptions fit_options(const cli::Invocation& call) {
   if (call.flag("anisotropic")) options.anisotropic = true;
   options.random_starts = static_cast<int>(call.integer("starts"));
   options.folds = static_cast<int>(call.integer("folds"));
+  const std::string& scale = call.text("scale");
+  options.scale = scale == "noise"   ? Scale::noise
+                  : scale == "log1p" ? Scale::log1p
+                  : scale == "log10" ? Scale::log10
+                                     : Scale::automatic;
   options.seed = call.seed;
   return options;
 }

@@ -75,6 +75,12 @@ std::vector<cli::Option> fitting_options() {
        .help = "Try no surface that changes when it is turned about its normal.",
        .conflicts = {"anisotropic"}},
       {.name = "anisotropic", .type = Type::flag, .help = "Try such surfaces in any case."},
+      {.name = "scale",
+       .type = Type::choice,
+       .help = "On which scale fits err least: noise weighs by sigma, log1p compares log(1 + 100 f cos cos), log10 "
+               "decades; auto is noise where sigma is stated, else log1p.",
+       .preset = "auto",
+       .choices = {"auto", "noise", "log1p", "log10"}},
       {.name = "starts",
        .type = Type::integer,
        .help = "Random starts of each fit, beside those that the samples suggest.",
