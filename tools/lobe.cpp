@@ -135,7 +135,7 @@ Exit run(cli::Invocation& call) {
     page.figures(figures);
     write_file(call.text("html"), page.html());
   }
-  std::cout << manifest::print_json(Value::object({{"file", file}, {"lobes", list}})) << std::flush;
+  std::cout << manifest::print_json(Value::object({{"file", file}, {"lobes", list}})) << "\n" << std::flush;
   return Exit::done;
 }
 

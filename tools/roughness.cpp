@@ -84,7 +84,7 @@ Exit run(cli::Invocation& call) {
   }
   if (call.given("csv")) write_file(call.text("csv"), csv_of(all));
   if (call.given("html")) write_file(call.text("html"), roughness_page(all));
-  std::cout << manifest::print_json(Value::object({{"roughness", list}})) << std::flush;
+  std::cout << manifest::print_json(Value::object({{"roughness", list}})) << "\n" << std::flush;
   return Exit::done;
 }
 

@@ -14,22 +14,6 @@ namespace {
   throw Error(Exit::usage, "ridges", problem, remedy);
 }
 
-void check(const RidgeShape& s) {
-  if (!(s.ridge_rad > 0 && s.ridge_rad <= pi / 4 + 1e-12))
-    refuse("the ridge angle is " + std::to_string(s.ridge_rad * 180 / pi) + " degrees",
-           "facets are the longer flanks: above 0, at most 45 degrees");
-  if (!(s.pitch_m > 0 && std::isfinite(s.pitch_m))) refuse("the pitch is no length", "state it");
-  const double wall = s.pitch_m * std::sin(s.ridge_rad);
-  if (!(s.crest_radius_m >= 0 && s.trough_radius_m >= 0 && s.crest_radius_m + s.trough_radius_m <= wall))
-    refuse("the edges' radii add up to more than the walls, " + std::to_string(wall * 1e6) + " um",
-           "round them less, or make the pitch longer");
-  if (!(s.burr_share >= 0 && s.burr_share < 1)) refuse("the share of burrs is not in [0, 1)", "state a share");
-  if (s.burr_share > 0 && !(s.burr_height_m > 0 && s.burr_width_m > 0 && s.burr_length_m > 0))
-    refuse("burrs have no height, width or length", "state all three");
-  if (s.burr_share > 0 && s.burr_width_m > s.pitch_m) refuse("burrs are wider than the pitch", "make them smaller");
-  if (s.ridges < 1 || s.length_m < 0) refuse("there is no ridge in the period", "one at least");
-}
-
 struct Burr {
   int ridge;
   double x, height;
@@ -57,6 +41,22 @@ double bump(double t) {
 
 }  // namespace
 
+void check_ridges(const RidgeShape& s) {
+  if (!(s.ridge_rad > 0 && s.ridge_rad <= pi / 4 + 1e-12))
+    refuse("the ridge angle is " + std::to_string(s.ridge_rad * 180 / pi) + " degrees",
+           "facets are the longer flanks: above 0, at most 45 degrees");
+  if (!(s.pitch_m > 0 && std::isfinite(s.pitch_m))) refuse("the pitch is no length", "state it");
+  const double wall = s.pitch_m * std::sin(s.ridge_rad);
+  if (!(s.crest_radius_m >= 0 && s.trough_radius_m >= 0 && s.crest_radius_m + s.trough_radius_m <= wall))
+    refuse("the edges' radii add up to more than the walls, " + std::to_string(wall * 1e6) + " um",
+           "round them less, or make the pitch longer");
+  if (!(s.burr_share >= 0 && s.burr_share < 1)) refuse("the share of burrs is not in [0, 1)", "state a share");
+  if (s.burr_share > 0 && !(s.burr_height_m > 0 && s.burr_width_m > 0 && s.burr_length_m > 0))
+    refuse("burrs have no height, width or length", "state all three");
+  if (s.burr_share > 0 && s.burr_width_m > s.pitch_m) refuse("burrs are wider than the pitch", "make them smaller");
+  if (s.ridges < 1 || s.length_m < 0) refuse("there is no ridge in the period", "one at least");
+}
+
 double ridge_profile_m(const RidgeShape& s, double y_m) {
   const double c = std::cos(s.ridge_rad), n = std::sin(s.ridge_rad), period = s.pitch_m;
   const double facet = period * c * c, depth = period * c * n;
@@ -81,7 +81,7 @@ double ridge_profile_m(const RidgeShape& s, double y_m) {
 }
 
 Relief ridges(const RidgeShape& s, const RidgeSampling& sampling) {
-  check(s);
+  check_ridges(s);
   const double n = std::sin(s.ridge_rad);
   double finest = s.pitch_m * n * n / 6;
   for (const double r : {s.crest_radius_m, s.trough_radius_m})

@@ -36,6 +36,7 @@ struct RidgeSampling {
 };
 
 // Error(usage) at "ridges" for shapes that cannot be.
+void check_ridges(const RidgeShape& shape);
 Relief ridges(const RidgeShape& shape, const RidgeSampling& sampling = {});
 double ridge_profile_m(const RidgeShape& shape, double y_m);  // without burrs; 0 at the sharp crest
 

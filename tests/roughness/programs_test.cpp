@@ -1,4 +1,4 @@
-// roughness, lobe and relief as a person runs them: what they print, what they write, what they refuse.
+// roughness, lobe and relief, from GONIO_BIN, as a person runs them: what they print and write, what they refuse.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
