@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -50,8 +51,11 @@ Eigen::VectorXd distances2(const Eigen::MatrixXd& z, const Eigen::MatrixXd& r) {
          static_cast<double>(z.cols());
 }
 
-double median_of(const Eigen::VectorXd& values) {
-  return stats::median({values.data(), static_cast<std::size_t>(values.size())});
+// Of the bulk of the cells: where the middle lies, and the upper sixth begins.
+constexpr std::array<double, 2> bulk{0.5, 0.85};
+
+double quantile_of(const Eigen::VectorXd& values, double share) {
+  return stats::quantile({values.data(), static_cast<std::size_t>(values.size())}, share);
 }
 
 // Normal z with correlation r as sound cells would have it: the polynomial taken out, each view over its scatter.
@@ -107,17 +111,19 @@ ClassResult judge(const CellPattern& pattern, const std::vector<std::size_t>& ce
   const Eigen::MatrixXd r = correlation(z);
   result.distance2 = distances2(z, r);
   const Null null(pattern, cells, r);
-  std::vector<double> middle(result.largest.size());
+  std::array<std::vector<double>, 2> usual;
+  usual.fill(std::vector<double>(result.largest.size()));
   parallel_for(
       0, result.largest.size(),
       [&](std::size_t draw) {
         Random random(seed, draw);
         const Eigen::VectorXd d2 = null.draw(random);
         result.largest[draw] = d2.maxCoeff();
-        middle[draw] = median_of(d2);
+        for (std::size_t k = 0; k < bulk.size(); ++k) usual[k][draw] = quantile_of(d2, bulk[k]);
       },
       8);
-  result.widening = std::max(1.0, median_of(result.distance2) / stats::median(middle));
+  for (std::size_t k = 0; k < bulk.size(); ++k)
+    result.widening = std::max(result.widening, quantile_of(result.distance2, bulk[k]) / stats::median(usual[k]));
   for (double& d2 : result.largest) d2 *= result.widening;
   std::ranges::sort(result.largest);
   return result;

@@ -1,6 +1,7 @@
 // Cells that behave unlike their class over the views.
 //
-// Of cell i and view v, z_iv is the deviation from the class's polynomial over the class's scatter in that view. R is
+// Of cell i and view v, z_iv is the relative deviation from the class's polynomial over the class's
+// scatter in that view. R is
 // the correlation between views within the class, of z clipped at 3 so that defects do not make themselves normal, and
 // shrunk towards no correlation by the weight that Schaefer & Strimmer 2005 derive (equation 8), so that there may be
 // more views than cells. With its eigenvectors e_k and eigenvalues l_k, over all views a cell has the distance
@@ -10,8 +11,9 @@
 //
 // What sound cells do is simulated: normal z with the correlation R go through the same steps (polynomial taken out,
 // scatter estimated, clipped, R estimated anew), `draws` times. Were the bulk of the cells wider than that (the median
-// of d^2 tells), the null is widened alike. A cell's p is the share of simulated samples whose largest d^2 reaches its
-// own, over both classes together (Sidak): the chance that a sample without defects has any such cell.
+// or the 85 % quantile of d^2 tells: scatters that differ over the sample, tails that are not normal), the null is
+// widened alike, never narrowed. A cell's p is the share of simulated samples whose largest d^2 reaches its own, over
+// both classes together (Sidak): the chance that a sample without defects has any such cell.
 #pragma once
 #include <cstddef>
 #include <cstdint>

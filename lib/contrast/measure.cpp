@@ -42,6 +42,15 @@ struct Seen {  // a view that shows enough, and which of the input's views it is
   std::vector<std::size_t> of_input;
 };
 
+void check_placements(const Seen& seen, const Input& input) {
+  for (int k = 0; k < 2; ++k)
+    if (std::ranges::count(seen.views, k, &MeasuredView::placement) == 0)
+      throw Error(Exit::data, input.place,
+                  "has no image of \"" + input.placement[static_cast<std::size_t>(k)] +
+                      "\" that can be measured: " + (input.dropped.empty() ? "" : input.dropped.back()),
+                  "expose less where cells are saturated, and keep the whole pattern in the picture");
+}
+
 Seen look(const manifest::Document& document, const MeasureOptions& options, Input& input) {
   Seen seen;
   for (std::size_t i = 0; i < input.views.size(); ++i) {
@@ -65,12 +74,7 @@ Seen look(const manifest::Document& document, const MeasureOptions& options, Inp
     seen.views.push_back(std::move(view));
     seen.of_input.push_back(i);
   }
-  for (int k = 0; k < 2; ++k)
-    if (std::ranges::count(seen.views, k, &MeasuredView::placement) == 0)
-      throw Error(Exit::data, input.place,
-                  "has no image of \"" + input.placement[static_cast<std::size_t>(k)] +
-                      "\" that can be measured: " + (input.dropped.empty() ? "" : input.dropped.back()),
-                  "expose less where cells are saturated, and keep the whole pattern in the picture");
+  check_placements(seen, input);
   return seen;
 }
 
@@ -85,6 +89,22 @@ void find_bits(const Seen& seen, Input& input) {
   if (!input.pattern.known())
     throw Error(Exit::data, input.place, "shows no two kinds of cells in these images, and its bits are not stated",
                 "give the pattern's file, or for a data matrix its text");
+}
+
+// Views in which one of the two kinds of cells does not count at all.
+void drop_one_sided(const Members& members, Seen& seen, Input& input) {
+  for (std::size_t v = seen.views.size(); v-- > 0;)
+    for (std::size_t bit = 0; bit < 2; ++bit) {
+      const CellMeans& means = seen.views[v].means;
+      if (std::ranges::any_of(members[bit], [&](std::size_t cell) { return std::isfinite(means.mean[cell]); }))
+        continue;
+      input.dropped.push_back(seen.views[v].image + ": no cell of bit " + std::to_string(bit) + " counts (" +
+                              reasons(means) + ")");
+      seen.views.erase(seen.views.begin() + static_cast<std::ptrdiff_t>(v));
+      seen.of_input.erase(seen.of_input.begin() + static_cast<std::ptrdiff_t>(v));
+      break;
+    }
+  check_placements(seen, input);
 }
 
 void refine(const manifest::Document& document, const MeasureOptions& options, const Members& members, Input& input,
@@ -206,6 +226,7 @@ Measured measure(const manifest::Document& document, const std::string& name, co
   if (result.bits_found) find_bits(seen, input);
   if (result.bits_found && input.data_matrix) settle_code(input.pattern);
   const Members members = members_of(input.pattern);
+  drop_one_sided(members, seen, input);
   if (options.refine) refine(document, options, members, input, seen);
   enter_directions(input, seen.views, seen.of_input);
   std::vector<ViewFit> fits;
@@ -213,11 +234,6 @@ Measured measure(const manifest::Document& document, const std::string& name, co
   for (std::size_t v = 0; v < seen.views.size(); ++v) {
     MeasuredView& view = seen.views[v];
     fits.push_back(fit_view(input.pattern, members, view.means));
-    for (std::size_t bit = 0; bit < 2; ++bit)
-      if (fits.back().of[bit].cells == 0)
-        throw Error(Exit::data, input.views[seen.of_input[v]].place,
-                    "shows no cell of bit " + std::to_string(bit) + " that counts: " + reasons(view.means),
-                    "expose so that neither kind of cells is saturated, or leave the image out");
     enter_contrast(input.pattern, fits.back(), view);
     add_place_error(document, options, members, input, input.views[seen.of_input[v]], view);
     deviation.push_back(deviations(input.pattern, fits.back(), view.means));

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "stats/intervals.h"
+
 namespace gonio::contrast {
 namespace {
 
@@ -86,11 +88,21 @@ void enter_contrast(const CellPattern& pattern, const ViewFit& fit, MeasuredView
 
 std::vector<double> deviations(const CellPattern& pattern, const ViewFit& fit, const CellMeans& means) {
   std::vector<double> z(pattern.cells(), std::nan(""));
-  for (std::size_t cell = 0; cell < pattern.cells(); ++cell) {
-    const ClassFit& of = fit.of[pattern.bits[cell]];
-    if (!std::isfinite(means.mean[cell])) continue;
-    const double scatter = std::max(of.scatter, 1e-9 * std::abs(of.expected[cell]));
-    z[cell] = scatter > 0 ? (means.mean[cell] - of.expected[cell]) / scatter : 0;
+  for (std::uint8_t bit = 0; bit < 2; ++bit) {
+    const ClassFit& of = fit.of[bit];
+    std::vector<double> size;
+    for (std::size_t cell = 0; cell < pattern.cells(); ++cell) {
+      if (pattern.bits[cell] != bit || !std::isfinite(means.mean[cell])) continue;
+      // Over the brightness there: texture scatters by shares of it. What is dark beside its scatter stays as it is.
+      const double by = of.expected[cell] > 5 * of.scatter ? of.expected[cell] : of.mean;
+      z[cell] = (means.mean[cell] - of.expected[cell]) / std::max(std::abs(by), 1e-300);
+      size.push_back(std::abs(z[cell]));
+    }
+    if (size.empty()) continue;
+    const double n = static_cast<double>(size.size());
+    const double scatter = std::max(1.4826 * stats::median(size) * std::sqrt(n / std::max(of.degrees, 1.0)), 1e-9);
+    for (std::size_t cell = 0; cell < pattern.cells(); ++cell)
+      if (pattern.bits[cell] == bit) z[cell] /= scatter;
   }
   return z;
 }

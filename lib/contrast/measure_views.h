@@ -20,7 +20,7 @@ ViewFit fit_view(const CellPattern& pattern, const Members& members, const CellM
 // s1, s2, difference, michelson, right, ratio of the view from its fit.
 void enter_contrast(const CellPattern& pattern, const ViewFit& fit, MeasuredView& view);
 
-// Deviation of each cell from its class over the class's scatter; NaN where it does not count.
+// Relative deviation of each cell from its class over the class's scatter of it; NaN where it does not count.
 std::vector<double> deviations(const CellPattern& pattern, const ViewFit& fit, const CellMeans& means);
 
 // Michelson contrast of two signals with independent errors.

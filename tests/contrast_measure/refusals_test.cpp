@@ -167,7 +167,7 @@ const std::vector<Refusal> refusals{
      },
      "cells outside the picture"},
     {"SaturatedEverywhere", [](Session& s) { s.options.full_scale = 0.1; }, "cells saturated"},
-    {"SaturatedBrightCells", [](Session& s) { s.options.full_scale = 0.7; }, "shows no cell of bit"},
+    {"SaturatedBrightCells", [](Session& s) { s.options.full_scale = 0.7; }, "no cell of bit 1 counts"},
     {"PictureOfAnotherSize", [](Session& s) { enter_camera(s, 100); },
      "has 80 x 80 px, its camera \"camera\" 100 x 100 px"},
     {"PosedButNowhereMarked",
