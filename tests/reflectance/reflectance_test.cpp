@@ -103,6 +103,27 @@ TEST(Reflectance, MicroRidges) {
                {{"surface.micro-ridges", "ridge_share", 0.5}, {"surface.micro-ridges", "ridge_azimuth_rad", 0.7}});
 }
 
+// A third of the facets of a saw lies under lumps, on a sample that was rotated; its ridges are known roughly.
+TEST(Reflectance, ResidueOnRidges) {
+  Paint paint{.base = R"({"model": "ridged", "ridge_rad": {"value": 0.28, "free": true},
+    "alpha_u": {"value": 0.15, "free": true}, "alpha_v": {"value": 0.2, "free": true}})"};
+  paint.turns = {0, 90, 180, 270};
+  const auto ridges = registered("ridged", {{"ridge_rad", 0.25}, {"alpha_u", 0.2}, {"alpha_v", 0.15}});
+  const auto truth = [&](Vec3 wo, Vec3 wi, double, double) {
+    constexpr double alpha = 0.6, share = 0.3;
+    const Vec3 h = normalized(wo + wi);
+    const auto g = [](double z) { return std::sqrt(alpha * alpha + (1 - alpha * alpha) * z * z); };
+    const double d = alpha * alpha / (pi * std::pow(1 + (alpha * alpha - 1) * h.z * h.z, 2));
+    const double lumps = surface::fresnel_dielectric(dot(wo, h), 1.5) * d / (2 * (wo.z * g(wi.z) + wi.z * g(wo.z)));
+    return (1 - share) * ridges(wo, wi, 0, 0) + share * lumps;
+  };
+  expect_named(paint_world(paint, truth, 12),
+               {{"surface.residue", "residue_share", 0.3}, {"surface.residue", "residue_alpha", 0.6}});
+  const World clean = paint_world(paint, ridges, 13);
+  const TablesProblem problem = clean.problem();
+  EXPECT_EQ(named(problem, explain(problem, {})), "");
+}
+
 // Without excitation the colour is the base's own; with it a band glows.
 TEST(Reflectance, Fluorescence) {
   Paint paint;

@@ -64,6 +64,7 @@ class Collector {
     const SurfacePlaces places(*out_.full_model);
     if (places.film() && rows_.band_m.size() >= fewest_bands_of_a_film) film();
     if (places.ridges() && rotated()) ridges();
+    if (places.relief) residue();
     if (!rows_.band_m.empty() && varies(rows_.excitation)) fluorescence();
     return std::move(out_);
   }
@@ -271,6 +272,14 @@ class Collector {
            *std::max_element(column.begin(), column.end()) > *std::min_element(column.begin(), column.end());
   }
 
+  void residue() {
+    const mechanism::Mechanism& m = declared("surface.residue");
+    enter(m,
+          {{of_mechanism(m, m.parameters[0]), {Kind::residue, "residue_share", ReflectanceSlot::all, 0, ""}},
+           {of_mechanism(m, m.parameters[1]), {Kind::residue, "residue_alpha", ReflectanceSlot::all, 1, ""}}},
+          "");
+  }
+
   void fluorescence() {
     const mechanism::Mechanism& m = declared("surface.fluorescence");
     std::vector<std::pair<Parameter, ReflectanceSlot>> own;
@@ -326,6 +335,7 @@ ReflectanceState ReflectanceParameters::state(std::span<const double> values) co
     if (slot.kind == Kind::film && slot.which == 0 && values[p] > 0) s.film = {values[p], values[p + 1]};
     if (slot.kind == Kind::ridges && slot.which == 0 && values[p] > 0)
       s.ridges = {values[p], values[p + 1], values[p + 2]};
+    if (slot.kind == Kind::residue && slot.which == 0) s.residue = {values[p], values[p + 1]};
     if (slot.kind == Kind::fluorescence && slot.which == 0) s.fluorescence = {values[p], values[p + 1], values[p + 2]};
     if (slot.kind != Kind::base && slot.kind != Kind::mechanism) continue;
     const std::optional<std::size_t> at = parameter_place(*s.model, slot.name);

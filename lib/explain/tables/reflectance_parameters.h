@@ -16,11 +16,11 @@
 namespace gonio::explain::tables {
 
 struct ReflectanceSlot {
-  enum class Kind { base, gain, mechanism, film, ridges, fluorescence };
+  enum class Kind { base, gain, mechanism, film, ridges, residue, fluorescence };
   Kind kind = Kind::base;
   std::string name;        // of the surface model's parameter
   std::size_t band = all;  // base: a colour's band
-  std::size_t which = 0;   // film, ridges, fluorescence: number of the parameter
+  std::size_t which = 0;   // film, ridges, residue, fluorescence: number of the parameter
   std::string mechanism;   // id; empty for the base surface
   bool switches = false;   // mechanism: away from `neutral` it needs the full model
   double neutral = 0;
