@@ -74,13 +74,12 @@ const manifest::ModelInfo& model_named(const std::string& id) {
 }
 
 const manifest::ParameterInfo& parameter_named(const manifest::ModelInfo& model, const std::string& name,
-                                               const std::string& option) {
+                                               const std::string& option, Exit code) {
   const auto found = std::ranges::find(model.parameters, name, &manifest::ParameterInfo::name);
   if (found != model.parameters.end()) return *found;
   std::string known;
   for (const auto& p : model.parameters) known += (known.empty() ? "" : ", ") + p.name;
-  throw Error(Exit::usage, option, "names \"" + name + "\", which model \"" + model.id + "\" has not",
-              "it takes " + known);
+  throw Error(code, option, "names \"" + name + "\", which model \"" + model.id + "\" has not", "it takes " + known);
 }
 
 }  // namespace gonio::contrast

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "base/quantity.h"
 #include "manifest/model.h"
 
@@ -26,6 +27,6 @@ std::vector<Assignment> assignments(const std::vector<std::string>& texts, const
 // Error(usage) at --model with the known ones.
 const manifest::ModelInfo& model_named(const std::string& id);
 const manifest::ParameterInfo& parameter_named(const manifest::ModelInfo& model, const std::string& name,
-                                               const std::string& option);
+                                               const std::string& option, Exit code = Exit::usage);
 
 }  // namespace gonio::contrast

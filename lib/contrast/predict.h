@@ -78,5 +78,7 @@ std::size_t largest(const Means& means);
 // Every combination, one a row: RFC 4180 with units in the names.
 std::string combinations_csv(const Prediction& prediction);
 std::string means_csv(const Prediction& prediction);
+// ... and as entries of the manifest's section; differences and Michelson's contrasts signed there.
+std::vector<manifest::Contrast> entries_of(const Prediction& prediction);
 
 }  // namespace gonio::contrast

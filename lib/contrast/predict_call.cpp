@@ -29,7 +29,11 @@ void enter_surface(cli::Invocation& call) {
   if (id == "ridged") surface.parameters = {{"alpha_u", 0.05}, {"alpha_v", 0.05}};
   for (const Assignment& a : assignments(call.texts("set"), "--set", info))
     surface.parameters[a.parameter] = manifest::Parameter(a.values);
-  for (const Assignment& a : assignments(call.texts("sigma"), "--sigma", info)) surface.sigma[a.parameter] = a.values;
+  for (const Assignment& a : assignments(call.texts("sigma"), "--sigma", info)) {
+    if (std::ranges::any_of(a.values, [](double v) { return v < 0; }))
+      throw Error(Exit::usage, "--sigma " + a.parameter, "is negative", "a standard deviation is 0 or more");
+    surface.sigma[a.parameter] = a.values;
+  }
   for (const Assignment& a : assignments(call.texts("vary"), "--vary", info))
     surface.parameters.try_emplace(a.parameter, a.values.front());
   if (id == "ridged") surface.parameters.try_emplace("ridge_rad", 5 * degree);
@@ -99,6 +103,13 @@ Prediction predicted(const cli::Invocation& call, const Specimen& specimen, std:
                             .seed = call.seed});
 }
 
+// Earlier predictions of the same surface give way; measured contrasts and other surfaces' stay.
+void enter_contrasts(cli::Invocation& call, const Prediction& p) {
+  std::erase_if(call.document.contrasts,
+                [&p](const manifest::Contrast& c) { return c.action == "predict" && c.surface == p.surface; });
+  for (manifest::Contrast& entry : entries_of(p)) call.document.contrasts.push_back(std::move(entry));
+}
+
 Tables tables_of(const Prediction& p) {
   return {{"contrasts.csv", combinations_csv(p)}, {"means.csv", means_csv(p)}};
 }
@@ -149,6 +160,7 @@ Exit optimized(cli::Invocation& call, const Specimen& specimen) {
   const std::string name = specimen.name() + "-optimum";
   call.document.surfaces[name] = best;
   const Prediction p = predicted(call, Specimen(call.document, name), {});
+  enter_contrasts(call, p);
   Tables tables = tables_of(p);
   tables.emplace_back("optimum.csv", optimum_csv(optimum));
   write_tables(call, tables);
@@ -308,6 +320,7 @@ Exit predict_call(cli::Invocation& call) {
   const Specimen specimen(call.document, surface_name(call));
   if (call.flag("optimize")) return optimized(call, specimen);
   const Prediction p = predicted(call, specimen, varied_of(call, specimen.info()));
+  enter_contrasts(call, p);
   write_tables(call, tables_of(p));
   if (call.given("html")) write_file(call.text("html"), predict_page(p));
   return Exit::done;

@@ -1,5 +1,5 @@
-// Predicted contrasts as tables of comma-separated values (predict.h). Angles in degrees for people's spreadsheets; the
-// names say so.
+// Predicted contrasts as entries of the manifest and as tables of comma-separated values (predict.h). Tables have
+// angles in degrees, for people's spreadsheets; the names say so.
 #include "base/text.h"
 #include "contrast/predict.h"
 
@@ -43,6 +43,29 @@ std::string means_csv(const Prediction& p) {
                                       : column(m.over)) +
               "," + m.label[i] + both(m.mean[i]) + "\n";
   return text;
+}
+
+std::vector<manifest::Contrast> entries_of(const Prediction& p) {
+  std::vector<manifest::Contrast> entries;
+  for (const Combination& c : p.combinations) {
+    manifest::Contrast entry;
+    entry.action = "predict";
+    entry.surface = p.surface;
+    entry.pair_rad = {c.pair_rad.first, c.pair_rad.second};
+    entry.tilt_rad = c.tilt_rad;
+    entry.light_rad = p.experiment.light_rad;
+    for (std::size_t i = 0; i < p.varied.size(); ++i) entry.parameters[p.varied[i].parameter] = c.varied[i];
+    entry.signals = {c.first.value, c.second.value};
+    const double sign = c.first_brighter ? 1 : -1;
+    entry.difference = sign * c.difference.value;
+    entry.michelson = sign * c.michelson.value;
+    if (p.draws > 0)
+      entry.sigma = {{"signals", {c.first.sigma, c.second.sigma}},
+                     {"difference", {c.difference.sigma}},
+                     {"michelson", {c.michelson.sigma}}};
+    entries.push_back(std::move(entry));
+  }
+  return entries;
 }
 
 }  // namespace gonio::contrast

@@ -46,6 +46,9 @@ Specimen::Specimen(const manifest::Document& document, const std::string& surfac
     throw Error(Exit::data, manifest::place(document, "/surfaces"), "has no surface \"" + surface + "\"",
                 known.empty() ? "describe one there, or name a --model" : "it has " + known);
   }
+  if (const surface::Model* model = surface::find(entry->second.model); model != nullptr && model->transmits())
+    throw Error(Exit::data, state_->place + "/model", "is \"" + entry->second.model + "\", which lets light through",
+                "predict the contrast of an opaque surface");
   state_->sigma = entry->second.sigma;
   state_->appearance = scene::build_scene(on_a_plane(document, surface)).appearance;
   const auto& all = state_->appearance.surfaces;
@@ -54,9 +57,8 @@ Specimen::Specimen(const manifest::Document& document, const std::string& surfac
   if (built.varies() || (built.base && all[*built.base].varies()))
     throw Error(Exit::data, state_->place, "varies over the object (textures, vertices, labels or laws)",
                 "state one number for each parameter: contrast is predicted of a uniform sample");
-  if (built.model->transmits())
-    throw Error(Exit::data, state_->place + "/model", "is \"" + entry->second.model + "\", which lets light through",
-                "predict the contrast of an opaque surface");
+  for (const auto& [parameter, sigma] : state_->sigma)
+    parameter_named(info(), parameter, state_->place + "/sigma", Exit::data);
 }
 
 Specimen::~Specimen() = default;

@@ -1,0 +1,61 @@
+// Ridges as geometry against the model `ridged`, in the views of the contrast experiment.
+#include "contrast/brute_force.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "samples.h"
+
+namespace gonio::tests {
+namespace {
+
+using namespace contrast;
+
+// Without burrs each signal agrees within five of its standard errors (of 60; chance of any beyond, with 7 degrees of
+// freedom each: 0.1, so that two may be) and 2 % of the largest, which walls and second reflections add.
+TEST(TracedContrast, CleanRidgesAreTheModels) {
+  const Experiment e;
+  const std::vector<double> angles = ridge_angles().values;
+  const TracedRidges ridges{.shape = {.pitch_m = 100e-6}, .alpha_u = 0.08, .alpha_v = 0.08, .ridges = 1, .paths = 512};
+  const TracedSignals traced = traced_signals(e, angles, ridges);
+  const Specimen model = ridged(0.08, 0.08);
+  std::size_t i = 0;
+  int beyond = 0;
+  double largest_signal = 0;
+  for (const double s : traced.value) largest_signal = std::max(largest_signal, s);
+  for (const double angle : angles) {
+    const Reflectance f = model.with({{"ridge_rad", angle}});
+    for (const double tilt : e.tilts_rad)
+      for (const double rotation : rotations_of(e)) {
+        const double expected = signal(e, f, tilt, rotation);
+        beyond += std::abs(traced.value[i] - expected) > 5 * traced.sigma[i] + 0.02 * largest_signal ? 1 : 0;
+        ++i;
+      }
+  }
+  EXPECT_LE(beyond, 2);
+  const Prediction traced_means = traced_prediction(e, angles, ridges);
+  const Means& best = means_over(traced_means, "ridge_rad");
+  EXPECT_EQ(best.label[largest(best)], "5");
+}
+
+// Burrs that cover a share of the plane take that share of the mirror's light away, and no more than a fifth beyond it.
+TEST(TracedContrast, BurrsTakeWhatTheyCover) {
+  TracedRidges clean{.shape = {.pitch_m = 100e-6}, .ridges = 2, .patches = 6, .paths = 1024};
+  TracedRidges burrs = clean;
+  burrs.shape.burr_share = 0.7;
+  burrs.shape.burr_height_m = burrs.shape.burr_width_m = 30e-6;
+  burrs.shape.burr_length_m = 60e-6;
+  const double ridge = 5 * degree;
+  const std::vector<View> mirror{view_of({}, 0, 0)};
+  const Estimate before = traced_lobe(clean, ridge, mirror)[0], after = traced_lobe(burrs, ridge, mirror)[0],
+                 covered = covered_share(burrs, ridge);
+  EXPECT_GT(covered.value, 0.1);
+  EXPECT_LT(covered.value, 0.35);
+  const double left = after.value / before.value, error = std::hypot(after.sigma, before.sigma) / before.value;
+  EXPECT_LT(left, 1 - covered.value + 5 * std::hypot(error, covered.sigma) + 0.05);
+  EXPECT_GT(left, 1 - 1.2 * covered.value - 0.05 - 5 * std::hypot(error, covered.sigma));
+}
+
+}  // namespace
+}  // namespace gonio::tests
