@@ -59,23 +59,16 @@ const cli::Program& gonio_program() {
                     .help = "predict: a manifest with the surface; measure: one with the pattern and its images."}},
       .takes_out = true,
       .takes_seed = true,
-<<<<<<< HEAD
       .sections_read = {"cameras", "files", "images", "mechanisms", "patterns", "surfaces", "tables"},
-      .sections_written = {"contrasts", "files", "patterns"},
+      .sections_written = {"contrasts", "files", "patterns", "surfaces"},
       .files = {{"contrasts.csv", "predict: every combination, angles in degrees, signals in 1/sr"},
                 {"means.csv", "predict: mean contrasts by tilt, by each varied parameter, by pair of rotations"},
+                {"optimum.csv", "predict --optimize: the optimum, its bounds, and how much each parameter matters"},
                 {"views.csv", "measure: signals and contrasts of every view, with their sigmas"},
                 {"cells.csv", "measure: bit, contrast of the turn, distance from the class and p of every cell"},
                 {"series.csv", "measure: mean radiance of every cell in every view"},
                 {"pattern.png, turn.png, distance.png", "measure: maps of the cells, upright in the sample's frame"}},
       .exits = {{Exit::negative, "measure found cells that behave unlike their class"}},
-=======
-      .sections_read = {"files", "mechanisms", "surfaces"},
-      .sections_written = {"contrasts", "files", "surfaces"},
-      .files = {{"contrasts.csv", "predict: every combination, angles in degrees, signals in 1/sr"},
-                {"means.csv", "predict: mean contrasts by tilt, by each varied parameter, by pair of rotations"},
-                {"optimum.csv", "predict --optimize: the optimum, its bounds, and how much each parameter matters"}},
->>>>>>> b070140 (Ridges traced as geometry in the contrast experiment, with burrs: what moves the best ridge angle, and what explain names; contrasts in the manifest, bad input, prose)
       .references = {"Luongo, Falster, Doest, Li, Regi, Zhang, Tosello, Nielsen, Aanaes & Frisvad, Modeling the "
                      "anisotropic reflectance of a surface with microstructure engineered to obtain visible contrast "
                      "after rotation, ICCVW 2017.",
