@@ -93,6 +93,7 @@ std::optional<report::Plot> scan_plot(const Outcome& outcome, std::size_t band) 
     for (const auto& [zenith, row] : scans[k].points) {
       points.x.push_back(degrees(zenith));
       points.y.push_back(s.f[row * s.bands() + band]);
+      if (!s.sigma.empty()) points.sigma.push_back(s.sigma[row * s.bands() + band]);
     }
     plot.series.push_back(std::move(points));
     plot.series.push_back(fitted_line(outcome, scans[k], band, static_cast<int>(k)));
@@ -174,7 +175,7 @@ std::string standalone_svg(const report::Plot& plot) {
     const report::Series& series = plot.series[k];
     if (series.name.empty()) continue;
     const std::size_t colour = series.style < 0 ? k : static_cast<std::size_t>(series.style);
-    head += format("<text x=\"540\" y=\"%zu\" text-anchor=\"end\" style=\"fill:%s\">", 14 + 14 * named++,
+    head += format("<text x=\"%zu\" y=\"14\" style=\"fill:%s\">", 64 + 100 * named++,
                    colours[colour % colours.size()].c_str()) +
             series.name + "</text>";
   }
