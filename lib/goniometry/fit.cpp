@@ -21,6 +21,7 @@ namespace gonio::goniometry {
 namespace {
 
 constexpr int screening = 15, thorough = 60;  // iterations
+constexpr double first_allowance = 0.1;       // for errors of the model, while starts are tried
 constexpr double alike = 1e-4;                // of the mean square: what rounding and steps decide
 
 struct Run {  // of one candidate
@@ -41,7 +42,8 @@ std::vector<std::vector<double>> good_starts(const Problem& all, const Candidate
                                              const FitOptions& options) {
   std::vector<std::size_t> bands;
   const Samples few = few_of(all, bands);
-  const Problem problem(few, all.scale());
+  Problem problem(few, all.scale());
+  if (problem.scale() == Scale::noise) problem.set_model_error(first_allowance, few.f);
   const auto beginnings = starts(candidate, guess_of(problem), bands.size(), options.random_starts, options.seed);
   std::vector<Solution> tried(beginnings.size());
   parallel_for(0, tried.size(),
@@ -94,19 +96,19 @@ Solution best_solution(const Problem& problem, const Candidate& candidate, const
   return best;
 }
 
-// Relative error that brings the mean square to one about these predictions; 0 where it is below without.
+// Share of the tolerance that brings the mean square to one about these predictions; 0 where it is below without.
 double model_error_of(const Problem& problem, const Candidate& candidate, const Solution& solution) {
-  const auto triples = candidate.triples(solution.x, problem.bands());
-  std::vector<double> m(problem.bands()), r2, s2, m2;
+  const std::vector<double> m = problem.predictions(candidate, solution.x);
+  std::vector<double> r2, s2, m2;
   const Samples& samples = problem.samples();
-  for (const std::uint32_t r : problem.rows()) {
-    problem.predict(candidate, triples, r, m);
-    for (std::size_t b = 0; b < m.size(); ++b) {
+  const std::size_t bands = problem.bands();
+  for (const std::uint32_t r : problem.rows())
+    for (std::size_t b = 0; b < bands; ++b) {
       if (!problem.used(r, b)) continue;
-      const double f = samples.f[r * m.size() + b], s = samples.sigma[r * m.size() + b];
-      r2.push_back((f - m[b]) * (f - m[b])), s2.push_back(s * s), m2.push_back(m[b] * m[b]);
+      const std::size_t k = r * bands + b;
+      const double off = samples.f[k] - m[k], may = problem.tolerance(r, m[k]);
+      r2.push_back(off * off), s2.push_back(samples.sigma[k] * samples.sigma[k]), m2.push_back(may * may);
     }
-  }
   const double left = std::max(1.0, static_cast<double>(r2.size()) - static_cast<double>(solution.x.size()));
   const auto excess_at = [&](double e) {
     double sum = 0;
@@ -235,14 +237,14 @@ void rank(std::vector<Run>& runs, double least, const FitOptions& options, Fits&
   }
 }
 
-// Where samples state their noise: the least error that any model must admit holds for all.
+// Where samples state their noise: the least error that any model must admit holds for all. Fits have begun with
+// first_allowance, lest what no model can say of dark samples decides where they go.
 void allow_for_models(Problem& problem, std::vector<Run>& runs) {
   if (problem.scale() != Scale::noise || runs.empty()) return;
   const auto best = std::ranges::min_element(runs, {}, [](const Run& run) { return run.solution.at.cost; });
   for (int round = 0; round < 3; ++round) {
     const double e = model_error_of(problem, best->candidate, best->solution);
-    if (e == 0) return;
-    problem.set_model_error(e, best->candidate, best->solution.x);
+    problem.set_model_error(e, problem.predictions(best->candidate, best->solution.x));
     best->solution = solve(problem, best->candidate, best->solution.x, problem.rows(), thorough);
   }
   for (Run& run : runs) run.solution = solve(problem, run.candidate, run.solution.x, problem.rows(), thorough);
@@ -265,6 +267,7 @@ Fits fit_surfaces(const Samples& given, const FitOptions& options) {
   const Samples samples = thinned(given, options.most_rows, out.notes);
   Problem problem(samples, scale_of(samples, options.scale));
   if (problem.rows().empty()) throw Error(Exit::data, samples.name, "no sample above the horizon has a number to fit");
+  if (problem.scale() == Scale::noise) problem.set_model_error(first_allowance, samples.f);
   out.least_alpha = least_alpha(samples);
   const bool turns = turns_about_normal(samples);
   if (options.anisotropic == true && !turns)

@@ -3,8 +3,9 @@
 // Numbers of a model are shared by all bands (roughness, direction) or one per band (colours). All bands of all rows
 // are fitted at once by bounded Levenberg-Marquardt with the models' own slopes (Marquardt 1963), from several starts
 // (goniometry/start.h). What is minimised is the sum of squares of one of
-//   noise     (f - m) / sqrt(sigma^2 + (e m)^2)          where samples state sigma; e, the model's relative error, is
-//                                                        what makes the mean square one, 0 where it is so without
+//   noise     (f - m) / sqrt(sigma^2 + e^2 (m + 1 / w)^2)    where samples state sigma; e, the error of the best model
+//                                                        on the scale log(1 + w f), w = 100 ci co, is what makes the
+//                                                        mean square one, 0 where it is so without
 //   log1p     log(1 + 100 f ci co) - log(1 + 100 m ci co)    relative where there is light, absolute where there is
 //   none log10     log10(f / m)                                    decades, over samples above zero
 // Covariance: H^-1 of the noise scale, or, where blocks of neighbouring samples disagree by more than that, the

@@ -62,15 +62,22 @@ Problem::Problem(const Samples& samples, Scale scale) : samples_(&samples), scal
   }
 }
 
-void Problem::set_model_error(double share, const Candidate& candidate, const std::vector<double>& x) {
+void Problem::set_model_error(double share, const std::vector<double>& about) {
   model_error_ = share;
+  for (const std::uint32_t r : rows_)
+    for (std::size_t k = r * bands(); k < (r + 1) * bands(); ++k)
+      if (inverse_spread_[k] > 0)
+        inverse_spread_[k] = 1 / std::hypot(samples_->sigma[k], share * tolerance(r, about[k]));
+}
+
+std::vector<double> Problem::predictions(const Candidate& candidate, const std::vector<double>& x) const {
   const auto triples = candidate.triples(x, bands());
-  std::vector<double> m(bands());
+  std::vector<double> all(samples_->f.size()), m(bands());
   for (const std::uint32_t r : rows_) {
     predict(candidate, triples, r, m);
-    for (std::size_t b = 0; b < bands(); ++b)
-      if (used(r, b)) inverse_spread_[r * bands() + b] = 1 / std::hypot(samples_->sigma[r * bands() + b], share * m[b]);
+    std::ranges::copy(m, all.begin() + static_cast<std::ptrdiff_t>(r * bands()));
   }
+  return all;
 }
 
 double Problem::residual(std::size_t row, std::size_t band, double m) const {

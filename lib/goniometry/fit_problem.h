@@ -5,6 +5,7 @@
 // on S + C numbers, and the normal equations are gathered as blocks S x S, S x C and C x C per band.
 #pragma once
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -50,8 +51,12 @@ class Problem {
   const Rows& rows() const { return rows_; }
   bool used(std::size_t row, std::size_t band) const { return inverse_spread_[row * bands() + band] > 0; }
 
-  // Relative error of the model about these predictions; `noise` alone.
-  void set_model_error(double share, const Candidate& candidate, const std::vector<double>& x);
+  // What the model may be wrong by beside the noise, `share` of tolerance(), about these values; `noise` alone.
+  void set_model_error(double share, const std::vector<double>& about);
+  // (1 + w m) / w with w = 100 ci co: what is one on the scale log(1 + w m). Relative where there is light, absolute
+  // where the model has none and the sample has some.
+  double tolerance(std::size_t row, double m) const { return 1 / weight_[row] + std::max(0.0, m); }
+  std::vector<double> predictions(const Candidate& candidate, const std::vector<double>& x) const;
   double model_error() const { return model_error_; }
 
   Normal normal(const Candidate& candidate, const std::vector<double>& x, const Rows& rows) const;
