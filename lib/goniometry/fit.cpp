@@ -231,6 +231,13 @@ void rank(std::vector<Run>& runs, double least, const FitOptions& options, Fits&
         (k == 0 || !runs[k].folds.empty()))
       out.chosen = k, fewest = fit.numbers.size();
   }
+  for (std::size_t k = 0; k < runs.size() && out.chosen < runs.size(); ++k) {
+    const Run &run = runs[k], &chosen = runs[out.chosen];
+    if (k != out.chosen && run.fit.numbers.size() == chosen.fit.numbers.size() && !run.folds.empty() &&
+        std::abs(excess(run.folds, chosen.folds).mean) <= alike * score(chosen) * score(chosen))
+      out.notes.push_back(run.fit.model->info().id + " does as well as " + chosen.fit.model->info().id +
+                          ": these samples do not tell them apart");
+  }
   for (Run& run : runs) {
     run.fit.verdict = verdict_of(run);
     out.candidates.push_back(std::move(run.fit));

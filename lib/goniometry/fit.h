@@ -11,7 +11,7 @@
 // Covariance: H^-1 of the noise scale, or, where blocks of neighbouring samples disagree by more than that, the
 // sandwich over blocks (Liang & Zeger 1986; Bell & McCaffrey 2002): goniometry/uncertainty.h. Held-out error: every
 // block or series is predicted by a fit without it. Chosen is the simplest fit whose held-out error is within one
-// standard error of the least (Breiman et al. 1984, section 3.4.3, with the error of the difference).
+// standard error of the least (Breiman et al. 1984, section 3.4.3, with the error of the difference), or as good.
 #pragma once
 #include <array>
 #include <cstdint>

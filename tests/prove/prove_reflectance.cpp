@@ -23,7 +23,18 @@ double seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-void print(const char* title, const goniometry::Samples& samples, const FitOptions& options) {
+// The least error of any candidate, and the chosen one's held-out error over its fitted one.
+bool claim(const char* title, const Fits& fits, double required, bool decades) {
+  double least = 1e9;
+  for (const Fit& f : fits.candidates) least = std::min(least, decades ? f.fitted.decades : f.band_log1p[0]);
+  const Fit& chosen = fits.candidates.at(fits.chosen);
+  const double ratio = chosen.held_out.scaled / chosen.fitted.scaled;
+  std::printf("%s: measured %.4f %s required %.4f; held out over fitted measured %.3f required 1.15\n", title, least,
+              decades ? "decades" : "of log(1 + 100 f cos cos) at 550 nm", required, ratio);
+  return least <= required && ratio <= 1.15;
+}
+
+Fits print(const char* title, const goniometry::Samples& samples, const FitOptions& options) {
   const double begun = seconds();
   const Fits fits = goniometry::fit_surfaces(samples, options);
   std::printf("\n%s: %zu directions, %zu bands, least alpha %.4f, %.1f s\n", title, samples.rows(), samples.bands(),
@@ -44,6 +55,7 @@ void print(const char* title, const goniometry::Samples& samples, const FitOptio
   for (const auto& r : fits.refusals)
     std::printf("  refused: %s %s: %s\n", r.model.c_str(), r.variant.c_str(), r.reason.c_str());
   std::fflush(stdout);
+  return fits;
 }
 
 int fits_of_recordings(int argc, char** argv) {
@@ -51,11 +63,18 @@ int fits_of_recordings(int argc, char** argv) {
   for (int i = 2; i < argc; ++i) options.models.emplace_back(argv[i]);
   decades = options;
   decades.scale = goniometry::Scale::log10;
-  for (const char* name : {"garnet_red", "krylon_blue", "acryl_blue"})
-    print(name, tests::cornell(tests::data("brdf/cornell") / (std::string(name) + ".brdf"), {550, 450, 650}), options);
-  print("starlink chassis", tests::scans(tests::data("brdf/starlink-lab/chassis_brdf.csv")), decades);
-  print("merl aluminium", tests::scans(tests::data("brdf/merl-aluminium-slices/aluminum_brdf.csv")), decades);
-  return 0;
+  bool met = true;
+  const auto paint = [](const char* name) {
+    return tests::cornell(tests::data("brdf/cornell") / (std::string(name) + ".brdf"), {550, 450, 650}, pi / 2);
+  };
+  met = claim("garnet_red", print("garnet_red", paint("garnet_red"), options), 0.0755, false) && met;
+  met = claim("krylon_blue", print("krylon_blue", paint("krylon_blue"), options), 0.0745, false) && met;
+  print("acryl_blue", paint("acryl_blue"), options);
+  const auto chassis = tests::scans(tests::data("brdf/starlink-lab/chassis_brdf.csv"));
+  met = claim("starlink chassis", print("starlink chassis", chassis, decades), 0.26, true) && met;
+  const auto metal = tests::scans(tests::data("brdf/merl-aluminium-slices/aluminum_brdf.csv"));
+  met = claim("merl aluminium", print("merl aluminium", metal, decades), 0.31, true) && met;
+  return met ? 0 : 1;
 }
 
 const Rgb none{};
