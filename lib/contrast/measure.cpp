@@ -185,11 +185,12 @@ void compare_placements(const Input& input, const std::vector<ViewFit>& fits, co
 
 void warn(Measured& result, const MeasureOptions& options) {
   for (const MeasuredView& view : result.views)
-    if (view.margin_px < 2 * view.place_px)
+    if (view.margin_px < 3 * view.place_px + 0.5)  // half a pixel reaches beyond its centre
       result.notes.push_back(view.image +
-                             format(": the strip of %.2g px left out beside each border is less than two sigmas "
-                                    "of the place, 2 x %.2g px: neighbours may mix",
-                                    view.margin_px, view.place_px));
+                             format(": the strip of %.2g px left out beside each border is less than half a pixel and "
+                                    "three sigmas of the place, %.2g px: neighbours may mix, and sound cells look bad; "
+                                    "use --refine or a smaller --inner",
+                                    view.margin_px, 3 * view.place_px + 0.5));
   if (options.inner > 0.9)
     result.notes.push_back("with an inner share above 0.9 neighbouring cells mix by the lens's blur");
   for (int k = 0; k < 2; ++k)
