@@ -116,10 +116,10 @@ void enter_candidates(const Outcome& outcome, manifest::SurfaceFit& out) {
     other.model = fit.model->info().id + (fit.variant.empty() ? "" : ", " + fit.variant);
     other.parameters = static_cast<std::int64_t>(fit.numbers.size());
     other.rms = finite(fit.fitted.log1p), other.held_out_rms = finite(fit.held_out.log1p);
-    other.reason = !fit.converged            ? "did not converge"
-                   : i < outcome.fits.chosen ? "no better than the simpler one that was chosen, within one standard "
-                                               "error"
-                                             : "errs more on held-out directions";
+    const bool as_good = fit.held_out_excess <= fit.held_out_excess_sigma;
+    other.reason = !fit.converged ? "did not converge"
+                   : as_good      ? "as good within one standard error, and no simpler"
+                                  : "errs more on held-out directions";
     out.alternatives.push_back(std::move(other));
   }
   for (const Refusal& r : outcome.fits.refusals)

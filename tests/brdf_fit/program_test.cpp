@@ -95,7 +95,8 @@ TEST_F(BrdfFit, ManifestsWithTables) {
   std::string text = table();
   write("t.csv", text);
   write("m.json", R"({"gonio": 1, "files": {"f": {"path": "t.csv"}}, "tables": {"t": {"file": "f", "model": "surface",
-    "columns": {"theta_i": "rad", "phi_i": "rad", "theta_o": "rad", "phi_o": "rad", "f": "1/sr"}, "observed": ["f"]}}})");
+    "columns": {"theta_i": "rad", "phi_i": "rad", "theta_o": "rad", "phi_o": "rad", "f": "1/sr"},
+    "observed": ["f"]}}})");
   const Ended ended = run({"--model", "diffuse", "m.json"});
   EXPECT_NE(ended.status, 65) << ended.err;
   const auto document = manifest::parse_document(ended.out, "out", folder_.path());
