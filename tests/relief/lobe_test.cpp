@@ -8,6 +8,8 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "relief/noise.h"
+#include "relief/normals.h"
 #include "relief/ridges.h"
 #include "surface/half_angle.h"
 #include "surface/surface.h"
@@ -109,6 +111,36 @@ TEST(Lobe, NextEventAgreesWithCounting) {
     }
   EXPECT_EQ(n, 16);
   EXPECT_LT(chi2, 39.3);  // 0.999 of chi-square with 16
+}
+
+// Smooth facets of a nearly Gaussian relief, seen from not too low, reflect once as Beckmann's distribution says
+// (Walter et al. 2007) with the alpha of its own slopes. 10 %: the patch has some 1000 independent slopes in each cone,
+// and its heights are not quite Gaussian.
+TEST(Lobe, OfAGaussianReliefIsBeckmanns) {
+  // One noise alone has slopes that are more often small: 15 % more light along the mirror direction. Eight together
+  // are nearly Gaussian.
+  const std::vector<NoisePart> parts(8, {0.2e-6 / std::sqrt(8.0), 8e-6});
+  const Relief r = noise_relief({.parts = parts, .nx = 512, .ny = 512, .step_m = 0.5e-6, .seed = 2, .periodic = true});
+  const Normals normals = normals_of(map_of(r));
+  ASSERT_EQ(normals.fits[0].distribution, "beckmann");
+  const double alpha = std::sqrt(normals.fits[0].alpha_u * normals.fits[0].alpha_v);
+  ASSERT_GT(alpha, 0.08);
+  ASSERT_LT(alpha, 0.3);
+  const Rgb eta{0.2, 0.9, 1.5}, k{3.9, 2.4, 1.9};
+  const Material smooth = conductor(eta, k), rough = material_of("beckmann-conductor",
+                                                                 {{"eta", std::vector<double>{eta.x, eta.y, eta.z}},
+                                                                  {"k", std::vector<double>{k.x, k.y, k.z}},
+                                                                  {"alpha", alpha}},
+                                                                 "t");
+  const Relief level = flat();
+  const Vec3 wo = direction_of(0.5, 0);
+  for (const double off : {-0.15, 0.0, 0.15}) {
+    const Vec3 wi = direction_of(0.5 + off, pi);
+    const Estimate traced = lobe(r, smooth, wo, wi, {0.08, 0.08}, {.paths = 400000, .seed = 3}),
+                   model = lobe(level, rough, wo, wi, {0.08, 0.08}, {.paths = 40000, .seed = 3});
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(traced.value[c] / model.value[c], 1, 0.1 + 4 * traced.sigma[c] / traced.value[c]) << off << " " << c;
+  }
 }
 
 }  // namespace
