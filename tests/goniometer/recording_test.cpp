@@ -144,6 +144,20 @@ TEST_F(RecordingTest, IntervalsCover) {
   EXPECT_NEAR(1.0 * inside / all, 0.95, 0.025);
 }
 
+// Some ten degrees of freedom each, 81 of them: a standard deviation of 3 % of the mean ratio of variances.
+TEST_F(RecordingTest, WithoutStatedNoiseTheScatterStandsForIt) {
+  manifest::Document d = recorded(1);
+  const Reduced stated = reduce(d);
+  for (auto& image : d.images) image.noise.reset();
+  const Reduced reduced = reduce(d);
+  ASSERT_EQ(reduced.samples.rows(), 27u);
+  double ratio = 0;
+  for (std::size_t i = 0; i < 81; ++i) ratio += std::pow(reduced.samples.sigma[i] / stated.samples.sigma[i], 2) / 81;
+  EXPECT_NEAR(ratio, 1, 0.15);
+  EXPECT_TRUE(std::isnan(reduced.readings[0].scatter));
+  EXPECT_NE(reduced.notes.back().find("Noise is not stated"), std::string::npos);
+}
+
 TEST_F(RecordingTest, ATileTakenForLambertianBendsTheSamples) {
   manifest::Document d = recorded(1);
   d.goniometer["tile"].surface.clear();
