@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <map>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "geom/vector.h"
+#include "relief/fft.h"
 
 namespace gonio::explain::heights {
 namespace {
@@ -17,32 +17,7 @@ namespace {
 constexpr std::size_t fewest_tiles = 8, smallest_tile = 32, largest_tile = 256;
 constexpr int lowest_cycles = 2, highest_cycles = 40, block_side = 4;
 
-using Complex = std::complex<double>;
-
-// Cooley & Tukey 1965, radix two, in place; `stride` between the n numbers.
-void transform(Complex* data, std::size_t n, std::size_t stride) {
-  for (std::size_t i = 1, j = 0; i < n; ++i) {
-    std::size_t bit = n >> 1;
-    for (; j & bit; bit >>= 1) j ^= bit;
-    j ^= bit;
-    if (i < j) std::swap(data[i * stride], data[j * stride]);
-  }
-  for (std::size_t length = 2; length <= n; length *= 2) {
-    const double angle = -2 * pi / static_cast<double>(length);
-    for (std::size_t start = 0; start < n; start += length)
-      for (std::size_t k = 0; k < length / 2; ++k) {
-        const Complex w = std::polar(1.0, angle * static_cast<double>(k));
-        Complex &a = data[(start + k) * stride], &b = data[(start + k + length / 2) * stride];
-        const Complex t = w * b;
-        b = a - t;
-        a += t;
-      }
-  }
-}
-
-double hann(std::size_t i, std::size_t n) {
-  return 0.5 - 0.5 * std::cos(2 * pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n));
-}
+using relief::Complex, relief::hann, relief::transform_square;
 
 // Least squares z = a + b u + c v over the finite points, u and v from the middle; missing points become the plane.
 bool level(std::vector<double>& z, std::size_t n) {
@@ -98,8 +73,7 @@ std::vector<double> log_power(std::vector<double> z, const TileSpectra& spectra)
     squares += w * w;
     data[i] = w * z[i];
   }
-  for (std::size_t y = 0; y < n; ++y) transform(data.data() + y * n, n, 1);
-  for (std::size_t x = 0; x < n; ++x) transform(data.data() + x, n, n);
+  transform_square(data, n);
   const double scale = spectra.step_x_m * spectra.step_y_m / squares;
   std::vector<double> result;
   for (const Ordinate& o : spectra.ordinates) {
