@@ -7,6 +7,7 @@
 #include "cli/program.h"
 #include "io/picture.h"
 #include "manifest/value.h"
+#include "relief/lobe_report.h"
 #include "relief/map_options.h"
 #include "relief/roughness_page.h"
 #include "report/number_text.h"
@@ -49,49 +50,6 @@ Material material_asked(const cli::Invocation& call) {
   return material_of(call.text("facets"), parameters, "--facets");
 }
 
-std::string csv_of(const LobeTable& lobe) {
-  std::string csv = "theta_rad,phi_rad,f_r,f_g,f_b,sigma_r,sigma_g,sigma_b\n";
-  for (int t = 0; t < lobe.theta_cells; ++t)
-    for (int p = 0; p < lobe.phi_cells; ++p) {
-      const Estimate& e = lobe.table[static_cast<std::size_t>(t * lobe.phi_cells + p)];
-      csv += shortest_text(lobe.theta_rad(t)) + "," + shortest_text(lobe.phi_rad(p));
-      for (const Rgb& v : {e.value, e.sigma})
-        for (int c = 0; c < 3; ++c) csv += "," + format("%.6g", v[c]);
-      csv += "\n";
-    }
-  return csv;
-}
-
-Value three(Rgb v) {
-  return std::vector<double>{v.x, v.y, v.z};
-}
-Value value_of(double incidence, double azimuth, const LobeTable& lobe) {
-  const auto estimate = [](const Estimate& e) {
-    return Value::object({{"value", three(e.value)}, {"sigma", three(e.sigma)}});
-  };
-  const Energy& energy = lobe.energy;
-  Value peak = estimate(lobe.peak);
-  peak["theta_rad"] = lobe.peak_theta_rad;
-  peak["phi_rad"] = lobe.peak_phi_rad;
-  return Value::object(
-      {{"incidence_rad", incidence},
-       {"azimuth_rad", azimuth},
-       {"reflected", estimate(energy.reflected)},
-       {"lost", estimate(energy.lost)},
-       {"cut", estimate(energy.cut)},
-       {"share_by_facets_1_2_3_more", std::vector<double>(energy.by_facets.begin(), energy.by_facets.end())},
-       {"peak", peak}});
-}
-
-std::string energy_text(const LobeTable& lobe) {
-  const Energy& e = lobe.energy;
-  return report::with_sigma(e.reflected.value.y, e.reflected.sigma.y) + " of the light is reflected (green), " +
-         report::percent_text(e.by_facets[1] + e.by_facets[2] + e.by_facets[3], 1) +
-         " of that by way of more than one facet; the largest cell is " +
-         report::with_sigma(lobe.peak.value.y, lobe.peak.sigma.y) + " 1/sr at " +
-         report::number_text(lobe.peak_theta_rad / degree, 3) + " degrees.";
-}
-
 Exit run(cli::Invocation& call) {
   const std::string file = call.texts("MAP").front();
   call.note_input(file);
@@ -117,16 +75,16 @@ Exit run(cli::Invocation& call) {
   for (const double incidence : incidences) {
     const LobeTable lobe = lobe_table(relief, material, direction_of(incidence, azimuth), cells,
                                       {.paths = call.integer("paths"), .seed = call.seed});
-    list.push_back(value_of(incidence, azimuth, lobe));
+    list.push_back(lobe_value(incidence, azimuth, lobe));
     const io::Image picture = picture_of(lobe, call.number("decades"));
     const std::string name = "lobe-" + file_stem(format("%g", incidence / degree));
     if (!call.out.empty()) {
-      write_file(call.output_path(name + ".csv"), csv_of(lobe));
+      write_file(call.output_path(name + ".csv"), lobe_csv(lobe));
       io::write_picture(call.output_path(name + ".png"), picture);
     }
     figures.push_back({.png = io::encode_png(picture),
                        .title = format("%g degrees", incidence / degree),
-                       .caption = energy_text(lobe)});
+                       .caption = energy_sentence(lobe)});
   }
   if (call.given("html")) {
     page.section("Lobes");

@@ -50,7 +50,8 @@ struct Wrong {
 
 TEST(ContrastRefusals, OneLineWithPlaceValueAndRemedy) {
   const std::string two =
-      R"({"gonio": 1, "surfaces": {"a": {"model": "diffuse", "albedo": 0.5}, "b": {"model": "diffuse", "albedo": 0.5}}})";
+      R"({"gonio": 1, "surfaces": {"a": {"model": "diffuse", "albedo": 0.5},)"
+      R"( "b": {"model": "diffuse", "albedo": 0.5}}})";
   const std::vector<Wrong> wrong{
       {{"--model", "rigded"}, "", 64, "choose one of"},
       {{"--tilts=-20deg,,0deg"}, "", 64, "empty place"},
