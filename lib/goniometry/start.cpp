@@ -71,6 +71,7 @@ double start_of(const std::string& name, const manifest::ParameterInfo& info, co
   if (name == "azimuth_rad") return turn;
   if (name == "sigma_rad") return 0.3;
   if (name == "ridge_rad") return std::max(0.05, guess.tilt_rad);
+  if (name == "walls") return 0.5;
   if (name == "amplitude_m") return std::tan(std::max(0.1, guess.tilt_rad)) * 1e-4 / (2 * pi);
   if (name.starts_with("wavelength")) return 1e-4;
   return info.preset.value_or(std::isfinite(info.lower + info.upper) ? (info.lower + info.upper) / 2 : 1);

@@ -19,7 +19,8 @@
 //   f = F cos(theta_r) G Gs D_m(h) / (4 (wi.n) (wo.n)),
 // and since Gs <= Gs1(wo) and the normals that wo sees have the total area wo.m,
 //   integral of f (wi.n) dwi <= cos(theta_r) G1(wo) (wo.m) / (wo.n) <= 1.
-// Light by way of the walls, and reflected twice, is left out: tests/surface/ridged_test.cpp says how much that is.
+// Light by way of the walls, and reflected twice, is in surface/ridge_walls.h; tests/surface/ridged_test.cpp says how
+// much that is.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,6 @@
 // model; surface/ridges.h has the frame and the angles. Facets are smooth to the mesh and rough by their surface.
 #pragma once
 #include <algorithm>
-#include <map>
 #include <string>
 
 #include "io/ply.h"
@@ -77,27 +76,6 @@ inline manifest::Document ridge_recording(const RidgePlate& plate, const RidgeVi
       }
     }
   return d;
-}
-
-// Samples above `share` of the brightest under the same light: light by way of two flanks is a Fresnel factor darker
-// than the facets' own, and the analytic model leaves it out.
-inline goniometry::Samples bright(const goniometry::Samples& samples, double share) {
-  const std::size_t bands = samples.bands();
-  std::map<std::size_t, double> most;
-  for (std::size_t r = 0; r < samples.rows(); ++r)
-    most[samples.series[r]] = std::max(most[samples.series[r]], samples.f[r * bands]);
-  goniometry::Samples result;
-  result.name = samples.name, result.band_name = samples.band_name;
-  for (std::size_t r = 0; r < samples.rows(); ++r) {
-    if (samples.f[r * bands] < share * most[samples.series[r]]) continue;
-    result.wi.push_back(samples.wi[r]), result.wo.push_back(samples.wo[r]);
-    result.series.push_back(samples.series[r]), result.place.push_back(samples.place[r]);
-    for (std::size_t b = 0; b < bands; ++b) {
-      result.f.push_back(samples.f[r * bands + b]);
-      result.sigma.push_back(samples.sigma[r * bands + b]);
-    }
-  }
-  return result;
 }
 
 }  // namespace gonio::tests

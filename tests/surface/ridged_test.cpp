@@ -62,6 +62,7 @@ Vec3 seen_normal(const Surface& surface, Vec3 wo, Random& random) {
 
 struct Tally {
   std::vector<double> once = std::vector<double>(96), squares = once;  // by direction: facets alone
+  std::vector<double> twice = once, twice_squares = once;              // one or two meetings
   double facets = 0, walls = 0, several = 0;  // leaves after one meeting with a facet; with a wall; after more
   double total() const { return facets + walls + several; }
 };
@@ -81,8 +82,11 @@ double reflects(double index, double cosine) {
   return (s * s + p * p) / 2;
 }
 
-// Light goes backwards, from the eye. Facets and walls are equally rough; the rays know nothing of the model.
-Tally simulated(const Surface& surface, double index, Vec3 wo, int rays, std::uint64_t seed) {
+// Light goes backwards, from the eye. Facets and walls are equally rough; the rays know nothing of the model. `masked`:
+// what leaves a flank is masked by its own roughness, too, as a flat rough surface has it.
+Tally simulated(const Surface& surface, double index, Vec3 wo, int rays, std::uint64_t seed, bool masked = false) {
+  const surface::Facets<surface::Slopes::beckmann> flank(
+      surface::Roughness{surface.alpha_u, (1 - surface.alpha_v / surface.alpha_u) / 0.9, 0});
   const Saw saw(surface.ridge_rad);
   Tally tally;
   Random random(seed);
@@ -95,6 +99,10 @@ Tally simulated(const Surface& surface, double index, Vec3 wo, int rays, std::ui
       const auto hit = saw.first(from, {-out.y, -out.z});
       if (!hit) {
         (bounce > 1 ? tally.several : first_is_facet ? tally.facets : tally.walls) += weight / rays;
+        if (bounce == 1 || bounce == 2) {
+          tally.twice[bin_of(-out)] += weight / rays;
+          tally.twice_squares[bin_of(-out)] += weight * weight / rays;
+        }
         if (bounce != 1 || !first_is_facet) break;
         tally.once[bin_of(-out)] += weight / rays;
         tally.squares[bin_of(-out)] += weight * weight / rays;
@@ -108,6 +116,7 @@ Tally simulated(const Surface& surface, double index, Vec3 wo, int rays, std::ui
       const Vec3 h = seen_normal(surface, local, random), w = surface::mirrored(local, h);
       if (w.z <= 0) break;
       weight *= reflects(index, dot(local, h));
+      if (masked) weight *= flank.reflection_weight(local, w, flank.area_seen(local));
       from = hit->at;
       out = -(Vec3{w.x, 0, 0} + along * w.y + m * w.z);
     }
@@ -206,6 +215,39 @@ TEST(Ridged, AgreesWithActualRidges) {
         EXPECT_NEAR(mean(surface::find("ridged")->albedo(values, wo)), model.total, 0.01) << name;
       }
   for (const auto& [name, value] : p) EXPECT_GT(value, 1 - std::pow(1 - 1e-3, 1.0 / p.size())) << name;
+}
+
+// With walls: light that meets one flank or two, by direction. What three standard deviations of a bin do not explain
+// is less than 1.5 % of all light, over 96 bins; totals agree within four standard deviations and 1.5 %, 6 % where the
+// eye is 75 degrees away from v.
+TEST(Ridged, WallsAgreeWithActualRidges) {
+  constexpr int rays = 16000;
+  std::uint64_t seed = 2500;
+  for (const double index : {0.0, 1.5})
+    for (const Surface s :
+         {Surface{0.1, 0.2, 0.2}, Surface{0.17, 0.1, 0.1}, Surface{0.35, 0.15, 0.1}, Surface{0.6, 0.08, 0.12}})
+      for (const Vec3 wo : {tilted(-75), tilted(-50), tilted(-20, 0.4), tilted(0), tilted(60, 0.5)}) {
+        const Tally actual = simulated(s, index, wo, rays, ++seed, true);
+        surface::Values values = values_of(s, index);
+        values.v[7] = {1, 1, 1};
+        const Sampled model = sampled(values, wo, rays, ++seed);
+        double beyond = 0, two = 0, squares = 0;
+        for (std::size_t b = 0; b < 96; ++b) {
+          const double variance = (actual.twice_squares[b] - actual.twice[b] * actual.twice[b] + model.squares[b] -
+                                   model.sum[b] * model.sum[b]) /
+                                  rays;
+          beyond += std::max(0.0, std::abs(actual.twice[b] - model.sum[b]) - 3 * std::sqrt(variance));
+          two += actual.twice[b];
+          squares += actual.twice_squares[b] + model.squares[b];
+        }
+        const std::string name = "index " + std::to_string(index) + ", ridges of " + std::to_string(s.ridge_rad) +
+                                 " seen from y = " + std::to_string(wo.y);
+        std::printf("%s: all %.4f, one or two %.4f, facets alone %.4f, model %.4f, beyond noise %.4f\n", name.c_str(),
+                    actual.total(), two, actual.facets, model.total, beyond);
+        EXPECT_LT(beyond, 0.015 * actual.total()) << name;
+        const double deviation = std::sqrt((squares - two * two - model.total * model.total) / rays);
+        EXPECT_NEAR(model.total, two, (wo.y < -0.9 ? 0.06 : 0.015) * two + 4 * deviation) << name;
+      }
 }
 
 // The figures are printed: light by one facet (rays, model, published equations), by one wall and by several
