@@ -12,11 +12,13 @@
 #include "contrast/measure_input.h"
 #include "contrast/measure_views.h"
 #include "contrast/view_shift.h"
+#include "stats/distributions.h"
 
 namespace gonio::contrast {
 namespace {
 
 constexpr double smallest_cell_px = 3;
+constexpr double least_inner = 0.25, least_across_px = 2.5;  // for min_pixels pixels to lie within
 
 std::string reasons(const CellMeans& means) {
   std::string text;
@@ -51,6 +53,19 @@ void check_placements(const Seen& seen, const Input& input) {
                   "expose less where cells are saturated, and keep the whole pattern in the picture");
 }
 
+// Means over the share of each cell that the place's uncertainty leaves (measure.h).
+void read_cells(const GreyView& grey, const Input& input, const InputView& of, const MeasureOptions& options,
+                MeasuredView& view) {
+  const double side = shortest_side_px(input.pattern, *of.map).value_or(1);
+  const double coordinates = 2 * static_cast<double>(input.views.size());
+  view.place_px = largest_sigma_px(of.spread);
+  view.needed_px = 0.5 + stats::normal_upper_quantile(options.alarm_rate / 2 / coordinates) * view.place_px;
+  const double least = std::max(least_inner, least_across_px / side);
+  view.inner = std::min(options.inner, std::max(least, 1 - 2 * view.needed_px / side));
+  view.margin_px = (1 - view.inner) / 2 * side;
+  view.means = cell_means(grey, input.pattern, *of.map, view.inner);
+}
+
 Seen look(const manifest::Document& document, const MeasureOptions& options, Input& input) {
   Seen seen;
   for (std::size_t i = 0; i < input.views.size(); ++i) {
@@ -61,9 +76,7 @@ Seen look(const manifest::Document& document, const MeasureOptions& options, Inp
     view.image = of.id;
     view.placement = of.placement;
     view.lights = document.images[of.image].light;
-    view.place_px = of.place_px;
-    view.margin_px = (1 - options.inner) / 2 * *side;
-    view.means = cell_means(read_view(document, of, options), input.pattern, *of.map, options.inner);
+    read_cells(read_view(document, of, options), input, of, options, view);
     const auto counted = std::ranges::count_if(view.means.mean, [](double v) { return std::isfinite(v); });
     if (2 * static_cast<std::size_t>(counted) < input.pattern.cells()) {
       input.dropped.push_back(of.id + ": less than half of the cells count (" + reasons(view.means) + ")");
@@ -107,21 +120,41 @@ void drop_one_sided(const Members& members, Seen& seen, Input& input) {
   check_placements(seen, input);
 }
 
+// Twice: with the brightness of the classes, and then, laid better, with each cell's own.
 void refine(const manifest::Document& document, const MeasureOptions& options, const Members& members, Input& input,
             Seen& seen) {
   for (std::size_t v = 0; v < seen.views.size(); ++v) {
     MeasuredView& view = seen.views[v];
     InputView& of = input.views[seen.of_input[v]];
     const GreyView grey = read_view(document, of, options);
-    const ViewFit fit = fit_view(input.pattern, members, view.means);
-    std::vector<double> expected(input.pattern.cells());
-    for (std::size_t cell = 0; cell < expected.size(); ++cell)
-      expected[cell] = fit.of[input.pattern.bits[cell]].expected[cell];
-    const ViewShift shift = shift_onto(grey, input.pattern, *of.map, expected, view.place_px);
-    of.map = of.map->shifted(shift.by_px);
-    view.shift_px = shift.by_px;
-    view.place_px = shift.sigma_px;
-    view.means = cell_means(grey, input.pattern, *of.map, options.inner);
+    const ViewMap stated = *of.map;
+    const CornerCovariance prior = of.spread;
+    ViewShift shift;
+    for (const bool own : {false, true}) {
+      const ViewFit fit = fit_view(input.pattern, members, view.means);
+      std::vector<double> brightness(input.pattern.cells());
+      for (std::size_t cell = 0; cell < brightness.size(); ++cell)
+        brightness[cell] = own && std::isfinite(view.means.mean[cell])
+                               ? view.means.mean[cell]
+                               : fit.of[input.pattern.bits[cell]].expected[cell];
+      shift = lay_onto(grey, input.pattern, stated, brightness, prior, view.place_px, shift.by_px);
+      if (!shift.credible) break;
+      of.map = stated.moved(shift.by_px, input.pattern.size_m());
+      of.spread = shift.covariance;
+      read_cells(grey, input, of, options, view);
+    }
+    if (shift.credible) {
+      for (const Vec2 by : shift.by_px) view.shift_px = view.shift_px + by * 0.25;
+      continue;
+    }
+    of.map = stated;
+    of.spread = prior;
+    read_cells(grey, input, of, options, view);
+    if (shift.distance2 > 0)
+      input.notes.push_back(of.id +
+                            format(": the pattern seems to lie %.2g sigmas from where the poses say; it was left "
+                                   "where they say: state the poses' true sigma, or --robot-position and --robot-angle",
+                                   std::sqrt(shift.distance2)));
   }
 }
 
@@ -133,7 +166,8 @@ void add_place_error(const manifest::Document& document, const MeasureOptions& o
   double michelson = 0, difference = 0;
   for (const Vec2 step : {Vec2{view.place_px, 0}, Vec2{0, view.place_px}}) {
     MeasuredView beside;
-    beside.means = cell_means(grey, input.pattern, of.map->shifted(step), options.inner);
+    beside.means =
+        cell_means(grey, input.pattern, of.map->moved({step, step, step, step}, input.pattern.size_m()), view.inner);
     const ViewFit fit = fit_view(input.pattern, members, beside.means);
     if (fit.of[0].cells == 0 || fit.of[1].cells == 0) continue;
     enter_contrast(input.pattern, fit, beside);
@@ -185,12 +219,12 @@ void compare_placements(const Input& input, const std::vector<ViewFit>& fits, co
 
 void warn(Measured& result, const MeasureOptions& options) {
   for (const MeasuredView& view : result.views)
-    if (view.margin_px < 3 * view.place_px + 0.5)  // half a pixel reaches beyond its centre
+    if (view.margin_px < view.needed_px * (1 - 1e-9))
       result.notes.push_back(view.image +
-                             format(": the strip of %.2g px left out beside each border is less than half a pixel and "
-                                    "three sigmas of the place, %.2g px: neighbours may mix, and sound cells look bad; "
-                                    "use --refine or a smaller --inner",
-                                    view.margin_px, 3 * view.place_px + 0.5));
+                             format(": the strip of %.2g px left out beside each border is less than the %.2g px that "
+                                    "the uncertainty of the place asks for: neighbours may mix, and sound cells look "
+                                    "bad; photograph from nearer, state better poses, or mark more corners",
+                                    view.margin_px, view.needed_px));
   if (options.inner > 0.9)
     result.notes.push_back("with an inner share above 0.9 neighbouring cells mix by the lens's blur");
   for (int k = 0; k < 2; ++k)

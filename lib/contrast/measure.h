@@ -6,8 +6,13 @@
 // which the manifest states or which corners marked in a few of the images determine; or, where an image has no camera
 // pose, from the corners marked in it.
 //
-// One view: the pixels whose centres lie in the inner share of a cell are averaged (contrast/segmentation.h); through
-// the cells of bit 1, and through those of bit 0, goes a smooth polynomial of the place on the sample, fitted robustly
+// One view: it is laid onto the pattern, as far as its pose leaves that open (contrast/view_shift.h). The pixels whose
+// centres lie in the inner share of a cell are averaged (contrast/segmentation.h). Of a cell of w pixels whose place is
+// known to sigma the share is
+//     min(inner, 1 - 2 (1/2 + q sigma) / w),
+// half a pixel for the pixel's own extent and q for the whole series: by as much as q sigma no coordinate of any view
+// is off in 1 - (alarm rate) of all sessions (Bonferroni). Neighbours then do not mix, whatever the pose. Through the
+// cells of bit 1, and through those of bit 0, goes a smooth polynomial of the place on the sample, fitted robustly
 // (contrast/cell_classes.h), so that neither uneven light nor a few bad cells bend the result. s1 and s2 are the means
 // of the two polynomials over the whole pattern,
 //     difference = s1 - s2,     michelson = (s1 - s2) / (s1 + s2),
@@ -35,13 +40,13 @@
 namespace gonio::contrast {
 
 struct MeasureOptions {
-  double inner = 0.6;             // share of a cell's width and height that counts
+  double inner = 0.6;             // share of a cell's width and height that counts, at most
   double corner_sigma_px = 0.5;   // of one coordinate of a marked corner that states none
   double robot_sigma_m = 1e-4;    // repeatability of camera poses that state none, one coordinate
   double robot_sigma_rad = 2e-4;  //   and about one axis
   double full_scale = std::numeric_limits<double>::infinity();  // linear values from here on are saturated
   double alarm_rate = 0.05;                                     // of finding any defect on a sample without one
-  bool refine = false;  // shift every view onto the pattern, within what its pose leaves open
+  bool refine = true;  // lay every view onto the pattern, within what its pose leaves open
   std::uint64_t seed = 1;
   std::function<void(const std::filesystem::path&)> note_input;
 };
@@ -54,7 +59,8 @@ struct MeasuredView {
   double along_rad = 0;                  // tilt, signed along the cameras' main direction: the axis of curves
   CellMeans means;                       // of the cells
   double place_px = 0;                   // one sigma of where a cell lies in this picture
-  double margin_px = 0;                  // narrowest strip left out beside the border of cells
+  double inner = 0;                      // share of the cells that counts in this view
+  double margin_px = 0, needed_px = 0;   // narrowest strip left out beside cells' borders, and what the place asks for
   Vec2 shift_px;                         // by refinement, at the pattern's middle
   metric::Estimate bright, dark;         // s1: cells of bit 1; s2: cells of bit 0
   metric::Estimate difference, michelson;

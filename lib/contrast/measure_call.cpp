@@ -26,7 +26,7 @@ MeasureOptions options_of(cli::Invocation& call) {
   options.robot_sigma_rad = call.number("robot-angle");
   if (call.given("full-scale")) options.full_scale = call.number("full-scale");
   options.alarm_rate = call.number("alarm-rate");
-  options.refine = call.flag("refine");
+  options.refine = !call.flag("no-refine");
   options.seed = call.seed;
   options.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
   return options;
@@ -60,7 +60,7 @@ std::vector<cli::Option> measure_options() {
                "if known."},
       {.name = "inner",
        .type = Type::quantity,
-       .help = "measure: share of a cell's width and height that counts.",
+       .help = "measure: largest share of a cell's width and height that counts.",
        .preset = "60%",
        .dimension = Dimension::ratio,
        .lower = 0.05,
@@ -83,9 +83,9 @@ std::vector<cli::Option> measure_options() {
        .preset = "0.2mrad",
        .dimension = Dimension::angle,
        .lower = 0},
-      {.name = "refine",
+      {.name = "no-refine",
        .type = Type::flag,
-       .help = "measure: shift every view onto the pattern, within what its pose leaves open."},
+       .help = "measure: take the poses as they are stated; views are not laid onto the pattern."},
       {.name = "full-scale",
        .type = Type::number,
        .help = "measure: linear value from which on a pixel is saturated; by default what sensor.saturation states.",

@@ -152,13 +152,14 @@ void place_views(const CellPattern& pattern, const std::optional<SamplePose>& po
     if (view.placement != placement) continue;
     if (pose && view.pose) {
       view.map.emplace(*view.camera, view.pose->camera_from_world * pose->world_from_pattern);
-      view.place_px = place_sigma_px(pattern, *view.camera, *view.pose, *pose);
+      view.spread = place_covariance(pattern, *view.camera, *view.pose, *pose);
     } else if (view.marks.size() == 4) {
       std::array<Vec2, 4> corners, pixels;
       for (const PlacedMark& mark : view.marks) {
         corners[static_cast<std::size_t>(mark.corner)] = pattern.corner_m(mark.corner);
         pixels[static_cast<std::size_t>(mark.corner)] = mark.pixel;
-        view.place_px = std::max(view.place_px, mark.sigma_px);
+        for (std::size_t k = 0; k < 2; ++k)
+          view.spread[9 * (2 * static_cast<std::size_t>(mark.corner) + k)] = mark.sigma_px * mark.sigma_px;
       }
       view.map.emplace(homography(corners, pixels));
     } else {

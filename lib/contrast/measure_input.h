@@ -18,7 +18,7 @@ struct InputView {
   std::vector<PlacedMark> marks;
   double full_scale = 0;
   std::optional<ViewMap> map;
-  double place_px = 0;
+  CornerCovariance spread{};  // of the corners in the picture
 };
 struct Input {
   std::string name, place;  // of the pattern: id, place in the manifest

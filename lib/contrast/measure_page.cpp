@@ -319,7 +319,8 @@ std::string measure_page(const Measured& m, const MeasureOptions& options) {
   }
   page.section("What the numbers mean");
   page.list(
-      {"A cell\u2019s mean is over the pixels in its inner " + percent_text(options.inner, 0) + " of width and height.",
+      {"A cell\u2019s mean is over the pixels in its inner " + percent_text(options.inner, 0) +
+           " of width and height, or less where the uncertainty of the place asks for it.",
        "\u00b1: one standard deviation, from the scatter of the cells of a class about a smooth function of their "
        "place, and from laying the pattern one sigma of its place aside in the picture.",
        "A pattern of orientations changes its sign when it is turned by a quarter; paint keeps its sign."});

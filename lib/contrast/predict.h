@@ -14,12 +14,11 @@
 
 #include "contrast/experiment.h"
 #include "contrast/specimen.h"
+#include "metric/exposure.h"
 
 namespace gonio::contrast {
 
-struct Estimate {
-  double value = 0, sigma = 0;
-};
+using metric::Estimate;
 struct Varied {
   std::string parameter;
   std::vector<double> values;

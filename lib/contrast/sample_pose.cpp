@@ -216,14 +216,13 @@ SamplePose locate_sample(const CellPattern& pattern, const std::vector<camera::C
   return pose_of(problem, best);
 }
 
-double place_sigma_px(const CellPattern& pattern, const camera::CameraModel& camera, const CameraPose& pose,
-                      const SamplePose& sample) {
+CornerCovariance place_covariance(const CellPattern& pattern, const camera::CameraModel& camera, const CameraPose& pose,
+                                  const SamplePose& sample) {
   const auto seen = pose.camera_from_world * sample.world_from_pattern;
   const Vec3 pivot = sample.world_from_pattern * middle(pattern);
   const Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> covariance(sample.covariance.data());
-  double largest = 0;
-  for (int k = 0; k < 4; ++k) {
-    Eigen::Matrix<double, 2, 6> by_sample, by_camera;
+  Eigen::Matrix<double, 8, 6> by_sample, by_camera;
+  for (int k = 0; k < 4; ++k)
     for (int p = 0; p < 6; ++p) {
       constexpr double h = 1e-6;
       std::array<double, 6> up{}, down{};
@@ -235,17 +234,16 @@ double place_sigma_px(const CellPattern& pattern, const camera::CameraModel& cam
       const Vec2 s = at(pose.camera_from_world * moved(sample.world_from_pattern, up.data(), pivot)) -
                      at(pose.camera_from_world * moved(sample.world_from_pattern, down.data(), pivot));
       const Vec2 c = at(moved(seen, up.data(), {})) - at(moved(seen, down.data(), {}));
-      by_sample.col(p) << s.x / (2 * h), s.y / (2 * h);
-      by_camera.col(p) << c.x / (2 * h), c.y / (2 * h);
+      by_sample.block<2, 1>(2 * k, p) << s.x / (2 * h), s.y / (2 * h);
+      by_camera.block<2, 1>(2 * k, p) << c.x / (2 * h), c.y / (2 * h);
     }
-    Eigen::Matrix<double, 6, 1> robot;
-    robot << Eigen::Vector3d::Constant(pose.sigma_rad * pose.sigma_rad),
-        Eigen::Vector3d::Constant(pose.sigma_m * pose.sigma_m);
-    const Eigen::Matrix2d spread =
-        by_sample * covariance * by_sample.transpose() + by_camera * robot.asDiagonal() * by_camera.transpose();
-    largest = std::max(largest, std::sqrt(std::max(spread(0, 0), spread(1, 1))));
-  }
-  return largest;
+  Eigen::Matrix<double, 6, 1> robot;
+  robot << Eigen::Vector3d::Constant(pose.sigma_rad * pose.sigma_rad),
+      Eigen::Vector3d::Constant(pose.sigma_m * pose.sigma_m);
+  CornerCovariance place{};
+  Eigen::Map<Eigen::Matrix<double, 8, 8, Eigen::RowMajor>>(place.data()) =
+      by_sample * covariance * by_sample.transpose() + by_camera * robot.asDiagonal() * by_camera.transpose();
+  return place;
 }
 
 }  // namespace gonio::contrast

@@ -16,6 +16,7 @@
 
 #include "camera/camera_model.h"
 #include "contrast/pattern.h"
+#include "contrast/view_map.h"
 #include "geom/rigid.h"
 
 namespace gonio::contrast {
@@ -45,8 +46,8 @@ SamplePose locate_sample(const CellPattern& pattern, const std::vector<camera::C
                          const std::vector<CameraPose>& poses, const std::vector<PlacedMark>& marks,
                          const std::string& place);
 
-// One sigma of where the corners of the pattern lie in a picture, the largest of them, from both poses' uncertainty.
-double place_sigma_px(const CellPattern& pattern, const camera::CameraModel& camera, const CameraPose& pose,
-                      const SamplePose& sample);
+// Of where the corners of the pattern lie in a picture, from both poses' uncertainty.
+CornerCovariance place_covariance(const CellPattern& pattern, const camera::CameraModel& camera, const CameraPose& pose,
+                                  const SamplePose& sample);
 
 }  // namespace gonio::contrast

@@ -2,6 +2,7 @@
 #include "contrast/view_map.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 namespace gonio::contrast {
@@ -32,21 +33,54 @@ ViewMap::ViewMap(const camera::CameraModel& camera, const Rigid<frame::Camera, f
 ViewMap::ViewMap(const Mat3& pixel_from_plane)
     : pixel_from_plane_(pixel_from_plane), plane_from_pixel_(inverted(pixel_from_plane)) {}
 
-ViewMap ViewMap::shifted(Vec2 by_px) const {
+std::array<double, 4> corner_weights(Vec2 s) {
+  return {(1 - s.x) * (1 - s.y), s.x * (1 - s.y), s.x * s.y, (1 - s.x) * s.y};
+}
+
+double largest_sigma_px(const CornerCovariance& covariance) {
+  double largest = 0;
+  for (std::size_t i = 0; i < 8; ++i) largest = std::max(largest, covariance[9 * i]);
+  return std::sqrt(largest);
+}
+
+ViewMap ViewMap::moved(const CornerShifts& by_px, Vec2 size_m) const {
   ViewMap other = *this;
-  other.shift_px_ = shift_px_ + by_px;
+  other.shifts_px_ = by_px;
+  if (shifts_px_)
+    for (std::size_t k = 0; k < 4; ++k) (*other.shifts_px_)[k] = (*shifts_px_)[k] + by_px[k];
+  other.size_m_ = size_m;
   return other;
+}
+
+Vec2 ViewMap::displacement(Vec2 plane_m) const {
+  const auto weights = corner_weights({plane_m.x / size_m_.x, plane_m.y / size_m_.y});
+  Vec2 sum;
+  for (std::size_t k = 0; k < 4; ++k) sum = sum + (*shifts_px_)[k] * weights[k];
+  return sum;
 }
 
 std::optional<Vec2> ViewMap::pixel(Vec2 plane_m) const {
   const auto at = camera_ ? camera_->project(camera_from_pattern_ * Vec3{plane_m.x, plane_m.y, 0})
                           : mapped(pixel_from_plane_, plane_m);
-  if (!at) return std::nullopt;
-  return *at + shift_px_;
+  if (!at || !shifts_px_) return at;
+  return *at + displacement(plane_m);
 }
 
+// With displacements: fixed point of p = q^-1(pixel - d(p)); d hardly changes from pixel to pixel, and each round
+// leaves about a hundredth of the error.
 std::optional<Vec2> ViewMap::plane(Vec2 pixel) const {
-  pixel = pixel - shift_px_;
+  if (!shifts_px_) return unmoved(pixel);
+  Vec2 by = displacement(size_m_ * 0.5);
+  std::optional<Vec2> at;
+  for (int round = 0; round < 3; ++round) {
+    at = unmoved(pixel - by);
+    if (!at) return at;
+    by = displacement(*at);
+  }
+  return at;
+}
+
+std::optional<Vec2> ViewMap::unmoved(Vec2 pixel) const {
   if (!camera_) return mapped(plane_from_pixel_, pixel);
   const camera::Ray ray = camera_->ray(pixel);
   const Vec3 origin = pattern_from_camera_ * ray.origin_m, direction = pattern_from_camera_.rotate(ray.direction);
