@@ -43,6 +43,13 @@ function(gonio_finish_library)
     "std::span<const gonio::surface::Law* const> gonio::surface::all_laws()" gonio::surface ${law_files})
   gonio_registry(${GONIO_GENERATED}/lights.cpp Model light/light.h
     "std::span<const gonio::light::Model* const> gonio::light::all_models()" gonio::light ${light_files})
+  file(GLOB solver_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/nrsfm/solvers/*.cpp)
+  gonio_registry(${GONIO_GENERATED}/nrsfm_solvers.cpp Solver nrsfm/solver.h
+    "std::span<const gonio::nrsfm::Solver* const> gonio::nrsfm::all_solvers()" gonio::nrsfm::solvers ${solver_files})
+  file(GLOB animatronic_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/nrsfm/animatronics/*.cpp)
+  gonio_registry(${GONIO_GENERATED}/animatronics.cpp Animatronic nrsfm/animatronic.h
+    "std::span<const gonio::nrsfm::Animatronic* const> gonio::nrsfm::all_animatronics()" gonio::nrsfm::animatronics
+    ${animatronic_files})
   gonio_registry(${GONIO_GENERATED}/exchanges.cpp Exchange scene/exchange/exchange.h
     "std::span<const gonio::scene::Exchange* const> gonio::scene::all_exchanges()" gonio::scene ${exchange_files})
   file(GLOB table_model_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/explain/tables/models/*.cpp)
@@ -65,7 +72,8 @@ function(gonio_finish_library)
     list(APPEND objects $<TARGET_OBJECTS:${room}>)
   endforeach()
   set(registries ${GONIO_GENERATED}/mechanisms.cpp ${GONIO_GENERATED}/domains.cpp
-      ${GONIO_GENERATED}/table_models.cpp ${GONIO_GENERATED}/table_terms.cpp ${GONIO_GENERATED}/image_terms.cpp)
+      ${GONIO_GENERATED}/table_models.cpp ${GONIO_GENERATED}/table_terms.cpp ${GONIO_GENERATED}/image_terms.cpp
+      ${GONIO_GENERATED}/nrsfm_solvers.cpp ${GONIO_GENERATED}/animatronics.cpp)
   if(EXISTS ${CMAKE_SOURCE_DIR}/lib/surface/surface.h)
     list(APPEND registries ${GONIO_GENERATED}/surfaces.cpp ${GONIO_GENERATED}/laws.cpp)
   endif()

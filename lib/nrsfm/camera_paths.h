@@ -1,0 +1,26 @@
+// The six virtual camera paths of Jensen et al. 2018, figure 4, and what a camera on them sees.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "nrsfm/sequence.h"
+
+namespace gonio::nrsfm {
+
+// circle: around the scene; half-circle: half of that, on one side; line: sideways, past the scene; flyby: past and
+// over it; zigzag: to and fro with changes of depth; tricky: a small motion, mostly along the optical axis.
+const std::vector<std::string>& path_names();
+
+struct PathOptions {
+  double distance_m = 1;  // of the camera's mean place from the scene's centre
+  double scene_radius_m = 0.2;
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
+};
+// One camera for each frame, looking at the centre. Error(usage) for unknown names.
+std::vector<CameraFromObject> camera_path(const std::string& name, Eigen::Index frames, const PathOptions& options);
+
+// Tracks of shapes (object frame): orthographic in metres; perspective in pixels.
+Tracks project(const Shapes& shapes, const std::vector<CameraFromObject>& cameras, Projection projection,
+               const Pinhole& pinhole);
+
+}  // namespace gonio::nrsfm

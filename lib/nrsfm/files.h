@@ -1,0 +1,30 @@
+// Sequences and reconstructions as files: MATLAB v5 (.mat), NumPy archives (.npz), PLY per frame.
+//
+// Written .mat, the benchmark's naming: W (2F x P, NaN where missing), V (F x P, 1 where visible), S (3F x P truth),
+// R (2F x 3 rows of camera_from_object), T (3F, translation), K (3 x 3), projection, unit_m, factors (struct of text).
+// A reconstruction: S (3F x P), R, frame ("object" | "camera"), algorithm, factors.
+// Read besides: names of the field's files, Shat, S_hat, X (3 x P x F), GT, Q, Rs, visibility, D (1 where MISSING),
+// list and scale of Akhter's files (truth = S * scale beside Shat), structs p(i).p / Pgth(i).P / v of perspective sets.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "nrsfm/sequence.h"
+
+namespace gonio::nrsfm {
+
+struct FileNames {  // empty: found by the names above
+  std::string tracks, visible, truth, shapes;
+};
+// Error(no_input), Error(data) with file, variable, size and what was expected. `notes` gets what was assumed.
+Sequence read_sequence(const std::filesystem::path& file, const FileNames& names = {},
+                       std::vector<std::string>* notes = nullptr);
+// `file`: .mat, .npz, or a folder / pattern of PLY files, one per frame in the order of their names.
+Reconstruction read_reconstruction(const std::filesystem::path& file, const FileNames& names = {},
+                                   std::vector<std::string>* notes = nullptr);
+
+void write_sequence(const Sequence& sequence, const std::filesystem::path& file);  // whole or not at all
+void write_reconstruction(const Reconstruction& reconstruction, const std::filesystem::path& file);
+
+}  // namespace gonio::nrsfm
