@@ -44,6 +44,9 @@ void for_each_section(D& d, const Visit& visit) {
   visit("surface_fits", d.surface_fits);
   visit("patterns", d.patterns);
   visit("contrasts", d.contrasts);
+  visit("sequences", d.sequences);
+  visit("reconstructions", d.reconstructions);
+  visit("evaluations", d.evaluations);
   visit("explanations", d.explanations);
 }
 
@@ -206,9 +209,25 @@ void check_goniometry(const Document& d) {
   }
 }
 
+void check_nrsfm(const Document& d) {
+  for (const auto& [name, sequence] : d.sequences) {
+    must_exist(d.files, "files", sequence.file, place(d, "/sequences/" + name + "/file"));
+    must_exist(d.cameras, "cameras", sequence.camera, place(d, "/sequences/" + name + "/camera"));
+  }
+  unique_ids(d.reconstructions, place(d, "/reconstructions"));
+  for (std::size_t i = 0; i < d.reconstructions.size(); ++i) {
+    const ShapeReconstruction& r = d.reconstructions[i];
+    const std::string at = place(d, "/reconstructions/" + std::to_string(i));
+    must_exist(d.files, "files", r.file, at + "/file");
+    must_exist(d.sequences, "sequences", r.sequence, at + "/sequence");
+    if (r.file.empty() == r.folder.empty()) throw Error(Exit::data, at, "needs exactly one of \"file\", \"folder\"");
+  }
+}
+
 void check_references(const Document& d) {
   check_images(d);
   check_goniometry(d);
+  check_nrsfm(d);
   unique_ids(d.objects, place(d, "/objects"));
   for (std::size_t i = 0; i < d.objects.size(); ++i) {
     const std::string at = place(d, "/objects/" + std::to_string(i));

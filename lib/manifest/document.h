@@ -35,6 +35,9 @@ struct Document {
   std::map<std::string, SurfaceFit> surface_fits;
   std::map<std::string, Pattern> patterns;
   std::vector<Contrast> contrasts;
+  std::map<std::string, TrackSequence> sequences;
+  std::vector<ShapeReconstruction> reconstructions;
+  std::vector<Evaluation> evaluations;
   std::vector<Value> explanations;  // written by explain; its shape is checked against the field table
   Value provenance = Value::object();
 

@@ -52,6 +52,15 @@ std::string goniometry_text() {
          rows("contrasts", "A list, written by contrast.", contrast_fields());
 }
 
+std::string nrsfm_text() {
+  return rows("sequences", "Keyed by name. Points of shapes that deform, followed over frames.",
+              track_sequence_fields()) +
+         rows("reconstructions", "A list. Shapes that a solver made of a sequence.", shape_reconstruction_fields()) +
+         rows("evaluations", "A list, written by nrsfm-eval. Reconstructions against the truth.", evaluation_fields()) +
+         rows("evaluations: errors", "One for each measure and alignment.", evaluated_error_fields()) +
+         rows("evaluations: flips", "Frames that are mirrored although most are not.", detected_flip_fields());
+}
+
 }  // namespace
 
 Value manifest_schema() {
@@ -79,6 +88,9 @@ Value manifest_schema() {
        {"surface_fits", keyed<SurfaceFit>()},
        {"patterns", keyed<Pattern>()},
        {"contrasts", listed<Contrast>()},
+       {"sequences", keyed<TrackSequence>()},
+       {"reconstructions", listed<ShapeReconstruction>()},
+       {"evaluations", listed<Evaluation>()},
        {"explanations", Value::object({{"type", "array"}, {"items", Value::object({{"type", "object"}})}})},
        {"provenance", Value::object({{"type", "object"}})}});
   return Value::object({{"$schema", "http://json-schema.org/draft-07/schema#"},
@@ -120,7 +132,7 @@ std::string manifest_fields_text() {
          rows("light_positions", "A list. Where a light was while its robot stood at a pose.",
               light_position_fields()) +
          rows("acceptance", "A list, written by vdi2634. Figures of an optical scanner.", acceptance_fields()) +
-         goniometry_text();
+         goniometry_text() + nrsfm_text();
 }
 
 }  // namespace gonio::manifest

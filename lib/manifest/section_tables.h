@@ -1,5 +1,5 @@
 // The field tables of the manifest's sections, and the codecs that follow from them. Defined in sections.cpp,
-// modelled.cpp, instrument_tables.cpp, goniometry_tables.cpp and contrast_tables.cpp.
+// modelled.cpp, instrument_tables.cpp, goniometry_tables.cpp, contrast_tables.cpp and nrsfm_tables.cpp.
 #pragma once
 #include <vector>
 
@@ -37,6 +37,11 @@ const std::vector<Field<PatternPlacement>>& pattern_placement_fields();
 const std::vector<Field<PatternDefect>>& pattern_defect_fields();
 const std::vector<Field<Pattern>>& pattern_fields();
 const std::vector<Field<Contrast>>& contrast_fields();
+const std::vector<Field<TrackSequence>>& track_sequence_fields();
+const std::vector<Field<ShapeReconstruction>>& shape_reconstruction_fields();
+const std::vector<Field<EvaluatedError>>& evaluated_error_fields();
+const std::vector<Field<DetectedFlip>>& detected_flip_fields();
+const std::vector<Field<Evaluation>>& evaluation_fields();
 
 #define GONIO_RECORD(TYPE, TABLE)                                                                                 \
   template <>                                                                                                     \
@@ -74,6 +79,11 @@ GONIO_RECORD(PatternPlacement, pattern_placement_fields);
 GONIO_RECORD(PatternDefect, pattern_defect_fields);
 GONIO_RECORD(Pattern, pattern_fields);
 GONIO_RECORD(Contrast, contrast_fields);
+GONIO_RECORD(TrackSequence, track_sequence_fields);
+GONIO_RECORD(ShapeReconstruction, shape_reconstruction_fields);
+GONIO_RECORD(EvaluatedError, evaluated_error_fields);
+GONIO_RECORD(DetectedFlip, detected_flip_fields);
+GONIO_RECORD(Evaluation, evaluation_fields);
 #undef GONIO_RECORD
 
 // Surfaces, lights and mechanisms are read against the registries instead of a table.

@@ -12,6 +12,7 @@
 
 #include "geom/rigid.h"
 #include "manifest/goniometry_sections.h"
+#include "manifest/nrsfm_sections.h"
 #include "manifest/parameter.h"
 #include "manifest/value.h"
 
