@@ -24,12 +24,4 @@ using MatFile = std::map<std::string, MatVariable>;
 MatFile read_mat(const std::filesystem::path& file);
 void write_mat(const MatFile& variables, const std::filesystem::path& file);  // v5, compressed, atomic, no date inside
 
-// A NumPy archive: arrays of numbers and booleans (npy format 1 to 3, either order and endianness), as doubles in C
-// order.
-struct NpyArray {
-  std::vector<std::size_t> size;
-  std::vector<double> values;
-};
-std::map<std::string, NpyArray> read_npz(const std::filesystem::path& file);
-
 }  // namespace gonio::io

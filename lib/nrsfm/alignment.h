@@ -1,6 +1,7 @@
 // Laying a reconstruction onto the truth before their distance counts. What is aligned changes the answer by factors
 // (pickup of Akhter et al. 2011: 0.24 without rotation, 0.06 with one per frame), so that it always has a name.
 #pragma once
+#include <Eigen/LU>
 #include <string>
 #include <vector>
 
@@ -9,11 +10,12 @@
 namespace gonio::nrsfm {
 
 enum class Alignment {
-  none,               // both centred per frame, nothing else
-  global_rotation,    // centred per frame, one rotation for the sequence
-  global_similarity,  // one similarity for the sequence, reflection allowed; no centring per frame
-  frame_rotation,     // centred and rotated per frame
-  frame_similarity    // centred, rotated and scaled per frame; reflection allowed
+  none,                     // both centred per frame, nothing else
+  global_rotation,          // centred per frame, one rotation for the sequence
+  global_similarity,        // one similarity for the sequence, reflection allowed; no centring per frame
+  frame_rotation,           // centred and rotated per frame
+  frame_similarity,         // centred, rotated and scaled per frame; reflection allowed
+  frame_rotation_one_scale  // centred and rotated per frame, one scale for the sequence: depths are known up to it
 };
 const std::vector<std::string>& alignment_names();  // in the enum's order: "none", "global-rotation", ...
 
@@ -33,11 +35,23 @@ struct ProcrustesOptions {
 Similarity procrustes(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& q, const ProcrustesOptions& options = {});
 
 struct Aligned {
-  Shapes shapes;                      // in the truth's frame and unit; NaN stays
-  std::vector<Similarity> per_frame;  // one, or one for each frame
-  std::vector<char> mirrored;         // frames that only a reflection lays onto the truth
+  Shapes shapes;                      // laid onto `truth`; NaN stays
+  Shapes truth;                       // as given, or centred per frame over the points that count
+  std::vector<Similarity> per_frame;  // from x as given to `shapes`: one for each frame
+  std::vector<char> mirrored;         // frames that a reflection was used on
 };
-// Least squares. `truth` and `x` are 3F x P in frames of reference of the same kind (see ShapeFrame).
+// Least squares over the points that are finite in both. `truth` and `x` are 3F x P in frames of reference of the same
+// kind (see ShapeFrame). Error(data) where their sizes differ or fewer than half of the frames have 3 points to
+// compare; frames with fewer have NaN in `shapes`.
 Aligned align(const Shapes& x, const Shapes& truth, Alignment alignment);
+
+// Columns that are finite in both, all frames one behind the other.
+struct Matched {
+  Eigen::Matrix3Xd x, q;
+  std::vector<Eigen::Index> frame;  // of each column
+};
+Matched matched(const Shapes& x, const Shapes& truth);
+// Error(data) at "reconstruction" unless both are 3F x P, with at least 4 points to compare.
+void check_comparable(const Shapes& x, const Shapes& truth);
 
 }  // namespace gonio::nrsfm
