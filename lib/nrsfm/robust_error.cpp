@@ -1,5 +1,7 @@
 // The least robust error over similarities: starts, both handednesses (errors.h, robust_fit.h). Coordinates are centred
-// and divided by their rms extents before, so that tolerances mean the same in every unit.
+// and divided by their extents (medians, which outliers do not move) before, so that tolerances mean the same in every
+// unit.
+#include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <array>
@@ -8,17 +10,21 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/random.h"
 #include "nrsfm/errors.h"
 #include "nrsfm/robust_fit.h"
+#include "stats/intervals.h"
 
 namespace gonio::nrsfm {
 namespace {
 
-constexpr double small_error =
-    0.2;                           // over the truth's rms extent: below, the Procrustes start lies in the right valley
-constexpr Eigen::Index parts = 8;  // of the sequence, whose own Procrustes are further starts
-constexpr std::size_t tried = 4;   // of those starts, the best
-constexpr double hopeless = 4;     // times the other hand's cost
+constexpr double small_error = 0.25;    // over the truth's extent: below, the Procrustes start lies in the right valley
+constexpr Eigen::Index parts = 8;       // of the sequence, whose own Procrustes are further starts
+constexpr double rival = 1.5;           // times the best cost: the other handedness is followed to its end, too
+constexpr Eigen::Index searched = 800;  // points among which valleys are looked for; all of them decide
+constexpr Eigen::Index polishable = 3000;
+constexpr int brief = 400;                                // evaluations
+constexpr double search_work = 1.6e4, polish_work = 2e6;  // points times starts; points times evaluations
 
 struct Normalized {
   Matched points;
@@ -26,13 +32,18 @@ struct Normalized {
   double extent_x = 1, extent_q = 1;
 };
 
+double median_of(const Eigen::VectorXd& v) {
+  return stats::median({v.data(), static_cast<std::size_t>(v.size())});
+}
+
 Normalized normalized(const Shapes& x, const Shapes& truth) {
   check_comparable(x, truth);
   Normalized n{matched(x, truth), {}, {}, 1, 1};
-  const auto centre = [](Eigen::Matrix3Xd& points, Eigen::Vector3d& mean, double& extent, const char* what) {
-    mean = points.rowwise().mean();
-    points.colwise() -= mean;
-    extent = std::sqrt(points.squaredNorm() / static_cast<double>(points.cols()));
+  const auto centre = [](Eigen::Matrix3Xd& points, Eigen::Vector3d& middle, double& extent, const char* what) {
+    for (int i = 0; i < 3; ++i) middle(i) = median_of(points.row(i).transpose());
+    points.colwise() -= middle;
+    extent = median_of(points.colwise().norm().transpose());
+    if (!(extent > 0)) extent = points.norm() / std::sqrt(static_cast<double>(points.cols()));
     if (!(extent > 1e-300)) throw Error(Exit::data, what, "has all its points in one place");
     points /= extent;
   };
@@ -59,64 +70,119 @@ Similarity start_of(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& q, bool m
   return s;
 }
 
-// Starts from parts of the sequence: a reconstruction that holds together there may be torn elsewhere.
-std::vector<Similarity> starts_of_parts(const Matched& m, bool mirrored) {
-  std::vector<Similarity> starts;
-  const Eigen::Index n = m.x.cols();
-  for (Eigen::Index k = 0; k < parts; ++k) {
-    const Eigen::Index first = k * n / parts, count = (k + 1) * n / parts - first;
-    if (count >= 4) starts.push_back(start_of(m.x.middleCols(first, count), m.q.middleCols(first, count), mirrored));
+// As many as `work` affords.
+int affordable(double work, Eigen::Index points, int least, int most) {
+  const double count = work / static_cast<double>(points);
+  return static_cast<int>(std::clamp(count, static_cast<double>(least), static_cast<double>(most)));
+}
+
+// Every so many points, so that about `searched` stay.
+Matched thinned(const Matched& m) {
+  const Eigen::Index n = m.x.cols(), step = std::max<Eigen::Index>(1, n / searched);
+  Matched out{Eigen::Matrix3Xd(3, n / step), Eigen::Matrix3Xd(3, n / step), {}};
+  for (Eigen::Index i = 0; i < n / step; ++i) {
+    const Eigen::Index from = i * step + i % step;  // not the same points in every frame
+    out.x.col(i) = m.x.col(from), out.q.col(i) = m.q.col(from);
   }
-  return starts;
+  return out;
 }
 
 class Search {
  public:
-  Search(const Normalized& n, const RobustOptions& options)
-      : n_(n), options_(options), fit_(n.points.x, n.points.q, options.mean) {}
+  Search(const Matched& points, const RobustOptions& options)
+      : points_(points), options_(options), fit_(points.x, points.q, options.mean) {}
 
-  void run() {
-    const std::array<Similarity, 2> first = {start_of(n_.points.x, n_.points.q, false),
-                                             start_of(n_.points.x, n_.points.q, true)};
-    std::size_t hand = 0;
-    if (options_.reflection && fit_.evaluate(first[1]).cost < fit_.evaluate(first[0]).cost) hand = 1;
-    keep(first[hand], 0);
-    if (options_.reflection) keep(first[1 - hand], hopeless * best().state.cost);
-    const double extent = options_.mean == RobustMean::printed ? best().state.cost : std::sqrt(best().state.cost);
-    if (extent > small_error) search_parts();
+  // From Procrustes of all points with either handedness; where the error is large, from others.
+  void look() {
+    for (const bool mirrored : {false, true}) {
+      if (mirrored && !options_.reflection) continue;
+      Similarity start = start_of(points_.x, points_.q, mirrored);
+      follow(start);
+      start.scale = 1;  // outliers make Procrustes' scale small
+      follow(start);
+    }
+    const double cost = best().state.cost, extent = options_.mean == RobustMean::printed ? cost : std::sqrt(cost);
+    const bool poor = extent > small_error;
+    const int count =
+        affordable(poor ? search_work : search_work / 4, points_.x.cols(), poor ? 20 : 2, poor ? 160 : 32);
+    if (poor)
+      for (const Similarity& start : starts_of_parts()) follow(start);
+    Random random(1, 2018);
+    for (int k = starts; k < count; ++k) follow(poor && k % 2 == 0 ? anywhere(random) : nearby(random));
+  }
+  void follow(const Similarity& start) {
+    const RobustFit::Outcome outcome = fit_.minimize(start, options_.most_iterations);
+    iterations += outcome.iterations;
+    ++starts;
+    ends_.push_back(outcome.state);
+    enter(outcome);
+  }
+  void enter(const RobustFit::Outcome& outcome) {
+    auto& kept = best_[outcome.state.at.mirrored() ? 1 : 0];
+    if (!kept || outcome.state.cost < kept->state.cost) kept = outcome;
+  }
+  // The lowest places that were found, briefly; then what is best of either handedness.
+  void polish() {
+    if (points_.x.cols() > polishable) return;
+    const int evaluations = affordable(polish_work, points_.x.cols(), 0, 40000);
+    std::ranges::stable_sort(ends_, {}, &RobustFit::State::cost);
+    const std::size_t count = std::min<std::size_t>(ends_.size(), static_cast<std::size_t>(evaluations / (2 * brief)));
+    for (std::size_t k = 0; k < count; ++k) enter({fit_.polished(ends_[k], brief), 0, true});
+    for (auto& kept : best_)
+      if (kept && kept->state.cost <= best().state.cost * rival)
+        kept->state = fit_.polished(kept->state, evaluations / 4);
+  }
+  // From what another search has found: its best, and the other handedness where that is a rival.
+  void follow(const Search& coarse) {
+    for (const auto& found : coarse.best_) {
+      if (!found) continue;
+      if (found->state.cost <= rival * coarse.best().state.cost)
+        follow(found->state.at);
+      else
+        enter({fit_.evaluate(found->state.at), 0, true});
+    }
+    iterations += coarse.iterations, starts = coarse.starts;
   }
   const RobustFit::Outcome& best() const {
-    return other() && other()->state.cost < one().state.cost ? *other() : one();
+    return best_[0] && (!best_[1] || best_[0]->state.cost <= best_[1]->state.cost) ? *best_[0] : *best_[1];
   }
   const std::optional<RobustFit::Outcome>& of(bool mirrored) const { return best_[mirrored ? 1 : 0]; }
   int iterations = 0, starts = 0;
 
  private:
-  const RobustFit::Outcome& one() const { return best_[0] ? *best_[0] : *best_[1]; }
-  const std::optional<RobustFit::Outcome>& other() const { return best_[1]; }
-
-  void keep(const Similarity& start, double limit) {
-    const RobustFit::Outcome outcome = fit_.minimize(start, options_.most_iterations, limit);
-    iterations += outcome.iterations;
-    ++starts;
-    auto& kept = best_[outcome.state.at.mirrored() ? 1 : 0];
-    if (!kept || outcome.state.cost < kept->state.cost) kept = outcome;
-  }
-
-  void search_parts() {
-    std::vector<RobustFit::State> candidates;
-    for (const bool mirrored : {false, true}) {
-      if (mirrored && !options_.reflection) continue;
-      for (const Similarity& start : starts_of_parts(n_.points, mirrored)) candidates.push_back(fit_.evaluate(start));
+  // Parts of the sequence: a reconstruction that holds together there may be torn elsewhere.
+  std::vector<Similarity> starts_of_parts() const {
+    std::vector<Similarity> out;
+    const Eigen::Index n = points_.x.cols();
+    for (Eigen::Index k = 0; k < parts; ++k) {
+      const Eigen::Index first = k * n / parts, count = (k + 1) * n / parts - first;
+      for (const bool mirrored : {false, true})
+        if (count >= 4 && (!mirrored || options_.reflection))
+          out.push_back(start_of(points_.x.middleCols(first, count), points_.q.middleCols(first, count), mirrored));
     }
-    std::ranges::stable_sort(candidates, {}, &RobustFit::State::cost);
-    for (std::size_t k = 0; k < std::min(tried, candidates.size()); ++k) keep(candidates[k].at, 0);
+    return out;
+  }
+  // Tenths of a radian and of the extent away from what is best so far, of either handedness where they are rivals.
+  Similarity nearby(Random& random) const {
+    Step p;
+    for (int i = 0; i < 7; ++i) p(i) = (i > 3 ? 0.2 : 0.4) * random.normal();
+    const auto& other = of(!best().state.at.mirrored());
+    const bool turn = random.uniform() < 0.5 && other && other->state.cost <= rival * best().state.cost;
+    return stepped(turn ? other->state.at : best().state.at, p);
+  }
+  Similarity anywhere(Random& random) const {
+    Eigen::Vector4d q;
+    for (int i = 0; i < 4; ++i) q(i) = random.normal();
+    const double hand = options_.reflection && random.uniform() < 0.5 ? -1 : 1;
+    return {std::exp(0.4 * random.normal()), hand * Eigen::Quaterniond(q.normalized()).toRotationMatrix(),
+            Eigen::Vector3d::Zero()};
   }
 
-  const Normalized& n_;
+  const Matched& points_;
   RobustOptions options_;
   RobustFit fit_;
   std::array<std::optional<RobustFit::Outcome>, 2> best_;  // rotation, reflection
+  std::vector<RobustFit::State> ends_;                     // of every start
 };
 
 double value_of(double cost, double extent, RobustMean mean) {
@@ -134,8 +200,17 @@ double estimated_share(const Shapes& truth, Eigen::Index both) {
 
 RobustError robust_error(const Shapes& x, const Shapes& truth, const RobustOptions& options) {
   const Normalized n = normalized(x, truth);
-  Search search(n, options);
-  search.run();
+  const bool thin = n.points.x.cols() >= 2 * searched;
+  const Matched few = thin ? thinned(n.points) : Matched{};
+  Search search(n.points, options);
+  if (thin) {
+    Search coarse(few, options);
+    coarse.look();
+    search.follow(coarse);
+  } else {
+    search.look();
+  }
+  search.polish();
   const RobustFit::Outcome& best = search.best();
   const bool mirrored = best.state.at.mirrored();
   RobustError out;

@@ -172,7 +172,7 @@ RobustFit::Derivatives RobustFit::derivatives(const State& state) {
   return d;
 }
 
-RobustFit::Outcome RobustFit::minimize(const Similarity& start, int most_iterations, double hopeless) {
+RobustFit::Outcome RobustFit::minimize(const Similarity& start, int most_iterations) {
   Outcome out{evaluate(start), 0, false};
   State& state = out.state;
   Derivatives d = derivatives(state);
@@ -198,13 +198,61 @@ RobustFit::Outcome RobustFit::minimize(const Similarity& start, int most_iterati
     }
     const double gain = fall / std::max(predicted, std::numeric_limits<double>::min());
     out.converged = fall < still * state.cost;
-    const bool given_up = hopeless > 0 && next.cost > hopeless && fall < 0.1 * state.cost;
     state = next;
-    if (given_up) break;
     damping *= std::max(1.0 / 10, 1 - std::pow(2 * std::min(gain, 2.0) - 1, 3)), growth = 2;
     if (!out.converged) d = derivatives(state);
   }
   return out;
+}
+
+// One simplex of edges `size` from `best`, until it has shrunk to nothing. Evaluations used.
+int RobustFit::simplex(State& best, double size, int most_evaluations) {
+  struct Corner {
+    Step p;
+    double cost;
+  };
+  const Similarity base = best.at;
+  std::vector<Corner> corners{{Step::Zero(), best.cost}};
+  int used = 0;
+  const auto at = [&](const Step& p) {
+    ++used;
+    return Corner{p, evaluate(stepped(base, p)).cost};
+  };
+  for (int k = 0; k < 7; ++k) corners.push_back(at(size * Step::Unit(k)));
+  while (used < most_evaluations) {
+    std::ranges::stable_sort(corners, {}, &Corner::cost);
+    if (corners.back().cost - corners.front().cost <= still * corners.front().cost) break;
+    Step middle = Step::Zero();
+    for (std::size_t k = 0; k < 7; ++k) middle += corners[k].p / 7;
+    Corner& worst = corners.back();
+    const Step away = middle - worst.p;
+    const Corner reflected = at(middle + away);
+    if (reflected.cost < corners.front().cost) {
+      const Corner further = at(middle + 2 * away);
+      worst = further.cost < reflected.cost ? further : reflected;
+    } else if (reflected.cost < corners[6].cost) {
+      worst = reflected;
+    } else {
+      const Corner nearer = at(middle + (reflected.cost < worst.cost ? 0.5 : -0.5) * away);
+      if (nearer.cost < std::min(reflected.cost, worst.cost))
+        worst = nearer;
+      else
+        for (std::size_t k = 1; k < 8; ++k) corners[k] = at(corners[0].p + 0.5 * (corners[k].p - corners[0].p));
+    }
+  }
+  const Corner& least = *std::ranges::min_element(corners, {}, &Corner::cost);
+  if (least.cost < best.cost) best = evaluate(stepped(base, least.p));
+  return used;
+}
+
+RobustFit::State RobustFit::polished(const State& state, int most_evaluations) {
+  State best = state;
+  for (double size = 0.1; size > 1e-5 && most_evaluations > 0;) {
+    const double before = best.cost;
+    most_evaluations -= simplex(best, size, most_evaluations);
+    if (before - best.cost < little * before) size /= 4;
+  }
+  return best;
 }
 
 }  // namespace gonio::nrsfm

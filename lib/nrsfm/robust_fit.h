@@ -48,14 +48,17 @@ class RobustFit {
     int iterations = 0;
     bool converged = false;
   };
-  // Levenberg-Marquardt from `start`. Ends early where `hopeless` is above 0 and the cost stays above it while falling
-  // by less than a tenth an iteration.
-  Outcome minimize(const Similarity& start, int most_iterations, double hopeless = 0);
+  // Levenberg-Marquardt from `start`.
+  Outcome minimize(const Similarity& start, int most_iterations);
+  // Simplexes (Nelder & Mead 1965) about `state`, smaller and smaller, for the corners that derivatives do not see: of
+  // few points the measure has many, where one distance crosses the whisker or becomes a quartile.
+  State polished(const State& state, int most_evaluations);
 
  private:
   void quartiles(State& state);
   void ordered(Eigen::Index k, double guess, std::vector<double>& two);
   Step mean_gradient(double centre) const;
+  int simplex(State& best, double size, int most_evaluations);
   void subtract_along(const Eigen::ArrayXd& w2, StepMatrix& matrix) const;
 
   Eigen::Index n_;
