@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -191,7 +192,25 @@ Basis::Basis(const Tables& tables, std::string description, const BasisOptions& 
     names_.push_back(tables.name(m));
     material_of_.insert(material_of_.end(), tables.channels(), static_cast<std::uint32_t>(m));
   }
+  classify();
   BasisBuilder(tables, *this, options).build();
+}
+
+void Basis::classify() {
+  std::vector<std::string> known;
+  class_of_.clear();
+  for (const std::string& name : names_) {
+    const std::size_t end = name.find_last_not_of("0123456789");
+    const bool numbered = end != std::string::npos && end + 1 < name.size() && name[end] == ' ';
+    const std::string stem = numbered ? name.substr(0, end) : name;
+    const auto found = std::ranges::find(known, stem);
+    class_of_.push_back(static_cast<std::uint32_t>(found - known.begin()));
+    if (found == known.end()) known.push_back(stem);
+  }
+  classes_ = known.size();
+  if (classes_ >= 3) return;
+  classes_ = names_.size();
+  std::iota(class_of_.begin(), class_of_.end(), 0U);
 }
 
 double Basis::kept_share() const {

@@ -57,6 +57,10 @@ class Basis {
   const std::string& description() const { return description_; }  // "100 tables of the folder merl/"
   const std::vector<std::string>& materials() const { return names_; }
   const std::vector<std::uint32_t>& material_of() const { return material_of_; }  // of a sample
+  // Materials whose names differ by a number at their end after a blank, "metal 5", "metal 15", are of one class.
+  // Tables of files have no blanks there: each is a class of its own, as all are where there would be one or two.
+  std::size_t classes() const { return classes_; }
+  std::uint32_t class_of(std::size_t sample) const { return class_of_[material_of_[sample]]; }
   // In units of ln: log_reference is ln(f_ref w + epsilon); rest a standard deviation.
   std::span<const float> log_reference() const { return log_reference_; }
   std::span<const float> mean() const { return mean_; }
@@ -75,11 +79,13 @@ class Basis {
  private:
   Basis() = default;
   friend class BasisBuilder;
+  void classify();
   std::shared_ptr<const Cells> cells_;
   std::size_t components_ = 0;
   std::string description_;
   std::vector<std::string> names_;
-  std::vector<std::uint32_t> material_of_;
+  std::vector<std::uint32_t> material_of_, class_of_;  // of samples, of materials
+  std::size_t classes_ = 0;
   std::vector<float> log_reference_, mean_, rest_, q_;
   std::vector<double> scores_, singular_;
 };

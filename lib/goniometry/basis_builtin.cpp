@@ -26,7 +26,7 @@ class Draw {
 };
 
 struct Family {
-  const char* model;
+  const char *name, *model;
   manifest::Parameters (*parameters)(Draw&);
 };
 
@@ -66,22 +66,22 @@ manifest::Parameters fabric(Draw& d) {
           {"alpha", d.uniform(0.4, 0.9)},  {"retro", d.scale(0.005, 0.2)},     {"retro_alpha", d.uniform(0.1, 0.6)}};
 }
 
-constexpr Family families[] = {{"diffuse", matte},
-                               {"coated-diffuse", varnish},
-                               {"interfaced-diffuse", polish},
-                               {"glossy", haze},
-                               {"coated-diffuse", varnish},
-                               {"glossy-metal", metal},
-                               {"interfaced-diffuse", polish},
-                               {"glossy-metal", metallic_paint},
-                               {"glossy", fabric},
-                               {"coated-diffuse", varnish}};
+constexpr Family families[] = {{"matte", "diffuse", matte},
+                               {"varnish", "coated-diffuse", varnish},
+                               {"polish", "interfaced-diffuse", polish},
+                               {"haze", "glossy", haze},
+                               {"varnish", "coated-diffuse", varnish},
+                               {"metal", "glossy-metal", metal},
+                               {"polish", "interfaced-diffuse", polish},
+                               {"metallic paint", "glossy-metal", metallic_paint},
+                               {"fabric", "glossy", fabric},
+                               {"varnish", "coated-diffuse", varnish}};
 
 Material material(std::uint64_t seed, std::size_t number) {
   const Family& family = families[number % std::size(families)];
   const surface::Model& model = *surface::find(family.model);
   Draw draw(seed, number);
-  const std::string name = std::string(family.model) + " " + std::to_string(number);
+  const std::string name = std::string(family.name) + " " + std::to_string(number);
   surface::Values values = surface::values_of(model, family.parameters(draw), name);
   const auto prepared = model.prepare(values, {}, name);
   values.prepared = prepared.get();

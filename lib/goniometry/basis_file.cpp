@@ -122,6 +122,7 @@ Basis Basis::load(const std::filesystem::path& file) {
   basis.components_ = k;
   basis.description_ = r.text();
   for (std::size_t m = 0; m < materials; ++m) basis.names_.push_back(r.text());
+  basis.classify();
   for (std::size_t s = 0; s < samples; ++s)
     basis.material_of_.push_back(
         static_cast<std::uint32_t>(r.number(0, static_cast<std::int32_t>(materials) - 1, "as a sample's material")));

@@ -123,7 +123,11 @@ void tell(cli::Invocation& call, Outcome& outcome, const std::optional<Basis>& b
   if (call.given("noise")) options.relative_noise = call.number("noise");
   outcome.reconstruction = reconstruct(*basis, outcome.read.samples, options);
   outcome.basis = basis->description();
-  outcome.table = std::make_shared<const surface::MeasuredTable>(outcome.reconstruction->table, outcome.name);
+  // The reader of tables refuses what returns more light than it receives; the verdict says it instead.
+  outcome.table_scale = std::max(1.0, outcome.reconstruction->energy.most);
+  io::MerlTable within = outcome.reconstruction->table;
+  for (float& f : within.brdf_per_sr) f = f < 0 ? f : static_cast<float>(static_cast<double>(f) / outcome.table_scale);
+  outcome.table = std::make_shared<const surface::MeasuredTable>(std::move(within), outcome.name);
 }
 
 // Where a file goes: named by the user, else below --out, else nowhere.
@@ -149,10 +153,16 @@ void write_outputs(cli::Invocation& call, Outcome& outcome) {
     io::write_merl(merl, merl_of(outcome, "--merl"));
     outcome.files["merl"] = table_file = manifest::add_file(call.document, merl, outcome.name + "-merl");
   }
+  if (const fs::path sigma = whole ? path_for(call, "merl-sigma", outcome.name + "-sigma.binary") : fs::path();
+      !sigma.empty()) {
+    io::write_merl(sigma, outcome.reconstruction->sigma);
+    outcome.files["merl_sigma"] = manifest::add_file(call.document, sigma, outcome.name + "-merl-sigma");
+  }
   enter(call.document, outcome, table_file);
   write_below(call, outcome, "csv", path_for(call, "csv", outcome.name + ".csv"), samples_csv(outcome));
   const fs::path page = path_for(call, "html", outcome.name + ".html");
-  const bool known = call.document.surfaces.contains(outcome.name) && (whole || outcome.chosen() != nullptr);
+  const bool known =
+      call.document.surfaces.contains(outcome.name) && outcome.renders() && (whole || outcome.chosen() != nullptr);
   io::Image sphere;
   if (known && !page.empty()) sphere = sphere_picture(call.document, outcome.name);
   if (known && !call.out.empty()) {
@@ -193,11 +203,11 @@ void check_brdf(cli::Invocation& call) {
   if (files == 0 && !call.has_document)
     throw Error(Exit::no_input, "brdf-fit", "has nothing to read",
                 "name a table, or a manifest with tables or goniometer; brdf-fit --example prints a table to try");
-  for (const char* option : {"merl", "csv", "html", "name"})
+  for (const char* option : {"merl", "merl-sigma", "csv", "html", "name"})
     if (files > 1 && call.given(option))
       throw Error(Exit::usage, "--" + std::string(option), "is one, and there are " + std::to_string(files) + " tables",
                   "use --out DIR, or give one table");
-  for (const char* option : {"merl", "csv", "html"})
+  for (const char* option : {"merl", "merl-sigma", "save-basis", "csv", "html"})
     if (call.given(option)) check_writable(call.text(option));
   if (call.flag("reconstruct") && !call.given("merl") && call.out.empty())
     throw Error(Exit::usage, "--reconstruct", "has no place for its table", "name one: --merl FILE, or --out DIR");
@@ -217,6 +227,7 @@ Exit fit_brdf(cli::Invocation& call) {
   if (call.given("name")) outcomes.front().name = call.text("name");
   std::optional<Basis> basis;
   if (call.flag("reconstruct")) basis = basis_for(call, merl_bins);
+  if (basis && call.given("save-basis")) basis->save(call.text("save-basis"));
   Exit worst = Exit::done;
   for (Outcome& outcome : outcomes) {
     tell(call, outcome, basis);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "goniometry/checks.h"
+#include "goniometry/plausible.h"
 #include "report/number_text.h"
 
 namespace gonio::goniometry {
@@ -132,7 +133,7 @@ void enter_samples(const Outcome& outcome, manifest::SurfaceFit& out) {
   for (const std::string& band : s.band_name) out.bands.push_back(band.empty() ? "f" : band);
   out.wavelengths_m = s.band_m;
   if (s.bands() > 3)
-    for (const std::size_t b : written_bands(s)) out.written_bands.push_back(out.bands[b]);
+    for (const std::string& name : written_names(outcome)) out.written_bands.push_back(name);
   out.rows = static_cast<std::int64_t>(s.rows());
   for (const Dropped& d : outcome.read.dropped) {
     const auto same = std::ranges::find(out.dropped, d.reason, &manifest::DroppedRows::reason);
@@ -155,10 +156,13 @@ Verdict verdict_of_reconstruction(const Outcome& outcome) {
   const Reconstruction& r = *outcome.reconstruction;
   const std::string start =
       "A full table was reconstructed from " + std::to_string(outcome.read.samples.rows()) + " pairs of directions";
-  if (r.energy.most > 1 + energy_tolerance)
+  if (r.energy.most > 1 + energy_tolerance) {
+    const std::string much = report::number_text(r.energy.most, 3) + " times the light that it receives";
     return {"doubtful",
-            start + ", but reflects up to " + report::number_text(r.energy.most, 3) + " of the light that it receives.",
+            start + ", but it reflects up to " + much + ", where there were few samples to hold it down: more of them" +
+                " near grazing help." + (outcome.renders() ? "" : " It is written, and not entered in surfaces."),
             Exit::quality};
+  }
   return {"good", start + "; it reflects at most " + report::number_text(r.energy.most, 3) + " of the light.",
           Exit::done};
 }
@@ -190,6 +194,8 @@ Verdict verdict_of(const Outcome& outcome) {
         "doubtful",
         start + "; but it reflects up to " + report::number_text(fit->energy, 3) + " of the light that it receives.",
         Exit::quality};
+  if (const std::string why = unlike_metals(*fit); !why.empty())
+    return {"doubtful", start + "; but its numbers describe no known metal: " + why + ".", Exit::quality};
   if (held_out && fit->held_out.log1p > most_held_out_ratio * fit->fitted.log1p + 1e-3)
     return {"doubtful", start + ": it does not carry over to directions that it has not seen.", Exit::quality};
   return {"good", start + ".", Exit::done};
@@ -209,9 +215,10 @@ void enter(manifest::Document& document, const Outcome& outcome, const std::stri
     out.model = "merl";
     out.energy = outcome.reconstruction->energy.most;
     for (const std::string& note : outcome.reconstruction->notes) out.notes.push_back(note);
-    manifest::Surface& surface = document.surfaces[outcome.name] = {};
+    manifest::Surface surface;
     surface.model = "merl";
     surface.file = table_file;
+    if (outcome.renders()) document.surfaces[outcome.name] = surface;
   }
   if (out.model.empty()) out.model = "none";
   out.verdict = verdict.word, out.sentence = verdict.sentence;

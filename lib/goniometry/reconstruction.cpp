@@ -101,10 +101,10 @@ void judge(const Basis& basis, const ReconstructOptions& options, std::size_t ba
                "noise and what the basis leaves open are taken %.1f times as large as stated.",
                excess, misfit));
   if (options.uncertainty && options.calibrate)
-    notes.push_back(
-        format("Left out in turn and reconstructed from these directions, the basis' materials lie within "
-               "95 %% intervals in %.1f %% of the cells; standard deviations are multiplied by %.2f.",
-               100 * out.covered, out.widening));
+    notes.push_back(format(
+        "Left out in turn%s and reconstructed from these directions, the basis' materials lie within "
+        "95 %% intervals in %.1f %% of the cells; standard deviations are multiplied by %.2f.",
+        basis.classes() < basis.materials().size() ? " with all of their class" : "", 100 * out.covered, out.widening));
   const char* colour[] = {"red", "green", "blue"};
   if (options.energy)
     notes.push_back(format("It reflects at most %.3f of the light (%s, at %.0f degrees)%s.", out.energy.most,

@@ -16,7 +16,7 @@ namespace {
 constexpr double normal_95 = 1.959963984540054;
 constexpr std::size_t test_cells = 300;
 
-// Mean and covariance of the scores of all materials but one.
+// Mean and covariance of the scores of all materials but those of one class.
 class Others {
  public:
   explicit Others(const Basis& basis)
@@ -32,12 +32,12 @@ class Others {
   Eigen::Map<const Eigen::VectorXd> score(std::size_t sample) const {
     return {basis_.scores().data() + sample * basis_.components(), k_};
   }
-  Prior without(std::uint32_t material) const {
+  Prior without(std::uint32_t left_out) const {
     Eigen::VectorXd sum = sum_;
     Eigen::MatrixXd squares = squares_;
     double n = static_cast<double>(basis_.samples());
     for (std::size_t s = 0; s < basis_.samples(); ++s) {
-      if (basis_.material_of()[s] != material) continue;
+      if (basis_.class_of(s) != left_out) continue;
       sum -= score(s);
       squares -= score(s) * score(s).transpose();
       --n;
@@ -175,12 +175,14 @@ Calibration calibrate(const Basis& basis, const Observed& observed, const Recons
   const Others others(basis);
   Random random(17);
   const TestCells cells = draw_cells(basis, random);
+  const bool singly = basis.classes() == basis.materials().size();
   std::vector<double> ratios;
-  std::size_t within = 0;
-  for (std::size_t s = 0; s < basis.samples();) {
-    const std::uint32_t material = basis.material_of()[s];
-    const Prior prior = others.without(material);
-    for (; s < basis.samples() && basis.material_of()[s] == material; ++s) {
+  double widest = 0;
+  std::size_t within = 0, all = 0;
+  for (std::uint32_t left_out = 0; left_out < basis.classes(); ++left_out) {
+    const Prior prior = others.without(left_out);
+    for (std::size_t s = 0; s < basis.samples(); ++s) {
+      if (basis.class_of(s) != left_out) continue;
       Eigen::VectorXd y = observed.q * others.score(s);
       for (Eigen::Index i = 0; i < y.size(); ++i) y[i] += std::sqrt(observed.noise[i]) * random.normal();
       const Scales scales = likely_scales(observed, prior, y);
@@ -192,11 +194,15 @@ Calibration calibrate(const Basis& basis, const Observed& observed, const Recons
       for (Eigen::Index i = 0; i < error.size(); ++i) {
         error[i] += cells.rest[i] * random.normal();
         ratios.push_back(std::abs(error[i]) / std::max(sigma[i], 1e-12));
-        within += ratios.back() <= normal_95 ? 1 : 0;
+        within += ratios.back() <= normal_95 ? 1 : 0, ++all;
       }
     }
+    if (singly) continue;
+    widest = std::max(widest, stats::quantile(ratios, 0.95));
+    ratios.clear();
   }
-  return {stats::quantile(ratios, 0.95) / normal_95, static_cast<double>(within) / static_cast<double>(ratios.size())};
+  if (singly) widest = stats::quantile(ratios, 0.95);
+  return {widest / normal_95, static_cast<double>(within) / static_cast<double>(all)};
 }
 
 }  // namespace gonio::goniometry

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 
 #include "base/error.h"
 #include "reconstruction/small_basis.h"
@@ -135,6 +136,7 @@ TEST_F(FromFewDirections, IntervalsHoldForMaterialsLeftOut) {
   for (std::size_t left_out = 0; left_out < 10; ++left_out) {
     auto others = materials();
     others.erase(others.begin() + left_out);
+    for (auto& other : others) std::ranges::replace(other.name, ' ', '-');  // classes of their own
     const Basis without = basis_of(others);
     const TableTruth truth(materials()[left_out], small_bins);
     const Samples samples = measured(truth, goniometry::plan(without, 10).pairs, 0.02, 100 + left_out);
@@ -152,6 +154,17 @@ TEST_F(FromFewDirections, IntervalsHoldForMaterialsLeftOut) {
   }
   EXPECT_GE(within / all, 0.90);
   EXPECT_LE(within / all, 0.98);
+}
+
+// Classes left out together are strange to the others: intervals are wider for it.
+TEST_F(FromFewDirections, ClassesLeftOutWidenMoreThanMaterials) {
+  auto singly = materials();
+  for (auto& material : singly) std::ranges::replace(material.name, ' ', '-');
+  const Basis alone = basis_of(singly);
+  EXPECT_EQ(alone.classes(), 30u);
+  EXPECT_EQ(basis().classes(), 7u);
+  const Samples samples = measured(TableTruth(materials()[4], small_bins), goniometry::plan(basis(), 8).pairs, 0.02, 5);
+  EXPECT_GT(reconstruct(basis(), samples).widening, 1.02 * reconstruct(alone, samples).widening);
 }
 
 TEST_F(FromFewDirections, MoreDirectionsTellMore) {
