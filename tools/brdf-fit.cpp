@@ -28,11 +28,10 @@ const cli::Program& gonio_program() {
                 {"NAME-sphere.png", "a sphere of the surface"},
                 {"NAME-scans.svg", "scans in the plane of incidence, measured and fitted"},
                 {"NAME-lobes.svg", "lobes around the normal"}},
-      .exits =
-          {{Exit::negative, "These samples tell no surface."},
-           {Exit::quality,
-            "Written, but the fit did not converge, reflects more than it receives, is named a metal with numbers of "
-            "none, or errs on held-out directions by half as much again as on fitted ones."}},
+      .exits = {{Exit::negative, "These samples tell no surface."},
+                {Exit::quality,
+                 "Written, but the fit did not converge, reflects more than it receives, or errs on held-out "
+                 "directions by half as much again as on fitted ones."}},
       .references = {"J. Nielsen, H. Jensen, R. Ramamoorthi, On optimal, minimal BRDF sampling for reflectance "
                      "acquisition, ACM TOG 34(6), 2015.",
                      "L. Belcour, P. Barla, R. Pacanowski, ALTA: a BRDF analysis library, MAM 2014.",

@@ -194,11 +194,10 @@ Verdict verdict_of(const Outcome& outcome) {
         "doubtful",
         start + "; but it reflects up to " + report::number_text(fit->energy, 3) + " of the light that it receives.",
         Exit::quality};
-  if (const std::string why = unlike_metals(*fit); !why.empty())
-    return {"doubtful", start + "; but its numbers describe no known metal: " + why + ".", Exit::quality};
   if (held_out && fit->held_out.log1p > most_held_out_ratio * fit->fitted.log1p + 1e-3)
     return {"doubtful", start + ": it does not carry over to directions that it has not seen.", Exit::quality};
-  return {"good", start + ".", Exit::done};
+  const std::string name = unlike_metals(*fit);
+  return {"good", start + (name.empty() ? "" : "; " + name) + ".", Exit::done};
 }
 
 void enter(manifest::Document& document, const Outcome& outcome, const std::string& table_file) {

@@ -13,7 +13,6 @@
 #include "goniometry/fit_candidates.h"
 #include "goniometry/fit_problem.h"
 #include "goniometry/limits.h"
-#include "goniometry/plausible.h"
 #include "goniometry/selection.h"
 #include "goniometry/start.h"
 #include "goniometry/uncertainty.h"
@@ -127,7 +126,7 @@ double model_error_of(const Problem& problem, const Candidate& candidate, const 
 }
 
 // Why a fit is not to be believed; empty where it is.
-std::string doubt(const Run& run, double least, const FitOptions& options) {
+std::string doubt(const Run& run, double least) {
   for (std::size_t i = 0; i < run.solution.x.size(); ++i) {
     const Slot& slot = slot_of(run.candidate, i);
     const auto& info = run.candidate.model->info().parameters[slot.parameter];
@@ -140,9 +139,6 @@ std::string doubt(const Run& run, double least, const FitOptions& options) {
     return text_of("it returns %.3f of the light from some direction, more than arrives", run.fit.energy);
   if (run.fit.reciprocity > 1e-6)
     return text_of("it is not reciprocal: exchanging the directions changes it by %.2g", run.fit.reciprocity);
-  // Named models are fitted whatever comes out; the verdict says it.
-  if (const std::string why = unlike_metals(run.fit); options.models.empty() && !why.empty())
-    return "its numbers describe no known metal: " + why;
   return {};
 }
 
@@ -220,7 +216,7 @@ void rank(std::vector<Run>& runs, double least, const FitOptions& options, Fits&
     return options.folds > 1 && !run.folds.empty() ? run.fit.held_out.scaled : run.fit.fitted.scaled;
   };
   std::erase_if(runs, [&](const Run& run) {
-    const std::string why = doubt(run, least, options);
+    const std::string why = doubt(run, least);
     if (!why.empty()) out.refusals.push_back({run.candidate.model->info().id, run.candidate.variant, why});
     return !why.empty();
   });

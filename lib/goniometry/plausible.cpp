@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "surface/interface_albedo.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -61,8 +62,10 @@ std::string unlike_metals(const Fit& fit) {
     const double sigma = sigma_of(fit, r), upper = r.value + (std::isfinite(sigma) ? 2 * sigma : 0);
     if (upper > reach) most = r, reach = upper;
   }
-  if (reach < 0 || reach >= least_metal) return {};
-  return format("at the normal it reflects %.1f %% of the light, and metals reflect a third or more", 100 * most.value);
+  if (reach < 0 || reach > surface::max_dielectric_f0) return {};
+  const double root = std::sqrt(most.value);
+  return format("it reflects %.1f %% at the normal, which does not tell a metal from a dielectric of index %.2f",
+                100 * most.value, (1 + root) / (1 - root));
 }
 
 }  // namespace gonio::goniometry

@@ -1,13 +1,16 @@
-// Whether a fit's constants describe what its model is named after.
+// Whether a fit's numbers tell a metal from a dielectric, where its model is named after one.
 //
 // A metal has nothing beneath its facets: what is matte about a painted sample can only widen its lobe or bend its
-// Fresnel curve. On the scale of errors such a fit may win, with constants of no metal. In visible light metals reflect
-// a third or more at the normal in the band where they reflect most (tungsten and chromium half, copper and gold in the
-// red nine tenths), semiconductors and graphite a quarter (Palik 1985); dielectrics up to 0.17 (diamond). The limit
-// lies between: `least_metal`.
+// Fresnel curve. On the scale of errors such a fit may win, with numbers of no metal. What the facets reflect at the
+// normal tells: R = f0, or ((eta - 1)^2 + k^2) / ((eta + 1)^2 + k^2). The interface of a dielectric reflects as much
+// if its index is (1 + sqrt R) / (1 - sqrt R). While R is, in every band, within what the models of dielectrics are
+// made for (max_dielectric_f0 of surface/interface_albedo.h), the numbers do not tell one from the other.
 //
-// The reflectance at the normal is f0, or ((eta - 1)^2 + k^2) / ((eta + 1)^2 + k^2) with the standard deviation that
-// the covariance of eta and k gives it. A fit is not doubted while two standard deviations more would reach the limit.
+// That is no reason to refuse the name: tables of real metals lack part of the light near the mirror direction where
+// the instrument saturates or smooths, and read so, too (MERL's aluminium 15 to 18 %, brdf/merl-aluminium-slices).
+//
+// R has the standard deviation that the covariance of eta and k, or f0, gives it; nothing is said while two more of
+// them would pass the limit.
 #pragma once
 #include <string>
 
@@ -15,9 +18,7 @@
 
 namespace gonio::goniometry {
 
-inline constexpr double least_metal = 0.18;
-
-// Why a model that is named a metal is none, as words after "its numbers describe no known metal: "; else empty.
+// What of the name of a metal the numbers do not tell, as words; empty of other models, and where they tell it.
 std::string unlike_metals(const Fit& fit);
 
 }  // namespace gonio::goniometry

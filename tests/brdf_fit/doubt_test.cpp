@@ -1,8 +1,7 @@
-// brdf-fit on photographs that render makes, and results that it doubts: status 2, with the reason.
+// brdf-fit on photographs that render makes, and names that its numbers do not tell.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/atomic_file.h"
 #include "data.h"
 #include "manifest/document.h"
 #include "process.h"
@@ -27,7 +26,7 @@ TEST_F(BrdfFitOfImages, TellsTheSurfaceThatWasRendered) {
   const auto truth = manifest::parse_document(scene.out, "scene", folder_.path());
   const Ended images = run({"render", "--record", "--spp", "2", "--aov", "off", "--out", "g"}, scene.out);
   ASSERT_EQ(images.status, 0) << images.err;
-  const Ended ended = run({"brdf-fit", "--model", "coated-diffuse", "--html", "p.html"}, images.out);
+  const Ended ended = run({"brdf-fit", "--model", "coated-diffuse"}, images.out);
   ASSERT_EQ(ended.status, 0) << ended.err;
   const auto document = manifest::parse_document(ended.out, "out", folder_.path());
   ASSERT_EQ(document.surface_fits.size(), 1u);
@@ -42,28 +41,29 @@ TEST_F(BrdfFitOfImages, TellsTheSurfaceThatWasRendered) {
     EXPECT_NEAR(is.parameters.at(parameter).scalar(), was.parameters.at(parameter).scalar(),
                 4 * is.sigma.at(parameter).at(0))
         << parameter;
-  EXPECT_THAT(read_file(folder_.path() / "p.html"), HasSubstr("told from its reflectance"));
 }
 
-// Dark red under varnish, of one band: a conductor fits it with constants of no metal. Left to itself brdf-fit refuses
-// that one; asked for it, it says so.
-TEST_F(BrdfFitOfImages, CallsNoPaintAMetal) {
-  const auto paint = tests::data("brdf/cornell/garnet_red.brdf");
-  if (!std::filesystem::exists(paint)) {
-    if (tests::data_is_required()) FAIL() << paint << " is missing";
-    GTEST_SKIP() << paint << " is not there";
-  }
-  const Ended named = run({"brdf-fit", "--bands", "550nm", "--isotropic", "--model", "conductor", paint.string()});
-  EXPECT_EQ(named.status, 2) << named.err;
-  EXPECT_THAT(named.err, HasSubstr("no known metal"));
-  const auto document = manifest::parse_document(named.out, "out", folder_.path());
-  EXPECT_EQ(document.surface_fits.at("garnet_red").verdict, "doubtful");
-  const Ended free =
-      run({"brdf-fit", "--bands", "550nm", "--isotropic", "--starts", "0", "--lobes", "1", paint.string()});
-  EXPECT_EQ(free.status, 0) << free.err;
-  const auto fit = manifest::parse_document(free.out, "out", folder_.path()).surface_fits.at("garnet_red");
-  EXPECT_TRUE(fit.parameters.contains("albedo")) << fit.model;
-  EXPECT_THAT(fit.refusals, testing::Contains(testing::AllOf(HasSubstr("conductor"), HasSubstr("no known metal"))));
+// Dark red under varnish, of one band: a conductor fits it with constants that reflect as a varnish does.
+TEST_F(BrdfFitOfImages, SaysWhereANumberTellsNoMetal) {
+  GONIO_NEEDS_DATA("brdf/cornell/garnet_red.brdf");
+  const auto paint = tests::data("brdf/cornell/garnet_red.brdf").string();
+  const Ended named = run({"brdf-fit", "--bands", "550nm", "--isotropic", "--model", "conductor", paint});
+  EXPECT_EQ(named.status, 0) << named.err;
+  const auto fit = manifest::parse_document(named.out, "out", folder_.path()).surface_fits.at("garnet_red");
+  EXPECT_EQ(fit.verdict, "good");
+  EXPECT_THAT(fit.sentence, HasSubstr("does not tell a metal from a dielectric of index 1."));
+}
+
+// A recorded metal reads so, too, and keeps its name.
+TEST_F(BrdfFitOfImages, AMetalKeepsItsName) {
+  GONIO_NEEDS_DATA("brdf/merl-aluminium-slices/aluminum_brdf.csv");
+  const auto slices = tests::data("brdf/merl-aluminium-slices/aluminum_brdf.csv").string();
+  const Ended ended = run({"brdf-fit", "--angles", "deg", "--columns", "theta_i=#1,phi_i=#2,theta_o=#3,phi_o=#4,f=#5",
+                           "--isotropic", "--starts", "0", "--model", "glossy", "--model", "glossy-metal", slices});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const auto fit = manifest::parse_document(ended.out, "out", folder_.path()).surface_fits.at("aluminum_brdf");
+  EXPECT_THAT(fit.model, HasSubstr("metal"));
+  EXPECT_THAT(fit.sentence, HasSubstr("does not tell a metal from a dielectric of index 2."));
 }
 
 }  // namespace

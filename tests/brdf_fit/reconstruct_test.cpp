@@ -43,10 +43,10 @@ class Reconstruct : public testing::Test {
 
 TEST_F(Reconstruct, WritesTheTableItsSigmaAndTheSurface) {
   write_file(folder_.path() / "paint.csv", run({"--example"}).out);
-  const Ended ended = reconstruct({"--out", "o", "paint.csv"});
+  const Ended ended = reconstruct({"--merl", "paint.binary", "--merl-sigma", "sigma.binary", "paint.csv"});
   ASSERT_EQ(ended.status, 0) << ended.err;
-  const io::MerlTable table = io::read_merl(folder_.path() / "o/paint.binary"),
-                      sigma = io::read_merl(folder_.path() / "o/paint-sigma.binary");
+  const io::MerlTable table = io::read_merl(folder_.path() / "paint.binary"),
+                      sigma = io::read_merl(folder_.path() / "sigma.binary");
   ASSERT_EQ(table.bins, sigma.bins);
   std::size_t above = 0;
   for (std::size_t i = 0; i < table.brdf_per_sr.size(); ++i) {
