@@ -60,7 +60,6 @@ class BoundSurface final : public BoundModel {
       const Kind kind = p_.slots[columns[c]].kind;
       // A term that is off has left nothing to keep.
       const bool keeps = (kind == Kind::film && here.film.film_m > 0) || kind == Kind::fluorescence ||
-                         (kind == Kind::residue && here.residue.share > 0) ||
                          (kind == Kind::ridges && here.ridges.share > 0);
       for (const auto& [column, band] : together) {
         done[column] = 1;
