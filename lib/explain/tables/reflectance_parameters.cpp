@@ -28,6 +28,9 @@ constexpr std::array<FilmClass, 2> film_classes = {{{1.15, 1.35, 1.5, 0.12e-6, 5
 constexpr double thinnest_film_m = 0.02e-6;
 constexpr std::size_t fewest_bands_of_a_film = 5;  // fewer cannot tell fringes from any other colour of the gloss
 constexpr std::size_t ridge_sectors = 4;
+// A share that may be all there is, such as that of walls, is estimated from both sides of it: held at its bound it
+// would have no sigma. What the manifest is given is cut to the bound.
+constexpr double beyond_all = 0.25;
 constexpr double overlap = 1.5;  // of sectors: no azimuth lies at the limit of all that hold it
 
 void set_component(Rgb& rgb, std::size_t k, double value) {
@@ -196,6 +199,8 @@ class Collector {
     for (const mechanism::Parameter& info : m.parameters) {
       Parameter p = of_mechanism(m, info);
       if (info.name == "second_alpha") p.start = start_of_second_lobe(p);
+      if (&info == &m.parameters[0] && own && out_.base_model->info().parameters[*own].upper == info.upper)
+        p.upper += beyond_all * (info.upper - info.lower);
       // The signature vanishes where the base has no gloss; edits begin from where a search would.
       start.parameters[info.name] = manifest::Parameter(info.start);
       // Numbers that shape a term do not switch it on; those that vanish with it do.

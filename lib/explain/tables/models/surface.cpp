@@ -182,7 +182,12 @@ class BoundSurface final : public BoundModel {
     if (!(sigma[p] > 0)) return;
     manifest::MechanismUse& use = document.mechanisms[slot.mechanism];
     if (std::find(use.on.begin(), use.on.end(), p_.surface) == use.on.end()) use.on.push_back(p_.surface);
-    use.parameters[slot.name] = manifest::Parameter(values[p]);
+    double value = values[p];
+    if (slot.kind == Kind::mechanism) {
+      const auto& own = mechanism::find_mechanism(slot.mechanism)->parameters;
+      value = std::min(value, std::ranges::find(own, slot.name, &mechanism::Parameter::name)->upper);
+    }
+    use.parameters[slot.name] = manifest::Parameter(value);
     use.sigma[slot.name] = {sigma[p]};
   }
 
