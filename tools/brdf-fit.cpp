@@ -27,7 +27,10 @@ const cli::Program& gonio_program() {
                 {"NAME-sigma.binary", "--reconstruct: one standard deviation of every cell, 1/sr, in that format"},
                 {"NAME-sphere.png", "a sphere of the surface"},
                 {"NAME-scans.svg", "scans in the plane of incidence, measured and fitted"},
-                {"NAME-lobes.svg", "lobes around the normal"}},
+                {"NAME-lobes.svg", "lobes around the normal, measured and fitted"},
+                {"NAME-residuals.svg", "where the surface errs, over half and difference angle"},
+                {"NAME-numbers.csv", "what was fitted, with intervals"},
+                {"NAME-spectrum-NUMBER.svg", "of more than three bands: albedo, f0, ... over wavelength"}},
       .exits = {{Exit::negative, "These samples tell no surface."},
                 {Exit::quality,
                  "Written, but the fit did not converge, reflects more than it receives, or errs on held-out "

@@ -12,9 +12,11 @@
 #include "goniometry/plan.h"
 #include "goniometry/plots.h"
 #include "goniometry/recording.h"
+#include "goniometry/spectra.h"
 #include "io/picture.h"
 #include "manifest/fields.h"
 #include "render/preview.h"
+#include "report/heat_drawing.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -143,6 +145,18 @@ void write_below(cli::Invocation& call, Outcome& outcome, const std::string& key
   outcome.files[key] = manifest::add_file(call.document, path, outcome.name + "-" + key);
 }
 
+void write_drawings(cli::Invocation& call, Outcome& outcome) {
+  const auto draw = [&](const std::string& what, const std::string& svg) {
+    write_below(call, outcome, what, call.output_path(outcome.name + "-" + what + ".svg"), svg);
+  };
+  const std::size_t band = written_bands(outcome.read.samples)[1];
+  if (const auto scans = scan_plot(outcome, band)) draw("scans", standalone_svg(*scans));
+  draw("lobes", standalone_svg(lobe_plot(outcome, band)));
+  draw("residuals", report::standalone_svg(residual_map(outcome)));
+  if (outcome.reconstruction) return;
+  for (const auto& [number, plot] : spectra_of(outcome)) draw("spectrum-" + number, standalone_svg(plot));
+}
+
 void write_outputs(cli::Invocation& call, Outcome& outcome) {
   std::string table_file;
   const bool whole = outcome.reconstruction.has_value();
@@ -160,6 +174,8 @@ void write_outputs(cli::Invocation& call, Outcome& outcome) {
   }
   enter(call.document, outcome, table_file);
   write_below(call, outcome, "csv", path_for(call, "csv", outcome.name + ".csv"), samples_csv(outcome));
+  if (!whole && outcome.chosen() != nullptr)
+    write_below(call, outcome, "numbers", path_for(call, "", outcome.name + "-numbers.csv"), numbers_csv(outcome));
   const fs::path page = path_for(call, "html", outcome.name + ".html");
   const bool known =
       call.document.surfaces.contains(outcome.name) && outcome.renders() && (whole || outcome.chosen() != nullptr);
@@ -168,11 +184,7 @@ void write_outputs(cli::Invocation& call, Outcome& outcome) {
   if (known && !call.out.empty()) {
     write_below(call, outcome, "sphere", call.output_path(outcome.name + "-sphere.png"),
                 io::encode_png(render::preview(sphere)));
-    const std::size_t band = written_bands(outcome.read.samples)[1];
-    if (const auto scans = scan_plot(outcome, band))
-      write_below(call, outcome, "scans", call.output_path(outcome.name + "-scans.svg"), standalone_svg(*scans));
-    write_below(call, outcome, "lobes", call.output_path(outcome.name + "-lobes.svg"),
-                standalone_svg(lobe_plot(outcome, band)));
+    write_drawings(call, outcome);
   }
   write_below(call, outcome, "page", page, page_of(outcome, sphere));
   enter(call.document, outcome, table_file);  // with the files

@@ -7,12 +7,14 @@
 
 #include "goniometry/checks.h"
 #include "goniometry/plausible.h"
+#include "goniometry/spectra.h"
 #include "report/number_text.h"
 
 namespace gonio::goniometry {
 namespace {
 
 constexpr double most_held_out_ratio = 1.5;
+constexpr std::size_t most_in_covariance = 200;
 
 std::string band_called(const Samples& samples, std::size_t band) {
   return band < samples.bands() ? samples.band_name[band] : std::to_string(band);
@@ -58,14 +60,16 @@ manifest::Surface surface_of(const Outcome& outcome, const Fit& fit) {
   return surface;
 }
 
-// Of what all bands share and of the written bands: the whole of a spectral fit is thousands of numbers.
+// The whole; beyond most_in_covariance numbers, which a spectrum of hundreds of bands has, that of what all bands share
+// and of the written bands.
 manifest::Value covariance_of(const Outcome& outcome, const Fit& fit) {
   const std::size_t n = fit.numbers.size();
   if (fit.covariance.size() != n * n || n == 0) return {};
   const auto bands = written_bands(outcome.read.samples);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < n; ++i)
-    if (fit.numbers[i].band == whole_sample || std::ranges::find(bands, fit.numbers[i].band) != bands.end())
+    if (n <= most_in_covariance || fit.numbers[i].band == whole_sample ||
+        std::ranges::find(bands, fit.numbers[i].band) != bands.end())
       kept.push_back(i);
   std::vector<std::string> order;
   manifest::Value rows = manifest::Value::array();
@@ -85,17 +89,12 @@ std::optional<double> finite(double v) {
 
 void enter_fit(const Outcome& outcome, const Fit& fit, manifest::SurfaceFit& out) {
   const auto& parameters = fit.model->info().parameters;
-  std::vector<std::string> at_bounds;
   for (const auto& info : parameters) {
     std::vector<double> values, sigma;
     for (const FittedNumber& number : fit.numbers) {
       if (number.name != info.name) continue;
       values.push_back(number.value);
       if (std::isfinite(number.sigma)) sigma.push_back(number.sigma);
-      if (number.at != FittedNumber::At::inside)
-        at_bounds.push_back(number_name(number, outcome.read.samples) + " is at its " +
-                            (number.at == FittedNumber::At::lower ? "lower" : "upper") + " bound; 95 % interval " +
-                            report::number_text(number.low, 3) + " to " + report::number_text(number.high, 3) + ".");
     }
     if (!values.empty()) out.parameters[info.name] = values;
     if (!sigma.empty() && sigma.size() == values.size()) out.sigma[info.name] = sigma;
@@ -106,7 +105,10 @@ void enter_fit(const Outcome& outcome, const Fit& fit, manifest::SurfaceFit& out
   out.rms_decades = finite(fit.fitted.decades);
   out.energy = finite(fit.energy), out.reciprocity = finite(fit.reciprocity);
   out.converged = fit.converged;
-  for (std::string& note : at_bounds) out.notes.push_back(std::move(note));
+  for (std::string& note : bound_notes(outcome, fit)) out.notes.push_back(std::move(note));
+  if (fit.numbers.size() > most_in_covariance)
+    out.notes.push_back("Of the covariance of " + std::to_string(fit.numbers.size()) +
+                        " numbers that of the written bands is stated.");
 }
 
 void enter_candidates(const Outcome& outcome, manifest::SurfaceFit& out) {

@@ -45,13 +45,6 @@ Pair pair_of(double theta_h, double theta_d, double phi_d) {
   return {wi, 2 * dot(h, wi) * h - wi};
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 double azimuth(Vec3 w) {
   return std::atan2(w.y, w.x);
 }
@@ -60,6 +53,13 @@ double zenith(Vec3 w) {
 }
 
 }  // namespace
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
 
 std::array<std::size_t, 3> written_bands(const Samples& samples) {
   std::array<std::size_t, 3> out{};

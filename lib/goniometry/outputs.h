@@ -53,6 +53,9 @@ io::MerlTable merl_of(const Outcome& outcome, const std::string& place);
 // residual on the scale above, series and place. Readable by brdf-fit and explain.
 std::string samples_csv(const Outcome& outcome);
 
+// As a field of such a table.
+std::string quoted(const std::string& text);
+
 // A sphere of the surface of `document` under a lamp and a dim sky, linear. Deterministic.
 io::Image sphere_picture(const manifest::Document& document, const std::string& surface, int pixels = 240);
 

@@ -7,6 +7,7 @@
 
 #include "goniometry/document.h"
 #include "goniometry/plots.h"
+#include "goniometry/spectra.h"
 #include "io/picture.h"
 #include "render/preview.h"
 #include "report/number_text.h"
@@ -19,8 +20,6 @@ using report::KeyNumber;
 using report::number_text;
 using report::Page;
 using report::Tone;
-
-constexpr std::size_t most_rows_of_numbers = 60;
 
 std::vector<KeyNumber> key_numbers(const Outcome& outcome) {
   std::vector<KeyNumber> keys;
@@ -52,7 +51,7 @@ report::TableText number_table(const Outcome& outcome, const Fit& fit) {
   const auto bands = written_bands(outcome.read.samples);
   for (const FittedNumber& n : fit.numbers) {
     const bool written = n.band == whole_sample || std::ranges::find(bands, n.band) != bands.end();
-    if (fit.numbers.size() > most_rows_of_numbers && !written) continue;
+    if (has_spectra(outcome) && !written) continue;
     const bool known = std::isfinite(n.sigma) && n.sigma > 0;
     table.rows.push_back({number_name(n, outcome.read.samples),
                           known ? report::with_sigma(n.value, n.sigma) : number_text(n.value, 4),
@@ -63,7 +62,8 @@ report::TableText number_table(const Outcome& outcome, const Fit& fit) {
   }
   if (table.rows.size() < fit.numbers.size())
     table.caption = "Of the " + std::to_string(outcome.read.samples.bands()) +
-                    " bands the three that stand for red, green and blue; all are in the manifest.";
+                    " bands the three that stand for red, green and blue; all are drawn below, and are numbers in the "
+                    "manifest and, with --out, in NAME-numbers.csv.";
   return table;
 }
 
@@ -157,6 +157,12 @@ std::string page_of(const Outcome& outcome, const io::Image& sphere) {
     page.section("The surface");
     page.paragraph(fit->model->info().id + ": " + fit->model->info().sentence + " " + fit->verdict);
     page.table(number_table(outcome, *fit));
+    if (has_spectra(outcome)) {
+      std::vector<report::Plot> plots;
+      for (auto& [number, plot] : spectra_of(outcome)) plots.push_back(std::move(plot));
+      plots.push_back(band_error_plot(outcome));
+      page.plots(plots);
+    }
   }
   if (fit != nullptr || outcome.reconstruction) add_plots(page, outcome);
   add_alternatives(page, outcome);
