@@ -33,8 +33,8 @@ const cli::Program& gonio_program() {
                 {"NAME-spectrum-NUMBER.svg", "of more than three bands: albedo, f0, ... over wavelength"}},
       .exits = {{Exit::negative, "These samples tell no surface."},
                 {Exit::quality,
-                 "Written, but the fit did not converge, reflects more than it receives, or errs on held-out "
-                 "directions by half as much again as on fitted ones."}},
+                 "Written, but the fit did not converge, reflects more than it receives, errs more than a constant "
+                 "would, or errs on held-out directions by half as much again as on fitted ones."}},
       .references = {"J. Nielsen, H. Jensen, R. Ramamoorthi, On optimal, minimal BRDF sampling for reflectance "
                      "acquisition, ACM TOG 34(6), 2015.",
                      "L. Belcour, P. Barla, R. Pacanowski, ALTA: a BRDF analysis library, MAM 2014.",

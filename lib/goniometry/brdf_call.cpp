@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <map>
 
 #include "base/atomic_file.h"
 #include "base/progress.h"
@@ -114,6 +115,22 @@ std::vector<Outcome> read_inputs(cli::Invocation& call) {
     if (!call.document.goniometer.contains(name))
       throw Error(Exit::data, "--sample", "\"" + name + "\" is not in goniometer of " + call.document.name);
   return outcomes;
+}
+
+// What a person would want to know before the numbers: which rows do not count, and an unlikely convention.
+void log_reading(const Outcome& outcome) {
+  std::map<std::string, std::size_t> reasons;
+  for (const Dropped& dropped : outcome.read.dropped) ++reasons[dropped.reason];
+  std::string why;
+  for (const auto& [reason, rows] : reasons) why += (why.empty() ? "" : ", ") + std::to_string(rows) + " " + reason;
+  const std::size_t left_out = outcome.read.dropped.size();
+  if (left_out > 0)
+    log(LogLevel::info, outcome.name + ": " + std::to_string(left_out) + " of " +
+                            std::to_string(left_out + outcome.read.samples.rows()) +
+                            " pairs of directions are left out: " + why);
+  if (!outcome.read.units_doubt.empty()) log(LogLevel::warning, outcome.name + ": " + outcome.read.units_doubt);
+  if (outcome.read.convention.contradicted)
+    log(LogLevel::warning, outcome.name + ": " + outcome.read.convention.sentence);
 }
 
 void tell(cli::Invocation& call, Outcome& outcome, const std::optional<Basis>& basis) {
@@ -242,6 +259,7 @@ Exit fit_brdf(cli::Invocation& call) {
   if (basis && call.given("save-basis")) basis->save(call.text("save-basis"));
   Exit worst = Exit::done;
   for (Outcome& outcome : outcomes) {
+    log_reading(outcome);
     tell(call, outcome, basis);
     write_outputs(call, outcome);
     const Verdict verdict = verdict_of(outcome);

@@ -196,10 +196,13 @@ Verdict verdict_of(const Outcome& outcome) {
         "doubtful",
         start + "; but it reflects up to " + report::number_text(fit->energy, 3) + " of the light that it receives.",
         Exit::quality};
+  if (worse_than_a_constant(*fit, outcome.read.samples))
+    return {"doubtful", start + ": a constant would err less. Are the values a BRDF in 1/sr?", Exit::quality};
   if (held_out && fit->held_out.log1p > most_held_out_ratio * fit->fitted.log1p + 1e-3)
     return {"doubtful", start + ": it does not carry over to directions that it has not seen.", Exit::quality};
-  const std::string name = unlike_metals(*fit);
-  return {"good", start + (name.empty() ? "" : "; " + name) + ".", Exit::done};
+  for (const std::string& caution : {brighter_than_possible(*fit), unlike_metals(*fit)})
+    if (!caution.empty()) start += "; " + caution;
+  return {"good", start + ".", Exit::done};
 }
 
 void enter(manifest::Document& document, const Outcome& outcome, const std::string& table_file) {

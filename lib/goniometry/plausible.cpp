@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "goniometry/outputs.h"
 #include "surface/interface_albedo.h"
 
 namespace gonio::goniometry {
@@ -50,6 +51,34 @@ double sigma_of(const Fit& fit, const Reflectance& r) {
 }
 
 }  // namespace
+
+bool worse_than_a_constant(const Fit& fit, const Samples& samples) {
+  constexpr double margin = 1.1;
+  double sum = 0, squares = 0, count = 0;
+  for (std::size_t r = 0; r < samples.rows(); ++r)
+    for (std::size_t b = 0; b < samples.bands(); ++b) {
+      const double f = samples.f[r * samples.bands() + b];
+      if (!std::isfinite(f)) continue;
+      const double v = compared(f, samples.wi[r], samples.wo[r]);
+      sum += v, squares += v * v, ++count;
+    }
+  if (count < 2) return false;
+  const double about_mean = std::sqrt(std::max(0.0, squares / count - (sum / count) * (sum / count)));
+  return fit.fitted.log1p > margin * about_mean + 1e-6;
+}
+
+std::string brighter_than_possible(const Fit& fit) {
+  for (const auto& info : fit.model->info().parameters) {
+    if (!info.rgb || info.upper != 1) continue;
+    std::size_t there = 0, all = 0;
+    for (const FittedNumber& n : fit.numbers)
+      if (n.name == info.name) ++all, there += n.at == FittedNumber::At::upper;
+    if (there > 0)
+      return info.name + " is 1 in " + std::to_string(there) + " of " + std::to_string(all) +
+             (all == 1 ? " band" : " bands") + ": the samples are brighter than a surface that returns all light";
+  }
+  return {};
+}
 
 std::string unlike_metals(const Fit& fit) {
   const std::string& id = fit.model->info().id;
