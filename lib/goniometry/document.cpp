@@ -113,16 +113,13 @@ void enter_fit(const Outcome& outcome, const Fit& fit, manifest::SurfaceFit& out
 
 void enter_candidates(const Outcome& outcome, manifest::SurfaceFit& out) {
   for (std::size_t i = 0; i < outcome.fits.candidates.size(); ++i) {
-    if (i == outcome.fits.chosen) continue;
     const Fit& fit = outcome.fits.candidates[i];
+    if (i == outcome.fits.chosen || !fit.same_as.empty()) continue;  // the notes name what is the same
     manifest::AlternativeFit other;
     other.model = fit.model->info().id + (fit.variant.empty() ? "" : ", " + fit.variant);
     other.parameters = static_cast<std::int64_t>(fit.numbers.size());
     other.rms = finite(fit.fitted.log1p), other.held_out_rms = finite(fit.held_out.log1p);
-    const bool as_good = fit.held_out_excess <= fit.held_out_excess_sigma;
-    other.reason = !fit.converged ? "did not converge"
-                   : as_good      ? "as good within one standard error, and no simpler"
-                                  : "errs more on held-out directions";
+    other.reason = fit.reason;
     out.alternatives.push_back(std::move(other));
   }
   for (const Refusal& r : outcome.fits.refusals)

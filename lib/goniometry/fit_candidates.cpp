@@ -71,6 +71,8 @@ Candidate candidate_of(const surface::Model& model, const Variant& v, double lea
     if (width) slot.lower = std::max({slot.lower, least, 1e-4});
     slot.logarithmic = width || p.name.ends_with("_m");
     slot.periodic = p.name == "azimuth_rad";
+    // Axes of roughness are lines: half a turn brings the same surface back, and one number stands for both.
+    if (slot.periodic && !relief(model)) slot.lower = -pi / 2, slot.upper = pi / 2;
     // Shares of nothing and of all have no slope by what they share.
     if (p.name == "anisotropy") slot.upper = 0.98;
     (p.components == 3 ? c.colours : c.shared).push_back(slot);

@@ -69,8 +69,8 @@ report::TableText number_table(const Outcome& outcome, const Fit& fit) {
 
 void add_alternatives(Page& page, const Outcome& outcome) {
   report::TableText table{.caption =
-                              "By their error on held-out directions. Chosen is the simplest within one standard "
-                              "error of the best.",
+                              "By their error on held-out directions. Chosen is the simplest whose mean square "
+                              "exceeds the least by no more than one standard error, or 2 % of it.",
                           .columns = {{.name = "model", .numeric = false},
                                       {.name = "numbers"},
                                       {.name = "rms"},
@@ -79,12 +79,11 @@ void add_alternatives(Page& page, const Outcome& outcome) {
                                       {.name = "", .numeric = false}}};
   for (std::size_t i = 0; i < outcome.fits.candidates.size(); ++i) {
     const Fit& fit = outcome.fits.candidates[i];
+    if (!fit.same_as.empty()) continue;
     table.rows.push_back({fit.model->info().id + (fit.variant.empty() ? "" : ", " + fit.variant),
                           std::to_string(fit.numbers.size()), number_text(fit.fitted.log1p, 3),
                           number_text(fit.held_out.log1p, 3), number_text(fit.fitted.decades, 3),
-                          i == outcome.fits.chosen ? "chosen"
-                          : fit.converged          ? ""
-                                                   : "did not converge"});
+                          i == outcome.fits.chosen ? "chosen" : fit.reason});
   }
   if (table.rows.empty()) return;
   page.section("What else was tried");
