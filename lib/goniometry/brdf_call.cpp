@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "goniometry/document.h"
 #include "goniometry/page.h"
 #include "goniometry/plan.h"
@@ -149,6 +150,25 @@ void tell(cli::Invocation& call, Outcome& outcome, const std::optional<Basis>& b
   outcome.table = std::make_shared<const surface::MeasuredTable>(std::move(within), outcome.name);
 }
 
+std::string named(const Outcome& outcome, const std::string& ending) {
+  return file_stem(outcome.name) + ending;
+}
+
+// Before the fits, which take their time: names that two samples share, and files that are there.
+void check_names(const cli::Invocation& call, const std::vector<Outcome>& outcomes) {
+  std::map<std::string, const Outcome*> known;
+  for (const Outcome& outcome : outcomes) {
+    const auto [other, fresh] = known.try_emplace(file_stem(outcome.name), &outcome);
+    if (!fresh)
+      throw Error(Exit::data, outcome.source,
+                  "would be called \"" + outcome.name + "\", and so would " + other->second->source,
+                  "fit one after the other with --name, or rename a file");
+    const fs::path csv = call.out / named(outcome, ".csv");
+    if (!call.out.empty() && fs::exists(csv) && !call.force && !call.resume)
+      throw Error(Exit::cannot_create, csv.string(), "exists", "--force replaces it");
+  }
+}
+
 // Where a file goes: named by the user, else below --out, else nowhere.
 fs::path path_for(cli::Invocation& call, const std::string& option, const std::string& name) {
   if (!option.empty() && call.given(option)) return call.text(option);
@@ -164,7 +184,7 @@ void write_below(cli::Invocation& call, Outcome& outcome, const std::string& key
 
 void write_drawings(cli::Invocation& call, Outcome& outcome) {
   const auto draw = [&](const std::string& what, const std::string& svg) {
-    write_below(call, outcome, what, call.output_path(outcome.name + "-" + what + ".svg"), svg);
+    write_below(call, outcome, what, call.output_path(named(outcome, "-" + what + ".svg")), svg);
   };
   const std::size_t band = written_bands(outcome.read.samples)[1];
   if (const auto scans = scan_plot(outcome, band)) draw("scans", standalone_svg(*scans));
@@ -177,29 +197,29 @@ void write_drawings(cli::Invocation& call, Outcome& outcome) {
 void write_outputs(cli::Invocation& call, Outcome& outcome) {
   std::string table_file;
   const bool whole = outcome.reconstruction.has_value();
-  const fs::path merl = whole                ? path_for(call, "merl", outcome.name + ".binary")
+  const fs::path merl = whole                ? path_for(call, "merl", named(outcome, ".binary"))
                         : call.given("merl") ? fs::path(call.text("merl"))
                                              : fs::path();
   if (!merl.empty() && (whole || outcome.chosen() != nullptr)) {
     io::write_merl(merl, merl_of(outcome, "--merl"));
     outcome.files["merl"] = table_file = manifest::add_file(call.document, merl, outcome.name + "-merl");
   }
-  if (const fs::path sigma = whole ? path_for(call, "merl-sigma", outcome.name + "-sigma.binary") : fs::path();
+  if (const fs::path sigma = whole ? path_for(call, "merl-sigma", named(outcome, "-sigma.binary")) : fs::path();
       !sigma.empty()) {
     io::write_merl(sigma, outcome.reconstruction->sigma);
     outcome.files["merl_sigma"] = manifest::add_file(call.document, sigma, outcome.name + "-merl-sigma");
   }
   enter(call.document, outcome, table_file);
-  write_below(call, outcome, "csv", path_for(call, "csv", outcome.name + ".csv"), samples_csv(outcome));
+  write_below(call, outcome, "csv", path_for(call, "csv", named(outcome, ".csv")), samples_csv(outcome));
   if (!whole && outcome.chosen() != nullptr)
-    write_below(call, outcome, "numbers", path_for(call, "", outcome.name + "-numbers.csv"), numbers_csv(outcome));
-  const fs::path page = path_for(call, "html", outcome.name + ".html");
+    write_below(call, outcome, "numbers", path_for(call, "", named(outcome, "-numbers.csv")), numbers_csv(outcome));
+  const fs::path page = path_for(call, "html", named(outcome, ".html"));
   const bool known =
       call.document.surfaces.contains(outcome.name) && outcome.renders() && (whole || outcome.chosen() != nullptr);
   io::Image sphere;
   if (known && !page.empty()) sphere = sphere_picture(call.document, outcome.name);
   if (known && !call.out.empty()) {
-    write_below(call, outcome, "sphere", call.output_path(outcome.name + "-sphere.png"),
+    write_below(call, outcome, "sphere", call.output_path(named(outcome, "-sphere.png")),
                 io::encode_png(render::preview(sphere)));
     write_drawings(call, outcome);
   }
@@ -254,6 +274,7 @@ Exit fit_brdf(cli::Invocation& call) {
     throw Error(Exit::data, call.document.name, "has no tables of model \"surface\" and no goniometer samples",
                 "name one with --table, or give a table of reflectances");
   if (call.given("name")) outcomes.front().name = call.text("name");
+  check_names(call, outcomes);
   std::optional<Basis> basis;
   if (call.flag("reconstruct")) basis = basis_for(call, merl_bins);
   if (basis && call.given("save-basis")) basis->save(call.text("save-basis"));

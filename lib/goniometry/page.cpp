@@ -21,12 +21,26 @@ using report::number_text;
 using report::Page;
 using report::Tone;
 
+// Of the cells above zero.
+double median_relative_sigma(const Reconstruction& r) {
+  std::vector<double> relative;
+  for (std::size_t i = 0; i < std::min(r.table.brdf_per_sr.size(), r.sigma.brdf_per_sr.size()); ++i)
+    if (r.table.brdf_per_sr[i] > 0 && r.sigma.brdf_per_sr[i] > 0)
+      relative.push_back(static_cast<double>(r.sigma.brdf_per_sr[i]) / static_cast<double>(r.table.brdf_per_sr[i]));
+  if (relative.empty()) return std::nan("");
+  const auto middle = relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2);
+  std::ranges::nth_element(relative, middle);
+  return *middle;
+}
+
 std::vector<KeyNumber> key_numbers(const Outcome& outcome) {
   std::vector<KeyNumber> keys;
   if (outcome.reconstruction) {
     const Reconstruction& r = *outcome.reconstruction;
     keys.push_back({"Largest reflectance", number_text(r.energy.most, 3), "", "1 is all of the light",
                     r.energy.most > 1.02 ? Tone::bad : Tone::good});
+    if (const double typical = median_relative_sigma(r); std::isfinite(typical))
+      keys.push_back({"Uncertainty of a cell", "\u00b1" + number_text(100 * typical, 2), "%", "one sigma, median"});
     keys.push_back(
         {"Intervals widened by", number_text(r.widening, 3), "", "so that they hold for left-out materials"});
   } else if (const Fit* fit = outcome.chosen()) {

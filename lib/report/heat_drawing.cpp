@@ -13,13 +13,6 @@ namespace {
 
 constexpr double cell_width = 68, cell_height = 24, left = 96, top = 48, bottom = 26;
 
-double full_colour(const HeatStrip& strip) {
-  double limit = strip.limit;
-  for (const double v : strip.values)
-    if (strip.limit <= 0 && std::isfinite(v)) limit = std::max(limit, std::abs(v));
-  return limit > 0 ? limit : 1;
-}
-
 std::string words(double x, double y, const char* anchor, const std::string& text) {
   return format("<text x=\"%.0f\" y=\"%.0f\" text-anchor=\"%s\">", x, y, anchor) + escape(text) + "</text>";
 }
@@ -30,10 +23,24 @@ std::string cell(const HeatStrip& strip, double limit, double x, double y, doubl
   const bool pale = 0.2126f * colour[0] + 0.7152f * colour[1] + 0.0722f * colour[2] < 0.45f;
   return format("<rect x=\"%.0f\" y=\"%.0f\" width=\"%.0f\" height=\"%.0f\" fill=\"", x, y, cell_width, cell_height) +
          hex(colour) + "\"/>" + (pale ? "<g fill=\"#fff\">" : "<g>") +
-         words(x + cell_width / 2, y + 16, "middle", format("%.2f", value)) + "</g>";
+         words(x + cell_width / 2, y + 16, "middle", cell_text(value, limit)) + "</g>";
 }
 
 }  // namespace
+
+double full_colour(const HeatStrip& strip) {
+  double limit = strip.limit;
+  for (const double v : strip.values)
+    if (strip.limit <= 0 && std::isfinite(v)) limit = std::max(limit, std::abs(v));
+  return limit > 0 ? limit : 1;
+}
+
+std::string cell_text(double value, double full) {
+  const int decimals = full > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(full))), 2, 6) : 2;
+  std::string text = format("%.*f", decimals, value);
+  if (text.find_first_not_of("-0.") == std::string::npos && text.front() == '-') text.erase(0, 1);
+  return text;
+}
 
 std::string standalone_svg(const HeatStrip& strip) {
   const auto columns = static_cast<double>(strip.columns.size()), rows = static_cast<double>(strip.rows.size());

@@ -7,6 +7,10 @@
 
 namespace gonio::report {
 
+// What full colour stands for: the strip's limit, else the largest magnitude, else 1.
+double full_colour(const HeatStrip& strip);
+// A cell's number with as many decimals as `full` needs for two digits, two at least; never "-0.00".
+std::string cell_text(double value, double full);
 // SVG with colours and fonts of its own.
 std::string standalone_svg(const HeatStrip& strip);
 

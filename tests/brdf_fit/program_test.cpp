@@ -193,6 +193,25 @@ TEST_F(BrdfFit, BadFiles) {
   refused("reconstruction without a place", "good.csv", table(), {"--reconstruct"}, 64, {"--merl FILE, or --out DIR"});
 }
 
+// Known before the fits begin, which take their time.
+TEST_F(BrdfFit, NamesAndFilesThatAreThere) {
+  std::filesystem::create_directories(folder_.path() / "a");
+  std::filesystem::create_directories(folder_.path() / "o");
+  write("t.csv", table()), write("a/t.csv", table()), write("o/t.csv", "mine\n");
+  const Ended same = run({"--out", "p", "t.csv", "a/t.csv"});
+  EXPECT_EQ(same.status, 65);
+  EXPECT_THAT(same.err, HasSubstr("would be called \"t\""));
+  const Ended there = run({"--out", "o", "t.csv"});
+  EXPECT_EQ(there.status, 73);
+  EXPECT_THAT(there.err, HasSubstr("o/t.csv: exists; --force"));
+  EXPECT_EQ(read_file(folder_.path() / "o/t.csv"), "mine\n");
+  // A name is no path.
+  const Ended path =
+      run({"--model", "diffuse", "--starts", "0", "--folds", "0", "--name", "../u", "--out", "q", "t.csv"});
+  EXPECT_NE(path.status, 70) << path.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "u.csv"));
+}
+
 // Three samples and five numbers: nothing is told, and the reason is said.
 TEST_F(BrdfFit, FewerSamplesThanNumbers) {
   write("few.csv", header + "20,0,20,180,0.5\n40,0,40,180,0.6\n40,0,20,0,0.1\n");

@@ -209,6 +209,14 @@ TEST_F(FitOfManyBands, LobesShowWhatWasMeasured) {
   EXPECT_GE(drawn, 60u);
 }
 
+TEST(HeatDrawing, NumbersHaveTheDigitsThatTheirColourNeeds) {
+  EXPECT_EQ(report::cell_text(0.37, 0.6), "0.37");
+  EXPECT_EQ(report::cell_text(12.5, 20), "12.50");
+  EXPECT_EQ(report::cell_text(-0.0004, 0.6), "0.00");
+  EXPECT_EQ(report::cell_text(-0.00042, 0.0013), "-0.0004");
+  EXPECT_EQ(report::cell_text(0.0013, 0.0013), "0.0013");
+}
+
 TEST(HeatDrawing, HasEveryCellOnce) {
   const report::HeatStrip strip{.title = "a<b",
                                 .label = "l",
