@@ -222,7 +222,8 @@ bool claim(const std::string& what, double measured, const char* sign, double re
 // Of clean ridges from the model with a share of its walls: the largest deviation of a mean contrast by ridge angle,
 // over the largest, and the rms of all signals' deviations over their rms.
 struct Deviation {
-  double contrast = 0, signals = 0;
+  double contrast = 0, square = 0, noise = 0, all = 0;  // sums over signals; noise: of the tracing's own variances
+  double rms() const { return std::sqrt(square / all); }
 };
 Deviation deviation(const Case& clean, double walls) {
   manifest::Document d;
@@ -238,31 +239,35 @@ Deviation deviation(const Case& clean, double walls) {
   const double top = model.mean[largest(model)].value;
   for (std::size_t i = 0; i < traced.mean.size(); ++i)
     off.contrast = std::max(off.contrast, std::abs(traced.mean[i].value - model.mean[i].value) / top);
-  double square = 0, all = 0;
   for (std::size_t i = 0; i < p.combinations.size(); ++i)
     for (const auto signal : {&Combination::first, &Combination::second}) {
-      const double is = (clean.prediction.combinations[i].*signal).value, expected = (p.combinations[i].*signal).value;
-      square += (is - expected) * (is - expected), all += is * is;
+      const Estimate is = clean.prediction.combinations[i].*signal;
+      const double expected = (p.combinations[i].*signal).value;
+      off.square += (is.value - expected) * (is.value - expected);
+      off.noise += is.sigma * is.sigma;
+      off.all += is.value * is.value;
     }
-  off.signals = std::sqrt(square / all);
   return off;
 }
 
 // Clean ridges against the model without its walls, as published, and with them.
 bool agree(const std::vector<Case>& all) {
-  double worst = 0, gain = 1e9;
+  double worst = 0, shares_without = 0, shares_with = 0;
   for (const Case& c : all) {
     if (c.ridges.shape.burr_share > 0) continue;
     const Deviation without = deviation(c, 0), with = deviation(c, 1);
     std::printf(
-        "clean ridges of roughness %s against the model: rms of signals %.2f %% without walls, %.2f %% with; "
-        "mean contrasts within %.2f %%, %.2f %%\n",
-        c.roughness().c_str(), 100 * without.signals, 100 * with.signals, 100 * without.contrast, 100 * with.contrast);
+        "clean ridges of roughness %s against the model: rms of signals %.2f %% without walls, %.2f %% with "
+        "(tracing noise %.2f %%); mean contrasts within %.2f %%, %.2f %%\n",
+        c.roughness().c_str(), 100 * without.rms(), 100 * with.rms(), 100 * std::sqrt(with.noise / with.all),
+        100 * without.contrast, 100 * with.contrast);
     worst = std::max(worst, with.contrast);
-    gain = std::min(gain, without.signals / with.signals);
+    shares_without += without.square / without.all, shares_with += with.square / with.all;
   }
-  bool met = claim("clean ridges against the model with walls, share of the largest contrast", worst, "<", 0.02);
-  return claim("rms of signals without walls over that with walls, least", gain, ">", 1.5) && met;
+  const bool met = claim("clean ridges against the model with walls, share of the largest contrast", worst, "<", 0.02);
+  return claim("rms of signals without walls over that with walls", std::sqrt(shares_without / shares_with), ">",
+               1.5) &&
+         met;
 }
 
 // Names of the cases whose best ridge angle has left 5 degrees.
@@ -282,6 +287,10 @@ std::string verdict_of(const std::vector<std::string>& by_burrs, const std::vect
 int main(int argc, char** argv) {
   const std::filesystem::path out = argc > 1 ? argv[1] : ".";
   const std::int64_t paths = argc > 2 ? std::atoll(argv[2]) : 2048;
+  if (argc > 3 && std::string(argv[3]) == "tables") {  // and nothing else
+    write_tables(out, paths);
+    return 0;
+  }
   const std::vector<double> angles{5 * degree, 10 * degree, 15 * degree, 20 * degree};
   std::vector<Case> all = cases();
   std::string table = "ridges,covered_share,ridge_deg,mean_contrast_per_sr,sigma\n";
