@@ -11,6 +11,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "manifest/relief_tables.h"
 #include "manifest/section_tables.h"
 #include "manifest/units.h"
 
@@ -206,9 +207,31 @@ void check_goniometry(const Document& d) {
   }
 }
 
+void check_reliefs(const Document& d) {
+  const ReliefSections sections = read_reliefs(d);
+  for (const auto& [name, relief] : sections.reliefs) {
+    const std::string at = place(d, "/reliefs/" + name);
+    must_exist(d.files, "files", relief.file, at + "/file");
+    must_exist(d.tables, "tables", relief.table, at + "/table");
+    must_exist(d.surfaces, "surfaces", relief.surface, at + "/surface");
+    if (!relief.step_m.empty() && relief.step_m.size() != 2)
+      throw Error(Exit::data, at + "/step_m", "has " + std::to_string(relief.step_m.size()) + " numbers",
+                  "give two lengths [x, y]");
+    for (std::size_t i = 0; i < relief.lobes.size(); ++i)
+      must_exist(d.files, "files", relief.lobes[i].picture, at + "/lobes/" + std::to_string(i) + "/picture");
+  }
+  for (const auto& [name, ground] : sections.ground_noises) {
+    const std::string at = place(d, "/ground_noises/" + name);
+    for (std::size_t i = 0; i < ground.reliefs.size(); ++i)
+      must_exist(sections.reliefs, "reliefs", ground.reliefs[i], at + "/reliefs/" + std::to_string(i));
+    must_exist(sections.reliefs, "reliefs", ground.example, at + "/example");
+  }
+}
+
 void check_references(const Document& d) {
   check_images(d);
   check_goniometry(d);
+  check_reliefs(d);
   unique_ids(d.objects, place(d, "/objects"));
   for (std::size_t i = 0; i < d.objects.size(); ++i) {
     const std::string at = place(d, "/objects/" + std::to_string(i));
@@ -252,7 +275,7 @@ void check_references(const Document& d) {
 
 const std::vector<std::string>& section_names() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> out{"gonio", "provenance"};
+    std::vector<std::string> out{"gonio", "provenance", "reliefs", "ground_noises"};
     Document d;
     for_each_section(d, [&out](const char* key, auto&) { out.emplace_back(key); });
     return out;
@@ -264,6 +287,22 @@ const std::vector<std::string>& section_names() {
 
 std::string place(const Document& document, const std::string& pointer) {
   return document.name + "#" + pointer;
+}
+
+ReliefSections read_reliefs(const Document& d) {
+  ReliefSections sections;
+  if (const Value* v = d.original.find("reliefs")) read_section(sections.reliefs, *v, place(d, "/reliefs"));
+  if (const Value* v = d.original.find("ground_noises"))
+    read_section(sections.ground_noises, *v, place(d, "/ground_noises"));
+  return sections;
+}
+
+void write_reliefs(Document& d, const ReliefSections& sections) {
+  const auto put = [&d](const char* key, const auto& section) {
+    Value v = write_section(section, d.original.find(key));
+    if (!v.is_null()) d.original[key] = std::move(v);
+  };
+  put("reliefs", sections.reliefs), put("ground_noises", sections.ground_noises);
 }
 
 Document parse_document(std::string_view text, const std::string& name, const fs::path& folder,
@@ -317,6 +356,8 @@ Value to_value(const Document& d, const fs::path& folder) {
     Value v = write_section(section, original);
     if (!v.is_null()) out[key] = std::move(v);
   });
+  for (const char* key : {"reliefs", "ground_noises"})
+    if (const Value* v = d.original.find(key)) out[key] = *v;
   if (!d.provenance.as_object().empty() || d.original.find("provenance") != nullptr) out["provenance"] = d.provenance;
   if (d.original.is_object())
     for (const auto& [key, member] : d.original.as_object())

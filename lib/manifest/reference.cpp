@@ -1,7 +1,7 @@
 #include "manifest/reference.h"
 
 #include "manifest/model.h"
-#include "manifest/section_tables.h"
+#include "manifest/relief_tables.h"
 
 namespace gonio::manifest {
 namespace {
@@ -52,6 +52,21 @@ std::string goniometry_text() {
          rows("contrasts", "A list, written by contrast.", contrast_fields());
 }
 
+std::string relief_text() {
+  return rows("reliefs",
+              "Keyed by name. Height maps, measured or made by relief, with what roughness and lobe say of them. "
+              "Azimuths "
+              "count counter-clockwise from the direction of the rows.",
+              relief_map_fields()) +
+         rows("reliefs: treatment", "What was taken off the heights before.", relief_treatment_fields()) +
+         rows("reliefs: parameters", "Keyed by name, written by roughness.", roughness_figure_fields()) +
+         rows("reliefs: normals", "Written by roughness. Distributions of microfacet theory.", normals_fit_fields()) +
+         rows("reliefs: lobes", "Written by lobe.", relief_lobe_fields()) +
+         rows("ground_noises", "Keyed by name, written by relief. What a process adds to all that it makes.",
+              ground_noise_fields()) +
+         rows("ground_noises: parts", "Sparse convolution noises.", ground_noise_part_fields());
+}
+
 }  // namespace
 
 Value manifest_schema() {
@@ -79,6 +94,8 @@ Value manifest_schema() {
        {"surface_fits", keyed<SurfaceFit>()},
        {"patterns", keyed<Pattern>()},
        {"contrasts", listed<Contrast>()},
+       {"reliefs", keyed<ReliefMap>()},
+       {"ground_noises", keyed<GroundNoiseFit>()},
        {"explanations", Value::object({{"type", "array"}, {"items", Value::object({{"type", "object"}})}})},
        {"provenance", Value::object({{"type", "object"}})}});
   return Value::object({{"$schema", "http://json-schema.org/draft-07/schema#"},
@@ -120,7 +137,7 @@ std::string manifest_fields_text() {
          rows("light_positions", "A list. Where a light was while its robot stood at a pose.",
               light_position_fields()) +
          rows("acceptance", "A list, written by vdi2634. Figures of an optical scanner.", acceptance_fields()) +
-         goniometry_text();
+         goniometry_text() + relief_text();
 }
 
 }  // namespace gonio::manifest

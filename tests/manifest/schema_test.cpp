@@ -59,7 +59,9 @@ TEST_F(SchemaTest, AndProgramsRefuseTheSame) {
         R"({"gonio":1,"cameras":{"c":{"width_px":0}}})", R"({"gonio":1,"cameras":{"c":{"model":"fish"}}})",
         R"({"gonio":1,"images":[{}]})", R"({"gonio":1,"images":{"id":"a"}})",
         R"({"gonio":1,"goniometer":{"s":{"radius_m":0.1}}})", R"({"gonio":1,"contrasts":[{"action":"guess"}]})",
-        R"({"gonio":1,"surface_fits":{"s":{"model":"diffuse","rms":-1}}})", R"({"gonio":1,"patterns":{"p":{"rows":0}}})",
+        R"({"gonio":1,"surface_fits":{"s":{"model":"diffuse","rms":-1}}})",
+        R"({"gonio":1,"patterns":{"p":{"rows":0}}})", R"({"gonio":1,"reliefs":{"r":{"file":"f","width":0}}})",
+        R"({"gonio":1,"reliefs":{"r":{"width":4}}})", R"({"gonio":1,"ground_noises":{"g":{"white_m":-1}}})",
         R"({"gonio":1,"lights":{"l":{"model":"pont"}}})", R"({"gonio":1,"meshes":{"m":{"sphere":{"r":1}}}})",
         R"({"gonio":1,"images":[{"id":"a","noise":{"gain":0,"read":0}}]})",
         R"({"gonio":1,"surfaces":{"s":{"model":"diffuse","albedo":"red"}}})"}) {
