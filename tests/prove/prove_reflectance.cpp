@@ -99,6 +99,13 @@ const tests::Truth truths[] = {
     {"metal",
      "anisotropic",
      {{"f0", {0.9, 0.6, 0.3}}, {"alpha", all(0.3)}, {"anisotropy", all(0.5)}, {"azimuth_rad", all(0.6)}}},
+    {"glossy",
+     "anisotropic",
+     {{"albedo", {0.3, 0.2, 0.1}},
+      {"f0", all(0.06)},
+      {"alpha", all(0.2)},
+      {"anisotropy_0", all(0.1)},
+      {"anisotropy_45", all(0.05)}}},
     {"interfaced-diffuse", "", {{"albedo", {0.8, 0.5, 0.2}}, {"eta", all(1.5)}, {"alpha", all(0.12)}}},
 };
 
