@@ -229,11 +229,21 @@ void write_outputs(cli::Invocation& call, Outcome& outcome) {
 
 Exit print_plan(cli::Invocation& call) {
   call.writes_document = false;
+  std::vector<Outcome> given;
+  if (!call.texts("FILE").empty() || call.has_document) given = read_inputs(call);
+  if (given.size() > 1)
+    throw Error(Exit::usage, "--plan", "is for one surface, and " + std::to_string(given.size()) + " are given",
+                "give one table, or name one with --table or --sample");
   const Basis basis = basis_for(call, {30, 30, 60});
   PlanOptions options;
+  if (!given.empty()) options.given = &given.front().read.samples;
   options.most_theta_rad = std::min(call.number("grazing"), 80 * pi / 180);
   if (call.given("noise")) options.relative_noise = call.number("noise");
-  std::cout << plan_csv(plan(basis, static_cast<std::size_t>(call.integer("plan")), options)) << std::flush;
+  const Plan found = plan(basis, static_cast<std::size_t>(call.integer("plan")), options);
+  if (!given.empty())
+    log(LogLevel::info, format("with what is measured, sigma_ln is %.3f; with these pairs as well, %.3f", found.before,
+                               found.sigma_ln.back()));
+  std::cout << plan_csv(found) << std::flush;
   return Exit::done;
 }
 

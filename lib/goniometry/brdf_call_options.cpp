@@ -103,7 +103,8 @@ std::vector<cli::Option> fitting_options() {
        .metavar = "PATH"},
       {.name = "plan",
        .type = Type::integer,
-       .help = "Print the N most informative pairs of directions for the basis, as CSV, and end.",
+       .help = "Print the N most informative pairs of directions for the basis, as CSV, and end; with a table, those "
+               "that add most to it.",
        .metavar = "N",
        .lower = 1,
        .upper = 10000},

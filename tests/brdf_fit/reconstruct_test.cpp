@@ -99,6 +99,20 @@ TEST_F(Reconstruct, DoubtsATableThatReflectsMoreThanItReceives) {
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "bright.binary"));
 }
 
+// --plan with a table names pairs that add to it; other pairs than without.
+TEST_F(Reconstruct, PlansWhatWouldAdd) {
+  write_file(folder_.path() / "paint.csv", run({"--example"}).out);
+  const std::string basis = (shared().path() / "small.basis").string();
+  const Ended fresh = run({"--plan", "3", "--basis", basis}),
+              added = run({"--plan", "3", "--basis", basis, "paint.csv"});
+  ASSERT_EQ(fresh.status, 0) << fresh.err;
+  ASSERT_EQ(added.status, 0) << added.err;
+  EXPECT_EQ(std::ranges::count(added.out, '\n'), 4);
+  EXPECT_NE(fresh.out, added.out);
+  EXPECT_THAT(added.err, HasSubstr("with what is measured, sigma_ln is"));
+  EXPECT_EQ(run({"--plan", "3", "--basis", basis, "paint.csv", "paint.csv"}).status, 64);
+}
+
 // A fit written as a table and read again tells the same numbers.
 TEST_F(Reconstruct, TablesOfFitsComeBack) {
   write_file(folder_.path() / "paint.csv", run({"--example"}).out);

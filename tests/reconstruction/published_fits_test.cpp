@@ -114,9 +114,8 @@ TEST_F(PublishedFits, LowsAluminiumIsTheRecordedOne) {
 }
 
 // Materials that the built-in basis does not know, neither as they are nor by their models: ten planned directions,
-// noise of 2 %, cells up to 80 degrees. How wide intervals are is told by the basis' own classes alone, and that is not
-// enough for all: 83 % of the cells are measured to lie within 95 % intervals (78 % with the quantile over all classes
-// at once). The least is 80 %, so that it does not get worse; above 98.5 % they would say nothing. Fixed seeds.
+// noise of 2 %, cells up to 80 degrees. How wide intervals are is told by the basis' own classes alone, nothing here
+// was used for it. Fixed seeds.
 TEST_F(PublishedFits, LieWithinIntervalsOfTheBuiltInBasis) {
   SKIP_WITHOUT(folder);
   constexpr goniometry::Bins bins = {45, 9, 8};
@@ -146,8 +145,8 @@ TEST_F(PublishedFits, LieWithinIntervalsOfTheBuiltInBasis) {
     RecordProperty(materials[m].name, std::to_string(within_here / all_here));
     within += within_here, all += all_here;
   }
-  EXPECT_GE(within / all, 0.80);
-  EXPECT_LE(within / all, 0.985);
+  EXPECT_GE(within / all, 0.90);
+  EXPECT_LE(within / all, 0.98);
 }
 
 }  // namespace
