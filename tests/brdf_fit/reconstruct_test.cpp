@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <sstream>
 
 #include "base/atomic_file.h"
 #include "base/text.h"
@@ -111,6 +113,32 @@ TEST_F(Reconstruct, PlansWhatWouldAdd) {
   EXPECT_NE(fresh.out, added.out);
   EXPECT_THAT(added.err, HasSubstr("with what is measured, sigma_ln is"));
   EXPECT_EQ(run({"--plan", "3", "--basis", basis, "paint.csv", "paint.csv"}).status, 64);
+}
+
+// A plan is measured by adding a column: its headings are those that tables have, its mirror direction at 180 degrees.
+TEST_F(Reconstruct, PlansAreReadOnceTheyAreMeasured) {
+  const Ended plan = run({"--plan", "8", "--basis", (shared().path() / "small.basis").string()});
+  ASSERT_EQ(plan.status, 0) << plan.err;
+  std::istringstream lines(plan.out);
+  std::string line, text;
+  std::getline(lines, line);
+  text = line + ",f\n";
+  while (std::getline(lines, line)) {
+    double ti = 0, pi_ = 0, to = 0, po = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf", &ti, &pi_, &to, &po), 4) << line;
+    const auto at = [](double t, double p) {
+      return Vec3{std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
+    };
+    const Vec3 h = normalized(at(ti, pi_) + at(to, po));
+    text += line + format(",%.6g\n", 0.1 + std::exp(-(1 - h.z) / 0.02));
+  }
+  write_file(folder_.path() / "measured.csv", text);
+  const Ended ended = reconstruct({"--mirror", "180", "--merl", "m.binary", "measured.csv"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const auto document = manifest::parse_document(ended.out, "out", folder_.path());
+  EXPECT_EQ(document.surface_fits.at("measured").rows, 8);
+  // Planned pairs about the mirror direction are the bright ones: had the plan meant the other side, they would not be.
+  EXPECT_THAT(ended.err, testing::Not(HasSubstr("looks like the other convention")));
 }
 
 // A fit written as a table and read again tells the same numbers.
