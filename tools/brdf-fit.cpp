@@ -24,13 +24,17 @@ const cli::Program& gonio_program() {
       .files = {{"NAME.html", "the report page"},
                 {"NAME.csv", "samples with prediction and residual"},
                 {"NAME.binary", "--reconstruct: the whole table in MERL's format"},
+                {"NAME-sigma.binary", "--reconstruct: one standard deviation of every cell, 1/sr, in that format"},
                 {"NAME-sphere.png", "a sphere of the surface"},
                 {"NAME-scans.svg", "scans in the plane of incidence, measured and fitted"},
-                {"NAME-lobes.svg", "lobes around the normal"}},
+                {"NAME-lobes.svg", "lobes around the normal, measured and fitted"},
+                {"NAME-residuals.svg", "where the surface errs, over half and difference angle"},
+                {"NAME-numbers.csv", "what was fitted, with intervals"},
+                {"NAME-spectrum-NUMBER.svg", "of more than three bands: albedo, f0, ... over wavelength"}},
       .exits = {{Exit::negative, "These samples tell no surface."},
                 {Exit::quality,
-                 "Written, but the fit did not converge, reflects more than it receives, or errs on held-out "
-                 "directions by half as much again as on fitted ones."}},
+                 "Written, but the fit did not converge, reflects more than it receives, errs more than a constant "
+                 "would, or errs on held-out directions by half as much again as on fitted ones."}},
       .references = {"J. Nielsen, H. Jensen, R. Ramamoorthi, On optimal, minimal BRDF sampling for reflectance "
                      "acquisition, ACM TOG 34(6), 2015.",
                      "L. Belcour, P. Barla, R. Pacanowski, ALTA: a BRDF analysis library, MAM 2014.",

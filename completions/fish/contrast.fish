@@ -1,5 +1,5 @@
 # fish completion of contrast; printed by scripts/regenerate
-complete -c contrast -l model -x -d 'Model of the surface, where there is no manifest; ridged by default, with ridge angles of 5 to 20 degrees and a roughness of 0.05.'
+complete -c contrast -l model -x -d 'Model of the surface, where there is no manifest; ridged by default, with ridge angles of 5 to 20 degrees, a roughness of 0.05 and, as published, walls that swallow what they meet (walls=0; 1 where they reflect like facets).'
 complete -c contrast -l set -x -d 'A parameter of --model, with its unit.'
 complete -c contrast -l sigma -x -d 'The standard deviation of a parameter of --model.'
 complete -c contrast -l surface -x -d 'Surface of the manifest, where it has several.'

@@ -1,6 +1,6 @@
 // The contrast experiment on ridges as geometry: paths traced over a relief of saw-toothed ridges with rounded edges
-// and burrs (relief/ridges.h, relief/lobe.h), whose facets are rough like those of the model `ridged`, so that without
-// burrs the two agree up to what the model leaves out (light by way of walls, and reflected twice).
+// and burrs (relief/ridges.h, relief/lobe.h), whose facets and walls are rough like those of the model `ridged`, so
+// that without burrs the two agree at walls = 1, up to what is reflected three times and more.
 //
 // Sigmas: the standard error over patches, each with burrs of its own and paths of its own. They hold both the
 // tracing's noise and what another piece of the same surface would give.

@@ -2,9 +2,8 @@
 #include "contrast/cell_classes.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
-
-#include "stats/intervals.h"
 
 namespace gonio::contrast {
 namespace {
@@ -13,48 +12,76 @@ constexpr double tukey = 4.685, huber = 1.345;
 
 struct Rows {
   Eigen::MatrixXd terms;
-  Eigen::VectorXd value, sigma;
+  Eigen::VectorXd value;
 };
 
-double scatter_of(const Eigen::VectorXd& residual, double degrees) {
-  std::vector<double> size(static_cast<std::size_t>(residual.size()));
-  for (std::size_t i = 0; i < size.size(); ++i) size[i] = std::abs(residual(static_cast<Eigen::Index>(i)));
-  const double n = static_cast<double>(size.size());
-  return 1.4826 * stats::median(size) * std::sqrt(n / degrees);
+Eigen::RowVectorXd row_of(const CellPattern& pattern, std::size_t cell, int order) {
+  const auto terms = polynomial_terms(pattern.place(cell), order);
+  return Eigen::Map<const Eigen::RowVectorXd>(terms.data(), static_cast<Eigen::Index>(terms.size()));
+}
+Eigen::MatrixXd terms_of(const CellPattern& pattern, const std::vector<std::size_t>& cells, int order) {
+  Eigen::MatrixXd terms(static_cast<Eigen::Index>(cells.size()), row_of(pattern, 0, order).size());
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    terms.row(static_cast<Eigen::Index>(i)) = row_of(pattern, cells[i], order);
+  return terms;
 }
 
-Eigen::VectorXd weighted(const Rows& rows, const Eigen::VectorXd& weight, Eigen::MatrixXd* covariance) {
-  const Eigen::MatrixXd normal = rows.terms.transpose() * weight.asDiagonal() * rows.terms;
-  const auto solver = normal.ldlt();
-  if (covariance != nullptr) *covariance = solver.solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
-  return solver.solve(rows.terms.transpose() * weight.asDiagonal() * rows.value);
+double scatter_of(const Eigen::VectorXd& residual, double degrees) {
+  Eigen::VectorXd size = residual.cwiseAbs();
+  const auto n = size.size();
+  double* const middle = size.data() + n / 2;
+  std::nth_element(size.data(), middle, size.data() + n);
+  const double median = n % 2 == 1 ? *middle : (*middle + *std::max_element(size.data(), middle)) / 2;
+  return 1.4826 * median * std::sqrt(static_cast<double>(n) / degrees);
+}
+
+using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;  // terms x terms
+using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
+
+struct Normal {
+  Eigen::LDLT<Small> solver;
+  Few right;
+};
+Normal normal_of(const Rows& rows, const Eigen::VectorXd& weight) {
+  const auto width = rows.terms.cols();
+  const Eigen::MatrixXd by_weight = weight.asDiagonal() * rows.terms;
+  Small normal(width, width);
+  for (Eigen::Index a = 0; a < width; ++a)
+    for (Eigen::Index b = 0; b <= a; ++b) normal(a, b) = normal(b, a) = by_weight.col(a).dot(rows.terms.col(b));
+  return {normal.ldlt(), by_weight.transpose() * rows.value};
 }
 
 struct Robust {
-  Eigen::VectorXd coefficients;
-  Eigen::MatrixXd covariance;
+  Few coefficients;
+  Eigen::VectorXd residual, weight;
   double scatter = 0;
+  // s^2 (X'WX)^-1 with the scatter s; weights of the biweight lie close to one where cells are alike.
+  Small covariance(const Rows& rows) const {
+    const auto width = rows.terms.cols();
+    return normal_of(rows, weight).solver.solve(Small::Identity(width, width)) * (scatter * scatter);
+  }
 };
 
-// Covariance: s^2 (X'WX)^-1 with the scatter s; weights of the biweight lie close to one where cells are alike.
-Robust fit(const Rows& rows, double degrees) {
-  Eigen::VectorXd weight = Eigen::VectorXd::Ones(rows.value.size());
+// Until the coefficients change by less than `settled` of the scatter.
+Robust fit(const Rows& rows, double degrees, double settled) {
   Robust robust;
+  Eigen::VectorXd weight = Eigen::VectorXd::Ones(rows.value.size());
   for (int round = 0; round < 30; ++round) {
-    const Eigen::VectorXd before = robust.coefficients;
-    robust.coefficients = weighted(rows, weight, &robust.covariance);
-    const Eigen::VectorXd residual = rows.value - rows.terms * robust.coefficients;
-    robust.scatter = scatter_of(residual, degrees);
+    const Few before = robust.coefficients;
+    const Normal normal = normal_of(rows, weight);
+    robust.weight = weight;
+    robust.coefficients = normal.solver.solve(normal.right);
+    robust.residual = rows.value - rows.terms * robust.coefficients;
+    robust.scatter = scatter_of(robust.residual, degrees);
     if (!(robust.scatter > 0)) break;  // the cells agree to the last digit
-    if (round > 8 && (robust.coefficients - before).norm() < 1e-10 * robust.coefficients.norm()) break;
-    for (Eigen::Index i = 0; i < residual.size(); ++i) {
-      const double t = std::abs(residual(i)) / robust.scatter;
+    if (round > 8 && (robust.coefficients - before).norm() < settled * robust.scatter) break;
+    for (Eigen::Index i = 0; i < robust.residual.size(); ++i) {
+      const double t = std::abs(robust.residual(i)) / robust.scatter;
       weight(i) = round < 6   ? std::min(1.0, huber / std::max(t, 1e-300))
                   : t < tukey ? std::pow(1 - t * t / (tukey * tukey), 2)
                               : 0.0;
     }
   }
-  robust.covariance *= robust.scatter * robust.scatter;
   return robust;
 }
 
@@ -81,37 +108,41 @@ ClassFit fit_class(const CellPattern& pattern, const std::vector<std::size_t>& m
   result.expected.assign(pattern.cells(), std::nan(""));
   if (used.empty()) return result;
   result.order = polynomial_order(used.size());
-  const auto width = static_cast<Eigen::Index>(polynomial_terms({}, result.order).size());
-  const auto row_of = [&](std::size_t cell) {
-    const auto terms = polynomial_terms(pattern.place(cell), result.order);
-    return Eigen::RowVectorXd(Eigen::Map<const Eigen::RowVectorXd>(terms.data(), width));
-  };
   const auto n = static_cast<Eigen::Index>(used.size());
-  Rows rows{Eigen::MatrixXd(n, width), Eigen::VectorXd(n), Eigen::VectorXd(n)};
+  Rows rows{terms_of(pattern, used, result.order), Eigen::VectorXd(n)};
+  const auto width = rows.terms.cols();
   double stated = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::size_t cell = used[static_cast<std::size_t>(i)];
-    rows.terms.row(i) = row_of(cell);
     rows.value(i) = value[cell];
     stated += sigma[cell] * sigma[cell] / static_cast<double>(n);
   }
   result.degrees = static_cast<double>(n - width);
-  Robust robust = fit(rows, std::max(result.degrees, 1.0));
+  Robust robust = fit(rows, std::max(result.degrees, 1.0), 1e-9);
   if (result.degrees < 1) {
-    weighted(rows, Eigen::VectorXd::Ones(n), &robust.covariance);
-    robust.covariance *= stated;
+    robust.weight.setOnes();
     robust.scatter = std::sqrt(stated);
   }
+  const Small covariance = robust.covariance(rows);
   result.scatter = robust.scatter;
   Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(width);
   for (std::size_t cell = 0; cell < pattern.cells(); ++cell) {
-    const Eigen::RowVectorXd row = row_of(cell);
+    const Eigen::RowVectorXd row = row_of(pattern, cell, result.order);
     result.expected[cell] = row * robust.coefficients;
     mean += row / static_cast<double>(pattern.cells());
   }
   result.mean = mean * robust.coefficients;
-  result.sigma = std::sqrt((mean * robust.covariance * mean.transpose())(0, 0));
+  result.sigma = std::sqrt((mean * covariance * mean.transpose())(0, 0));
   return result;
+}
+
+ClassShape::ClassShape(const CellPattern& pattern, const std::vector<std::size_t>& cells)
+    : terms_(terms_of(pattern, cells, polynomial_order(cells.size()))) {}
+
+Eigen::VectorXd ClassShape::deviations(const Eigen::VectorXd& values) const {
+  constexpr double settled = 1e-3;  // of a scatter: finer than any draw of it
+  const Robust robust = fit({terms_, values}, std::max(double(terms_.rows() - terms_.cols()), 1.0), settled);
+  return robust.residual / std::max(robust.scatter, 1e-300);
 }
 
 }  // namespace gonio::contrast

@@ -5,6 +5,7 @@
 // change of directions across the sample are in it, a few cells unlike the others are not. The scatter is 1.4826 times
 // the median of the absolute residuals, times sqrt(n / (n - p)).
 #pragma once
+#include <Eigen/Core>
 #include <vector>
 
 #include "contrast/pattern.h"
@@ -26,5 +27,17 @@ std::vector<double> polynomial_terms(Vec2 place, int order);
 // that of `sigma`.
 ClassFit fit_class(const CellPattern& pattern, const std::vector<std::size_t>& members,
                    const std::vector<double>& value, const std::vector<double>& sigma);
+
+// The same fit for simulations: places of cells that always count.
+class ClassShape {
+ public:
+  ClassShape(const CellPattern& pattern, const std::vector<std::size_t>& cells);
+  Eigen::Index cells() const { return terms_.rows(); }
+  // Of values of these cells from their polynomial, over their scatter.
+  Eigen::VectorXd deviations(const Eigen::VectorXd& values) const;
+
+ private:
+  Eigen::MatrixXd terms_;
+};
 
 }  // namespace gonio::contrast

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/assignment.h"
 #include "base/error.h"
 
 namespace gonio::contrast {
@@ -13,16 +14,6 @@ Dimension dimension_of(const manifest::ParameterInfo& info) {
 }
 
 }  // namespace
-
-std::vector<std::string> pieces(const std::string& text, char separator) {
-  std::vector<std::string> all{""};
-  for (const char c : text)
-    if (c == separator)
-      all.emplace_back();
-    else
-      all.back() += c;
-  return all;
-}
 
 std::vector<double> quantities(const std::string& text, Dimension dimension, const std::string& option) {
   std::vector<double> all;
@@ -50,13 +41,11 @@ std::vector<Assignment> assignments(const std::vector<std::string>& texts, const
                                     const manifest::ModelInfo& model, char separator) {
   std::vector<Assignment> all;
   for (const std::string& text : texts) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-      throw Error(Exit::usage, option, "\"" + text + "\" is no NAME=VALUE",
-                  "for example " + option + " " + model.parameters.front().name + "=...");
-    Assignment a{text.substr(0, equals), {}};
+    const auto [name, list] =
+        parse_assignment(text, option, "for example " + option + " " + model.parameters.front().name + "=...");
+    Assignment a{name, {}};
     const manifest::ParameterInfo& info = parameter_named(model, a.parameter, option);
-    for (const std::string& piece : pieces(text.substr(equals + 1), separator))
+    for (const std::string& piece : pieces(list, separator))
       a.values.push_back(parse_quantity(piece, dimension_of(info), option + " " + a.parameter));
     if (separator == ':' && a.values.size() != 2)
       throw Error(Exit::usage, option + " " + a.parameter, "\"" + text + "\" is no range", "write it as LOW:HIGH");

@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/assignment.h"
 #include "base/error.h"
 #include "base/quantity.h"
 #include "manifest/model.h"
 
 namespace gonio::contrast {
 
-std::vector<std::string> pieces(const std::string& text, char separator);
 std::vector<double> quantities(const std::string& text, Dimension dimension, const std::string& option);
 std::vector<std::pair<double, double>> angle_pairs(const std::string& text, const std::string& option);
 

@@ -58,38 +58,23 @@ double quantile_of(const Eigen::VectorXd& values, double share) {
   return stats::quantile({values.data(), static_cast<std::size_t>(values.size())}, share);
 }
 
-// Normal z with correlation r as sound cells would have it: the polynomial taken out, each view over its scatter.
+// Normal z with correlation r as sound cells would have it: through the same robust fit in every view.
 class Null {
  public:
   Null(const CellPattern& pattern, const std::vector<std::size_t>& cells, const Eigen::MatrixXd& r)
-      : root_(r.llt().matrixL()) {
-    const int order = polynomial_order(cells.size());
-    const auto width = static_cast<Eigen::Index>(polynomial_terms({}, order).size());
-    terms_.resize(static_cast<Eigen::Index>(cells.size()), width);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const auto terms = polynomial_terms(pattern.place(cells[i]), order);
-      terms_.row(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::RowVectorXd>(terms.data(), width);
-    }
-    terms_ =
-        Eigen::HouseholderQR<Eigen::MatrixXd>(terms_).householderQ() * Eigen::MatrixXd::Identity(terms_.rows(), width);
-  }
+      : shape_(pattern, cells), root_(r.llt().matrixL()) {}
   Eigen::VectorXd draw(Random& random) const {
-    Eigen::MatrixXd z(terms_.rows(), root_.rows());
+    Eigen::MatrixXd z(shape_.cells(), root_.rows());
     for (Eigen::Index i = 0; i < z.rows(); ++i)
       for (Eigen::Index v = 0; v < z.cols(); ++v) z(i, v) = random.normal();
     z *= root_.transpose();
-    z -= terms_ * (terms_.transpose() * z).eval();
-    const double widened = std::sqrt(static_cast<double>(z.rows()) / static_cast<double>(z.rows() - terms_.cols()));
-    std::vector<double> size(static_cast<std::size_t>(z.rows()));
-    for (Eigen::Index v = 0; v < z.cols(); ++v) {
-      for (std::size_t i = 0; i < size.size(); ++i) size[i] = std::abs(z(static_cast<Eigen::Index>(i), v));
-      z.col(v) /= 1.4826 * stats::median(size) * widened;
-    }
+    for (Eigen::Index v = 0; v < z.cols(); ++v) z.col(v) = shape_.deviations(z.col(v));
     return distances2(z, correlation(z));
   }
 
  private:
-  Eigen::MatrixXd root_, terms_;
+  ClassShape shape_;
+  Eigen::MatrixXd root_;
 };
 
 struct ClassResult {

@@ -9,11 +9,16 @@
 // what sound cells do together in many views is taken at its own size. Directions in which they hardly vary are not
 // enlarged: there what is small and not normal, such as the square of a cell's tilt, would outweigh everything.
 //
-// What sound cells do is simulated: normal z with the correlation R go through the same steps (polynomial taken out,
-// scatter estimated, clipped, R estimated anew), `draws` times. Were the bulk of the cells wider than that (the median
-// or the 85 % quantile of d^2 tells: scatters that differ over the sample, tails that are not normal), the null is
-// widened alike, never narrowed. A cell's p is the share of simulated samples whose largest d^2 reaches its own, over
-// both classes together (Sidak): the chance that a sample without defects has any such cell.
+// What sound cells do is simulated: normal z with the correlation R go through the same steps (the same robust
+// polynomial in every view, its scatter, clipped, R estimated anew), `draws` times. The fit has to be the same one, and
+// not its least-squares kin: among n cells and p terms least squares takes the share p / n out of each cell's own
+// deviation, and more at the rim, while the biweight lets a far cell stand as far away as it is; a null by least
+// squares gave false alarms in 16 % of samples where 5 % were asked for, and this one does not. Normal z suffice: cells
+// whose roughness and azimuth scatter by 0.02 have brightnesses with skewnesses below 0.21 and excess kurtoses below
+// 0.1 in all views of that study. Were the bulk of the cells wider than the draws (the median or the 85 % quantile of
+// d^2 tells: scatters that differ over the sample, tails that are not normal), the null is widened alike, never
+// narrowed. A cell's p is the share of simulated samples whose largest d^2 reaches its own, over both classes together
+// (Sidak): the chance that a sample without defects has any such cell.
 #pragma once
 #include <cstddef>
 #include <cstdint>

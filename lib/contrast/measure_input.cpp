@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "contrast/matrix_code.h"
+#include "contrast/sample_outline.h"
 #include "metric/linear_picture.h"
 
 namespace gonio::contrast {
@@ -164,9 +165,47 @@ void place_views(const CellPattern& pattern, const std::optional<SamplePose>& po
       view.map.emplace(homography(corners, pixels));
     } else {
       input.dropped.push_back(view.id +
-                              ": neither a camera pose nor four marked corners say where the sample lies in it");
+                              ": neither a camera pose nor four marked corners say where the sample lies in it" +
+                              (view.no_outline.empty() ? "" : "; " + view.no_outline));
     }
   }
+}
+
+// Marks from outlines, in views of the placement that have none and need them: those without a pose, and where nothing
+// says where the sample lies, those with one.
+void mark_outlines(const manifest::Document& document, const MeasureOptions& options, bool stated, int placement,
+                   Input& input) {
+  const bool marked = std::ranges::any_of(input.views, [&](const InputView& view) {
+    return view.placement == placement && view.pose && !view.marks.empty();
+  });
+  int found = 0, looked = 0;
+  double sigma_px = 0;
+  for (InputView& view : input.views) {
+    if (view.placement != placement || !view.marks.empty() || (view.pose && (stated || marked))) continue;
+    ++looked;
+    const GreyView grey = read_view(document, view, options);
+    OutlineFound outline = find_outline(grey, view.camera, std::max(input.pattern.rows, input.pattern.columns));
+    if (outline.corners) outline = number_corners(grey, input.pattern, input.data_matrix, *outline.corners);
+    view.no_outline = outline.corners ? "" : outline.problem;
+    if (!outline.corners) continue;
+    for (std::size_t k = 0; k < 4; ++k) {
+      view.marks.push_back({0, static_cast<int>(k), outline.corners->pixel[k], outline.corners->sigma_px[k]});
+      sigma_px = std::max(sigma_px, outline.corners->sigma_px[k]);
+    }
+    ++found;
+  }
+  if (found > 0)
+    input.notes.push_back(
+        format("corners of \"%s\" were taken from the sample's outline in %d of %d images, to %.2g px "
+               "or better: the pattern must reach the sample's edge",
+               input.placement[static_cast<std::size_t>(placement)].c_str(), found, looked, sigma_px));
+}
+
+// The reason of the first view without an outline, for messages.
+std::string why_no_outline(const Input& input, int placement) {
+  for (const InputView& view : input.views)
+    if (view.placement == placement && !view.no_outline.empty()) return " (" + view.id + ": " + view.no_outline + ")";
+  return "";
 }
 
 void locate(const manifest::Document& document, const manifest::Pattern& section, int placement, Input& input) {
@@ -199,13 +238,16 @@ void locate(const manifest::Document& document, const manifest::Pattern& section
   } else if (posed) {
     throw Error(Exit::data,
                 manifest::place(document, "/patterns/" + input.name + "/placements/" + std::to_string(placement)),
-                "has neither world_from_pattern nor a marked corner in any image of \"" + stated.name + "\"",
+                "has neither world_from_pattern nor a marked corner in any image of \"" + stated.name + "\"" +
+                    why_no_outline(input, placement),
                 "mark the four corners in one or a few of its images (--corners FILE)");
   }
   place_views(input.pattern, pose, placement, input);
   const auto is_placed = [&](const InputView& view) { return view.placement == placement && view.map; };
   if (std::ranges::none_of(input.views, is_placed))
-    throw Error(Exit::data, input.place, "has no image of \"" + stated.name + "\" in which the sample's place is known",
+    throw Error(Exit::data, input.place,
+                "has no image of \"" + stated.name + "\" in which the sample's place is known" +
+                    why_no_outline(input, placement),
                 "mark its four corners (--corners FILE), or state cameras and poses");
 }
 
@@ -244,7 +286,11 @@ Input read_input(const manifest::Document& document, const std::string& name, co
       input.views.push_back(view_of(document, image, k, all, options));
     }
   }
-  for (int k = 0; k < 2; ++k) locate(document, section, k, input);
+  for (int k = 0; k < 2; ++k) {
+    mark_outlines(document, options, section.placements[static_cast<std::size_t>(k)].world_from_pattern.has_value(), k,
+                  input);
+    locate(document, section, k, input);
+  }
   std::erase_if(input.views, [](const InputView& view) { return !view.map; });
   return input;
 }

@@ -16,6 +16,7 @@ struct InputView {
   std::optional<camera::CameraModel> camera;
   std::optional<CameraPose> pose;  // with it the sample's pose places the pattern; else marks of this image do
   std::vector<PlacedMark> marks;
+  std::string no_outline;  // why the corners of a view without marks were not found
   double full_scale = 0;
   std::optional<ViewMap> map;
   CornerCovariance spread{};  // of the corners in the picture

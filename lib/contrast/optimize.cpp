@@ -15,6 +15,12 @@ namespace {
 
 constexpr double kept = 0.95;  // of the contrast, by which tolerances are stated
 
+std::string with_unit(const std::string& parameter, double value) {
+  if (parameter.ends_with("_rad")) return format("%.4g degrees", value / degree);
+  if (parameter.ends_with("_m")) return format("%.4g um", value * 1e6);
+  return format("%.4g", value);
+}
+
 manifest::Parameters parameters_at(const Wish& wish, const std::vector<double>& values) {
   manifest::Parameters p;
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -48,7 +54,8 @@ void check_bounds(const Specimen& specimen, const Wish& wish) {
     if (std::ranges::count(wish.bounds, b.parameter, &Bound::parameter) > 1)
       throw Error(Exit::usage, place, "is given twice", "give one range");
     if (!(b.lower < b.upper))
-      throw Error(Exit::usage, place, "leaves no room from " + shortest_text(b.lower) + " to " + shortest_text(b.upper),
+      throw Error(Exit::usage, place,
+                  "leaves no room from " + with_unit(b.parameter, b.lower) + " to " + with_unit(b.parameter, b.upper),
                   "write the lower end first: LOW:HIGH");
     if (b.parameter == pitch_name) {
       if (specimen.info().id != "ridged")
@@ -121,12 +128,6 @@ Optimum::Number described(const Specimen& specimen, const Wish& wish, const std:
     n.contrast.push_back(along(n.at.back()));
   }
   return n;
-}
-
-std::string with_unit(const std::string& parameter, double value) {
-  if (parameter.ends_with("_rad")) return format("%.4g degrees", value / degree);
-  if (parameter.ends_with("_m")) return format("%.4g um", value * 1e6);
-  return format("%.4g", value);
 }
 
 }  // namespace

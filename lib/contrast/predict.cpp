@@ -256,6 +256,9 @@ Prediction predict(const Specimen& specimen, const PredictOptions& options) {
   Prediction p = assembled(options.experiment, options.varied, signals);
   p.surface = specimen.name();
   p.model = specimen.info().id;
+  for (const manifest::ParameterInfo& info : specimen.info().parameters)
+    if (std::ranges::find(options.varied, info.name, &Varied::parameter) == options.varied.end())
+      p.stated.push_back({info.name, info.unit, specimen.number(info.name, specimen.place()), info.meaning});
   for (const Unsure& u : unsure) {
     const std::string unit = specimen.declared(u.parameter, specimen.place()).unit;
     p.uncertain.push_back(u.parameter + " " + format("%.3g", u.sigma) + (unit == "1" ? "" : " " + unit));

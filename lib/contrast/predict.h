@@ -31,6 +31,11 @@ struct Combination {
   Estimate difference, michelson;  // magnitudes
   bool first_brighter = true;
 };
+struct Stated {  // a number of the surface, its preset where none was given
+  std::string parameter, unit;
+  double value = 0;  // of a colour the mean
+  std::string meaning;
+};
 struct Means {               // of the experiment's definition
   std::string over;          // "tilt", "rotation", or the varied parameter
   std::vector<double> at{};  // tilts, values; of rotations: their places in the list
@@ -40,6 +45,7 @@ struct Means {               // of the experiment's definition
 struct Prediction {
   Experiment experiment;
   std::string surface, model;
+  std::vector<Stated> stated;  // those that are not varied
   std::vector<Varied> varied;
   std::vector<Combination> combinations;
   std::vector<Means> means;            // tilt, each varied parameter, rotation

@@ -12,6 +12,7 @@
 #include "contrast/contrast_options.h"
 #include "contrast/optimize_page.h"
 #include "contrast/predict_page.h"
+#include "surface/surface.h"
 
 namespace gonio::contrast {
 namespace {
@@ -20,15 +21,46 @@ using cli::Type;
 
 const std::vector<std::string> describing = {"model", "set", "sigma"};
 
+// What --set gives one parameter. Error(usage) at it.
+manifest::Parameter value_of(const Assignment& a, const manifest::ParameterInfo& info) {
+  const std::string place = "--set " + a.parameter, unit = info.unit == "1" ? "" : " " + info.unit;
+  const std::size_t count = a.values.size();
+  if (count != 1 && static_cast<int>(count) != info.components)
+    throw Error(Exit::usage, place, "has " + std::to_string(count) + " values",
+                info.components == 1 ? "give one here, and several to --vary" : "give one, or three");
+  for (const double x : a.values)
+    if (!(x >= info.lower && x <= info.upper))
+      throw Error(Exit::usage, place,
+                  "is " + shortest_text(x) + ", outside " + shortest_text(info.lower) + " to " +
+                      shortest_text(info.upper) + unit,
+                  info.meaning);
+  return manifest::Parameter(a.values);
+}
+
+// Models that options describe completely.
+void check_model(const manifest::ModelInfo& info) {
+  const auto refuse = [&](const char* what, const char* remedy) {
+    throw Error(Exit::usage, "--model " + info.id, what, remedy);
+  };
+  if (surface::find(info.id)->transmits()) refuse("lets light through", "predict the contrast of an opaque surface");
+  if (info.takes_base) refuse("lies on another surface", "describe both in a manifest");
+  if (info.attachment != manifest::Attachment::none) refuse("needs a file", "name it in a manifest");
+}
+
 // Enters --model with --set and --sigma as a surface of that name.
 void enter_surface(cli::Invocation& call) {
   const std::string id = call.given("model") ? call.text("model") : "ridged";
   const manifest::ModelInfo& info = model_named(id);
+  check_model(info);
   manifest::Surface surface;
   surface.model = id;
-  if (id == "ridged") surface.parameters = {{"alpha_u", 0.05}, {"alpha_v", 0.05}};
-  for (const Assignment& a : assignments(call.texts("set"), "--set", info))
-    surface.parameters[a.parameter] = manifest::Parameter(a.values);
+  if (id == "ridged") surface.parameters = {{"alpha_u", 0.05}, {"alpha_v", 0.05}, {"walls", 0.0}};
+  const std::vector<Assignment> set = assignments(call.texts("set"), "--set", info);
+  for (const Assignment& a : set) {
+    if (std::ranges::count(set, a.parameter, &Assignment::parameter) > 1)
+      throw Error(Exit::usage, "--set " + a.parameter, "is given twice", "give one value here, and several to --vary");
+    surface.parameters[a.parameter] = value_of(a, parameter_named(info, a.parameter, "--set"));
+  }
   for (const Assignment& a : assignments(call.texts("sigma"), "--sigma", info)) {
     if (std::ranges::any_of(a.values, [](double v) { return v < 0; }))
       throw Error(Exit::usage, "--sigma " + a.parameter, "is negative", "a standard deviation is 0 or more");
@@ -179,7 +211,8 @@ std::vector<cli::Option> predict_options() {
   return {{.name = "model",
            .type = Type::text,
            .help = "Model of the surface, where there is no manifest; ridged by "
-                   "default, with ridge angles of 5 to 20 degrees and a roughness of 0.05.",
+                   "default, with ridge angles of 5 to 20 degrees, a roughness of 0.05 and, as published, walls that "
+                   "swallow what they meet (walls=0; 1 where they reflect like facets).",
            .metavar = "ID"},
           {.name = "set",
            .type = Type::text,

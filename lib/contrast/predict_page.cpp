@@ -64,10 +64,10 @@ Plot plot_of(const Means& m, Definition definition, double top) {
 TableText table_of(const Means& m, const Prediction& p) {
   double most = 0;
   for (const Estimate& e : m.mean) most = std::max(most, e.value);
-  TableText table{
-      .caption = "Mean contrast by " + title_of(m),
-      .columns = {
-          {axis_of(m), "", false}, {"Mean contrast", unit_of(p.experiment.definition)}, {"Over the largest", ""}}};
+  TableText table{.caption = "Mean contrast by " + title_of(m),
+                  .columns = {{m.over == "rotation" ? "pair of rotations / degrees" : axis_of(m), "", false},
+                              {"Mean contrast", unit_of(p.experiment.definition)},
+                              {"Over the largest", ""}}};
   for (std::size_t i = 0; i < m.mean.size(); ++i)
     table.rows.push_back(
         {m.label[i], text_of(m.mean[i]), most > 0 ? report::number_text(m.mean[i].value / most, 3) : "\u2013"});
@@ -106,6 +106,21 @@ std::string headline(const Prediction& p) {
   return text + ".";
 }
 
+void add_surface(Page& page, const Prediction& p) {
+  if (p.stated.empty()) return;
+  page.open_details("The surface");
+  TableText table{.caption = "Numbers of the model " + p.model + (p.varied.empty() ? "" : " that are not varied"),
+                  .columns = {{"Parameter", "", false}, {"Value", ""}, {"Meaning", "", false}},
+                  .rows = {}};
+  for (const Stated& s : p.stated)
+    table.rows.push_back({s.parameter,
+                          s.unit == "rad" ? degrees_text(s.value) + " deg"
+                                          : report::number_text(s.value, 4) + (s.unit == "1" ? "" : " " + s.unit),
+                          s.meaning});
+  page.table(table);
+  page.close_details();
+}
+
 void add_definitions(Page& page, const Prediction& p) {
   const Experiment& e = p.experiment;
   page.section("How it was found");
@@ -140,6 +155,7 @@ void add_prediction(Page& page, const Prediction& p) {
   page.plots(mean_plots(p));
   for (const Means& m : p.means) page.table(table_of(m, p));
   add_combinations(page, p);
+  add_surface(page, p);
   add_definitions(page, p);
 }
 

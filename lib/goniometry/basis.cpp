@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -44,6 +45,7 @@ class BasisBuilder {
     decompose();
     basis_.q_.resize(cells_.count() * basis_.components_);
     basis_.rest_.resize(cells_.count());
+    if (!singly()) basis_.class_rest_.resize(cells_.count() * basis_.classes());
     each_block([this](std::size_t first, std::size_t last) { project(first, last); });
   }
 
@@ -135,15 +137,27 @@ class BasisBuilder {
     left_out_ = remainders(eigen, lambda).cast<float>();
   }
 
-  // Rows P_JJ^-1 P_J: of every sample what the other materials do not give.
+  bool singly() const { return basis_.classes() == tables_.materials(); }
+  std::vector<Eigen::Index> samples_of(std::size_t left_out) const {
+    std::vector<Eigen::Index> rows;
+    for (std::size_t s = 0; s < samples_; ++s)
+      if (basis_.class_of(s) == left_out) rows.push_back(at(s));
+    return rows;
+  }
+
+  // Rows P_JJ^-1 P_J: of every sample what the other classes do not give.
   template <class Solver>
   Eigen::MatrixXd remainders(const Solver& eigen, double lambda) const {
     const Eigen::VectorXd inverse = (eigen.eigenvalues().cwiseMax(0).array() + lambda).inverse();
-    const Eigen::MatrixXd p = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+    Eigen::MatrixXd p = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+    p.rowwise() -= p.colwise().mean().eval();
+    p.colwise() -= p.rowwise().mean().eval();
     Eigen::MatrixXd rows(p.rows(), p.cols());
-    const Eigen::Index group = at(tables_.channels());
-    for (Eigen::Index g = 0; g < p.rows(); g += group)
-      rows.middleRows(g, group) = p.block(g, g, group, group).llt().solve(p.middleRows(g, group));
+    for (std::size_t c = 0; c < basis_.classes(); ++c) {
+      const std::vector<Eigen::Index> group = samples_of(c);
+      const Eigen::MatrixXd own = p(group, group), all = p(group, Eigen::all), solved = own.llt().solve(all);
+      rows(group, Eigen::all) = solved;
+    }
     return rows;
   }
 
@@ -159,11 +173,27 @@ class BasisBuilder {
       const Eigen::RowVectorXf all = part.colwise().squaredNorm() / freedom;
       Eigen::MatrixXf remainder = (left_out_ * part).cwiseAbs();
       for (Eigen::Index c = 0; c < at(width); ++c) {
-        const float unexplained = spread_of(remainder.col(c));
-        basis_.rest_[first + begin + static_cast<std::size_t>(c)] =
-            std::sqrt(unexplained * unexplained + std::max(0.0F, all[c] - q.row(c).squaredNorm()));
+        const std::size_t cell = first + begin + static_cast<std::size_t>(c);
+        const float dropped = std::max(0.0F, all[c] - q.row(c).squaredNorm());
+        const float unexplained = singly() ? spread_of(remainder.col(c)) : by_classes(remainder.col(c), dropped, cell);
+        basis_.rest_[cell] = std::sqrt(unexplained * unexplained + dropped);
       }
     });
+  }
+  // Root of the mean over classes of mean squares.
+  float by_classes(const Eigen::Ref<const Eigen::VectorXf>& magnitudes, float dropped, std::size_t cell) {
+    const std::size_t classes = basis_.classes();
+    float* squares = basis_.class_rest_.data() + cell * classes;
+    thread_local std::vector<float> counts;
+    counts.assign(classes, 0);
+    for (std::size_t s = 0; s < samples_; ++s) {
+      squares[basis_.class_of(s)] += magnitudes[at(s)] * magnitudes[at(s)];
+      ++counts[basis_.class_of(s)];
+    }
+    float sum = 0;
+    for (std::size_t c = 0; c < classes; ++c) sum += squares[c] /= counts[c];
+    for (std::size_t c = 0; c < classes; ++c) squares[c] += dropped;
+    return std::sqrt(sum / static_cast<float>(classes));
   }
   static float spread_of(Eigen::Ref<Eigen::VectorXf> magnitudes) {
     const Eigen::Index place = magnitudes.size() * 95 / 100;
@@ -191,7 +221,33 @@ Basis::Basis(const Tables& tables, std::string description, const BasisOptions& 
     names_.push_back(tables.name(m));
     material_of_.insert(material_of_.end(), tables.channels(), static_cast<std::uint32_t>(m));
   }
+  classify();
   BasisBuilder(tables, *this, options).build();
+}
+
+void Basis::classify() {
+  std::vector<std::string> known;
+  class_of_.clear();
+  for (const std::string& name : names_) {
+    const std::size_t end = name.find_last_not_of("0123456789");
+    const bool numbered = end != std::string::npos && end + 1 < name.size() && name[end] == ' ';
+    const std::string stem = numbered ? name.substr(0, end) : name;
+    const auto found = std::ranges::find(known, stem);
+    class_of_.push_back(static_cast<std::uint32_t>(found - known.begin()));
+    if (found == known.end()) known.push_back(stem);
+  }
+  classes_ = known.size();
+  if (classes_ >= 3) return;
+  classes_ = names_.size();
+  std::iota(class_of_.begin(), class_of_.end(), 0U);
+}
+
+double Basis::rest_without(std::size_t cell, std::uint32_t left_out) const {
+  if (class_rest_.empty()) return static_cast<double>(rest_[cell]);
+  double sum = 0;
+  for (std::uint32_t c = 0; c < classes_; ++c)
+    if (c != left_out) sum += static_cast<double>(class_rest_[cell * classes_ + c]);
+  return std::sqrt(sum / static_cast<double>(classes_ - 1));
 }
 
 double Basis::kept_share() const {

@@ -10,11 +10,14 @@
 // block of rings. Components are kept until the rest's standard deviation is `truncation` of the whole's, or up to
 // `most_components`.
 //
-// What no combination of other materials gives: `rest` per cell, of the remainders that are left when a material is
-// taken out and projected onto all others. With P = (Gram + lambda 1)^-1 and the rows J of one material they are
-// P_JJ^-1 P_J (X - m) (the leave-one-out residual of a regression, for a group of rows at once). Few strange materials
-// would rule its root mean square: rest is the 95 % quantile of its magnitude, over 1.96; to its square the components
-// that were not kept are added.
+// What no combination of other materials gives: `rest` per cell, of the remainders that are left when a class of
+// materials is taken out and projected onto all others. With P = (Gram + lambda 1)^-1 and the rows J of one class they
+// are P_JJ^-1 P_J X (the leave-one-out residual of a regression, for a group of rows at once), where P has the mean of
+// all taken out of its rows and columns: otherwise weights of -1 on all other samples would give the class' own mean,
+// which is a part of m. In a folder of tables every material is a class of its own, and few strange ones would rule the
+// root mean square: rest is the 95 % quantile of the magnitude, over 1.96. Where models make classes of many materials,
+// a material to be measured belongs to none of them, as if its class had been left out: rest^2 is the mean over classes
+// of their mean squares. To either square the components that were not kept are added.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -57,10 +60,16 @@ class Basis {
   const std::string& description() const { return description_; }  // "100 tables of the folder merl/"
   const std::vector<std::string>& materials() const { return names_; }
   const std::vector<std::uint32_t>& material_of() const { return material_of_; }  // of a sample
+  // Materials whose names differ by a number at their end after a blank, "metal 5", "metal 15", are of one class.
+  // Tables of files have no blanks there: each is a class of its own, as all are where there would be one or two.
+  std::size_t classes() const { return classes_; }
+  std::uint32_t class_of(std::size_t sample) const { return class_of_[material_of_[sample]]; }
   // In units of ln: log_reference is ln(f_ref w + epsilon); rest a standard deviation.
   std::span<const float> log_reference() const { return log_reference_; }
   std::span<const float> mean() const { return mean_; }
   std::span<const float> rest() const { return rest_; }
+  // `rest` as the other classes would give it; rest() where every material is a class of its own.
+  double rest_without(std::size_t cell, std::uint32_t left_out) const;
   std::span<const float> q(std::size_t cell) const { return std::span(q_).subspan(cell * components_, components_); }
   std::span<const float> all_q() const { return q_; }                    // cell by cell
   std::span<const double> scores() const { return scores_; }             // c of every sample, sample by sample
@@ -75,12 +84,15 @@ class Basis {
  private:
   Basis() = default;
   friend class BasisBuilder;
+  void classify();
   std::shared_ptr<const Cells> cells_;
   std::size_t components_ = 0;
   std::string description_;
   std::vector<std::string> names_;
-  std::vector<std::uint32_t> material_of_;
+  std::vector<std::uint32_t> material_of_, class_of_;  // of samples, of materials
+  std::size_t classes_ = 0;
   std::vector<float> log_reference_, mean_, rest_, q_;
+  std::vector<float> class_rest_;  // squares, cell by cell, class by class; empty where these are single materials
   std::vector<double> scores_, singular_;
 };
 
@@ -96,11 +108,11 @@ struct Material {
 // Evaluates all cells of all materials with all threads; `channels` 1: red alone.
 std::unique_ptr<Tables> tables_of(const std::vector<Material>& materials, const Bins& bins, std::size_t channels = 3);
 
-// From gonio's own models, over a seeded spread of plausible parameters: matte, coated, glossy with haze, metals,
-// fabrics. description() says so: it is no collection of measurements.
+// From analytic models, gonio's own and four laws of others, over a seeded spread of plausible parameters: matte,
+// coated, glossy with haze, metals, fabrics. description() says so: it is no collection of measurements.
 struct BuiltinOptions {
   Bins bins = merl_bins;
-  std::size_t materials = 60;
+  std::size_t materials = 84;
   std::uint64_t seed = 1;
 };
 std::vector<Material> builtin_materials(const BuiltinOptions& options);

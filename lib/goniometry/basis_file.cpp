@@ -1,6 +1,7 @@
 // A basis as a file. Little-endian: the 16 bytes of `head`; int32 version; int32 bins[3]; int32 materials, samples,
 // components; the description and each material's name, an int32 of their length before them; int32 material of each
-// sample; floats log_reference, mean, rest (one per cell) and q (cell by cell); doubles scores (sample by sample) and
+// sample; floats log_reference, mean, rest (one per cell), q and, where classes hold several materials, squares of rest
+// by classes (cell by cell); doubles scores (sample by sample) and
 // singular values; last 64 bytes: SHA-256 of all before, in hexadecimal digits.
 #include <bit>
 #include <cstring>
@@ -15,7 +16,7 @@ namespace gonio::goniometry {
 namespace {
 
 constexpr std::string_view head = "gonio BRDF basis";
-constexpr std::int32_t version = 1;
+constexpr std::int32_t version = 2;
 constexpr std::size_t digest = 64;
 constexpr std::int32_t most_materials = 100'000, most_text = 4096;
 
@@ -97,7 +98,7 @@ void Basis::save(const std::filesystem::path& file) const {
   w.text(description_);
   for (const std::string& name : names_) w.text(name);
   for (const std::uint32_t material : material_of_) w.number(static_cast<std::int32_t>(material));
-  for (const auto* values : {&log_reference_, &mean_, &rest_, &q_}) w.numbers(*values);
+  for (const auto* values : {&log_reference_, &mean_, &rest_, &q_, &class_rest_}) w.numbers(*values);
   w.numbers(scores_);
   w.numbers(singular_);
   w.bytes += sha256(w.bytes);
@@ -122,6 +123,7 @@ Basis Basis::load(const std::filesystem::path& file) {
   basis.components_ = k;
   basis.description_ = r.text();
   for (std::size_t m = 0; m < materials; ++m) basis.names_.push_back(r.text());
+  basis.classify();
   for (std::size_t s = 0; s < samples; ++s)
     basis.material_of_.push_back(
         static_cast<std::uint32_t>(r.number(0, static_cast<std::int32_t>(materials) - 1, "as a sample's material")));
@@ -131,6 +133,7 @@ Basis Basis::load(const std::filesystem::path& file) {
   basis.cells_ = cells;
   for (auto* values : {&basis.log_reference_, &basis.mean_, &basis.rest_}) *values = r.numbers<float>(count);
   basis.q_ = r.numbers<float>(count * k);
+  if (basis.classes_ < materials) basis.class_rest_ = r.numbers<float>(count * basis.classes_);
   basis.scores_ = r.numbers<double>(samples * k);
   basis.singular_ = r.numbers<double>(samples);
   if (r.left() != 0) r.refuse("has " + std::to_string(r.left()) + " bytes after its end");

@@ -4,17 +4,21 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <map>
 
 #include "base/atomic_file.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "goniometry/document.h"
 #include "goniometry/page.h"
 #include "goniometry/plan.h"
 #include "goniometry/plots.h"
 #include "goniometry/recording.h"
+#include "goniometry/spectra.h"
 #include "io/picture.h"
 #include "manifest/fields.h"
 #include "render/preview.h"
+#include "report/heat_drawing.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -114,6 +118,22 @@ std::vector<Outcome> read_inputs(cli::Invocation& call) {
   return outcomes;
 }
 
+// What a person would want to know before the numbers: which rows do not count, and an unlikely convention.
+void log_reading(const Outcome& outcome) {
+  std::map<std::string, std::size_t> reasons;
+  for (const Dropped& dropped : outcome.read.dropped) ++reasons[dropped.reason];
+  std::string why;
+  for (const auto& [reason, rows] : reasons) why += (why.empty() ? "" : ", ") + std::to_string(rows) + " " + reason;
+  const std::size_t left_out = outcome.read.dropped.size();
+  if (left_out > 0)
+    log(LogLevel::info, outcome.name + ": " + std::to_string(left_out) + " of " +
+                            std::to_string(left_out + outcome.read.samples.rows()) +
+                            " pairs of directions are left out: " + why);
+  if (!outcome.read.units_doubt.empty()) log(LogLevel::warning, outcome.name + ": " + outcome.read.units_doubt);
+  if (outcome.read.convention.contradicted)
+    log(LogLevel::warning, outcome.name + ": " + outcome.read.convention.sentence);
+}
+
 void tell(cli::Invocation& call, Outcome& outcome, const std::optional<Basis>& basis) {
   if (!basis) {
     outcome.fits = fit_surfaces(outcome.read.samples, fit_options(call));
@@ -123,7 +143,30 @@ void tell(cli::Invocation& call, Outcome& outcome, const std::optional<Basis>& b
   if (call.given("noise")) options.relative_noise = call.number("noise");
   outcome.reconstruction = reconstruct(*basis, outcome.read.samples, options);
   outcome.basis = basis->description();
-  outcome.table = std::make_shared<const surface::MeasuredTable>(outcome.reconstruction->table, outcome.name);
+  // The reader of tables refuses what returns more light than it receives; the verdict says it instead.
+  outcome.table_scale = std::max(1.0, outcome.reconstruction->energy.most);
+  io::MerlTable within = outcome.reconstruction->table;
+  for (float& f : within.brdf_per_sr) f = f < 0 ? f : static_cast<float>(static_cast<double>(f) / outcome.table_scale);
+  outcome.table = std::make_shared<const surface::MeasuredTable>(std::move(within), outcome.name);
+}
+
+std::string named(const Outcome& outcome, const std::string& ending) {
+  return file_stem(outcome.name) + ending;
+}
+
+// Before the fits, which take their time: names that two samples share, and files that are there.
+void check_names(const cli::Invocation& call, const std::vector<Outcome>& outcomes) {
+  std::map<std::string, const Outcome*> known;
+  for (const Outcome& outcome : outcomes) {
+    const auto [other, fresh] = known.try_emplace(file_stem(outcome.name), &outcome);
+    if (!fresh)
+      throw Error(Exit::data, outcome.source,
+                  "would be called \"" + outcome.name + "\", and so would " + other->second->source,
+                  "fit one after the other with --name, or rename a file");
+    const fs::path csv = call.out / named(outcome, ".csv");
+    if (!call.out.empty() && fs::exists(csv) && !call.force && !call.resume)
+      throw Error(Exit::cannot_create, csv.string(), "exists", "--force replaces it");
+  }
 }
 
 // Where a file goes: named by the user, else below --out, else nowhere.
@@ -139,30 +182,46 @@ void write_below(cli::Invocation& call, Outcome& outcome, const std::string& key
   outcome.files[key] = manifest::add_file(call.document, path, outcome.name + "-" + key);
 }
 
+void write_drawings(cli::Invocation& call, Outcome& outcome) {
+  const auto draw = [&](const std::string& what, const std::string& svg) {
+    write_below(call, outcome, what, call.output_path(named(outcome, "-" + what + ".svg")), svg);
+  };
+  const std::size_t band = written_bands(outcome.read.samples)[1];
+  if (const auto scans = scan_plot(outcome, band)) draw("scans", standalone_svg(*scans));
+  draw("lobes", standalone_svg(lobe_plot(outcome, band)));
+  draw("residuals", report::standalone_svg(residual_map(outcome)));
+  if (outcome.reconstruction) return;
+  for (const auto& [number, plot] : spectra_of(outcome)) draw("spectrum-" + number, standalone_svg(plot));
+}
+
 void write_outputs(cli::Invocation& call, Outcome& outcome) {
   std::string table_file;
   const bool whole = outcome.reconstruction.has_value();
-  const fs::path merl = whole                ? path_for(call, "merl", outcome.name + ".binary")
+  const fs::path merl = whole                ? path_for(call, "merl", named(outcome, ".binary"))
                         : call.given("merl") ? fs::path(call.text("merl"))
                                              : fs::path();
   if (!merl.empty() && (whole || outcome.chosen() != nullptr)) {
     io::write_merl(merl, merl_of(outcome, "--merl"));
     outcome.files["merl"] = table_file = manifest::add_file(call.document, merl, outcome.name + "-merl");
   }
+  if (const fs::path sigma = whole ? path_for(call, "merl-sigma", named(outcome, "-sigma.binary")) : fs::path();
+      !sigma.empty()) {
+    io::write_merl(sigma, outcome.reconstruction->sigma);
+    outcome.files["merl_sigma"] = manifest::add_file(call.document, sigma, outcome.name + "-merl-sigma");
+  }
   enter(call.document, outcome, table_file);
-  write_below(call, outcome, "csv", path_for(call, "csv", outcome.name + ".csv"), samples_csv(outcome));
-  const fs::path page = path_for(call, "html", outcome.name + ".html");
-  const bool known = call.document.surfaces.contains(outcome.name) && (whole || outcome.chosen() != nullptr);
+  write_below(call, outcome, "csv", path_for(call, "csv", named(outcome, ".csv")), samples_csv(outcome));
+  if (!whole && outcome.chosen() != nullptr)
+    write_below(call, outcome, "numbers", path_for(call, "", named(outcome, "-numbers.csv")), numbers_csv(outcome));
+  const fs::path page = path_for(call, "html", named(outcome, ".html"));
+  const bool known =
+      call.document.surfaces.contains(outcome.name) && outcome.renders() && (whole || outcome.chosen() != nullptr);
   io::Image sphere;
   if (known && !page.empty()) sphere = sphere_picture(call.document, outcome.name);
   if (known && !call.out.empty()) {
-    write_below(call, outcome, "sphere", call.output_path(outcome.name + "-sphere.png"),
+    write_below(call, outcome, "sphere", call.output_path(named(outcome, "-sphere.png")),
                 io::encode_png(render::preview(sphere)));
-    const std::size_t band = written_bands(outcome.read.samples)[1];
-    if (const auto scans = scan_plot(outcome, band))
-      write_below(call, outcome, "scans", call.output_path(outcome.name + "-scans.svg"), standalone_svg(*scans));
-    write_below(call, outcome, "lobes", call.output_path(outcome.name + "-lobes.svg"),
-                standalone_svg(lobe_plot(outcome, band)));
+    write_drawings(call, outcome);
   }
   write_below(call, outcome, "page", page, page_of(outcome, sphere));
   enter(call.document, outcome, table_file);  // with the files
@@ -170,11 +229,21 @@ void write_outputs(cli::Invocation& call, Outcome& outcome) {
 
 Exit print_plan(cli::Invocation& call) {
   call.writes_document = false;
+  std::vector<Outcome> given;
+  if (!call.texts("FILE").empty() || call.has_document) given = read_inputs(call);
+  if (given.size() > 1)
+    throw Error(Exit::usage, "--plan", "is for one surface, and " + std::to_string(given.size()) + " are given",
+                "give one table, or name one with --table or --sample");
   const Basis basis = basis_for(call, {30, 30, 60});
   PlanOptions options;
+  if (!given.empty()) options.given = &given.front().read.samples;
   options.most_theta_rad = std::min(call.number("grazing"), 80 * pi / 180);
   if (call.given("noise")) options.relative_noise = call.number("noise");
-  std::cout << plan_csv(plan(basis, static_cast<std::size_t>(call.integer("plan")), options)) << std::flush;
+  const Plan found = plan(basis, static_cast<std::size_t>(call.integer("plan")), options);
+  if (!given.empty())
+    log(LogLevel::info, format("with what is measured, sigma_ln is %.3f; with these pairs as well, %.3f", found.before,
+                               found.sigma_ln.back()));
+  std::cout << plan_csv(found) << std::flush;
   return Exit::done;
 }
 
@@ -193,11 +262,11 @@ void check_brdf(cli::Invocation& call) {
   if (files == 0 && !call.has_document)
     throw Error(Exit::no_input, "brdf-fit", "has nothing to read",
                 "name a table, or a manifest with tables or goniometer; brdf-fit --example prints a table to try");
-  for (const char* option : {"merl", "csv", "html", "name"})
+  for (const char* option : {"merl", "merl-sigma", "csv", "html", "name"})
     if (files > 1 && call.given(option))
       throw Error(Exit::usage, "--" + std::string(option), "is one, and there are " + std::to_string(files) + " tables",
                   "use --out DIR, or give one table");
-  for (const char* option : {"merl", "csv", "html"})
+  for (const char* option : {"merl", "merl-sigma", "save-basis", "csv", "html"})
     if (call.given(option)) check_writable(call.text(option));
   if (call.flag("reconstruct") && !call.given("merl") && call.out.empty())
     throw Error(Exit::usage, "--reconstruct", "has no place for its table", "name one: --merl FILE, or --out DIR");
@@ -215,10 +284,13 @@ Exit fit_brdf(cli::Invocation& call) {
     throw Error(Exit::data, call.document.name, "has no tables of model \"surface\" and no goniometer samples",
                 "name one with --table, or give a table of reflectances");
   if (call.given("name")) outcomes.front().name = call.text("name");
+  check_names(call, outcomes);
   std::optional<Basis> basis;
   if (call.flag("reconstruct")) basis = basis_for(call, merl_bins);
+  if (basis && call.given("save-basis")) basis->save(call.text("save-basis"));
   Exit worst = Exit::done;
   for (Outcome& outcome : outcomes) {
+    log_reading(outcome);
     tell(call, outcome, basis);
     write_outputs(call, outcome);
     const Verdict verdict = verdict_of(outcome);

@@ -103,7 +103,8 @@ std::vector<cli::Option> fitting_options() {
        .metavar = "PATH"},
       {.name = "plan",
        .type = Type::integer,
-       .help = "Print the N most informative pairs of directions for the basis, as CSV, and end.",
+       .help = "Print the N most informative pairs of directions for the basis, as CSV, and end; with a table, those "
+               "that add most to it.",
        .metavar = "N",
        .lower = 1,
        .upper = 10000},
@@ -120,7 +121,16 @@ std::vector<cli::Option> writing_options() {
            .help = "Write the samples with prediction and residual here; with --out it is DIR/NAME.csv."},
           {.name = "merl",
            .type = Type::output_file,
-           .help = "Write the surface as a table in MERL's format, 33 MB, here."}};
+           .help = "Write the surface as a table in MERL's format, 33 MB, here."},
+          {.name = "merl-sigma",
+           .type = Type::output_file,
+           .help = "Write one standard deviation of every cell of the reconstructed table, in 1/sr and in the same "
+                   "format, here; with --out it is DIR/NAME-sigma.binary.",
+           .needs = {"reconstruct"}},
+          {.name = "save-basis",
+           .type = Type::output_file,
+           .help = "Save the basis of --reconstruct here: --basis reads it in a second, and making it takes longer.",
+           .needs = {"reconstruct"}}};
 }
 
 }  // namespace

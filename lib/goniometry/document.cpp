@@ -6,12 +6,15 @@
 #include <set>
 
 #include "goniometry/checks.h"
+#include "goniometry/plausible.h"
+#include "goniometry/spectra.h"
 #include "report/number_text.h"
 
 namespace gonio::goniometry {
 namespace {
 
 constexpr double most_held_out_ratio = 1.5;
+constexpr std::size_t most_in_covariance = 200;
 
 std::string band_called(const Samples& samples, std::size_t band) {
   return band < samples.bands() ? samples.band_name[band] : std::to_string(band);
@@ -57,14 +60,16 @@ manifest::Surface surface_of(const Outcome& outcome, const Fit& fit) {
   return surface;
 }
 
-// Of what all bands share and of the written bands: the whole of a spectral fit is thousands of numbers.
+// The whole; beyond most_in_covariance numbers, which a spectrum of hundreds of bands has, that of what all bands share
+// and of the written bands.
 manifest::Value covariance_of(const Outcome& outcome, const Fit& fit) {
   const std::size_t n = fit.numbers.size();
   if (fit.covariance.size() != n * n || n == 0) return {};
   const auto bands = written_bands(outcome.read.samples);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < n; ++i)
-    if (fit.numbers[i].band == whole_sample || std::ranges::find(bands, fit.numbers[i].band) != bands.end())
+    if (n <= most_in_covariance || fit.numbers[i].band == whole_sample ||
+        std::ranges::find(bands, fit.numbers[i].band) != bands.end())
       kept.push_back(i);
   std::vector<std::string> order;
   manifest::Value rows = manifest::Value::array();
@@ -84,17 +89,12 @@ std::optional<double> finite(double v) {
 
 void enter_fit(const Outcome& outcome, const Fit& fit, manifest::SurfaceFit& out) {
   const auto& parameters = fit.model->info().parameters;
-  std::vector<std::string> at_bounds;
   for (const auto& info : parameters) {
     std::vector<double> values, sigma;
     for (const FittedNumber& number : fit.numbers) {
       if (number.name != info.name) continue;
       values.push_back(number.value);
       if (std::isfinite(number.sigma)) sigma.push_back(number.sigma);
-      if (number.at != FittedNumber::At::inside)
-        at_bounds.push_back(number_name(number, outcome.read.samples) + " is at its " +
-                            (number.at == FittedNumber::At::lower ? "lower" : "upper") + " bound; 95 % interval " +
-                            report::number_text(number.low, 3) + " to " + report::number_text(number.high, 3) + ".");
     }
     if (!values.empty()) out.parameters[info.name] = values;
     if (!sigma.empty() && sigma.size() == values.size()) out.sigma[info.name] = sigma;
@@ -105,21 +105,21 @@ void enter_fit(const Outcome& outcome, const Fit& fit, manifest::SurfaceFit& out
   out.rms_decades = finite(fit.fitted.decades);
   out.energy = finite(fit.energy), out.reciprocity = finite(fit.reciprocity);
   out.converged = fit.converged;
-  for (std::string& note : at_bounds) out.notes.push_back(std::move(note));
+  for (std::string& note : bound_notes(outcome, fit)) out.notes.push_back(std::move(note));
+  if (fit.numbers.size() > most_in_covariance)
+    out.notes.push_back("Of the covariance of " + std::to_string(fit.numbers.size()) +
+                        " numbers that of the written bands is stated.");
 }
 
 void enter_candidates(const Outcome& outcome, manifest::SurfaceFit& out) {
   for (std::size_t i = 0; i < outcome.fits.candidates.size(); ++i) {
-    if (i == outcome.fits.chosen) continue;
     const Fit& fit = outcome.fits.candidates[i];
+    if (i == outcome.fits.chosen || !fit.same_as.empty()) continue;  // the notes name what is the same
     manifest::AlternativeFit other;
     other.model = fit.model->info().id + (fit.variant.empty() ? "" : ", " + fit.variant);
     other.parameters = static_cast<std::int64_t>(fit.numbers.size());
     other.rms = finite(fit.fitted.log1p), other.held_out_rms = finite(fit.held_out.log1p);
-    const bool as_good = fit.held_out_excess <= fit.held_out_excess_sigma;
-    other.reason = !fit.converged ? "did not converge"
-                   : as_good      ? "as good within one standard error, and no simpler"
-                                  : "errs more on held-out directions";
+    other.reason = fit.reason;
     out.alternatives.push_back(std::move(other));
   }
   for (const Refusal& r : outcome.fits.refusals)
@@ -132,7 +132,7 @@ void enter_samples(const Outcome& outcome, manifest::SurfaceFit& out) {
   for (const std::string& band : s.band_name) out.bands.push_back(band.empty() ? "f" : band);
   out.wavelengths_m = s.band_m;
   if (s.bands() > 3)
-    for (const std::size_t b : written_bands(s)) out.written_bands.push_back(out.bands[b]);
+    for (const std::string& name : written_names(outcome)) out.written_bands.push_back(name);
   out.rows = static_cast<std::int64_t>(s.rows());
   for (const Dropped& d : outcome.read.dropped) {
     const auto same = std::ranges::find(out.dropped, d.reason, &manifest::DroppedRows::reason);
@@ -155,10 +155,13 @@ Verdict verdict_of_reconstruction(const Outcome& outcome) {
   const Reconstruction& r = *outcome.reconstruction;
   const std::string start =
       "A full table was reconstructed from " + std::to_string(outcome.read.samples.rows()) + " pairs of directions";
-  if (r.energy.most > 1 + energy_tolerance)
+  if (r.energy.most > 1 + energy_tolerance) {
+    const std::string much = report::number_text(r.energy.most, 3) + " times the light that it receives";
     return {"doubtful",
-            start + ", but reflects up to " + report::number_text(r.energy.most, 3) + " of the light that it receives.",
+            start + ", but it reflects up to " + much + ", where there were few samples to hold it down: more of them" +
+                " near grazing help." + (outcome.renders() ? "" : " It is written, and not entered in surfaces."),
             Exit::quality};
+  }
   return {"good", start + "; it reflects at most " + report::number_text(r.energy.most, 3) + " of the light.",
           Exit::done};
 }
@@ -190,8 +193,12 @@ Verdict verdict_of(const Outcome& outcome) {
         "doubtful",
         start + "; but it reflects up to " + report::number_text(fit->energy, 3) + " of the light that it receives.",
         Exit::quality};
+  if (worse_than_a_constant(*fit, outcome.read.samples))
+    return {"doubtful", start + ": a constant would err less. Are the values a BRDF in 1/sr?", Exit::quality};
   if (held_out && fit->held_out.log1p > most_held_out_ratio * fit->fitted.log1p + 1e-3)
     return {"doubtful", start + ": it does not carry over to directions that it has not seen.", Exit::quality};
+  for (const std::string& caution : {brighter_than_possible(*fit), unlike_metals(*fit)})
+    if (!caution.empty()) start += "; " + caution;
   return {"good", start + ".", Exit::done};
 }
 
@@ -209,9 +216,10 @@ void enter(manifest::Document& document, const Outcome& outcome, const std::stri
     out.model = "merl";
     out.energy = outcome.reconstruction->energy.most;
     for (const std::string& note : outcome.reconstruction->notes) out.notes.push_back(note);
-    manifest::Surface& surface = document.surfaces[outcome.name] = {};
+    manifest::Surface surface;
     surface.model = "merl";
     surface.file = table_file;
+    if (outcome.renders()) document.surfaces[outcome.name] = surface;
   }
   if (out.model.empty()) out.model = "none";
   out.verdict = verdict.word, out.sentence = verdict.sentence;

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "goniometry/checks.h"
 #include "goniometry/fit_candidates.h"
+#include "goniometry/fit_choice.h"
 #include "goniometry/fit_problem.h"
 #include "goniometry/limits.h"
 #include "goniometry/selection.h"
@@ -22,49 +23,63 @@ namespace {
 
 constexpr int screening = 15, thorough = 60;  // iterations
 constexpr double first_allowance = 0.1;       // for errors of the model, while starts are tried
-constexpr double alike = 1e-4;                // of the mean square: what rounding and steps decide
+constexpr double hopeless = 2;                // times the rms of the best
 
-struct Run {  // of one candidate
-  Candidate candidate;
-  Solution solution;
-  std::vector<Errors> folds;
-  Fit fit;
+// Rows and bands on which starts are tried.
+struct Few {
+  std::vector<std::size_t> bands;
+  Samples samples;
+  Problem problem;
+  Guess guess;
+  explicit Few(const Problem& all) : samples(few_of(all, bands)), problem(samples, all.scale()) {
+    if (problem.scale() == Scale::noise) problem.set_model_error(first_allowance, samples.f);
+    guess = guess_of(problem);
+  }
+  Few(const Few&) = delete;
 };
 
-std::string text_of(const char* form, double a, double b = 0) {
-  char text[160];
-  std::snprintf(text, sizeof text, form, a, b);
-  return text;
+struct Trial {  // of one candidate on few rows
+  Candidate candidate;
+  std::vector<Solution> best;  // two at most that differ, best first
+  double cost() const { return best.empty() ? std::numeric_limits<double>::infinity() : best.front().at.cost; }
+};
+
+// From the starts that the samples suggest, from random ones, and from the best trial of a simpler form.
+Trial trial_of(const Few& few, const Candidate& candidate, const std::vector<Trial>& earlier,
+               const FitOptions& options) {
+  auto beginnings = starts(candidate, few.guess, few.bands.size(), options.random_starts, options.seed);
+  const Trial* simpler = nullptr;
+  for (const Trial& t : earlier)
+    if (std::isfinite(t.cost()) && grows(t.candidate, candidate) && (simpler == nullptr || t.cost() < simpler->cost()))
+      simpler = &t;
+  if (simpler != nullptr)
+    for (auto& start : grown(simpler->candidate, simpler->best.front().x, candidate, few.guess))
+      beginnings.push_back(std::move(start));
+  std::vector<Solution> tried(beginnings.size());
+  parallel_for(0, tried.size(), [&](std::size_t k) {
+    tried[k] = solve(few.problem, candidate, beginnings[k], few.problem.rows(), screening);
+  });
+  std::ranges::stable_sort(tried, {}, [](const Solution& s) { return s.at.cost; });
+  Trial trial{candidate, {}};
+  for (Solution& solution : tried)
+    if (trial.best.size() < 2 && (trial.best.empty() || solution.at.cost >= 1.001 * trial.best.back().at.cost))
+      trial.best.push_back(std::move(solution));
+  return trial;
 }
 
-// Beginnings for all bands, best first, from trials on few rows and bands.
-std::vector<std::vector<double>> good_starts(const Problem& all, const Candidate& candidate,
-                                             const FitOptions& options) {
-  std::vector<std::size_t> bands;
-  const Samples few = few_of(all, bands);
-  Problem problem(few, all.scale());
-  if (problem.scale() == Scale::noise) problem.set_model_error(first_allowance, few.f);
-  const auto beginnings = starts(candidate, guess_of(problem), bands.size(), options.random_starts, options.seed);
-  std::vector<Solution> tried(beginnings.size());
-  parallel_for(0, tried.size(),
-               [&](std::size_t k) { tried[k] = solve(problem, candidate, beginnings[k], problem.rows(), screening); });
-  std::ranges::stable_sort(tried, {}, [](const Solution& s) { return s.at.cost; });
-  std::vector<std::vector<double>> out;
+// Colours of a band begin where those of the nearest tried one ended.
+std::vector<double> spread(const Few& few, const Candidate& candidate, const std::vector<double>& x,
+                           std::size_t bands) {
   const std::size_t s = candidate.shared.size(), c = candidate.colours.size();
-  double last = -1;
-  for (const Solution& solution : tried) {
-    if (out.size() == 2 || (last >= 0 && solution.at.cost < 1.001 * last)) continue;
-    last = solution.at.cost;
-    out.emplace_back(solution.x.begin(), solution.x.begin() + static_cast<std::ptrdiff_t>(s));
-    for (std::size_t b = 0; b < all.bands(); ++b) {
-      std::size_t nearest = 0;
-      for (std::size_t k = 1; k < bands.size(); ++k)
-        if (std::max(bands[k], b) - std::min(bands[k], b) < std::max(bands[nearest], b) - std::min(bands[nearest], b))
-          nearest = k;
-      for (std::size_t k = 0; k < c; ++k) out.back().push_back(solution.x[s + nearest * c + k]);
-    }
+  std::vector<double> all(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(s));
+  const auto distance = [](std::size_t a, std::size_t b) { return std::max(a, b) - std::min(a, b); };
+  for (std::size_t b = 0; b < bands; ++b) {
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k < few.bands.size(); ++k)
+      if (distance(few.bands[k], b) < distance(few.bands[nearest], b)) nearest = k;
+    for (std::size_t k = 0; k < c; ++k) all.push_back(x[s + nearest * c + k]);
   }
-  return out;
+  return all;
 }
 
 // Two populations of facets have no order of their own: the smoother one comes first.
@@ -85,15 +100,33 @@ void put_in_order(const Problem& problem, const Candidate& candidate, Solution& 
   if (swapped.at.cost <= solution.at.cost * (1 + alike)) solution = std::move(swapped);
 }
 
-Solution best_solution(const Problem& problem, const Candidate& candidate, const FitOptions& options) {
+Solution best_solution(const Problem& problem, const Few& few, const Trial& trial) {
   Solution best;
   best.at.cost = std::numeric_limits<double>::infinity();
-  for (const auto& start : good_starts(problem, candidate, options)) {
-    Solution solution = solve(problem, candidate, start, problem.rows(), thorough);
+  for (const Solution& tried : trial.best) {
+    const auto start = spread(few, trial.candidate, tried.x, problem.bands());
+    Solution solution = solve(problem, trial.candidate, start, problem.rows(), thorough);
     if (best.x.empty() || solution.at.cost < best.at.cost) best = std::move(solution);
   }
-  if (!best.x.empty()) put_in_order(problem, candidate, best);
+  if (!best.x.empty()) put_in_order(problem, trial.candidate, best);
   return best;
+}
+
+// With more bands than are tried, what errs there more than `hopeless` times as much as the best is not fitted to all.
+void leave_out_hopeless(const Problem& all, const Few& few, std::vector<Trial>& trials, Fits& out) {
+  if (all.bands() <= few.bands.size() || trials.empty()) return;
+  const Trial& best = *std::ranges::min_element(trials, {}, [](const Trial& t) { return t.cost(); });
+  const double least = best.cost();
+  const std::string than = best.candidate.model->info().id;
+  std::erase_if(trials, [&](const Trial& t) {
+    const double times = std::sqrt(t.cost() / least);
+    if (!(times > hopeless)) return false;
+    char text[200];
+    std::snprintf(text, sizeof text, "errs %.1f times as much as %s on %zu directions of %zu bands: not fitted to all",
+                  times, than.c_str(), few.samples.rows(), few.samples.bands());
+    out.refusals.push_back({t.candidate.model->info().id, t.candidate.variant, text});
+    return true;
+  });
 }
 
 // Share of the tolerance that brings the mean square to one about these predictions; 0 where it is below without.
@@ -123,46 +156,6 @@ double model_error_of(const Problem& problem, const Candidate& candidate, const 
     (excess_at(middle) > 0 ? low : high) = middle;
   }
   return high;
-}
-
-// Why a fit is not to be believed; empty where it is.
-std::string doubt(const Run& run, double least) {
-  for (std::size_t i = 0; i < run.solution.x.size(); ++i) {
-    const Slot& slot = slot_of(run.candidate, i);
-    const auto& info = run.candidate.model->info().parameters[slot.parameter];
-    if ((info.name.starts_with("alpha") || info.name == "second_alpha") && slot.lower > info.lower &&
-        slot.lower == least && run.solution.x[i] <= slot.lower * (1 + 1e-6))
-      return too_narrow(least);
-  }
-  if (!std::isfinite(run.solution.at.cost)) return "no start led to a finite misfit";
-  if (run.fit.energy > 1 + energy_tolerance)
-    return text_of("it returns %.3f of the light from some direction, more than arrives", run.fit.energy);
-  if (run.fit.reciprocity > 1e-6)
-    return text_of("it is not reciprocal: exchanging the directions changes it by %.2g", run.fit.reciprocity);
-  return {};
-}
-
-std::string verdict_of(const Run& run) {
-  const Fit& f = run.fit;
-  std::string text = f.model->info().id + (f.variant.empty() ? "" : " (" + f.variant + ")");
-  const char* unit = f.scale == Scale::noise   ? " sigma"
-                     : f.scale == Scale::log10 ? " decades"
-                                               : " of log(1 + 100 f cos cos)";
-  text += text_of(": rms %.3g", f.fitted.scaled) + unit;
-  if (f.model_error > 0) text += text_of(" with a model error of %.2g %%", 100 * f.model_error);
-  if (std::isfinite(f.held_out.scaled)) text += text_of(", held out %.3g", f.held_out.scaled);
-  text += text_of("; %.0f numbers", static_cast<double>(f.numbers.size()));
-  std::string pressed, unseen;
-  for (const FittedNumber& n : f.numbers) {
-    std::string& list = n.at != FittedNumber::At::inside ? pressed : unseen;
-    if ((n.at == FittedNumber::At::inside && std::isfinite(n.sigma)) || list.find(n.name) != std::string::npos)
-      continue;
-    list += (list.empty() ? "" : ", ") + n.name;
-  }
-  if (!pressed.empty()) text += "; at a bound: " + pressed;
-  if (!unseen.empty()) text += "; not determined: " + unseen;
-  if (!f.converged) text += "; not converged";
-  return text;
 }
 
 void state(const Problem& problem, const std::vector<Rows>& blocks, bool check, Run& run) {
@@ -211,39 +204,6 @@ Scale scale_of(const Samples& samples, Scale wanted) {
   return wanted != Scale::automatic ? wanted : stated ? Scale::noise : Scale::log1p;
 }
 
-void rank(std::vector<Run>& runs, double least, const FitOptions& options, Fits& out) {
-  const auto score = [&](const Run& run) {
-    return options.folds > 1 && !run.folds.empty() ? run.fit.held_out.scaled : run.fit.fitted.scaled;
-  };
-  std::erase_if(runs, [&](const Run& run) {
-    const std::string why = doubt(run, least);
-    if (!why.empty()) out.refusals.push_back({run.candidate.model->info().id, run.candidate.variant, why});
-    return !why.empty();
-  });
-  std::ranges::stable_sort(runs, {}, score);
-  std::size_t fewest = std::numeric_limits<std::size_t>::max();
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    Fit& fit = runs[k].fit;
-    const Excess over = excess(runs[k].folds, runs[0].folds);
-    fit.held_out_excess = over.mean, fit.held_out_excess_sigma = over.sigma;
-    const double negligible = runs[0].folds.empty() ? 0 : alike * score(runs[0]) * score(runs[0]);
-    if (over.mean <= std::max(over.sigma, negligible) && fit.numbers.size() < fewest &&
-        (k == 0 || !runs[k].folds.empty()))
-      out.chosen = k, fewest = fit.numbers.size();
-  }
-  for (std::size_t k = 0; k < runs.size() && out.chosen < runs.size(); ++k) {
-    const Run &run = runs[k], &chosen = runs[out.chosen];
-    if (k != out.chosen && run.fit.numbers.size() == chosen.fit.numbers.size() && !run.folds.empty() &&
-        std::abs(excess(run.folds, chosen.folds).mean) <= alike * score(chosen) * score(chosen))
-      out.notes.push_back(run.fit.model->info().id + " does as well as " + chosen.fit.model->info().id +
-                          ": these samples do not tell them apart");
-  }
-  for (Run& run : runs) {
-    run.fit.verdict = verdict_of(run);
-    out.candidates.push_back(std::move(run.fit));
-  }
-}
-
 // Where samples state their noise: the least error that any model must admit holds for all. Fits have begun with
 // first_allowance, lest what no model can say of dark samples decides where they go.
 void allow_for_models(Problem& problem, std::vector<Run>& runs) {
@@ -279,22 +239,25 @@ Fits fit_surfaces(const Samples& given, const FitOptions& options) {
   const bool turns = turns_about_normal(samples);
   if (options.anisotropic == true && !turns)
     out.notes.push_back("half vectors stay in one plane: a direction of the sample shows little there");
-  std::vector<Run> runs;
+  const Few few(problem);
+  std::vector<Trial> trials;
   for (const Candidate& c :
        candidates(options, options.anisotropic.value_or(turns), out.least_alpha, samples.name, out.refusals)) {
-    if (c.unknowns(problem.bands()) >= problem.rows().size() * problem.bands()) {
+    if (c.unknowns(problem.bands()) >= problem.rows().size() * problem.bands())
       out.refusals.push_back({c.model->info().id, c.variant, "more numbers than samples"});
-      continue;
-    }
-    runs.push_back({c, best_solution(problem, c, options), {}, {}});
+    else
+      trials.push_back(trial_of(few, c, trials, options));
   }
+  leave_out_hopeless(problem, few, trials, out);
+  std::vector<Run> runs;
+  for (const Trial& trial : trials) runs.push_back({trial.candidate, best_solution(problem, few, trial), {}, {}});
   allow_for_models(problem, runs);
   const std::vector<Rows> blocks = blocks_of(problem), folds = folds_of(problem, blocks, options.folds);
   for (Run& run : runs) {
     run.folds = held_out(problem, run.candidate, run.solution, folds);
     state(problem, blocks, options.check, run);
   }
-  rank(runs, out.least_alpha, options, out);
+  choose(problem, std::move(runs), out.least_alpha, options, out);
   return out;
 }
 

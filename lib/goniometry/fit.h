@@ -6,12 +6,12 @@
 //   noise     (f - m) / sqrt(sigma^2 + e^2 (m + 1 / w)^2)    where samples state sigma; e, the error of the best model
 //                                                        on the scale log(1 + w f), w = 100 ci co, is what makes the
 //                                                        mean square one, 0 where it is so without
-//   log1p     log(1 + 100 f ci co) - log(1 + 100 m ci co)    relative where there is light, absolute where there is
-//   none log10     log10(f / m)                                    decades, over samples above zero
+//   log1p     log(1 + 100 f ci co) - log(1 + 100 m ci co)    relative where there is light, absolute elsewhere
+//   log10     log10(f / m)                                    decades, over samples above zero
 // Covariance: H^-1 of the noise scale, or, where blocks of neighbouring samples disagree by more than that, the
 // sandwich over blocks (Liang & Zeger 1986; Bell & McCaffrey 2002): goniometry/uncertainty.h. Held-out error: every
 // block or series is predicted by a fit without it. Chosen is the simplest fit whose held-out error is within one
-// standard error of the least (Breiman et al. 1984, section 3.4.3, with the error of the difference), or as good.
+// standard error of the least, or exceeds it by nothing material: goniometry/fit_choice.h.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -73,6 +73,8 @@ struct Fit {
   double energy = 0;                 // greatest directional albedo
   double reciprocity = 0;            // greatest |f(wo, wi) - f(wi, wo)| over their mean
   std::string verdict;               // one sentence
+  std::string reason;                // why it is not the chosen one
+  std::string same_as;               // the fit of fewer numbers that predicts the same, "glossy (two lobes)"
   const FittedNumber* number(const std::string& name, std::size_t band = whole_sample) const;
   double evaluate(Vec3 wo, Vec3 wi, std::size_t band) const;
 };

@@ -4,7 +4,8 @@
 //   anisotropy_0, anisotropy_45; anisotropy, azimuth_rad     a direction; where both are offered, the first, which has
 //                                             no jump where the sample has none
 //   sigma_rad                                 a rough matte base
-// Held always: lengths that only their ratios' slopes show (wavelength_u_m), and masking as derived (projections).
+// Held always: lengths that only their ratios' slopes show (wavelength_u_m), masking as derived (projections), and
+// residue on reliefs (residue_share, residue_alpha), which is a hypothesis of explain's.
 #include "goniometry/fit_candidates.h"
 
 #include <algorithm>
@@ -45,7 +46,7 @@ bool freed(const surface::Model& model, const std::string& name, const Variant& 
   if (name == "anisotropy_0" || name == "anisotropy_45") return v.direction;
   if (name == "anisotropy") return v.direction && !has(model, "anisotropy_0");
   if (name == "azimuth_rad") return relief(model) || (v.direction && !has(model, "anisotropy_0"));
-  return name != "wavelength_u_m" && name != "projections";
+  return name != "wavelength_u_m" && name != "projections" && !name.starts_with("residue_");
 }
 
 double held_value(const manifest::ParameterInfo& p) {
@@ -70,6 +71,8 @@ Candidate candidate_of(const surface::Model& model, const Variant& v, double lea
     if (width) slot.lower = std::max({slot.lower, least, 1e-4});
     slot.logarithmic = width || p.name.ends_with("_m");
     slot.periodic = p.name == "azimuth_rad";
+    // Axes of roughness are lines: half a turn brings the same surface back, and one number stands for both.
+    if (slot.periodic && !relief(model)) slot.lower = -pi / 2, slot.upper = pi / 2;
     // Shares of nothing and of all have no slope by what they share.
     if (p.name == "anisotropy") slot.upper = 0.98;
     (p.components == 3 ? c.colours : c.shared).push_back(slot);

@@ -45,13 +45,6 @@ Pair pair_of(double theta_h, double theta_d, double phi_d) {
   return {wi, 2 * dot(h, wi) * h - wi};
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 double azimuth(Vec3 w) {
   return std::atan2(w.y, w.x);
 }
@@ -60,6 +53,13 @@ double zenith(Vec3 w) {
 }
 
 }  // namespace
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
 
 std::array<std::size_t, 3> written_bands(const Samples& samples) {
   std::array<std::size_t, 3> out{};
@@ -75,17 +75,29 @@ std::array<std::size_t, 3> written_bands(const Samples& samples) {
   return out;
 }
 
+std::array<std::string, 3> written_names(const Outcome& outcome) {
+  const Samples& s = outcome.read.samples;
+  const auto bands = written_bands(s);
+  std::array<std::string, 3> out;
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::vector<std::size_t> members;
+    for (std::size_t b = 0; outcome.reconstruction && b < s.bands(); ++b)
+      if (colour_of_band(s, b) == c) members.push_back(b);
+    out[c] = members.size() > 1 ? "mean of " + std::to_string(members.size()) + " bands, " +
+                                      s.band_name[members.front()] + " to " + s.band_name[members.back()]
+                                : s.band_name[members.empty() ? bands[c] : members.front()];
+  }
+  return out;
+}
+
 double compared(double f, Vec3 wi, Vec3 wo) {
   return std::log1p(100 * std::max(f, 0.0) * wi.z * wo.z);
 }
 
 double predicted(const Outcome& outcome, Vec3 wi, Vec3 wo, std::size_t band) {
   if (outcome.table) {
-    const auto bands = written_bands(outcome.read.samples);
-    int component = 1;
-    for (int c = 0; c < 3; ++c)
-      if (bands[static_cast<std::size_t>(c)] == band) component = c;
-    return outcome.table->evaluate(wo, wi)[component];
+    const auto component = static_cast<int>(colour_of_band(outcome.read.samples, band));
+    return outcome.table_scale * outcome.table->evaluate(wo, wi)[component];
   }
   const Fit* fit = outcome.chosen();
   return fit == nullptr ? std::nan("") : fit->evaluate(wo, wi, band);

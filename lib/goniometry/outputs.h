@@ -24,16 +24,22 @@ struct Outcome {
   ReadTable read{};
   Fits fits{};
   std::optional<Reconstruction> reconstruction{};
-  std::shared_ptr<const surface::MeasuredTable> table{};  // of the reconstruction
+  std::shared_ptr<const surface::MeasuredTable> table{};  // of the reconstruction, over table_scale
+  double table_scale = 1;                                 // its largest reflectance where that is above 1
   std::string basis{};                                    // what it rests on
   std::map<std::string, std::string> files{};             // file ids of what was written beside it
 
+  // Pictures can be made of what it reflects.
+  bool renders() const { return table_scale <= surface::MeasuredTable::most_reflectance; }
   const Fit* chosen() const { return fits.chosen < fits.candidates.size() ? &fits.candidates[fits.chosen] : nullptr; }
 };
 
 // Bands that stand for red, green and blue: those named r, g, b; else the ones nearest to 610, 545 and 455 nm; else the
 // first, the middle and the last.
 std::array<std::size_t, 3> written_bands(const Samples& samples);
+// What surfaces/NAME has for red, green and blue, in words: names of those bands, or averages over several in a
+// reconstruction.
+std::array<std::string, 3> written_names(const Outcome& outcome);
 // log(1 + 100 f cos theta_i cos theta_o), the scale on which reflectances are compared.
 double compared(double f, Vec3 wi, Vec3 wo);
 // What the surface, or without one the reconstruction, predicts of a band of the samples; NaN where neither is there.
@@ -46,6 +52,9 @@ io::MerlTable merl_of(const Outcome& outcome, const std::string& place);
 // One row per sample and band: directions in rad, the band's wavelength_m or channel, f, its sigma, the model, the
 // residual on the scale above, series and place. Readable by brdf-fit and explain.
 std::string samples_csv(const Outcome& outcome);
+
+// As a field of such a table.
+std::string quoted(const std::string& text);
 
 // A sphere of the surface of `document` under a lamp and a dim sky, linear. Deterministic.
 io::Image sphere_picture(const manifest::Document& document, const std::string& surface, int pixels = 240);

@@ -7,6 +7,7 @@
 
 #include "goniometry/document.h"
 #include "goniometry/plots.h"
+#include "goniometry/spectra.h"
 #include "io/picture.h"
 #include "render/preview.h"
 #include "report/number_text.h"
@@ -20,7 +21,17 @@ using report::number_text;
 using report::Page;
 using report::Tone;
 
-constexpr std::size_t most_rows_of_numbers = 60;
+// Of the cells above zero.
+double median_relative_sigma(const Reconstruction& r) {
+  std::vector<double> relative;
+  for (std::size_t i = 0; i < std::min(r.table.brdf_per_sr.size(), r.sigma.brdf_per_sr.size()); ++i)
+    if (r.table.brdf_per_sr[i] > 0 && r.sigma.brdf_per_sr[i] > 0)
+      relative.push_back(static_cast<double>(r.sigma.brdf_per_sr[i]) / static_cast<double>(r.table.brdf_per_sr[i]));
+  if (relative.empty()) return std::nan("");
+  const auto middle = relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2);
+  std::ranges::nth_element(relative, middle);
+  return *middle;
+}
 
 std::vector<KeyNumber> key_numbers(const Outcome& outcome) {
   std::vector<KeyNumber> keys;
@@ -28,6 +39,8 @@ std::vector<KeyNumber> key_numbers(const Outcome& outcome) {
     const Reconstruction& r = *outcome.reconstruction;
     keys.push_back({"Largest reflectance", number_text(r.energy.most, 3), "", "1 is all of the light",
                     r.energy.most > 1.02 ? Tone::bad : Tone::good});
+    if (const double typical = median_relative_sigma(r); std::isfinite(typical))
+      keys.push_back({"Uncertainty of a cell", "\u00b1" + number_text(100 * typical, 2), "%", "one sigma, median"});
     keys.push_back(
         {"Intervals widened by", number_text(r.widening, 3), "", "so that they hold for left-out materials"});
   } else if (const Fit* fit = outcome.chosen()) {
@@ -52,7 +65,7 @@ report::TableText number_table(const Outcome& outcome, const Fit& fit) {
   const auto bands = written_bands(outcome.read.samples);
   for (const FittedNumber& n : fit.numbers) {
     const bool written = n.band == whole_sample || std::ranges::find(bands, n.band) != bands.end();
-    if (fit.numbers.size() > most_rows_of_numbers && !written) continue;
+    if (has_spectra(outcome) && !written) continue;
     const bool known = std::isfinite(n.sigma) && n.sigma > 0;
     table.rows.push_back({number_name(n, outcome.read.samples),
                           known ? report::with_sigma(n.value, n.sigma) : number_text(n.value, 4),
@@ -63,14 +76,15 @@ report::TableText number_table(const Outcome& outcome, const Fit& fit) {
   }
   if (table.rows.size() < fit.numbers.size())
     table.caption = "Of the " + std::to_string(outcome.read.samples.bands()) +
-                    " bands the three that stand for red, green and blue; all are in the manifest.";
+                    " bands the three that stand for red, green and blue; all are drawn below, and are numbers in the "
+                    "manifest and, with --out, in NAME-numbers.csv.";
   return table;
 }
 
 void add_alternatives(Page& page, const Outcome& outcome) {
   report::TableText table{.caption =
-                              "By their error on held-out directions. Chosen is the simplest within one standard "
-                              "error of the best.",
+                              "By their error on held-out directions. Chosen is the simplest whose mean square "
+                              "exceeds the least by no more than one standard error, or 2 % of it.",
                           .columns = {{.name = "model", .numeric = false},
                                       {.name = "numbers"},
                                       {.name = "rms"},
@@ -79,12 +93,11 @@ void add_alternatives(Page& page, const Outcome& outcome) {
                                       {.name = "", .numeric = false}}};
   for (std::size_t i = 0; i < outcome.fits.candidates.size(); ++i) {
     const Fit& fit = outcome.fits.candidates[i];
+    if (!fit.same_as.empty()) continue;
     table.rows.push_back({fit.model->info().id + (fit.variant.empty() ? "" : ", " + fit.variant),
                           std::to_string(fit.numbers.size()), number_text(fit.fitted.log1p, 3),
                           number_text(fit.held_out.log1p, 3), number_text(fit.fitted.decades, 3),
-                          i == outcome.fits.chosen ? "chosen"
-                          : fit.converged          ? ""
-                                                   : "did not converge"});
+                          i == outcome.fits.chosen ? "chosen" : fit.reason});
   }
   if (table.rows.empty()) return;
   page.section("What else was tried");
@@ -157,6 +170,12 @@ std::string page_of(const Outcome& outcome, const io::Image& sphere) {
     page.section("The surface");
     page.paragraph(fit->model->info().id + ": " + fit->model->info().sentence + " " + fit->verdict);
     page.table(number_table(outcome, *fit));
+    if (has_spectra(outcome)) {
+      std::vector<report::Plot> plots;
+      for (auto& [number, plot] : spectra_of(outcome)) plots.push_back(std::move(plot));
+      plots.push_back(band_error_plot(outcome));
+      page.plots(plots);
+    }
   }
   if (fit != nullptr || outcome.reconstruction) add_plots(page, outcome);
   add_alternatives(page, outcome);

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "goniometry/reconstruction_parts.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -81,6 +82,30 @@ Candidates rows_of(const Basis& basis, std::vector<PlannedPair> pairs, const Pla
   return c;
 }
 
+// Rows that are measured already, and 1 + the information that they hold: the inverse of the S to begin with.
+struct Known {
+  Eigen::MatrixXd q;  // K x rows
+  Eigen::MatrixXd information;
+};
+Known known_of(const Basis& basis, const PlanOptions& options) {
+  const auto k = static_cast<Eigen::Index>(basis.components());
+  Known known{Eigen::MatrixXd(k, 0), Eigen::MatrixXd::Identity(k, k)};
+  if (options.given == nullptr) return known;
+  std::vector<std::string> notes;
+  std::vector<Dropped> dropped;
+  const Samples samples = rgb_of_bands(*options.given, notes);
+  const Observed o = observe(basis, samples, samples.bands() / 2, {.relative_noise = options.relative_noise}, dropped);
+  if (o.y.size() == 0)
+    throw Error(Exit::data, samples.name, "leaves no usable sample to plan from",
+                "directions above the horizon with finite reflectances are needed");
+  known.q = o.q.transpose();
+  known.information += known.q * o.noise.cwiseInverse().asDiagonal() * known.q.transpose();
+  return known;
+}
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& information) {
+  return information.llt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+}
+
 // M, and the mean of rest^2, which no measurement lowers.
 struct Whole {
   Eigen::MatrixXd m;
@@ -112,8 +137,8 @@ double condition_of(const Eigen::MatrixXd& columns) {
 
 class Search {
  public:
-  Search(const Candidates& c, const Whole& whole, Criterion criterion)
-      : c_(c), whole_(whole), criterion_(criterion), s_(Eigen::MatrixXd::Identity(c.q.rows(), c.q.rows())) {}
+  Search(const Candidates& c, const Known& known, const Whole& whole, Criterion criterion)
+      : c_(c), known_(known), whole_(whole), criterion_(criterion), s_(inverse_of(known.information)) {}
 
   std::vector<std::size_t> best(std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) take(next());
@@ -138,9 +163,11 @@ class Search {
     const auto q = c_.q.col(static_cast<Eigen::Index>(i));
     const double r = c_.noise[static_cast<Eigen::Index>(i)];
     if (criterion_ == Criterion::condition) {
-      Eigen::MatrixXd columns(c_.q.rows(), static_cast<Eigen::Index>(taken_.size()) + 1);
+      const Eigen::Index before = known_.q.cols();
+      Eigen::MatrixXd columns(c_.q.rows(), before + static_cast<Eigen::Index>(taken_.size()) + 1);
+      columns.leftCols(before) = known_.q;
       for (std::size_t k = 0; k < taken_.size(); ++k)
-        columns.col(static_cast<Eigen::Index>(k)) = c_.q.col(static_cast<Eigen::Index>(taken_[k]));
+        columns.col(before + static_cast<Eigen::Index>(k)) = c_.q.col(static_cast<Eigen::Index>(taken_[k]));
       columns.col(columns.cols() - 1) = q;
       return columns.cols() == 1 ? q.norm() : -condition_of(columns);
     }
@@ -165,15 +192,16 @@ class Search {
   // Built anew: taking out by the rank-one formula loses digits where a pair says nearly all.
   void drop_first() {
     taken_.erase(taken_.begin());
-    Eigen::MatrixXd information = Eigen::MatrixXd::Identity(s_.rows(), s_.cols());
+    Eigen::MatrixXd information = known_.information;
     for (const std::size_t i : taken_) {
       const auto q = c_.q.col(static_cast<Eigen::Index>(i));
       information += q * q.transpose() / c_.noise[static_cast<Eigen::Index>(i)];
     }
-    s_ = information.llt().solve(Eigen::MatrixXd::Identity(s_.rows(), s_.cols()));
+    s_ = inverse_of(information);
   }
 
   const Candidates& c_;
+  const Known& known_;
   const Whole& whole_;
   Criterion criterion_;
   Eigen::MatrixXd s_;
@@ -181,8 +209,10 @@ class Search {
 };
 
 // The order in which the mean variance falls fastest, and what remains after each.
-void order(const Candidates& c, const Whole& whole, std::vector<std::size_t> chosen, Plan& plan) {
-  Eigen::MatrixXd s = Eigen::MatrixXd::Identity(c.q.rows(), c.q.rows());
+void order(const Candidates& c, const Known& known, const Whole& whole, std::vector<std::size_t> chosen, Plan& plan) {
+  Eigen::MatrixXd s = inverse_of(known.information);
+  const auto left = [&] { return std::sqrt(std::max(0.0, s.cwiseProduct(whole.m).sum()) + whole.rest); };
+  plan.before = left();
   while (!chosen.empty()) {
     double most = -1;
     std::size_t best = 0;
@@ -197,7 +227,7 @@ void order(const Candidates& c, const Whole& whole, std::vector<std::size_t> cho
     const Eigen::VectorXd sq = s * q;
     s -= sq * sq.transpose() / (c.noise[static_cast<Eigen::Index>(i)] + q.dot(sq));
     plan.pairs.push_back(c.pairs[i]);
-    plan.sigma_ln.push_back(std::sqrt(std::max(0.0, (s * whole.m).trace()) + whole.rest));
+    plan.sigma_ln.push_back(left());
     chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(best));
   }
 }
@@ -216,10 +246,11 @@ Plan plan(const Basis& basis, std::size_t n, const PlanOptions& options) {
   if (n == 0 || n > c.pairs.size())
     throw Error(Exit::usage, "--plan", "asks for " + std::to_string(n) + " directions",
                 "between 1 and " + std::to_string(c.pairs.size()) + " are possible");
+  const Known known = known_of(basis, options);
   const Whole whole = whole_of(basis);
   Plan result;
   result.candidates = c.pairs.size();
-  order(c, whole, Search(c, whole, options.criterion).best(n), result);
+  order(c, known, whole, Search(c, known, whole, options.criterion).best(n), result);
   result.condition = plan_quality(basis, result.pairs, options).condition;
   return result;
 }
@@ -227,13 +258,15 @@ Plan plan(const Basis& basis, std::size_t n, const PlanOptions& options) {
 PlanQuality plan_quality(const Basis& basis, const std::vector<PlannedPair>& pairs, const PlanOptions& options) {
   const Candidates c = rows_of(basis, pairs, options);
   const Whole whole = whole_of(basis);
+  const Known known = known_of(basis, options);
   const Eigen::Index k = c.q.rows();
-  const Eigen::MatrixXd information =
-      Eigen::MatrixXd::Identity(k, k) + c.q * c.noise.cwiseInverse().asDiagonal() * c.q.transpose();
-  const Eigen::LLT<Eigen::MatrixXd> factor(information);
+  const Eigen::LLT<Eigen::MatrixXd> factor(known.information +
+                                           c.q * c.noise.cwiseInverse().asDiagonal() * c.q.transpose());
   const Eigen::MatrixXd s = factor.solve(Eigen::MatrixXd::Identity(k, k));
+  Eigen::MatrixXd rows(k, known.q.cols() + c.q.cols());
+  rows << known.q, c.q;
   return {std::sqrt((s * whole.m).trace() + whole.rest), -2 * factor.matrixLLT().diagonal().array().log().sum(),
-          condition_of(c.q)};
+          condition_of(rows)};
 }
 
 std::string plan_csv(const Plan& plan) {

@@ -7,6 +7,7 @@
 //   determinant  ln det S (D-optimal): the volume of what is left open
 //   condition    the condition number of Q', as Nielsen, Jensen & Ramamoorthi 2015 minimise; it knows no noise, and of
 //                a well conditioned Q' rows may still be small
+// What is measured already counts: S begins as what given samples leave open.
 // Pairs are added one by one, each the best (by rank-one updates of S), then exchanged one at a time while that helps.
 // Candidates: zeniths of light and eye on a grid up to `most_theta_rad`, azimuths between them, and a finer set about
 // the mirror direction, where lobes are. Exchanged pairs are the same by reciprocity: theta_i >= theta_o.
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "goniometry/basis.h"
+#include "goniometry/samples.h"
 
 namespace gonio::goniometry {
 
@@ -24,6 +26,7 @@ struct PlanOptions {
   double most_theta_rad = 80 * pi / 180;
   double step_rad = 5 * pi / 180;
   double relative_noise = 0.02;
+  const Samples* given = nullptr;  // measured already; any bands
 };
 
 struct PlannedPair {
@@ -34,11 +37,12 @@ struct PlannedPair {
 struct Plan {
   std::vector<PlannedPair> pairs;  // in the order in which to measure
   std::vector<double> sigma_ln;    // root of the mean variance that remains after the first, the second, ...
-  double condition = 0;            // of Q'
+  double condition = 0;            // of Q', given rows among them
+  double before = 0;               // sigma_ln before the first
   std::size_t candidates = 0;
 };
 
-// Error(usage) for n = 0 or more pairs than candidates.
+// Error(usage) for n = 0 or more pairs than candidates, Error(data) where nothing of what is given is usable.
 Plan plan(const Basis& basis, std::size_t n, const PlanOptions& options = {});
 
 // What remains after any pairs, by the criteria above: for comparisons.

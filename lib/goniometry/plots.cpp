@@ -71,6 +71,28 @@ report::Series fitted_line(const Outcome& outcome, const Scan& scan, std::size_t
   return line;
 }
 
+report::Series measured_points(const Samples& s, const Scan& scan, std::size_t band, int style) {
+  report::Series points{.kind = report::Series::Kind::points};
+  points.style = style;
+  for (const auto& [zenith, row] : scan.points) {
+    points.x.push_back(degrees(zenith));
+    points.y.push_back(s.f[row * s.bands() + band]);
+    if (!s.sigma.empty()) points.sigma.push_back(s.sigma[row * s.bands() + band]);
+  }
+  return points;
+}
+
+// From f over the zenith to log10(1 + 100 f) around the normal; the largest distance.
+double around_the_normal(report::Series& series) {
+  double largest = 0;
+  for (std::size_t i = 0; i < series.x.size(); ++i) {
+    const double zenith = series.x[i] * pi / 180, r = std::log10(1 + 100 * std::max(0.0, series.y[i]));
+    series.x[i] = r * std::sin(zenith), series.y[i] = r * std::cos(zenith);
+    if (std::isfinite(r)) largest = std::max(largest, r);
+  }
+  return largest;
+}
+
 std::string band_words(const Samples& s, std::size_t band) {
   return s.band_name[band].empty() ? "" : ", " + s.band_name[band];
 }
@@ -87,14 +109,8 @@ std::optional<report::Plot> scan_plot(const Outcome& outcome, std::size_t band) 
   plot.x_label = "zenith of the eye / deg", plot.y_label = "f / (1/sr)";
   plot.log_y = true;
   for (std::size_t k = 0; k < scans.size(); ++k) {
-    report::Series points{.kind = report::Series::Kind::points};
+    report::Series points = measured_points(s, scans[k], band, static_cast<int>(k));
     points.name = "light at " + incidence_text(scans[k].theta_i);
-    points.style = static_cast<int>(k);
-    for (const auto& [zenith, row] : scans[k].points) {
-      points.x.push_back(degrees(zenith));
-      points.y.push_back(s.f[row * s.bands() + band]);
-      if (!s.sigma.empty()) points.sigma.push_back(s.sigma[row * s.bands() + band]);
-    }
     plot.series.push_back(std::move(points));
     plot.series.push_back(fitted_line(outcome, scans[k], band, static_cast<int>(k)));
   }
@@ -109,19 +125,19 @@ report::Plot lobe_plot(const Outcome& outcome, std::size_t band) {
   report::Plot plot;
   plot.title = "Lobes around the normal" + band_words(s, band);
   plot.caption =
-      "The surface in the plane of incidence: distance from the origin is log10(1 + 100 f); the normal "
-      "points up, the mirror direction lies to the right.";
+      "In the plane of incidence, points measured, lines the surface: distance from the origin is log10(1 + 100 f); "
+      "the normal points up, the mirror direction lies to the right.";
   plot.x_label = "log10(1 + 100 f sr) along the plane", plot.y_label = "along the normal";
   double radius = 0.01;
   for (std::size_t k = 0; k < scans.size(); ++k) {
     report::Series line = fitted_line(outcome, scans[k], band, static_cast<int>(k));
     line.name = "light at " + incidence_text(scans[k].theta_i);
-    for (std::size_t i = 0; i < line.x.size(); ++i) {
-      const double zenith = line.x[i] * pi / 180, r = std::log10(1 + 100 * std::max(0.0, line.y[i]));
-      line.x[i] = r * std::sin(zenith), line.y[i] = r * std::cos(zenith);
-      radius = std::isfinite(r) ? std::max(radius, r) : radius;
-    }
+    radius = std::max(radius, around_the_normal(line));
     plot.series.push_back(std::move(line));
+    report::Series points = measured_points(s, scans[k], band, static_cast<int>(k));
+    points.sigma.clear();
+    radius = std::max(radius, around_the_normal(points));
+    if (!points.x.empty()) plot.series.push_back(std::move(points));
   }
   plot.x_range = {-1.1 * radius, 1.1 * radius};
   plot.y_range = {0, 1.03 * radius};
@@ -169,13 +185,17 @@ std::string standalone_svg(const report::Plot& plot) {
       "<style>text{font:12px sans-serif;fill:#222}.grid{stroke:#ddd;fill:none}.axis{stroke:#444;fill:none}";
   for (std::size_t i = 0; i < colours.size(); ++i)
     head += ".c" + std::to_string(i) + "{stroke:" + colours[i] + ";fill:" + colours[i] + "}";
-  head += ".line,.error{fill:none;stroke-width:1.6}g{stroke:none}</style>";
-  std::size_t named = 0;
+  head += ".line,.error{fill:none;stroke-width:1.6}.band{opacity:.18;stroke:none}g{stroke:none}</style>";
+  // The names of series stand in the line of the y axis's label, beside it.
+  const auto names = std::ranges::count_if(plot.series, [](const auto& series) { return !series.name.empty(); });
+  const double from = 64 + 6.5 * static_cast<double>(plot.y_label.size()),
+               step = std::min(100.0, (560 - from) / std::max(1.0, static_cast<double>(names)));
+  int named = 0;
   for (std::size_t k = 0; k < plot.series.size(); ++k) {
     const report::Series& series = plot.series[k];
     if (series.name.empty()) continue;
     const std::size_t colour = series.style < 0 ? k : static_cast<std::size_t>(series.style);
-    head += format("<text x=\"%zu\" y=\"14\" style=\"fill:%s\">", 64 + 100 * named++,
+    head += format("<text x=\"%.0f\" y=\"14\" style=\"fill:%s\">", from + step * named++,
                    colours[colour % colours.size()].c_str()) +
             series.name + "</text>";
   }

@@ -16,6 +16,7 @@ namespace {
 using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 constexpr std::size_t chunk_cells = 1024;
 constexpr float below_horizon = -1;
+constexpr double most_open = 0.2;  // of ln: beyond, a cell is known to a fifth or worse
 constexpr double degree = pi / 180;
 
 // Mapped values of all cells and their standard deviations, cell by cell, three channels.
@@ -26,7 +27,7 @@ struct Mapped {
 struct Solved {
   Eigen::VectorXd scores;
   Eigen::MatrixXd factor;
-  double rest = 1, scale = 1;  // of rest, of all standard deviations
+  double rest = 1;  // factor of rest
 };
 
 Mapped map_cells(const Basis& basis, const std::vector<Solved>& solved, bool uncertainty) {
@@ -50,8 +51,7 @@ Mapped map_cells(const Basis& basis, const std::vector<Solved>& solved, bool unc
       const Eigen::VectorXf variance = (q * factors[band]).rowwise().squaredNorm();
       for (std::size_t i = 0; i < count; ++i) {
         const float rest = static_cast<float>(solved[band].rest) * basis.rest()[first + i];
-        mapped.sigma[(first + i) * bands + band] =
-            static_cast<float>(solved[band].scale) * std::sqrt(variance[static_cast<Eigen::Index>(i)] + rest * rest);
+        mapped.sigma[(first + i) * bands + band] = std::sqrt(variance[static_cast<Eigen::Index>(i)] + rest * rest);
       }
     }
   });
@@ -66,7 +66,10 @@ void fill_tables(const Basis& basis, const Mapped& mapped, std::size_t bands, Re
   if (uncertainty) out.sigma = out.table;
   if (uncertainty) out.sigma_ln.assign(out.table.brdf_per_sr.size(), 0);
   parallel_for(0, rings, [&](std::size_t h) {
-    for (std::size_t d = 0; d < tilts; ++d)
+    for (std::size_t d = 0; d < tilts; ++d) {
+      const auto wider =
+          static_cast<float>(out.widenings.at((static_cast<double>(h) + 0.5) / static_cast<double>(rings),
+                                              (static_cast<double>(d) + 0.5) / static_cast<double>(tilts)));
       for (std::size_t p = 0; p < (turns + 1) / 2; ++p) {
         const std::uint32_t cell = cells.cell_of(h, d, p);
         if (cell == Cells::none) continue;
@@ -78,12 +81,27 @@ void fill_tables(const Basis& basis, const Mapped& mapped, std::size_t bands, Re
             const std::size_t to = 3 * ((h * tilts + d) * turns + turn) + band;
             out.table.brdf_per_sr[to] = static_cast<float>(f);
             if (!uncertainty) continue;
-            out.sigma_ln[to] = mapped.sigma[from];
-            out.sigma.brdf_per_sr[to] = static_cast<float>(static_cast<double>(mapped.sigma[from]) / level_slope(f, w));
+            out.sigma_ln[to] = wider * mapped.sigma[from];
+            out.sigma.brdf_per_sr[to] = static_cast<float>(static_cast<double>(out.sigma_ln[to]) / level_slope(f, w));
           }
         }
       }
+    }
   });
+}
+
+double prior_spread(const Basis& basis) {
+  double squares = 0;
+  for (const float q : basis.all_q()) squares += static_cast<double>(q) * static_cast<double>(q);
+  for (const float rest : basis.rest()) squares += static_cast<double>(rest) * static_cast<double>(rest);
+  return std::sqrt(squares / static_cast<double>(basis.cells().count()));
+}
+double open_of(const Mapped& mapped, std::size_t band, std::size_t bands) {
+  double squares = 0;
+  for (std::size_t i = band; i < mapped.sigma.size(); i += bands)
+    squares += static_cast<double>(mapped.sigma[i]) * static_cast<double>(mapped.sigma[i]);
+  return std::sqrt(squares * static_cast<double>(bands) /
+                   static_cast<double>(std::max<std::size_t>(mapped.sigma.size(), 1)));
 }
 
 void judge(const Basis& basis, const ReconstructOptions& options, std::size_t bands, Reconstruction& out) {
@@ -102,9 +120,17 @@ void judge(const Basis& basis, const ReconstructOptions& options, std::size_t ba
                excess, misfit));
   if (options.uncertainty && options.calibrate)
     notes.push_back(
-        format("Left out in turn and reconstructed from these directions, the basis' materials lie within "
-               "95 %% intervals in %.1f %% of the cells; standard deviations are multiplied by %.2f.",
-               100 * out.covered, out.widening));
+        format("Left out in turn%s and reconstructed from these directions, the basis' materials lie within "
+               "95 %% intervals in %.1f %% of the cells; standard deviations are multiplied by %.2f to %.2f, region by "
+               "region.",
+               basis.classes() < basis.materials().size() ? " with all of their class" : "", 100 * out.covered,
+               *std::ranges::min_element(out.widenings.s), *std::ranges::max_element(out.widenings.s)));
+  const double left = out.channels[bands / 2].open_ln, fresh = prior_spread(basis);
+  if (options.uncertainty && left > most_open && left > 0.2 * fresh)
+    notes.push_back(
+        format("These directions leave much open: the cells' root mean square uncertainty is a factor of %.2f, of %.2f "
+               "without any measurement. brdf-fit --plan N with this table names the directions that would add most.",
+               std::exp(left), std::exp(fresh)));
   const char* colour[] = {"red", "green", "blue"};
   if (options.energy)
     notes.push_back(format("It reflects at most %.3f of the light (%s, at %.0f degrees)%s.", out.energy.most,
@@ -142,7 +168,7 @@ Observed observe(const Basis& basis, const Samples& samples, std::size_t band, c
       rows.push_back(r);
   }
   const auto k = static_cast<Eigen::Index>(basis.components()), m = static_cast<Eigen::Index>(rows.size());
-  Observed o{Eigen::MatrixXd::Zero(m, k), Eigen::VectorXd(m), Eigen::VectorXd(m)};
+  Observed o{Eigen::MatrixXd::Zero(m, k), Eigen::VectorXd(m), Eigen::VectorXd(m), Eigen::VectorXd(m), {}};
   for (Eigen::Index row = 0; row < m; ++row) {
     const std::size_t r = rows[static_cast<std::size_t>(row)], i = r * samples.bands() + band;
     const Cells::Blend blend = basis.cells().blend(samples.wo[r], samples.wi[r]);
@@ -158,7 +184,9 @@ Observed observe(const Basis& basis, const Samples& samples, std::size_t band, c
     }
     o.y[row] = log_level(samples.f[i], w) - level;
     const double noise = sigma_of(i) * level_slope(samples.f[i], w);
+    o.own[row] = noise * noise;
     o.noise[row] = noise * noise + rest * rest + 1e-12;
+    o.blend.push_back(blend);
   }
   return o;
 }
@@ -215,14 +243,17 @@ Reconstruction reconstruct(const Basis& basis, const Samples& given, const Recon
     fit.rms_ln = (o.y - o.q * c).norm() / std::sqrt(static_cast<double>(o.y.size()));
     if (options.uncertainty && options.calibrate && band == samples.bands() / 2) {
       const Calibration calibration = calibrate(basis, o, options);
-      out.widening = calibration.widening;
+      out.widenings = calibration.widening;
+      out.widening = out.widenings.typical();
       out.covered = calibration.covered;
     }
-    solved.push_back({c, e.factor, fit.misfit, 1});
+    solved.push_back({c, e.factor, fit.misfit});
   }
-  for (Solved& s : solved) s.scale = out.widening;
+  const Mapped mapped = map_cells(basis, solved, options.uncertainty);
+  for (std::size_t band = 0; band < solved.size(); ++band)
+    out.channels[band].open_ln = open_of(mapped, band, solved.size());
   if (samples.bands() == 1) out.channels[1] = out.channels[2] = out.channels[0];
-  fill_tables(basis, map_cells(basis, solved, options.uncertainty), solved.size(), out);
+  fill_tables(basis, mapped, solved.size(), out);
   if (options.energy) out.energy = energy_of(out.table);
   judge(basis, options, solved.size(), out);
   return out;

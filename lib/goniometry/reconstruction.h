@@ -14,9 +14,12 @@
 // 4 and not negative, the most likely pair (of y, c integrated out) replaces a = b = 1. b is what keeps a few precise
 // observations of a strange material from being explained by wild components; rest is taken b times as well.
 //
-// s makes intervals honest for these very directions: every material of the basis is taken out in turn, reconstructed
-// by the same steps from its values at the same directions with simulated noise and the others' mean and covariance of
-// c, and s is the 95 % quantile of |error| / sigma over cells and materials, over 1.96.
+// s makes intervals honest for these very directions, region by region (goniometry/reconstruction_regions.h): every
+// class of materials of the basis (basis.h; in a folder of tables each is its own) is taken out in turn, and each of
+// its materials reconstructed by the same steps from its values at the same directions with simulated noise, by the
+// mean and covariance of the others' c and the `rest` that the others have. What the others cannot give is in the
+// simulated values as it is, smooth over the cells, where classes are models; materials of a folder, whose own share of
+// the components cannot be told, get it as independent noise.
 //
 // Bands: red, green and blue as they are; one band serves all three. Others become three by averages over the
 // wavelengths above 590 nm, between 480 and 590 nm, and below 480 nm, where nothing lies within, by the band nearest to
@@ -27,6 +30,7 @@
 #include <vector>
 
 #include "goniometry/basis.h"
+#include "goniometry/reconstruction_regions.h"
 #include "goniometry/samples.h"
 #include "io/merl.h"
 
@@ -54,6 +58,7 @@ struct ChannelFit {
   std::size_t observations = 0;
   double misfit = 1, excess = 1;  // roots of b and a
   double rms_ln = 0;              // of what is left of y
+  double open_ln = 0;             // root of the mean variance of cells, before s
 };
 
 struct Reconstruction {
@@ -61,7 +66,8 @@ struct Reconstruction {
   io::MerlTable sigma;          // 1/sr, one standard deviation; empty without `uncertainty`
   std::vector<float> sigma_ln;  // of x, in the order of table.brdf_per_sr; 0 below the horizon
   std::array<ChannelFit, 3> channels;
-  double widening = 1;  // s
+  Widening widenings;   // s
+  double widening = 1;  // its geometric mean over regions
   double covered = 0;   // share of left-out cells within 95 % intervals before s was applied
   Energy energy;
   std::vector<std::string> notes;  // bands, energy, reciprocity, basis, misfit: one sentence each
@@ -79,6 +85,8 @@ Reconstruction reconstruct(const Basis& basis, const Samples& samples, const Rec
 
 // Three bands of any number; see above. `notes` says how.
 Samples rgb_of_bands(const Samples& samples, std::vector<std::string>& notes);
+// 0 red, 1 green, 2 blue: the colour that a band of these samples goes into. One band alone: green, as all are alike.
+std::size_t colour_of_band(const Samples& samples, std::size_t band);
 
 // By the table's own interpolation (surface/merl_table.h).
 Energy energy_of(const io::MerlTable& table);

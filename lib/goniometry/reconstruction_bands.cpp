@@ -48,6 +48,12 @@ std::array<std::vector<std::size_t>, 3> members_of(const Samples& samples, std::
 
 }  // namespace
 
+std::size_t colour_of_band(const Samples& samples, std::size_t band) {
+  if (samples.bands() == 1) return 1;
+  return is_rgb(samples) || samples.band_m.size() != samples.bands() ? std::min<std::size_t>(band, 2)
+                                                                     : colour_of(samples.band_m[band]);
+}
+
 Samples rgb_of_bands(const Samples& samples, std::vector<std::string>& notes) {
   if (samples.bands() == 1) {
     notes.push_back("One band serves red, green and blue.");

@@ -4,8 +4,10 @@
 // the Cholesky factor C of the bracket, S = F F' for F' = C^-1 L'. Tikhonov's gain G = (Q'' Q' + eta)^-1 Q'' leaves
 // (1 - G Q') L L' (1 - G Q')' + G W^-1 G'.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "base/random.h"
 #include "goniometry/reconstruction_parts.h"
 #include "stats/intervals.h"
@@ -14,9 +16,9 @@ namespace gonio::goniometry {
 namespace {
 
 constexpr double normal_95 = 1.959963984540054;
-constexpr std::size_t test_cells = 300;
+constexpr std::size_t cells_per_region = 60;
 
-// Mean and covariance of the scores of all materials but one.
+// Mean and covariance of the scores of all materials but those of one class.
 class Others {
  public:
   explicit Others(const Basis& basis)
@@ -32,12 +34,12 @@ class Others {
   Eigen::Map<const Eigen::VectorXd> score(std::size_t sample) const {
     return {basis_.scores().data() + sample * basis_.components(), k_};
   }
-  Prior without(std::uint32_t material) const {
+  Prior without(std::uint32_t left_out) const {
     Eigen::VectorXd sum = sum_;
     Eigen::MatrixXd squares = squares_;
     double n = static_cast<double>(basis_.samples());
     for (std::size_t s = 0; s < basis_.samples(); ++s) {
-      if (basis_.material_of()[s] != material) continue;
+      if (basis_.class_of(s) != left_out) continue;
       sum -= score(s);
       squares -= score(s) * score(s).transpose();
       --n;
@@ -57,18 +59,31 @@ class Others {
 
 struct TestCells {
   Eigen::MatrixXd q;  // K x cells
-  Eigen::VectorXd rest;
+  std::vector<std::size_t> cell, region;
 };
 
-TestCells draw_cells(const Basis& basis, Random& random) {
-  const std::size_t count = std::min(test_cells, basis.cells().count());
-  TestCells cells{Eigen::MatrixXd(basis.components(), count), Eigen::VectorXd(count)};
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t cell = random.below(static_cast<std::uint32_t>(basis.cells().count()));
-    const auto row = basis.q(cell);
-    const auto column = static_cast<Eigen::Index>(i);
-    for (std::size_t k = 0; k < row.size(); ++k) cells.q(static_cast<Eigen::Index>(k), column) = row[k];
-    cells.rest[column] = static_cast<double>(basis.rest()[cell]);
+// At random, the same number in every region where there are any.
+TestCells draw_cells(const Basis& basis) {
+  Random random(17);
+  TestCells cells;
+  const auto [rings, tilts, turns] = basis.cells().bins();
+  const auto below = [&](std::size_t n) { return random.below(static_cast<std::uint32_t>(n)); };
+  std::array<std::size_t, Widening::regions> drawn{};
+  for (std::size_t tries = 0; tries < 40 * cells_per_region * Widening::regions; ++tries) {
+    const std::size_t h = below(rings), d = below(tilts);
+    const std::uint32_t cell = basis.cells().cell_of(h, d, below(turns));
+    const std::size_t region = Widening::region_of((static_cast<double>(h) + 0.5) / static_cast<double>(rings),
+                                                   (static_cast<double>(d) + 0.5) / static_cast<double>(tilts));
+    if (cell == Cells::none || drawn[region] == cells_per_region) continue;
+    ++drawn[region];
+    cells.cell.push_back(cell);
+    cells.region.push_back(region);
+  }
+  cells.q.resize(static_cast<Eigen::Index>(basis.components()), static_cast<Eigen::Index>(cells.cell.size()));
+  for (std::size_t i = 0; i < cells.cell.size(); ++i) {
+    const auto row = basis.q(cells.cell[i]);
+    for (std::size_t k = 0; k < row.size(); ++k)
+      cells.q(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = static_cast<double>(row[k]);
   }
   return cells;
 }
@@ -165,38 +180,118 @@ Scales likely_scales(const Observed& observed, const Prior& prior, const Eigen::
 }
 
 Observed scaled(const Observed& observed, const Scales& scales) {
-  return {observed.q, observed.y, observed.noise * scales.noise};
+  return {observed.q, observed.y, observed.noise * scales.noise, observed.own, observed.blend};
 }
 Prior scaled(const Prior& prior, const Scales& scales) {
   return {prior.mean, prior.factor * std::sqrt(scales.prior)};
 }
 
-Calibration calibrate(const Basis& basis, const Observed& observed, const ReconstructOptions& options) {
-  const Others others(basis);
-  Random random(17);
-  const TestCells cells = draw_cells(basis, random);
-  std::vector<double> ratios;
-  std::size_t within = 0;
-  for (std::size_t s = 0; s < basis.samples();) {
-    const std::uint32_t material = basis.material_of()[s];
-    const Prior prior = others.without(material);
-    for (; s < basis.samples() && basis.material_of()[s] == material; ++s) {
-      Eigen::VectorXd y = observed.q * others.score(s);
-      for (Eigen::Index i = 0; i < y.size(); ++i) y[i] += std::sqrt(observed.noise[i]) * random.normal();
-      const Scales scales = likely_scales(observed, prior, y);
-      const Estimator e = estimator(scaled(observed, scales), scaled(prior, scales), options, basis.samples());
-      const Eigen::ArrayXd sigma = ((e.factor.transpose() * cells.q).colwise().squaredNorm().transpose().array() +
-                                    scales.noise * cells.rest.array().square())
-                                       .sqrt();
-      Eigen::VectorXd error = cells.q.transpose() * (others.score(s) - e.estimate(observed, prior, y));
+// The observations as they would be weighed by a basis without a class.
+Observed without(const Basis& basis, const Observed& observed, std::uint32_t left_out) {
+  Observed other = observed;
+  for (Eigen::Index i = 0; i < other.noise.size(); ++i) {
+    const Cells::Blend& blend = observed.blend[static_cast<std::size_t>(i)];
+    double rest = 0;
+    for (std::size_t c = 0; c < blend.cell.size(); ++c)
+      rest += blend.share[c] * basis.rest_without(blend.cell[c], left_out);
+    other.noise[i] = observed.own[i] + rest * rest + 1e-12;
+  }
+  return other;
+}
+
+namespace {
+
+// Errors of materials left out, over their standard deviations: class by class, region by region.
+using Ratios = std::vector<std::array<std::vector<double>, Widening::regions>>;
+
+class LeftOut {
+ public:
+  LeftOut(const Basis& basis, const Observed& observed, const ReconstructOptions& options)
+      : basis_(basis),
+        observed_(observed),
+        options_(options),
+        singly_(basis.classes() == basis.materials().size()),
+        others_(basis),
+        cells_(draw_cells(basis)) {}
+
+  Ratios ratios() const {
+    Ratios all(basis_.classes());
+    parallel_for(0, all.size(), [&](std::size_t c) { all[c] = of_class(static_cast<std::uint32_t>(c)); });
+    return all;
+  }
+
+ private:
+  std::array<std::vector<double>, Widening::regions> of_class(std::uint32_t left_out) const {
+    const Prior prior = others_.without(left_out);
+    const Observed seen = singly_ ? observed_ : without(basis_, observed_, left_out);
+    Eigen::ArrayXd rest(cells_.q.cols());
+    for (Eigen::Index i = 0; i < rest.size(); ++i)
+      rest[i] = basis_.rest_without(cells_.cell[static_cast<std::size_t>(i)], left_out);
+    std::array<std::vector<double>, Widening::regions> ratios;
+    for (std::size_t s = 0; s < basis_.samples(); ++s) {
+      if (basis_.class_of(s) != left_out) continue;
+      Random random(17, s + 1);
+      const Eigen::VectorXd y = simulated(s, random);
+      const Scales scales = likely_scales(seen, prior, y);
+      const Estimator e = estimator(scaled(seen, scales), scaled(prior, scales), options_, basis_.samples());
+      const Eigen::ArrayXd sigma =
+          ((e.factor.transpose() * cells_.q).colwise().squaredNorm().transpose().array() + scales.noise * rest.square())
+              .sqrt();
+      const Eigen::VectorXd error = cells_.q.transpose() * (others_.score(s) - e.estimate(seen, prior, y));
       for (Eigen::Index i = 0; i < error.size(); ++i) {
-        error[i] += cells.rest[i] * random.normal();
-        ratios.push_back(std::abs(error[i]) / std::max(sigma[i], 1e-12));
-        within += ratios.back() <= normal_95 ? 1 : 0;
+        const double more = singly_ ? rest[i] * random.normal() : 0;
+        ratios[cells_.region[static_cast<std::size_t>(i)]].push_back(std::abs(error[i] + more) /
+                                                                     std::max(sigma[i], 1e-12));
       }
     }
+    return ratios;
   }
-  return {stats::quantile(ratios, 0.95) / normal_95, static_cast<double>(within) / static_cast<double>(ratios.size())};
+  Eigen::VectorXd simulated(std::size_t sample, Random& random) const {
+    const Eigen::VectorXd& variance = singly_ ? observed_.noise : observed_.own;
+    Eigen::VectorXd y = observed_.q * others_.score(sample);
+    for (Eigen::Index i = 0; i < y.size(); ++i) y[i] += std::sqrt(variance[i]) * random.normal();
+    return y;
+  }
+
+  const Basis& basis_;
+  const Observed& observed_;
+  const ReconstructOptions& options_;
+  bool singly_;
+  Others others_;
+  TestCells cells_;
+};
+
+double quantile_of(const std::vector<double>& ratios) {
+  return std::max(stats::quantile(ratios, 0.95) / normal_95, 1e-3);
+}
+
+double widening_of(const Ratios& ratios, std::size_t region, bool singly) {
+  std::vector<double> tau, all;
+  for (const auto& of_class : ratios) {
+    if (of_class[region].empty()) return 1;
+    if (singly)
+      all.insert(all.end(), of_class[region].begin(), of_class[region].end());
+    else
+      tau.push_back(quantile_of(of_class[region]));
+  }
+  return singly ? quantile_of(all) : widening_of_next_class(tau);
+}
+
+}  // namespace
+
+Calibration calibrate(const Basis& basis, const Observed& observed, const ReconstructOptions& options) {
+  const Ratios ratios = LeftOut(basis, observed, options).ratios();
+  Calibration result;
+  for (std::size_t region = 0; region < Widening::regions; ++region)
+    result.widening.s[region] = widening_of(ratios, region, basis.classes() == basis.materials().size());
+  std::size_t within = 0, all = 0;
+  for (const auto& of_class : ratios)
+    for (const auto& region : of_class) {
+      within += static_cast<std::size_t>(std::ranges::count_if(region, [](double r) { return r <= normal_95; }));
+      all += region.size();
+    }
+  result.covered = static_cast<double>(within) / static_cast<double>(all);
+  return result;
 }
 
 }  // namespace gonio::goniometry

@@ -11,6 +11,8 @@ namespace gonio::goniometry {
 struct Observed {
   Eigen::MatrixXd q;         // m x K
   Eigen::VectorXd y, noise;  // 1 / W
+  Eigen::VectorXd own;       // variance of the samples alone, without what the basis leaves open
+  std::vector<Cells::Blend> blend;
 };
 // One band of the samples; what is unusable goes to `dropped`.
 Observed observe(const Basis& basis, const Samples& samples, std::size_t band, const ReconstructOptions& options,
@@ -46,7 +48,8 @@ Observed scaled(const Observed& observed, const Scales& scales);
 Prior scaled(const Prior& prior, const Scales& scales);
 
 struct Calibration {
-  double widening = 1, covered = 0;
+  Widening widening;
+  double covered = 0;
 };
 Calibration calibrate(const Basis& basis, const Observed& observed, const ReconstructOptions& options);
 

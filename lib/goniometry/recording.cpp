@@ -227,7 +227,9 @@ class Reduction {
     std::string text;
     for (const auto& [kind, group] : grouped)
       text += (text.empty() ? "" : "; ") + std::to_string(group.first) + ": " +
-              (group.first == 1 ? group.second : kind + ", as in \"" + group.second + "\"");
+              (group.first == 1       ? group.second
+               : kind == group.second ? kind
+                                      : kind + ", as in \"" + group.second + "\"");
     throw Error(Exit::data, recording_.sample->place,
                 "none of " + std::to_string(result_.dropped.size()) + " images gives a sample (" + text + ")",
                 "check poses, patch and limits");

@@ -170,6 +170,54 @@ std::vector<std::vector<double>> starts(const Candidate& candidate, const Guess&
   return all;
 }
 
+bool grows(const Candidate& from, const Candidate& to) {
+  const auto names = [](const Candidate& c, const std::vector<Slot>& slots) {
+    std::vector<std::string> all;
+    for (const Slot& slot : slots) all.push_back(c.name(slot));
+    return all;
+  };
+  const auto has = [](const std::vector<std::string>& all, const std::string& name) {
+    return std::ranges::find(all, name) != all.end();
+  };
+  const auto before = names(from, from.shared), after = names(to, to.shared);
+  if (names(from, from.colours) != names(to, to.colours) || before.size() >= after.size()) return false;
+  const auto added = [](const std::string& name) {
+    return name.starts_with("second_") || name.starts_with("retro") || name.starts_with("anisotropy") ||
+           name == "azimuth_rad" || name == "sigma_rad";
+  };
+  return std::ranges::all_of(before, [&](const std::string& name) { return has(after, name); }) &&
+         std::ranges::all_of(after, [&](const std::string& name) { return has(before, name) || added(name); });
+}
+
+std::vector<std::vector<double>> grown(const Candidate& from, const std::vector<double>& x, const Candidate& to,
+                                       const Guess& guess) {
+  const auto old = [&](const std::string& name) -> const double* {
+    for (std::size_t i = 0; i < from.shared.size(); ++i)
+      if (from.name(from.shared[i]) == name) return &x[i];
+    return nullptr;
+  };
+  const double alpha = old("alpha") != nullptr ? *old("alpha") : guess.alpha;
+  std::vector<std::vector<double>> all;
+  for (const double wider : {4.0, 0.25}) {
+    std::vector<double> start;
+    bool second = false;
+    for (const Slot& slot : to.shared) {
+      const auto& info = to.model->info().parameters[slot.parameter];
+      const double* known = old(info.name);
+      second = second || (known == nullptr && info.name == "second_alpha");
+      const double begins = known != nullptr              ? *known
+                            : info.name == "second_alpha" ? wider * alpha
+                            : info.name == "second_share" ? 0.1
+                                                          : start_of(info.name, info, guess, 0, 0, alpha, 0, false);
+      start.push_back(std::clamp(begins, slot.lower, slot.upper));
+    }
+    start.insert(start.end(), x.begin() + static_cast<std::ptrdiff_t>(from.shared.size()), x.end());
+    all.push_back(std::move(start));
+    if (!second) break;
+  }
+  return all;
+}
+
 Samples chosen_rows(const Samples& samples, const Rows& rows, const std::vector<std::size_t>& bands) {
   Samples out;
   out.name = samples.name;

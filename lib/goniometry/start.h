@@ -22,6 +22,12 @@ Guess guess_of(const Problem& problem);
 std::vector<std::vector<double>> starts(const Candidate& candidate, const Guess& guess, std::size_t bands,
                                         int random_starts, std::uint64_t seed);
 
+// Does `to` add a lobe, light sent back, a direction or a rough base to the same numbers?
+bool grows(const Candidate& from, const Candidate& to);
+// Beginnings of `to` from where `from` ended, what is added small: a second lobe wider, and narrower, than the first.
+std::vector<std::vector<double>> grown(const Candidate& from, const std::vector<double>& x, const Candidate& to,
+                                       const Guess& guess);
+
 // Rows and bands that decide between starts: all near the peak and some of the rest; first, middle and last band.
 Samples few_of(const Problem& problem, std::vector<std::size_t>& bands);
 Samples chosen_rows(const Samples& samples, const Rows& rows, const std::vector<std::size_t>& bands);

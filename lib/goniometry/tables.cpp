@@ -23,8 +23,8 @@ Vec3 direction(double theta, double phi) {
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
-// Degrees that are called radians, and radians that are called degrees.
-void check_angles(const Readings& in, std::vector<std::string>& notes) {
+// Degrees that are called radians are an error; what speaks for radians that are called degrees is told, else nothing.
+std::string check_angles(const Readings& in) {
   double largest = 0, azimuth = 0;
   for (std::size_t r = 0; r < in.angles.size(); ++r)
     for (std::size_t k = 0; k < 4; ++k) {
@@ -41,8 +41,19 @@ void check_angles(const Readings& in, std::vector<std::string>& notes) {
                   : "check the column and its unit");
     }
   if (!in.said_radians && largest < 1.58 * pi / 180 && azimuth < 6.3 * pi / 180 && in.angles.size() > 4)
-    notes.push_back("No angle is above " + format("%.2f", std::max(largest, azimuth) * 180 / pi) +
-                    " deg: if the file is in radians, say --angles rad.");
+    return "no angle is above " + format("%.2f", std::max(largest, azimuth) * 180 / pi) +
+           " deg; if these are radians, say so in the heading, or --angles rad";
+  return {};
+}
+
+Convention convention_of(const Samples& samples, const TableOptions& options, const Readings& in,
+                         const std::string& hint) {
+  try {
+    return find_convention(samples, options.mirror, in.preset, in.name);
+  } catch (const Error& error) {
+    if (hint.empty()) throw;
+    throw Error(error.code(), error.place(), error.problem(), hint + "; else " + error.remedy());
+  }
 }
 
 [[noreturn]] void nothing_left(const Readings& in, const std::vector<Dropped>& dropped) {
@@ -141,10 +152,18 @@ double nanometres(const std::string& text, const std::string& place) {
 
 }  // namespace
 
+void check_wavelength(double metres, const std::string& place) {
+  if (!(metres >= 1e-9 && metres <= 1e-3))
+    throw Error(Exit::data, place, format("%.6g nm is none of light, which has 1 nm to 1 mm", metres * 1e9),
+                "check the unit of the wavelengths");
+}
+
 ReadTable samples_of(Readings in, const TableOptions& options) {
   ReadTable out;
   out.notes = in.notes;
-  check_angles(in, out.notes);
+  const std::string hint = check_angles(in);
+  if (!hint.empty()) out.notes.push_back(out.units_doubt = "Take care: " + hint + ".");
+  for (const double wavelength : in.band_m) check_wavelength(wavelength, in.name + ": wavelength");
   Samples& s = out.samples;
   s.name = in.name, s.band_name = in.band_name, s.band_m = in.band_m;
   std::map<std::string, std::size_t> series;
@@ -164,10 +183,13 @@ ReadTable samples_of(Readings in, const TableOptions& options) {
   }
   for (const double f : s.f) holes += std::isnan(f);
   if (s.rows() == 0) nothing_left(in, out.dropped);
+  if (std::ranges::none_of(s.f, [](double f) { return f > 0; }))
+    throw Error(Exit::data, in.name, "has no value above zero in " + std::to_string(s.rows()) + " rows",
+                "check which column holds the reflectance");
   if (holes > 0)
     out.notes.push_back(std::to_string(holes) +
                         " single values in otherwise good rows do not count: negative or no number.");
-  out.convention = find_convention(s, options.mirror, in.preset, in.name);
+  out.convention = convention_of(s, options, in, hint);
   if (out.convention.mirror == Mirror::same) turn_exitance(s);
   check_pairs(s);
   keep_bands(s, options.bands, "--bands");

@@ -46,6 +46,7 @@ struct ReadTable {
   std::vector<Dropped> dropped;
   Convention convention;
   std::vector<std::string> notes;  // what a reader has to know: thinning, units, contradictions
+  std::string units_doubt{};       // what speaks for another unit than the one stated; empty: nothing
 };
 // Error(data | no_input) at file, line and column. Error(negative) where one pair of directions is all there is.
 ReadTable read_table(const std::filesystem::path& path, const TableOptions& options = {});

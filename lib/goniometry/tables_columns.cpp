@@ -269,7 +269,9 @@ void bands_by_row(const TextTable& table, const Columns& columns, Readings& out)
   std::map<long, std::size_t> bands;
   std::vector<long> key;
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
-    key.push_back(std::lround(numbers.at(r, which) * scale));
+    const double value = numbers.at(r, which) * scale;
+    if (!wavelength.empty()) check_wavelength(value * 1e-12, out.place[r] + ": " + which.name);
+    key.push_back(std::lround(value));
     bands.try_emplace(key.back(), 0);
   }
   if (bands.size() > 256)

@@ -49,7 +49,14 @@ Readings cornell_readings(const std::string& text, const std::string& name) {
                 "a .brdf begins with it; other tables are named *.csv or *.txt");
   const auto bands = static_cast<std::size_t>(announced);
   Readings out{name, {}, {"theta_i", "phi_i", "theta_s", "phi_s"}, true, {}, {}, {}, {}, {}, {}, Mirror::opposite};
-  if (tokens.size() < 1 + bands + 4 + bands) throw Error(Exit::data, name, "ends before its first row");
+  if (tokens.size() < 1 + bands + 4 + bands) {
+    for (std::size_t i = 1; i < tokens.size(); ++i) number(i);
+    throw Error(Exit::data, name + ":" + std::to_string(tokens.back().line),
+                "ends within its first row: " + std::to_string(bands) + " wavelengths and " +
+                    std::to_string(4 + bands) + " numbers are announced, " + std::to_string(tokens.size() - 1) +
+                    " are there",
+                "copy the whole file");
+  }
   for (std::size_t b = 0; b < bands; ++b) {
     out.band_m.push_back(number(1 + b) * 1e-9);
     out.band_name.push_back(band_text(out.band_m.back()));

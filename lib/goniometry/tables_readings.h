@@ -29,6 +29,9 @@ Readings column_readings(const TextTable& table, const TableOptions& options);
 // "550 nm" for a wavelength.
 std::string band_text(double wavelength_m);
 
+// Optical radiation lies between X-rays and radio waves, 1 nm to 1 mm (CIE S 017); else Error(data).
+void check_wavelength(double metres, const std::string& place);
+
 // Drops, turns, orders into series. Error as read_table() says.
 ReadTable samples_of(Readings readings, const TableOptions& options);
 

@@ -45,6 +45,7 @@ struct Inverse {
   std::vector<bool> seen;    // per column
 };
 Inverse inverse_of(const Eigen::MatrixXd& h) {
+  if (h.rows() == 0) return {h, h, {}};  // every number is at a bound
   const Eigen::VectorXd scale = h.diagonal().array().max(1e-300).rsqrt().matrix();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * h * scale.asDiagonal());
   Eigen::VectorXd root = Eigen::VectorXd::Zero(h.rows());
@@ -82,6 +83,7 @@ struct ByBlocks {
 ByBlocks by_blocks(const Problem& problem, const Candidate& candidate, const Solution& solution,
                    const std::vector<Rows>& blocks, const std::vector<Eigen::Index>& free, const Inverse& inverse) {
   const auto n = static_cast<Eigen::Index>(free.size());
+  if (n == 0) return {};
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(n), squares = sum;
   for (const Rows& rows : blocks) {

@@ -6,13 +6,12 @@
 #include <algorithm>
 #include <iostream>
 #include <iterator>
-#include <set>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "manifest/document_references.h"
 #include "manifest/section_tables.h"
-#include "manifest/units.h"
 
 namespace gonio::manifest {
 namespace {
@@ -44,6 +43,8 @@ void for_each_section(D& d, const Visit& visit) {
   visit("surface_fits", d.surface_fits);
   visit("patterns", d.patterns);
   visit("contrasts", d.contrasts);
+  visit("reliefs", d.reliefs);
+  visit("ground_noises", d.ground_noises);
   visit("sequences", d.sequences);
   visit("reconstructions", d.reconstructions);
   visit("evaluations", d.evaluations);
@@ -121,152 +122,6 @@ Value write_section(const std::vector<T>& section, const Value* original) {
     out.push_back(write_entry(section[i], before));
   }
   return out;
-}
-
-// --- references between sections ---
-
-template <class T>
-void must_exist(const std::map<std::string, T>& section, const std::string& section_name, const std::string& key,
-                const std::string& where) {
-  if (key.empty() || section.contains(key)) return;
-  std::string names;
-  for (const auto& [name, entry] : section) names += (names.empty() ? "" : ", ") + name;
-  throw Error(Exit::data, where, "names \"" + key + "\", which is not in " + section_name,
-              names.empty() ? "that section is empty"
-                            : "there is " + (names.size() > 80 ? names.substr(0, 77) + "..." : names));
-}
-
-template <class T>
-void unique_ids(const std::vector<T>& section, const std::string& place) {
-  std::set<std::string> seen;
-  for (std::size_t i = 0; i < section.size(); ++i)
-    if (!seen.insert(section[i].id).second)
-      throw Error(Exit::data, item(place, i) + "/id", "\"" + section[i].id + "\" stands twice",
-                  "give every entry its own id");
-}
-
-void check_images(const Document& d) {
-  unique_ids(d.images, place(d, "/images"));
-  for (std::size_t i = 0; i < d.images.size(); ++i) {
-    const ImageEntry& image = d.images[i];
-    const std::string at = place(d, "/images/" + std::to_string(i));
-    must_exist(d.files, "files", image.file, at + "/file");
-    must_exist(d.files, "files", image.mask, at + "/mask");
-    must_exist(d.cameras, "cameras", image.camera, at + "/camera");
-    must_exist(d.boards, "boards", image.board, at + "/board");
-    for (std::size_t k = 0; k < image.boards.size(); ++k)
-      must_exist(d.boards, "boards", image.boards[k].board, at + "/boards/" + std::to_string(k) + "/board");
-    must_exist(d.robots, "robots", image.robot, at + "/robot");
-    for (const auto& light : image.light) must_exist(d.lights, "lights", light, at + "/light");
-  }
-}
-
-void check_table(const Table& table, const std::string& at) {
-  if (!table.file.empty() && !table.rows.is_null())
-    throw Error(Exit::data, at, "has both \"file\" and \"rows\"", "keep one of the two");
-  std::vector<std::string> names;
-  for (const auto& [name, unit] : table.columns) {
-    check_column_unit(name, unit, at + "/columns/" + name);
-    names.push_back(name);
-  }
-  for (const auto& name : table.observed)
-    if (std::ranges::find(names, name) == names.end())
-      throw Error(Exit::data, at + "/observed", "names column \"" + name + "\", which is not in columns",
-                  remedy_for(name, names));
-  if (table.rows.is_null()) return;
-  expect_array(table.rows, at + "/rows");
-  for (std::size_t i = 0; i < table.rows.as_array().size(); ++i) {
-    const Value& row = table.rows.as_array()[i];
-    if (!row.is_array() || row.as_array().size() != names.size())
-      throw Error(Exit::data, item(at + "/rows", i), "is no row of " + std::to_string(names.size()) + " entries",
-                  "give one for each column");
-  }
-}
-
-void check_goniometry(const Document& d) {
-  const auto images_exist = [&d](const std::vector<std::string>& ids, const std::string& at) {
-    for (const std::string& id : ids)
-      if (std::ranges::find(d.images, id, &ImageEntry::id) == d.images.end())
-        throw Error(Exit::data, at + "/images", "names \"" + id + "\", which is not in images");
-  };
-  for (const auto& [name, patch] : d.goniometer) {
-    const std::string at = place(d, "/goniometer/" + name);
-    must_exist(d.goniometer, "goniometer", patch.tile, at + "/tile");
-    must_exist(d.surfaces, "surfaces", patch.surface, at + "/surface");
-    if (patch.polygon_m.empty() == !patch.radius_m)
-      throw Error(Exit::data, at, "needs exactly one of \"polygon_m\", \"radius_m\"");
-    images_exist(patch.images, at);
-  }
-  for (const auto& [name, fit] : d.surface_fits)
-    for (const auto& [what, file] : fit.files)
-      must_exist(d.files, "files", file, place(d, "/surface_fits/" + name + "/files/" + what));
-  for (const auto& [name, pattern] : d.patterns) {
-    const std::string at = place(d, "/patterns/" + name);
-    must_exist(d.files, "files", pattern.file, at + "/file");
-    must_exist(d.tables, "tables", pattern.corners, at + "/corners");
-    for (std::size_t i = 0; i < pattern.placements.size(); ++i)
-      images_exist(pattern.placements[i].images, at + "/placements/" + std::to_string(i));
-  }
-}
-
-void check_nrsfm(const Document& d) {
-  for (const auto& [name, sequence] : d.sequences) {
-    must_exist(d.files, "files", sequence.file, place(d, "/sequences/" + name + "/file"));
-    must_exist(d.cameras, "cameras", sequence.camera, place(d, "/sequences/" + name + "/camera"));
-  }
-  unique_ids(d.reconstructions, place(d, "/reconstructions"));
-  for (std::size_t i = 0; i < d.reconstructions.size(); ++i) {
-    const ShapeReconstruction& r = d.reconstructions[i];
-    const std::string at = place(d, "/reconstructions/" + std::to_string(i));
-    must_exist(d.files, "files", r.file, at + "/file");
-    must_exist(d.sequences, "sequences", r.sequence, at + "/sequence");
-    if (r.file.empty() == r.folder.empty()) throw Error(Exit::data, at, "needs exactly one of \"file\", \"folder\"");
-  }
-}
-
-void check_references(const Document& d) {
-  check_images(d);
-  check_goniometry(d);
-  check_nrsfm(d);
-  unique_ids(d.objects, place(d, "/objects"));
-  for (std::size_t i = 0; i < d.objects.size(); ++i) {
-    const std::string at = place(d, "/objects/" + std::to_string(i));
-    must_exist(d.meshes, "meshes", d.objects[i].mesh, at + "/mesh");
-    must_exist(d.surfaces, "surfaces", d.objects[i].surface, at + "/surface");
-  }
-  for (const auto& [name, mesh] : d.meshes) {
-    const std::string at = place(d, "/meshes/" + name);
-    must_exist(d.files, "files", mesh.file, at + "/file");
-    if (!mesh.file.empty() + mesh.sphere_radius_m.has_value() + mesh.plane_size_m.has_value() != 1)
-      throw Error(Exit::data, at, "needs exactly one of \"file\", \"sphere\", \"plane\"");
-  }
-  for (const auto& [name, surface] : d.surfaces) {
-    const std::string at = place(d, "/surfaces/" + name);
-    for (const auto& [parameter, file] : surface.textures)
-      must_exist(d.files, "files", file, at + "/textures/" + parameter);
-    for (const auto& [parameter, file] : surface.spectra)
-      must_exist(d.files, "files", file, at + "/spectra/" + parameter);
-    must_exist(d.files, "files", surface.file, at + "/file");
-    must_exist(d.surfaces, "surfaces", surface.base, at + "/base");
-  }
-  for (const auto& [name, light] : d.lights)
-    must_exist(d.files, "files", light.file, place(d, "/lights/" + name + "/file"));
-  for (const auto& [name, table] : d.tables) {
-    const std::string at = place(d, "/tables/" + name);
-    must_exist(d.files, "files", table.file, at + "/file");
-    must_exist(d.cameras, "cameras", table.camera, at + "/camera");
-    must_exist(d.boards, "boards", table.board, at + "/board");
-    check_table(table, at);
-  }
-  for (const auto& [name, rig] : d.rigs)
-    for (std::size_t i = 0; i < rig.cameras.size(); ++i)
-      must_exist(d.cameras, "cameras", rig.cameras[i].camera,
-                 place(d, "/rigs/" + name + "/cameras/" + std::to_string(i) + "/camera"));
-  for (const auto& [name, robot] : d.robots)
-    must_exist(d.files, "files", robot.calibration, place(d, "/robots/" + name + "/calibration"));
-  unique_ids(d.light_positions, place(d, "/light_positions"));
-  for (std::size_t i = 0; i < d.renderings.size(); ++i)
-    must_exist(d.files, "files", d.renderings[i].file, place(d, "/renderings/" + std::to_string(i) + "/file"));
 }
 
 const std::vector<std::string>& section_names() {

@@ -35,6 +35,8 @@ struct Document {
   std::map<std::string, SurfaceFit> surface_fits;
   std::map<std::string, Pattern> patterns;
   std::vector<Contrast> contrasts;
+  std::map<std::string, ReliefMap> reliefs;
+  std::map<std::string, GroundNoiseFit> ground_noises;
   std::map<std::string, TrackSequence> sequences;
   std::vector<ShapeReconstruction> reconstructions;
   std::vector<Evaluation> evaluations;

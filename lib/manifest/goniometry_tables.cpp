@@ -54,7 +54,9 @@ const std::vector<Field<SurfaceFit>>& surface_fit_fields() {
       field("sentence", &SurfaceFit::sentence, "", "the verdict with its reason"),
       field("parameters", &SurfaceFit::parameters, "", "by name: one number, or one for each band"),
       sigma_field(&SurfaceFit::sigma),
-      field("covariance", &SurfaceFit::covariance, "", "of the fit: {\"order\": [names], \"values\": [[...]]}"),
+      field("covariance", &SurfaceFit::covariance, "",
+            "of the fit, zero where a number is at its bound: {\"order\": [names], \"values\": [[...]]}; beyond 200 "
+            "numbers that of what all bands share and of written_bands"),
       field("bands", &SurfaceFit::bands, "", "of the measurement"),
       field("wavelengths_m", &SurfaceFit::wavelengths_m, "m", "of the bands, where they are known").positive(),
       field("written_bands", &SurfaceFit::written_bands, "", "bands that surfaces/NAME takes for red, green, blue"),

@@ -61,6 +61,21 @@ std::string nrsfm_text() {
          rows("evaluations: flips", "Frames that are mirrored although most are not.", detected_flip_fields());
 }
 
+std::string relief_text() {
+  return rows("reliefs",
+              "Keyed by name. Height maps, measured or made by relief, with what roughness and lobe say of them. "
+              "Azimuths "
+              "count counter-clockwise from the direction of the rows.",
+              relief_map_fields()) +
+         rows("reliefs: treatment", "What was taken off the heights before.", relief_treatment_fields()) +
+         rows("reliefs: parameters", "Keyed by name, written by roughness.", roughness_figure_fields()) +
+         rows("reliefs: normals", "Written by roughness. Distributions of microfacet theory.", normals_fit_fields()) +
+         rows("reliefs: lobes", "Written by lobe.", relief_lobe_fields()) +
+         rows("ground_noises", "Keyed by name, written by relief. What a process adds to all that it makes.",
+              ground_noise_fields()) +
+         rows("ground_noises: parts", "Sparse convolution noises.", ground_noise_part_fields());
+}
+
 }  // namespace
 
 Value manifest_schema() {
@@ -88,6 +103,8 @@ Value manifest_schema() {
        {"surface_fits", keyed<SurfaceFit>()},
        {"patterns", keyed<Pattern>()},
        {"contrasts", listed<Contrast>()},
+       {"reliefs", keyed<ReliefMap>()},
+       {"ground_noises", keyed<GroundNoiseFit>()},
        {"sequences", keyed<TrackSequence>()},
        {"reconstructions", listed<ShapeReconstruction>()},
        {"evaluations", listed<Evaluation>()},
@@ -132,7 +149,7 @@ std::string manifest_fields_text() {
          rows("light_positions", "A list. Where a light was while its robot stood at a pose.",
               light_position_fields()) +
          rows("acceptance", "A list, written by vdi2634. Figures of an optical scanner.", acceptance_fields()) +
-         goniometry_text() + nrsfm_text();
+         goniometry_text() + relief_text() + nrsfm_text();
 }
 
 }  // namespace gonio::manifest

@@ -14,6 +14,7 @@
 #include "manifest/goniometry_sections.h"
 #include "manifest/nrsfm_sections.h"
 #include "manifest/parameter.h"
+#include "manifest/relief_sections.h"
 #include "manifest/value.h"
 
 namespace gonio::manifest {

@@ -14,8 +14,9 @@
 //   f = integral f cos dwi cos dwo / (|Oi| |Oo|),
 // symmetric in both, so that lobe(wo, wi) = lobe(wi, wo) within errors.
 //
-// Sigmas come from 64 batches of paths with random numbers of their own; they do not contain what another patch of the
-// same surface would give.
+// Sigmas come from 64 batches of paths with random numbers of their own; where these agree, as in cells of a table that
+// no path reached, it is that of one path which carries what paths carry on average. They do not contain what another
+// patch of the same surface would give.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -89,6 +89,18 @@ LobeTable lobe_table(const Relief& relief, const Material& material, Vec3 wo, co
   lobe.energy.reflected = total(batch, &Sums::reflected, scale);
   lobe.energy.lost = total(batch, &Sums::lost, scale);
   lobe.energy.cut = total(batch, &Sums::cut, scale);
+  const auto one_path = [&](std::vector<Estimate>& all_cells, const auto& projected) {
+    const Rgb carried = lobe.energy.reflected.value * (scale / batches);
+    for (std::size_t c = 0; c < all_cells.size(); ++c) {
+      Rgb& sigma = all_cells[c].sigma;
+      const auto least = [&](double s, double share) {
+        return s > 0 ? s : (share > 0 ? share : scale / batches) / projected(c);
+      };
+      sigma = {least(sigma.x, carried.x), least(sigma.y, carried.y), least(sigma.z, carried.z)};
+    }
+  };
+  one_path(lobe.table, [&](std::size_t c) { return cells.table_projected(c); });
+  one_path(lobe.picture, [&](std::size_t) { return cells.picture_projected(); });
   double all = 0;
   for (const Sums& s : batch)
     for (std::size_t i = 0; i < 4; ++i) lobe.energy.by_facets[i] += s.by_facets[i], all += s.by_facets[i];

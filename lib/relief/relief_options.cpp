@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/quantity.h"
+#include "relief/document.h"
 #include "relief/map_options.h"
 #include "report/number_text.h"
 #include "report/page.h"
@@ -70,7 +71,13 @@ std::vector<cli::Option> relief_options() {
        .lower = 1,
        .upper = 6},
       length("layer", "ground-noise: thickness of a printed layer, to state weights of the published form."),
-      {.name = "html", .type = Type::output_file, .help = "ground-noise: write the report."}};
+      {.name = "name",
+       .type = Type::text,
+       .help = "ground-noise: its name in ground_noises.",
+       .metavar = "NAME",
+       .preset = "ground"},
+      {.name = "html", .type = Type::output_file, .help = "ground-noise: write the report."},
+      relief_option()};
   for (cli::Option& option : map_options())
     if (option.name != "levelling" && option.name != "s-filter" && option.name != "l-filter")
       all.push_back(std::move(option));
@@ -94,25 +101,6 @@ std::vector<NoisePart> parts_asked(const cli::Invocation& call) {
     if (!(part.sq_m >= 0 && part.cell_m > 0))
       throw Error(Exit::usage, "--cell", "a part has no cell or a negative Sq", "state lengths above 0");
   return parts;
-}
-
-manifest::Value ground_value(const GroundNoise& ground, double layer_m) {
-  using manifest::Value;
-  Value parts = Value::array();
-  for (const GroundPart& part : ground.parts) {
-    Value v = Value::object({{"sq_m", part.sq_m},
-                             {"cell_m", part.cell_m},
-                             {"sigma", std::vector<double>{part.sigma_sq_m, part.sigma_cell_m}}});
-    if (layer_m > 0) v["weight"] = part.weight(layer_m);
-    parts.push_back(v);
-  }
-  return Value::object({{"parts", parts},
-                        {"white_m", ground.white_m},
-                        {"white_sigma_m", ground.sigma_white_m},
-                        {"tiles", static_cast<std::int64_t>(ground.tiles)},
-                        {"misfit", ground.misfit},
-                        {"log_rms_of_bands", ground.log_rms},
-                        {"criterion_over_the_least", ground.criterion}});
 }
 
 std::string ground_page(const GroundNoise& ground, const std::vector<std::string>& files) {

@@ -15,6 +15,7 @@
 #include "render/specimen_board.h"
 #include "render/specimen_glass.h"
 #include "render/specimen_goniometer.h"
+#include "render/specimen_matrix.h"
 
 namespace gonio::render {
 namespace {
@@ -165,7 +166,10 @@ const std::vector<Specimen>& specimens() {
                                             {"goniometer",
                                              "a flat sample and a white tile under three lamps on an arc, from 21 "
                                              "sides"},
-                                            {"arc", "the same in steps of 7.5 degrees, 2783 images"}};
+                                            {"arc", "the same in steps of 7.5 degrees, 2783 images"},
+                                            {"matrix",
+                                             "a plate of micro-ridges, a data matrix, before and after a turn by a "
+                                             "quarter, ten images; writes plate.ply"}};
   return all;
 }
 
@@ -174,6 +178,7 @@ manifest::Document specimen(const std::string& name, const std::filesystem::path
   if (name == "glass") return glass_specimen(out);
   if (name == "goniometer") return goniometer_specimen({.step_rad = pi / 8});
   if (name == "arc") return goniometer_specimen({});
+  if (name == "matrix") return matrix_specimen(out);
   manifest::Document document;
   if (name == "knot")
     add_knot(document, out);
@@ -181,7 +186,7 @@ manifest::Document specimen(const std::string& name, const std::filesystem::path
     add_spheres(document, out);
   else
     throw Error(Exit::usage, "--specimen", "there is no specimen \"" + name + "\"",
-                "choose knot, spheres, glass, board, goniometer or arc");
+                "choose knot, spheres, glass, board, goniometer, arc or matrix");
   add_table(document);
   add_lamps(document);
   add_images(document);

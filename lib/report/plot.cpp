@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "report/colour_map.h"
+#include "report/heat_drawing.h"
 #include "report/page.h"
 #include "report/plot_axis.h"
 
@@ -212,10 +213,7 @@ std::string legend(const Plot& plot) {
 }
 
 std::string html(const HeatStrip& strip) {
-  double limit = strip.limit;
-  for (const double v : strip.values)
-    if (strip.limit <= 0 && std::isfinite(v)) limit = std::max(limit, std::abs(v));
-  if (limit <= 0) limit = 1;
+  const double limit = full_colour(strip);
   std::string text = "<figure>";
   if (!strip.title.empty()) text += "<p class=\"title\"><b>" + escape(strip.title) + "</b></p>";
   text += "<div class=\"scroll\"><table class=\"heat\"><thead><tr><th></th>";
@@ -227,8 +225,8 @@ std::string html(const HeatStrip& strip) {
       const double v = strip.values.at(r * strip.columns.size() + c);
       const Colour colour = strip.diverging ? signed_colour(v / limit) : magnitude_colour(v / limit);
       const bool pale = 0.2126f * colour[0] + 0.7152f * colour[1] + 0.0722f * colour[2] < 0.45f;
-      text += std::isfinite(v) ? std::string("<td") + (pale ? " class=\"pale\"" : "") + " style=\"background:" +
-                                     hex(colour) + "\">" + print("%.2f", v) + "</td>"
+      text += std::isfinite(v) ? std::string("<td") + (pale ? " class=\"pale\"" : "") +
+                                     " style=\"background:" + hex(colour) + "\">" + cell_text(v, limit) + "</td>"
                                : "<td>\u2013</td>";
     }
     text += "</tr>";

@@ -2,6 +2,7 @@
 // radius_m=35mm.
 #include <sstream>
 
+#include "base/assignment.h"
 #include "base/error.h"
 #include "base/quantity.h"
 #include "scene/mechanisms.h"
@@ -47,10 +48,7 @@ std::pair<const mechanism::Mechanism*, manifest::MechanismUse> parse_mechanism(c
   manifest::MechanismUse use;
   std::istringstream items(colon == std::string::npos ? "" : text.substr(colon + 1));
   for (std::string item; std::getline(items, item, ',');) {
-    const std::size_t equals = item.find('=');
-    if (equals == std::string::npos)
-      throw Error(Exit::usage, place, "\"" + item + "\" is not NAME=VALUE", "type, say, " + id + ":NAME=VALUE");
-    const std::string name = item.substr(0, equals), value = item.substr(equals + 1);
+    const auto [name, value] = parse_assignment(item, place, "type, say, " + id + ":NAME=VALUE");
     if (name == "on")
       use.on.push_back(value);
     else

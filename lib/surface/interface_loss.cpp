@@ -138,6 +138,30 @@ struct LossTable {
 
 namespace {
 
+// Where a direction lies in the blocks of a grid.
+struct Place {
+  struct Read {
+    double value, rise;  // to the next azimuth
+  };
+  std::size_t at, next = 0;  // next: from one azimuth to the other; 0 where there is one
+  double by_cosine, by_azimuth = 0;
+
+  Place(const Grid& grid, Vec3 w) {
+    const Cell c = cell(std::sqrt(std::abs(w.z)), grid.cosines);
+    at = c.low, by_cosine = c.share;
+    if (grid.isotropic()) return;
+    const double s2 = w.x * w.x + w.y * w.y;
+    const Cell q = cell(s2 > 0 ? std::abs(w.x) / std::sqrt(s2) : 1, grid.azimuths);
+    at += q.low * grid.cosines, by_azimuth = q.share, next = grid.cosines;
+  }
+  Read read(const double* block) const {
+    const double *low = block + at, *high = low + next, value = low[0] + (low[1] - low[0]) * by_cosine;
+    if (next == 0) return {value, 0};
+    const double rise = high[0] + (high[1] - high[0]) * by_cosine - value;
+    return {value + rise * by_azimuth, rise};
+  }
+};
+
 const LossTable& table_of(Slopes kind, bool isotropic) {
   static const LossTable ggx(Slopes::ggx, isotropic_grid), beckmann(Slopes::beckmann, isotropic_grid),
       ggx_axes(Slopes::ggx, anisotropic_grid), beckmann_axes(Slopes::beckmann, anisotropic_grid);
@@ -191,24 +215,9 @@ InterfaceLoss InterfaceLoss::of(Slopes kind, const Roughness& roughness, double 
 }
 
 double InterfaceLoss::towards(Vec3 w) const {
-  const Grid& grid = table_->grid;
-  const Cell c = cell(std::sqrt(std::abs(w.z)), grid.cosines);
-  Cell q;
-  if (!grid.isotropic()) {
-    const double s2 = w.x * w.x + w.y * w.y;
-    q = cell(s2 > 0 ? std::abs(w.x) / std::sqrt(s2) : 1, grid.azimuths);
-  }
-  const std::size_t at = q.low * grid.cosines + c.low;
+  const Place place(table_->grid, w);
   double sum = 0;
-  for (std::size_t k = 0; k < count_; ++k) {
-    const double* low = corners_[k].values + at;
-    double value = low[0] + (low[1] - low[0]) * c.share;
-    if (q.share > 0) {
-      const double* high = low + grid.cosines;
-      value += (high[0] + (high[1] - high[0]) * c.share - value) * q.share;
-    }
-    sum += corners_[k].share * value;
-  }
+  for (std::size_t k = 0; k < count_; ++k) sum += corners_[k].share * place.read(corners_[k].values).value;
   return sum;
 }
 
@@ -249,27 +258,14 @@ InterfaceLossSlopes InterfaceLossSlopes::of(Slopes kind, double alpha, double an
 }
 
 LossSlopes InterfaceLossSlopes::towards(Vec3 w) const {
-  const Grid& grid = table_->grid;
-  const Cell c = cell(std::sqrt(std::abs(w.z)), grid.cosines);
-  Cell q;
-  if (!grid.isotropic()) {
-    const double s2 = w.x * w.x + w.y * w.y;
-    q = cell(s2 > 0 ? std::abs(w.x) / std::sqrt(s2) : 1, grid.azimuths);
-  }
-  const std::size_t at = q.low * grid.cosines + c.low;
+  const Place place(table_->grid, w);
   LossSlopes sum;
   for (std::size_t k = 0; k < count_; ++k) {
-    const double* low = corners_[k].values + at;
-    double value = low[0] + (low[1] - low[0]) * c.share, rise = 0;
-    if (!grid.isotropic()) {
-      const double* high = low + grid.cosines;
-      rise = high[0] + (high[1] - high[0]) * c.share - value;
-      value += rise * q.share;
-    }
+    const auto [value, rise] = place.read(corners_[k].values);
     sum.value += corners_[k].share * value;
     sum.by_alpha += corners_[k].by_alpha * value;
     sum.by_anisotropy += corners_[k].by_anisotropy * value;
-    sum.by_cosine += corners_[k].share * rise * static_cast<double>(grid.azimuths - 1);
+    sum.by_cosine += corners_[k].share * rise * static_cast<double>(table_->grid.azimuths - 1);
   }
   return sum;
 }

@@ -29,7 +29,7 @@ def of_energy(alpha, f0):
     return (1 - a) * ((1 - b) * e[i, j] + b * e[i, j + 1]) + a * ((1 - b) * e[i + 1, j] + b * e[i + 1, j + 1])
 
 def residual(x):
-    f0, alpha, albedo = max(x[0], 1e-12), x[1], x[2:]
+    f0, alpha, albedo = np.clip(x[0], 1e-12, 0.2), np.clip(x[1], 0.02, 1), x[2:]  # lm knows no bounds
     eta = (1 + np.sqrt(f0)) / (1 - np.sqrt(f0))
     t = np.sqrt(1 - (1 - c2) / (eta * eta))
     s, p = (c - eta * t) / (c + eta * t), (eta * c - t) / (eta * c + t)
@@ -38,7 +38,11 @@ def residual(x):
     gloss = (s * s + p * p) * a2 / (4 * np.pi * q * q * (co * np.sqrt(ci * ci + a2 * si2) + ci * np.sqrt(co * co + a2 * so2)))
     e = of_energy(alpha, f0)
     base = (1 - np.interp(ti, nodes, e[1:])) * (1 - np.interp(to, nodes, e[1:])) / ((1 - e[0]) * np.pi)
-    return (measured - np.log1p(weight[:, None] * (gloss[:, None] + base[:, None] * albedo))).ravel()
+    model = weight[:, None] * (gloss[:, None] + base[:, None] * albedo)
+    if model.min() > -0.5:
+        return (measured - np.log1p(model)).ravel()
+    # As the program does: the tangent of the logarithm where a trial of lm takes the albedo far below zero.
+    return (measured - np.where(model > -0.5, np.log1p(np.maximum(model, -0.5)), np.log(0.5) + 2 * (model + 0.5))).ravel()
 
 start = np.array([0.02, 0.4] + [0.5] * bands)
 best = None

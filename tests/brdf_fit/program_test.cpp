@@ -129,6 +129,41 @@ TEST_F(BrdfFit, BadValues) {
           {"bad.csv:2: sigma", "no standard uncertainty"});
 }
 
+TEST_F(BrdfFit, BadUnits) {
+  const auto in_radians = [](auto& r) {
+    for (std::size_t k = 0; k < 4; ++k) r[k] *= pi / 180;
+  };
+  refused("radians called degrees", "bad.csv", table(in_radians), {}, 65,
+          {"no angle is above 3.14 deg; if these are radians", "--angles rad", "--mirror"});
+  refused("nothing but zeros", "bad.csv", table([](auto& r) { r[4] = 0; }), {}, 65, {"no value above zero in 42 rows"});
+  refused("metres called nanometres", "bad.csv",
+          "theta_i [deg],phi_i [deg],theta_o [deg],phi_o [deg],wavelength [nm],f\n10,0,10,180,5.5e-7,1\n", {}, 65,
+          {"bad.csv:2: wavelength", "5.5e-07 nm is none of light"});
+  refused("no number in a .brdf", "bad.brdf", "1\n550\nfoo bar\n", {}, 65, {"bad.brdf:3", "\"foo\" is no number"});
+  refused("no row in a .brdf", "bad.brdf", "1\n550\n0.1 0\n", {}, 65, {"bad.brdf:3", "1 wavelengths and 5 numbers"});
+}
+
+// Values a million times too large put every number at a bound: doubted, not believed, and no crash.
+TEST_F(BrdfFit, DoubtsValuesInAnotherUnit) {
+  for (const double scale : {100.0, 1e6}) {
+    write("bright.csv", table([scale](auto& r) { r[4] *= scale; }));
+    const Ended ended =
+        run({"--starts", "0", "--lobes", "1", "--isotropic", "--model", "coated-diffuse", "bright.csv"});
+    EXPECT_EQ(ended.status, 2) << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr("a constant would err less. Are the values a BRDF in 1/sr?"));
+  }
+  write("pi.csv", table([](auto& r) { r[4] = 0.11 * pi * (1 + 0.1 * std::sin(r[2])); }));
+  const Ended ended = run({"--starts", "0", "--mirror", "180", "--model", "diffuse", "pi.csv"});
+  EXPECT_THAT(ended.err, HasSubstr("brighter than a surface that returns all light"));
+}
+
+TEST_F(BrdfFit, SaysWhatItLeavesOutAndWhatLooksWrong) {
+  write("holes.csv", table([](auto& r) { r[4] = r[2] == 30 ? -1 : r[4]; }));
+  const Ended ended = run({"--starts", "0", "--folds", "0", "--model", "diffuse", "--mirror", "0", "holes.csv"});
+  EXPECT_THAT(ended.err, HasSubstr("6 of 42 pairs of directions are left out: 6 with a negative value"));
+  EXPECT_THAT(ended.err, HasSubstr("That looks like the other convention"));
+}
+
 TEST_F(BrdfFit, BadColumns) {
   refused("missing", "bad.csv", "theta_i [deg],theta_o [deg],f\n10,20,1\n", {}, 65,
           {"no column for phi_i", "--columns phi_i"});
@@ -156,6 +191,25 @@ TEST_F(BrdfFit, BadFiles) {
   refused("binary as text", "bad.csv", std::string("a,b\0c\n", 6), {}, 65, {"zero byte"});
   EXPECT_EQ(run({"none.csv"}).status, 66);
   refused("reconstruction without a place", "good.csv", table(), {"--reconstruct"}, 64, {"--merl FILE, or --out DIR"});
+}
+
+// Known before the fits begin, which take their time.
+TEST_F(BrdfFit, NamesAndFilesThatAreThere) {
+  std::filesystem::create_directories(folder_.path() / "a");
+  std::filesystem::create_directories(folder_.path() / "o");
+  write("t.csv", table()), write("a/t.csv", table()), write("o/t.csv", "mine\n");
+  const Ended same = run({"--out", "p", "t.csv", "a/t.csv"});
+  EXPECT_EQ(same.status, 65);
+  EXPECT_THAT(same.err, HasSubstr("would be called \"t\""));
+  const Ended there = run({"--out", "o", "t.csv"});
+  EXPECT_EQ(there.status, 73);
+  EXPECT_THAT(there.err, HasSubstr("o/t.csv: exists; --force"));
+  EXPECT_EQ(read_file(folder_.path() / "o/t.csv"), "mine\n");
+  // A name is no path.
+  write("few.csv", header + "20,0,20,180,0.5\n40,0,40,180,0.6\n40,0,20,0,0.1\n");
+  run({"--model", "coated-diffuse", "--mirror", "180", "--name", "../u", "--out", "q", "few.csv"});
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "q/.._u.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "u.csv"));
 }
 
 // Three samples and five numbers: nothing is told, and the reason is said.

@@ -60,6 +60,7 @@ struct Session {
     pattern().file = manifest::add_file(document, folder / "bits.txt", "bits");
   }
   Measured run() {
+    if (corner_rows.empty()) return measure(document, name, {}, options);
     write_file(folder / "corners.csv", "image,corner,u_px,v_px\n" + corner_rows);
     return measure(document, name, read_marks(folder / "corners.csv", document), options);
   }
@@ -151,6 +152,21 @@ const std::vector<Refusal> refusals{
      "puts corner 0 at (9, 90) px, outside the picture of 80 x 80 px"},
     {"NoCornerAnywhere", [](Session& s) { s.corner_rows = "before,0,9.5,9.5\n"; },
      "in which the sample's place is known"},
+    {"NothingMarkedAndAPatternThatIsItsOwnTurn", [](Session& s) { s.corner_rows.clear(); },
+     "which of its corners is corner 0"},
+    {"NothingMarkedAndTheSampleReachesTheRim",
+     [](Session& s) {
+       s.corner_rows.clear();
+       for (const char* id : {"before", "after"}) {
+         io::Image picture(80, 80, {"Y"});
+         for (int y = 0; y < 80; ++y)
+           for (int x = 0; x < 80; ++x) picture.at(x, y, 0) = (x / 10 + y / 10) % 2 == 0 ? 0.8f : 0.2f;
+         io::write_picture(s.folder / (std::string(id) + ".exr"), picture);
+         s.document.files.erase(id);
+         manifest::add_file(s.document, s.folder / (std::string(id) + ".exr"), id);
+       }
+     },
+     "does not stand out from the picture's rim, or reaches it"},
     {"CellsBelowThreePixels",
      [](Session& s) {
        s.corner_rows.clear();

@@ -171,7 +171,6 @@ void render_placement(const SampleWorld& world, int placement, const std::filesy
 
 // Corners as a person marks them in the first, the middle and the last image.
 void mark_corners(const SampleWorld& world, Random& random, manifest::Document& document) {
-  const camera::CameraModel camera(camera_of(world), "camera");
   manifest::Table& table = document.tables["corners"];
   table.columns = {{"image", ""}, {"corner", ""}, {"u_px", "px"}, {"v_px", "px"}, {"sigma_px", "px"}};
   table.rows = manifest::Value::array();
@@ -179,9 +178,7 @@ void mark_corners(const SampleWorld& world, Random& random, manifest::Document& 
   for (int placement = 0; placement < 2; ++placement)
     for (const std::size_t k : {std::size_t{0}, n / 2, n - 1})
       for (int corner = 0; corner < 4; ++corner) {
-        const Vec2 p = world.pattern.corner_m(corner);
-        const Vec2 pixel = *camera.project(inverse(camera_at(world, world.tilts_rad[k])) *
-                                           (world_from_pattern(world, placement) * Vec3{p.x, p.y, 0}));
+        const Vec2 pixel = true_corner_px(world, placement, k, corner);
         table.rows.push_back(
             manifest::Value(manifest::Value::Array{(placement == 0 ? "before-" : "after-") + std::to_string(k), corner,
                                                    pixel.x + world.corner_px * random.normal(),
@@ -227,6 +224,13 @@ manifest::Document photographed(const SampleWorld& world, const std::filesystem:
     pattern.file = manifest::add_file(document, folder / "pattern.txt", "pattern");
   }
   return document;
+}
+
+Vec2 true_corner_px(const SampleWorld& world, int placement, std::size_t tilt, int corner) {
+  const camera::CameraModel camera(camera_of(world), "camera");
+  const Vec2 p = world.pattern.corner_m(corner);
+  return *camera.project(inverse(camera_at(world, world.tilts_rad[tilt])) *
+                         (world_from_pattern(world, placement) * Vec3{p.x, p.y, 0}));
 }
 
 double true_michelson(const SampleWorld& world, int placement, std::size_t tilt) {

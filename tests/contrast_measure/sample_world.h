@@ -35,6 +35,9 @@ SampleWorld data_matrix_world(const std::string& text, std::size_t defects, std:
 // "after", and the table "corners" of marks in three images of each. `with_text`: the pattern is known.
 manifest::Document photographed(const SampleWorld& world, const std::filesystem::path& folder, bool with_text = true);
 
+// Where a corner of the pattern lies in the picture of that placement and tilt.
+Vec2 true_corner_px(const SampleWorld& world, int placement, std::size_t tilt, int corner);
+
 // The signed Michelson contrast of the two classes' nominal surfaces, each over the whole pattern, from the surfaces
 // themselves: of the image of that placement and tilt.
 double true_michelson(const SampleWorld& world, int placement, std::size_t tilt);

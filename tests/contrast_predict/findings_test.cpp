@@ -11,10 +11,11 @@ namespace {
 
 using namespace contrast;
 
-Prediction experiment(double alpha_u, double alpha_v, Definition definition = Definition::difference) {
+Prediction experiment(double alpha_u, double alpha_v, Definition definition = Definition::difference,
+                      double walls = 0) {
   PredictOptions o{.varied = {ridge_angles()}};
   o.experiment.definition = definition;
-  return predict(ridged(alpha_u, alpha_v), o);
+  return predict(ridged(alpha_u, alpha_v, 5, 0, walls), o);
 }
 
 // "Maximum contrast for zero tilting angle and decreasing contrast when the camera is tilted."
@@ -57,6 +58,22 @@ TEST(ContrastFindings, HoldForNarrowLobes) {
         EXPECT_NE(best_ridge, "5") << alpha_u << " " << alpha_v;
       }
     }
+}
+
+// The published model lets walls swallow what they meet. Walls that reflect like facets change no finding, at any of
+// these roughnesses: they add where facets are dark.
+TEST(ContrastFindings, StandWithWallsThatReflect) {
+  for (const double alpha : {0.05, 0.08, 0.1}) {
+    const Prediction without = experiment(alpha, alpha), with = experiment(alpha, alpha, Definition::difference, 1);
+    for (const char* over : {"tilt", "ridge_rad"}) {
+      const Means before = means_over(without, over), after = means_over(with, over);
+      EXPECT_EQ(before.label[largest(before)], after.label[largest(after)]) << alpha << " " << over;
+    }
+    const Means pair = means_over(with, "rotation");
+    EXPECT_GT(pair.mean[0].value, pair.mean[1].value) << alpha;
+    EXPECT_GT(with.mean.value, without.mean.value) << alpha;
+    EXPECT_LT(with.mean.value, 1.06 * without.mean.value) << alpha;
+  }
 }
 
 // Michelson's contrast has none of them: for Gaussian slopes log(a / b) = 2 h tan(theta_r) / alpha^2 for both pairs,

@@ -12,10 +12,12 @@ inline manifest::Document document_of(const std::string& surface) {
 inline contrast::Specimen specimen_of(const std::string& surface) {
   return contrast::Specimen(document_of(surface), "s");
 }
-inline contrast::Specimen ridged(double alpha_u, double alpha_v, double ridge_degrees = 5, double azimuth_rad = 0) {
+inline contrast::Specimen ridged(double alpha_u, double alpha_v, double ridge_degrees = 5, double azimuth_rad = 0,
+                                 double walls = 0) {
   return specimen_of("{\"model\": \"ridged\", \"ridge_rad\": " + std::to_string(ridge_degrees * pi / 180) +
                      ", \"alpha_u\": " + std::to_string(alpha_u) + ", \"alpha_v\": " + std::to_string(alpha_v) +
-                     ", \"azimuth_rad\": " + std::to_string(azimuth_rad) + "}");
+                     ", \"azimuth_rad\": " + std::to_string(azimuth_rad) + ", \"walls\": " + std::to_string(walls) +
+                     "}");
 }
 // The ridge angles of the experiment.
 inline contrast::Varied ridge_angles() {

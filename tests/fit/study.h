@@ -46,7 +46,9 @@ inline std::map<std::string, Cover> coverage(const Truth& truth, int repetitions
       const auto& parameters = model.info().parameters;
       std::size_t place = 0;
       while (parameters[place].name != n.name) ++place;
-      const double is = values.v[place][n.band == goniometry::whole_sample ? 0 : static_cast<int>(n.band)];
+      double is = values.v[place][n.band == goniometry::whole_sample ? 0 : static_cast<int>(n.band)];
+      // Of a direction near a bound either end of the line may be stated.
+      if (n.name == "azimuth_rad") is = n.value + std::remainder(is - n.value, pi);
       const bool held = n.low <= is && is <= n.high;
       for (const std::string& key : {std::string(), n.name}) {
         if (n.at != goniometry::FittedNumber::At::inside) ++cover[key].lost;

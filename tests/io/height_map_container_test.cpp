@@ -9,12 +9,12 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/random.h"
 #include "data.h"
 #include "io/exr.h"
 #include "io/height_map.h"
 #include "io/little_endian.h"
 #include "io/md5.h"
+#include "io/random_map.h"
 
 namespace gonio::io {
 namespace {
@@ -153,14 +153,6 @@ TEST(X3p, ForgedAndDamagedArchivesAreRefusedInALine) {
   std::string flipped = good;  // the archive's own checksum tells
   flipped[good.find("PK\x01\x02") - 5] ^= 1;
   EXPECT_THAT(refusal(flipped), HasSubstr("damaged"));
-}
-
-HeightMap random_map() {
-  HeightMap map{7, 5, 2e-6, 3e-6, {}};
-  Random random(4);
-  for (int i = 0; i < 35; ++i) map.z_m.push_back(1e-6 * random.normal());
-  map.z_m[8] = std::nan("");
-  return map;
 }
 
 TEST(HeightMap, WhatIsWrittenIsReadAgain) {

@@ -8,9 +8,9 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/random.h"
 #include "data.h"
 #include "io/little_endian.h"
+#include "io/random_map.h"
 
 namespace gonio::io {
 namespace {
@@ -74,14 +74,6 @@ TEST(HeightMap, RecordedFilesHaveTheRoughnessThatAnotherProgramFinds) {
   EXPECT_NEAR(disc.step_x_m, 19.6e-9, 0.05e-9);
   EXPECT_NEAR(roughness(disc, false).sq, 0.1192e-6, 1e-10);
   EXPECT_NEAR(roughness(disc, true).sq, 0.0557e-6, 1e-10);
-}
-
-HeightMap random_map() {
-  HeightMap map{7, 5, 2e-6, 3e-6, {}};
-  Random random(4);
-  for (int i = 0; i < 35; ++i) map.z_m.push_back(1e-6 * random.normal());
-  map.z_m[8] = std::nan("");
-  return map;
 }
 
 TEST(HeightMap, SurfRoundTrip) {

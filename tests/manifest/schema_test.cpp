@@ -54,17 +54,28 @@ TEST_F(SchemaTest, AcceptsThePracticeRecordings) {
 }
 
 TEST_F(SchemaTest, AndProgramsRefuseTheSame) {
-  for (const char* text :
-       {R"({"gonio":2})", R"({})", R"({"gonio":1,"camera":{}})", R"({"gonio":1,"cameras":{"c":{"fx":1}}})",
-        R"({"gonio":1,"cameras":{"c":{"width_px":0}}})", R"({"gonio":1,"cameras":{"c":{"model":"fish"}}})",
-        R"({"gonio":1,"images":[{}]})", R"({"gonio":1,"images":{"id":"a"}})",
-        R"({"gonio":1,"goniometer":{"s":{"radius_m":0.1}}})", R"({"gonio":1,"contrasts":[{"action":"guess"}]})",
-        R"({"gonio":1,"surface_fits":{"s":{"model":"diffuse","rms":-1}}})", R"({"gonio":1,"patterns":{"p":{"rows":0}}})",
-        R"({"gonio":1,"sequences":{"s":{"frames":60}}})", R"({"gonio":1,"reconstructions":[{"id":"a"}]})",
-        R"({"gonio":1,"evaluations":[{"id":"a","flips":[{"frame":1,"kind":"odd"}]}]})",
-        R"({"gonio":1,"lights":{"l":{"model":"pont"}}})", R"({"gonio":1,"meshes":{"m":{"sphere":{"r":1}}}})",
-        R"({"gonio":1,"images":[{"id":"a","noise":{"gain":0,"read":0}}]})",
-        R"({"gonio":1,"surfaces":{"s":{"model":"diffuse","albedo":"red"}}})"}) {
+  for (const char* text : {R"({"gonio":2})",
+                           R"({})",
+                           R"({"gonio":1,"camera":{}})",
+                           R"({"gonio":1,"cameras":{"c":{"fx":1}}})",
+                           R"({"gonio":1,"cameras":{"c":{"width_px":0}}})",
+                           R"({"gonio":1,"cameras":{"c":{"model":"fish"}}})",
+                           R"({"gonio":1,"images":[{}]})",
+                           R"({"gonio":1,"images":{"id":"a"}})",
+                           R"({"gonio":1,"goniometer":{"s":{"radius_m":0.1}}})",
+                           R"({"gonio":1,"contrasts":[{"action":"guess"}]})",
+                           R"({"gonio":1,"surface_fits":{"s":{"model":"diffuse","rms":-1}}})",
+                           R"({"gonio":1,"patterns":{"p":{"rows":0}}})",
+                           R"({"gonio":1,"reliefs":{"r":{"file":"f","width":0}}})",
+                           R"({"gonio":1,"reliefs":{"r":{"width":4}}})",
+                           R"({"gonio":1,"ground_noises":{"g":{"white_m":-1}}})",
+                           R"({"gonio":1,"sequences":{"s":{"frames":60}}})",
+                           R"({"gonio":1,"reconstructions":[{"id":"a"}]})",
+                           R"({"gonio":1,"evaluations":[{"id":"a","flips":[{"frame":1,"kind":"odd"}]}]})",
+                           R"({"gonio":1,"lights":{"l":{"model":"pont"}}})",
+                           R"({"gonio":1,"meshes":{"m":{"sphere":{"r":1}}}})",
+                           R"({"gonio":1,"images":[{"id":"a","noise":{"gain":0,"read":0}}]})",
+                           R"({"gonio":1,"surfaces":{"s":{"model":"diffuse","albedo":"red"}}})"}) {
     EXPECT_FALSE(accepted(text)) << text;
     EXPECT_FALSE(valid(text)) << text;
   }

@@ -1,6 +1,7 @@
 // Fits of reflectance.
 //   prove-reflectance fits [MODEL...]         the recordings: every candidate with its errors, and which is chosen
-//   prove-reflectance coverage REPETITIONS    known surfaces: how often intervals hold the truth
+//   prove-reflectance coverage REPETITIONS [NAME]   known surfaces, or those whose name begins so: how often intervals
+//                                             hold the truth
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -98,14 +99,22 @@ const tests::Truth truths[] = {
     {"metal",
      "anisotropic",
      {{"f0", {0.9, 0.6, 0.3}}, {"alpha", all(0.3)}, {"anisotropy", all(0.5)}, {"azimuth_rad", all(0.6)}}},
+    {"glossy",
+     "anisotropic",
+     {{"albedo", {0.3, 0.2, 0.1}},
+      {"f0", all(0.06)},
+      {"alpha", all(0.2)},
+      {"anisotropy_0", all(0.1)},
+      {"anisotropy_45", all(0.05)}}},
     {"interfaced-diffuse", "", {{"albedo", {0.8, 0.5, 0.2}}, {"eta", all(1.5)}, {"alpha", all(0.12)}}},
 };
 
 // Every truth at 1 % and 3 % of noise, stated and not: the share of 95 % intervals that hold the truth.
-int coverage_of_truths(int repetitions) {
+int coverage_of_truths(int repetitions, const std::string& named) {
   bool honest = true;
   std::printf("%-32s %5s %-9s %s\n", "truth", "noise", "scale", "share of intervals that hold the truth");
-  for (const tests::Truth& truth : truths)
+  for (const tests::Truth& truth : truths) {
+    if (!(truth.model + " " + truth.variant).starts_with(named)) continue;
     for (const double noise : {0.01, 0.03})
       for (const auto scale : {goniometry::Scale::noise, goniometry::Scale::log1p}) {
         const bool stated = scale == goniometry::Scale::noise;
@@ -122,6 +131,7 @@ int coverage_of_truths(int repetitions) {
         std::printf("\n");
         std::fflush(stdout);
       }
+  }
   return honest ? 0 : 1;
 }
 
@@ -131,8 +141,9 @@ int coverage_of_truths(int repetitions) {
 int main(int argc, char** argv) {
   try {
     if (argc > 1 && std::strcmp(argv[1], "fits") == 0) return gonio::fits_of_recordings(argc, argv);
-    if (argc == 3 && std::strcmp(argv[1], "coverage") == 0) return gonio::coverage_of_truths(std::stoi(argv[2]));
-    std::fprintf(stderr, "usage: prove-reflectance fits [MODEL...] | coverage REPETITIONS\n");
+    if ((argc == 3 || argc == 4) && std::strcmp(argv[1], "coverage") == 0)
+      return gonio::coverage_of_truths(std::stoi(argv[2]), argc == 4 ? argv[3] : "");
+    std::fprintf(stderr, "usage: prove-reflectance fits [MODEL...] | coverage REPETITIONS [NAME]\n");
     return 64;
   } catch (const gonio::Error& e) {
     std::fprintf(stderr, "prove-reflectance: %s\n", e.what());

@@ -64,35 +64,75 @@ TEST(Basis, IsTheSingularValueDecomposition) {
   EXPECT_NEAR((centred - rebuilt).norm(), left, 0.02 * left + 1e-3);
 }
 
-// `rest` is the brute-force leave-one-out projection, ridge and all, plus what was not kept.
+// Remainders of every sample when its group is left out: the group less the others' mean, projected on the others less
+// theirs, with a ridge; brute force.
+Eigen::MatrixXd brute_remainders(const Eigen::MatrixXd& levels, const std::vector<int>& group) {
+  const Eigen::Index n = levels.rows();
+  const Eigen::MatrixXd centred = levels.rowwise() - levels.colwise().mean();
+  const double lambda = 1e-6 * centred.squaredNorm() / (n - 1);
+  Eigen::MatrixXd remainders(n, levels.cols());
+  for (Eigen::Index s = 0; s < n; ++s) {
+    std::vector<Eigen::Index> others;
+    for (Eigen::Index o = 0; o < n; ++o)
+      if (group[o] != group[s]) others.push_back(o);
+    const Eigen::MatrixXd rows = levels(others, Eigen::all);
+    const Eigen::RowVectorXd mean = rows.colwise().mean();
+    const Eigen::MatrixXd off = rows.rowwise() - mean;
+    Eigen::MatrixXd gram = off * off.transpose();
+    gram.diagonal().array() += lambda;
+    const Eigen::RowVectorXd own = levels.row(s) - mean;
+    remainders.row(s) = own - gram.ldlt().solve(off * own.transpose()).transpose() * off;
+  }
+  return remainders;
+}
+
 TEST(Basis, RestIsWhatOtherMaterialsDoNotGive) {
-  const std::size_t materials = 8;
-  const auto tables = goniometry::tables_of(some_materials(materials), small_bins);
+  auto materials = some_materials(8);
+  for (auto& material : materials) std::ranges::replace(material.name, ' ', '-');
+  const auto tables = goniometry::tables_of(materials, small_bins);
   const Basis basis(*tables, "test", {.most_components = 6, .truncation = 0});
   const Eigen::MatrixXd levels = levels_of(*tables);
+  std::vector<int> group;
+  for (Eigen::Index s = 0; s < levels.rows(); ++s) group.push_back(static_cast<int>(s / 3));
+  const Eigen::MatrixXd remainders = brute_remainders(levels, group).cwiseAbs();
   const Eigen::MatrixXd centred = levels.rowwise() - levels.colwise().mean();
-  const Eigen::Index n = centred.rows();
-  const double lambda = 1e-6 * (centred * centred.transpose()).trace() / (n - 1);
-  Eigen::MatrixXd remainders(n, levels.cols());
-  for (std::size_t m = 0; m < materials; ++m) {
-    Eigen::MatrixXd others(n - 3, levels.cols());
-    others << centred.topRows(3 * m), centred.bottomRows(n - 3 - 3 * m);
-    Eigen::MatrixXd gram = others * others.transpose();
-    gram.diagonal().array() += lambda;
-    for (Eigen::Index s = 3 * m; s < Eigen::Index(3 * m + 3); ++s) {
-      const Eigen::VectorXd weights = gram.ldlt().solve(others * centred.row(s).transpose());
-      remainders.row(s) = (centred.row(s) - weights.transpose() * others).cwiseAbs();
-    }
-  }
   for (std::size_t c = 0; c < basis.cells().count(); c += 5) {
     double kept = 0;
     for (const float q : basis.q(c)) kept += q * q;
-    const double all = centred.col(c).squaredNorm() / (n - 1);
+    const double all = centred.col(c).squaredNorm() / (levels.rows() - 1);
     std::vector<double> sorted(remainders.col(c).begin(), remainders.col(c).end());
     std::ranges::sort(sorted);
-    const double unexplained = sorted[n * 95 / 100] / 1.96;
+    const double unexplained = sorted[levels.rows() * 95 / 100] / 1.96;
     ASSERT_NEAR(basis.rest()[c], std::sqrt(unexplained * unexplained + std::max(0.0, all - kept)),
                 0.02 * basis.rest()[c] + 1e-3);
+    ASSERT_EQ(basis.rest_without(c, 2), basis.rest()[c]);
+  }
+}
+
+// Where classes hold several materials: the mean over classes of what the other classes do not give them.
+TEST(Basis, RestIsWhatOtherClassesDoNotGive) {
+  const auto tables = goniometry::tables_of(some_materials(18), small_bins);
+  const Basis basis(*tables, "test", {.most_components = 8, .truncation = 0});
+  ASSERT_EQ(basis.classes(), 11u);
+  const Eigen::MatrixXd levels = levels_of(*tables);
+  std::vector<int> group;
+  for (Eigen::Index s = 0; s < levels.rows(); ++s) group.push_back(static_cast<int>(basis.class_of(s)));
+  const Eigen::MatrixXd remainders = brute_remainders(levels, group);
+  const Eigen::MatrixXd centred = levels.rowwise() - levels.colwise().mean();
+  for (std::size_t c = 0; c < basis.cells().count(); c += 5) {
+    double kept = 0;
+    for (const float q : basis.q(c)) kept += q * q;
+    const double dropped = std::max(0.0, centred.col(c).squaredNorm() / (levels.rows() - 1) - kept);
+    std::vector<double> squares(11), counts(11);
+    for (Eigen::Index s = 0; s < levels.rows(); ++s)
+      squares[group[s]] += remainders(s, c) * remainders(s, c), ++counts[group[s]];
+    double all = 0, without = 0;
+    for (int k = 0; k < 11; ++k) {
+      all += squares[k] / counts[k] / 11;
+      if (k != 3) without += squares[k] / counts[k] / 10;
+    }
+    ASSERT_NEAR(basis.rest()[c], std::sqrt(all + dropped), 0.02 * basis.rest()[c] + 1e-3);
+    ASSERT_NEAR(basis.rest_without(c, 3), std::sqrt(without + dropped), 0.02 * basis.rest()[c] + 1e-3);
   }
 }
 
@@ -150,7 +190,9 @@ class BasisFolder : public testing::Test {
 };
 
 TEST_F(BasisFolder, IsThatOfItsTables) {
-  const Basis read = goniometry::basis_of_folder(folder.path()), made = basis_of(some_materials(5));
+  auto materials = some_materials(5);
+  for (auto& material : materials) std::ranges::replace(material.name, ' ', '-');  // classes of their own, as files are
+  const Basis read = goniometry::basis_of_folder(folder.path()), made = basis_of(materials);
   ASSERT_EQ(read.components(), made.components());
   for (std::size_t c = 0; c < read.cells().count(); ++c) {
     ASSERT_NEAR(read.mean()[c] + read.log_reference()[c], made.mean()[c] + made.log_reference()[c], 1e-4);
@@ -222,7 +264,7 @@ class SavedBasis : public testing::Test {
   }
   ScratchFolder folder;
   std::filesystem::path file = folder.path() / "small.basis";
-  Basis basis = basis_of(some_materials(6));
+  Basis basis = basis_of(some_materials(12));
 };
 
 TEST_F(SavedBasis, ComesBackWhole) {
@@ -235,6 +277,8 @@ TEST_F(SavedBasis, ComesBackWhole) {
   EXPECT_TRUE(std::ranges::equal(read.mean(), basis.mean()));
   EXPECT_TRUE(std::ranges::equal(read.log_reference(), basis.log_reference()));
   EXPECT_TRUE(std::ranges::equal(read.rest(), basis.rest()));
+  for (std::size_t c = 0; c < read.cells().count(); c += 50)
+    EXPECT_EQ(read.rest_without(c, 1), basis.rest_without(c, 1));
   EXPECT_TRUE(std::ranges::equal(read.all_q(), basis.all_q()));
   EXPECT_TRUE(std::ranges::equal(read.scores(), basis.scores()));
   EXPECT_EQ(read.kept_share(), basis.kept_share());

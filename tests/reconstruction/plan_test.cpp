@@ -70,6 +70,23 @@ TEST_F(Plans, StayWithinReach) {
   EXPECT_NEAR(plan.sigma_ln.back(), plan_quality(basis(), plan.pairs).sigma_ln, 1e-6);
 }
 
+// What is measured counts: the best pairs to add leave less open than pairs that were best without it, and as much as
+// all rows together say.
+TEST_F(Plans, AddToWhatIsMeasured) {
+  const TableTruth truth(some_materials(30)[4], small_bins);
+  Random random(4);
+  const auto samples = measured(truth, random_pairs(8, random), 0.02, 6);
+  PlanOptions options;
+  options.given = &samples;
+  const auto added = goniometry::plan(basis(), 4, options), fresh = goniometry::plan(basis(), 4);
+  EXPECT_LT(added.sigma_ln.back(), plan_quality(basis(), fresh.pairs, options).sigma_ln);
+  EXPECT_LT(added.sigma_ln.back(), fresh.sigma_ln.back());
+  EXPECT_LT(added.before, fresh.before);
+  EXPECT_GT(added.before, added.sigma_ln.front());
+  EXPECT_NEAR(added.sigma_ln.back(), plan_quality(basis(), added.pairs, options).sigma_ln, 1e-6);
+  EXPECT_NEAR(added.before, plan_quality(basis(), {}, options).sigma_ln, 1e-6);
+}
+
 TEST_F(Plans, AreWritten) {
   const auto plan = goniometry::plan(basis(), 4);
   const std::string csv = plan_csv(plan);

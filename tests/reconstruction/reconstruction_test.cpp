@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 
 #include "base/error.h"
 #include "reconstruction/small_basis.h"
@@ -74,9 +75,10 @@ TEST_F(FromFewDirections, MapIsTheClosedForm) {
     for (std::size_t cell = 0; cell < basis().cells().count(); cell += 97) {
       Eigen::VectorXd q(k);
       for (Eigen::Index i = 0; i < k; ++i) q[i] = basis().q(cell)[i];
+      const std::size_t place = place_of(basis().cells(), cell), at = 3 * place + band;
+      const double u = (place / 12 / 12 + 0.5) / 24, v = (place / 12 % 12 + 0.5) / 12;
       const double rest = fit.misfit * basis().rest()[cell],
-                   sigma = out.widening * std::sqrt(q.dot(s * q) + rest * rest);
-      const std::size_t at = 3 * place_of(basis().cells(), cell) + band;
+                   sigma = out.widenings.at(u, v) * std::sqrt(q.dot(s * q) + rest * rest);
       ASSERT_NEAR(out.sigma_ln[at], sigma, 2e-3 * sigma + 1e-5);
       const double x = q.dot(c) + basis().mean()[cell], w = basis().cells().weight(cell);
       const double f = std::max(0.0, (std::exp(x + basis().log_reference()[cell]) - 0.001) / w);
@@ -135,6 +137,7 @@ TEST_F(FromFewDirections, IntervalsHoldForMaterialsLeftOut) {
   for (std::size_t left_out = 0; left_out < 10; ++left_out) {
     auto others = materials();
     others.erase(others.begin() + left_out);
+    for (auto& other : others) std::ranges::replace(other.name, ' ', '-');  // classes of their own
     const Basis without = basis_of(others);
     const TableTruth truth(materials()[left_out], small_bins);
     const Samples samples = measured(truth, goniometry::plan(without, 10).pairs, 0.02, 100 + left_out);
@@ -154,13 +157,94 @@ TEST_F(FromFewDirections, IntervalsHoldForMaterialsLeftOut) {
   EXPECT_LE(within / all, 0.98);
 }
 
+// A class of models that the basis has not seen, neither in its components nor in what they leave open: each is left
+// out in turn, its materials are reconstructed. Between 90 and 98.5 % of the cells of all lie within 95 % intervals.
+// Fixed seeds: no false alarms.
+TEST_F(FromFewDirections, IntervalsHoldForClassesLeftOut) {
+  const auto all_materials = some_materials(28);
+  double within = 0, all = 0;
+  for (std::uint32_t left_out = 0; left_out < basis().classes(); ++left_out) {
+    std::vector<goniometry::Material> others, strange;
+    for (std::size_t m = 0; m < all_materials.size(); ++m)
+      (basis().class_of(3 * m) == left_out ? strange : others).push_back(all_materials[m]);
+    const Basis without = basis_of(others);
+    const auto pairs = goniometry::plan(without, 10).pairs;
+    for (std::size_t m = 0; m < std::min<std::size_t>(2, strange.size()); ++m) {
+      const TableTruth truth(strange[m], small_bins);
+      const auto out = reconstruct(without, measured(truth, pairs, 0.02, 200 + m), {.energy = false});
+      for (std::size_t cell = 0; cell < without.cells().count(); cell += 3) {
+        const std::size_t place = place_of(without.cells(), cell);
+        for (int band = 0; band < 3; ++band) {
+          const auto [lower, upper] = interval(out, place, band);
+          const double f = truth.cell(cell)[band];
+          within += f >= lower && f <= upper;
+          ++all;
+        }
+      }
+    }
+  }
+  EXPECT_GE(within / all, 0.90);
+  EXPECT_LE(within / all, 0.985);
+}
+
+// Names with a number at their end after a blank are of one class; others are classes of their own.
+TEST_F(FromFewDirections, ClassesAreToldByNames) {
+  EXPECT_EQ(basis().classes(), 11u);
+  EXPECT_EQ(basis().class_of(3 * 1), basis().class_of(3 * 4));  // varnish 1 and 4
+  auto singly = materials();
+  for (auto& material : singly) std::ranges::replace(material.name, ' ', '-');
+  EXPECT_EQ(basis_of(singly).classes(), 30u);
+}
+
+TEST_F(FromFewDirections, SaysWhatTheDirectionsLeaveOpen) {
+  const TableTruth truth(materials()[4], small_bins);
+  const auto few = reconstruct(basis(), measured(truth, goniometry::plan(basis(), 1).pairs, 0.02, 5));
+  EXPECT_THAT(few.notes, testing::Contains(HasSubstr("--plan N with this table")));
+  const auto many = reconstruct(basis(), measured(truth, goniometry::plan(basis(), 20).pairs, 0.02, 5));
+  EXPECT_THAT(many.notes, testing::Not(testing::Contains(HasSubstr("--plan N"))));
+  EXPECT_LT(many.channels[1].open_ln, 0.5 * few.channels[1].open_ln);
+}
+
+// Regions: the kept factors at their middles, between neighbours in between.
+TEST(Widening, IsLogarithmicBetweenRegions) {
+  goniometry::Widening w;
+  for (std::size_t i = 0; i < w.regions; ++i) w.s[i] = 1 + 0.5 * i;
+  EXPECT_NEAR(w.at(0.125, 1 / 6.0), 1, 1e-12);
+  EXPECT_NEAR(w.at(0, 0), 1, 1e-12);
+  EXPECT_NEAR(w.at(1, 1), w.s[11], 1e-12);
+  EXPECT_NEAR(w.at(0.375, 0.5), w.s[4], 1e-12);
+  EXPECT_NEAR(w.at(0.25, 0.5), std::sqrt(w.s[1] * w.s[4]), 1e-12);
+  EXPECT_NEAR(w.at(0.375, 1 / 3.0), std::sqrt(w.s[3] * w.s[4]), 1e-12);
+  EXPECT_EQ(goniometry::Widening::region_of(0.99, 0.99), 11u);
+  EXPECT_EQ(goniometry::Widening::region_of(1, 0), 9u);
+  EXPECT_EQ(goniometry::Widening::region_of(0.3, 0.7), 5u);
+}
+
+// Classes whose spreads are lognormal, ln tau of the width 0.5: the next one lies within +-1.96 s in 95 % of its
+// errors, over 4000 sets of 11 classes to 0.7 % (its standard deviation over these sets is 0.2 %).
+TEST(Widening, HoldsForTheNextClass) {
+  Random random(5);
+  double covered = 0;
+  constexpr int sets = 300;
+  std::vector<double> tau(11);
+  for (int set = 0; set < sets; ++set) {
+    for (double& t : tau) t = std::exp(0.3 + 0.5 * random.normal());
+    const double next = std::exp(0.3 + 0.5 * random.normal());
+    covered += std::erf(1.96 * goniometry::widening_of_next_class(tau) / next / std::sqrt(2.0)) / sets;
+  }
+  EXPECT_NEAR(covered, 0.95, 0.02);
+  const std::vector<double> same(5, 1.7);
+  EXPECT_NEAR(goniometry::widening_of_next_class(same), 1.7, 1e-6);
+}
+
 TEST_F(FromFewDirections, MoreDirectionsTellMore) {
   double last = 1e9;
   for (const std::size_t n : {1u, 4u, 16u}) {
+    const auto pairs = goniometry::plan(basis(), n).pairs;
     double sum = 0, expected = 0;
     for (std::size_t m = 0; m < 10; ++m) {
       const TableTruth truth(materials()[m], small_bins);
-      const auto out = reconstruct(basis(), measured(truth, goniometry::plan(basis(), n).pairs, 0.01, m));
+      const auto out = reconstruct(basis(), measured(truth, pairs, 0.01, m), {.energy = false});
       for (std::size_t cell = 0; cell < truth.cells().count(); cell += 11) {
         const std::size_t at = 3 * place_of(truth.cells(), cell) + 1;
         const double w = truth.cells().weight(cell);

@@ -124,6 +124,33 @@ TEST(Reflectance, ResidueOnRidges) {
   EXPECT_EQ(named(problem, explain(problem, {})), "");
 }
 
+// Walls that reflect like facets, all there is, on a sample that was rotated: told from residue, with a sigma although
+// the truth lies at the bound; what the manifest is given lies within it. With residue as well, both are named.
+TEST(Reflectance, WallsOfRidges) {
+  Paint paint{.base = R"({"model": "ridged", "ridge_rad": {"value": 0.28, "free": true},
+    "alpha_u": {"value": 0.15, "free": true}, "alpha_v": {"value": 0.2, "free": true}})"};
+  paint.turns = {0, 90};
+  for (const double share : {0.0, 0.3}) {
+    const auto truth = registered(
+        "ridged", {{"ridge_rad", 0.25}, {"alpha_u", 0.2}, {"alpha_v", 0.15}, {"walls", 1}, {"residue_share", share}});
+    const World world = paint_world(paint, truth, 14);
+    const TablesProblem problem = world.problem();
+    const Explanation e = explain(problem, {.dummies = 4});
+    EXPECT_EQ(named(problem, e), share > 0 ? "surface.residue surface.walls" : "surface.walls") << e.sentence;
+    const Estimate *walls = estimate_of(problem, e, "surface.walls@s.walls"),
+                   *residue = estimate_of(problem, e, "surface.residue@s.residue_share");
+    ASSERT_TRUE(walls != nullptr && (share == 0 || residue != nullptr)) << e.sentence;
+    EXPECT_NEAR(walls->value, 1, 3.5 * walls->sigma);
+    EXPECT_GT(walls->sigma, 0);
+    if (share > 0) {
+      EXPECT_NEAR(residue->value, share, 3.5 * residue->sigma);
+    }
+    manifest::Document document = world.document();
+    problem.apply(e, document);
+    EXPECT_LE(document.mechanisms.at("surface.walls").parameters.at("walls").scalar(), 1);
+  }
+}
+
 // Without excitation the colour is the base's own; with it a band glows.
 TEST(Reflectance, Fluorescence) {
   Paint paint;

@@ -1,4 +1,5 @@
-// roughness, lobe and relief, from GONIO_BIN, as a person runs them: what they print and write, what they refuse.
+// roughness, lobe and relief, from GONIO_BIN, as a person runs them: alone and in a pipe, what they write, what they
+// refuse.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +8,7 @@
 #include "base/atomic_file.h"
 #include "data.h"
 #include "io/height_map.h"
-#include "manifest/value.h"
+#include "manifest/document.h"
 #include "process.h"
 #include "relief/ridges.h"
 
@@ -15,31 +16,89 @@ namespace gonio::relief {
 namespace {
 
 using testing::HasSubstr;
+using Words = std::vector<std::string>;
 
-TEST(Roughness, PrintsFiguresAndWritesTableAndPage) {
+// The manifest that a program wrote, read as the next one would.
+manifest::Document document_of(const tests::Ended& ended, const tests::ScratchFolder& folder) {
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  return manifest::parse_document(ended.out, "stdout", folder.path());
+}
+
+TEST(Roughness, EntersFiguresAndWritesTableAndPage) {
   const tests::ScratchFolder folder;
   io::write_height_map(folder / "wave.x3p", map_of(sinusoid(2e-6, 1e-4, 1e-4)));
   const auto ended =
       tests::run({"roughness", "--levelling", "none", "--csv", "r.csv", "--html", "r.html", "wave.x3p"}, folder.path());
-  ASSERT_EQ(ended.status, 0) << ended.err;
-  const manifest::Value v = manifest::parse_json(ended.out, "stdout");
-  const manifest::Value& map = v.find("roughness")->as_array().at(0);
-  EXPECT_NEAR(map.find("parameters")->find("Sq")->find("value")->as_number(), 1e-6, 1e-12);
-  EXPECT_EQ(map.find("levelling")->as_string(), "none");
+  const manifest::Document d = document_of(ended, folder);
+  const manifest::ReliefMap& map = d.reliefs.at("wave");
+  EXPECT_NEAR(map.parameters.at("Sq").value, 1e-6, 1e-12);
+  EXPECT_EQ(map.parameters.at("Sq").unit, "m");
+  EXPECT_EQ(map.treatment->levelling, "none");
+  EXPECT_EQ(map.width, 128);
+  EXPECT_EQ(map.normals.size(), 2u);
+  EXPECT_EQ(d.files.at(map.file).path, "wave.x3p");
+  EXPECT_EQ(d.files.at(map.file).bytes, std::filesystem::file_size(folder / "wave.x3p"));
   EXPECT_THAT(read_file(folder / "r.csv"), HasSubstr("\"wave.x3p\",Sa,m,"));
   EXPECT_THAT(read_file(folder / "r.html"), HasSubstr("Sku"));
+}
+
+TEST(Roughness, PassesOnWhatItDoesNotKnowAndTheMapsAreItsOwn) {
+  const tests::ScratchFolder folder;
+  std::filesystem::create_directory(folder / "a"), std::filesystem::create_directory(folder / "b");
+  for (const char* name : {"a/m.sur", "b/m.sur"})
+    io::write_height_map(folder / name, map_of(sinusoid(2e-6, 1e-4, 1e-4, 32)));
+  write_file(folder / "scene.json",
+             R"({"gonio": 1, "surfaces": {"s": {"model": "diffuse", "albedo": 0.25}}, "x-lab": 7})");
+  const auto ended = tests::run({"roughness", "-i", "scene.json", "a/m.sur", "b/m.sur"}, folder.path());
+  const manifest::Document d = document_of(ended, folder);
+  EXPECT_EQ(d.reliefs.size(), 2u);
+  EXPECT_EQ(d.reliefs.at("m-2").file, "m-2");
+  EXPECT_TRUE(d.surfaces.contains("s"));
+  EXPECT_THAT(ended.out, HasSubstr("\"x-lab\": 7"));
+  const auto again = tests::run({"roughness", "--relief", "m-2", "--levelling", "none"}, folder.path(), ended.out);
+  const manifest::Document e = document_of(again, folder);
+  EXPECT_EQ(e.reliefs.size(), 2u);
+  EXPECT_EQ(e.reliefs.at("m").treatment->levelling, "plane");
+  EXPECT_EQ(e.reliefs.at("m-2").treatment->levelling, "none");
+}
+
+TEST(Roughness, RemembersWhatAPicturesNumbersMean) {
+  const tests::ScratchFolder folder;
+  io::write_height_map(folder / "m.exr", map_of(sinusoid(2e-6, 1e-4, 1e-4, 32)));
+  const auto scaled = tests::run({"roughness", "--levelling", "none", "--unit", "0.5m", "m.exr"}, folder.path());
+  EXPECT_NEAR(document_of(scaled, folder).reliefs.at("m").parameters.at("Sq").value, 0.5e-6, 1e-11);
+  const auto next = tests::run({"roughness", "--levelling", "none"}, folder.path(), scaled.out);
+  EXPECT_NEAR(document_of(next, folder).reliefs.at("m").parameters.at("Sq").value, 0.5e-6, 1e-11);
 }
 
 TEST(Roughness, RefusesWhatIsNoMapInOneLine) {
   const tests::ScratchFolder folder;
   write_file(folder / "a.txt", "some words that are no heights");
+  write_file(folder / "empty.json", R"({"gonio": 1})");
+  write_file(folder / "old.json", R"({"roughness": []})");
   io::write_height_map(folder / "m.exr", map_of(sinusoid(2e-6, 1e-4, 1e-4)));
-  const auto text = tests::run({"roughness", "a.txt"}, folder.path());
-  EXPECT_EQ(text.status, 65);
-  EXPECT_THAT(text.err, HasSubstr("a.txt: is no height map that gonio reads"));
-  EXPECT_EQ(tests::run({"roughness", "none.sur"}, folder.path()).status, 66);
-  EXPECT_EQ(tests::run({"roughness", "--s-filter", "8", "m.exr"}, folder.path()).status, 64);
-  EXPECT_EQ(tests::run({"roughness"}, folder.path()).status, 64);
+  struct Wrong {
+    Words words;
+    int status;
+    const char* says;
+  };
+  for (const Wrong& wrong : {Wrong{{"roughness", "a.txt"}, 65, "a.txt: is no height map that gonio reads"},
+                             {{"roughness", "none.sur"}, 66, "none.sur"},
+                             {{"roughness", "--s-filter", "8", "m.exr"}, 64, "--s-filter"},
+                             {{"roughness"}, 66, "name a height map"},
+                             {{"roughness", "empty.json"}, 65, "empty.json#/reliefs: has no relief"},
+                             {{"roughness", "old.json"}, 65, "not a gonio manifest"},
+                             {{"roughness", "--relief", "m", "m.exr"}, 64, "leave one of the two out"},
+                             {{"roughness", "--html", "none/r.html", "m.exr"}, 73, "none"},
+                             {{"relief", "ground-noise"}, 66, "name a height map"},
+                             {{"relief", "noise", "--sq", "1um", "--to", "n.sur"}, 64, "--cell 0"},
+                             {{"relief", "sinusoid", "--amplitude", "1um", "--to", "n.tif"}, 64, "n.tif"},
+                             {{"lobe"}, 66, "name a height map"}}) {
+    const auto ended = tests::run(wrong.words, folder.path());
+    EXPECT_EQ(ended.status, wrong.status) << wrong.words.back() << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr(wrong.says));
+    EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << ended.err;
+  }
 }
 
 TEST(Lobe, OfAFlatMirrorIsOneCell) {
@@ -48,26 +107,92 @@ TEST(Lobe, OfAFlatMirrorIsOneCell) {
   const auto ended = tests::run({"lobe", "--facets", "metal", "--set", "f0=1", "--set", "alpha=0", "--paths", "640",
                                  "--incidence", "31deg", "--out", "o", "flat.sur"},
                                 folder.path());
-  ASSERT_EQ(ended.status, 0) << ended.err;
-  const manifest::Value v = manifest::parse_json(ended.out, "stdout");
-  const manifest::Value& lobe = v.find("lobes")->as_array().at(0);
-  EXPECT_NEAR(lobe.find("reflected")->find("value")->as_array().at(0).as_number(), 1, 1e-12);
-  EXPECT_NEAR(lobe.find("peak")->find("theta_rad")->as_number(), 31 * pi / 180, 1e-12);
-  EXPECT_THAT(read_file(folder / "o/lobe-31.csv"), HasSubstr("theta_rad,phi_rad,f_r"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "o/lobe-31.png"));
-  for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--facets", "nope"},
-                                                {"--set", "alpha"},
-                                                {"--set", "alpha=-1"},
-                                                {"--facets", "dipole"},
-                                                {"--incidence", "45"},
-                                                {"--incidence", "90deg"}}) {
-    std::vector<std::string> words{"lobe"};
+  const manifest::Document d = document_of(ended, folder);
+  const manifest::ReliefLobe& lobe = d.reliefs.at("flat").lobes.at(0);
+  EXPECT_NEAR(lobe.reflected.at(0), 1, 1e-12);
+  EXPECT_NEAR(lobe.peak_theta_rad, 31 * pi / 180, 1e-12);
+  EXPECT_EQ(lobe.facets, "metal");
+  EXPECT_THAT(read_file(folder / "o/flat-lobe.csv"), HasSubstr("theta_i_rad,phi_i_rad,theta_o_rad,phi_o_rad,f_r"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "o/flat-lobe-31.png"));
+  for (const Words& wrong : {Words{"--facets", "nope"},
+                             {"--set", "alpha"},
+                             {"--set", "alpha=-1"},
+                             {"--facets", "dipole"},
+                             {"--incidence", "45"},
+                             {"--incidence", "90deg"}}) {
+    Words words{"lobe"};
     words.insert(words.end(), wrong.begin(), wrong.end());
     words.emplace_back("flat.sur");
     const auto refused = tests::run(words, folder.path());
     EXPECT_TRUE(refused.status == 64 || refused.status == 65) << wrong[1] << " " << refused.status << refused.err;
     EXPECT_EQ(std::ranges::count(refused.err, '\n'), 1) << refused.err;
   }
+}
+
+// relief | roughness | lobe: each adds its own, and the surface that comes out is the facets' model of the map's
+// slopes.
+TEST(Pipe, FromADesignToASurface) {
+  const tests::ScratchFolder folder;
+  const auto made = tests::run({"relief", "noise", "--sq", "0.5um", "--cell", "8um", "--step", "0.5um", "--points",
+                                "128", "--periodic", "--to", "n.x3p"},
+                               folder.path());
+  const auto design = document_of(made, folder);
+  EXPECT_EQ(design.reliefs.at("n").kind, "noise");
+  EXPECT_EQ(design.reliefs.at("n").design.at("cell_m"), std::vector<double>{8e-6});
+  const auto rough = tests::run({"roughness", "--levelling", "none"}, folder.path(), made.out);
+  const auto lobe = tests::run({"lobe", "--tiling", "repeated", "--paths", "64000", "--set", "alpha=0.05", "--out", "o",
+                                "--theta-cells", "18", "--phi-cells", "24"},
+                               folder.path(), rough.out);
+  const manifest::Document d = document_of(lobe, folder);
+  const manifest::ReliefMap& relief = d.reliefs.at("n");
+  EXPECT_EQ(relief.kind, "noise");
+  EXPECT_TRUE(relief.parameters.contains("Sa"));
+  EXPECT_EQ(relief.lobes.at(0).treatment.levelling, "none") << "as roughness was asked to take it";
+  ASSERT_EQ(relief.surface, "n");
+  const manifest::Surface& surface = d.surfaces.at("n");
+  const manifest::NormalsFit& normals = relief.normals.at(0);
+  EXPECT_EQ(surface.model, normals.distribution == "ggx" ? "conductor" : "beckmann-conductor");
+  EXPECT_NEAR(surface.parameters.at("alpha").scalar(), std::hypot(normals.alpha_u, 0.05), 1e-12);
+  EXPECT_NEAR(surface.sigma.at("alpha").at(0), normals.sigma.at("alpha_u").at(0), 1e-3);
+  // Half of it was seen by way of one facet; a microfacet model predicts that within a tenth of the logarithm.
+  EXPECT_LT(d.surface_fits.at("n").held_out_rms.value(), 0.3);
+  EXPECT_EQ(d.tables.at("n-lobe").surface, "n");
+  EXPECT_EQ(d.provenance.find("steps")->as_object().size(), 3u) << "one graph";
+}
+
+TEST(Pipe, GroundNoiseOfAReliefComesBack) {
+  const tests::ScratchFolder folder;
+  const auto made = tests::run(
+      {"relief", "noise", "--sq", "1um", "--cell", "8um", "--step", "1um", "--points", "192", "--to", "n.x3p"},
+      folder.path());
+  const auto fitted = tests::run({"relief", "ground-noise", "--parts", "1", "--layer", "18um", "--to", "again.x3p"},
+                                 folder.path(), made.out);
+  const manifest::Document d = document_of(fitted, folder);
+  const manifest::GroundNoiseFit& ground = d.ground_noises.at("ground");
+  EXPECT_EQ(ground.reliefs, Words{"n"});
+  EXPECT_EQ(ground.example, "again");
+  const manifest::GroundNoisePart& part = ground.parts.at(0);
+  EXPECT_LT(std::abs(part.sq_m - 1e-6), 4 * part.sigma.at("sq_m").at(0));
+  EXPECT_LT(std::abs(part.cell_m - 8e-6), 4 * part.sigma.at("cell_m").at(0));
+  EXPECT_NEAR(part.weight.value() / (part.sq_m / (0.1539 * 18e-6)), 1, 1e-3);
+  EXPECT_EQ(d.reliefs.at("again").kind, "noise");
+}
+
+// A file that has changed since is not what the manifest says; said of it again by the program that made it.
+TEST(Pipe, MapsThatChangedAreRefusedAndEnteredAnew) {
+  const tests::ScratchFolder folder;
+  const Words noise{"relief", "noise", "--sq",     "1um", "--cell", "8um",
+                    "--step", "1um",   "--points", "64",  "--to",   "n.x3p"};
+  tests::run(noise, folder.path());
+  const auto rough = tests::run({"roughness", "n.x3p"}, folder.path());
+  write_file(folder / "r.json", rough.out);
+  Words other = noise;
+  other.insert(other.end(), {"--seed", "9", "-i", "r.json"});
+  const auto anew = tests::run(other, folder.path());
+  EXPECT_TRUE(document_of(anew, folder).reliefs.at("n").parameters.empty()) << "figures of another map";
+  const auto stale = tests::run({"lobe", "r.json"}, folder.path());
+  EXPECT_EQ(stale.status, 65);
+  EXPECT_THAT(stale.err, HasSubstr("r.json#/files/n: \"n.x3p\" has "));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <fstream>
 
+#include "base/assignment.h"
 #include "base/error.h"
 #include "base/quantity.h"
 #include "base/text.h"
@@ -65,16 +66,8 @@ manifest::Value rows_of(const RawTable& raw) {
 
 std::vector<std::pair<std::string, std::string>> parse_pairs(const std::string& text, const std::string& place) {
   std::vector<std::pair<std::string, std::string>> pairs;
-  std::size_t at = 0;
-  while (at <= text.size()) {
-    const std::size_t end = std::min(text.find(',', at), text.size());
-    const std::string item = text.substr(at, end - at);
-    const auto equals = item.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == item.size())
-      throw Error(Exit::usage, place, "\"" + item + "\" is not NAME=VALUE", "separate several by commas");
-    pairs.emplace_back(item.substr(0, equals), item.substr(equals + 1));
-    at = end + 1;
-  }
+  for (const std::string& item : pieces(text, ','))
+    pairs.push_back(parse_assignment(item, place, "separate several by commas"));
   return pairs;
 }
 

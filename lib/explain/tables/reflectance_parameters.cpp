@@ -15,8 +15,9 @@ namespace {
 
 using Kind = ReflectanceSlot::Kind;
 
-constexpr std::array<const char*, 5> rendered = {"surface.diffuse-roughness", "surface.interface", "surface.specular",
-                                                 "surface.anisotropy", "surface.retro-reflection"};
+constexpr std::array<const char*, 7> rendered = {
+    "surface.diffuse-roughness", "surface.interface", "surface.specular", "surface.anisotropy",
+    "surface.retro-reflection",  "surface.residue",   "surface.walls"};
 // A fringe at 550 nm is 0.2 um of a film of index 1.35 and 0.14 um of one of 2.0. Films of lower and of higher index
 // than the interface's turn the phase the other way, and between the two nothing is seen.
 struct FilmClass {
@@ -27,6 +28,9 @@ constexpr std::array<FilmClass, 2> film_classes = {{{1.15, 1.35, 1.5, 0.12e-6, 5
 constexpr double thinnest_film_m = 0.02e-6;
 constexpr std::size_t fewest_bands_of_a_film = 5;  // fewer cannot tell fringes from any other colour of the gloss
 constexpr std::size_t ridge_sectors = 4;
+// A share that may be all there is, such as that of walls, is estimated from both sides of it: held at its bound it
+// would have no sigma. What the manifest is given is cut to the bound.
+constexpr double beyond_all = 0.25;
 constexpr double overlap = 1.5;  // of sectors: no azimuth lies at the limit of all that hold it
 
 void set_component(Rgb& rgb, std::size_t k, double value) {
@@ -64,7 +68,6 @@ class Collector {
     const SurfacePlaces places(*out_.full_model);
     if (places.film() && rows_.band_m.size() >= fewest_bands_of_a_film) film();
     if (places.ridges() && rotated()) ridges();
-    if (places.relief) residue();
     if (!rows_.band_m.empty() && varies(rows_.excitation)) fluorescence();
     return std::move(out_);
   }
@@ -187,12 +190,17 @@ class Collector {
   void rendered_mechanism(const mechanism::Mechanism& m) {
     if (scene::mechanism_targets(scratch_, m).empty()) return;
     const std::optional<std::size_t> own = parameter_place(*out_.base_model, m.parameters[0].name);
-    if (own && scratch_.surfaces[0].values.scalar(*own) != m.parameters[0].neutral) return;  // the base model has it
+    const auto stated = document_.surfaces.at(section_.surface).parameters.find(m.parameters[0].name);
+    const bool fitted = stated != document_.surfaces.at(section_.surface).parameters.end() && stated->second.free;
+    // The base model has it.
+    if (own && (fitted || scratch_.surfaces[0].values.scalar(*own) != m.parameters[0].neutral)) return;
     manifest::MechanismUse start;
     std::vector<std::pair<Parameter, ReflectanceSlot>> parameters;
     for (const mechanism::Parameter& info : m.parameters) {
       Parameter p = of_mechanism(m, info);
       if (info.name == "second_alpha") p.start = start_of_second_lobe(p);
+      if (&info == &m.parameters[0] && own && out_.base_model->info().parameters[*own].upper == info.upper)
+        p.upper += beyond_all * (info.upper - info.lower);
       // The signature vanishes where the base has no gloss; edits begin from where a search would.
       start.parameters[info.name] = manifest::Parameter(info.start);
       // Numbers that shape a term do not switch it on; those that vanish with it do.
@@ -272,14 +280,6 @@ class Collector {
            *std::max_element(column.begin(), column.end()) > *std::min_element(column.begin(), column.end());
   }
 
-  void residue() {
-    const mechanism::Mechanism& m = declared("surface.residue");
-    enter(m,
-          {{of_mechanism(m, m.parameters[0]), {Kind::residue, "residue_share", ReflectanceSlot::all, 0, ""}},
-           {of_mechanism(m, m.parameters[1]), {Kind::residue, "residue_alpha", ReflectanceSlot::all, 1, ""}}},
-          "");
-  }
-
   void fluorescence() {
     const mechanism::Mechanism& m = declared("surface.fluorescence");
     std::vector<std::pair<Parameter, ReflectanceSlot>> own;
@@ -335,7 +335,6 @@ ReflectanceState ReflectanceParameters::state(std::span<const double> values) co
     if (slot.kind == Kind::film && slot.which == 0 && values[p] > 0) s.film = {values[p], values[p + 1]};
     if (slot.kind == Kind::ridges && slot.which == 0 && values[p] > 0)
       s.ridges = {values[p], values[p + 1], values[p + 2]};
-    if (slot.kind == Kind::residue && slot.which == 0) s.residue = {values[p], values[p + 1]};
     if (slot.kind == Kind::fluorescence && slot.which == 0) s.fluorescence = {values[p], values[p + 1], values[p + 2]};
     if (slot.kind != Kind::base && slot.kind != Kind::mechanism) continue;
     const std::optional<std::size_t> at = parameter_place(*s.model, slot.name);

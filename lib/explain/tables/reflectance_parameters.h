@@ -1,10 +1,11 @@
 // Parameters of a reflectance table's forward model and where their values go: the free numbers of the base surface,
 // per band where they are colours, and those of the candidates.
 //
-// surface.diffuse-roughness, surface.interface, surface.specular, surface.anisotropy and surface.retro-reflection set
-// parameters of registered models, as `render` does (scene/mechanisms.h): the base model gives way to the smallest that
-// can express them all. surface.thin-film and surface.micro-ridges come as several candidates of one family, each with
-// its own range of thickness or azimuth: fringes and lobes have many local minima, and a range holds one of them.
+// surface.diffuse-roughness, surface.interface, surface.specular, surface.anisotropy, surface.retro-reflection,
+// surface.residue and surface.walls set parameters of registered models, as `render` does (scene/mechanisms.h): the
+// base model gives way to the smallest that can express them all; what it has free already is no candidate.
+// surface.thin-film and surface.micro-ridges come as several candidates of one family, each with its own range of
+// thickness or azimuth: fringes and lobes have many local minima, and a range holds one of them.
 //
 // A table whose scale is not trusted states a `gain` among its parameters, by which every reflectance is multiplied.
 #pragma once
@@ -16,11 +17,11 @@
 namespace gonio::explain::tables {
 
 struct ReflectanceSlot {
-  enum class Kind { base, gain, mechanism, film, ridges, residue, fluorescence };
+  enum class Kind { base, gain, mechanism, film, ridges, fluorescence };
   Kind kind = Kind::base;
   std::string name;        // of the surface model's parameter
   std::size_t band = all;  // base: a colour's band
-  std::size_t which = 0;   // film, ridges, residue, fluorescence: number of the parameter
+  std::size_t which = 0;   // film, ridges, fluorescence: number of the parameter
   std::string mechanism;   // id; empty for the base surface
   bool switches = false;   // mechanism: away from `neutral` it needs the full model
   double neutral = 0;

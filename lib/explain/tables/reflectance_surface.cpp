@@ -31,9 +31,6 @@ SurfacePlaces::SurfacePlaces(const surface::Model& model)
       f0(parameter_place(model, "f0")),
       alpha(parameter_place(model, "alpha")),
       retro(parameter_place(model, "retro")),
-      eta(parameter_place(model, "eta")),
-      k(parameter_place(model, "k")),
-      relief(eta && k && (parameter_place(model, "ridge_rad") || parameter_place(model, "amplitude_m"))),
       dielectric(f0 && model.info().parameters[*f0].components == 1) {}
 
 ReflectanceEvaluation::ReflectanceEvaluation(const ReflectanceState& state, const ReflectanceRows& rows)
@@ -113,21 +110,11 @@ double ReflectanceEvaluation::ridged(std::size_t row, std::size_t band, const Sh
   return state_.ridges.share * (fresnel(band, surface::half_cosine(wo, wi)) * lobe - gloss);
 }
 
-double ReflectanceEvaluation::residue(std::size_t row, std::size_t band) const {
-  const Vec3 wo = rows_.wo[row], wi = rows_.wi[row], h = surface::half_vector(wo, wi);
-  const surface::Values& values = state_.triples[band / 3];
-  const int component = static_cast<int>(band % 3);
-  return surface::fresnel_metal(surface::half_cosine(wo, wi), values.rgb(*places_.eta)[component],
-                                values.rgb(*places_.k)[component]) *
-         surface::Ggx(state_.residue.alpha).lobe(wo, wi, h);
-}
-
 double ReflectanceEvaluation::value(std::size_t row, std::size_t band, const Shared& shared) const {
   if (!(rows_.weight[row] > 0)) return 0;
   double f = shared.f[static_cast<int>(band % 3)];
   if (state_.film.film_m > 0) f = film(row, band, f, shared);
   if (state_.ridges.share > 0) f += ridged(row, band, shared);
-  if (state_.residue.share > 0) f += state_.residue.share * (residue(row, band) - f);
   const FluorescenceTerm& glow = state_.fluorescence;
   if (glow.emission > 0) {
     const double off = (rows_.band_m[band] - glow.centre_m) / glow.width_m;

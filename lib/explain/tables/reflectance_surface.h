@@ -1,14 +1,12 @@
-// A surface as reflectance tables see it: a registered model in any number of bands, and four terms that no registered
+// A surface as reflectance tables see it: a registered model in any number of bands, and three terms that no registered
 // model has.
 //   f = f_model
 //     + lobes (F_film - F) + base (T_film / T - 1)              surface.thin-film      surface/thin_film.h
 //     + ridge_share (F ridges - gloss)                          surface.micro-ridges   surface/ridges.h
-//     + residue_share (F residue - f_model)                              surface.residue        surface/microfacet.h
 //     + emission excitation exp(-(w - centre)^2 / 2 width^2) / pi                      surface.fluorescence
 // all of it times the gain of the table, 1 where reflectances are absolute.
 // gloss = lobes F is the model without its base, T = (1 - F(wi)) (1 - F(wo)), ridges the mean of saws that face either
-// way, residue the GGX lobe of lumps on an engineered relief, whose material it has. Every term is skipped, to the bit,
-// where its amount is zero.
+// way. Every term is skipped, to the bit, where its amount is zero.
 #pragma once
 #include <optional>
 #include <vector>
@@ -25,9 +23,6 @@ struct FilmTerm {
 struct RidgesTerm {
   double share = 0, tilt_rad = 0, azimuth_rad = 0;
 };
-struct ResidueTerm {
-  double share = 0, alpha = 0.5;
-};
 struct FluorescenceTerm {
   double emission = 0, centre_m = 0, width_m = 1;
 };
@@ -35,8 +30,7 @@ struct FluorescenceTerm {
 // Places of the parameters that the terms read, in a model's list; nothing where it has them not.
 struct SurfacePlaces {
   explicit SurfacePlaces(const surface::Model& model);
-  std::optional<std::size_t> albedo, f0, alpha, retro, eta, k;
-  bool relief = false;      // facets of an engineered structure, of the index eta + i k
+  std::optional<std::size_t> albedo, f0, alpha, retro;
   bool dielectric = false;  // f0 is one number: a clear interface
   bool film() const { return dielectric && alpha.has_value(); }
   bool ridges() const { return f0.has_value() && alpha.has_value(); }
@@ -48,7 +42,6 @@ struct ReflectanceState {
   std::vector<surface::Values> triples;  // bands 3 t, 3 t + 1, 3 t + 2 as red, green and blue of values t
   FilmTerm film;
   RidgesTerm ridges;
-  ResidueTerm residue;
   FluorescenceTerm fluorescence;
   double gain = 1;
 };
@@ -76,7 +69,6 @@ class ReflectanceEvaluation {
   double film(std::size_t row, std::size_t band, double f, const Shared& shared) const;
   double coated(std::size_t band, double cosine) const;  // Fresnel factor of film and interface
   double ridged(std::size_t row, std::size_t band, const Shared& shared) const;
-  double residue(std::size_t row, std::size_t band) const;
 
   const ReflectanceState& state_;
   const ReflectanceRows& rows_;

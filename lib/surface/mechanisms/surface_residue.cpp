@@ -1,6 +1,5 @@
-// surface.residue: lumps of material on an engineered relief. Equation: explain/tables/reflectance_surface.h.
-// Traced ridges with burrs are what it stands for (contrast/brute_force.h): a share of the facets is covered, and what
-// covers it reflects by slopes of its own, in no direction that the relief prefers.
+// surface.residue: lumps of material on an engineered relief. Equation: surface/residue.h, in every model that has
+// these parameters. Traced ridges with burrs are what it stands for (contrast/brute_force.h).
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {
@@ -11,9 +10,8 @@ const Mechanism& surface_residue() {
       .sentence = "Lumps of material on a micro-structure, such as burrs, flash or dust, cover part of its facets.",
       .typical = "5 to 60 % of the facets",
       .equation =
-          "f = (1 - residue_share) f + residue_share F D G2 / (4 cos_i cos_o), GGX of roughness residue_alpha about "
-          "the "
-          "sample's normal",
+          "f = (1 - residue_share) f + residue_share (F + (1 - F)^2 rho_d / pi) D G2 / (4 cos_i cos_o), GGX of "
+          "roughness residue_alpha about the sample's normal",
       .source = "conjectured in Luongo et al. 2017, section 5; Walter et al. 2007, equations 33 and 34",
       .stage = "surface",
       .target = Target::surface,
@@ -34,6 +32,8 @@ const Mechanism& surface_residue() {
                       .meaning = "roughness of what covers them; without effect where the share is 0"}},
       .conditions = {"surface.half-angle", "surface.incidence-angle", "surface.exitance-angle"},
       .mistaken_for = {{.with = "surface.specular", .told_apart = "turn the sample: residue has no direction"},
+                       {.with = "surface.walls",
+                        .told_apart = "turn the sample: light of walls comes back across the ridges alone"},
                        {.with = "roughness of the facets",
                         .told_apart = "between the lobes of facets and far from all of them"}},
   };

@@ -6,12 +6,14 @@
 // complex index eta + i k. The second term stands for light that entered and came back: as published, it leaves about
 // the mirror direction, like the first, and carries at most rho_d / pi of what entered. h is the half vector.
 // To it comes the share `walls` of what walls, as rough and of the same material, reflect by themselves and with a
-// facet (surface/ridge_walls.h); at 0, as published, they swallow what they meet. Reciprocal; reflects at most what
-// arrives. albedo() is a sum over 512 samples. mueller() is that of one reflection.
+// facet (surface/ridge_walls.h); at 0, as published, they swallow what they meet. Residue may cover a share of all
+// (surface/residue.h). Reciprocal; reflects at most what arrives. albedo() is a sum over 512 samples. mueller() is that
+// of one reflection.
 #include <optional>
 
 #include "surface/facet_slopes.h"
 #include "surface/interface_albedo.h"
+#include "surface/residue.h"
 #include "surface/ridge_facets.h"
 #include "surface/ridge_walls.h"
 #include "surface/ridges.h"
@@ -28,7 +30,10 @@ enum : std::size_t {
   k_index,
   rho_index,
   azimuth_index,
-  walls_index
+  walls_index,
+  residue_index,
+  residue_alpha_index,
+  parameter_count
 };
 
 Ridges ridges_of(const Values& values) {
@@ -59,7 +64,7 @@ class Ridged final : public Model {
         .id = "ridged",
         .sentence = "Parallel micro-ridges of a saw's profile with rough facets.",
         .source = "Luongo et al. 2017, equations 2-6; Heitz 2014",
-        .parameters = with_facet_material(
+        .parameters = with_residue(with_facet_material(
             {{.name = "ridge_rad",
               .unit = "rad",
               .preset = {},
@@ -89,13 +94,18 @@ class Ridged final : public Model {
               .preset = 0,
               .lower = 0,
               .upper = 1,
-              .meaning = "what the walls reflect, as a share of what facets would: 0 leaves them out"}}),
+              .meaning = "what the walls reflect, as a share of what facets would: 0 leaves them out"}})),
     };
     return info;
   }
 
   Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
     if (wo.z <= 0 || wi.z <= 0) return {};
+    return Residue(values, residue_index).over(relief(values, wo, wi), material_of(values), wo, wi);
+  }
+
+  // Ridges alone.
+  static Rgb relief(const Values& values, Vec3 wo, Vec3 wi) {
     const FacetMaterial material = material_of(values);
     double once = lobe(ridges_of(values), wo, wi);
     const double share = values.scalar(walls_index);
@@ -117,7 +127,7 @@ class Ridged final : public Model {
 
   // The facet's material by its three numbers per band, its geometry by the others.
   Rgb evaluate_with_slopes(const Values& values, Vec3 wo, Vec3 wi, std::span<Rgb> slopes) const override {
-    std::fill_n(slopes.begin(), walls_index + 1, Rgb{});
+    std::fill_n(slopes.begin(), parameter_count, Rgb{});
     if (wo.z <= 0 || wi.z <= 0) return {};
     const double share = values.scalar(walls_index), cosine = half_cosine(wo, wi);
     const Shape facet = shape_of(values, 0), wall = shape_of(values, 1);
@@ -131,6 +141,7 @@ class Ridged final : public Model {
       if (two.amount.v > 0)
         add({share, 1}, two.amount / (wo.z * wi.z), two.facet_cosine, two.wall_cosine, values, value, slopes);
     }
+    cover(values, wo, wi, value, slopes);
     return value;
   }
 
@@ -138,6 +149,16 @@ class Ridged final : public Model {
   // variance) whose mirrored light a smooth wall turns over, and the cosine for what these miss.
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
     if (wo.z <= 0) return {};
+    const Vec3 wi = Residue(values, residue_index).direction(wo, u, u_lobe, [&](double which) {
+      return drawn_by_relief(values, wo, u, which);
+    });
+    if (wi.z <= 0) return {};
+    const double density = pdf(values, wo, wi);
+    if (!(density > 0)) return {};
+    return {wi, evaluate(values, wo, wi) * (wi.z / density), density};
+  }
+
+  static Vec3 drawn_by_relief(const Values& values, Vec3 wo, Vec2 u, double u_lobe) {
     const Chances chance = chances(values, wo);
     const auto drawn = [&](const Ridges& saw, double turn) {
       const Vec3 o = saw.to_facet(wo), w = mirrored(o, saw.visible_normal(o, u));
@@ -154,10 +175,7 @@ class Ridged final : public Model {
       const double r = std::sqrt(u.x), phi = 2 * pi * u.y;
       wi = {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0, 1 - u.x))};
     }
-    if (wi.z <= 0) return {};
-    const double density = pdf(values, wo, wi);
-    if (!(density > 0)) return {};
-    return {wi, evaluate(values, wo, wi) * (wi.z / density), density};
+    return wi;
   }
 
   double pdf(const Values& values, Vec3 wo, Vec3 wi) const override {
@@ -171,7 +189,7 @@ class Ridged final : public Model {
     if (chance.facet > 0) sum += chance.facet * density(ridges_of(values), 1);
     if (chance.wall > 0) sum += chance.wall * density(walls_of(values), 1);
     if (chance.both > 0) sum += chance.both * density(wide_ridges_of(values), -1);
-    return sum;
+    return Residue(values, residue_index).pdf(sum, wo, wi);
   }
 
   optics::MuellerRgb mueller(const Values& values, Vec3 wo, Vec3 wi) const override {
@@ -282,6 +300,22 @@ class Ridged final : public Model {
         at(slopes[i < 3 ? ridge_index + i : azimuth_index], c) += share.of * slope;
       }
       at(slopes[walls_index], c) += share.slope * f.v * amount.v;
+    }
+  }
+
+  // Residue::over().
+  static void cover(const Values& values, Vec3 wo, Vec3 wi, Rgb& value, std::span<Rgb> slopes) {
+    const double share = values.scalar(residue_index);
+    const Dual<1> lumps =
+        GgxOf<Dual<1>>(Dual<1>::unknown(values.scalar(residue_alpha_index), 0)).lobe(wo, wi, half_vector(wo, wi));
+    for (std::size_t i = 0; i < residue_index; ++i) slopes[i] = slopes[i] * (1 - share);
+    for (int c = 0; c < 3; ++c) {
+      const Dual<3> f = reflects(values, c, half_cosine(wo, wi), false).of;
+      const auto at = [c](Rgb& v) -> double& { return c == 0 ? v.x : c == 1 ? v.y : v.z; };
+      for (std::size_t i = 0; i < 3; ++i) at(slopes[eta_index + i]) += share * f.d[i] * lumps.v;
+      at(slopes[residue_index]) = f.v * lumps.v - at(value);
+      at(slopes[residue_alpha_index]) = share * f.v * lumps.d[0];
+      at(value) += share * at(slopes[residue_index]);
     }
   }
 };

@@ -5,13 +5,14 @@
 // to Luongo et al. 2017 for the scheme (models/ridged.cpp). Density of normals and masking: surface/sinusoid.h, where
 // it is said how it differs from the published one, which `projections` brings back. F is Fresnel's factor for the
 // complex index eta + i k. Directions are drawn by way of normals: a place on the period, and a slope of the roughness
-// there. Reciprocal. albedo() is a sum over 512 drawn normals.
+// there. Residue may cover a share of it (surface/residue.h). Reciprocal. albedo() is a sum over 512 drawn normals.
 #include <algorithm>
 #include <cmath>
 
 #include "base/progress.h"
 #include "surface/interface_albedo.h"
 #include "surface/microfacet.h"
+#include "surface/residue.h"
 #include "surface/ridge_facets.h"
 #include "surface/sinusoid.h"
 #include "surface/surface.h"
@@ -28,7 +29,8 @@ enum : std::size_t {
   k_index,
   rho_index,
   azimuth_index,
-  projections_index
+  projections_index,
+  residue_index  // its share; its roughness follows
 };
 
 double slope(const Values& values, std::size_t wavelength) {
@@ -65,7 +67,7 @@ class Sinusoidal final : public Model {
         .id = "sinusoidal",
         .sentence = "A two-dimensional sinusoidal micro-structure with rough facets.",
         .source = "Luongo et al. 2020, appendix B; Heitz 2014",
-        .parameters = with_facet_material(
+        .parameters = with_residue(with_facet_material(
             {{.name = "amplitude_m",
               .unit = "m",
               .preset = {},
@@ -101,7 +103,7 @@ class Sinusoidal final : public Model {
               .preset = 0,
               .lower = 0,
               .upper = 1,
-              .meaning = "0: masking derived from the pattern's slopes; 1: the published product of projections"}}),
+              .meaning = "0: masking derived from the pattern's slopes; 1: the published product of projections"}})),
     };
     return info;
   }
@@ -110,17 +112,25 @@ class Sinusoidal final : public Model {
     if (wo.z <= 0 || wi.z <= 0) return {};
     const Sinusoid pattern = pattern_of(values);
     const Vec3 h = half_vector(wo, wi);
-    return material_of(values).reflects(dot(wo, h)) * pattern.lobe(wo, wi, h, values.scalar(projections_index));
+    const FacetMaterial material = material_of(values);
+    return Residue(values, residue_index)
+        .over(material.reflects(dot(wo, h)) * pattern.lobe(wo, wi, h, values.scalar(projections_index)), material, wo,
+              wi);
   }
 
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
     if (wo.z <= 0) return {};
     const Sinusoid pattern = pattern_of(values);
-    const Vec3 wi = mirrored(wo, normal_from(pattern, u, u_lobe));
+    const Residue residue(values, residue_index);
+    const Vec3 wi =
+        residue.direction(wo, u, u_lobe, [&](double which) { return mirrored(wo, normal_from(pattern, u, which)); });
     if (wi.z <= 0) return {};
     const Vec3 h = half_vector(wo, wi);
-    const double cosine = dot(wo, h), density = pattern.density_of_normals(h) * h.z / (4 * cosine);
-    if (!(cosine > 0 && density > 0)) return {};
+    const double cosine = dot(wo, h);
+    if (!(cosine > 0)) return {};
+    const double relief = pattern.density_of_normals(h) * h.z / (4 * cosine), density = residue.pdf(relief, wo, wi);
+    if (!(density > 0)) return {};
+    if (!residue.none()) return {wi, evaluate(values, wo, wi) * (wi.z / density), density};
     const double masked = pattern.masking(wo, wi, values.scalar(projections_index));
     return {wi, material_of(values).reflects(cosine) * (masked * wi.z * cosine / h.z), density};
   }
@@ -129,7 +139,8 @@ class Sinusoidal final : public Model {
     if (wo.z <= 0 || wi.z <= 0) return 0;
     const Vec3 h = half_vector(wo, wi);
     const double cosine = dot(wo, h);
-    return cosine > 0 ? pattern_of(values).density_of_normals(h) * h.z / (4 * cosine) : 0;
+    if (!(cosine > 0)) return 0;
+    return Residue(values, residue_index).pdf(pattern_of(values).density_of_normals(h) * h.z / (4 * cosine), wo, wi);
   }
 
   optics::MuellerRgb mueller(const Values& values, Vec3 wo, Vec3 wi) const override {
@@ -151,7 +162,7 @@ class Sinusoidal final : public Model {
         sum += material_of(values).reflects(cosine) *
                (pattern.masking(wo, wi, values.scalar(projections_index)) * wi.z * cosine / h.z);
     }
-    return sum / count;
+    return Residue(values, residue_index).albedo(sum / count, material_of(values), wo);
   }
 
   std::shared_ptr<const Prepared> prepare(const Values& values, const std::filesystem::path&,

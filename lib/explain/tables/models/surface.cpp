@@ -60,7 +60,6 @@ class BoundSurface final : public BoundModel {
       const Kind kind = p_.slots[columns[c]].kind;
       // A term that is off has left nothing to keep.
       const bool keeps = (kind == Kind::film && here.film.film_m > 0) || kind == Kind::fluorescence ||
-                         (kind == Kind::residue && here.residue.share > 0) ||
                          (kind == Kind::ridges && here.ridges.share > 0);
       for (const auto& [column, band] : together) {
         done[column] = 1;
@@ -183,7 +182,12 @@ class BoundSurface final : public BoundModel {
     if (!(sigma[p] > 0)) return;
     manifest::MechanismUse& use = document.mechanisms[slot.mechanism];
     if (std::find(use.on.begin(), use.on.end(), p_.surface) == use.on.end()) use.on.push_back(p_.surface);
-    use.parameters[slot.name] = manifest::Parameter(values[p]);
+    double value = values[p];
+    if (slot.kind == Kind::mechanism) {
+      const auto& own = mechanism::find_mechanism(slot.mechanism)->parameters;
+      value = std::min(value, std::ranges::find(own, slot.name, &mechanism::Parameter::name)->upper);
+    }
+    use.parameters[slot.name] = manifest::Parameter(value);
     use.sigma[slot.name] = {sigma[p]};
   }
 
