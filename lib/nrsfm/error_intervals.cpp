@@ -13,6 +13,8 @@
 namespace gonio::nrsfm {
 namespace {
 
+constexpr double fewest_blocks = 7;
+
 struct Distance {
   double d = 0;
   std::size_t frame = 0;
@@ -104,14 +106,17 @@ double value_of(const Frames& frames, const std::vector<double>& weight, Measure
   }
 }
 
-Eigen::Index block_of(const Frames& frames, const IntervalOptions& options) {
-  const auto count = static_cast<double>(frames.each.size());
-  if (options.block > 0) return std::min<Eigen::Index>(options.block, static_cast<Eigen::Index>(count));
+// Frames over which errors are correlated.
+double memory_of(const Frames& frames) {
   std::vector<double> errors;
   for (const Frame& f : frames.each)
     if (f.points > 0) errors.push_back(std::sqrt(f.square / f.points));
-  return std::max<Eigen::Index>(
-      1, static_cast<Eigen::Index>(std::ceil(std::max(2 * correlated_frames(errors) - 1, std::cbrt(count)))));
+  return std::max(1.0, correlated_frames(errors));
+}
+
+Eigen::Index block_of(double memory, double count, Eigen::Index given) {
+  if (given > 0) return std::min<Eigen::Index>(given, static_cast<Eigen::Index>(count));
+  return std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::ceil(std::max(2 * memory - 1, std::cbrt(count)))));
 }
 
 }  // namespace
@@ -143,10 +148,11 @@ ErrorInterval error_interval(const Aligned& aligned, Measure measure, const Inte
   const std::size_t n = frames.each.size();
   ErrorInterval out;
   out.value = value_of(frames, std::vector<double>(n, 1), measure);
-  out.block = block_of(frames, options);
+  const double memory = memory_of(frames);
+  out.block = block_of(memory, static_cast<double>(n), options.block);
   out.upper = std::numeric_limits<double>::infinity();
   const double blocks = static_cast<double>(n) / static_cast<double>(out.block);
-  if (blocks < 4 || options.draws < 2) return out;
+  if (blocks < fewest_blocks || options.draws < 2) return out;
   std::vector<double> draws;
   for (int k = 0; k < options.draws; ++k) {
     Random random(options.seed, static_cast<std::uint64_t>(k));
@@ -160,7 +166,9 @@ ErrorInterval error_interval(const Aligned& aligned, Measure measure, const Inte
     }
     if (const double v = value_of(frames, weight, measure); std::isfinite(v)) draws.push_back(v);
   }
-  out.sigma = stats::standard_error(draws) * std::sqrt(static_cast<double>(draws.size()));
+  const double lost = (memory * memory - 1) / (2 * memory) / static_cast<double>(out.block);
+  const double kept = std::max(0.25, 1 - lost) * (1 - 1 / blocks);
+  out.sigma = stats::standard_error(draws) * std::sqrt(static_cast<double>(draws.size()) / kept);
   if (!(out.value > 0)) {
     out.upper = 0;
     return out;

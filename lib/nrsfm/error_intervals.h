@@ -1,7 +1,11 @@
 // How far an error may be from that of a longer sequence of the same kind: block bootstrap over frames (Kuensch 1989;
 // circular blocks, Politis & Romano 1992). Neighbouring frames err alike, so that blocks of them are drawn together;
-// the alignment is held, which to first order changes nothing where it minimizes the measure. The interval is value *
-// exp(+- t s / value), s the standard deviation of the draws, t Student's with frames / block - 1 degrees.
+// the alignment is held, which to first order changes nothing where it minimizes the measure. The interval is
+// value * exp(+- t s / value), t Student's with frames / block - 1 degrees, s^2 the variance of the draws over
+// (1 - c / block) (1 - block / frames): blocks cut correlations at their ends, by c = 2 sum k rho_k / tau frames'
+// worth, for a first-order autoregression of memory tau (tau^2 - 1) / (2 tau), and they vary about their own mean.
+// Measured on 400 sequences of 100 frames, intervals of 90 %: they hold in 89 % without correlation, in 87 % where it
+// lasts 4 frames; where it lasts 19, the fifth that is not refused holds in little more than half.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -25,7 +29,7 @@ struct ErrorInterval {
   double sigma = 0, lower = 0, upper = 0;
   Eigen::Index block = 1;
 };
-// Of shapes that lie on the truth (Aligned::shapes, Aligned::truth). Where fewer than 4 blocks fit into the sequence
+// Of shapes that lie on the truth (Aligned::shapes, Aligned::truth). Where fewer than 7 blocks fit into the sequence
 // the interval is [0, infinity): it cannot be told.
 ErrorInterval error_interval(const Aligned& aligned, Measure measure, const IntervalOptions& options = {});
 

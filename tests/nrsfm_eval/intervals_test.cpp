@@ -39,8 +39,8 @@ TEST(ErrorIntervals, ValueIsThatOfTheMeasures) {
 }
 
 // 90 % intervals of 120 sequences of 100 frames each, whose frames are correlated over some 4 frames: the error of
-// 20000 frames lies within. 108 are expected; fewer than 96 would have a probability below 0.001 if they held what they
-// say. (The bootstrap's own intervals are known to be a little short where blocks are few.)
+// 20000 frames lies within. 108 are expected, 104 of what error_intervals.h admits; fewer than 96 would have a
+// probability below 0.001 if they held what they say. Counted when this was written: 103 and 105.
 TEST(ErrorIntervals, CoverTheErrorOfALongSequence) {
   const Shapes q = tests::deforming(25, 12, 1);
   for (const Measure measure : {Measure::robust_rms, Measure::e3d}) {
@@ -62,10 +62,10 @@ TEST(ErrorIntervals, WidenWithCorrelationAndCannotBeToldFromFewBlocks) {
   const Shapes q = tests::deforming(25, 12, 1);
   double loose = 0, tied = 0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    loose += error_interval(erring(q, 200, 0, seed), Measure::rms).sigma;
-    tied += error_interval(erring(q, 200, 0.9, seed), Measure::rms).sigma;
+    loose += error_interval(erring(q, 400, 0, seed), Measure::rms).sigma;
+    tied += error_interval(erring(q, 400, 0.6, seed), Measure::rms).sigma;
   }
-  EXPECT_GT(tied, 1.8 * loose);
+  EXPECT_GT(tied, 1.4 * loose);
   const ErrorInterval few = error_interval(erring(q, 6, 0, 1), Measure::rms, {.block = 3});
   EXPECT_EQ(few.lower, 0);
   EXPECT_TRUE(std::isinf(few.upper));
