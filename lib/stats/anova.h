@@ -11,6 +11,8 @@
 // 2000; White 1980), as car::Anova(white.adjust=) has it.
 // Least squares by rank-revealing QR of the model matrix (columns that the design cannot tell apart are dropped and
 // reported as aliased); a sum of squares is a difference of squared projections, never of residual sums of two fits.
+// With empty cells a hypothesis is what the columns that remain can tell; type III then depends on which cells are
+// empty (Searle 1987, section 9.2), and notes say so.
 #pragma once
 #include <Eigen/Core>
 #include <optional>
@@ -39,11 +41,11 @@ enum class Covariance { classical, hc0, hc1, hc2, hc3 };
 
 struct TermRow {
   Term term;
-  double sum_of_squares = 0;  // NaN for robust Wald tests
+  double sum_of_squares = 0;  // of the classical test also where f and p are robust
   int degrees = 0;
-  double mean_square = 0, f = 0, p = 1;  // p to its last digit down to 1e-300
+  double mean_square = 0, f = 0, p = 1;  // p to 1e-10 relative down to 1e-300; NaN where degrees are 0
   double log10_p = 0;
-  int aliased = 0;  // columns that the design could not tell from earlier ones
+  int aliased = 0;  // columns that the design could not tell from those that the test comes after
 };
 // A coefficient, sum to zero; every level has one, the last ones follow from the others.
 struct Coefficient {
@@ -51,6 +53,16 @@ struct Coefficient {
   std::vector<int> levels;  // of the term's factors
   double value = 0, sigma = 0;
   bool estimable = true;
+};
+// The fit in coordinates where the columns are a triangle: y = Q (R beta) + error, Q'Q = 1. R has a column for every
+// column of the model matrix, aliased ones included; rows for the r that are independent.
+struct Projections {
+  std::vector<Term> terms;
+  Eigen::MatrixXd r;           // r x p
+  std::vector<int> kept;       // the independent columns, in order
+  Eigen::VectorXd z;           // Q'y
+  Eigen::MatrixXd covariance;  // of z, as chosen
+  Eigen::MatrixXd q;           // n x r
 };
 struct Anova {
   std::vector<TermRow> rows;
@@ -62,8 +74,11 @@ struct Anova {
   int empty_cells = 0;  // combinations of the interactions' levels without an observation
   std::vector<double> residuals, leverage;
   std::vector<std::string> notes;
+  Projections projections;
 };
-// Error(data) for a factor with fewer than two levels, fewer observations than coefficients, y that is not finite.
+// Error(data) at the factor's name or "results" for a factor with fewer than two levels that occur, no more
+// observations than coefficients, y that is not finite, a y that is the same everywhere; for HC2 and HC3 where an
+// observation is fitted exactly (leverage 1).
 Anova anova(const Design& design, const std::vector<Term>& terms, SumsOfSquares type,
             Covariance covariance = Covariance::classical);
 
@@ -80,13 +95,22 @@ std::vector<MarginalMean> marginal_means(const Anova& fit, const Design& design,
 double f_upper(double f, double degrees1, double degrees2);        // P(F > f)
 double f_upper_log10(double f, double degrees1, double degrees2);  // for tails below 1e-300
 
-// Ranks of one factor's levels by their marginal mean, with bootstrap intervals: observations are drawn anew by
-// `blocks` (observations that share a sequence move together). Ascending: rank 1 has the least mean.
+// Ranks of one factor's levels by their marginal mean. Ascending: rank 1 has the least mean.
+//
+// Differences of means are drawn by a wild bootstrap in which observations of one block (those that share a sequence)
+// turn their residuals' signs together (Wu 1986; Cameron, Gelbach & Miller 2008), the residuals of a block being those
+// of a fit without it (CR3: Bell & McCaffrey 2002; MacKinnon, Nielsen & Webb 2023). A percentile of drawn ranks does
+// not cover where means are close; the interval here is that of Mogstad, Romano, Shaikh & Wilhelm 2024: of level i, all
+// ranks that its simultaneous intervals of differences to the others allow. It covers with at least `confidence` for
+// each level, ties included (any rank among the tied is right).
 struct Rank {
   int level = 0;
-  double rank = 0, lower = 0, upper = 0;  // 1 to number of levels
+  double mean = 0;
+  double rank = 0, lower = 0, upper = 0;  // 1 to number of levels; tied means share the mean of their ranks
   double best_share = 0;                  // of the draws in which it was first
 };
+// `blocks`: a number for each observation; empty: each is its own. Error(data) for fewer than 3 blocks, and where the
+// design cannot compare two levels.
 std::vector<Rank> bootstrap_ranks(const Design& design, const std::vector<Term>& terms, int factor,
                                   std::span<const int> blocks, int draws, double confidence, unsigned long long seed);
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "stats/incomplete_beta.h"
+
 namespace gonio::stats {
 namespace {
 
@@ -100,6 +102,14 @@ double beta_regularised(double x, double a, double b) {
       std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
   if (x < (a + 1) / (a + b + 2)) return factor * beta_fraction(x, a, b) / a;
   return 1 - factor * beta_fraction(1 - x, b, a) / b;
+}
+
+double log_beta_regularised(double x, double y, double a, double b) {
+  if (!(x > 0)) return -infinity;
+  if (!(y > 0)) return 0;
+  const double log_factor = std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log(y);
+  if (x < (a + 1) / (a + b + 2)) return log_factor + std::log(beta_fraction(x, a, b) / a);
+  return std::log1p(-std::exp(log_factor) * beta_fraction(y, b, a) / b);
 }
 
 double chi2_cdf(double x, double degrees) { return gamma_lower(degrees / 2, x / 2); }
