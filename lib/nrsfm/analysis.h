@@ -38,7 +38,9 @@ struct Results {
   std::vector<Result> rows;
 };
 // A CSV: every column is a factor but `error` (empty: "error", else the last one) and "block". An empty error or "nan"
-// is a result that failed. `factors` chooses columns; empty: all. Error(data) at the line, Error(usage) for names.
+// is a result that failed; "error_mm" is "error" in mm. What nrsfm-eval --csv wrote is known by its columns: `error` is
+// then "measure" or "measure/alignment", sequences are the blocks. `factors` chooses columns; empty: all. Error(data)
+// at the line, Error(usage) for names.
 Results read_results(const std::filesystem::path& file, const std::string& error = {},
                      const std::vector<std::string>& factors = {});
 Results parse_results(const std::string& text, const std::string& name, const std::string& error = {},

@@ -13,6 +13,7 @@
 namespace gonio::nrsfm {
 namespace {
 
+constexpr const char* evaluation_columns[] = {"id", "sequence", "algorithm", "measure", "alignment", "value"};
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string quoted_list(const std::vector<std::string>& names) {
@@ -34,14 +35,68 @@ double error_number(const std::string& text, const std::string& place) {
   return lower.empty() || lower == "nan" || lower == "na" ? nan : io::csv_number(text, place);
 }
 
-Results results_from(const io::Csv& csv, const std::string& error, const std::vector<std::string>& factors) {
+// The tables that nrsfm-eval --csv writes have a row for each measure of a reconstruction.
+bool has_measures(const io::Csv& csv) {
+  return csv.header[0] == "id" &&
+         std::all_of(std::begin(evaluation_columns), std::end(evaluation_columns), [&](const char* name) {
+           return std::find(csv.header.begin(), csv.header.end(), name) != csv.header.end();
+         });
+}
+
+// Only rows of one measure under one alignment, "e3d" or "e3d/frame-rotation" (empty: of the first row), in columns of
+// factors, "block" and the measure.
+io::Csv of_one_measure(const io::Csv& csv, const std::string& wanted, std::string& unit) {
+  const std::size_t measure = column(csv, "measure", ""), alignment = column(csv, "alignment", ""),
+                    value = column(csv, "value", ""), sequence = column(csv, "sequence", "");
+  const auto unit_column = std::find(csv.header.begin(), csv.header.end(), "unit") - csv.header.begin();
+  std::string name = wanted.substr(0, wanted.find('/'));
+  std::string aligned = wanted.find('/') == std::string::npos ? "" : wanted.substr(wanted.find('/') + 1);
+  if (wanted.empty()) name = csv.rows.front()[measure];
+  io::Csv result{csv.name, {}, {}, {}};
+  for (std::size_t r = 0; r < csv.rows.size(); ++r) {
+    const std::vector<std::string>& row = csv.rows[r];
+    if (row[measure] != name || (!aligned.empty() && row[alignment] != aligned)) continue;
+    aligned = row[alignment];
+    if (static_cast<std::size_t>(unit_column) < row.size()) {
+      const std::string& here = row[static_cast<std::size_t>(unit_column)];
+      if (!result.rows.empty() && here != unit)
+        throw Error(Exit::data, csv.place(r), name + " is in \"" + here + "\", in \"" + unit + "\" before",
+                    "evaluate all in one unit");
+      unit = here;
+    }
+    std::vector<std::string> kept(row.begin() + 2, row.begin() + static_cast<std::ptrdiff_t>(measure));
+    kept.push_back(row[sequence]);
+    kept.push_back(row[value]);
+    result.rows.push_back(std::move(kept));
+    result.line.push_back(csv.line[r]);
+  }
+  if (result.rows.empty())
+    throw Error(Exit::usage, "--error", csv.name + " has no row of \"" + wanted + "\"",
+                "name a measure, or measure/alignment, of its rows");
+  result.header.assign(csv.header.begin() + 2, csv.header.begin() + static_cast<std::ptrdiff_t>(measure));
+  const bool no_factors = result.header.size() == 1;  // the algorithm alone
+  result.header.push_back(no_factors ? "sequence" : "block");
+  result.header.push_back(name);
+  return result;
+}
+
+Results results_from(const io::Csv& given, const std::string& wanted, const std::vector<std::string>& factors) {
   Results results;
-  results.name = csv.name;
+  results.name = given.name;
+  const bool measures = has_measures(given);
+  const io::Csv csv = measures ? of_one_measure(given, wanted, results.unit) : given;
+  if (results.unit == "1") results.unit.clear();
   const bool usual = std::find(csv.header.begin(), csv.header.end(), "error") != csv.header.end();
-  results.measure = !error.empty() ? error : usual ? "error" : csv.header.back();
-  const std::size_t value = column(csv, results.measure, "--error");
-  for (const char* unit : {"mm", "m"})
-    if (results.measure.ends_with(std::string("_") + unit)) results.unit = unit;
+  const std::string error = measures || (wanted.empty() && !usual) ? csv.header.back()
+                            : wanted.empty()                       ? "error"
+                                                                   : wanted;
+  const std::size_t value = column(csv, error, "--error");
+  results.measure = error;
+  for (const std::string unit : {"mm", "m"})
+    if (!measures && error.ends_with("_" + unit)) {
+      results.unit = unit;
+      results.measure = error.substr(0, error.size() - unit.size() - 1);
+    }
   const auto block = std::find(csv.header.begin(), csv.header.end(), "block") - csv.header.begin();
   std::vector<std::size_t> columns;
   for (const std::string& f : factors) columns.push_back(column(csv, f, "--factors"));
