@@ -13,7 +13,6 @@
 namespace gonio::nrsfm {
 namespace {
 
-constexpr const char* evaluation_columns[] = {"id", "sequence", "algorithm", "measure", "alignment", "value"};
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string quoted_list(const std::vector<std::string>& names) {
@@ -37,10 +36,10 @@ double error_number(const std::string& text, const std::string& place) {
 
 // The tables that nrsfm-eval --csv writes have a row for each measure of a reconstruction.
 bool has_measures(const io::Csv& csv) {
-  return csv.header[0] == "id" &&
-         std::all_of(std::begin(evaluation_columns), std::end(evaluation_columns), [&](const char* name) {
-           return std::find(csv.header.begin(), csv.header.end(), name) != csv.header.end();
-         });
+  const auto& h = csv.header;
+  const auto has = [&](const char* name) { return std::find(h.begin(), h.end(), name) != h.end(); };
+  return h.size() > 5 && h[0] == "id" && h[1] == "sequence" && h[2] == "algorithm" && has("measure") &&
+         has("alignment") && has("value");
 }
 
 // Only rows of one measure under one alignment, "e3d" or "e3d/frame-rotation" (empty: of the first row), in columns of
