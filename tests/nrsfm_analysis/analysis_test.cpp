@@ -286,7 +286,9 @@ void expect_latex(const std::string& tex) {
     if (tex[i] == '{' && !escaped) ++depth;
     if (tex[i] == '}' && !escaped) --depth;
     ASSERT_GE(depth, 0);
-    if (!escaped) EXPECT_EQ(std::string("%#").find(tex[i]), std::string::npos) << tex.substr(i, 30);
+    if (!escaped) {
+      EXPECT_EQ(std::string("%#").find(tex[i]), std::string::npos) << tex.substr(i, 30);
+    }
   }
   EXPECT_EQ(depth, 0);
   for (const char* e : {"document", "table", "tabular"})
