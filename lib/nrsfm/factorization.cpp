@@ -17,6 +17,7 @@ Eigen::Matrix3d turned_by(const Eigen::Vector3d& rotation_rad) {
   return Eigen::AngleAxisd(angle, rotation_rad / angle).toRotationMatrix();
 }
 
+// Visible points less their mean, and three more at the roots of the spread, seen at 0.
 struct Seen {
   Eigen::Matrix2Xd tracks;
   Eigen::Matrix3Xd shape;
@@ -25,20 +26,24 @@ struct Seen {
 };
 
 Seen seen_of(const Eigen::Matrix2Xd& tracks, const Eigen::Array<bool, 1, Eigen::Dynamic>& visible,
-             const Eigen::Matrix3Xd& shape) {
+             const Eigen::Matrix3Xd& shape, const Eigen::Matrix3d& spread) {
   Seen seen;
   const Eigen::Index count = visible.count();
-  seen.tracks.resize(2, count);
-  seen.shape.resize(3, count);
+  seen.tracks = Eigen::Matrix2Xd::Zero(2, count + 3);
+  seen.shape.resize(3, count + 3);
   for (Eigen::Index p = 0, at = 0; p < visible.size(); ++p) {
     if (!visible(p)) continue;
     seen.tracks.col(at) = tracks.col(p);
     seen.shape.col(at++) = shape.col(p);
   }
-  seen.track_mean = count > 0 ? Eigen::Vector2d(seen.tracks.rowwise().mean()) : Eigen::Vector2d::Zero();
-  seen.shape_mean = count > 0 ? Eigen::Vector3d(seen.shape.rowwise().mean()) : Eigen::Vector3d::Zero();
-  seen.tracks.colwise() -= seen.track_mean;
-  seen.shape.colwise() -= seen.shape_mean;
+  auto tracks_seen = seen.tracks.leftCols(count);
+  auto shape_seen = seen.shape.leftCols(count);
+  seen.track_mean = count > 0 ? Eigen::Vector2d(tracks_seen.rowwise().mean()) : Eigen::Vector2d::Zero();
+  seen.shape_mean = count > 0 ? Eigen::Vector3d(shape_seen.rowwise().mean()) : Eigen::Vector3d::Zero();
+  tracks_seen.colwise() -= seen.track_mean;
+  shape_seen.colwise() -= seen.shape_mean;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> root(spread);
+  seen.shape.rightCols<3>() = root.eigenvectors() * root.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
   return seen;
 }
 
@@ -75,12 +80,27 @@ Eigen::MatrixXd motion_rows(const Eigen::MatrixXd& w, Eigen::Index terms) {
   return rows;
 }
 
+double noise_of(const Eigen::MatrixXd& w) {
+  std::vector<double> thirds;
+  for (Eigen::Index f = 3; f < w.rows() / 2; ++f) {
+    const auto third = w.middleRows<2>(2 * f) - 3 * w.middleRows<2>(2 * f - 2) + 3 * w.middleRows<2>(2 * f - 4) -
+                       w.middleRows<2>(2 * f - 6);
+    for (const double x : third.reshaped()) thirds.push_back(std::abs(x));
+  }
+  if (thirds.empty()) return 0;
+  const auto middle = thirds.begin() + static_cast<std::ptrdiff_t>(thirds.size() / 2);
+  std::nth_element(thirds.begin(), middle, thirds.end());
+  return 1.4826 * *middle / std::sqrt(20);
+}
+
 Eigen::Index rank_of(const Eigen::MatrixXd& w, double share, Eigen::Index most) {
   const Eigen::BDCSVD<Eigen::MatrixXd> svd(w);
   const Eigen::VectorXd energy = svd.singularValues().array().square();
   const Eigen::Index limit = std::max<Eigen::Index>(1, std::min(most, energy.size() / 3));
+  const double noise = std::pow(noise_of(w), 2) * static_cast<double>(w.size());
+  const double left_over = std::max(share * share * energy.sum(), noise);
   for (Eigen::Index terms = 1; terms < limit; ++terms) {
-    if (energy.tail(energy.size() - 3 * terms).sum() <= share * share * energy.sum()) return terms;
+    if (energy.tail(energy.size() - 3 * terms).sum() <= left_over) return terms;
   }
   return limit;
 }
@@ -112,10 +132,11 @@ Eigen::Matrix3d completed(const CameraRows& rows) {
 
 // Gauss-Newton on the rotation: R <- R exp([v]x), d(s R x)/dv = -s R [x]x; the translation follows from the means.
 WeakCamera fit_camera(const Eigen::Matrix2Xd& tracks, const Eigen::Array<bool, 1, Eigen::Dynamic>& visible,
-                      const Eigen::Matrix3Xd& shape, const WeakCamera& start, bool free_scale) {
-  const Seen seen = seen_of(tracks, visible, shape);
+                      const Eigen::Matrix3Xd& shape, const WeakCamera& start, bool free_scale,
+                      const Eigen::Matrix3d& spread) {
+  const Seen seen = seen_of(tracks, visible, shape, spread);
   WeakCamera camera = start;
-  if (seen.tracks.cols() >= 3) {
+  if (visible.count() >= 3) {
     const auto cost_of = [&](const WeakCamera& c) {
       return (seen.tracks - c.scale * c.rotation * seen.shape).squaredNorm();
     };
@@ -163,7 +184,7 @@ Shapes shapes_of(const Eigen::MatrixXd& coefficients, const Eigen::MatrixXd& bas
   return shapes;
 }
 
-Start start_from(const Sequence& sequence, Eigen::Index terms, const UpgradeOptions& options) {
+Start centred_start(const Sequence& sequence, Eigen::Index terms) {
   Start start;
   if (sequence.complete()) {
     Centred plain = centred(sequence);
@@ -174,11 +195,20 @@ Start start_from(const Sequence& sequence, Eigen::Index terms, const UpgradeOpti
     start.w = std::move(filled.w);
     start.translation = std::move(filled.translation);
   }
-  start.upgrade = metric_upgrade(motion_rows(start.w, terms), options);
+  return start;
+}
+
+void take_cameras(Start& start, const Upgrade& upgrade) {
+  start.upgrade = upgrade;
   start.rows.resize(start.w.rows(), 3);
-  for (Eigen::Index f = 0; f < sequence.frames(); ++f) {
-    start.rows.middleRows<2>(2 * f) = start.upgrade.scales(f) * start.upgrade.rotations[f];
+  for (Eigen::Index f = 0; f < upgrade.scales.size(); ++f) {
+    start.rows.middleRows<2>(2 * f) = upgrade.scales(f) * upgrade.rotations[static_cast<std::size_t>(f)];
   }
+}
+
+Start start_from(const Sequence& sequence, Eigen::Index terms, const UpgradeOptions& options) {
+  Start start = centred_start(sequence, terms);
+  take_cameras(start, metric_upgrade(motion_rows(start.w, terms), options));
   return start;
 }
 

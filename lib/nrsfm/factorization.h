@@ -20,8 +20,12 @@ Centred centred(const Sequence& sequence);
 // The 2F x 3K left factor U sqrt(s) of W's truncated singular value decomposition, in falling order of s.
 Eigen::MatrixXd motion_rows(const Eigen::MatrixXd& w, Eigen::Index terms);
 
-// The least K with at most `share` of the tracks' root mean square outside the first 3K singular values; at most
-// `most`, and never more than P / 3 and 2F / 3 allow.
+// Noise of tracks, one sigma, from their third differences over time (variance 20 sigma^2; median): too large where
+// they move fast from frame to frame.
+double noise_of(const Eigen::MatrixXd& w);
+
+// The least K that leaves outside the first 3K singular values at most `share` of the tracks' root mean square, or no
+// more than their noise; at most `most`, and never more than P / 3 and 2F / 3 allow.
 Eigen::Index rank_of(const Eigen::MatrixXd& w, double share, Eigen::Index most);
 
 // The rotations R_f and scales s_f of a motion matrix of rank 3K, by its 3K x 3 corrective transform G:
@@ -42,6 +46,8 @@ struct Upgrade {
 };
 // Error(data) where frames do not determine a metric (motion without rotation out of the image's plane).
 Upgrade metric_upgrade(const Eigen::MatrixXd& rows, const UpgradeOptions& options = {});
+// The best of each rank on the way, of the first 3, 6, .. 3K columns.
+std::vector<Upgrade> metric_upgrades(const Eigen::MatrixXd& rows, const UpgradeOptions& options = {});
 
 // F x K orthonormal DCT-II basis of trajectories; column 0 is constant.
 Eigen::MatrixXd dct_basis(Eigen::Index frames, Eigen::Index terms);
@@ -51,13 +57,15 @@ CameraRows nearest_rows(const CameraRows& a);
 Eigen::Matrix3d completed(const CameraRows& rows);
 
 // The camera that sees `shape` (3 x P) as `tracks` (2 x P, used where visible): s R x + t, least squares, from `start`.
+// `spread` Q adds s^2 trace(R Q R') to the sum: the shape's uncertainty, summed over points.
 struct WeakCamera {
   CameraRows rotation = CameraRows::Identity();
   double scale = 1;
   Eigen::Vector2d translation = Eigen::Vector2d::Zero();
 };
 WeakCamera fit_camera(const Eigen::Matrix2Xd& tracks, const Eigen::Array<bool, 1, Eigen::Dynamic>& visible,
-                      const Eigen::Matrix3Xd& shape, const WeakCamera& start, bool free_scale);
+                      const Eigen::Matrix3Xd& shape, const WeakCamera& start, bool free_scale,
+                      const Eigen::Matrix3d& spread = Eigen::Matrix3d::Zero());
 
 // Low-rank completion of missing entries, W ~ A B + t 1', rank r, by alternating least squares with a small ridge
 // (Hartley & Schaffalitzky 2003; Buchanan & Fitzgibbon 2005 say where it fails), from tracks interpolated over time.
@@ -82,6 +90,8 @@ struct Start {
   Eigen::MatrixXd rows;  // 2F x 3: s_f R_f
 };
 Start start_from(const Sequence& sequence, Eigen::Index terms, const UpgradeOptions& options);
+Start centred_start(const Sequence& sequence, Eigen::Index terms);  // without cameras: complete at rank 3 `terms`
+void take_cameras(Start& start, const Upgrade& upgrade);
 
 // The whole sequence turned so that the first frame's camera is the frame of reference.
 void turn_to_first_camera(Reconstruction& reconstruction);

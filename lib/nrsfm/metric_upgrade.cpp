@@ -1,8 +1,8 @@
 // Metric upgrade of motion matrices. With a_f, b_f the two rows of M_f and A = a_f G, B = b_f G the residuals of a
 // frame, over the square of its scale s, are
-//   (|A|^2 - |B|^2) / sqrt(2),   sqrt(2) w ((|A|^2 + |B|^2) / 2 - s^2),   A . B
-// For w = 1 their squares add up to (|A|^2 - s^2)^2 + (|B|^2 - s^2)^2 + (A . B)^2. Where scales are free w is small (it
-// keeps frames from vanishing) and s follows the rows in a few rounds.
+//   (|A|^2 - |B|^2) / sqrt(2),   sqrt(2) w ((|A|^2 + |B|^2) / 2 - s^2),   sqrt(2) A . B
+// For w = 1 their squares add up to |M_f G G' M_f' - s^2 I|_F^2; for any w a turn of the image does not change their
+// sum. Where scales are free w is small (it keeps frames from vanishing) and s follows the rows in a few rounds.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -47,7 +47,7 @@ Residuals residuals_of(const Problem& problem, const Eigen::MatrixXd& transform)
   at.r.resize(aa.size(), 3);
   at.r.col(0) = (aa - bb) / s2 / std::sqrt(2);
   at.r.col(1) = std::sqrt(2) * problem.weight * ((aa + bb) / 2 - s2) / s2;
-  at.r.col(2) = ab / s2;
+  at.r.col(2) = std::sqrt(2) * ab / s2;
   at.cost = at.r.squaredNorm();
   return at;
 }
@@ -63,7 +63,7 @@ Eigen::MatrixXd jacobian_of(const Problem& problem, const Residuals& at) {
       const double x = at.a(f, c), y = at.b(f, c);
       jacobian.block(3 * f, c * n, 1, n) = std::sqrt(2) * over * (x * a - y * b);
       jacobian.block(3 * f + 1, c * n, 1, n) = std::sqrt(2) * problem.weight * over * (x * a + y * b);
-      jacobian.block(3 * f + 2, c * n, 1, n) = over * (y * a + x * b);
+      jacobian.block(3 * f + 2, c * n, 1, n) = std::sqrt(2) * over * (y * a + x * b);
     }
   }
   return jacobian;
@@ -121,7 +121,7 @@ Eigen::Matrix3d linear_start(const Problem& problem) {
     const Eigen::RowVector3d a = problem.a.row(f).head<3>(), b = problem.b.row(f).head<3>();
     equations.row(3 * f) = (form(a, a) - form(b, b)) / std::sqrt(2);
     equations.row(3 * f + 1) = problem.weight * (form(a, a) + form(b, b)) / std::sqrt(2);
-    equations.row(3 * f + 2) = form(a, b);
+    equations.row(3 * f + 2) = std::sqrt(2) * form(a, b);
     right(3 * f + 1) = std::sqrt(2) * problem.weight;
   }
   const Eigen::VectorXd q = equations.colPivHouseholderQr().solve(right);
@@ -185,9 +185,27 @@ void follow_scales(Problem& all, std::vector<Candidate>& candidates) {
   }
 }
 
+Upgrade upgrade_of(const Problem& problem, const Eigen::MatrixXd& start, bool free_scales) {
+  const Candidate best = minimized(problem, start, 300);
+  const Eigen::Index frames = problem.a.rows();
+  Upgrade upgrade;
+  upgrade.transform = best.transform;
+  upgrade.residual = std::sqrt(best.cost / static_cast<double>(frames));
+  upgrade.scales = Eigen::VectorXd::Ones(frames);
+  if (free_scales) upgrade.scales = scales_of(problem, best.transform).cwiseSqrt();
+  upgrade.scales /= upgrade.scales.mean();
+  for (Eigen::Index f = 0; f < frames; ++f) {
+    CameraRows rows;
+    rows.row(0) = problem.a.row(f) * best.transform;
+    rows.row(1) = problem.b.row(f) * best.transform;
+    upgrade.rotations.push_back(nearest_rows(rows));
+  }
+  return upgrade;
+}
+
 }  // namespace
 
-Upgrade metric_upgrade(const Eigen::MatrixXd& rows, const UpgradeOptions& options) {
+std::vector<Upgrade> metric_upgrades(const Eigen::MatrixXd& rows, const UpgradeOptions& options) {
   const Eigen::Index frames = rows.rows() / 2, terms = rows.cols() / 3;
   if (rows.col(2).norm() < 1e-7 * rows.col(0).norm()) {
     throw Error(Exit::data, "tracks", "all tracks are affine images of one plane: no view turns out of it",
@@ -201,22 +219,17 @@ Upgrade metric_upgrade(const Eigen::MatrixXd& rows, const UpgradeOptions& option
   Random random(options.seed, 0x0bde);
   std::vector<Candidate> candidates{{linear_start(all), 0}};
   candidates.front() = minimized(first_columns(all, 3), candidates.front().transform, 60);
-  if (options.free_scales) follow_scales(all, candidates);
-  for (Eigen::Index k = 2; k <= terms; ++k) {
-    candidates = next_rank(first_columns(all, 3 * k), candidates, random);
+  std::vector<Upgrade> upgrades;
+  for (Eigen::Index k = 1; k <= terms; ++k) {
+    if (k > 1) candidates = next_rank(first_columns(all, 3 * k), candidates, random);
     if (options.free_scales) follow_scales(all, candidates);
+    upgrades.push_back(upgrade_of(first_columns(all, 3 * k), candidates.front().transform, options.free_scales));
   }
-  const Candidate best = minimized(all, candidates.front().transform, 300);
-  Upgrade upgrade;
-  upgrade.transform = best.transform;
-  upgrade.residual = std::sqrt(best.cost / static_cast<double>(frames));
-  upgrade.scales = Eigen::VectorXd::Ones(frames);
-  if (options.free_scales) upgrade.scales = scales_of(all, best.transform).cwiseSqrt();
-  upgrade.scales /= upgrade.scales.mean();
-  for (Eigen::Index f = 0; f < frames; ++f) {
-    upgrade.rotations.push_back(nearest_rows(rows.middleRows<2>(2 * f) * best.transform));
-  }
-  return upgrade;
+  return upgrades;
+}
+
+Upgrade metric_upgrade(const Eigen::MatrixXd& rows, const UpgradeOptions& options) {
+  return metric_upgrades(rows, options).back();
 }
 
 }  // namespace gonio::nrsfm

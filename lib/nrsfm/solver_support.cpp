@@ -5,7 +5,6 @@
 #include <string>
 
 #include "base/error.h"
-#include "nrsfm/factorization.h"
 
 namespace gonio::nrsfm {
 
@@ -37,6 +36,96 @@ Eigen::Index terms_of(const SolverInfo& info, const Sequence& sequence, const So
   }
   require_rank(sequence, terms);
   return terms;
+}
+
+SolverParameter dct_terms_parameter() {
+  return {"dct_terms", 0, 0, 2000, true, "cosines over time, d; 0: a tenth of the frames, at least twice the rank"};
+}
+
+Eigen::Index dct_terms_of(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options,
+                          Eigen::Index rank) {
+  const Eigen::Index frames = sequence.frames();
+  const Eigen::Index given = static_cast<Eigen::Index>(values_in_force(info, options.values).at("dct_terms"));
+  if (given == 0) return std::min(frames, std::max((frames + 5) / 10, 2 * rank));
+  if (given >= rank && given <= frames) return given;
+  throw Error(Exit::data, "tracks",
+              "dct_terms=" + std::to_string(given) + " with rank " + std::to_string(rank) + " and " +
+                  std::to_string(frames) + " frames",
+              "set it between the rank and the number of frames");
+}
+
+SolverParameter camera_rank_parameter() {
+  return {"camera_rank", 0,    0,
+          100,           true, "rank at which rotations are estimated; 0: the one that lets the model reproject"};
+}
+
+namespace {
+
+// Of the cameras of each rank those of the highest rank with which a model of `rank` shapes reprojects
+// (after a few steps) within 10 % of the best. Cameras of a rank that the sequence's rotation does not support are
+// wrong by far, and show in this.
+Eigen::Index best_cameras(const Sequence& sequence, Start& start, const std::vector<Upgrade>& upgrades,
+                          Eigen::Index rank) {
+  const Eigen::Index d = std::min(sequence.frames(), 4 * rank), most = static_cast<Eigen::Index>(upgrades.size());
+  std::vector<double> costs;
+  for (Eigen::Index k = 1; k <= most; ++k) {
+    take_cameras(start, upgrades[static_cast<std::size_t>(k - 1)]);
+    ShapeTrajectoryProblem problem = linear_problem(sequence, start, d);
+    problem.most_iterations = 4;
+    costs.push_back(fit_shape_trajectory(problem, Eigen::MatrixXd::Identity(d, rank)).cost);
+  }
+  const double limit = 1.1 * 1.1 * *std::min_element(costs.begin(), costs.end());
+  Eigen::Index chosen = most;
+  while (costs[static_cast<std::size_t>(chosen - 1)] > limit) --chosen;
+  return chosen;
+}
+
+}  // namespace
+
+Start start_for(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options, Eigen::Index rank,
+                Solution& solution) {
+  const bool free_scales = free_scales_of(info, sequence, options);
+  const bool given = values_in_force(info, options.values).at("camera_rank") > 0;
+  Eigen::Index terms = terms_of(info, sequence, options, "camera_rank", 1e-3, 15);
+  if (!given && !sequence.complete()) terms = std::min(terms, rank);  // what completion adds supports no more
+  Start start = centred_start(sequence, terms);
+  const std::vector<Upgrade> upgrades = metric_upgrades(motion_rows(start.w, terms), {free_scales, options.seed});
+  if (!given) terms = best_cameras(sequence, start, upgrades, rank);
+  take_cameras(start, upgrades[static_cast<std::size_t>(terms - 1)]);
+  solution.values["camera_rank"] = static_cast<double>(terms);
+  solution.values["free_scales"] = free_scales ? 1 : 0;
+  return start;
+}
+
+ShapeTrajectoryProblem linear_problem(const Sequence& sequence, const Start& start, Eigen::Index dct_terms) {
+  ShapeTrajectoryProblem problem;
+  problem.visible = sequence.visible;
+  problem.tracks = sequence.tracks.colwise() - start.translation;
+  for (Eigen::Index row = 0; row < problem.tracks.rows(); ++row) {
+    for (Eigen::Index p = 0; p < problem.tracks.cols(); ++p) {
+      if (!sequence.visible(row / 2, p)) problem.tracks(row, p) = 0;
+    }
+  }
+  problem.rows = start.rows;
+  problem.omega = dct_basis(sequence.frames(), dct_terms);
+  problem.coefficients = [](const Eigen::VectorXd& x) { return x; };
+  problem.slope = [](const Eigen::VectorXd& x) { return Eigen::MatrixXd::Identity(x.size(), x.size()); };
+  return problem;
+}
+
+void fill(const Start& start, const ShapeTrajectory& fit, Solution& solution) {
+  solution.reconstruction.shapes = shapes_of(fit.coefficients, fit.basis);
+  solution.reconstruction.rotations = start.upgrade.rotations;
+  solution.iterations = fit.iterations;
+  solution.converged = fit.converged;
+  turn_to_first_camera(solution.reconstruction);
+}
+
+Eigen::Index shapes_of_model(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options) {
+  const Eigen::Index rank = terms_of(info, sequence, options, "rank", 1e-2, 11);
+  const bool given = values_in_force(info, options.values).at("rank") > 0;
+  const Eigen::Index most = std::min(sequence.points() - 1, 2 * sequence.frames()) / 3;
+  return given ? rank : std::min(rank + 1, most);
 }
 
 void require_rank(const Sequence& sequence, Eigen::Index terms) {

@@ -1,5 +1,7 @@
 // Parameters and refusals that solvers share.
 #pragma once
+#include "nrsfm/factorization.h"
+#include "nrsfm/shape_trajectory.h"
 #include "nrsfm/solver.h"
 
 namespace gonio::nrsfm {
@@ -14,6 +16,25 @@ SolverParameter rank_parameter(const std::string& meaning);
 // entries interpolated over time), no more than `most`.
 Eigen::Index terms_of(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options,
                       const std::string& name, double share, Eigen::Index most);
+
+// "dct_terms": cosines of the trajectories in shape space; 0: a tenth of the frames, at least twice the rank.
+SolverParameter dct_terms_parameter();
+Eigen::Index dct_terms_of(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options,
+                          Eigen::Index rank);
+
+// "camera_rank": rank K at which rotations are estimated; 0: the one that lets the model reproject.
+SolverParameter camera_rank_parameter();
+// Rotations at that rank; records "camera_rank" and "free_scales" in solution.values.
+Start start_for(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options, Eigen::Index rank,
+                Solution& solution);
+
+// C = Omega_d X, the tracks of `sequence` less the start's translation.
+ShapeTrajectoryProblem linear_problem(const Sequence& sequence, const Start& start, Eigen::Index dct_terms);
+// Shapes, rotations and convergence of a fit.
+void fill(const Start& start, const ShapeTrajectory& fit, Solution& solution);
+
+// "rank" where it is set, else one more than leaves 1 % of the tracks: smooth weights need not contain a constant.
+Eigen::Index shapes_of_model(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options);
 
 // Error(data, "tracks") where 3 K exceeds the rank that P points less their mean in F frames can have.
 void require_rank(const Sequence& sequence, Eigen::Index terms);

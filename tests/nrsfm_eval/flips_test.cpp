@@ -74,8 +74,8 @@ TEST(Flips, PlantedOnesAreFoundAndUndone) {
   EXPECT_FALSE(flips.whole_sequence_mirrored);
   for (const Flip& flip : flips.frames) EXPECT_LT(flip.error_after, 0.6 * flip.error_before) << flip.frame;
   const double without = robust_error(planted(q, 0.008, {}, {}, 1).x, q).value;
-  EXPECT_NEAR(robust_error(without_flips(p.x, flips.frames), q).value / without, 1, 1e-3);
-  EXPECT_NEAR(flips.error.value / without, 1, 1e-3);
+  EXPECT_NEAR(robust_error(without_flips(p.x, flips.frames), q).value / without, 1, 1e-2);
+  EXPECT_NEAR(flips.error.value / without, 1, 1e-2);
   EXPECT_GT(robust_error(p.x, q).value, 1.1 * without);
 }
 

@@ -60,7 +60,8 @@ class EvalProgram : public testing::Test {
     write(-*s.truth, "mirrored");
     write_file(path("m.json"), R"({"gonio": 1, "files": {"t": {"path": "truth.mat"}, "g": {"path": "good.mat"}},
       "sequences": {"bend": {"file": "t", "factors": {"path": "line"}}},
-      "reconstructions": [{"id": "bend-pta", "sequence": "bend", "algorithm": "pta", "file": "g", "frame": "object"}]})");
+      "reconstructions": [{"id": "bend-pta", "sequence": "bend", "algorithm": "pta",
+      "file": "g", "frame": "object"}]})");
   }
   void write(const Shapes& shapes, const std::string& name) {
     Reconstruction r;

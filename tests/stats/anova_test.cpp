@@ -68,7 +68,9 @@ TEST(Anova, AgreesWithR) {
     EXPECT_NEAR(row->f / f, 1, 1e-9) << reference.place(i);
     EXPECT_NEAR(row->log10_p * std::log(10.0), log_p, 1e-8) << reference.place(i);
     EXPECT_NEAR(row->p / std::exp(log_p), 1, 1e-8) << reference.place(i);
-    if (!r[5].empty()) EXPECT_NEAR(row->sum_of_squares / io::csv_number(r[5], "SS"), 1, 1e-9) << reference.place(i);
+    if (!r[5].empty()) {
+      EXPECT_NEAR(row->sum_of_squares / io::csv_number(r[5], "SS"), 1, 1e-9) << reference.place(i);
+    }
     ++(r[5].empty() ? robust : sums);
   }
   EXPECT_EQ(fits.size(), 46u);

@@ -1,0 +1,225 @@
+// Probabilistic principal components (EM-PPCA): the deformation's weights are normal and integrated out.
+//   w_fp = c_f R_f (m_p + V_p z_f) + t_f + n,   z_f ~ N(0, I_K),   n ~ N(0, sigma^2 I_2)
+// Expectation maximization (Torresani, Hertzmann & Bregler, PAMI 30, 2008, sections 3 and 4). With D_f = c_f R_f, sums
+// over the points that are visible in the frame, or the frames that see the point:
+//   E   Lambda_f = I + sum_p V_p' D_f' D_f V_p / sigma^2,  mu_f = Lambda_f^-1 sum_p V_p' D_f' (w - t_f - D_f m_p) /
+//   sigma^2
+//       E[z z'] = Lambda_f^-1 + mu_f mu_f'
+//   M   H_p = [m_p V_p] from sum_f (E[y y'] (x) D_f' D_f) vec H_p = vec sum_f D_f' (w - t_f) E[y]',  y = [1; z]
+//       camera: least squares on the mean shape, plus c^2 trace(R Q R'), Q = sum_p V_p Lambda_f^-1 V_p'
+//       sigma^2: the mean expected squared residual
+// Missing tracks need nothing besides. Start: rigid factorization, z from the largest temporal modes of its residuals.
+// Left out: the paper's linear dynamics of z (its EM-LDS).
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "nrsfm/factorization.h"
+#include "nrsfm/solver_support.h"
+
+namespace gonio::nrsfm::solvers {
+namespace {
+
+struct EmState {
+  std::vector<WeakCamera> cameras;
+  Eigen::MatrixXd basis;                    // 3 (K + 1) x P: m, V_1 .. V_K
+  Eigen::MatrixXd weights;                  // F x (K + 1): E[y]
+  std::vector<Eigen::MatrixXd> covariance;  // K x K: Lambda_f^-1
+  double variance = 0;
+
+  CameraRows rows(Eigen::Index f) const {
+    const WeakCamera& camera = cameras[static_cast<std::size_t>(f)];
+    return camera.scale * camera.rotation;
+  }
+  Eigen::Vector2d seen(const Sequence& sequence, Eigen::Index f, Eigen::Index p) const {
+    return sequence.tracks.block<2, 1>(2 * f, p) - cameras[static_cast<std::size_t>(f)].translation;
+  }
+};
+
+void expect(const Sequence& sequence, EmState& state) {
+  const Eigen::Index terms = state.weights.cols() - 1;
+  for (Eigen::Index f = 0; f < sequence.frames(); ++f) {
+    const CameraRows d = state.rows(f);
+    Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(terms, terms);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(terms);
+    for (Eigen::Index p = 0; p < sequence.points(); ++p) {
+      if (!sequence.visible(f, p)) continue;
+      const Eigen::Map<const Eigen::Matrix3Xd> h(state.basis.col(p).data(), 3, terms + 1);
+      const Eigen::Matrix2Xd slopes = d * h.rightCols(terms);
+      precision.noalias() += slopes.transpose() * slopes / state.variance;
+      right.noalias() += slopes.transpose() * (state.seen(sequence, f, p) - d * h.col(0)) / state.variance;
+    }
+    state.covariance[static_cast<std::size_t>(f)] = precision.ldlt().solve(Eigen::MatrixXd::Identity(terms, terms));
+    state.weights.row(f).tail(terms) = (state.covariance[static_cast<std::size_t>(f)] * right).transpose();
+  }
+}
+
+void solve_basis(const Sequence& sequence, EmState& state) {
+  const Eigen::Index n = state.weights.cols();
+  std::vector<Eigen::MatrixXd> blocks;  // E[y y'] (x) D' D
+  for (Eigen::Index f = 0; f < sequence.frames(); ++f) {
+    Eigen::MatrixXd second = state.weights.row(f).transpose() * state.weights.row(f);
+    second.bottomRightCorner(n - 1, n - 1) += state.covariance[static_cast<std::size_t>(f)];
+    const Eigen::Matrix3d dd = state.rows(f).transpose() * state.rows(f);
+    Eigen::MatrixXd block(3 * n, 3 * n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) block.block<3, 3>(3 * i, 3 * j) = second(i, j) * dd;
+    }
+    blocks.push_back(std::move(block));
+  }
+  for (Eigen::Index p = 0; p < sequence.points(); ++p) {
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(3 * n);
+    for (Eigen::Index f = 0; f < sequence.frames(); ++f) {
+      if (!sequence.visible(f, p)) continue;
+      normal += blocks[static_cast<std::size_t>(f)];
+      const Eigen::Vector3d back = state.rows(f).transpose() * state.seen(sequence, f, p);
+      right += (back * state.weights.row(f)).reshaped();
+    }
+    normal.diagonal().array() += 1e-12 * normal.trace() + 1e-300;
+    state.basis.col(p) = normal.ldlt().solve(right);
+  }
+}
+
+Eigen::Matrix3Xd mean_shape(const EmState& state, Eigen::Index f) {
+  Eigen::Matrix3Xd shape = Eigen::Matrix3Xd::Zero(3, state.basis.cols());
+  for (Eigen::Index k = 0; k < state.weights.cols(); ++k) {
+    shape += state.weights(f, k) * state.basis.middleRows<3>(3 * k);
+  }
+  return shape;
+}
+
+// Q of the camera's term, over visible points.
+Eigen::Matrix3d shape_spread(const Sequence& sequence, const EmState& state, Eigen::Index f) {
+  const Eigen::Index terms = state.weights.cols() - 1;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (Eigen::Index p = 0; p < sequence.points(); ++p) {
+    if (!sequence.visible(f, p)) continue;
+    const Eigen::Map<const Eigen::Matrix3Xd> v(state.basis.col(p).data() + 3, 3, terms);
+    spread += v * state.covariance[static_cast<std::size_t>(f)] * v.transpose();
+  }
+  return spread;
+}
+
+// Cameras, then sigma^2; the mean of the scales stays 1.
+void solve_cameras(const Sequence& sequence, bool free_scales, EmState& state) {
+  double scales = 0;
+  for (Eigen::Index f = 0; f < sequence.frames(); ++f) {
+    WeakCamera& camera = state.cameras[static_cast<std::size_t>(f)];
+    camera = fit_camera(sequence.tracks.middleRows<2>(2 * f), sequence.visible.row(f), mean_shape(state, f), camera,
+                        free_scales, shape_spread(sequence, state, f));
+    scales += camera.scale / static_cast<double>(sequence.frames());
+  }
+  for (WeakCamera& camera : state.cameras) camera.scale /= scales;
+  state.basis *= scales;
+}
+
+double expected_variance(const Sequence& sequence, const EmState& state) {
+  double sum = 0;
+  for (Eigen::Index f = 0; f < sequence.frames(); ++f) {
+    const CameraRows d = state.rows(f);
+    const Eigen::Matrix2Xd at = d * mean_shape(state, f);
+    for (Eigen::Index p = 0; p < sequence.points(); ++p) {
+      if (sequence.visible(f, p)) sum += (state.seen(sequence, f, p) - at.col(p)).squaredNorm();
+    }
+    sum += (d * shape_spread(sequence, state, f) * d.transpose()).trace();
+  }
+  return sum / (2 * static_cast<double>(sequence.visible.count()));
+}
+
+// z: the left singular vectors of the residuals, a row per frame, turned into the frame of reference (R' r).
+Eigen::MatrixXd temporal_modes(const Start& start, const Eigen::MatrixXd& rigid, Eigen::Index terms) {
+  const Eigen::Index frames = start.w.rows() / 2, points = start.w.cols();
+  Eigen::MatrixXd by_frame(frames, 3 * points);
+  for (Eigen::Index f = 0; f < frames; ++f) {
+    const CameraRows d = start.rows.middleRows<2>(2 * f);
+    by_frame.row(f) = (d.transpose() * (start.w.middleRows<2>(2 * f) - d * rigid)).reshaped().transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(by_frame * by_frame.transpose());
+  return std::sqrt(static_cast<double>(frames)) * modes.eigenvectors().rightCols(terms).rowwise().reverse();
+}
+
+EmState start_state(const Start& start, Eigen::Index terms) {
+  const Eigen::Index frames = start.w.rows() / 2;
+  EmState state;
+  for (Eigen::Index f = 0; f < frames; ++f) {
+    state.cameras.push_back({start.upgrade.rotations[static_cast<std::size_t>(f)], start.upgrade.scales(f),
+                             start.translation.segment<2>(2 * f)});
+  }
+  const Eigen::MatrixXd rigid = start.rows.colPivHouseholderQr().solve(start.w);
+  state.basis = Eigen::MatrixXd::Zero(3 * (terms + 1), start.w.cols());
+  state.basis.topRows<3>() = rigid;
+  state.weights = Eigen::MatrixXd::Ones(frames, terms + 1);
+  state.weights.rightCols(terms) = temporal_modes(start, rigid, terms);
+  state.covariance.assign(static_cast<std::size_t>(frames), 0.1 * Eigen::MatrixXd::Identity(terms, terms));
+  return state;
+}
+
+class EmPpca : public Solver {
+ public:
+  const SolverInfo& info() const override {
+    static const SolverInfo info{
+        "em_ppca",
+        "probabilistic principal components (EM-PPCA)",
+        "Shapes are a mean and K deformations with normal weights, integrated out; likeliest cameras and shapes.",
+        "Torresani, Hertzmann & Bregler, PAMI 30 (2008), sections 3 and 4",
+        Prior::shape_basis,
+        true,
+        true,
+        false,
+        {rank_parameter("deformations besides the mean shape, K"),
+         {"camera_rank", 1, 1, 100, true, "rank at which the first rotations are estimated; 1: rigid, as the paper"},
+         free_scales_parameter()}};
+    return info;
+  }
+
+  Solution solve(const Sequence& sequence, const SolverOptions& options) const override {
+    const bool free_scales = free_scales_of(info(), sequence, options);
+    const Eigen::Index rank = std::max<Eigen::Index>(1, terms_of(info(), sequence, options, "rank", 1e-2, 8));
+    const Eigen::Index camera_rank = terms_of(info(), sequence, options, "camera_rank", 1, 1);
+    const Start start = start_from(sequence, camera_rank, {free_scales, options.seed});
+    EmState state = start_state(start, rank);
+    solve_basis(sequence, state);
+    state.variance = expected_variance(sequence, state);
+    const double floor = 1e-14 * start.w.squaredNorm() / static_cast<double>(start.w.size());
+    const int most = options.most_iterations > 0 ? options.most_iterations : 150;
+    Solution solution;
+    solution.converged = false;
+    while (solution.iterations < most && !solution.converged) {
+      state.variance = std::max(state.variance, floor);
+      expect(sequence, state);
+      solve_basis(sequence, state);
+      solve_cameras(sequence, free_scales, state);
+      const double variance = expected_variance(sequence, state);
+      ++solution.iterations;
+      solution.converged = std::abs(state.variance - variance) <= 1e-5 * state.variance;
+      state.variance = variance;
+    }
+    fill_answer(sequence, state, solution.reconstruction);
+    solution.values = {{"rank", static_cast<double>(rank)},
+                       {"camera_rank", static_cast<double>(camera_rank)},
+                       {"free_scales", free_scales ? 1 : 0}};
+    return solution;
+  }
+
+ private:
+  static void fill_answer(const Sequence& sequence, const EmState& state, Reconstruction& answer) {
+    answer.shapes.resize(3 * sequence.frames(), sequence.points());
+    for (Eigen::Index f = 0; f < sequence.frames(); ++f) {
+      const Eigen::Matrix3Xd shape = mean_shape(state, f);
+      shape_of(answer.shapes, f) = shape.colwise() - shape.rowwise().mean();
+      answer.rotations.push_back(state.cameras[static_cast<std::size_t>(f)].rotation);
+    }
+    turn_to_first_camera(answer);
+  }
+};
+
+}  // namespace
+
+const Solver& em_ppca() {
+  static const EmPpca solver;
+  return solver;
+}
+
+}  // namespace gonio::nrsfm::solvers
