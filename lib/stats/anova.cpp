@@ -3,8 +3,6 @@
 // and turns it into G U, G orthonormal: SS(T) = |G_T' Q'y|^2. Robust: the hypothesis is that neither B nor T is there,
 // less that of B alone: with the Cholesky factor L of cov(G_[B T]' Q'y), the squares of L^-1 G_[B T]' Q'y that belong
 // to T (car::Anova's conjugate complement; for type III nothing is in B).
-#include "stats/anova.h"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -14,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "stats/anova_projections.h"
 #include "stats/incomplete_beta.h"
 #include "stats/model_columns.h"
 
@@ -121,7 +120,7 @@ Tested test(const Projections& fit, const ModelColumns& columns, std::size_t ter
 
 // Covariance of Q'y: s^2, or Q' diag(w e^2) Q.
 Eigen::MatrixXd covariance_of(const Anova& fit, Covariance covariance) {
-  const Eigen::MatrixXd& q = fit.projections.q;
+  const Eigen::MatrixXd& q = fit.projections->q;
   const double n = static_cast<double>(q.rows()), left = fit.residual_degrees;
   if (covariance == Covariance::classical)
     return fit.residual_sum_of_squares / left * Eigen::MatrixXd::Identity(q.cols(), q.cols());
@@ -150,7 +149,7 @@ void fit_projections(const Design& design, const ModelColumns& columns, Anova& f
   const auto n = static_cast<Index>(design.y.size());
   const Eigen::Map<const Eigen::VectorXd> y(design.y.data(), n);
   Triangle t = triangle(columns.matrix(design));
-  Projections& p = fit.projections;
+  Projections& p = *fit.projections;
   const auto rank = static_cast<int>(t.kept.size());
   if (n <= rank)
     throw Error(
@@ -244,12 +243,13 @@ Anova anova(const Design& design, const std::vector<Term>& terms, SumsOfSquares 
   const ModelColumns columns(design, terms);
   const bool robust = covariance != Covariance::classical;
   Anova fit;
-  fit.projections.terms = terms;
+  fit.projections = std::make_shared<Projections>();
+  fit.projections->terms = terms;
   fit_projections(design, columns, fit);
   describe_cells(design, terms, fit);
-  fit.projections.covariance = covariance_of(fit, covariance);
+  fit.projections->covariance = covariance_of(fit, covariance);
   for (std::size_t t = 0; t < terms.size(); ++t) {
-    const Tested tested = test(fit.projections, columns, t, type, robust);
+    const Tested tested = test(*fit.projections, columns, t, type, robust);
     fit.rows.push_back(row_of(tested, fit, terms[t], columns.block(t).count, robust));
     if (fit.rows.back().aliased > 0)
       fit.notes.push_back(format("%s: %d of %d columns cannot be told from other terms",

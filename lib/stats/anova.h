@@ -14,7 +14,7 @@
 // With empty cells a hypothesis is what the columns that remain can tell; type III then depends on which cells are
 // empty (Searle 1987, section 9.2), and notes say so.
 #pragma once
-#include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -54,16 +54,7 @@ struct Coefficient {
   double value = 0, sigma = 0;
   bool estimable = true;
 };
-// The fit in coordinates where the columns are a triangle: y = Q (R beta) + error, Q'Q = 1. R has a column for every
-// column of the model matrix, aliased ones included; rows for the r that are independent.
-struct Projections {
-  std::vector<Term> terms;
-  Eigen::MatrixXd r;           // r x p
-  std::vector<int> kept;       // the independent columns, in order
-  Eigen::VectorXd z;           // Q'y
-  Eigen::MatrixXd covariance;  // of z, as chosen
-  Eigen::MatrixXd q;           // n x r
-};
+struct Projections;  // what marginal means and ranks need of the fit: anova_projections.h
 struct Anova {
   std::vector<TermRow> rows;
   double mean = 0, sigma_mean = 0;  // mu: the mean of cell means
@@ -74,7 +65,7 @@ struct Anova {
   int empty_cells = 0;  // combinations of the interactions' levels without an observation
   std::vector<double> residuals, leverage;
   std::vector<std::string> notes;
-  Projections projections;
+  std::shared_ptr<Projections> projections;
 };
 // Error(data) at the factor's name or "results" for a factor with fewer than two levels that occur, no more
 // observations than coefficients, y that is not finite, a y that is the same everywhere; for HC2 and HC3 where an

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "stats/anova.h"
+#include "stats/anova_projections.h"
 #include "stats/model_columns.h"
 
 namespace gonio::stats {
@@ -67,12 +67,12 @@ std::vector<std::vector<int>> all_levels(const Design& design, const Term& facto
 }
 
 void add_coefficients(const Design& design, Anova& fit) {
-  const Estimate mean = estimate(fit.projections, contrast_at(design, fit.projections, {}, {}, false));
+  const Estimate mean = estimate(*fit.projections, contrast_at(design, *fit.projections, {}, {}, false));
   fit.mean = mean.value;
   fit.sigma_mean = mean.sigma;
-  for (const Term& term : fit.projections.terms)
+  for (const Term& term : fit.projections->terms)
     for (const std::vector<int>& levels : all_levels(design, term)) {
-      const Estimate e = estimate(fit.projections, contrast_at(design, fit.projections, term, levels, true));
+      const Estimate e = estimate(*fit.projections, contrast_at(design, *fit.projections, term, levels, true));
       fit.coefficients.push_back({term, levels, e.value, e.sigma, e.estimable});
     }
 }
@@ -80,7 +80,7 @@ void add_coefficients(const Design& design, Anova& fit) {
 std::vector<MarginalMean> marginal_means(const Anova& fit, const Design& design, const Term& factors) {
   std::vector<MarginalMean> means;
   for (const std::vector<int>& levels : all_levels(design, factors)) {
-    const Estimate e = estimate(fit.projections, contrast_at(design, fit.projections, factors, levels, false));
+    const Estimate e = estimate(*fit.projections, contrast_at(design, *fit.projections, factors, levels, false));
     MarginalMean mean{levels, e.value, e.sigma, 0, e.estimable};
     for (std::size_t i = 0; i < design.y.size(); ++i) {
       bool here = true;

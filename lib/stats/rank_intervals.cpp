@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/text.h"
-#include "stats/anova.h"
+#include "stats/anova_projections.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
 #include "stats/model_columns.h"
@@ -37,7 +37,7 @@ std::vector<std::vector<Index>> members(std::span<const int> blocks, std::size_t
 
 // Residuals of these observations against a fit that leaves them out; where that fit cannot tell them, what it can.
 Eigen::VectorXd left_out(const Anova& fit, const std::vector<Index>& rows) {
-  const Eigen::MatrixXd q = fit.projections.q(rows, Eigen::all);
+  const Eigen::MatrixXd q = fit.projections->q(rows, Eigen::all);
   Eigen::VectorXd e(q.rows());
   for (Index i = 0; i < e.size(); ++i)
     e(i) = fit.residuals[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])];
@@ -52,17 +52,17 @@ Eigen::VectorXd left_out(const Anova& fit, const std::vector<Index>& rows) {
 Levels levels_of(const Design& design, const Anova& fit, int factor, const std::vector<std::vector<Index>>& blocks) {
   const Factor& f = design.factors[static_cast<std::size_t>(factor)];
   const auto k = static_cast<Index>(f.levels.size());
-  Eigen::MatrixXd weight(fit.projections.q.rows(), k);
+  Eigen::MatrixXd weight(fit.projections->q.rows(), k);
   Levels result{Eigen::VectorXd(k), Eigen::MatrixXd(k, static_cast<Index>(blocks.size()))};
   for (int l = 0; l < k; ++l) {
     const Eigen::VectorXd lambda =
-        estimable(fit.projections, contrast_at(design, fit.projections, {factor}, std::vector<int>{l}, true));
+        estimable(*fit.projections, contrast_at(design, *fit.projections, {factor}, std::vector<int>{l}, true));
     if (lambda.size() == 0)
       throw Error(Exit::data, f.name,
                   "\"" + f.levels[static_cast<std::size_t>(l)] + "\" cannot be compared with the others",
                   "leave out the interactions whose cells are empty");
-    result.mean(l) = lambda.dot(fit.projections.z);
-    weight.col(l) = fit.projections.q * lambda;
+    result.mean(l) = lambda.dot(fit.projections->z);
+    weight.col(l) = fit.projections->q * lambda;
   }
   const double g = static_cast<double>(blocks.size());
   for (std::size_t b = 0; b < blocks.size(); ++b)
