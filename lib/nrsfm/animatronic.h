@@ -17,13 +17,22 @@ struct AnimatronicOptions {
   std::uint64_t seed = 1;
 };
 
-struct DeformingSurface {
-  std::vector<std::array<std::uint32_t, 3>> triangles;  // the same topology in every frame ...
-  std::vector<std::vector<char>> removed;  // ... but for triangles that a tear has opened, by frame; or empty
-  Shapes vertices_m;                       // 3F x V
-  std::vector<std::uint32_t> tracked;      // vertices, or points on triangles:
-  Shapes points_m;                         // 3F x P, on the surface of each frame
+// A point of the material: on `triangle`, with the weights b1, b2 of its second and third corner.
+struct Anchor {
+  std::uint32_t triangle = 0;
+  double b1 = 0, b2 = 0;
 };
+
+struct DeformingSurface {
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // the same in every frame; a tear parts corners that coincide
+  Shapes vertices_m;                                    // 3F x V
+  std::vector<Anchor> anchors;                          // of the points that are followed
+  Shapes points_m;                                      // 3F x P, on the surface of each frame
+  double residual = 0;  // of simulated ones: largest unbalanced force over the largest force, over all frames
+  Eigen::Index frames() const { return vertices_m.rows() / 3; }
+};
+// Where the anchors are on the frames of `vertices_m`.
+Shapes anchored(const DeformingSurface& surface);
 
 struct AnimatronicInfo {
   std::string id;        // "bending"
@@ -38,9 +47,5 @@ class Animatronic {
 };
 std::span<const Animatronic* const> all_animatronics();  // sorted by id; defined in a generated source
 const Animatronic* find_animatronic(const std::string& id);
-
-// Points that the surface itself hides from the camera, and points on faces that look away: F x P.
-Visible self_occlusion(const DeformingSurface& surface, const std::vector<CameraFromObject>& cameras,
-                       Projection projection);
 
 }  // namespace gonio::nrsfm

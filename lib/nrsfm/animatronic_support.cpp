@@ -1,0 +1,123 @@
+// See animatronic_support.h.
+#include "nrsfm/animatronic_support.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/text.h"
+
+namespace gonio::nrsfm {
+
+Sheet flat_sheet(double length_x_m, double length_y_m, int nx, int ny) {
+  Sheet sheet;
+  sheet.nx = nx, sheet.ny = ny;
+  sheet.rest.resize(3, (nx + 1) * (ny + 1));
+  for (int i = 0; i <= nx; ++i)
+    for (int j = 0; j <= ny; ++j)
+      sheet.rest.col(sheet.at(i, j)) << length_x_m * (static_cast<double>(i) / nx - 0.5),
+          length_y_m * (static_cast<double>(j) / ny - 0.5), 0;
+  for (int i = 0; i < nx; ++i) {
+    for (int j = 0; j < ny; ++j) {
+      const auto a = sheet.at(i, j), b = sheet.at(i + 1, j), c = sheet.at(i + 1, j + 1), d = sheet.at(i, j + 1);
+      if ((i + j) % 2 == 0) {
+        sheet.triangles.push_back({a, b, c});
+        sheet.triangles.push_back({a, c, d});
+      } else {
+        sheet.triangles.push_back({a, b, d});
+        sheet.triangles.push_back({b, c, d});
+      }
+    }
+  }
+  return sheet;
+}
+
+double eased(double s) {
+  s = std::clamp(s, 0.0, 1.0);
+  return s * s * s * (10 + s * (6 * s - 15));
+}
+
+Play::Play(Shell& shell, const Eigen::Matrix3Xd& start, const AnimatronicOptions& options)
+    : shell_(shell), rest_(start), x_(start), before_(start), options_(options) {
+  if (options.frames < 2)
+    throw Error(Exit::usage, "--frames", "is " + std::to_string(options.frames), "2 is the least");
+  if (options.points < 4)
+    throw Error(Exit::usage, "--points", "is " + std::to_string(options.points), "4 is the least");
+}
+
+void Play::step(double s, const std::function<void(double, Eigen::Matrix3Xd&)>& lead,
+                const std::function<bool(const Eigen::Matrix3Xd&)>& after) {
+  throw_if_interrupted();
+  Eigen::Matrix3Xd held = x_, onward = 2 * x_ - before_;
+  lead(s, held), lead(s, onward);
+  before_ = x_;
+  x_ = shell_.energy(onward) < shell_.energy(held) ? onward : held;
+  Equilibrium at;
+  do {
+    at = shell_.settle(x_);
+    if (!at.converged)
+      throw Error(Exit::internal, "animatronic at " + shortest_text(s),
+                  "finds no equilibrium: a force of " + shortest_text(at.residual_n) + " N is left of " +
+                      shortest_text(at.scale_n) + " N",
+                  "take another --seed");
+  } while (after && after(x_));
+  residual_ = std::max(residual_, at.residual_n / at.scale_n);
+}
+
+DeformingSurface Play::run(const std::function<void(double, Eigen::Matrix3Xd&)>& lead,
+                           const std::function<bool(const Eigen::Matrix3Xd&)>& after) {
+  constexpr Eigen::Index least_steps = 40;
+  DeformingSurface out;
+  out.triangles = shell_.triangles();
+  out.anchors = spread_anchors(out.triangles, rest_, options_.points, options_.seed);
+  const Eigen::Index gaps = options_.frames - 1, parts = (least_steps + gaps - 1) / gaps;
+  out.vertices_m.resize(3 * options_.frames, x_.cols());
+  step(0, lead, after);
+  before_ = x_;
+  shape_of(out.vertices_m, 0) = x_;
+  for (Eigen::Index f = 1; f <= gaps; ++f) {
+    for (Eigen::Index k = 1; k <= parts; ++k)
+      step(static_cast<double>((f - 1) * parts + k) / static_cast<double>(gaps * parts), lead, after);
+    shape_of(out.vertices_m, f) = x_;
+  }
+  out.points_m = anchored(out);
+  out.residual = residual_;
+  return out;
+}
+
+std::vector<Anchor> spread_anchors(const Triangles& triangles, const Eigen::Matrix3Xd& rest, Eigen::Index count,
+                                   std::uint64_t seed) {
+  std::vector<double> until;
+  double total = 0;
+  for (const auto& t : triangles) {
+    const Eigen::Vector3d a = rest.col(t[1]) - rest.col(t[0]), b = rest.col(t[2]) - rest.col(t[0]);
+    until.push_back(total += a.cross(b).norm() / 2);
+  }
+  Random random(seed, 0xa0c4);
+  std::vector<Anchor> anchors;
+  Eigen::Matrix3Xd taken(3, count);
+  constexpr int candidates = 12;
+  for (Eigen::Index p = 0; p < count; ++p) {
+    double farthest = -1;
+    anchors.emplace_back();
+    for (int c = 0; c < candidates; ++c) {
+      const auto place = std::upper_bound(until.begin(), until.end(), random.uniform() * total) - until.begin();
+      const auto k = std::min(static_cast<std::size_t>(place), triangles.size() - 1);
+      const double root = std::sqrt(random.uniform()), v = random.uniform();
+      const Anchor anchor{static_cast<std::uint32_t>(k), root * (1 - v), root * v};
+      const Eigen::Vector3d q = (1 - root) * rest.col(triangles[k][0]) + anchor.b1 * rest.col(triangles[k][1]) +
+                                anchor.b2 * rest.col(triangles[k][2]);
+      const double distance = p == 0 ? 0 : (taken.leftCols(p).colwise() - q).colwise().squaredNorm().minCoeff();
+      if (distance <= farthest) continue;
+      farthest = distance;
+      anchors.back() = anchor;
+      taken.col(p) = q;
+    }
+  }
+  return anchors;
+}
+
+}  // namespace gonio::nrsfm

@@ -1,0 +1,64 @@
+// A sheet of rubber that hangs between two bars, pulled taut and long while the bars turn against each other. It
+// narrows as its Poisson's ratio says.
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "nrsfm/animatronic_support.h"
+
+namespace gonio::nrsfm::animatronics {
+namespace {
+
+constexpr double length_m = 0.2, width_m = 0.13;
+constexpr int nx = 24, ny = 16;
+
+class Stretching : public Animatronic {
+ public:
+  const AnimatronicInfo& info() const override {
+    static const AnimatronicInfo info{
+        "stretching", "A sheet of rubber that hangs between two bars is pulled long while the bars turn.",
+        "linear triangles, St. Venant-Kirchhoff in plane stress: Bonet & Wood, Nonlinear continuum mechanics, 2008"};
+    return info;
+  }
+
+  DeformingSurface make(const AnimatronicOptions& options) const override {
+    Random random(options.seed, 2);
+    const double slack = random.uniform(0.90, 0.93), pull = random.uniform(1.32, 1.42);
+    const double twist = random.uniform(0.25, 0.4) * (random.uniform() < 0.5 ? -1 : 1);
+    const double skew = random.uniform(-0.15, 0.15);
+    const Sheet sheet = flat_sheet(length_m, width_m, nx, ny);
+    Shell shell(sheet.rest, sheet.triangles,
+                {.young_pa = 1e6, .poisson = 0.45, .thickness_m = 1e-3, .density_kg_m3 = 1100});
+    for (const int i : {0, nx})
+      for (int j = 0; j <= ny; ++j) shell.fixed[sheet.at(i, j)] = 1;
+    const auto lead = [&](double s, Eigen::Matrix3Xd& x) {
+      const double half = length_m / 2 * (slack + (pull - slack) * eased(s));
+      for (const int side : {-1, 1}) {
+        const Eigen::Matrix3d turn =
+            (Eigen::AngleAxisd(skew * eased(s), Eigen::Vector3d::UnitZ()) *
+             Eigen::AngleAxisd(side * twist * std::sin(1.5 * pi * s) * eased(2 * s), Eigen::Vector3d::UnitX()))
+                .toRotationMatrix();
+        for (int j = 0; j <= ny; ++j) {
+          const std::uint32_t v = sheet.at(side < 0 ? 0 : nx, j);
+          x.col(v) = Eigen::Vector3d(side * half, 0, 0) + turn * Eigen::Vector3d(0, sheet.rest(1, v), 0);
+        }
+      }
+    };
+    Eigen::Matrix3Xd start = sheet.rest;  // a parabola of about the sheet's length
+    const double sag = std::sqrt(3.0 / 8 * (1 / slack - 1)) * slack * length_m;
+    for (Eigen::Index v = 0; v < start.cols(); ++v) {
+      const double u = 2 * start(0, v) / length_m;
+      start(0, v) *= slack;
+      start(2, v) = -sag * (1 - u * u);
+    }
+    return Play(shell, start, options).run(lead);
+  }
+};
+
+}  // namespace
+
+const Animatronic& stretching() {
+  static const Stretching stretching;
+  return stretching;
+}
+
+}  // namespace gonio::nrsfm::animatronics

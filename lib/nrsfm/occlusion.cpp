@@ -1,0 +1,133 @@
+// See occlusion.h.
+#include "nrsfm/occlusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/text.h"
+#include "io/ply.h"
+#include "mesh/mesh.h"
+#include "nrsfm/files.h"
+#include "nrsfm/variables.h"
+#include "render/ray_caster.h"
+
+namespace gonio::nrsfm {
+namespace {
+
+Vec3 vec(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+scene::Instance instance_of(const FrameMesh& frame) {
+  auto mesh = std::make_shared<mesh::Mesh>();
+  for (Eigen::Index v = 0; v < frame.vertices_m.cols(); ++v) mesh->positions_m.push_back(vec(frame.vertices_m.col(v)));
+  mesh->triangles = frame.triangles;
+  scene::Instance instance;
+  instance.id = "surface";
+  instance.shape = std::shared_ptr<const mesh::Mesh>(std::move(mesh));
+  return instance;
+}
+
+FrameMesh frame_mesh(const io::TriangleMesh& read, double unit_m) {
+  FrameMesh mesh;
+  mesh.vertices_m.resize(3, static_cast<Eigen::Index>(read.positions_m.size()));
+  for (std::size_t v = 0; v < read.positions_m.size(); ++v) {
+    const Vec3 p = read.positions_m[v] * unit_m;
+    mesh.vertices_m.col(static_cast<Eigen::Index>(v)) << p.x, p.y, p.z;
+  }
+  mesh.triangles = read.triangles;
+  return mesh;
+}
+
+// Columns of `shapes` that are finite throughout.
+Shapes without_gaps(const Shapes& shapes) {
+  Shapes kept(shapes.rows(), shapes.cols());
+  Eigen::Index count = 0;
+  for (Eigen::Index p = 0; p < shapes.cols(); ++p)
+    if (shapes.col(p).allFinite()) kept.col(count++) = shapes.col(p);
+  return kept.leftCols(count);
+}
+
+}  // namespace
+
+Motion motion_of(const Animatronic& animatronic, const AnimatronicOptions& options) {
+  const auto surface = std::make_shared<const DeformingSurface>(animatronic.make(options));
+  Motion motion;
+  motion.kind = animatronic.info().id;
+  motion.source = "simulated: " + animatronic.info().sentence;
+  motion.points_m = surface->points_m;
+  motion.mesh = [surface](Eigen::Index f) { return FrameMesh{shape_of(surface->vertices_m, f), surface->triangles}; };
+  return motion;
+}
+
+Motion motion_of_scans(const std::filesystem::path& meshes, const std::filesystem::path& tracks, double unit_m) {
+  const auto files = files_in_order(meshes, ".ply");
+  const Shapes shapes = read_reconstruction(tracks).shapes;
+  const auto frames = static_cast<Eigen::Index>(files.size());
+  if (shapes.rows() != 3 * frames)
+    throw Error(Exit::data, tracks.string(),
+                "has " + std::to_string(shapes.rows() / 3) + " frames where " + meshes.string() + " has " +
+                    std::to_string(frames) + " meshes",
+                "name as many meshes as frames");
+  Motion motion;
+  motion.kind = std::filesystem::absolute(meshes).lexically_normal().parent_path().filename().string();
+  if (std::filesystem::is_directory(meshes)) motion.kind = std::filesystem::canonical(meshes).filename().string();
+  motion.source = "scans: " + meshes.filename().string();
+  motion.points_m = unit_m * without_gaps(shapes);
+  const Eigen::Index lost = shapes.cols() - motion.points_m.cols();
+  if (lost > 0)
+    motion.notes.push_back(std::to_string(lost) + " of " + std::to_string(shapes.cols()) +
+                           " points have no place in some frame and are left out");
+  if (motion.points_m.cols() < 4)
+    throw Error(Exit::data, tracks.string(),
+                "has " + std::to_string(motion.points_m.cols()) + " points with a place in every frame",
+                "4 is the least");
+  motion.mesh = [files, unit_m](Eigen::Index f) {
+    return frame_mesh(io::read_ply(files[static_cast<std::size_t>(f)]), unit_m);
+  };
+  return motion;
+}
+
+Ball ball_around(const Shapes& points_m) {
+  Ball ball;
+  const Eigen::Map<const Eigen::Matrix3Xd> all(points_m.data(), 3, points_m.size() / 3);
+  ball.centre_m = (all.rowwise().minCoeff() + all.rowwise().maxCoeff()) / 2;
+  ball.radius_m = (all.colwise() - ball.centre_m).colwise().norm().maxCoeff();
+  return ball;
+}
+
+Eigen::Array<bool, 1, Eigen::Dynamic> visible_in(const FrameMesh& mesh, const Eigen::Matrix3Xd& points_m,
+                                                 const CameraFromObject& camera, Projection projection,
+                                                 double tolerance_m, bool one_sided) {
+  const std::array<scene::Instance, 1> instances{instance_of(mesh)};
+  const render::RayCaster caster(instances);
+  const Eigen::Vector3d eye = -camera.rotation.transpose() * camera.translation;
+  const Eigen::Vector3d axis = camera.rotation.row(2).transpose();
+  const double size = 2 * (mesh.vertices_m.colwise() - mesh.vertices_m.rowwise().mean()).colwise().norm().maxCoeff();
+  const double allowed = std::max(tolerance_m, 1e-6 * size);
+  Eigen::Array<bool, 1, Eigen::Dynamic> visible(points_m.cols());
+  for (Eigen::Index p = 0; p < points_m.cols(); ++p) {
+    const Eigen::Vector3d point = points_m.col(p);
+    const bool perspective = projection == Projection::perspective;
+    const double distance = perspective ? (point - eye).norm() : 2 * size + allowed;
+    const Eigen::Vector3d direction = perspective ? Eigen::Vector3d((point - eye) / distance) : axis;
+    const auto met = caster.closest(vec(point - distance * direction), vec(direction));
+    visible(p) = !met || (met->distance_m >= distance - allowed && (met->outside || !one_sided));
+  }
+  return visible;
+}
+
+Visible visible_points(const Motion& motion, const std::vector<CameraFromObject>& cameras, Projection projection) {
+  Visible visible(motion.frames(), motion.points_m.cols());
+  parallel_for(0, static_cast<std::size_t>(motion.frames()), [&](std::size_t f) {
+    const auto frame = static_cast<Eigen::Index>(f);
+    visible.row(frame) = visible_in(motion.mesh(frame), shape_of(motion.points_m, frame), cameras[f], projection,
+                                    motion.tolerance_m, motion.one_sided);
+  });
+  return visible;
+}
+
+}  // namespace gonio::nrsfm

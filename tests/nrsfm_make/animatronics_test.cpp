@@ -1,0 +1,178 @@
+// The five animatronics: equilibrium in every frame, and the properties that give each kind its name.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+
+#include "nrsfm/animatronic.h"
+#include "nrsfm/shell.h"
+
+namespace gonio::nrsfm {
+namespace {
+
+// Each kind is simulated once for all tests.
+const DeformingSurface& made(const std::string& id) {
+  static std::map<std::string, DeformingSurface> all;
+  const auto at = all.find(id);
+  if (at != all.end()) return at->second;
+  return all[id] = find_animatronic(id)->make({.frames = 21, .points = 80, .seed = 3});
+}
+
+Eigen::MatrixXd edge_lengths(const DeformingSurface& s) {
+  Eigen::MatrixXd lengths(s.frames(), static_cast<Eigen::Index>(3 * s.triangles.size()));
+  for (Eigen::Index f = 0; f < s.frames(); ++f) {
+    const auto x = shape_of(s.vertices_m, f);
+    for (std::size_t k = 0; k < s.triangles.size(); ++k)
+      for (std::size_t i = 0; i < 3; ++i)
+        lengths(f, static_cast<Eigen::Index>(3 * k + i)) =
+            (x.col(s.triangles[k][i]) - x.col(s.triangles[k][(i + 1) % 3])).norm();
+  }
+  return lengths;
+}
+
+// How often the closed surface winds about p (van Oosterom & Strackee 1983).
+double winding(const DeformingSurface& s, Eigen::Index frame, const Eigen::Vector3d& p) {
+  const auto x = shape_of(s.vertices_m, frame);
+  double angle = 0;
+  for (const auto& t : s.triangles) {
+    const Eigen::Vector3d a = x.col(t[0]) - p, b = x.col(t[1]) - p, c = x.col(t[2]) - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return angle / (4 * M_PI);
+}
+
+// Just outside each triangle the winding number is 0, just inside 1: the surface does not run through itself.
+void expect_no_self_penetration(const DeformingSurface& s, Eigen::Index frame) {
+  const auto x = shape_of(s.vertices_m, frame);
+  for (std::size_t k = 0; k < s.triangles.size(); k += 3) {
+    const auto& t = s.triangles[k];
+    const Eigen::Vector3d n = (x.col(t[1]) - x.col(t[0])).cross(x.col(t[2]) - x.col(t[0])).normalized();
+    const Eigen::Vector3d centre = (x.col(t[0]) + x.col(t[1]) + x.col(t[2])) / 3;
+    ASSERT_NEAR(winding(s, frame, centre + 1e-5 * n), 0, 1e-6) << "triangle " << k << ", frame " << frame;
+    ASSERT_NEAR(winding(s, frame, centre - 1e-5 * n), 1, 1e-6) << "triangle " << k << ", frame " << frame;
+  }
+}
+
+class Kind : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Kind, ForcesBalanceAndPointsLieOnTheSurface) {
+  const DeformingSurface& s = made(GetParam());
+  EXPECT_GT(s.residual, 0);
+  EXPECT_LE(s.residual, 1e-6);
+  EXPECT_EQ(s.points_m.cols(), 80);
+  EXPECT_TRUE(s.vertices_m.allFinite());
+  const Shapes again = anchored(s);
+  EXPECT_EQ((again - s.points_m).cwiseAbs().maxCoeff(), 0);
+}
+
+// A jump between frames would be a step much larger than those beside it.
+TEST_P(Kind, MovesWithoutJumps) {
+  const DeformingSurface& s = made(GetParam());
+  double longest = 0;
+  std::vector<double> steps;
+  for (Eigen::Index f = 1; f < s.frames(); ++f) {
+    steps.push_back((shape_of(s.points_m, f) - shape_of(s.points_m, f - 1)).colwise().norm().maxCoeff());
+    longest = std::max(longest, steps.back());
+  }
+  std::nth_element(steps.begin(), steps.begin() + 10, steps.end());
+  EXPECT_GT(longest, 1e-3);
+  EXPECT_LT(longest, 5 * steps[10]);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Kind, ::testing::Values("articulated", "bending", "deflation", "stretching", "tearing"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(Animatronics, AreFiveAndFoundByName) {
+  EXPECT_EQ(all_animatronics().size(), 5u);
+  EXPECT_EQ(find_animatronic("melting"), nullptr);
+}
+
+TEST(Bending, PaperKeepsItsLengths) {
+  const DeformingSurface& s = made("bending");
+  const Eigen::MatrixXd lengths = edge_lengths(s);
+  double worst = 0;
+  for (Eigen::Index f = 1; f < s.frames(); ++f)
+    worst = std::max(worst, (lengths.row(f).array() / lengths.row(0).array() - 1).abs().maxCoeff());
+  EXPECT_LT(worst, 5e-3);
+  const auto heights = [&](Eigen::Index f) { return shape_of(s.vertices_m, f).row(2).maxCoeff(); };
+  double highest = 0;
+  for (Eigen::Index f = 0; f < s.frames(); ++f) highest = std::max(highest, heights(f));
+  EXPECT_GT(highest, 0.05);
+}
+
+TEST(Deflation, BallLosesVolumeAndStaysOutOfItself) {
+  const DeformingSurface& s = made("deflation");
+  const Shell shell(shape_of(s.vertices_m, 0), s.triangles, {});
+  std::vector<double> volumes;
+  for (Eigen::Index f = 0; f < s.frames(); ++f) volumes.push_back(shell.volume(shape_of(s.vertices_m, f)));
+  for (std::size_t f = 1; f < volumes.size(); ++f) EXPECT_LT(volumes[f], volumes[f - 1]);
+  EXPECT_LT(volumes.back(), 0.65 * volumes.front());
+  for (const Eigen::Index f : {10, 20}) expect_no_self_penetration(s, f);
+}
+
+TEST(Articulated, LinksStayRigidAndTheSleeveOutOfItself) {
+  const DeformingSurface& s = made("articulated");
+  const Eigen::MatrixXd lengths = edge_lengths(s);
+  int rigid = 0;
+  for (Eigen::Index e = 0; e < lengths.cols(); ++e)
+    if (lengths.col(e).maxCoeff() - lengths.col(e).minCoeff() < 1e-9) ++rigid;
+  EXPECT_GT(rigid, lengths.cols() / 4);  // of the links
+  EXPECT_LT(rigid, lengths.cols() * 3 / 4);
+  for (const Eigen::Index f : {0, 10, 20}) expect_no_self_penetration(s, f);
+}
+
+TEST(Stretching, SheetGrowsLongerAndNarrower) {
+  const DeformingSurface& s = made("stretching");
+  const auto width = [&](Eigen::Index f) {  // across the middle column: 25 columns of 17 vertices
+    const auto x = shape_of(s.vertices_m, f);
+    double sum = 0;
+    for (Eigen::Index j = 0; j < 16; ++j) sum += (x.col(12 * 17 + j + 1) - x.col(12 * 17 + j)).norm();
+    return sum;
+  };
+  const auto length = [&](Eigen::Index f) {
+    const auto x = shape_of(s.vertices_m, f);
+    double sum = 0;
+    for (Eigen::Index i = 0; i < 24; ++i) sum += (x.col((i + 1) * 17 + 8) - x.col(i * 17 + 8)).norm();
+    return sum;
+  };
+  EXPECT_GT(length(20), 1.25 * length(0));
+  EXPECT_LT(width(20), 0.95 * width(0));
+  EXPECT_GT(width(20), 0.8 * width(0));
+}
+
+// Vertices that coincide at rest and part for good; the tear runs on from the notch, vertex by vertex.
+TEST(Tearing, TearRunsOnAndDoesNotHeal) {
+  const DeformingSurface& s = made("tearing");
+  const auto first = shape_of(s.vertices_m, 0);
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> pairs;
+  for (Eigen::Index a = 0; a < first.cols(); ++a)
+    for (Eigen::Index b = a + 1; b < first.cols(); ++b)
+      if ((first.col(a) - first.col(b)).norm() < 1e-4) pairs.emplace_back(a, b);
+  ASSERT_GT(pairs.size(), 20u);
+  const auto parted = [&](Eigen::Index f) {
+    std::size_t count = 0;
+    for (const auto& [a, b] : pairs)
+      if ((s.vertices_m.block<3, 1>(3 * f, a) - s.vertices_m.block<3, 1>(3 * f, b)).norm() > 5e-4) ++count;
+    return count;
+  };
+  std::size_t before = 0;
+  for (Eigen::Index f = 0; f < s.frames(); ++f) {
+    EXPECT_GE(parted(f), before);
+    before = parted(f);
+  }
+  EXPECT_GE(before, 10u);
+  EXPECT_LT(before, pairs.size());  // not torn in two
+}
+
+TEST(Animatronics, SameSeedSameBytes) {
+  const AnimatronicOptions options{.frames = 6, .points = 40, .seed = 3}, other{.frames = 6, .points = 40, .seed = 4};
+  const Animatronic& stretching = *find_animatronic("stretching");
+  const DeformingSurface a = stretching.make(options), b = stretching.make(options), c = stretching.make(other);
+  EXPECT_EQ((a.points_m - b.points_m).cwiseAbs().maxCoeff(), 0);
+  EXPECT_GT((a.vertices_m - c.vertices_m).cwiseAbs().maxCoeff(), 1e-4);
+}
+
+}  // namespace
+}  // namespace gonio::nrsfm
