@@ -1,218 +1,15 @@
 // nrsfm-make: tracks of things that deform, from simulated animatronics or scans, as virtual cameras see them
 // (lib/nrsfm/factorial.h).
-#include <algorithm>
-#include <iostream>
-#include <optional>
-
-#include "base/error.h"
-#include "base/text.h"
-#include "cli/program.h"
-#include "nrsfm/factorial.h"
-#include "nrsfm/files.h"
+#include "nrsfm/make_call.h"
 
 namespace gonio::tools::nrsfm_make {
-namespace {
-
-using namespace gonio::nrsfm;
-using cli::Type;
-
-std::vector<std::string> kinds() {
-  std::vector<std::string> ids;
-  for (const Animatronic* animatronic : all_animatronics()) ids.push_back(animatronic->info().id);
-  return ids;
-}
-
-const std::vector<std::string> cameras{"orthographic", "perspective"}, missing{"with", "without"};
-
-std::vector<std::string> levels(const cli::Invocation& call, const char* option, const std::vector<std::string>& all) {
-  return call.given(option) ? call.texts(option) : all;
-}
-
-AnimatronicOptions size_asked(const cli::Invocation& call) {
-  return {call.integer("frames"), call.integer("points"), call.seed};
-}
-
-// What deforms: made when the first sequence of it is, since it takes longer than everything after it.
-class Stage {
- public:
-  explicit Stage(const cli::Invocation& call) : call_(call) {}
-  const Motion& motion(const std::string& kind) {
-    if (motion_ && motion_->kind == kind) return *motion_;
-    motion_.reset();
-    if (call_.given("meshes"))
-      motion_ = motion_of_scans(call_.text("meshes"), call_.text("tracks"), call_.number("unit"));
-    else
-      motion_ = motion_of(*find_animatronic(kind), size_asked(call_));
-    motion_->kind = kind;
-    motion_->one_sided = call_.flag("one-sided");
-    motion_->tolerance_m = call_.given("meshes") ? call_.number("tolerance") : 0;
-    return *motion_;
-  }
-
- private:
-  const cli::Invocation& call_;
-  std::optional<Motion> motion_;
-};
-
-// A finished file of an earlier, identical call.
-bool stands(const std::filesystem::path& path, const Sequence& s, const cli::Invocation& call) {
-  if (call.given("meshes")) return s.name == path.stem().string();
-  const bool all = s.factors.at("missing") == "without";  // else points that are hardly seen are left out
-  return s.name == path.stem().string() && s.frames() == call.integer("frames") &&
-         (all ? s.points() == call.integer("points") : s.points() <= call.integer("points"));
-}
-
-// Everything that the entry says is known without a simulation, so that a resumed call writes the same.
-void enter(cli::Invocation& call, Stage& stage, const Sequence& s, const std::filesystem::path& path) {
-  const std::string& kind = s.factors.at("deformation");
-  const bool scans = call.given("meshes");
-  const Eigen::Index points = scans ? stage.motion(kind).points_m.cols() : call.integer("points");
-  manifest::TrackSequence entry;
-  entry.file = manifest::add_file(call.document, path, s.name);
-  entry.frames = s.frames(), entry.points = s.points();
-  entry.projection = s.projection == Projection::perspective ? "perspective" : "orthographic";
-  entry.truth_frame = "object";
-  entry.unit_m = s.unit_m;
-  entry.missing_share = s.missing_share();
-  entry.tracks_from = "geometry";
-  if (!scans) entry.seed = call.seed;
-  entry.factors = s.factors;
-  entry.source = scans ? stage.motion(kind).source : "simulated: " + find_animatronic(kind)->info().sentence;
-  if (scans) entry.notes = stage.motion(kind).notes;
-  if (s.points() < points)
-    entry.notes.push_back(std::to_string(points - s.points()) + " of " + std::to_string(points) +
-                          " points are seen in fewer than " + call.text("least-seen") + " of the frames and left out");
-  call.document.sequences[s.name] = entry;
-}
-
-void make(cli::Invocation& call, Stage& stage, const Cell& cell) {
-  const std::string name = name_of(cell, call.seed);
-  const std::filesystem::path path = call.output_path(name + ".mat");
-  if (call.resume && std::filesystem::exists(path)) {
-    const Sequence there = read_sequence(path);
-    if (!stands(path, there, call))
-      throw Error(Exit::cannot_create, path.string(), "is another sequence", "--force replaces it");
-    enter(call, stage, there, path);
-    return;
-  }
-  const Sequence sequence =
-      film(stage.motion(cell.deformation), cell, call.seed, {call.number("distance"), call.number("least-seen")});
-  write_sequence(sequence, path);
-  enter(call, stage, sequence, path);
-}
-
-std::vector<std::string> deformations(const cli::Invocation& call) {
-  if (!call.given("meshes")) return levels(call, "kind", kinds());
-  if (call.given("name")) return {call.text("name")};
-  return {"scans"};
-}
-
-Exit run(cli::Invocation& call) {
-  Stage stage(call);
-  for (const Cell& cell : design(deformations(call), levels(call, "path", path_names()),
-                                 levels(call, "camera", cameras), levels(call, "missing", missing)))
-    make(call, stage, cell);
-  return Exit::done;
-}
-
-void check(cli::Invocation& call) {
-  if (call.out.empty() && !call.given("out"))
-    throw Error(Exit::usage, "--out", "is missing", "name the folder for the sequences: --out sequences");
-  for (const char* option : {"frames", "points", "kind"})
-    if (call.given("meshes") && call.given(option))
-      throw Error(Exit::usage, std::string("--") + option, "is that of the scans", "leave it out beside --meshes");
-}
-
-std::vector<cli::Option> options() {
-  return {
-      {.name = "kind",
-       .type = Type::choice,
-       .help = "Animatronic; may be repeated. Left out: all.",
-       .choices = kinds(),
-       .repeat = true},
-      {.name = "path",
-       .type = Type::choice,
-       .help = "Path of the camera; may be repeated. Left out: all.",
-       .choices = path_names(),
-       .repeat = true},
-      {.name = "camera",
-       .type = Type::choice,
-       .help = "Projection; may be repeated. Left out: both.",
-       .choices = cameras,
-       .repeat = true},
-      {.name = "missing",
-       .type = Type::choice,
-       .help = "With or without the points that the surface hides from the camera; may be repeated. Left out: both.",
-       .choices = missing,
-       .repeat = true},
-      {.name = "frames",
-       .type = Type::integer,
-       .help = "Of each simulated sequence.",
-       .preset = "60",
-       .lower = 2,
-       .upper = 10000},
-      {.name = "points",
-       .type = Type::integer,
-       .help = "That are followed on each animatronic.",
-       .preset = "100",
-       .lower = 4,
-       .upper = 100000},
-      {.name = "distance",
-       .type = Type::number,
-       .help = "Of the camera from the middle, over the radius of the scene.",
-       .preset = "4.3",
-       .lower = 2,
-       .upper = 1000},
-      {.name = "least-seen",
-       .type = Type::quantity,
-       .help = "With missing data, points that a smaller share of the frames sees are left out.",
-       .preset = "10%",
-       .dimension = Dimension::ratio,
-       .lower = 0,
-       .upper = 1},
-      {.name = "meshes",
-       .type = Type::text,
-       .help = "Instead of animatronics: folder or pattern of PLY meshes, one per frame.",
-       .metavar = "PATH",
-       .conflicts = {"kind"},
-       .needs = {"tracks"}},
-      {.name = "tracks",
-       .type = Type::text,
-       .help = "Points that are followed on the meshes: .mat, .npz, or PLY files per frame.",
-       .metavar = "PATH",
-       .needs = {"meshes"}},
-      {.name = "name",
-       .type = Type::text,
-       .help = "Of the scans: level of the factor deformation.",
-       .needs = {"meshes"}},
-      {.name = "unit",
-       .type = Type::quantity,
-       .help = "Length of the unit of meshes and tracks.",
-       .preset = "1m",
-       .dimension = Dimension::length,
-       .lower = 1e-9,
-       .upper = 1e6,
-       .needs = {"meshes"}},
-      {.name = "tolerance",
-       .type = Type::quantity,
-       .help = "Tracked points may lie this far behind the mesh and still be seen.",
-       .preset = "0.5mm",
-       .dimension = Dimension::length,
-       .lower = 0,
-       .needs = {"meshes"}},
-      {.name = "one-sided",
-       .type = Type::flag,
-       .help = "Hide points of open sheets from behind; without it they show on both sides."}};
-}
-
-}  // namespace
 
 const cli::Program& gonio_program() {
   static const cli::Program program{
       .name = "nrsfm-make",
       .sentence = "make tracks of things that deform, with their truth",
       .synopsis = {"--out DIR [OPTION]... [-i FILE]", "--out DIR --meshes PATH --tracks PATH [OPTION]... [-i FILE]"},
-      .options = options(),
+      .options = nrsfm::make_options(),
       .takes_out = true,
       .takes_seed = true,
       .takes_resume = true,
@@ -224,8 +21,8 @@ const cli::Program& gonio_program() {
                      "Grinspun, Hirani, Desbrun & Schroeder, Discrete shells, SCA 2003.",
                      "Bonet & Wood, Nonlinear continuum mechanics for finite element analysis, 2008."},
       .see_also = {"render(1)", "explain(1)", "gonio-manifest(5)", "gonio-conventions(7)"},
-      .check = check,
-      .run = run};
+      .check = nrsfm::check_make,
+      .run = nrsfm::run_make};
   return program;
 }
 

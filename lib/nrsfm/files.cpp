@@ -277,7 +277,7 @@ void check_mat(const std::filesystem::path& file) {
 
 }  // namespace
 
-void write_sequence(const Sequence& s, const std::filesystem::path& file) {
+void write_sequence(const Sequence& s, const std::filesystem::path& file, const std::string& made_with) {
   check_mat(file);
   check(s, s.name);
   check_factors(s.factors, s.name);
@@ -306,7 +306,14 @@ void write_sequence(const Sequence& s, const std::filesystem::path& file) {
   if (s.unit_m > 0) out["unit_m"] = variable_of(Eigen::MatrixXd::Constant(1, 1, s.unit_m));
   if (!s.name.empty()) out["name"] = variable_of(s.name);
   if (!s.factors.empty()) out["factors"] = structure_of(s.factors);
+  if (!made_with.empty()) out["made_with"] = variable_of(made_with);
   io::write_mat(out, file);
+}
+
+std::string made_with_of(const std::filesystem::path& file) {
+  const io::MatFile there = io::read_mat(file);
+  const auto said = there.find("made_with");
+  return said == there.end() ? "" : said->second.text;
 }
 
 void write_reconstruction(const Reconstruction& r, const std::filesystem::path& file) {

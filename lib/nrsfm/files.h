@@ -28,7 +28,9 @@ Sequence read_sequence(const std::filesystem::path& file, const FileNames& names
 Reconstruction read_reconstruction(const std::filesystem::path& file, const FileNames& names = {},
                                    std::vector<std::string>* notes = nullptr);
 
-void write_sequence(const Sequence& sequence, const std::filesystem::path& file);  // whole or not at all
+// Whole or not at all. `made_with`: what the program that made it was told, for `made_with_of`.
+void write_sequence(const Sequence& sequence, const std::filesystem::path& file, const std::string& made_with = {});
+std::string made_with_of(const std::filesystem::path& file);  // empty: not said
 void write_reconstruction(const Reconstruction& reconstruction, const std::filesystem::path& file);
 
 }  // namespace gonio::nrsfm

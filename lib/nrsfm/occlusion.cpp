@@ -1,6 +1,7 @@
 // See occlusion.h.
 #include "nrsfm/occlusion.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -49,6 +50,18 @@ Shapes without_gaps(const Shapes& shapes) {
   for (Eigen::Index p = 0; p < shapes.cols(); ++p)
     if (shapes.col(p).allFinite()) kept.col(count++) = shapes.col(p);
   return kept.leftCols(count);
+}
+
+// A ray past the rim of a sheet: what the sheet shows next to the point, outside where nothing is found.
+bool outside_beside(const render::RayCaster& caster, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
+                    double distance, double size) {
+  const double aside = 1e-5 * size;
+  const Eigen::Vector3d u = direction.unitOrthogonal(), v = direction.cross(u);
+  for (const Eigen::Vector3d& step : {u, v, Eigen::Vector3d(-u), Eigen::Vector3d(-v)}) {
+    const auto met = caster.closest(vec(point - distance * direction + aside * step), vec(direction));
+    if (met && std::abs(met->distance_m - distance) < 100 * aside) return met->outside;
+  }
+  return true;
 }
 
 }  // namespace
@@ -115,7 +128,8 @@ Eigen::Array<bool, 1, Eigen::Dynamic> visible_in(const FrameMesh& mesh, const Ei
     const double distance = perspective ? (point - eye).norm() : 2 * size + allowed;
     const Eigen::Vector3d direction = perspective ? Eigen::Vector3d((point - eye) / distance) : axis;
     const auto met = caster.closest(vec(point - distance * direction), vec(direction));
-    visible(p) = !met || (met->distance_m >= distance - allowed && (met->outside || !one_sided));
+    visible(p) = !met ? !one_sided || outside_beside(caster, point, direction, distance, size)
+                      : met->distance_m >= distance - allowed && (met->outside || !one_sided);
   }
   return visible;
 }
