@@ -1,0 +1,188 @@
+// nrsfm-eval from its command line: what it enters into the manifest and the table, and what it says of input that
+// cannot be: one line that names the place, the value and the remedy.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "base/atomic_file.h"
+#include "data.h"
+#include "io/csv.h"
+#include "io/mat.h"
+#include "nrsfm/eval_call.h"
+#include "nrsfm/files.h"
+#include "nrsfm/variables.h"
+#include "shapes.h"
+
+namespace gonio::nrsfm {
+namespace {
+
+using testing::HasSubstr;
+
+struct Said {
+  int status = 0;
+  std::string error;
+};
+
+class EvalProgram : public testing::Test {
+ protected:
+  // The program's own options, checks and work, without the program.
+  Said run(std::vector<std::string> arguments) {
+    cli::Program program;
+    program.name = "nrsfm-eval";
+    program.sentence = "evaluate";
+    program.options = eval_options();
+    program.operands = {{.name = "RECONSTRUCTION", .type = cli::Type::input_file, .help = "shapes", .repeat = true}};
+    program.standalone = {"truth"};
+    program.takes_seed = true;
+    program.check = check_eval;
+    program.run = run_eval;
+    arguments.insert(arguments.begin(), "nrsfm-eval");
+    arguments.insert(arguments.end(), {"-o", path("out.json")});
+    std::vector<char*> argv;
+    for (std::string& a : arguments) argv.push_back(a.data());
+    testing::internal::CaptureStderr();
+    const int status = cli::main(program, static_cast<int>(argv.size()), argv.data());
+    return {status, testing::internal::GetCapturedStderr()};
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  void SetUp() override {
+    Sequence s;
+    s.truth = tests::deforming(30, 12, 1);
+    s.tracks = Eigen::MatrixXd::Random(60, 12);
+    s.visible = Visible::Constant(30, 12, true);
+    s.unit_m = 0.001;
+    s.factors = {{"deformation", "bending"}, {"path", "circle, wide"}};
+    write_sequence(s, path("truth.mat"));
+    write(*s.truth, "exact");
+    write(tests::noisy(*s.truth, 0.005, 0.05, 2), "good");
+    write(-*s.truth, "mirrored");
+    write_file(path("m.json"), R"({"gonio": 1, "files": {"t": {"path": "truth.mat"}, "g": {"path": "good.mat"}},
+      "sequences": {"bend": {"file": "t", "factors": {"path": "line"}}},
+      "reconstructions": [{"id": "bend-pta", "sequence": "bend", "algorithm": "pta",
+      "file": "g", "frame": "object"}]})");
+  }
+  void write(const Shapes& shapes, const std::string& name) {
+    Reconstruction r;
+    r.name = "pta";
+    r.shapes = shapes;
+    write_reconstruction(r, path(name + ".mat"));
+  }
+  gonio::tests::ScratchFolder folder_;
+};
+
+TEST_F(EvalProgram, EntersEveryErrorWithItsAlignmentUnitAndInterval) {
+  ASSERT_EQ(run({"--truth", path("truth.mat"), path("good.mat"), path("exact.mat"), path("mirrored.mat"), "--csv",
+                 path("e.csv"), "--measure", "robust-rms", "--measure", "e3d", "--alignment", "frame-rotation"})
+                .status,
+            0);
+  const manifest::Document d = manifest::read_document(path("out.json"));
+  ASSERT_EQ(d.evaluations.size(), 3);
+  const manifest::Evaluation& good = d.evaluations[0];
+  EXPECT_EQ(good.id, "good");
+  EXPECT_EQ(good.algorithm, "pta");
+  EXPECT_EQ(good.factors.at("deformation"), "bending");
+  ASSERT_EQ(good.errors.size(), 2);
+  EXPECT_EQ(good.errors[0].measure, "robust-rms");
+  EXPECT_EQ(good.errors[0].alignment, "robust-similarity");
+  EXPECT_EQ(good.errors[0].unit, "m");
+  EXPECT_NEAR(good.errors[0].value, 0.001 * 0.005 * std::sqrt(3), 2e-6);
+  EXPECT_LT(*good.errors[0].lower, good.errors[0].value);
+  EXPECT_GT(*good.errors[0].upper, good.errors[0].value);
+  EXPECT_EQ(good.errors[1].alignment, "frame-rotation");
+  EXPECT_EQ(good.errors[1].unit, "1");
+  EXPECT_FALSE(*good.mirrored);
+  EXPECT_LT(d.evaluations[1].errors[0].value, 1e-15);
+  EXPECT_TRUE(*d.evaluations[2].mirrored);
+  EXPECT_THAT(d.evaluations[2].notes, testing::Contains(HasSubstr("only a reflection lays it onto the truth")));
+  const io::Csv csv = io::read_csv(path("e.csv"));
+  EXPECT_EQ(csv.rows.size(), 6);
+  EXPECT_EQ(csv.rows[0][4], "circle, wide");
+}
+
+TEST_F(EvalProgram, ReadsManifestsAndReplacesEarlierEvaluations) {
+  ASSERT_EQ(run({"-i", path("m.json"), "--measure", "rms", "--alignment", "none", "--draws", "0"}).status, 0);
+  const manifest::Document once = manifest::read_document(path("out.json"));
+  ASSERT_EQ(once.evaluations.size(), 1);
+  EXPECT_EQ(once.evaluations[0].sequence, "bend");
+  EXPECT_EQ(once.evaluations[0].factors.at("path"), "line");  // the manifest's word counts
+  EXPECT_FALSE(once.evaluations[0].errors[0].lower);
+  write_file(path("again.json"), read_file(path("out.json")));
+  ASSERT_EQ(run({"-i", path("again.json"), "--measure", "e3d"}).status, 0);
+  const manifest::Document twice = manifest::read_document(path("out.json"));
+  ASSERT_EQ(twice.evaluations.size(), 1);
+  EXPECT_EQ(twice.evaluations[0].errors[0].measure, "e3d");
+}
+
+TEST_F(EvalProgram, SameInputSameBytes) {
+  ASSERT_EQ(run({"--truth", path("truth.mat"), path("good.mat"), "--threads", "1"}).status, 0);
+  const std::string first = read_file(path("out.json"));
+  ASSERT_EQ(run({"--truth", path("truth.mat"), path("good.mat"), "--threads", "4"}).status, 0);
+  EXPECT_EQ(read_file(path("out.json")), first);
+}
+
+struct Wrong {
+  std::vector<std::string> arguments;
+  int status;
+  std::string says;
+};
+
+TEST_F(EvalProgram, RefusesInOneLineWithPlaceValueAndRemedy) {
+  const Shapes q = tests::deforming(30, 12, 1);
+  write(q.topRows(60), "short");
+  write(q.leftCols(9), "narrow");
+  write(Shapes::Constant(90, 12, std::numeric_limits<double>::quiet_NaN()), "nothing");
+  write(Shapes::Zero(90, 12), "point");
+  Reconstruction camera;
+  camera.shapes = q, camera.frame = ShapeFrame::camera;
+  write_reconstruction(camera, path("camera.mat"));
+  io::write_mat({{"W", variable_of(Eigen::MatrixXd(Eigen::MatrixXd::Random(60, 12)))}}, path("tracks.mat"));
+  io::write_mat({{"odd", variable_of(Eigen::MatrixXd(q))}}, path("odd.mat"));
+  io::write_mat({{"S", variable_of(std::string("shapes"))}}, path("text.mat"));
+  const std::string whole = read_file(path("good.mat"));
+  write_file(path("cut.mat"), whole.substr(0, whole.size() / 2));
+  write_file(path("words.mat"), std::string(400, 'w'));
+  write_file(path("bad.npz"), "PK");
+  write_file(path("shapes.csv"), "1,2,3\n");
+  write_file(path("frames.json"), R"({"gonio": 1, "files": {"t": {"path": "truth.mat"}, "g": {"path": "good.mat"}},
+    "sequences": {"bend": {"file": "t", "frames": 31}},
+    "reconstructions": [{"id": "a", "sequence": "bend", "algorithm": "pta", "file": "g"}]})");
+  write_file(path("unknown.json"), R"({"gonio": 1, "files": {"g": {"path": "good.mat"}},
+    "reconstructions": [{"id": "a", "sequence": "bent", "algorithm": "pta", "file": "g"}]})");
+  write_file(path("empty.json"), R"({"gonio": 1})");
+  const std::string truth = path("truth.mat"), good = path("good.mat");
+  const std::vector<Wrong> wrong{
+      {{"--truth", truth}, 64, "RECONSTRUCTION: is missing"},
+      {{good}, 64, "--truth: is missing"},
+      {{"-i", path("empty.json")}, 64, "has no reconstruction; give a manifest"},
+      {{"--truth", truth, good, "--measure", "rmse"}, 64, "choose one of"},
+      {{"--truth", truth, good, "--confidence", "95"}, 64, "--confidence"},
+      {{"--truth", path("none.mat"), good}, 66, "none.mat"},
+      {{"--truth", path("tracks.mat"), good}, 65, "has no truth; give a file with S"},
+      {{"--truth", truth, path("short.mat")}, 65, "has 20 frames x 12 points, the truth has 30 frames x 12 points"},
+      {{"--truth", truth, path("narrow.mat")}, 65, "has 30 frames x 9 points"},
+      {{"--truth", truth, path("nothing.mat")}, 65, "has 0 finite points where the truth is known, 4 is the least"},
+      {{"--truth", truth, path("point.mat")}, 65, "has all its points in one place"},
+      {{"--truth", truth, path("camera.mat")}, 65, "store the cameras (R, T)"},
+      {{"--truth", truth, path("odd.mat")}, 65, "it has odd; name the variable"},
+      {{"--truth", truth, good, "--shapes-variable", "Shat"}, 65, "has no variable Shat"},
+      {{"--truth", truth, path("text.mat")}, 65, "holds no numbers"},
+      {{"--truth", truth, path("cut.mat")}, 65, "truncated"},
+      {{"--truth", truth, path("words.mat")}, 65, "is no MATLAB file"},
+      {{"--truth", truth, path("bad.npz")}, 65, "is no whole NumPy archive"},
+      {{"--truth", truth, path("shapes.csv")}, 65, "is neither .mat nor .npz"},
+      {{"--truth", truth, path("gone") + "/f_*.ply"}, 66, "names no .ply file"},
+      {{"-i", path("frames.json")}, 65, "/sequences/bend/frames"},
+      {{"-i", path("unknown.json")}, 65, "names \"bent\", which is not in sequences"},
+      {{"--truth", truth, good, "--csv", path("no/such/e.csv")}, 73, "e.csv"}};
+  for (const Wrong& w : wrong) {
+    const Said said = run(w.arguments);
+    EXPECT_EQ(said.status, w.status) << w.says << " / " << said.error;
+    EXPECT_THAT(said.error, HasSubstr(w.says));
+    EXPECT_EQ(std::ranges::count(said.error, '\n'), 1) << said.error;
+  }
+}
+
+}  // namespace
+}  // namespace gonio::nrsfm
