@@ -1,9 +1,11 @@
-// What nrsfm-eval is given: files of reconstructions beside one of the truth, or the manifest's sections.
+// See submissions.h.
+#include "nrsfm/submissions.h"
+
 #include <algorithm>
 #include <map>
 
-#include "nrsfm/eval_call.h"
 #include "nrsfm/files.h"
+#include "nrsfm/manifest_sequences.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -28,34 +30,13 @@ void note_inputs(cli::Invocation& call, const fs::path& path) {
   for (const fs::path& file : files) call.note_input(file);
 }
 
-Sequence sequence_of(cli::Invocation& call, const std::string& name) {
-  const manifest::TrackSequence& entry = call.document.sequences.at(name);
-  const std::string pointer = "/sequences/" + name;
-  const fs::path path = manifest::resolve(call.document, entry.file, pointer + "/file");
-  call.note_input(path);
-  FileNames names;
-  names.tracks = member(entry.names, "tracks"), names.visible = member(entry.names, "visible");
-  names.truth = member(entry.names, "truth");
-  Sequence s = read_sequence(path, names);
-  const std::string at = manifest::place(call.document, pointer);
-  if (entry.frames && *entry.frames != s.frames())
-    throw Error(Exit::data, at + "/frames",
-                "is " + std::to_string(*entry.frames) + ", " + path.string() + " has " + std::to_string(s.frames()));
-  if (entry.points && *entry.points != s.points())
-    throw Error(Exit::data, at + "/points",
-                "is " + std::to_string(*entry.points) + ", " + path.string() + " has " + std::to_string(s.points()));
-  s.name = name;
-  if (!entry.truth_frame.empty()) s.truth_frame = frame_named(entry.truth_frame);
-  if (entry.unit_m) s.unit_m = *entry.unit_m;
-  for (const auto& [factor, level] : entry.factors) s.factors[factor] = level;
-  return s;
-}
-
 void add_entry(cli::Invocation& call, std::size_t index, Submissions& out, std::map<std::string, std::size_t>& known) {
   const manifest::ShapeReconstruction& entry = call.document.reconstructions[index];
   if (!known.contains(entry.sequence)) {
     known[entry.sequence] = out.sequences.size();
-    out.sequences.push_back(sequence_of(call, entry.sequence));
+    out.sequences.push_back(sequence_of(call.document, entry.sequence));
+    call.note_input(manifest::resolve(call.document, call.document.sequences.at(entry.sequence).file,
+                                      "/sequences/" + entry.sequence + "/file"));
   }
   const std::string pointer = "/reconstructions/" + std::to_string(index);
   const fs::path path = entry.folder.empty() ? manifest::resolve(call.document, entry.file, pointer + "/file")

@@ -1,0 +1,235 @@
+// See eval_page.h.
+#include "nrsfm/eval_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "base/text.h"
+#include "report/number_text.h"
+#include "report/page.h"
+
+namespace gonio::nrsfm {
+namespace {
+
+using manifest::EvaluatedError;
+using manifest::Evaluation;
+using report::number_text;
+
+constexpr std::size_t few = 12;         // reconstructions whose errors stand in columns, with their intervals
+constexpr std::size_t most_rows = 300;  // of a table
+constexpr std::size_t most_boxes = 8;
+
+// A measure under an alignment, in the order of their first appearance.
+struct Kind {
+  std::string measure, alignment, unit;
+  double factor = 1;  // to what is shown: millimetres, where metres would be fractions
+};
+
+std::vector<Kind> kinds_of(const std::vector<Evaluation>& evaluations) {
+  std::vector<Kind> kinds;
+  std::vector<double> largest;
+  for (const Evaluation& e : evaluations)
+    for (const EvaluatedError& error : e.errors) {
+      const auto known = std::ranges::find_if(kinds, [&](const Kind& k) {
+        return k.measure == error.measure && k.alignment == error.alignment && k.unit == error.unit;
+      });
+      const auto at = static_cast<std::size_t>(known - kinds.begin());
+      if (known == kinds.end()) kinds.push_back({error.measure, error.alignment, error.unit}), largest.push_back(0);
+      largest[at] = std::max(largest[at], error.value);
+    }
+  for (std::size_t k = 0; k < kinds.size(); ++k)
+    if (kinds[k].unit == "m" && largest[k] < 1) kinds[k].unit = "mm", kinds[k].factor = 1000;
+  return kinds;
+}
+
+const EvaluatedError* find(const Evaluation& e, const Kind& kind) {
+  for (const EvaluatedError& error : e.errors)
+    if (error.measure == kind.measure && error.alignment == kind.alignment) return &error;
+  return nullptr;
+}
+
+std::string unit_of(const Kind& kind) {
+  return kind.unit == "1" ? std::string() : kind.unit;
+}
+
+std::string with_interval(const Kind& kind, const EvaluatedError& error) {
+  std::string text = number_text(kind.factor * error.value, 4);
+  if (error.lower && error.upper)
+    text +=
+        " (" + number_text(kind.factor * *error.lower, 3) + " to " + number_text(kind.factor * *error.upper, 3) + ")";
+  return text;
+}
+
+// Few reconstructions: a column for each, with intervals.
+report::TableText columns_table(const std::vector<Evaluation>& evaluations, const std::vector<Kind>& kinds) {
+  report::TableText table;
+  if (const auto& confidence = evaluations.front().confidence)
+    table.caption = format("In brackets: %g %% intervals for longer sequences of the same kind.", 100 * *confidence);
+  table.columns = {{"measure", "", false}, {"alignment", "", false}, {"unit", "", false}};
+  for (const Evaluation& e : evaluations) table.columns.push_back({e.id});
+  for (const Kind& kind : kinds) {
+    table.rows.push_back({kind.measure, kind.alignment, unit_of(kind)});
+    for (const Evaluation& e : evaluations) {
+      const EvaluatedError* error = find(e, kind);
+      table.rows.back().push_back(error ? with_interval(kind, *error) : "\u2013");
+    }
+  }
+  return table;
+}
+
+// Many: a row for each.
+report::TableText rows_table(const std::vector<Evaluation>& evaluations, const std::vector<Kind>& kinds) {
+  report::TableText table;
+  if (evaluations.size() > most_rows)
+    table.caption = format("The first %zu of %zu; --csv writes all.", most_rows, evaluations.size());
+  table.columns = {{"reconstruction", "", false}, {"sequence", "", false}, {"algorithm", "", false}};
+  for (const Kind& kind : kinds) table.columns.push_back({kind.measure + ", " + kind.alignment, unit_of(kind)});
+  for (std::size_t i = 0; i < std::min(most_rows, evaluations.size()); ++i) {
+    const Evaluation& e = evaluations[i];
+    table.rows.push_back({e.id, e.sequence, e.algorithm});
+    for (const Kind& kind : kinds) {
+      const EvaluatedError* error = find(e, kind);
+      table.rows.back().push_back(error ? number_text(kind.factor * error->value, 4) : "\u2013");
+    }
+  }
+  return table;
+}
+
+// Results of one kind of error by algorithm, where there are several of either.
+stats::Design by_algorithm(const std::vector<Evaluation>& evaluations, const Kind& kind) {
+  std::set<std::string> names;
+  for (const Evaluation& e : evaluations)
+    if (find(e, kind)) names.insert(e.algorithm);
+  stats::Design design;
+  design.factors = {{"algorithm", {names.begin(), names.end()}}};
+  design.level.resize(1);
+  for (const Evaluation& e : evaluations)
+    if (const EvaluatedError* error = find(e, kind); error && std::isfinite(error->value)) {
+      design.level[0].push_back(static_cast<int>(std::distance(names.begin(), names.find(e.algorithm))));
+      design.y.push_back(kind.factor * error->value);
+    }
+  return design;
+}
+
+void add_boxes(report::Page& page, const std::vector<Evaluation>& evaluations, const std::vector<Kind>& kinds) {
+  std::vector<report::Figure> boxes;
+  for (const Kind& kind : kinds) {
+    const stats::Design design = by_algorithm(evaluations, kind);
+    if (design.factors[0].levels.size() < 2 || design.y.size() < 3 * design.factors[0].levels.size()) continue;
+    if (boxes.size() == most_boxes) break;
+    report::Figure figure;
+    figure.svg = box_plot(design, 0, kind.measure + (unit_of(kind).empty() ? "" : " / " + unit_of(kind)));
+    figure.title = kind.measure + ", " + kind.alignment;
+    figure.caption = "Median, quartiles, whiskers to 1.5 times the box.";
+    boxes.push_back(std::move(figure));
+  }
+  if (boxes.empty()) return;
+  page.section("By algorithm");
+  page.figures(boxes, 560);
+}
+
+// "3, 7, 12 to 15".
+std::string ranges_text(const std::vector<std::int64_t>& frames) {
+  std::string text;
+  for (std::size_t i = 0; i < frames.size();) {
+    std::size_t last = i;
+    while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
+    text += (text.empty() ? "" : ", ") + std::to_string(frames[i]);
+    if (last > i) text += (last > i + 1 ? " to " : ", ") + std::to_string(frames[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
+void add_flips(report::Page& page, const std::vector<Evaluation>& evaluations) {
+  std::vector<std::string> items;
+  for (const Evaluation& e : evaluations) {
+    if (e.mirrored.value_or(false)) items.push_back(e.id + ": the whole sequence is mirrored.");
+    for (const char* kind : {"depth-reversal", "mirror"}) {
+      std::vector<std::int64_t> frames;
+      for (const manifest::DetectedFlip& flip : e.flips)
+        if (flip.kind == kind) frames.push_back(flip.frame);
+      if (!frames.empty()) items.push_back(e.id + ": " + kind + " in frames " + ranges_text(frames) + ".");
+    }
+  }
+  if (items.empty()) return;
+  const std::size_t all = items.size();
+  if (all > most_rows) items.resize(most_rows), items.push_back(format("... and %zu more", all - most_rows));
+  page.section("Flips");
+  page.paragraph(
+      "Orthographic tracks do not tell a shape from its mirror image in depth. Frames that are flipped against the "
+      "majority of their sequence:");
+  page.list(items);
+}
+
+void add_notes(report::Page& page, const std::vector<Evaluation>& evaluations) {
+  std::vector<std::string> items;
+  for (const Evaluation& e : evaluations)
+    for (const std::string& note : e.notes)
+      if (items.size() < most_rows) items.push_back(e.id + ": " + note + ".");
+  if (items.empty()) return;
+  page.open_details("Notes");
+  page.list(items);
+  page.close_details();
+}
+
+void add_errors(report::Page& page, const std::vector<Evaluation>& evaluations) {
+  const std::vector<Kind> kinds = kinds_of(evaluations);
+  std::set<std::string> sequences, algorithms;
+  std::size_t mirrored = 0, flipped = 0, restless = 0;
+  for (const Evaluation& e : evaluations) {
+    sequences.insert(e.sequence), algorithms.insert(e.algorithm);
+    mirrored += e.mirrored.value_or(false), flipped += !e.flips.empty(), restless += !e.converged.value_or(true);
+  }
+  page.section("Errors");
+  page.key_numbers({{"Reconstructions", std::to_string(evaluations.size()), "", ""},
+                    {"Sequences", std::to_string(sequences.size()), "", ""},
+                    {"Algorithms", std::to_string(algorithms.size()), "", ""},
+                    {"Mirrored", std::to_string(mirrored), "", "only a reflection lays them onto the truth"},
+                    {"With flips", std::to_string(flipped), "", "in some frames"}});
+  if (restless > 0)
+    page.note(format("The robust error's search of %zu reconstructions ended before it stood still.", restless));
+  page.table(evaluations.size() <= few ? columns_table(evaluations, kinds) : rows_table(evaluations, kinds));
+  add_notes(page, evaluations);
+  add_boxes(page, evaluations, kinds);
+  add_flips(page, evaluations);
+}
+
+// One sentence: the least error, or what ranks first.
+std::string headline(const EvaluationPage& p) {
+  if (p.analysis)
+    for (const Part& part : p.analysis->parts)
+      if (!part.ranks.empty()) {
+        const stats::Factor& f = part.design.factors[static_cast<std::size_t>(part.ranked)];
+        const stats::Rank& first = part.ranks.front();
+        return f.levels[static_cast<std::size_t>(first.level)] + " has the least expected error, " +
+               number_text(first.mean, 4) + (p.analysis->unit.empty() ? "" : " " + p.analysis->unit) +
+               format("; ranks %g to %g are open to it", first.lower, first.upper);
+      }
+  if (p.evaluations.empty()) return "What decides the errors";
+  const std::vector<Kind> kinds = kinds_of(p.evaluations);
+  const Evaluation* best = nullptr;
+  for (const Evaluation& e : p.evaluations)
+    if (const EvaluatedError* error = find(e, kinds.front()))
+      if (!best || error->value < find(*best, kinds.front())->value) best = &e;
+  if (!best) return "Nothing was measured";
+  return (p.evaluations.size() > 1 ? "Least " : "") + kinds.front().measure + ": " +
+         number_text(kinds.front().factor * find(*best, kinds.front())->value, 4) +
+         (unit_of(kinds.front()).empty() ? "" : " " + unit_of(kinds.front())) + ", " + best->id;
+}
+
+}  // namespace
+
+std::string evaluation_page(const EvaluationPage& p) {
+  report::Page page("nrsfm-eval", headline(p),
+                    "Shapes that deform, reconstructed from the tracks of one camera, beside the truth. Every error is "
+                    "named with what was laid onto the truth before: the answer depends on it.");
+  if (!p.evaluations.empty()) add_errors(page, p.evaluations);
+  if (p.analysis) add_analysis(page, *p.analysis);
+  page.footer("nrsfm-eval, gonio " GONIO_VERSION ". This page is one file and loads nothing.");
+  return page.html();
+}
+
+}  // namespace gonio::nrsfm

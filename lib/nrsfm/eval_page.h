@@ -1,0 +1,19 @@
+// The page of nrsfm-eval: what was measured, how it is spread over algorithms, which frames are flipped, what decides,
+// and the shapes themselves.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "manifest/nrsfm_sections.h"
+#include "nrsfm/analysis.h"
+
+namespace gonio::nrsfm {
+
+struct EvaluationPage {
+  std::vector<manifest::Evaluation> evaluations;  // of this call; empty: an analysis only
+  std::optional<Analysis> analysis;
+};
+std::string evaluation_page(const EvaluationPage& page);
+
+}  // namespace gonio::nrsfm
