@@ -22,18 +22,19 @@ SolverParameter rank_parameter(const std::string& meaning) {
   return {"rank", 0, 0, 100, true, meaning + "; 0: from the singular values of the tracks"};
 }
 
+Eigen::Index terms_from_tracks(const Sequence& sequence, double share, Eigen::Index most) {
+  const Eigen::MatrixXd w = interpolated(sequence);
+  const Eigen::Index terms = rank_of(w.colwise() - w.rowwise().mean(), share, most);
+  if (sequence.complete()) return terms;
+  const Eigen::Index seen =
+      std::min(2 * sequence.visible.colwise().count().minCoeff(), sequence.visible.rowwise().count().minCoeff() - 1);
+  return std::clamp<Eigen::Index>(seen / 6, 1, terms);
+}
+
 Eigen::Index terms_of(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options,
                       const std::string& name, double share, Eigen::Index most) {
-  Eigen::Index terms = static_cast<Eigen::Index>(values_in_force(info, options.values).at(name));
-  if (terms == 0) {
-    const Eigen::MatrixXd w = interpolated(sequence);
-    terms = rank_of(w.colwise() - w.rowwise().mean(), share, most);
-    if (!sequence.complete()) {  // half of the equations that the least seen point and frame offer
-      const Eigen::Index seen = std::min(2 * sequence.visible.colwise().count().minCoeff(),
-                                         sequence.visible.rowwise().count().minCoeff() - 1);
-      terms = std::clamp<Eigen::Index>(seen / 6, 1, terms);
-    }
-  }
+  const Eigen::Index given = static_cast<Eigen::Index>(values_in_force(info, options.values).at(name));
+  const Eigen::Index terms = given > 0 ? given : terms_from_tracks(sequence, share, most);
   require_rank(sequence, terms);
   return terms;
 }
@@ -121,11 +122,16 @@ void fill(const Start& start, const ShapeTrajectory& fit, Solution& solution) {
   turn_to_first_camera(solution.reconstruction);
 }
 
-Eigen::Index shapes_of_model(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options) {
-  const Eigen::Index rank = terms_of(info, sequence, options, "rank", 1e-2, 11);
-  const bool given = values_in_force(info, options.values).at("rank") > 0;
+Eigen::Index shapes_from_tracks(const Sequence& sequence) {
   const Eigen::Index most = std::min(sequence.points() - 1, 2 * sequence.frames()) / 3;
-  return given ? rank : std::min(rank + 1, most);
+  return std::clamp<Eigen::Index>(terms_from_tracks(sequence, 1e-2, 11) + 1, 1, std::max<Eigen::Index>(most, 1));
+}
+
+Eigen::Index shapes_of_model(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options) {
+  const Eigen::Index given = static_cast<Eigen::Index>(values_in_force(info, options.values).at("rank"));
+  const Eigen::Index rank = given > 0 ? given : shapes_from_tracks(sequence);
+  require_rank(sequence, rank);
+  return rank;
 }
 
 void require_rank(const Sequence& sequence, Eigen::Index terms) {

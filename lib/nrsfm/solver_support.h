@@ -17,6 +17,9 @@ SolverParameter rank_parameter(const std::string& meaning);
 Eigen::Index terms_of(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options,
                       const std::string& name, double share, Eigen::Index most);
 
+// That K by itself; where tracks are missing, no more than half of what the least seen point and frame can do with.
+Eigen::Index terms_from_tracks(const Sequence& sequence, double share, Eigen::Index most);
+
 // "dct_terms": cosines of the trajectories in shape space; 0: a tenth of the frames, at least twice the rank.
 SolverParameter dct_terms_parameter();
 Eigen::Index dct_terms_of(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options,
@@ -33,7 +36,9 @@ ShapeTrajectoryProblem linear_problem(const Sequence& sequence, const Start& sta
 // Shapes, rotations and convergence of a fit.
 void fill(const Start& start, const ShapeTrajectory& fit, Solution& solution);
 
-// "rank" where it is set, else one more than leaves 1 % of the tracks: smooth weights need not contain a constant.
+// One shape more than leaves 1 % of the tracks: smooth weights need not contain a constant.
+Eigen::Index shapes_from_tracks(const Sequence& sequence);
+// "rank" where it is set, else that.
 Eigen::Index shapes_of_model(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options);
 
 // Error(data, "tracks") where 3 K exceeds the rank that P points less their mean in F frames can have.

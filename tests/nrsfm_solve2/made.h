@@ -95,10 +95,15 @@ inline Solution answer(const std::string& solver, const Sequence& s, const Solve
   return solve(*find_solver(solver), s, options);
 }
 
-// e3D of either hand: orthographic tracks do not tell them apart.
+// e3D of either hand: orthographic tracks do not tell them apart. Shapes in the truth's kind of frame.
 inline double error_of(const Solution& solution, const Sequence& s, Alignment alignment) {
-  const Shapes& x = solution.reconstruction.shapes;
-  return std::min(e3d(x, *s.truth, alignment), e3d(-x, *s.truth, alignment));
+  Shapes x = solution.reconstruction.shapes;
+  const bool in_cameras = s.truth_frame == ShapeFrame::camera && solution.reconstruction.frame == ShapeFrame::object;
+  for (Eigen::Index f = 0; f < s.frames() && in_cameras; ++f)
+    shape_of(x, f) = (completed(solution.reconstruction.rotations[std::size_t(f)]) * shape_of(x, f)).eval();
+  Shapes other = s.truth_frame == ShapeFrame::camera ? x : Shapes(-x);
+  for (Eigen::Index f = 0; f < s.frames() && s.truth_frame == ShapeFrame::camera; ++f) other.row(3 * f + 2) *= -1;
+  return std::min(e3d(x, *s.truth, alignment), e3d(other, *s.truth, alignment));
 }
 
 }  // namespace gonio::nrsfm::testing
