@@ -9,8 +9,8 @@
 namespace gonio::nrsfm {
 
 SolverParameter free_scales_parameter() {
-  return {
-      "free_scales", -1, -1, 1, true, "1: a scale per frame; 0: one for all; -1: free where the camera is perspective"};
+  const char* meaning = "1: a scale per frame; 0: one for all; -1: free where the camera is perspective";
+  return {"free_scales", -1, -1, 1, true, meaning};
 }
 
 bool free_scales_of(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options) {
@@ -56,8 +56,8 @@ Eigen::Index dct_terms_of(const SolverInfo& info, const Sequence& sequence, cons
 }
 
 SolverParameter camera_rank_parameter() {
-  return {"camera_rank", 0,    0,
-          100,           true, "rank at which rotations are estimated; 0: the one that lets the model reproject"};
+  const char* meaning = "rank at which rotations are estimated; 0: the one that lets the model reproject";
+  return {"camera_rank", 0, 0, 100, true, meaning};
 }
 
 namespace {
