@@ -316,10 +316,10 @@ std::string made_with_of(const std::filesystem::path& file) {
   return said == there.end() ? "" : said->second.text;
 }
 
-void write_reconstruction(const Reconstruction& r, const std::filesystem::path& file) {
+void write_reconstruction(const Reconstruction& r, const std::filesystem::path& file, const io::MatFile& besides) {
   check_mat(file);
   check_factors(r.factors, r.name);
-  io::MatFile out;
+  io::MatFile out = besides;
   out["S"] = variable_of(r.shapes);
   out["frame"] = variable_of(std::string(r.frame == ShapeFrame::camera ? "camera" : "object"));
   if (!r.rotations.empty()) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "io/mat.h"
 #include "nrsfm/sequence.h"
 
 namespace gonio::nrsfm {
@@ -31,6 +32,8 @@ Reconstruction read_reconstruction(const std::filesystem::path& file, const File
 // Whole or not at all. `made_with`: what the program that made it was told, for `made_with_of`.
 void write_sequence(const Sequence& sequence, const std::filesystem::path& file, const std::string& made_with = {});
 std::string made_with_of(const std::filesystem::path& file);  // empty: not said
-void write_reconstruction(const Reconstruction& reconstruction, const std::filesystem::path& file);
+// `besides`: further variables, which readers of reconstructions pass over.
+void write_reconstruction(const Reconstruction& reconstruction, const std::filesystem::path& file,
+                          const io::MatFile& besides = {});
 
 }  // namespace gonio::nrsfm

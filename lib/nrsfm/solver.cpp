@@ -88,6 +88,19 @@ double reprojection_rms(const Sequence& sequence, const SolverInfo& info, const 
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
+// Tracks that coincide in every frame hold no shape.
+void require_extent(const Sequence& sequence, const std::string& place) {
+  for (Eigen::Index f = 0; f < sequence.frames(); ++f) {
+    Eigen::Index first = -1;
+    for (Eigen::Index p = 0; p < sequence.points(); ++p) {
+      if (!sequence.visible(f, p)) continue;
+      if (first < 0) first = p;
+      if (sequence.tracks.block<2, 1>(2 * f, p) != sequence.tracks.block<2, 1>(2 * f, first)) return;
+    }
+  }
+  throw Error(Exit::data, place, "all points lie in one place, in every frame", "give tracks of a thing with extent");
+}
+
 }  // namespace
 
 const Solver* find_solver(const std::string& id) {
@@ -118,6 +131,7 @@ Solution solve(const Solver& solver, const Sequence& sequence, const SolverOptio
   const SolverInfo& info = solver.info();
   const std::string place = sequence.name.empty() ? "sequence" : sequence.name;
   check(sequence, place);
+  require_extent(sequence, place);
   values_in_force(info, options.values);
   if (!sequence.complete() && !info.takes_missing) {
     std::string others;
@@ -142,6 +156,8 @@ Solution solve(const Solver& solver, const Sequence& sequence, const SolverOptio
   answer.factors = sequence.factors;
   answer.factors["algorithm"] = info.id;
   solution.reprojection_rms = reprojection_rms(sequence, info, answer);
+  if (!std::isfinite(solution.reprojection_rms) || answer.shapes.array().isInf().any())
+    throw Error(Exit::data, place, info.id + ": the answer is not finite", "take another solver, or a lower rank");
   return solution;
 }
 

@@ -1,0 +1,22 @@
+// The program `nrsfm-solve` behind its command line: which solvers, of which sequences, and what is written.
+//
+// Every pair of a sequence and a solver is a job. Jobs run side by side; each writes its file as soon as it has
+// answered, and the manifest's entries follow in the order of sequences and solvers, so that neither depends on the
+// number of threads. A solver that cannot take a sequence, or fails on it, leaves its reason in the sequence's notes;
+// the call fails where no job has an answer.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "cli/program.h"
+
+namespace gonio::nrsfm {
+
+std::vector<cli::Option> solve_options();
+void check_solve(cli::Invocation& call);
+Exit run_solve(cli::Invocation& call);
+
+std::string list_of_solvers();  // what they assume, their papers and parameters
+
+}  // namespace gonio::nrsfm
