@@ -123,7 +123,7 @@ void add_part(report::Page& page, const Analysis& analysis, const Part& part) {
     figure.caption = "Median, quartiles, whiskers to 1.5 times the box; all results.";
     boxes.push_back(std::move(figure));
   }
-  page.figures(boxes, 560);
+  page.figures(boxes, 520);
   for (const MeansTable& table : part.tables)
     if (table.term.size() == 1) page.table(single_table(analysis, part, table));
   for (const MeansTable& table : part.tables) {
@@ -136,7 +136,7 @@ void add_part(report::Page& page, const Analysis& analysis, const Part& part) {
   }
   if (!interactions.empty()) {
     page.subsection("Interactions");
-    page.figures(interactions, 560);
+    page.figures(interactions, 520);
     for (const MeansTable& table : part.tables)
       if (table.term.size() == 2) page.heat_strip(pair_strip(analysis, part, table));
   }

@@ -7,6 +7,7 @@
 #include "base/atomic_file.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "nrsfm/eval_page.h"
 #include "nrsfm/eval_tables.h"
 #include "nrsfm/evaluate.h"
@@ -65,21 +66,29 @@ Evaluated evaluated(const Submission& s, const Sequence& sequence, const Evaluat
   }
 }
 
-// Every submission against its truth, into the manifest and the table.
-std::vector<manifest::Evaluation> evaluate_all(cli::Invocation& call) {
+// Every submission against its truth, into the manifest, the table and the page.
+void evaluate_all(cli::Invocation& call, EvaluationPage& page) {
   const EvaluationOptions options = options_of(call);
   const Submissions submissions = submissions_of(call);
-  std::vector<manifest::Evaluation> entries(submissions.all.size());
-  parallel_for(0, entries.size(), [&](std::size_t i) {
+  std::vector<Evaluated> all(submissions.all.size());
+  parallel_for(0, all.size(), [&](std::size_t i) {
     const Submission& s = submissions.all[i];
-    const Sequence& sequence = submissions.sequences[s.sequence];
-    entries[i] = entry_of(s, sequence, evaluated(s, sequence, options), options);
+    all[i] = evaluated(s, submissions.sequences[s.sequence], options);
   });
-  for (const manifest::Evaluation& e : entries)
-    if (e.mirrored.value_or(false) || !e.flips.empty()) log(LogLevel::warning, e.id + ": " + e.notes.back());
+  std::vector<manifest::Evaluation>& entries = page.evaluations;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Submission& s = submissions.all[i];
+    entries.push_back(entry_of(s, submissions.sequences[s.sequence], all[i], options));
+  }
+  for (const manifest::Evaluation& e : entries) {
+    if (options.flips && e.mirrored.value_or(false)) log(LogLevel::warning, e.id + ": the whole sequence is mirrored");
+    if (!e.flips.empty()) log(LogLevel::warning, e.id + format(": %zu frames are flipped", e.flips.size()));
+  }
   if (call.given("csv")) write_file(call.text("csv"), evaluations_csv(entries));
+  if (call.given("html"))
+    page.views =
+        views_of(submissions, all, {.most = static_cast<std::size_t>(call.integer("views")), .centre = options.centre});
   enter(call, entries);
-  return entries;
 }
 
 }  // namespace
@@ -89,7 +98,7 @@ Exit run_eval(cli::Invocation& call) {
   if (call.given("table"))
     call.writes_document = false;
   else
-    page.evaluations = evaluate_all(call);
+    evaluate_all(call, page);
   page.analysis = analysis_of(call);
   if (page.analysis) write_analysis(call, *page.analysis);
   if (call.given("html")) write_file(call.text("html"), evaluation_page(page));

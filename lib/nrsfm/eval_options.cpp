@@ -71,6 +71,13 @@ std::vector<cli::Option> options_of_errors() {
            "stands."},
       {.name = "no-reflection", .help = "The robust measures' similarity may not be a reflection."},
       {.name = "html", .type = Type::output_file, .help = "Write the report: one page that needs no network."},
+      {.name = "views",
+       .type = Type::integer,
+       .help = "Reconstructions that the page shows in space; each adds some 100 kB.",
+       .preset = "6",
+       .lower = 0,
+       .upper = 100,
+       .needs = {"html"}},
       {.name = "csv", .type = Type::output_file, .help = "Write the errors as a table, one row for each."},
   };
 }

@@ -51,7 +51,8 @@ const EvaluatedError* find(const Evaluation& e, const Kind& kind) {
 }
 
 std::string unit_of(const Kind& kind) {
-  return kind.unit == "1" ? std::string() : kind.unit;
+  if (kind.unit == "1") return {};
+  return kind.unit == "of the truth" ? "unit of the truth" : kind.unit;
 }
 
 std::string with_interval(const Kind& kind, const EvaluatedError& error) {
@@ -65,7 +66,10 @@ std::string with_interval(const Kind& kind, const EvaluatedError& error) {
 // Few reconstructions: a column for each, with intervals.
 report::TableText columns_table(const std::vector<Evaluation>& evaluations, const std::vector<Kind>& kinds) {
   report::TableText table;
-  if (const auto& confidence = evaluations.front().confidence)
+  const bool told = std::ranges::any_of(evaluations, [](const Evaluation& e) {
+    return std::ranges::any_of(e.errors, [](const EvaluatedError& error) { return error.upper.has_value(); });
+  });
+  if (const auto& confidence = evaluations.front().confidence; told && confidence)
     table.caption = format("In brackets: %g %% intervals for longer sequences of the same kind.", 100 * *confidence);
   table.columns = {{"measure", "", false}, {"alignment", "", false}, {"unit", "", false}};
   for (const Evaluation& e : evaluations) table.columns.push_back({e.id});
@@ -127,7 +131,7 @@ void add_boxes(report::Page& page, const std::vector<Evaluation>& evaluations, c
   }
   if (boxes.empty()) return;
   page.section("By algorithm");
-  page.figures(boxes, 560);
+  page.figures(boxes, 520);
 }
 
 // "3, 7, 12 to 15".
@@ -197,6 +201,23 @@ void add_errors(report::Page& page, const std::vector<Evaluation>& evaluations) 
   add_flips(page, evaluations);
 }
 
+void add_views(report::Page& page, const EvaluationPage& p) {
+  page.section("In space");
+  page.paragraph(
+      "Drag to turn a view, or use the arrow keys; a double click turns it back. Thin lines join points of the truth "
+      "that stay near each other.");
+  if (p.views.size() < p.evaluations.size())
+    page.note(format("%zu of %zu reconstructions: of each algorithm the one of median error; --views sets how many.",
+                     p.views.size(), p.evaluations.size()));
+  std::vector<report::Figure> figures;
+  for (const View& view : p.views) {
+    report::Figure figure;
+    figure.svg = report::html(view.motion), figure.title = view.title, figure.caption = view.caption;
+    figures.push_back(std::move(figure));
+  }
+  page.figures(figures, 520);
+}
+
 // One sentence: the least error, or what ranks first.
 std::string headline(const EvaluationPage& p) {
   if (p.analysis)
@@ -227,6 +248,7 @@ std::string evaluation_page(const EvaluationPage& p) {
                     "Shapes that deform, reconstructed from the tracks of one camera, beside the truth. Every error is "
                     "named with what was laid onto the truth before: the answer depends on it.");
   if (!p.evaluations.empty()) add_errors(page, p.evaluations);
+  if (!p.views.empty()) add_views(page, p);
   if (p.analysis) add_analysis(page, *p.analysis);
   page.footer("nrsfm-eval, gonio " GONIO_VERSION ". This page is one file and loads nothing.");
   return page.html();

@@ -7,11 +7,13 @@
 
 #include "manifest/nrsfm_sections.h"
 #include "nrsfm/analysis.h"
+#include "nrsfm/eval_views.h"
 
 namespace gonio::nrsfm {
 
 struct EvaluationPage {
   std::vector<manifest::Evaluation> evaluations;  // of this call; empty: an analysis only
+  std::vector<View> views;
   std::optional<Analysis> analysis;
 };
 std::string evaluation_page(const EvaluationPage& page);

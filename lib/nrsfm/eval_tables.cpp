@@ -2,6 +2,7 @@
 #include "nrsfm/eval_tables.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <set>
 
@@ -63,6 +64,15 @@ Results asked_for(cli::Invocation& call) {
   Results results =
       results_of(call.document, error.substr(0, slash), slash < error.size() ? error.substr(slash + 1) : "");
   keep_factors(results, factors);
+  return results;
+}
+
+// Fractions of a metre as millimetres.
+Results readable(Results results) {
+  const bool small = std::ranges::none_of(results.rows, [](const Result& r) { return std::abs(r.error) >= 1; });
+  if (results.unit != "m" || !small) return results;
+  results.unit = "mm";
+  for (Result& r : results.rows) r.error *= 1000;
   return results;
 }
 
@@ -187,7 +197,7 @@ std::vector<cli::Option> analysis_options() {
 
 std::optional<Analysis> analysis_of(cli::Invocation& call) {
   if (!analysis_asked(call)) return {};
-  return analyse(asked_for(call), options_of(call));
+  return analyse(readable(asked_for(call)), options_of(call));
 }
 
 void write_analysis(const cli::Invocation& call, const Analysis& analysis) {

@@ -1,6 +1,8 @@
 // The least robust error over similarities: starts, both handednesses (errors.h, robust_fit.h). Coordinates are centred
 // and divided by their extents (medians, which outliers do not move) before, so that tolerances mean the same in every
-// unit.
+// unit; the truth is turned to its principal axes and x onto the truth by Procrustes, so that the search takes the same
+// way however they stood.
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -13,7 +15,6 @@
 #include "base/random.h"
 #include "nrsfm/errors.h"
 #include "nrsfm/robust_fit.h"
-#include "stats/intervals.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -30,15 +31,33 @@ struct Normalized {
   Matched points;
   Eigen::Vector3d centre_x, centre_q;
   double extent_x = 1, extent_q = 1;
+  Eigen::Matrix3d turn_x, turn_q;  // before the search
 };
 
-double median_of(const Eigen::VectorXd& v) {
-  return stats::median({v.data(), static_cast<std::size_t>(v.size())});
+double median_of(Eigen::VectorXd v) {
+  double* const middle = v.data() + v.size() / 2;
+  std::nth_element(v.data(), middle, v.data() + v.size());
+  return v.size() % 2 == 1 ? *middle : 0.5 * (*middle + *std::max_element(v.data(), middle));
 }
 
-Normalized normalized(const Shapes& x, const Shapes& truth) {
+// Rows: directions of least to largest spread, each towards the side of the longer tail; right-handed.
+Eigen::Matrix3d principal_axes(const Eigen::Matrix3Xd& q) {
+  const Eigen::Matrix3Xd centred = q.colwise() - q.rowwise().mean();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(centred * centred.transpose());
+  Eigen::Matrix3d rows = solver.eigenvectors().transpose();
+  for (int i = 1; i < 3; ++i)
+    if ((rows.row(i) * centred).array().cube().sum() < 0) rows.row(i) *= -1;
+  rows.row(0) = rows.row(1).cross(rows.row(2));
+  return rows;
+}
+
+Normalized normalized(const Shapes& x, const Shapes& truth, bool reflection) {
   check_comparable(x, truth);
-  Normalized n{matched(x, truth), {}, {}, 1, 1};
+  Normalized n{matched(x, truth), {}, {}, 1, 1, {}, {}};
+  n.turn_q = principal_axes(n.points.q);
+  n.points.q = n.turn_q * n.points.q;
+  n.turn_x = procrustes(n.points.x, n.points.q, {.scale = false, .reflection = reflection}).rotation;
+  n.points.x = n.turn_x * n.points.x;
   const auto centre = [](Eigen::Matrix3Xd& points, Eigen::Vector3d& middle, double& extent, const char* what) {
     for (int i = 0; i < 3; ++i) middle(i) = median_of(points.row(i).transpose());
     points.colwise() -= middle;
@@ -53,11 +72,13 @@ Normalized normalized(const Shapes& x, const Shapes& truth) {
 }
 
 Similarity restored(const Similarity& s, const Normalized& n) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(s.rotation, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(n.turn_q.transpose() * s.rotation * n.turn_x,
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
   Similarity out;
   out.rotation = svd.matrixU() * svd.matrixV().transpose();
   out.scale = s.scale * n.extent_q / n.extent_x;
-  out.translation = n.extent_q * s.translation + n.centre_q - out.scale * out.rotation * n.centre_x;
+  const Eigen::Vector3d turned = n.extent_q * s.translation + n.centre_q - out.scale * (s.rotation * n.centre_x);
+  out.translation = n.turn_q.transpose() * turned;
   return out;
 }
 
@@ -199,7 +220,7 @@ double estimated_share(const Shapes& truth, Eigen::Index both) {
 }  // namespace
 
 RobustError robust_error(const Shapes& x, const Shapes& truth, const RobustOptions& options) {
-  const Normalized n = normalized(x, truth);
+  const Normalized n = normalized(x, truth, options.reflection);
   const bool thin = n.points.x.cols() >= 2 * searched;
   const Matched few = thin ? thinned(n.points) : Matched{};
   Search search(n.points, options);

@@ -64,19 +64,27 @@ std::set<Eigen::Index> found(const Flips& flips, FlipKind kind) {
   return frames;
 }
 
+// Of 78 in six sequences at least 74; measured: 76, frame 41 of two sequences lies at the limit. A false one in one of
+// six sequences has a probability of at most 0.06, in two of 0.0015.
 TEST(Flips, PlantedOnesAreFoundAndUndone) {
   const Shapes q = tests::deforming(80, 30, 3);
   const std::set<Eigen::Index> reversed{3, 4, 5, 20, 41, 66, 67, 68, 69, 79}, mirrored{10, 11, 50};
-  const Planted p = planted(q, 0.008, reversed, mirrored, 1);
-  const Flips flips = find_flips(p.x, q, {.depth = p.depth});
-  EXPECT_EQ(found(flips, FlipKind::depth_reversal), reversed);
-  EXPECT_EQ(found(flips, FlipKind::mirror), mirrored);
-  EXPECT_FALSE(flips.whole_sequence_mirrored);
-  for (const Flip& flip : flips.frames) EXPECT_LT(flip.error_after, 0.6 * flip.error_before) << flip.frame;
-  const double without = robust_error(planted(q, 0.008, {}, {}, 1).x, q).value;
-  EXPECT_NEAR(robust_error(without_flips(p.x, flips.frames), q).value / without, 1, 1e-2);
-  EXPECT_NEAR(flips.error.value / without, 1, 1e-2);
-  EXPECT_GT(robust_error(p.x, q).value, 1.1 * without);
+  std::size_t right = 0, wrong = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Planted p = planted(q, 0.008, reversed, mirrored, seed);
+    const Flips flips = find_flips(p.x, q, {.depth = p.depth});
+    for (const Flip& flip : flips.frames) {
+      ((flip.kind == FlipKind::mirror ? mirrored : reversed).contains(flip.frame) ? right : wrong) += 1;
+      EXPECT_LT(flip.error_after, 0.6 * flip.error_before) << seed << " " << flip.frame;
+    }
+    EXPECT_FALSE(flips.whole_sequence_mirrored);
+    const double without = robust_error(planted(q, 0.008, {}, {}, seed).x, q).value;
+    EXPECT_NEAR(robust_error(without_flips(p.x, flips.frames), q).value / without, 1, 0.02);
+    EXPECT_NEAR(flips.error.value / without, 1, 0.02);
+    EXPECT_GT(robust_error(p.x, q).value, 1.1 * without);
+  }
+  EXPECT_GE(right, 74);
+  EXPECT_LE(wrong, 1);
 }
 
 // Without directions of depth the plane of each frame is found, too.

@@ -5,71 +5,31 @@
 
 #include <limits>
 
-#include "base/atomic_file.h"
-#include "data.h"
+#include "eval_program.h"
 #include "io/csv.h"
 #include "io/mat.h"
-#include "nrsfm/eval_call.h"
-#include "nrsfm/files.h"
 #include "nrsfm/variables.h"
-#include "shapes.h"
 
 namespace gonio::nrsfm {
 namespace {
 
 using testing::HasSubstr;
 
-struct Said {
-  int status = 0;
-  std::string error;
-};
+using tests::Said;
 
-class EvalProgram : public testing::Test {
+class EvalProgram : public tests::EvalFolder {
  protected:
-  // The program's own options, checks and work, without the program.
-  Said run(std::vector<std::string> arguments) {
-    cli::Program program;
-    program.name = "nrsfm-eval";
-    program.sentence = "evaluate";
-    program.options = eval_options();
-    program.operands = {{.name = "RECONSTRUCTION", .type = cli::Type::input_file, .help = "shapes", .repeat = true}};
-    program.standalone = {"truth"};
-    program.takes_seed = true;
-    program.check = check_eval;
-    program.run = run_eval;
-    arguments.insert(arguments.begin(), "nrsfm-eval");
-    arguments.insert(arguments.end(), {"-o", path("out.json")});
-    std::vector<char*> argv;
-    for (std::string& a : arguments) argv.push_back(a.data());
-    testing::internal::CaptureStderr();
-    const int status = cli::main(program, static_cast<int>(argv.size()), argv.data());
-    return {status, testing::internal::GetCapturedStderr()};
-  }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
   void SetUp() override {
-    Sequence s;
-    s.truth = tests::deforming(30, 12, 1);
-    s.tracks = Eigen::MatrixXd::Random(60, 12);
-    s.visible = Visible::Constant(30, 12, true);
-    s.unit_m = 0.001;
-    s.factors = {{"deformation", "bending"}, {"path", "circle, wide"}};
-    write_sequence(s, path("truth.mat"));
-    write(*s.truth, "exact");
-    write(tests::noisy(*s.truth, 0.005, 0.05, 2), "good");
-    write(-*s.truth, "mirrored");
+    const Shapes q = tests::deforming(30, 12, 1);
+    write_truth(q, "truth", {{"deformation", "bending"}, {"path", "circle, wide"}});
+    write(q, "exact");
+    write(tests::noisy(q, 0.005, 0.05, 2), "good");
+    write(-q, "mirrored");
     write_file(path("m.json"), R"({"gonio": 1, "files": {"t": {"path": "truth.mat"}, "g": {"path": "good.mat"}},
       "sequences": {"bend": {"file": "t", "factors": {"path": "line"}}},
       "reconstructions": [{"id": "bend-pta", "sequence": "bend", "algorithm": "pta",
       "file": "g", "frame": "object"}]})");
   }
-  void write(const Shapes& shapes, const std::string& name) {
-    Reconstruction r;
-    r.name = "pta";
-    r.shapes = shapes;
-    write_reconstruction(r, path(name + ".mat"));
-  }
-  gonio::tests::ScratchFolder folder_;
 };
 
 TEST_F(EvalProgram, EntersEveryErrorWithItsAlignmentUnitAndInterval) {
@@ -120,6 +80,65 @@ TEST_F(EvalProgram, SameInputSameBytes) {
   const std::string first = read_file(path("out.json"));
   ASSERT_EQ(run({"--truth", path("truth.mat"), path("good.mat"), "--threads", "4"}).status, 0);
   EXPECT_EQ(read_file(path("out.json")), first);
+}
+
+// What must not matter, as a user meets it: files whose similarity, handedness, frames' or points' order differ.
+TEST_F(EvalProgram, SimilarityHandAndOrderDoNotMatter) {
+  const Shapes q = tests::deforming(30, 12, 1), x = tests::noisy(q, 0.005, 0.05, 2);
+  Random random(4);
+  write(tests::moved_all(x, 3, tests::any_rotation(random), {1, -2, 0.5}), "moved");
+  write(tests::moved_all(x, -0.2, tests::any_rotation(random), {0, 5, 0}), "mirrored-too");
+  Shapes q_frames = q, x_frames = x, q_points = q, x_points = x;
+  for (Eigen::Index f = 0; f < 30; ++f)  // 7 and 30 have no common factor, nor have 5 and 12
+    shape_of(q_frames, f) = shape_of(q, 7 * f % 30), shape_of(x_frames, f) = shape_of(x, 7 * f % 30);
+  for (Eigen::Index p = 0; p < 12; ++p) q_points.col(p) = q.col(5 * p % 12), x_points.col(p) = x.col(5 * p % 12);
+  write_truth(q_frames, "truth-frames", {}), write_truth(q_points, "truth-points", {});
+  write(x_frames, "frames"), write(x_points, "points");
+  const auto errors = [&](const std::string& truth, const std::string& name) {
+    EXPECT_EQ(run({"--truth", path(truth + ".mat"), path(name + ".mat"), "--draws", "0"}).status, 0) << name;
+    return manifest::read_document(path("out.json")).evaluations.at(0);
+  };
+  const manifest::Evaluation plain = errors("truth", "good");
+  const std::vector<std::pair<std::string, std::string>> others = {
+      {"truth", "moved"}, {"truth", "mirrored-too"}, {"truth-frames", "frames"}, {"truth-points", "points"}};
+  for (const auto& [truth, name] : others) {
+    const manifest::Evaluation other = errors(truth, name);
+    ASSERT_EQ(other.errors.size(), plain.errors.size());
+    for (std::size_t k = 0; k < plain.errors.size(); ++k) {
+      const manifest::EvaluatedError &a = plain.errors[k], &b = other.errors[k];
+      const bool order_only = truth != "truth", any_similarity = a.alignment.ends_with("-similarity");
+      if (!order_only && !any_similarity) continue;
+      EXPECT_NEAR(b.value, a.value, (a.measure == "robust-rms" ? order_only ? 1e-2 : 3e-4 : 1e-12) * a.value)
+          << name << " " << a.measure << " " << a.alignment;
+    }
+    EXPECT_EQ(*other.mirrored, name == "mirrored-too");
+  }
+}
+
+TEST_F(EvalProgram, MirroredWithoutLookingForFlips) {
+  const Said said = run({"--truth", path("truth.mat"), path("mirrored.mat"), "--no-flips", "--draws", "0"});
+  EXPECT_EQ(said.status, 0) << said.error;
+  EXPECT_TRUE(*manifest::read_document(path("out.json")).evaluations[0].mirrored);
+}
+
+TEST_F(EvalProgram, PageShowsErrorsAndShapesAndLoadsNothing) {
+  const std::vector<std::string> call{"--truth", path("truth.mat"), path("good.mat"), path("mirrored.mat"),
+                                      "--html",  path("page.html"), "--views",        "1"};
+  ASSERT_EQ(run(call).status, 0);
+  const std::string page = read_file(path("page.html"));
+  EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+  EXPECT_EQ(page.find("http://"), std::string::npos);
+  EXPECT_EQ(page.find("https://"), std::string::npos);
+  EXPECT_THAT(page, HasSubstr("mirrored: the whole sequence is mirrored."));
+  const std::size_t view = page.find("<div class=\"motion\"");
+  ASSERT_NE(view, std::string::npos);
+  EXPECT_EQ(page.find("<div class=\"motion\"", view + 1), std::string::npos);
+  EXPECT_LT(page.size(), 60000);                              // 30 frames of 12 points: 4 kB of coordinates
+  ASSERT_EQ(run({call.begin(), call.end() - 1}).status, 64);  // --views needs a number
+  std::vector<std::string> none = call;
+  none.back() = "0";
+  ASSERT_EQ(run(none).status, 0);
+  EXPECT_EQ(read_file(path("page.html")).find("<div class=\"motion\""), std::string::npos);
 }
 
 struct Wrong {

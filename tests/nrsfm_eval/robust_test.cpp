@@ -105,18 +105,21 @@ TEST(RobustError, OfTheTruthIsZeroAndOfTheMirroredTruthSaysSo) {
   }
 }
 
-// To a hundredth: the errors are up to half of the extent, where valleys lie side by side, and which one is found may
-// change with the last digit.
+// How both stand does not matter but for rounding, which the simplex amplifies to some 2e-5. Their order does to a
+// hundredth: the errors are up to half of the extent, where valleys lie side by side, and parts of the sequence are
+// where the search begins.
 TEST(RobustError, DoesNotChangeWithSimilarityOrderOrHandedness) {
   Random random(9);
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     const Shapes q = tests::deforming(20, 25, seed), x = tests::noisy(q, 0.01 + 0.01 * seed, 0.1, seed);
     const double value = robust_error(x, q).value;
     const Eigen::Matrix3d r = tests::any_rotation(random);
-    const auto same = [&](const Shapes& a, const Shapes& b) { EXPECT_NEAR(robust_error(a, b).value / value, 1, 1e-2); };
-    same(tests::moved_all(x, 31, r, {9, -4, 2}), q);
-    same(tests::moved_all(x, 0.2, -r, {0, 0, 5}), q);
-    EXPECT_NEAR(robust_error(x, tests::moved_all(q, 10, r, {1, 0, 3})).value / value, 10, 0.1);
+    const auto same = [&](const Shapes& a, const Shapes& b, double factor, double tolerance) {
+      EXPECT_NEAR(robust_error(a, b).value / (factor * value), 1, tolerance);
+    };
+    same(tests::moved_all(x, 31, r, {9, -4, 2}), q, 1, 3e-4);
+    same(tests::moved_all(x, 0.2, -r, {0, 0, 5}), q, 1, 3e-4);
+    same(x, tests::moved_all(q, 10, r, {1, 0, 3}), 10, 3e-4);
     std::vector<Eigen::Index> points(25), frames(20);
     std::iota(points.begin(), points.end(), 0);
     std::iota(frames.begin(), frames.end(), 0);
@@ -127,7 +130,7 @@ TEST(RobustError, DoesNotChangeWithSimilarityOrderOrHandedness) {
       for (Eigen::Index f = 0; f < 20; ++f) shape_of(out, f) = shape_of(s, frames[f])(Eigen::all, points);
       return out;
     };
-    same(shuffled(x), shuffled(q));
+    same(shuffled(x), shuffled(q), 1, 1e-2);
   }
 }
 
