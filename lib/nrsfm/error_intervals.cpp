@@ -28,8 +28,12 @@ struct Frame {
 
 struct Frames {
   std::vector<Frame> each;
-  std::vector<Distance> sorted;  // ascending
+  std::vector<Distance> sorted;  // ascending; where the measure needs their order
 };
+
+bool is_robust(Measure m) {
+  return m == Measure::robust_rms || m == Measure::robust_printed;
+}
 
 double population_sigma(const Eigen::RowVectorXd& v) {
   double n = 0, mean = 0, square = 0;
@@ -41,8 +45,9 @@ double population_sigma(const Eigen::RowVectorXd& v) {
   return n > 0 ? std::sqrt(square / n) : std::numeric_limits<double>::quiet_NaN();
 }
 
-Frames frames_of(const Aligned& a) {
+Frames frames_of(const Aligned& a, Measure measure) {
   Frames out;
+  const bool order = is_robust(measure);
   for (Eigen::Index f = 0; f < a.shapes.rows() / 3; ++f) {
     Frame frame;
     const auto x = shape_of(a.shapes, f), q = shape_of(a.truth, f);
@@ -50,7 +55,7 @@ Frames frames_of(const Aligned& a) {
       const double square = (x.col(p) - q.col(p)).squaredNorm(), d = std::sqrt(square);
       if (!std::isfinite(d)) continue;
       frame.points += 1, frame.distance += d, frame.square += square, frame.truth_square += q.col(p).squaredNorm();
-      out.sorted.push_back({d, static_cast<std::size_t>(f)});
+      if (order) out.sorted.push_back({d, static_cast<std::size_t>(f)});
     }
     for (int i = 0; i < 3; ++i)
       if (const double sigma = population_sigma(q.row(i)); std::isfinite(sigma)) frame.sigma += sigma, frame.axes += 1;
@@ -87,8 +92,7 @@ double robust(const Frames& frames, const std::vector<double>& weight, bool prin
 }
 
 double value_of(const Frames& frames, const std::vector<double>& weight, Measure measure) {
-  if (measure == Measure::robust_rms || measure == Measure::robust_printed)
-    return robust(frames, weight, measure == Measure::robust_printed);
+  if (is_robust(measure)) return robust(frames, weight, measure == Measure::robust_printed);
   Frame sum;
   double ratios = 0, counted = 0;
   for (std::size_t f = 0; f < weight.size(); ++f) {
@@ -144,7 +148,7 @@ double correlated_frames(const std::vector<double>& errors) {
 }
 
 ErrorInterval error_interval(const Aligned& aligned, Measure measure, const IntervalOptions& options) {
-  const Frames frames = frames_of(aligned);
+  const Frames frames = frames_of(aligned, measure);
   const std::size_t n = frames.each.size();
   ErrorInterval out;
   out.value = value_of(frames, std::vector<double>(n, 1), measure);

@@ -78,7 +78,9 @@ struct Flips {
   std::vector<Flip> frames;              // those that flip against the majority
   RobustError error;                     // of x with these flips undone
 };
-Flips find_flips(const Shapes& x, const Shapes& truth, const FlipOptions& options = {});
+// `known`: robust_error(x, truth), where the caller has it.
+Flips find_flips(const Shapes& x, const Shapes& truth, const FlipOptions& options = {},
+                 const RobustError* known = nullptr);
 // x with those flips undone.
 Shapes without_flips(const Shapes& x, const std::vector<Flip>& flips);
 

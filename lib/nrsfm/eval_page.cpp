@@ -188,11 +188,12 @@ void add_errors(report::Page& page, const std::vector<Evaluation>& evaluations) 
     mirrored += e.mirrored.value_or(false), flipped += !e.flips.empty(), restless += !e.converged.value_or(true);
   }
   page.section("Errors");
-  page.key_numbers({{"Reconstructions", std::to_string(evaluations.size()), "", ""},
-                    {"Sequences", std::to_string(sequences.size()), "", ""},
-                    {"Algorithms", std::to_string(algorithms.size()), "", ""},
-                    {"Mirrored", std::to_string(mirrored), "", "only a reflection lays them onto the truth"},
-                    {"With flips", std::to_string(flipped), "", "in some frames"}});
+  if (evaluations.size() > 1)
+    page.key_numbers({{"Reconstructions", std::to_string(evaluations.size()), "", ""},
+                      {"Sequences", std::to_string(sequences.size()), "", ""},
+                      {"Algorithms", std::to_string(algorithms.size()), "", ""},
+                      {"Mirrored", std::to_string(mirrored), "", "only a reflection lays them onto the truth"},
+                      {"With flips", std::to_string(flipped), "", "in some frames"}});
   if (restless > 0)
     page.note(format("The robust error's search of %zu reconstructions ended before it stood still.", restless));
   page.table(evaluations.size() <= few ? columns_table(evaluations, kinds) : rows_table(evaluations, kinds));

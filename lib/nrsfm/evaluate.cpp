@@ -93,7 +93,8 @@ Evaluated evaluate(const Sequence& sequence, const Reconstruction& r, const Eval
   const Aligned centred = options.centre ? align(r.shapes, plain, Alignment::none) : Aligned{r.shapes, plain, {}, {}};
   const Shapes &x = centred.shapes, &truth = centred.truth;
   out.robust = robust_error(x, truth, {.reflection = options.reflection});
-  if (options.flips) out.flips = find_flips(x, truth, {.depth = depths_of(r)});
+  if (options.flips)
+    out.flips = find_flips(x, truth, {.depth = depths_of(r)}, options.reflection ? &out.robust : nullptr);
   for (const Measure measure : options.measures) {
     if (!is_robust(measure)) continue;
     const bool printed = measure == Measure::robust_printed;

@@ -119,15 +119,24 @@ std::vector<Flip> flips_after(const Shapes& x, const Shapes& truth, const Simila
   return flips;
 }
 
+// Between order statistics, as stats::quantile, of values that it may reorder.
+double quantile_of(Eigen::VectorXd& values, double p) {
+  const double rank = p * static_cast<double>(values.size() - 1);
+  double* const below = values.data() + static_cast<Eigen::Index>(rank);
+  double* const end = values.data() + values.size();
+  std::nth_element(values.data(), below, end);
+  const double above = below + 1 < end ? *std::min_element(below + 1, end) : *below;
+  return *below + (rank - std::floor(rank)) * (above - *below);
+}
+
 // Mean over blocks of frames of how much larger the truncated squares are with `other`, over its standard error.
 double paired_z(const Shapes& x, const Shapes& truth, const RobustError& e) {
   const Matched m = matched(x, truth);
   const Eigen::Index frames = x.rows() / 3, count = std::min(blocks, frames);
   const auto truncated = [&](const Similarity& s) {
-    Eigen::VectorXd d2 = (moved(s, m.x) - m.q).colwise().squaredNorm();
-    std::vector<double> d(static_cast<std::size_t>(d2.size()));
-    for (std::size_t i = 0; i < d.size(); ++i) d[i] = std::sqrt(d2(static_cast<Eigen::Index>(i)));
-    const double w = 2.5 * stats::quantile(d, 0.75) - 1.5 * stats::quantile(d, 0.25);
+    const Eigen::VectorXd d2 = (moved(s, m.x) - m.q).colwise().squaredNorm();
+    Eigen::VectorXd d = d2.cwiseSqrt();
+    const double w = 2.5 * quantile_of(d, 0.75) - 1.5 * quantile_of(d, 0.25);
     return Eigen::VectorXd(d2.cwiseMin(w * w));
   };
   const Eigen::VectorXd difference = truncated(e.other) - truncated(e.alignment);
@@ -170,13 +179,13 @@ Shapes without_flips(const Shapes& x, const std::vector<Flip>& flips) {
   return out;
 }
 
-Flips find_flips(const Shapes& x, const Shapes& truth, const FlipOptions& options) {
+Flips find_flips(const Shapes& x, const Shapes& truth, const FlipOptions& options, const RobustError* known) {
   check_comparable(x, truth);
   if (!options.depth.empty() && static_cast<Eigen::Index>(options.depth.size()) != x.rows() / 3)
     throw Error(Exit::data, "directions of depth",
                 "are " + std::to_string(options.depth.size()) + " for " + std::to_string(x.rows() / 3) + " frames");
   Flips out;
-  RobustError error = robust_error(x, truth);
+  RobustError error = known != nullptr ? *known : robust_error(x, truth);
   for (int round = 0; round < most_rounds; ++round) {
     const std::vector<Flip> flips = flips_after(x, truth, error.alignment, options);
     const bool settled = same(flips, out.frames);

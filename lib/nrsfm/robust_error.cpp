@@ -23,6 +23,7 @@ constexpr double small_error = 0.25;    // over the truth's extent: below, the P
 constexpr Eigen::Index parts = 8;       // of the sequence, whose own Procrustes are further starts
 constexpr double rival = 1.5;           // times the best cost: the other handedness is followed to its end, too
 constexpr Eigen::Index searched = 800;  // points among which valleys are looked for; all of them decide
+constexpr Eigen::Index sampled = 2000;  // for medians
 constexpr Eigen::Index polishable = 3000;
 constexpr int brief = 400;                                // evaluations
 constexpr double search_work = 1.6e4, polish_work = 2e6;  // points times starts; points times evaluations
@@ -34,7 +35,10 @@ struct Normalized {
   Eigen::Matrix3d turn_x, turn_q;  // before the search
 };
 
-double median_of(Eigen::VectorXd v) {
+// Of every so many values: units and a middle need no more.
+double median_of(const Eigen::VectorXd& all) {
+  const Eigen::Index step = std::max<Eigen::Index>(1, all.size() / sampled);
+  Eigen::VectorXd v = all(Eigen::seq(0, Eigen::last, step));
   double* const middle = v.data() + v.size() / 2;
   std::nth_element(v.data(), middle, v.data() + v.size());
   return v.size() % 2 == 1 ? *middle : 0.5 * (*middle + *std::max_element(v.data(), middle));

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double band = 0.02;  // of a quartile's distance, to either side: whose derivatives its derivative averages
 constexpr Eigen::Index least_in_band = 8;
+constexpr double least_window = 0.02;           // about a squared quartile, relative: where the next one is looked for
 constexpr double nothing = 1e-14;               // a distance that rounding makes, against extents of 1
 constexpr double still = 1e-10, little = 1e-6;  // relative fall of the cost: at rest; negligible
 
@@ -39,10 +40,10 @@ Similarity stepped(const Similarity& at, const Step& p) {
 RobustFit::RobustFit(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& q, RobustMean mean)
     : n_(x.cols()), mean_(mean), x_(x.transpose().array()), q_(q.transpose().array()), y_(n_, 3), e_(n_, 3), d2_(n_) {}
 
-// The order statistics of rank k and k + 1 of d2, squared distances: those between `low` and `high` (a guess from the
-// evaluation before) are gathered; where the ranks do not lie among them, all are.
-void RobustFit::ordered(Eigen::Index k, double guess, std::vector<double>& two) {
-  const double low = 0.7 * guess, high = 1.4 * guess;
+// The order statistics of rank k and k + 1 of d2, squared distances: those near where they were in the evaluation
+// before are gathered, the nearer the less they moved then; where the ranks do not lie among them, all are.
+void RobustFit::ordered(Eigen::Index k, const Guess& guess, std::vector<double>& two) {
+  const double low = (1 - guess.width) * guess.value, high = (1 + guess.width) * guess.value;
   gathered_.resize(static_cast<std::size_t>(n_));
   Eigen::Index below = 0, in = 0;
   const double* d2 = d2_.data();
@@ -50,8 +51,7 @@ void RobustFit::ordered(Eigen::Index k, double guess, std::vector<double>& two) 
   for (Eigen::Index i = 0; i < n_; ++i) {
     const double v = d2[i];
     below += v < low ? 1 : 0;
-    out[in] = v;
-    in += (v >= low) & (v <= high) ? 1 : 0;
+    if (v >= low && v <= high) out[in++] = v;
   }
   const Eigen::Index next = std::min(k + 1, n_ - 1);
   if (k < below || next >= below + in) {
@@ -69,9 +69,10 @@ void RobustFit::quartiles(State& state) {
   for (const bool third : {false, true}) {
     const double rank = (third ? 0.75 : 0.25) * last;
     const auto k = static_cast<Eigen::Index>(rank);
-    double& guess = guess_[third ? 1 : 0];
+    Guess& guess = guess_[third ? 1 : 0];
     ordered(k, guess, two);
-    guess = two[0];
+    const double change = guess.value > 0 ? std::abs(two[0] / guess.value - 1) : 1;
+    guess = {two[0], std::clamp(2 * change, least_window, 0.4)};
     (third ? state.upper : state.lower) = quantile_of(two, rank - static_cast<double>(k));
   }
   state.whisker = 2.5 * state.upper - 1.5 * state.lower;

@@ -56,7 +56,10 @@ class RobustFit {
 
  private:
   void quartiles(State& state);
-  void ordered(Eigen::Index k, double guess, std::vector<double>& two);
+  struct Guess {
+    double value = 0, width = 0.4;  // a squared quartile; how far it may move, relative
+  };
+  void ordered(Eigen::Index k, const Guess& guess, std::vector<double>& two);
   Step mean_gradient(double centre) const;
   int simplex(State& best, double size, int most_evaluations);
   void subtract_along(const Eigen::ArrayXd& w2, StepMatrix& matrix) const;
@@ -66,7 +69,7 @@ class RobustFit {
   Eigen::ArrayX3d x_, q_, y_, e_;  // a point a row: sums run down the columns
   Eigen::ArrayXd d2_;
   std::vector<double> gathered_;
-  double guess_[2] = {0, 0};  // squared quartiles of the evaluation before
+  Guess guess_[2];  // from the evaluation before
 };
 
 }  // namespace gonio::nrsfm

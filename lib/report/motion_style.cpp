@@ -12,6 +12,7 @@ background:var(--fill);border-radius:2px}
 .motion canvas:active{cursor:grabbing}
 .motion canvas:focus-visible{outline:2px solid var(--accent);outline-offset:2px}
 .motion svg path{stroke-width:1}
+.motion svg .grid{stroke:var(--soft);opacity:.45}
 .motion svg .truth{fill:none;stroke:var(--ink);stroke-width:1}
 .motion .controls{display:flex;flex-wrap:wrap;align-items:center;gap:.4rem .9rem;margin:.5rem 0;font-size:.8125rem;
 color:var(--soft)}
@@ -75,8 +76,10 @@ for (const box of document.querySelectorAll('.motion')) {
     const dot = (a, r) => { g.beginPath(); g.arc(a[0], a[1], r * size * (1 + 0.35 * a[2]), 0, 6.2832); };
     g.lineWidth = 1;
     if (shown.truth.checked) {
-      g.strokeStyle = style('--line');
+      g.strokeStyle = style('--soft');
+      g.globalAlpha = 0.45;
       for (let k = 0; k < links.length; k += 2) line(seen[links[k]], seen[links[k + 1]]);
+      g.globalAlpha = 1;
     }
     const order = [...Array(count).keys()].sort((a, b) => seen[a][2] - seen[b][2]);
     for (const p of order) {
