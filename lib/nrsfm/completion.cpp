@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "nrsfm/factorization.h"
 
@@ -116,6 +117,7 @@ Completion complete(const Sequence& sequence, Eigen::Index rank, int most_iterat
   const double energy = less.squaredNorm();
   double cost = cost_of(sequence, w, at), stride = 2;
   for (; result.iterations < most_iterations && !result.converged; ++result.iterations) {
+    throw_if_interrupted();
     const TwoFactors before = at;
     const double cost_before = cost;
     solve_columns(sequence, w, ridge, at);

@@ -12,6 +12,8 @@
 #include <limits>
 #include <set>
 
+#include "base/atomic_file.h"
+
 namespace gonio::nrsfm {
 namespace {
 
@@ -186,6 +188,7 @@ InextensibleDepths deepest(const InextensibleProblem& problem, const Inextensibl
   InextensibleDepths result;
   double t = barriers / sum_of();
   while (result.iterations < options.most_iterations) {
+    throw_if_interrupted();
     const Step step = newton(cones, at, t);
     if (!step.sound) break;
     ++result.iterations;

@@ -9,6 +9,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "base/atomic_file.h"
+
 namespace gonio::nrsfm {
 namespace {
 
@@ -146,6 +148,7 @@ LowRankShapes low_rank_shapes(const LowRankProblem& problem, const LowRankOption
   depth_step.set_rho(rho);
   LowRankShapes result;
   while (size > 0 && !result.converged && result.iterations < options.most_iterations) {
+    throw_if_interrupted();
     Thresholded next = thresholded(s + u, 1 / rho);
     const double dual = (next.m - z).norm() / size;
     z = std::move(next.m);

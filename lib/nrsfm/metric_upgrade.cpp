@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/random.h"
 #include "nrsfm/factorization.h"
@@ -74,6 +75,7 @@ Candidate minimized(const Problem& problem, Eigen::MatrixXd transform, int most_
   const Eigen::Index n = transform.rows();
   double damping = 1e-3;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    throw_if_interrupted();
     const Eigen::MatrixXd jacobian = jacobian_of(problem, at);
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(3 * n, 3 * n);
     normal.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "base/atomic_file.h"
+
 namespace gonio::nrsfm {
 namespace {
 
@@ -272,6 +274,7 @@ ShapeTrajectory fit_shape_trajectory(const ShapeTrajectoryProblem& problem, cons
   ShapeTrajectory fit;
   double damping = 1e-2;
   while (fit.iterations < problem.most_iterations && !fit.converged && free > 0) {
+    throw_if_interrupted();
     const Normal normal = normal_of(problem, state);
     const double mean = normal.matrix.diagonal().tail(free).mean();
     bool better = false;

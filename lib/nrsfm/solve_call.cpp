@@ -145,6 +145,23 @@ std::vector<Job> jobs_of(const cli::Invocation& call, const std::vector<Sequence
   return jobs;
 }
 
+void work_on(std::vector<Job>& jobs, bool resume, bool force) {
+  Progress progress("solving", jobs.size());
+  try {
+    parallel_for(0, jobs.size(), [&](std::size_t i) {
+      finish(jobs[i], resume, force);
+      progress.advance();
+    });
+  } catch (const Error& error) {
+    if (error.code() != Exit::try_again) throw;
+    const auto done = std::ranges::count_if(jobs, [](const Job& job) { return job.solution.has_value(); });
+    throw Error(Exit::try_again, "",
+                "interrupted by a signal, with " + std::to_string(done) + " of " + std::to_string(jobs.size()) +
+                    " answers written",
+                "--resume makes the rest");
+  }
+}
+
 // What a sequence's notes say about a solver; what an earlier call said gives way.
 void note(manifest::Document& document, const Job& job) {
   std::vector<std::string>& notes = document.sequences.at(job.sequence->name).notes;
@@ -239,11 +256,7 @@ void check_solve(cli::Invocation& call) {
 Exit run_solve(cli::Invocation& call) {
   const std::vector<Sequence> sequences = sequences_asked(call);
   std::vector<Job> jobs = jobs_of(call, sequences);
-  Progress progress("solving", jobs.size());
-  parallel_for(0, jobs.size(), [&](std::size_t i) {
-    finish(jobs[i], call.resume, call.force);
-    progress.advance();
-  });
+  work_on(jobs, call.resume, call.force);
   if (std::ranges::none_of(jobs, [](const Job& job) { return job.solution.has_value(); })) throw *jobs.front().refusal;
   return entered(call, jobs) ? Exit::done : Exit::quality;
 }

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/atomic_file.h"
 #include "nrsfm/factorization.h"
 #include "nrsfm/solver_support.h"
 
@@ -187,6 +188,7 @@ class EmPpca : public Solver {
     Solution solution;
     solution.converged = false;
     while (solution.iterations < most && !solution.converged) {
+      throw_if_interrupted();
       state.variance = std::max(state.variance, floor);
       expect(sequence, state);
       solve_basis(sequence, state);
