@@ -17,9 +17,9 @@ using manifest::EvaluatedError;
 using manifest::Evaluation;
 using report::number_text;
 
-constexpr std::size_t few = 12;         // reconstructions whose errors stand in columns, with their intervals
+constexpr std::size_t few = 4;          // reconstructions whose errors stand in columns, with their intervals
 constexpr std::size_t most_rows = 300;  // of a table
-constexpr std::size_t most_boxes = 8;
+constexpr std::size_t most_boxes = 6;
 
 // A measure under an alignment, in the order of their first appearance.
 struct Kind {
@@ -119,7 +119,10 @@ stats::Design by_algorithm(const std::vector<Evaluation>& evaluations, const Kin
 
 void add_boxes(report::Page& page, const std::vector<Evaluation>& evaluations, const std::vector<Kind>& kinds) {
   std::vector<report::Figure> boxes;
-  for (const Kind& kind : kinds) {
+  std::vector<Kind> fitted = kinds;  // with a scale first: without, the answers' units decide
+  std::ranges::stable_partition(
+      fitted, [](const Kind& k) { return k.alignment.ends_with("similarity") || k.alignment.ends_with("one-scale"); });
+  for (const Kind& kind : fitted) {
     const stats::Design design = by_algorithm(evaluations, kind);
     if (design.factors[0].levels.size() < 2 || design.y.size() < 3 * design.factors[0].levels.size()) continue;
     if (boxes.size() == most_boxes) break;

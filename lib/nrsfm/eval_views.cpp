@@ -76,7 +76,7 @@ View view_of(const Submission& s, const Sequence& sequence, const Evaluated& e, 
   const auto shown = evenly(frames, options.frames), points = evenly(plain.cols(), options.points);
   View view;
   report::PointMotion& m = view.motion;
-  m.name = s.id + (sequence.name.empty() ? "" : " of " + sequence.name);
+  m.name = s.id + (sequence.name.empty() || s.id.starts_with(sequence.name) ? "" : " of " + sequence.name);
   m.unit = metres ? "mm" : "";
   m.points = points.size(), m.full = factor * e.robust.whisker;
   for (const Eigen::Index f : shown) {
