@@ -14,6 +14,7 @@ complete -c nrsfm-eval -l no-flips -d 'Do not look for frames that are mirrored.
 complete -c nrsfm-eval -l centre -d 'Centre every frame of both before the robust measures: orthographic tracks do not tell how deep a shape stands.'
 complete -c nrsfm-eval -l no-reflection -d 'The robust measures similarity may not be a reflection.'
 complete -c nrsfm-eval -l html -r -d 'Write the report: one page that needs no network.'
+complete -c nrsfm-eval -l views -x -d 'Reconstructions that the page shows in space; each adds some 100 kB.'
 complete -c nrsfm-eval -l csv -r -d 'Write the errors as a table, one row for each.'
 complete -c nrsfm-eval -l table -r -d 'Analyse this table of results (CSV, a column for each factor and one for the error; or what --csv wrote) instead of evaluating; several are one.'
 complete -c nrsfm-eval -l analyse -d 'Analyse the manifests evaluations, those that were just made among them.'
