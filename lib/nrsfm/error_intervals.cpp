@@ -13,7 +13,9 @@
 namespace gonio::nrsfm {
 namespace {
 
-constexpr double fewest_blocks = 7;
+constexpr double fewest_blocks = 3, most_blocks = 8;  // blocks: degrees of freedom of the variance, and one
+constexpr double memories = 6;                        // of correlation in a block, where that leaves enough of them
+constexpr std::size_t fewest_frames = 10;
 
 struct Distance {
   double d = 0;
@@ -110,17 +112,18 @@ double value_of(const Frames& frames, const std::vector<double>& weight, Measure
   }
 }
 
-// Frames over which errors are correlated.
+// Frames over which errors are correlated; of their logarithms, whose sizes are less uneven.
 double memory_of(const Frames& frames) {
   std::vector<double> errors;
   for (const Frame& f : frames.each)
-    if (f.points > 0) errors.push_back(std::sqrt(f.square / f.points));
+    if (f.points > 0 && f.square > 0) errors.push_back(0.5 * std::log(f.square / f.points));
   return std::max(1.0, correlated_frames(errors));
 }
 
-Eigen::Index block_of(double memory, double count, Eigen::Index given) {
-  if (given > 0) return std::min<Eigen::Index>(given, static_cast<Eigen::Index>(count));
-  return std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::ceil(std::max(2 * memory - 1, std::cbrt(count)))));
+Eigen::Index block_of(double memory, std::size_t frames, Eigen::Index given) {
+  const double n = static_cast<double>(frames);
+  if (given > 0) return std::min<Eigen::Index>(given, static_cast<Eigen::Index>(frames));
+  return static_cast<Eigen::Index>(n / std::clamp(n / (memories * memory), fewest_blocks, most_blocks));
 }
 
 }  // namespace
@@ -153,10 +156,10 @@ ErrorInterval error_interval(const Aligned& aligned, Measure measure, const Inte
   ErrorInterval out;
   out.value = value_of(frames, std::vector<double>(n, 1), measure);
   const double memory = memory_of(frames);
-  out.block = block_of(memory, static_cast<double>(n), options.block);
+  out.block = block_of(memory, n, options.block);
   out.upper = std::numeric_limits<double>::infinity();
   const double blocks = static_cast<double>(n) / static_cast<double>(out.block);
-  if (blocks < fewest_blocks || options.draws < 2) return out;
+  if (n < fewest_frames || blocks < fewest_blocks || options.draws < 2) return out;
   std::vector<double> draws;
   for (int k = 0; k < options.draws; ++k) {
     Random random(options.seed, static_cast<std::uint64_t>(k));
@@ -171,7 +174,7 @@ ErrorInterval error_interval(const Aligned& aligned, Measure measure, const Inte
     if (const double v = value_of(frames, weight, measure); std::isfinite(v)) draws.push_back(v);
   }
   const double lost = (memory * memory - 1) / (2 * memory) / static_cast<double>(out.block);
-  const double kept = std::max(0.25, 1 - lost) * (1 - 1 / blocks);
+  const double kept = std::max(0.5, 1 - lost) * (1 - 1 / blocks);
   out.sigma = stats::standard_error(draws) * std::sqrt(static_cast<double>(draws.size()) / kept);
   if (!(out.value > 0)) {
     out.upper = 0;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <set>
+#include <sstream>
 
 #include "base/text.h"
 #include "eval_program.h"
@@ -37,6 +38,30 @@ std::string published_design() {
                    shortest_text(30 + 3 * a + (missing[4] == 0 ? 6 : 0) + 5 * random.normal()) + "\n";
           }
   return csv;
+}
+
+// As LaTeX counts: a row of a tabular has one "&" fewer than columns; braces close; "$" come in pairs.
+void expect_whole_tables(const std::string& tex) {
+  int depth = 0;
+  std::size_t columns = 0, rows = 0;
+  std::istringstream lines(tex);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t spec = line.find("\\begin{tabular}{");
+    if (spec != std::string::npos) columns = line.find('}', spec + 16) - spec - 16;
+    std::size_t cells = 1, dollars = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const bool escaped = i > 0 && line[i - 1] == '\\' && !(i > 1 && line[i - 2] == '\\');
+      if (escaped) continue;
+      depth += line[i] == '{' ? 1 : line[i] == '}' ? -1 : 0;
+      cells += line[i] == '&', dollars += line[i] == '$';
+    }
+    EXPECT_EQ(dollars % 2, 0) << line;
+    if (!line.ends_with("\\\\")) continue;
+    ++rows;
+    EXPECT_EQ(cells, columns) << line;
+  }
+  EXPECT_EQ(depth, 0);
+  EXPECT_GT(rows, 100);
 }
 
 class EvalAnalysis : public tests::EvalFolder {};
@@ -80,6 +105,7 @@ TEST_F(EvalAnalysis, AllTablesOfThePaperComeOutOfItsDesign) {
     ++ended;
   EXPECT_EQ(begun, 1 + 4 + 5 + 1 + 1 + 5 + 10 + 1);  // two analyses of variance, singles, pairs, two tables of ranks
   EXPECT_EQ(ended, begun);
+  expect_whole_tables(tex);
   EXPECT_THAT(read_file(path("p.html")), HasSubstr("with and without missing tracks"));
 }
 

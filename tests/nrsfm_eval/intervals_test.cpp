@@ -38,24 +38,27 @@ TEST(ErrorIntervals, ValueIsThatOfTheMeasures) {
               1e-14);
 }
 
-// 90 % intervals of 120 sequences of 100 frames each, whose frames are correlated over some 4 frames: the error of
-// 20000 frames lies within. 108 are expected, 104 of what error_intervals.h admits; fewer than 96 would have a
-// probability below 0.001 if they held what they say. Counted when this was written: 103 and 105.
+// 90 % intervals of 120 sequences of 100 frames each: the error of 20000 frames lies within. 108 are expected, 106 of
+// what error_intervals.h admits where errors are correlated over 19 frames; fewer than 96 and 93 would have
+// probabilities below 0.001. Counted when this was written: 105, 104; 104, 104.
 TEST(ErrorIntervals, CoverTheErrorOfALongSequence) {
   const Shapes q = tests::deforming(25, 12, 1);
-  for (const Measure measure : {Measure::robust_rms, Measure::e3d}) {
-    const double truth = error_interval(erring(q, 20000, 0.6, 1000), measure, {.draws = 0}).value;
-    int covered = 0;
-    for (std::uint64_t seed = 0; seed < 120; ++seed) {
-      const ErrorInterval i =
-          error_interval(erring(q, 100, 0.6, seed), measure, {.draws = 120, .confidence = 0.9, .seed = seed});
-      covered += i.lower <= truth && truth <= i.upper ? 1 : 0;
+  for (const double memory : {0.6, 0.9})
+    for (const Measure measure : {Measure::robust_rms, Measure::e3d}) {
+      const double truth = error_interval(erring(q, 20000, memory, 1000), measure, {.draws = 0}).value;
+      int covered = 0;
+      for (std::uint64_t seed = 0; seed < 120; ++seed) {
+        const ErrorInterval i =
+            error_interval(erring(q, 100, memory, seed), measure, {.draws = 120, .confidence = 0.9, .seed = seed});
+        EXPECT_TRUE(std::isfinite(i.upper));
+        covered += i.lower <= truth && truth <= i.upper ? 1 : 0;
+      }
+      EXPECT_GE(covered, memory > 0.8 ? 93 : 96) << measure_names()[static_cast<std::size_t>(measure)];
+      EXPECT_LE(covered, 119);
+      RecordProperty((measure == Measure::e3d ? "e3d_" : "robust_") + std::to_string(memory), covered);
     }
-    EXPECT_GE(covered, 96) << measure_names()[static_cast<std::size_t>(measure)];
-    EXPECT_LE(covered, 119);
-    RecordProperty(measure == Measure::e3d ? "covered_e3d" : "covered_robust", covered);
-  }
   EXPECT_LT(1 - stats::binomial_upper(96, 120, 0.9), 0.001);
+  EXPECT_LT(1 - stats::binomial_upper(93, 120, 0.88), 0.001);
 }
 
 TEST(ErrorIntervals, WidenWithCorrelationAndCannotBeToldFromFewBlocks) {
