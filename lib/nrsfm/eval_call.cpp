@@ -66,6 +66,26 @@ Evaluated evaluated(const Submission& s, const Sequence& sequence, const Evaluat
   }
 }
 
+// A line for each of one or two, one for all of many: from orthographic tracks, mirrored shapes are no surprise.
+void say_flips(const Submissions& submissions, const std::vector<manifest::Evaluation>& entries) {
+  std::size_t mirrored = 0, flipped = 0, orthographic = 0;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const manifest::Evaluation& e = entries[i];
+    const Sequence& sequence = submissions.sequences[submissions.all[i].sequence];
+    const bool whole = e.mirrored.value_or(false);
+    mirrored += whole, flipped += !e.flips.empty();
+    orthographic += whole && sequence.projection == Projection::orthographic;
+    if (entries.size() <= 2 && whole) log(LogLevel::warning, e.id + ": the whole sequence is mirrored");
+    if (entries.size() <= 2 && !e.flips.empty())
+      log(LogLevel::warning, e.id + format(": %zu frames are flipped", e.flips.size()));
+  }
+  if (entries.size() > 2 && mirrored + flipped > 0)
+    log(LogLevel::warning,
+        format("%zu of %zu reconstructions are mirrored, %zu of them from orthographic tracks, which "
+               "do not tell; %zu have flipped frames: see \"flips\"",
+               mirrored, entries.size(), orthographic, flipped));
+}
+
 // Every submission against its truth, into the manifest, the table and the page.
 void evaluate_all(cli::Invocation& call, EvaluationPage& page) {
   const EvaluationOptions options = options_of(call);
@@ -80,10 +100,7 @@ void evaluate_all(cli::Invocation& call, EvaluationPage& page) {
     const Submission& s = submissions.all[i];
     entries.push_back(entry_of(s, submissions.sequences[s.sequence], all[i], options));
   }
-  for (const manifest::Evaluation& e : entries) {
-    if (options.flips && e.mirrored.value_or(false)) log(LogLevel::warning, e.id + ": the whole sequence is mirrored");
-    if (!e.flips.empty()) log(LogLevel::warning, e.id + format(": %zu frames are flipped", e.flips.size()));
-  }
+  say_flips(submissions, entries);
   if (call.given("csv")) write_file(call.text("csv"), evaluations_csv(entries));
   if (call.given("html"))
     page.views =

@@ -101,7 +101,8 @@ void check_eval(cli::Invocation& call) {
     throw Error(Exit::usage, "--truth", "is missing", "name the sequence with the truth");
   const bool given = call.given("truth") || call.given("table") || !call.document.reconstructions.empty();
   if (!given && !(call.flag("analyse") && !call.document.evaluations.empty()))
-    throw Error(Exit::usage, call.has_document ? manifest::place(call.document, "/reconstructions") : "nrsfm-eval",
+    throw Error(call.has_document ? Exit::data : Exit::usage,
+                call.has_document ? manifest::place(call.document, "/reconstructions") : "nrsfm-eval",
                 "has no reconstruction", "give a manifest with some, or --truth SEQUENCE RECONSTRUCTION...");
   check_analysis(call);
   for (const char* file : {"csv", "html"})

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -19,14 +20,21 @@ using report::number_text;
 
 constexpr std::size_t few = 4;          // reconstructions whose errors stand in columns, with their intervals
 constexpr std::size_t most_rows = 300;  // of a table
+constexpr std::size_t most_open_rows = 12, most_matrix_rows = 60;
 constexpr std::size_t most_boxes = 6;
 
-// A measure under an alignment, in the order of their first appearance.
+// A measure under an alignment.
 struct Kind {
   std::string measure, alignment, unit;
   double factor = 1;  // to what is shown: millimetres, where metres would be fractions
 };
 
+// Errors that do not depend on the answer's unit.
+bool with_scale(const Kind& kind) {
+  return kind.alignment.ends_with("similarity") || kind.alignment.ends_with("one-scale");
+}
+
+// Those with a scale first.
 std::vector<Kind> kinds_of(const std::vector<Evaluation>& evaluations) {
   std::vector<Kind> kinds;
   std::vector<double> largest;
@@ -41,6 +49,7 @@ std::vector<Kind> kinds_of(const std::vector<Evaluation>& evaluations) {
     }
   for (std::size_t k = 0; k < kinds.size(); ++k)
     if (kinds[k].unit == "m" && largest[k] < 1) kinds[k].unit = "mm", kinds[k].factor = 1000;
+  std::ranges::stable_partition(kinds, with_scale);
   return kinds;
 }
 
@@ -88,17 +97,64 @@ report::TableText rows_table(const std::vector<Evaluation>& evaluations, const s
   report::TableText table;
   if (evaluations.size() > most_rows)
     table.caption = format("The first %zu of %zu; --csv writes all.", most_rows, evaluations.size());
-  table.columns = {{"reconstruction", "", false}, {"sequence", "", false}, {"algorithm", "", false}};
+  const bool said = std::ranges::all_of(evaluations, [](const Evaluation& e) {
+    return e.id.find(e.sequence) != std::string::npos && e.id.find(e.algorithm) != std::string::npos;
+  });
+  table.columns = {{"reconstruction", "", false}};
+  if (!said) table.columns.insert(table.columns.end(), {{"sequence", "", false}, {"algorithm", "", false}});
   for (const Kind& kind : kinds) table.columns.push_back({kind.measure + ", " + kind.alignment, unit_of(kind)});
   for (std::size_t i = 0; i < std::min(most_rows, evaluations.size()); ++i) {
     const Evaluation& e = evaluations[i];
-    table.rows.push_back({e.id, e.sequence, e.algorithm});
+    table.rows.push_back({e.id});
+    if (!said) table.rows.back().insert(table.rows.back().end(), {e.sequence, e.algorithm});
     for (const Kind& kind : kinds) {
       const EvaluatedError* error = find(e, kind);
       table.rows.back().push_back(error ? number_text(kind.factor * error->value, 4) : "\u2013");
     }
   }
   return table;
+}
+
+// One kind of error, sequences by algorithms; several reconstructions of one cell as their mean.
+report::HeatStrip matrix(const std::vector<Evaluation>& evaluations, const Kind& kind) {
+  std::set<std::string> algorithms, sequences;
+  std::map<std::pair<std::string, std::string>, std::vector<double>> cells;
+  for (const Evaluation& e : evaluations) {
+    algorithms.insert(e.algorithm), sequences.insert(e.sequence);
+    if (const EvaluatedError* error = find(e, kind); error && std::isfinite(error->value))
+      cells[{e.sequence, e.algorithm}].push_back(kind.factor * error->value);
+  }
+  report::HeatStrip strip;
+  strip.title = kind.measure + ", " + kind.alignment;
+  strip.label = kind.measure + (unit_of(kind).empty() ? "" : " / " + unit_of(kind));
+  strip.columns.assign(algorithms.begin(), algorithms.end());
+  for (const std::string& s : sequences) {
+    if (strip.rows.size() == most_matrix_rows) {
+      strip.caption = format("The first %zu of %zu sequences.", most_matrix_rows, sequences.size());
+      break;
+    }
+    strip.rows.push_back(s);
+    for (const std::string& a : algorithms) {
+      const auto cell = cells.find({s, a});
+      double sum = 0;
+      if (cell != cells.end())
+        for (const double v : cell->second) sum += v / static_cast<double>(cell->second.size());
+      strip.values.push_back(cell == cells.end() ? std::numeric_limits<double>::quiet_NaN() : sum);
+    }
+  }
+  return strip;
+}
+
+void add_tables(report::Page& page, const std::vector<Evaluation>& evaluations, const std::vector<Kind>& kinds) {
+  const bool many = evaluations.size() > most_open_rows;
+  if (many && !kinds.empty()) page.heat_strip(matrix(evaluations, kinds.front()));
+  if (many) page.open_details("All errors");
+  page.table(evaluations.size() <= few ? columns_table(evaluations, kinds) : rows_table(evaluations, kinds));
+  if (!std::ranges::all_of(kinds, with_scale))
+    page.note(
+        "Errors without a scale (none, global-rotation, frame-rotation) say something of answers in the truth's unit "
+        "only, those without a rotation (none) only of answers in its frame of reference.");
+  if (many) page.close_details();
 }
 
 // Results of one kind of error by algorithm, where there are several of either.
@@ -119,10 +175,7 @@ stats::Design by_algorithm(const std::vector<Evaluation>& evaluations, const Kin
 
 void add_boxes(report::Page& page, const std::vector<Evaluation>& evaluations, const std::vector<Kind>& kinds) {
   std::vector<report::Figure> boxes;
-  std::vector<Kind> fitted = kinds;  // with a scale first: without, the answers' units decide
-  std::ranges::stable_partition(
-      fitted, [](const Kind& k) { return k.alignment.ends_with("similarity") || k.alignment.ends_with("one-scale"); });
-  for (const Kind& kind : fitted) {
+  for (const Kind& kind : kinds) {
     const stats::Design design = by_algorithm(evaluations, kind);
     if (design.factors[0].levels.size() < 2 || design.y.size() < 3 * design.factors[0].levels.size()) continue;
     if (boxes.size() == most_boxes) break;
@@ -168,7 +221,9 @@ void add_flips(report::Page& page, const std::vector<Evaluation>& evaluations) {
   page.paragraph(
       "Orthographic tracks do not tell a shape from its mirror image in depth. Frames that are flipped against the "
       "majority of their sequence:");
+  if (all > most_open_rows) page.open_details(format("%zu findings", all));
   page.list(items);
+  if (all > most_open_rows) page.close_details();
 }
 
 void add_notes(report::Page& page, const std::vector<Evaluation>& evaluations) {
@@ -199,7 +254,7 @@ void add_errors(report::Page& page, const std::vector<Evaluation>& evaluations) 
                       {"With flips", std::to_string(flipped), "", "in some frames"}});
   if (restless > 0)
     page.note(format("The robust error's search of %zu reconstructions ended before it stood still.", restless));
-  page.table(evaluations.size() <= few ? columns_table(evaluations, kinds) : rows_table(evaluations, kinds));
+  add_tables(page, evaluations, kinds);
   add_notes(page, evaluations);
   add_boxes(page, evaluations, kinds);
   add_flips(page, evaluations);

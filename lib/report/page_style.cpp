@@ -53,6 +53,7 @@ th{font-weight:560;font-size:.8125rem;color:var(--soft);border-bottom-color:var(
 th small{font-weight:400;font-size:inherit}
 .n{text-align:right;white-space:nowrap}
 tr>:last-child{padding-right:0}
+table:has(th:nth-child(8)) td:first-child{white-space:nowrap}
 .figures{display:flex;flex-wrap:wrap;gap:1.5rem 2rem;margin:1rem 0 1.5rem}
 figure{margin:0;min-width:0;max-width:100%}
 figure img,figure>svg{display:block;max-width:100%;height:auto}

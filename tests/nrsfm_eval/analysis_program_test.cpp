@@ -169,6 +169,34 @@ TEST_F(EvalManifest, EvaluatesAndAnalysesAtOnceOrOneAfterTheOther) {
   EXPECT_THAT(read_file(path("page.html")), HasSubstr("g has the least expected error"));
 }
 
+TEST_F(EvalAnalysis, ManyReconstructionsAreAMatrixAndOneWarning) {
+  std::string files, sequences, reconstructions;
+  for (int k = 0; k < 4; ++k) {
+    const std::string n = std::to_string(k), comma = k > 0 ? "," : "";
+    const Shapes q = tests::deforming(20, 8, k + 1);
+    write_truth(q, "t" + n, {});
+    files += comma + "\"t" + n + "\": {\"path\": \"t" + n + ".mat\"}";
+    sequences += comma + "\"s" + n + "\": {\"file\": \"t" + n + "\"}";
+    for (const std::string a : {"csf", "pta", "rigid", "spfm"}) {
+      write(tests::noisy(a == "pta" ? Shapes(-q) : q, 0.004, 0, 5), a + n, a);
+      files += ",\"" + a + n + "\": {\"path\": \"" + a + n + ".mat\"}";
+      reconstructions += std::string(reconstructions.empty() ? "" : ",") + "{\"id\": \"s" + n + "-" + a +
+                         "\", \"sequence\": \"s" + n + "\", \"algorithm\": \"" + a + "\", \"file\": \"" + a + n +
+                         "\", \"frame\": \"object\"}";
+    }
+  }
+  write_file(path("many.json"), "{\"gonio\": 1, \"files\": {" + files + "}, \"sequences\": {" + sequences +
+                                    "}, \"reconstructions\": [" + reconstructions + "]}");
+  const Said said = run({"-i", path("many.json"), "--draws", "0", "--html", path("p.html")});
+  ASSERT_EQ(said.status, 0);
+  EXPECT_THAT(said.error, HasSubstr("4 of 16 reconstructions are mirrored, 4 of them from orthographic tracks"));
+  EXPECT_EQ(std::ranges::count(said.error, '\n'), 1) << said.error;
+  const std::string page = read_file(path("p.html"));
+  EXPECT_THAT(page, HasSubstr("class=\"heat\""));
+  EXPECT_THAT(page, HasSubstr("<summary>All errors</summary>"));
+  EXPECT_THAT(page, HasSubstr("4 of 16 reconstructions: of each algorithm the one of median error"));
+}
+
 TEST_F(EvalManifest, ViewsAreTypicalOnes) {
   // a: 1, 2, 9; b: 4, 5 -> of each the (lower) median, the least first.
   const std::vector<std::string> algorithms = {"a", "b", "a", "b", "a"};

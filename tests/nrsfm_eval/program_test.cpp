@@ -174,7 +174,7 @@ TEST_F(EvalProgram, RefusesInOneLineWithPlaceValueAndRemedy) {
   const std::vector<Wrong> wrong{
       {{"--truth", truth}, 64, "RECONSTRUCTION: is missing"},
       {{good}, 64, "--truth: is missing"},
-      {{"-i", path("empty.json")}, 64, "has no reconstruction; give a manifest"},
+      {{"-i", path("empty.json")}, 65, "has no reconstruction; give a manifest"},
       {{"--truth", truth, good, "--measure", "rmse"}, 64, "choose one of"},
       {{"--truth", truth, good, "--confidence", "95"}, 64, "--confidence"},
       {{"--truth", path("none.mat"), good}, 66, "none.mat"},
