@@ -77,7 +77,8 @@ void say_flips(const Submissions& submissions, const std::vector<manifest::Evalu
     orthographic += whole && sequence.projection == Projection::orthographic;
     if (entries.size() <= 2 && whole) log(LogLevel::warning, e.id + ": the whole sequence is mirrored");
     if (entries.size() <= 2 && !e.flips.empty())
-      log(LogLevel::warning, e.id + format(": %zu frames are flipped", e.flips.size()));
+      log(LogLevel::warning,
+          e.id + format(e.flips.size() == 1 ? ": %zu frame is flipped" : ": %zu frames are flipped", e.flips.size()));
   }
   if (entries.size() > 2 && mirrored + flipped > 0)
     log(LogLevel::warning,

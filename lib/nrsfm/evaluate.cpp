@@ -44,17 +44,26 @@ void add(Evaluated& out, Measure measure, const std::string& alignment, double v
          const EvaluationOptions& options) {
   MeasuredError error{measure, alignment, value, {}};
   if (options.intervals) error.interval = error_interval(aligned, measure, *options.intervals);
+  if (error.interval) {  // of errors that are rounding, the two values differ
+    error.interval->lower = std::min(error.interval->lower, value);
+    error.interval->upper = std::max(error.interval->upper, value);
+  }
   if (error.interval && measure == Measure::robust_rms) out.block = error.interval->block;
   out.errors.push_back(std::move(error));
 }
 
 void note_result(Evaluated& out, const Shapes& x) {
+  if (std::ranges::any_of(out.errors,
+                          [](const MeasuredError& e) { return e.interval && !std::isfinite(e.interval->upper); }))
+    out.notes.push_back("no intervals: they need ten frames and three blocks of them");
   if (out.flips.whole_sequence_mirrored)
     out.notes.push_back("the whole sequence is mirrored: only a reflection lays it onto the truth");
   if (!out.flips.frames.empty())
-    out.notes.push_back(std::to_string(out.flips.frames.size()) + " of " + std::to_string(x.rows() / 3) +
-                        " frames are flipped; without that the robust error would be " +
-                        format("%.4g", out.flips.error.value) + " instead of " + format("%.4g", out.robust.value));
+    out.notes.push_back(
+        std::to_string(out.flips.frames.size()) + " of " + std::to_string(x.rows() / 3) +
+        (out.flips.frames.size() == 1 ? " frames is flipped; without" : " frames are flipped; without") +
+        " that the robust error would be " + format("%.4g", out.flips.error.value) + " instead of " +
+        format("%.4g", out.robust.value));
   if (out.robust.estimated < 1)
     out.notes.push_back(format("%.1f", 100 * (1 - out.robust.estimated)) +
                         " % of the points are not estimated and do not count");

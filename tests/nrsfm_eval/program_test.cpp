@@ -115,6 +115,23 @@ TEST_F(EvalProgram, SimilarityHandAndOrderDoNotMatter) {
   }
 }
 
+TEST_F(EvalProgram, SaysWhereThereIsNoInterval) {
+  ASSERT_EQ(run({"--truth", path("truth.mat"), path("good.mat"), "--block", "11"}).status, 0);
+  const manifest::Evaluation few = manifest::read_document(path("out.json")).evaluations[0];
+  EXPECT_FALSE(few.errors[0].upper);
+  EXPECT_THAT(few.notes, testing::Contains(HasSubstr("no intervals: they need ten frames and three blocks")));
+  ASSERT_EQ(run({"--truth", path("truth.mat"), path("good.mat"), "--block", "10"}).status, 0);
+  const manifest::Evaluation enough = manifest::read_document(path("out.json")).evaluations[0];
+  EXPECT_TRUE(enough.errors[0].upper);
+  EXPECT_TRUE(enough.notes.empty());
+  // Of the exact shapes, the value lies within its interval although both are rounding.
+  ASSERT_EQ(run({"--truth", path("truth.mat"), path("exact.mat")}).status, 0);
+  for (const manifest::EvaluatedError& e : manifest::read_document(path("out.json")).evaluations[0].errors) {
+    EXPECT_LE(*e.lower, e.value);
+    EXPECT_GE(*e.upper, e.value);
+  }
+}
+
 TEST_F(EvalProgram, MirroredWithoutLookingForFlips) {
   const Said said = run({"--truth", path("truth.mat"), path("mirrored.mat"), "--no-flips", "--draws", "0"});
   EXPECT_EQ(said.status, 0) << said.error;
