@@ -1,10 +1,18 @@
-// Low-rank completion by alternating least squares: with W ~ A B + t 1', each row's (a, t) and each column's b is a
-// small ridge problem over the visible entries. Alternation crawls along valleys; every few sweeps a step along the
-// last sweep's direction is tried and kept where it lowers the residual.
+// Low-rank completion by variational principal components (Ilin & Raiko, JMLR 11 (2010), section 4.2):
+//   w_fp = A_f b_p + t_f + n,   b_p ~ N(0, I_r),   rows of A_f ~ N(0, diag(g)),   n ~ N(0, v I_2)
+// with posteriors N(b_p, X_p) and N(A_f, Y_f), Y_f for both rows of a frame. Sums over what is visible:
+//   X_p = v (v I + sum_f (A_f' A_f + 2 Y_f))^-1,   b_p = X_p sum_f A_f' (w_fp - t_f) / v
+//   Y_f = v (v diag(1/g) + sum_p (b_p b_p' + X_p))^-1,   A_f' = Y_f sum_p b_p (w_fp - t_f)' / v
+//   v, g: the mean expected squares of residuals and of the columns of A
+// Maximum likelihood (alternating least squares, v -> 0) extrapolates without bounds where a point is seen in few
+// frames; the posteriors' spread keeps that in bounds, and shrinks columns that the tracks do not support. After each
+// sweep the factors turn to their principal axes (E[b b'] = I, E[A'A] diagonal), without which it crawls (section 4.3).
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -13,7 +21,119 @@
 namespace gonio::nrsfm {
 namespace {
 
-void check_seen(const Sequence& sequence, Eigen::Index rank) {
+struct TwoFactors {
+  Eigen::MatrixXd a;  // 2F x r
+  Eigen::MatrixXd b;  // r x P
+  Eigen::VectorXd t;  // 2F
+  std::vector<Eigen::MatrixXd> spread_a, spread_b;
+  Eigen::VectorXd prior;  // g
+  double noise = 0;       // v
+};
+
+TwoFactors started(const Eigen::MatrixXd& w, Eigen::Index rank) {
+  TwoFactors at;
+  at.t = w.rowwise().mean();
+  const Eigen::MatrixXd less = w.colwise() - at.t;
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(less, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const double root = std::sqrt(static_cast<double>(w.cols()));
+  const double energy = less.squaredNorm() / static_cast<double>(less.size());
+  at.a = svd.matrixU().leftCols(rank) * svd.singularValues().head(rank).asDiagonal() / root;
+  at.b = root * svd.matrixV().leftCols(rank).transpose();
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(rank, rank);
+  at.spread_a.assign(static_cast<std::size_t>(w.rows() / 2), none);
+  at.spread_b.assign(static_cast<std::size_t>(w.cols()), none);
+  at.prior = Eigen::VectorXd::Constant(rank, 1e3 * energy);
+  at.noise = 0.01 * energy;
+  return at;
+}
+
+// Second moments A_f' A_f + 2 Y_f.
+Eigen::MatrixXd motion_square(const TwoFactors& at, Eigen::Index f) {
+  const auto rows = at.a.middleRows<2>(2 * f);
+  return rows.transpose() * rows + 2 * at.spread_a[static_cast<std::size_t>(f)];
+}
+
+void sweep_points(const Sequence& sequence, TwoFactors& at) {
+  const Eigen::Index r = at.b.rows();
+  std::vector<Eigen::MatrixXd> squares;
+  for (Eigen::Index f = 0; f < sequence.frames(); ++f) squares.push_back(motion_square(at, f));
+  for (Eigen::Index p = 0; p < sequence.points(); ++p) {
+    Eigen::MatrixXd normal = at.noise * Eigen::MatrixXd::Identity(r, r);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(r);
+    for (Eigen::Index f = 0; f < sequence.frames(); ++f) {
+      if (!sequence.visible(f, p)) continue;
+      normal += squares[static_cast<std::size_t>(f)];
+      right.noalias() +=
+          at.a.middleRows<2>(2 * f).transpose() * (sequence.tracks.block<2, 1>(2 * f, p) - at.t.segment<2>(2 * f));
+    }
+    const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
+    at.b.col(p) = solver.solve(right);
+    at.spread_b[static_cast<std::size_t>(p)] = at.noise * solver.solve(Eigen::MatrixXd::Identity(r, r));
+  }
+}
+
+// The same model with sum_p b_p = 0, E[b b'] = I and E[A'A] diagonal, in falling order.
+void turn_to_axes(TwoFactors& at) {
+  const Eigen::VectorXd mean = at.b.rowwise().mean();
+  at.t += at.a * mean;
+  at.b.colwise() -= mean;
+  Eigen::MatrixXd square = at.b * at.b.transpose();
+  for (const Eigen::MatrixXd& spread : at.spread_b) square += spread;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> points(square / static_cast<double>(at.b.cols()));
+  const Eigen::VectorXd roots = points.eigenvalues().cwiseMax(1e-300).cwiseSqrt();
+  const Eigen::MatrixXd whitened = points.eigenvectors() * roots.asDiagonal();
+  Eigen::MatrixXd motion = whitened.transpose() * at.a.transpose() * at.a * whitened;
+  for (const Eigen::MatrixXd& spread : at.spread_a) motion += 2 * whitened.transpose() * spread * whitened;
+  const Eigen::MatrixXd axes =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(motion).eigenvectors().rowwise().reverse();
+  const Eigen::MatrixXd back = whitened * axes;
+  const Eigen::MatrixXd forth =
+      axes.transpose() * roots.cwiseInverse().asDiagonal() * points.eigenvectors().transpose();
+  at.a = (at.a * back).eval();
+  at.b = (forth * at.b).eval();
+  for (Eigen::MatrixXd& spread : at.spread_a) spread = (back.transpose() * spread * back).eval();
+  for (Eigen::MatrixXd& spread : at.spread_b) spread = (forth * spread * forth.transpose()).eval();
+}
+
+// A, t; then v and g from the expected squares.
+void sweep_frames(const Sequence& sequence, TwoFactors& at) {
+  const Eigen::Index r = at.b.rows();
+  std::vector<Eigen::MatrixXd> squares;
+  for (Eigen::Index p = 0; p < sequence.points(); ++p)
+    squares.push_back(at.b.col(p) * at.b.col(p).transpose() + at.spread_b[static_cast<std::size_t>(p)]);
+  Eigen::VectorXd columns = Eigen::VectorXd::Zero(r);
+  double sum = 0;
+  for (Eigen::Index f = 0; f < sequence.frames(); ++f) {
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(r, r), spread = square, right = Eigen::MatrixXd::Zero(r, 2);
+    for (Eigen::Index p = 0; p < sequence.points(); ++p) {
+      if (!sequence.visible(f, p)) continue;
+      square += squares[static_cast<std::size_t>(p)];
+      spread += at.spread_b[static_cast<std::size_t>(p)];
+      right += at.b.col(p) * (sequence.tracks.block<2, 1>(2 * f, p) - at.t.segment<2>(2 * f)).transpose();
+    }
+    Eigen::MatrixXd normal = square;
+    normal.diagonal() += at.noise * at.prior.cwiseInverse();
+    const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
+    at.a.middleRows<2>(2 * f) = solver.solve(right).transpose();
+    Eigen::MatrixXd& own = at.spread_a[static_cast<std::size_t>(f)];
+    own = at.noise * solver.solve(Eigen::MatrixXd::Identity(r, r));
+    const Eigen::MatrixXd rows = at.a.middleRows<2>(2 * f);
+    Eigen::Matrix2Xd residual(2, sequence.points());
+    Eigen::Index seen = 0;
+    for (Eigen::Index p = 0; p < sequence.points(); ++p)
+      if (sequence.visible(f, p)) residual.col(seen++) = sequence.tracks.block<2, 1>(2 * f, p) - rows * at.b.col(p);
+    at.t.segment<2>(2 * f) = residual.leftCols(seen).rowwise().mean();
+    sum += (residual.leftCols(seen).colwise() - at.t.segment<2>(2 * f)).squaredNorm();
+    sum += (rows.transpose() * rows).cwiseProduct(spread).sum() + 2 * own.cwiseProduct(square).sum();
+    columns += rows.colwise().squaredNorm().transpose() + 2 * own.diagonal();
+  }
+  at.noise = std::max(sum / (2 * static_cast<double>(sequence.visible.count())), 1e-300);
+  at.prior = (columns / static_cast<double>(2 * sequence.frames())).cwiseMax(1e-300);
+}
+
+}  // namespace
+
+void require_seen(const Sequence& sequence, Eigen::Index rank) {
   const Eigen::Index frames_needed = (rank + 1) / 2;
   for (Eigen::Index p = 0; p < sequence.points(); ++p) {
     const Eigen::Index seen = sequence.visible.col(p).count();
@@ -32,50 +152,6 @@ void check_seen(const Sequence& sequence, Eigen::Index rank) {
                 "leave the frame out, or take a lower rank");
   }
 }
-
-struct TwoFactors {
-  Eigen::MatrixXd a;  // 2F x (r + 1), the last column t
-  Eigen::MatrixXd b;  // (r + 1) x P, the last row 1
-};
-
-double cost_of(const Sequence& sequence, const Eigen::MatrixXd& w, const TwoFactors& at) {
-  const Eigen::ArrayXXd residual = (w - at.a * at.b).array();
-  double cost = 0;
-  for (Eigen::Index row = 0; row < w.rows(); ++row) {
-    cost += sequence.visible.row(row / 2).select(residual.row(row), 0.0).square().sum();
-  }
-  return cost;
-}
-
-void solve_columns(const Sequence& sequence, const Eigen::MatrixXd& w, double ridge, TwoFactors& at) {
-  const Eigen::Index r = at.b.rows() - 1;
-  for (Eigen::Index p = 0; p < w.cols(); ++p) {
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(r, r) * ridge;
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(r);
-    for (Eigen::Index row = 0; row < w.rows(); ++row) {
-      if (!sequence.visible(row / 2, p)) continue;
-      const auto a = at.a.row(row).head(r);
-      normal.noalias() += a.transpose() * a;
-      right.noalias() += a.transpose() * (w(row, p) - at.a(row, r));
-    }
-    at.b.col(p).head(r) = normal.ldlt().solve(right);
-  }
-}
-
-void solve_rows(const Sequence& sequence, const Eigen::MatrixXd& w, double ridge, TwoFactors& at) {
-  const Eigen::Index n = at.b.rows();
-  for (Eigen::Index f = 0; f < w.rows() / 2; ++f) {
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(n, n) * ridge, right = Eigen::MatrixXd::Zero(n, 2);
-    for (Eigen::Index p = 0; p < w.cols(); ++p) {
-      if (!sequence.visible(f, p)) continue;
-      normal.noalias() += at.b.col(p) * at.b.col(p).transpose();
-      right.noalias() += at.b.col(p) * w.block<2, 1>(2 * f, p).transpose();
-    }
-    at.a.middleRows<2>(2 * f) = normal.ldlt().solve(right).transpose();
-  }
-}
-
-}  // namespace
 
 // Each track interpolated over time between the frames that see it, held before the first and after the last.
 Eigen::MatrixXd interpolated(const Sequence& sequence) {
@@ -100,44 +176,23 @@ Eigen::MatrixXd interpolated(const Sequence& sequence) {
 }
 
 Completion complete(const Sequence& sequence, Eigen::Index rank, int most_iterations) {
-  check_seen(sequence, rank);
+  require_seen(sequence, 3);
   const Eigen::MatrixXd w = interpolated(sequence);
-  TwoFactors at;
-  at.a.resize(w.rows(), rank + 1);
-  at.a.col(rank) = w.rowwise().mean();
-  const Eigen::MatrixXd less = w.colwise() - at.a.col(rank);
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(less, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd roots = svd.singularValues().head(rank).cwiseSqrt();
-  at.a.leftCols(rank) = svd.matrixU().leftCols(rank) * roots.asDiagonal();
-  at.b = Eigen::MatrixXd::Ones(rank + 1, w.cols());
-  at.b.topRows(rank) = roots.asDiagonal() * svd.matrixV().leftCols(rank).transpose();
-  const double ridge = 1e-10 * std::max(svd.singularValues()(0), 1e-300);
-
+  TwoFactors at = started(w, rank);
+  const double floor = 1e-26 * at.noise;
   Completion result;
-  const double energy = less.squaredNorm();
-  double cost = cost_of(sequence, w, at), stride = 2;
   for (; result.iterations < most_iterations && !result.converged; ++result.iterations) {
     throw_if_interrupted();
-    const TwoFactors before = at;
-    const double cost_before = cost;
-    solve_columns(sequence, w, ridge, at);
-    solve_rows(sequence, w, ridge, at);
-    cost = cost_of(sequence, w, at);
-    TwoFactors further{before.a + stride * (at.a - before.a), before.b + stride * (at.b - before.b)};
-    const double further_cost = cost_of(sequence, w, further);
-    if (further_cost < cost) {
-      at = std::move(further);
-      cost = further_cost;
-      stride = std::min(1.5 * stride, 100.0);
-    } else {
-      stride = std::max(0.7 * stride, 1.5);
-    }
-    result.converged = cost_before - cost <= 1e-9 * cost_before || cost <= 1e-26 * energy;
+    const double before = at.noise;
+    sweep_points(sequence, at);
+    turn_to_axes(at);
+    sweep_frames(sequence, at);
+    result.converged = result.iterations > 20 && (std::abs(before - at.noise) <= 1e-5 * before || at.noise <= floor);
   }
-  const Eigen::VectorXd middle = at.b.topRows(rank).rowwise().mean();  // t is the mean of all points, seen or not
-  at.b.topRows(rank).colwise() -= middle;
-  result.translation = at.a.col(rank) + at.a.leftCols(rank) * middle;
-  result.w = at.a.leftCols(rank) * at.b.topRows(rank);
+  const Eigen::VectorXd middle = at.b.rowwise().mean();  // t is the mean of all points, seen or not
+  at.b.colwise() -= middle;
+  result.translation = at.t + at.a * middle;
+  result.w = at.a * at.b;
   for (Eigen::Index row = 0; row < w.rows(); ++row) {
     const auto measured = (w.row(row).array() - result.translation(row)).eval();
     result.w.row(row) = sequence.visible.row(row / 2).select(measured, result.w.row(row).array());

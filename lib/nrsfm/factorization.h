@@ -67,8 +67,8 @@ WeakCamera fit_camera(const Eigen::Matrix2Xd& tracks, const Eigen::Array<bool, 1
                       const Eigen::Matrix3Xd& shape, const WeakCamera& start, bool free_scale,
                       const Eigen::Matrix3d& spread = Eigen::Matrix3d::Zero());
 
-// Low-rank completion of missing entries, W ~ A B + t 1', rank r, by alternating least squares with a small ridge
-// (Hartley & Schaffalitzky 2003; Buchanan & Fitzgibbon 2005 say where it fails), from tracks interpolated over time.
+// Low-rank completion of missing entries, W ~ A B + t 1', rank r at most: variational principal components, from tracks
+// interpolated over time. What few frames or points support stays near the mean; least squares would run away there.
 struct Completion {
   Eigen::MatrixXd w;            // 2F x P, less the translation; measured entries stay as measured
   Eigen::VectorXd translation;  // 2F
@@ -76,8 +76,11 @@ struct Completion {
   bool converged = false;
 };
 Eigen::MatrixXd interpolated(const Sequence& sequence);  // over time; ends are held
-// Error(data) where a point is seen in fewer frames, or a frame sees fewer points, than the rank can do with.
-Completion complete(const Sequence& sequence, Eigen::Index rank, int most_iterations = 300);
+// Error(data) where a point is seen in fewer than 2 frames, or a frame sees fewer than 4 points.
+Completion complete(const Sequence& sequence, Eigen::Index rank, int most_iterations = 150);
+// Error(data) where a point is seen in fewer frames, or a frame sees fewer points, than least squares of that rank
+// need.
+void require_seen(const Sequence& sequence, Eigen::Index rank);
 
 // Shapes of a rank-3K model: S_f = sum_k c_fk B_k.
 Shapes shapes_of(const Eigen::MatrixXd& coefficients, const Eigen::MatrixXd& basis);  // F x K, 3K x P

@@ -131,6 +131,7 @@ Eigen::Index shapes_of_model(const SolverInfo& info, const Sequence& sequence, c
   const Eigen::Index given = static_cast<Eigen::Index>(values_in_force(info, options.values).at("rank"));
   const Eigen::Index rank = given > 0 ? given : shapes_from_tracks(sequence);
   require_rank(sequence, rank);
+  require_seen(sequence, 3 * rank);
   return rank;
 }
 

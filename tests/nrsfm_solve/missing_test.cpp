@@ -23,6 +23,22 @@ TEST(Completion, is_exact_for_exact_tracks) {
   }
 }
 
+// More shapes than the rank holds, points that few frames see: where least squares run away, what is filled in is
+// nearer the truth than the mean of the points is.
+TEST(Completion, stays_in_bounds_where_little_is_seen) {
+  for (const Eigen::Index rank : {3, 6, 9}) {
+    const Sequence whole = made({.frames = 40, .points = 40, .shapes = 4, .cosines = 8, .deformation = 0.3});
+    Sequence s = whole;
+    hide_in_runs(s, 16);
+    for (Eigen::Index p = 16; p < 24; ++p)
+      for (Eigen::Index f = 3; f < 40; ++f) hide(s, f, p);
+    const Completion filled = complete(s, rank);
+    const Eigen::MatrixXd tracks = filled.w.colwise() + filled.translation;
+    const double size = (whole.tracks.colwise() - whole.tracks.rowwise().mean()).norm();
+    EXPECT_LT((tracks - whole.tracks).norm(), 0.6 * size) << rank;
+  }
+}
+
 TEST(Completion, keeps_what_was_measured) {
   Sequence s = made({.shapes = 2, .cosines = 2, .noise = 0.01});
   hide_at_random(s, 0.2);

@@ -131,7 +131,7 @@ TEST(Mdh, refuses_in_words) {
   EXPECT_THAT(refusal(s), ::testing::HasSubstr("focal lengths"));
   s = bent_sheet(3, 4);
   s.tracks.setConstant(100);
-  EXPECT_THAT(refusal(s), ::testing::HasSubstr("no two points"));
+  EXPECT_THAT(refusal(s), ::testing::HasSubstr("all points lie in one place"));
 }
 
 struct Recorded {
