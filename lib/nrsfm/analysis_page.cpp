@@ -86,7 +86,8 @@ void add_ranks(report::Page& page, const Analysis& analysis, const Part& part) {
   table.columns = {{f.name, "", false}, {analysis.measure, analysis.unit}, {"rank"}, {"interval"}, {"first in draws"}};
   for (const stats::Rank& r : part.ranks)
     table.rows.push_back({f.levels[at(r.level)], number_text(r.mean, 4), format("%g", r.rank),
-                          format("%g to %g", r.lower, r.upper), report::percent_text(r.best_share, 0)});
+                          r.lower == r.upper ? format("%g", r.lower) : format("%g to %g", r.lower, r.upper),
+                          report::percent_text(r.best_share, 0)});
   page.subsection("Ranks");
   page.table(table);
 }

@@ -111,7 +111,7 @@ std::string tex_power(double log10) {
 std::string tex_number(double v) {
   if (!std::isfinite(v)) return "--";
   if (v > 0 && (v >= 1e5 || v < 1e-3)) return tex_power(std::log10(v));
-  return format("$%.*f$", v >= 100 || v == 0 ? 0 : v >= 10 ? 1 : 3, v);
+  return format("$%.*f$", v >= 100 || v == 0 ? 0 : v >= 10 ? 1 : v >= 1 ? 2 : 3, v);
 }
 std::string tex_p(const stats::TermRow& row) {
   if (std::isnan(row.p)) return "--";

@@ -286,7 +286,8 @@ std::string headline(const EvaluationPage& p) {
         const stats::Rank& first = part.ranks.front();
         return f.levels[static_cast<std::size_t>(first.level)] + " has the least expected error, " +
                number_text(first.mean, 4) + (p.analysis->unit.empty() ? "" : " " + p.analysis->unit) +
-               format("; ranks %g to %g are open to it", first.lower, first.upper);
+               (first.lower == first.upper ? "; no other rank is open to it"
+                                           : format("; ranks %g to %g are open to it", first.lower, first.upper));
       }
   if (p.evaluations.empty()) return "What decides the errors";
   const std::vector<Kind> kinds = kinds_of(p.evaluations);
