@@ -12,26 +12,38 @@
 
 namespace gonio::nrsfm {
 
-Sheet flat_sheet(double length_x_m, double length_y_m, int nx, int ny) {
+Sheet flat_sheet(double length_x_m, double length_y_m, int cells) {
   Sheet sheet;
-  sheet.nx = nx, sheet.ny = ny;
-  sheet.rest.resize(3, (nx + 1) * (ny + 1));
-  for (int i = 0; i <= nx; ++i)
-    for (int j = 0; j <= ny; ++j)
-      sheet.rest.col(sheet.at(i, j)) << length_x_m * (static_cast<double>(i) / nx - 0.5),
-          length_y_m * (static_cast<double>(j) / ny - 0.5), 0;
-  for (int i = 0; i < nx; ++i) {
-    for (int j = 0; j < ny; ++j) {
-      const auto a = sheet.at(i, j), b = sheet.at(i + 1, j), c = sheet.at(i + 1, j + 1), d = sheet.at(i, j + 1);
-      if ((i + j) % 2 == 0) {
-        sheet.triangles.push_back({a, b, c});
-        sheet.triangles.push_back({a, c, d});
-      } else {
-        sheet.triangles.push_back({a, b, d});
-        sheet.triangles.push_back({b, c, d});
-      }
-    }
+  const double cell = sheet.cell_m = length_x_m / cells;
+  const int rows = 2 * std::max(1, static_cast<int>(std::lround(length_y_m / (std::sqrt(3.0) * cell))));
+  std::vector<std::vector<std::uint32_t>> row(static_cast<std::size_t>(rows) + 1);
+  std::vector<Eigen::Vector3d> at;
+  for (std::size_t j = 0; j < row.size(); ++j) {
+    const double y = std::sqrt(0.75) * cell * (static_cast<double>(j) - 0.5 * rows);
+    const auto put = [&](double x) {
+      row[j].push_back(static_cast<std::uint32_t>(at.size()));
+      at.emplace_back(x - length_x_m / 2, y, 0);
+    };
+    put(0);
+    for (int i = 1; i < cells; ++i) put(cell * (i - 0.5 * static_cast<double>(j % 2)));
+    if (j % 2 == 1) put(length_x_m - cell / 2);
+    put(length_x_m);
   }
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    if ((at[b] - at[a]).cross(at[c] - at[a]).z() < 0) std::swap(b, c);
+    sheet.triangles.push_back({a, b, c});
+  };
+  for (std::size_t j = 0; j + 1 < row.size(); ++j) {
+    const auto& even = row[j + j % 2];
+    const auto& odd = row[j + 1 - j % 2];
+    const std::size_t last = even.size() - 1;
+    add(even[0], odd[0], odd[1]);
+    for (std::size_t i = 0; i < last; ++i) add(even[i], even[i + 1], odd[i + 1]);
+    for (std::size_t i = 1; i < last; ++i) add(odd[i], odd[i + 1], even[i]);
+    add(even[last], odd[last], odd[last + 1]);
+  }
+  sheet.rest.resize(3, static_cast<Eigen::Index>(at.size()));
+  for (std::size_t v = 0; v < at.size(); ++v) sheet.rest.col(static_cast<Eigen::Index>(v)) = at[v];
   return sheet;
 }
 

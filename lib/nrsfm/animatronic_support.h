@@ -9,15 +9,15 @@
 
 namespace gonio::nrsfm {
 
-// Vertices of a flat sheet in the plane z = 0 about the origin, column by column: (i, j) at x_i, y_j. Diagonals
-// alternate, so that no direction of bending is favoured.
+// A flat sheet in the plane z = 0 about the origin, of equilateral triangles: rows of vertices along x, every second
+// row shifted by half a cell; the ends in x are straight. Only on this lattice are hinges isotropic (shell.h).
 struct Sheet {
-  int nx = 0, ny = 0;  // cells
   Eigen::Matrix3Xd rest;
   Triangles triangles;
-  std::uint32_t at(int i, int j) const { return static_cast<std::uint32_t>(i * (ny + 1) + j); }
+  double cell_m = 0;  // edge of a triangle
 };
-Sheet flat_sheet(double length_x_m, double length_y_m, int nx, int ny);
+// `cells` along x; the width is rounded to an even number of rows, so that one is on y = 0.
+Sheet flat_sheet(double length_x_m, double length_y_m, int cells);
 
 // From 0 to 1 with neither speed nor acceleration at the ends (quintic).
 double eased(double s);

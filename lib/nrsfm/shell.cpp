@@ -13,52 +13,58 @@ constexpr int gauss_newton_steps = 6;  // they are cheaper, and robust far from 
 
 }  // namespace
 
-// Compressed columns of 3 x 3 blocks: the three columns of vertex j hold the rows of its neighbours in rising order.
+// Only free vertices have places in the matrix, in compressed columns of 3 x 3 blocks: the three columns of a vertex
+// hold the rows of its neighbours in rising order.
 void Shell::lay_out() {
-  const auto n = fixed.size();
-  std::vector<std::set<std::uint32_t>> near(n);
-  const auto meet = [&near](std::uint32_t a, std::uint32_t b) { near[a].insert(b), near[b].insert(a); };
-  for (std::size_t i = 0; i < n; ++i) near[i].insert(static_cast<std::uint32_t>(i));
-  for (const auto& t : triangles_)
-    for (const std::uint32_t a : t)
-      for (const std::uint32_t b : t) meet(a, b);
-  for (const Hinge& h : hinges_)
-    for (const std::uint32_t a : h.v)
-      for (const std::uint32_t b : h.v) meet(a, b);
-  for (const Bond& bond : bonds) meet(bond.a, bond.b);
+  laid_out_for_ = fixed;
+  free_.clear();
+  std::vector<int> place(fixed.size(), -1);
+  for (std::size_t v = 0; v < fixed.size(); ++v)
+    if (!fixed[v]) place[v] = static_cast<int>(free_.size()), free_.push_back(static_cast<Eigen::Index>(v));
+  std::vector<std::set<int>> near(free_.size());
+  const auto meet = [&](const auto& vertices) {
+    for (const std::uint32_t a : vertices)
+      for (const std::uint32_t b : vertices)
+        if (place[a] >= 0 && place[b] >= 0) near[static_cast<std::size_t>(place[b])].insert(place[a]);
+  };
+  for (const auto& t : triangles_) meet(t);
+  for (const Hinge& h : hinges_) meet(h.v);
+  for (const Bond& bond : bonds) meet(std::array{bond.a, bond.b});
   std::vector<Eigen::Triplet<double>> entries;
-  std::vector<std::vector<std::uint32_t>> rows(n);
-  std::vector<int> first_block(n);
+  std::vector<std::vector<int>> rows(free_.size());
+  std::vector<int> first_block(free_.size());
+  blocks_.clear();
   int start = 0;
-  for (std::size_t j = 0; j < n; ++j) {
+  for (std::size_t j = 0; j < rows.size(); ++j) {
     rows[j].assign(near[j].begin(), near[j].end());
     first_block[j] = static_cast<int>(blocks_.size());
     const int degree = static_cast<int>(rows[j].size());
     for (int p = 0; p < degree; ++p) blocks_.push_back({start + 3 * p, 3 * degree});
-    for (const std::uint32_t i : rows[j])
+    for (const int i : rows[j])
       for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) entries.emplace_back(3 * static_cast<int>(i) + r, 3 * static_cast<int>(j) + c, 0.0);
+        for (int c = 0; c < 3; ++c) entries.emplace_back(3 * i + r, 3 * static_cast<int>(j) + c, 0.0);
     start += 9 * degree;
   }
-  matrix_.resize(static_cast<Eigen::Index>(3 * n), static_cast<Eigen::Index>(3 * n));
+  const auto size = static_cast<Eigen::Index>(3 * free_.size());
+  matrix_.resize(size, size);
   matrix_.setFromTriplets(entries.begin(), entries.end());
-  const auto block = [&](std::uint32_t i, std::uint32_t j) {
-    const auto at = std::lower_bound(rows[j].begin(), rows[j].end(), i) - rows[j].begin();
-    return first_block[j] + static_cast<int>(at);
+  const auto block = [&](std::uint32_t a, std::uint32_t b) {
+    if (place[a] < 0 || place[b] < 0) return -1;
+    const auto& row = rows[static_cast<std::size_t>(place[b])];
+    const auto at = std::lower_bound(row.begin(), row.end(), place[a]) - row.begin();
+    return first_block[static_cast<std::size_t>(place[b])] + static_cast<int>(at);
   };
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto v = static_cast<std::uint32_t>(i);
-    diagonal_.push_back(block(v, v));
-  }
   for (std::size_t k = 0; k < triangles_.size(); ++k)
     for (std::size_t i = 0; i < 9; ++i) triangle_[k].slot[i] = block(triangles_[k][i / 3], triangles_[k][i % 3]);
   for (Hinge& h : hinges_)
     for (std::size_t i = 0; i < 16; ++i) h.slot[i] = block(h.v[i / 4], h.v[i % 4]);
+  bonded_.clear();
   for (const Bond& b : bonds) bonded_.push_back({block(b.a, b.a), block(b.a, b.b), block(b.b, b.a), block(b.b, b.b)});
   solver_.analyzePattern(matrix_);
 }
 
 void Shell::add(int block, const Eigen::Matrix3d& value) {
+  if (block < 0) return;
   const Block& at = blocks_[static_cast<std::size_t>(block)];
   double* values = matrix_.valuePtr() + at.first;
   for (int c = 0; c < 3; ++c)
@@ -140,54 +146,54 @@ void Shell::assemble_rest(const Eigen::Matrix3Xd& x, bool exact) {
   }
 }
 
-void Shell::hold_fixed() {
-  const int* outer = matrix_.outerIndexPtr();
-  const int* inner = matrix_.innerIndexPtr();
-  double* values = matrix_.valuePtr();
-  for (int column = 0; column < matrix_.outerSize(); ++column) {
-    for (int k = outer[column]; k < outer[column + 1]; ++k) {
-      const bool held = fixed[static_cast<std::size_t>(column / 3)] || fixed[static_cast<std::size_t>(inner[k] / 3)];
-      if (held) values[k] = column == inner[k] ? 1 : 0;
-    }
-  }
-}
-
-// -(H + shift + c/V^2 v v')^-1 gradient, v the gradient of the volume.
+// -(H + shift + c/V^2 v v')^-1 gradient, v the gradient of the volume; all of the free vertices.
 Eigen::VectorXd Shell::downhill(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& gradient, bool exact) {
   std::fill(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros(), 0.0);
   assemble_membrane(x);
   assemble_rest(x, exact);
-  hold_fixed();
-  double typical = 0;
-  for (const int d : diagonal_) typical += matrix_.valuePtr()[blocks_[static_cast<std::size_t>(d)].first];
-  typical /= static_cast<double>(diagonal_.size());
-  const double least = 1e-7 * typical;
-  shift_ = shift_ < least ? 0 : shift_ / 10;
-  for (int attempt = 0; attempt < 60; ++attempt) {
+  const double typical = matrix_.diagonal().mean(), least = 1e-7 * typical;
+  shift_ = shift_ < least ? 0 : shift_ / 4;
+  for (int attempt = 0; attempt < 40; ++attempt) {
     solver_.setShift(shift_);
     solver_.factorize(matrix_);
-    if (solver_.info() == Eigen::Success && solver_.vectorD().minCoeff() > 0) break;
-    shift_ = std::max(4 * shift_, least);
+    if (solver_.info() == Eigen::Success) break;
+    shift_ = std::max(8 * shift_, least);
   }
   Eigen::VectorXd step = -solver_.solve(gradient);
   if (gas_nm <= 0) return step;
-  Eigen::Matrix3Xd v = volume_gradient(x);
-  for (Eigen::Index i = 0; i < v.cols(); ++i)
-    if (fixed[static_cast<std::size_t>(i)]) v.col(i).setZero();
-  const Eigen::VectorXd u = v.reshaped(), hu = solver_.solve(u);
+  const Eigen::VectorXd u = volume_gradient(x)(Eigen::all, free_).reshaped(), hu = solver_.solve(u);
   const double volume_now = volume(x), c = gas_nm / (volume_now * volume_now);
   step -= hu * (c * u.dot(step) / (1 + c * u.dot(hu)));
   return step;
 }
 
+// Shorter steps until one leads downhill; longer ones while they lead farther, where the shift has made them short.
+// Returns the energy.
+double Shell::search(Eigen::Matrix3Xd& x, double before, const Eigen::VectorXd& step, double slope) const {
+  const double noise = 1e-13 * (std::abs(before) + std::abs(slope));
+  const auto at = [&](double share) {
+    Eigen::Matrix3Xd trial = x;
+    trial(Eigen::all, free_) += share * step.reshaped(3, step.size() / 3);
+    return trial;
+  };
+  double share = 1, after = energy(at(1));
+  while (!(after <= before + 1e-4 * share * slope + noise) && share > 1e-9) after = energy(at(share /= 2));
+  while (shift_ > 0 && share >= 1 && share < 1000) {
+    const double farther = energy(at(2 * share));
+    if (!(farther < after - noise)) break;
+    share *= 2, after = farther;
+  }
+  x = at(share);
+  return after;
+}
+
 Equilibrium Shell::settle(Eigen::Matrix3Xd& x, double tolerance, int most_iterations) {
+  if (laid_out_for_ != fixed) lay_out();
   Equilibrium result;
   Eigen::VectorXd magnitude;
   double before = energy(x);
   while (true) {
-    Eigen::Matrix3Xd g = gradient(x, &magnitude);
-    for (Eigen::Index i = 0; i < g.cols(); ++i)
-      if (fixed[static_cast<std::size_t>(i)]) g.col(i).setZero();
+    const Eigen::Matrix3Xd g = gradient(x, &magnitude)(Eigen::all, free_);
     result.residual_n = g.colwise().norm().maxCoeff();
     result.scale_n = magnitude.maxCoeff();
     result.converged = result.residual_n <= tolerance * result.scale_n;
@@ -195,17 +201,7 @@ Equilibrium Shell::settle(Eigen::Matrix3Xd& x, double tolerance, int most_iterat
     ++result.iterations;
     const Eigen::VectorXd flat = g.reshaped();
     const Eigen::VectorXd step = downhill(x, flat, result.iterations > gauss_newton_steps);
-    const double slope = flat.dot(step), noise = 1e-13 * (std::abs(before) + std::abs(slope));
-    double share = 1;
-    while (true) {
-      const Eigen::Matrix3Xd trial = x + share * step.reshaped(3, x.cols());
-      const double after = energy(trial);
-      if (after <= before + 1e-4 * share * slope + noise || share < 1e-9) {
-        x = trial, before = after;
-        break;
-      }
-      share /= 2;
-    }
+    before = search(x, before, step, flat.dot(step));
   }
 }
 

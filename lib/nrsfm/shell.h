@@ -5,10 +5,12 @@
 //   membrane  A t / 2 S : E          E = (F'F - 1) / 2, S = Y / (1 - nu^2) ((1 - nu) E + nu tr E 1)
 //             linear triangles, St. Venant-Kirchhoff, plane stress (Bonet & Wood 2008, chapters 5 and 9)
 //   bending   D l^2 / (A1 + A2) (angle - rest angle)^2 / 2       of each inner edge; D = Y t^3 / (12 (1 - nu^2))
-//             discrete shells (Grinspun et al. 2003); the factor gives cylinders on lattices of right and of
-//             equilateral triangles the energy D / 2 per area and squared curvature (Seung & Nelson 1988)
+//             discrete shells (Grinspun et al. 2003). On a lattice of equilateral triangles the sum is isotropic, that
+//             of a plate whose Poisson's ratio in bending is -1/3: D / 2 ((tr K)^2 - 8/3 det K) per area, K the
+//             curvature (Seung & Nelson 1988); det K = 0 where sheets hardly stretch. On other lattices vertices find
+//             ways around it: right triangles with alternating diagonals bend at 5/6 of D.
 //   weight    - sum m_i g . x_i
-//   gas       p0 V - c ln V          c = n R T: an ideal gas inside a closed shell against the pressure p0 outside
+//   gas       p0 V - c - c ln(p0 V / c)   c = n R T: an ideal gas inside a closed shell, the pressure p0 > 0 outside
 //   bonds     k |x_a - x_b|^2 / 2    hold two vertices of the same place together until they are broken
 // Newton's method: the first steps leave out the curvature of the angle in the bending term (Gauss-Newton). The gas
 // couples all vertices by one dyad (Sherman-Morrison). Where the matrix is not positive definite it is shifted.
@@ -85,12 +87,12 @@ class Shell {
            (!bonds[static_cast<std::size_t>(h.bonds[0])].broken && !bonds[static_cast<std::size_t>(h.bonds[1])].broken);
   }
   void find_hinges(const Eigen::Matrix3Xd& rest);
-  void lay_out();  // of the sparse matrix
+  void lay_out();  // of the sparse matrix, for what is fixed
   void assemble(const Eigen::Matrix3Xd& x);
   void assemble_membrane(const Eigen::Matrix3Xd& x);
   void assemble_rest(const Eigen::Matrix3Xd& x, bool exact);
   void add_curvature(const Hinge& h, std::array<Eigen::Vector3d, 4> corner, double moment);
-  void hold_fixed();
+  double search(Eigen::Matrix3Xd& x, double before, const Eigen::VectorXd& step, double slope) const;
   Eigen::VectorXd downhill(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& gradient, bool exact);
   Eigen::Matrix3Xd volume_gradient(const Eigen::Matrix3Xd& x) const;
   Eigen::Matrix2d stress(const Element& element, const Eigen::Matrix<double, 3, 2>& f) const;
@@ -103,11 +105,12 @@ class Shell {
   std::vector<Hinge> hinges_;
   Eigen::VectorXd mass_;
   std::vector<Block> blocks_;
-  std::vector<int> diagonal_;               // block of each vertex with itself
   std::vector<std::array<int, 4>> bonded_;  // blocks aa, ab, ba, bb
   Eigen::SparseMatrix<double> matrix_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> solver_;
   double shift_ = 0;
+  std::vector<Eigen::Index> free_;  // vertices that are not fixed
+  std::vector<char> laid_out_for_;
 };
 
 // Signed angle between the two triangles of a hinge, 0 where flat, and its gradient.

@@ -46,7 +46,6 @@ Shell::Shell(const Eigen::Matrix3Xd& rest, const Triangles& triangles, const She
     triangle_.push_back(element);
   }
   find_hinges(rest);
-  lay_out();
 }
 
 void Shell::find_hinges(const Eigen::Matrix3Xd& rest) {
@@ -117,7 +116,8 @@ double Shell::energy(const Eigen::Matrix3Xd& x) const {
   if (gas_nm > 0) {
     const double v = volume(x);
     if (!(v > 0)) return std::numeric_limits<double>::infinity();
-    sum += outside_pa * v - gas_nm * std::log(v);
+    const double above = outside_pa * v / gas_nm - 1;
+    sum += gas_nm * (above - std::log1p(above));
   }
   return sum;
 }

@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "nrsfm/animatronic.h"
-#include "nrsfm/shell.h"
+#include "nrsfm/animatronic_support.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -55,6 +55,16 @@ void expect_no_self_penetration(const DeformingSurface& s, Eigen::Index frame) {
   }
 }
 
+// Largest side of the box about all frames.
+double extent(const DeformingSurface& s) {
+  double most = 0;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const auto coordinate = s.points_m(Eigen::seq(axis, Eigen::last, 3), Eigen::all);
+    most = std::max(most, coordinate.maxCoeff() - coordinate.minCoeff());
+  }
+  return most;
+}
+
 class Kind : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Kind, ForcesBalanceAndPointsLieOnTheSurface) {
@@ -65,6 +75,18 @@ TEST_P(Kind, ForcesBalanceAndPointsLieOnTheSurface) {
   EXPECT_TRUE(s.vertices_m.allFinite());
   const Shapes again = anchored(s);
   EXPECT_EQ((again - s.points_m).cwiseAbs().maxCoeff(), 0);
+}
+
+// A jump would be a step far longer than those before and after it. What buckles or tears moves on in small ones, up to
+// a cell of the lattice: an allowance of a twentieth of the scene.
+TEST_P(Kind, MovesWithoutJumps) {
+  const DeformingSurface& s = made(GetParam());
+  std::vector<double> steps;
+  for (Eigen::Index f = 1; f < s.frames(); ++f)
+    steps.push_back((shape_of(s.points_m, f) - shape_of(s.points_m, f - 1)).colwise().norm().maxCoeff());
+  EXPECT_GT(*std::max_element(steps.begin(), steps.end()), 1e-3);
+  for (std::size_t k = 1; k + 1 < steps.size(); ++k)
+    EXPECT_LT(steps[k], 2 * std::max(steps[k - 1], steps[k + 1]) + 0.05 * extent(s)) << "after frame " << k;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Kind, ::testing::Values("articulated", "bending", "deflation", "stretching", "tearing"),
@@ -82,6 +104,11 @@ TEST(Bending, PaperKeepsItsLengths) {
   for (Eigen::Index f = 1; f < s.frames(); ++f)
     worst = std::max(worst, (lengths.row(f).array() / lengths.row(0).array() - 1).abs().maxCoeff());
   EXPECT_LT(worst, 5e-3);
+  std::vector<double> heights;
+  for (Eigen::Index f = 0; f < s.frames(); ++f) heights.push_back(shape_of(s.vertices_m, f).row(2).maxCoeff());
+  const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+  EXPECT_GT(*low, 0.01);  // an arch in every frame
+  EXPECT_GT(*high, 0.05);
 }
 
 TEST(Deflation, BallLosesVolumeAndStaysOutOfItself) {
@@ -90,7 +117,7 @@ TEST(Deflation, BallLosesVolumeAndStaysOutOfItself) {
   std::vector<double> volumes;
   for (Eigen::Index f = 0; f < s.frames(); ++f) volumes.push_back(shell.volume(shape_of(s.vertices_m, f)));
   for (std::size_t f = 1; f < volumes.size(); ++f) EXPECT_LT(volumes[f], volumes[f - 1]);
-  EXPECT_LT(volumes.back(), 0.65 * volumes.front());
+  EXPECT_LT(volumes.back(), 0.85 * volumes.front());
   for (const Eigen::Index f : {10, 20}) expect_no_self_penetration(s, f);
 }
 
@@ -107,17 +134,25 @@ TEST(Articulated, LinksStayRigidAndTheSleeveOutOfItself) {
 
 TEST(Stretching, SheetGrowsLongerAndNarrower) {
   const DeformingSurface& s = made("stretching");
-  const auto width = [&](Eigen::Index f) {  // across the middle column: 25 columns of 17 vertices
-    const auto x = shape_of(s.vertices_m, f);
+  // Lengths of the rows of the sheet at rest: 0.2 m long, vertices in rows of y.
+  const Sheet sheet = flat_sheet(0.2, 0.13, 24);
+  ASSERT_EQ(sheet.rest.cols(), s.vertices_m.cols());
+  const auto along = [&](Eigen::Index f, auto&& chosen, Eigen::Index axis) {
+    std::map<double, Eigen::Index> path;
+    for (Eigen::Index v = 0; v < sheet.rest.cols(); ++v)
+      if (chosen(sheet.rest.col(v))) path[sheet.rest(axis, v)] = v;
     double sum = 0;
-    for (Eigen::Index j = 0; j < 16; ++j) sum += (x.col(12 * 17 + j + 1) - x.col(12 * 17 + j)).norm();
+    for (auto at = path.begin(); std::next(at) != path.end(); ++at)
+      sum += (shape_of(s.vertices_m, f).col(std::next(at)->second) - shape_of(s.vertices_m, f).col(at->second)).norm();
     return sum;
   };
   const auto length = [&](Eigen::Index f) {
-    const auto x = shape_of(s.vertices_m, f);
-    double sum = 0;
-    for (Eigen::Index i = 0; i < 24; ++i) sum += (x.col((i + 1) * 17 + 8) - x.col(i * 17 + 8)).norm();
-    return sum;
+    return along(
+        f, [](const Eigen::Vector3d& r) { return std::abs(r.y()) < 1e-9; }, 0);
+  };
+  const auto width = [&](Eigen::Index f) {  // the rows that have a vertex on x = 0
+    return along(
+        f, [](const Eigen::Vector3d& r) { return std::abs(r.x()) < 1e-9; }, 1);
   };
   // Free of forces across, Green's strains are in the ratio -nu; the bars hold their ends wide.
   const double stretch = length(20) / length(0), narrowed = width(20) / width(0);
@@ -146,7 +181,7 @@ TEST(Tearing, TearRunsOnAndDoesNotHeal) {
     EXPECT_GE(parted(f), before);
     before = parted(f);
   }
-  EXPECT_GE(before, 10u);
+  EXPECT_GE(before, 12u);
   EXPECT_LT(before, pairs.size());  // not torn in two
 }
 

@@ -1,5 +1,6 @@
-// A sheet of paper between two clamps that come together, tilt and turn: it rises into an arch. Paper bends a thousand
-// times more easily than it stretches, so that the sheet stays close to a developable one.
+// A sheet of drawing paper (200 g/m^2) between two clamps that come together, tilt and turn: it rises into an arch.
+// Paper bends far more easily than it stretches, so that the sheet stays close to a developable one. The clamps stand
+// where a circular arc would hold them without a force; then one leans and turns, and the paper is skewed.
 #include <Eigen/Geometry>
 #include <cmath>
 
@@ -9,7 +10,7 @@ namespace gonio::nrsfm::animatronics {
 namespace {
 
 constexpr double length_m = 0.21, width_m = 0.148;
-constexpr int nx = 28, ny = 18;
+constexpr int cells = 28;
 
 class Bending : public Animatronic {
  public:
@@ -23,34 +24,37 @@ class Bending : public Animatronic {
 
   DeformingSurface make(const AnimatronicOptions& options) const override {
     Random random(options.seed, 1);
-    const double closing = random.uniform(0.34, 0.42), tilt = random.uniform(0.75, 0.95);
-    const double skew = random.uniform(0.10, 0.16) * (random.uniform() < 0.5 ? -1 : 1);
+    const double most = random.uniform(1.25, 1.4), least = random.uniform(0.35, 0.5);
+    const double skew = random.uniform(0.12, 0.18) * (random.uniform() < 0.5 ? -1 : 1);
+    const double lean = random.uniform(0.15, 0.25) * (random.uniform() < 0.5 ? -1 : 1);
     const double rounds = random.uniform(0.75, 0.85);
-    const Sheet sheet = flat_sheet(length_m, width_m, nx, ny);
+    const Sheet sheet = flat_sheet(length_m, width_m, cells);
     Shell shell(sheet.rest, sheet.triangles,
-                {.young_pa = 2e9, .poisson = 0.3, .thickness_m = 1e-4, .density_kg_m3 = 800});
-    for (const int i : {0, 1, nx - 1, nx})
-      for (int j = 0; j <= ny; ++j) shell.fixed[sheet.at(i, j)] = 1;
+                {.young_pa = 2e9, .poisson = 1.0 / 3, .thickness_m = 2.5e-4, .density_kg_m3 = 800});
+    const auto from_end = [&](Eigen::Index v) { return length_m / 2 - std::abs(sheet.rest(0, v)); };
+    for (Eigen::Index v = 0; v < sheet.rest.cols(); ++v)
+      shell.fixed[static_cast<std::size_t>(v)] = from_end(v) < 1.01 * sheet.cell_m;
+    const auto half_angle = [&](double s) {
+      return least + (most - least) * (0.5 - 0.5 * std::cos(2 * pi * rounds * eased(s)));
+    };
     const auto lead = [&](double s, Eigen::Matrix3Xd& x) {
-      const double fold = 0.5 - 0.5 * std::cos(2 * pi * rounds * eased(s)), late = eased((s - 0.25) / 0.75);
-      const double up = 0.06 + tilt * fold, half = length_m / 2 * (1 - 0.002 - closing * fold);
+      const double arc = half_angle(s), half = length_m / 2 * std::sin(arc) / arc, late = eased((s - 0.2) / 0.8);
       const Eigen::Matrix3d turn = (Eigen::AngleAxisd(skew * std::sin(2 * pi * late), Eigen::Vector3d::UnitZ()) *
                                     Eigen::AngleAxisd(0.4 * skew * late, Eigen::Vector3d::UnitX()))
                                        .toRotationMatrix();
-      const double cell = length_m / nx;
-      for (int j = 0; j <= ny; ++j) {
-        const double y = sheet.rest(1, sheet.at(0, j));
-        for (const int i : {0, 1}) {
-          const Eigen::Vector3d along(i * cell * std::cos(up), y, i * cell * std::sin(up));
-          x.col(sheet.at(i, j)) = Eigen::Vector3d(-half, 0, 0) + along;
-          x.col(sheet.at(nx - i, j)) =
-              Eigen::Vector3d(half, 0, 0) + turn * Eigen::Vector3d(-along.x(), along.y(), along.z());
-        }
+      for (Eigen::Index v = 0; v < x.cols(); ++v) {
+        if (!shell.fixed[static_cast<std::size_t>(v)]) continue;
+        const double side = sheet.rest(0, v) < 0 ? -1 : 1, up = arc + side * lean * std::sin(2 * pi * late);
+        const Eigen::Vector3d in(-side * from_end(v) * std::cos(up), sheet.rest(1, v), from_end(v) * std::sin(up));
+        x.col(v) = Eigen::Vector3d(side * half, 0, 0) + (side < 0 ? in : Eigen::Vector3d(turn * in));
       }
     };
-    Eigen::Matrix3Xd start = sheet.rest;
-    for (Eigen::Index v = 0; v < start.cols(); ++v)
-      start(2, v) = 0.06 * length_m / pi * std::cos(pi * start(0, v) / length_m);
+    Eigen::Matrix3Xd start = sheet.rest;  // the circular arc whose ends the clamps hold
+    const double arc = half_angle(0), radius = length_m / (2 * arc);
+    for (Eigen::Index v = 0; v < start.cols(); ++v) {
+      const double angle = sheet.rest(0, v) / radius;
+      start(0, v) = radius * std::sin(angle), start(2, v) = radius * (std::cos(angle) - std::cos(arc));
+    }
     return Play(shell, start, options).run(lead);
   }
 };

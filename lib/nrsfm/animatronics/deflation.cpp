@@ -1,5 +1,5 @@
-// A rubber ball on a stand loses its air: it shrinks while it is taut, then a dent falls in at the top. The gas inside
-// obeys p V = c against the air outside; c falls.
+// A rubber ball in a cup, glued to it up to 30 degrees below its equator, loses its air: it shrinks while it is taut,
+// then a dent falls in where it is worn flat. The gas inside obeys p V = c against the air outside; c falls.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -49,7 +49,7 @@ class Deflation : public Animatronic {
  public:
   const AnimatronicInfo& info() const override {
     static const AnimatronicInfo info{
-        "deflation", "A rubber ball on a stand loses its air: it shrinks, then a dent falls in.",
+        "deflation", "A rubber ball in a cup loses its air: it shrinks, then a dent falls in.",
         "linear triangles and discrete shells (Grinspun et al. 2003) around an ideal gas: p V = c"};
     return info;
   }
@@ -57,19 +57,19 @@ class Deflation : public Animatronic {
   DeformingSurface make(const AnimatronicOptions& options) const override {
     Random random(options.seed, 4);
     const Eigen::Vector3d top =
-        Eigen::Vector3d(random.uniform(-0.35, 0.35), random.uniform(-0.35, 0.35), 1).normalized();
-    const double swelling = random.uniform(1.08, 1.12), left = random.uniform(0.66, 0.72);
+        Eigen::Vector3d(random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25), 1).normalized();
+    const double swelling = random.uniform(1.005, 1.012), left = random.uniform(0.74, 0.78);
     Ball ball = unit_ball(3);
     const Eigen::Matrix3Xd unit = ball.rest;
     for (Eigen::Index v = 0; v < unit.cols(); ++v) {
       const double angle = std::acos(std::clamp(unit.col(v).dot(top), -1.0, 1.0));
-      ball.rest.col(v) *= radius_m * (1 - 0.03 * std::exp(-angle * angle / (2 * 0.35 * 0.35)));  // worn flat
+      ball.rest.col(v) *= radius_m * (1 - 0.08 * std::exp(-angle * angle / (2 * 0.35 * 0.35)));  // worn flat
     }
     Shell shell(ball.rest, ball.triangles,
-                {.young_pa = 8e5, .poisson = 0.45, .thickness_m = 3e-3, .density_kg_m3 = 1100});
-    for (Eigen::Index v = 0; v < unit.cols(); ++v) shell.fixed[static_cast<std::size_t>(v)] = unit(2, v) < -0.9;
+                {.young_pa = 8e5, .poisson = 0.45, .thickness_m = 1e-2, .density_kg_m3 = 1100});
+    for (Eigen::Index v = 0; v < unit.cols(); ++v) shell.fixed[static_cast<std::size_t>(v)] = unit(2, v) < -0.5;
     const double rest_volume = shell.volume(ball.rest);
-    const double tension = 8e5 * 3e-3 / (1 - 0.45) * (swelling - 1);
+    const double tension = 8e5 * 1e-2 / (1 - 0.45) * (swelling - 1);
     const double full = (air_pa + 2 * tension / (radius_m * swelling)) * std::pow(swelling, 3) * rest_volume;
     shell.outside_pa = air_pa;
     const auto lead = [&](double s, Eigen::Matrix3Xd& x) {

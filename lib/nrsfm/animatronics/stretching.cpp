@@ -9,7 +9,7 @@ namespace gonio::nrsfm::animatronics {
 namespace {
 
 constexpr double length_m = 0.2, width_m = 0.13;
-constexpr int nx = 24, ny = 16;
+constexpr int cells = 24;
 
 class Stretching : public Animatronic {
  public:
@@ -25,11 +25,11 @@ class Stretching : public Animatronic {
     const double slack = random.uniform(0.90, 0.93), pull = random.uniform(1.32, 1.42);
     const double twist = random.uniform(0.25, 0.4) * (random.uniform() < 0.5 ? -1 : 1);
     const double skew = random.uniform(-0.15, 0.15);
-    const Sheet sheet = flat_sheet(length_m, width_m, nx, ny);
+    const Sheet sheet = flat_sheet(length_m, width_m, cells);
     Shell shell(sheet.rest, sheet.triangles,
                 {.young_pa = 1e6, .poisson = 0.45, .thickness_m = 1e-3, .density_kg_m3 = 1100});
-    for (const int i : {0, nx})
-      for (int j = 0; j <= ny; ++j) shell.fixed[sheet.at(i, j)] = 1;
+    for (Eigen::Index v = 0; v < sheet.rest.cols(); ++v)
+      shell.fixed[static_cast<std::size_t>(v)] = std::abs(sheet.rest(0, v)) > 0.499 * length_m;
     const auto lead = [&](double s, Eigen::Matrix3Xd& x) {
       const double half = length_m / 2 * (slack + (pull - slack) * eased(s));
       for (const int side : {-1, 1}) {
@@ -37,10 +37,9 @@ class Stretching : public Animatronic {
             (Eigen::AngleAxisd(skew * eased(s), Eigen::Vector3d::UnitZ()) *
              Eigen::AngleAxisd(side * twist * std::sin(1.5 * pi * s) * eased(2 * s), Eigen::Vector3d::UnitX()))
                 .toRotationMatrix();
-        for (int j = 0; j <= ny; ++j) {
-          const std::uint32_t v = sheet.at(side < 0 ? 0 : nx, j);
-          x.col(v) = Eigen::Vector3d(side * half, 0, 0) + turn * Eigen::Vector3d(0, sheet.rest(1, v), 0);
-        }
+        for (Eigen::Index v = 0; v < x.cols(); ++v)
+          if (side * sheet.rest(0, v) > 0.499 * length_m)
+            x.col(v) = Eigen::Vector3d(side * half, 0, 0) + turn * Eigen::Vector3d(0, sheet.rest(1, v), 0);
       }
     };
     Eigen::Matrix3Xd start = sheet.rest;  // a parabola of about the sheet's length

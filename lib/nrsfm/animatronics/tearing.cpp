@@ -2,6 +2,7 @@
 // down, and the tear runs along the line of symmetry. The two banks of that line are held together by bonds; one breaks
 // where its force exceeds the strength, and the shape after it is the equilibrium without it. A tear does not heal.
 #include <cmath>
+#include <map>
 
 #include "nrsfm/animatronic_support.h"
 
@@ -9,7 +10,7 @@ namespace gonio::nrsfm::animatronics {
 namespace {
 
 constexpr double length_m = 0.2, width_m = 0.14;
-constexpr int nx = 28, ny = 18, notch = 4, clamped = 2;  // cells
+constexpr int cells = 28, notch = 4, clamped = 2;
 constexpr double strength_n = 0.35;
 
 struct Cut {
@@ -17,27 +18,26 @@ struct Cut {
   std::vector<Bond> bonds;
 };
 
-// Columns beyond the clamp get a second vertex on the line y = 0 for the half y > 0.
+// Vertices of the line y = 0 beyond the clamp get a second one for the half y > 0.
 Cut cut_sheet() {
   Cut cut;
-  cut.sheet = flat_sheet(length_m, width_m, nx, ny);
+  cut.sheet = flat_sheet(length_m, width_m, cells);
   Eigen::Matrix3Xd& rest = cut.sheet.rest;
+  const double cell = cut.sheet.cell_m;
+  std::map<std::uint32_t, std::uint32_t> second;
   const Eigen::Index whole = rest.cols();
-  const int line = ny / 2, first = clamped + 1;
-  rest.conservativeResize(3, whole + nx - first + 1);
-  const auto second = [&](int i) { return static_cast<std::uint32_t>(whole + i - first); };
-  for (int i = first; i <= nx; ++i) {
-    rest.col(second(i)) = rest.col(cut.sheet.at(i, line));
-    if (i <= nx - notch) cut.bonds.push_back({cut.sheet.at(i, line), second(i), 2e4});
+  for (Eigen::Index v = 0; v < whole; ++v) {
+    if (std::abs(rest(1, v)) > 1e-9 || rest(0, v) < -length_m / 2 + (clamped + 0.1) * cell) continue;
+    const auto a = static_cast<std::uint32_t>(v);
+    second[a] = static_cast<std::uint32_t>(whole) + static_cast<std::uint32_t>(second.size());
+    if (rest(0, v) < length_m / 2 - (notch - 0.1) * cell) cut.bonds.push_back({a, second[a], 2e4});
   }
+  rest.conservativeResize(3, whole + static_cast<Eigen::Index>(second.size()));
+  for (const auto& [a, b] : second) rest.col(b) = rest.col(a);
   for (auto& t : cut.sheet.triangles) {
-    if ((rest(1, t[0]) + rest(1, t[1]) + rest(1, t[2])) < 0) continue;
+    if (rest(1, t[0]) + rest(1, t[1]) + rest(1, t[2]) < 0) continue;
     for (std::uint32_t& v : t)
-      for (int i = first; i <= nx; ++i)
-        if (v == cut.sheet.at(i, line)) {
-          v = second(i);
-          break;
-        }
+      if (const auto at = second.find(v); at != second.end()) v = at->second;
   }
   return cut;
 }
@@ -53,15 +53,15 @@ class Tearing : public Animatronic {
 
   DeformingSurface make(const AnimatronicOptions& options) const override {
     Random random(options.seed, 3);
-    const double reach = random.uniform(0.085, 0.1), uneven = random.uniform(0.75, 1);
-    const double back = random.uniform(0.75, 0.85);
+    const double reach = random.uniform(0.06, 0.07), uneven = random.uniform(0.75, 1);
+    const double back = random.uniform(0.25, 0.35);
     Cut cut = cut_sheet();
     const Eigen::Matrix3Xd rest = cut.sheet.rest;
     Shell shell(rest, cut.sheet.triangles,
                 {.young_pa = 1e7, .poisson = 0.35, .thickness_m = 4e-4, .density_kg_m3 = 900, .bending_n_m = 2e-4},
                 cut.bonds);
     for (Eigen::Index v = 0; v < rest.cols(); ++v) {
-      const bool clamp = rest(0, v) < length_m * (-0.5 + (clamped + 0.5) / nx);
+      const bool clamp = rest(0, v) < length_m * (-0.5 + (clamped + 0.1) / cells);
       const bool grip = rest(0, v) > length_m * 0.499 && std::abs(rest(1, v)) > 0.12 * width_m;
       shell.fixed[static_cast<std::size_t>(v)] = clamp || grip;
     }
