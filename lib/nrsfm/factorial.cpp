@@ -2,10 +2,12 @@
 #include "nrsfm/factorial.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/error.h"
 #include "base/text.h"
+#include "nrsfm/flow.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -27,6 +29,24 @@ void leave_out_unseen(Sequence& sequence, double least_seen) {
                 "has " + std::to_string(kept.size()) + " points that are seen in " + shortest_text(least) + " frames",
                 "4 is the least; take another path");
   keep_points(sequence, kept);
+}
+
+// Optical flow in the sequence's unit. Orthographic pictures have the scale that the pinhole has at its distance.
+Tracks tracked(const Motion& motion, const Sequence& s, const Pinhole& pinhole, int width_px, std::uint64_t seed) {
+  const double share = static_cast<double>(width_px) / view_width_px;
+  const bool orthographic = s.projection == Projection::orthographic;
+  PictureView view;
+  view.projection = s.projection;
+  view.width = width_px, view.height = static_cast<int>(std::lround(view_height_px * share));
+  const double focal = orthographic ? view_height_px / (3 * ball_around(motion.points_m).radius_m) : pinhole.fx_px;
+  view.pinhole = {share * focal, share * focal, share * pinhole.cx_px, share * pinhole.cy_px};
+  Tracks tracks = flow_tracks(motion, s.cameras, view, seed);
+  if (!orthographic) return tracks / share;
+  for (Eigen::Index f = 0; f < s.frames(); ++f) {
+    tracks.row(2 * f) = (tracks.row(2 * f).array() - view.pinhole.cx_px) / view.pinhole.fx_px;
+    tracks.row(2 * f + 1) = (tracks.row(2 * f + 1).array() - view.pinhole.cy_px) / view.pinhole.fy_px;
+  }
+  return tracks;
 }
 
 }  // namespace
@@ -66,7 +86,11 @@ Sequence film(const Motion& motion, const Cell& cell, std::uint64_t seed, const 
   s.factors = {
       {"deformation", cell.deformation}, {"path", cell.path}, {"camera", cell.camera}, {"missing", cell.missing}};
   s.visible = Visible::Constant(motion.frames(), motion.points_m.cols(), true);
-  if (cell.missing == "with") {
+  if (options.flow_width_px > 0) {
+    s.tracks = tracked(motion, s, pinhole, options.flow_width_px, seed);
+    s.visible = !s.tracks(Eigen::seq(0, Eigen::last, 2), Eigen::all).array().isNaN();
+    leave_out_unseen(s, options.least_seen);
+  } else if (cell.missing == "with") {
     s.visible = visible_points(motion, s.cameras, s.projection);
     leave_out_unseen(s, options.least_seen);
     for (Eigen::Index f = 0; f < s.frames(); ++f)

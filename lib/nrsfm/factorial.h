@@ -24,9 +24,11 @@ Pinhole view_pinhole(double distance_m, double radius_m);
 // What a virtual camera sees. The camera's mean distance is `distance` times the radius of the motion's points: 4.3
 // gives the 1.6-fold range of depths that the benchmark has.
 // Points that fewer than `least_seen` of the frames see are no tracks; with missing data they are left out.
+// `flow_width_px`: instead of the points themselves, what a tracker finds in pictures of that width (flow.h); 0: not.
 struct ViewOptions {
   double distance = 4.3;
   double least_seen = 0.1;
+  int flow_width_px = 0;
 };
 Sequence film(const Motion& motion, const Cell& cell, std::uint64_t seed, const ViewOptions& options);
 

@@ -1,11 +1,15 @@
 // See make_call.h.
 #include "nrsfm/make_call.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "nrsfm/factorial.h"
 #include "nrsfm/files.h"
+#include "nrsfm/flow.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -26,6 +30,10 @@ std::vector<std::string> levels(const cli::Invocation& call, const char* option,
 
 AnimatronicOptions size_asked(const cli::Invocation& call) {
   return {call.integer("frames"), call.integer("points"), call.seed};
+}
+
+bool by_flow(const cli::Invocation& call) {
+  return call.text("tracks-from") == "optical-flow";
 }
 
 // What deforms: made when the first sequence of it is, since it takes longer than everything after it.
@@ -54,6 +62,7 @@ class Stage {
 std::string made_with(const cli::Invocation& call) {
   std::string said = "distance " + call.text("distance") + ", least seen " + call.text("least-seen");
   if (call.flag("one-sided")) said += ", one-sided";
+  if (by_flow(call)) said += ", optical flow at " + call.text("flow-width");
   if (!call.given("meshes"))
     return said + ", frames " + call.text("frames") + ", points " + call.text("points") + ", seed " +
            std::to_string(call.seed);
@@ -73,7 +82,7 @@ void enter(cli::Invocation& call, Stage& stage, const Sequence& s, const std::fi
   entry.truth_frame = "object";
   entry.unit_m = s.unit_m;
   entry.missing_share = s.missing_share();
-  entry.tracks_from = "geometry";
+  entry.tracks_from = call.text("tracks-from");
   if (!scans) entry.seed = call.seed;
   entry.factors = s.factors;
   entry.source = scans ? stage.motion(kind).source : "simulated: " + find_animatronic(kind)->info().sentence;
@@ -81,6 +90,15 @@ void enter(cli::Invocation& call, Stage& stage, const Sequence& s, const std::fi
   if (s.points() < points)
     entry.notes.push_back(std::to_string(points - s.points()) + " of " + std::to_string(points) +
                           " points are seen in fewer than " + call.text("least-seen") + " of the frames and left out");
+  if (by_flow(call)) {
+    const TrackErrors errors = track_errors(s);
+    const auto unit = [&s](double error) {
+      const bool pixels = s.projection == Projection::perspective;
+      return shortest_text(std::round((pixels ? 100 : 1e6) * error) / (pixels ? 100 : 1000)) + (pixels ? " px" : " mm");
+    };
+    entry.notes.push_back("the median error of the tracks is " + unit(errors.median) + ", 5 % exceed " +
+                          unit(errors.upper));
+  }
   call.document.sequences[s.name] = entry;
 }
 
@@ -95,8 +113,9 @@ void make(cli::Invocation& call, Stage& stage, const Cell& cell) {
     enter(call, stage, read_sequence(path), path);
     return;
   }
-  const Sequence sequence =
-      film(stage.motion(cell.deformation), cell, call.seed, {call.number("distance"), call.number("least-seen")});
+  const Sequence sequence = film(stage.motion(cell.deformation), cell, call.seed,
+                                 {call.number("distance"), call.number("least-seen"),
+                                  by_flow(call) ? static_cast<int>(call.integer("flow-width")) : 0});
   write_sequence(sequence, path, made_with(call));
   enter(call, stage, sequence, path);
 }
@@ -111,8 +130,9 @@ std::vector<std::string> deformations(const cli::Invocation& call) {
 
 Exit run_make(cli::Invocation& call) {
   Stage stage(call);
-  for (const Cell& cell : design(deformations(call), levels(call, "path", path_names()),
-                                 levels(call, "camera", cameras), levels(call, "missing", missing)))
+  for (const Cell& cell :
+       design(deformations(call), levels(call, "path", path_names()), levels(call, "camera", cameras),
+              by_flow(call) ? std::vector<std::string>{"with"} : levels(call, "missing", missing)))
     make(call, stage, cell);
   return Exit::done;
 }
@@ -120,6 +140,11 @@ Exit run_make(cli::Invocation& call) {
 void check_make(cli::Invocation& call) {
   if (call.out.empty() && !call.given("out"))
     throw Error(Exit::usage, "--out", "is missing", "name the folder for the sequences: --out sequences");
+  if (by_flow(call) && call.given("meshes"))
+    throw Error(Exit::usage, "--tracks-from", "is optical-flow of scans, whose paint is not known",
+                "leave it out beside --meshes");
+  if (by_flow(call) && call.given("missing") && std::ranges::count(call.texts("missing"), "without") > 0)
+    throw Error(Exit::usage, "--missing", "is without, which optical flow has not", "leave it out: tracks get lost");
   for (const char* option : {"frames", "points", "kind"})
     if (call.given("meshes") && call.given(option))
       throw Error(Exit::usage, std::string("--") + option, "is that of the scans", "leave it out beside --meshes");
@@ -202,6 +227,18 @@ std::vector<cli::Option> make_options() {
        .dimension = Dimension::length,
        .lower = 0,
        .needs = {"meshes"}},
+      {.name = "tracks-from",
+       .type = Type::choice,
+       .help = "Whether tracks are the points themselves, or what a tracker finds of them in rendered pictures.",
+       .preset = "geometry",
+       .choices = {"geometry", "optical-flow"}},
+      {.name = "flow-width",
+       .type = Type::integer,
+       .help = "Pixels of the rendered pictures' width; their height is three quarters of it.",
+       .preset = "640",
+       .lower = 64,
+       .upper = 8192,
+       .needs = {"tracks-from"}},
       {.name = "one-sided",
        .type = Type::flag,
        .help = "Hide points of open sheets from behind; without it they show on both sides."}};

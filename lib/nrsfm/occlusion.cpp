@@ -10,27 +10,12 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "io/ply.h"
-#include "mesh/mesh.h"
 #include "nrsfm/files.h"
+#include "nrsfm/frame_caster.h"
 #include "nrsfm/variables.h"
-#include "render/ray_caster.h"
 
 namespace gonio::nrsfm {
 namespace {
-
-Vec3 vec(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-scene::Instance instance_of(const FrameMesh& frame) {
-  auto mesh = std::make_shared<mesh::Mesh>();
-  for (Eigen::Index v = 0; v < frame.vertices_m.cols(); ++v) mesh->positions_m.push_back(vec(frame.vertices_m.col(v)));
-  mesh->triangles = frame.triangles;
-  scene::Instance instance;
-  instance.id = "surface";
-  instance.shape = std::shared_ptr<const mesh::Mesh>(std::move(mesh));
-  return instance;
-}
 
 FrameMesh frame_mesh(const io::TriangleMesh& read, double unit_m) {
   FrameMesh mesh;
@@ -53,12 +38,12 @@ Shapes without_gaps(const Shapes& shapes) {
 }
 
 // A ray past the rim of a sheet: what the sheet shows next to the point, outside where nothing is found.
-bool outside_beside(const render::RayCaster& caster, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
+bool outside_beside(const FrameCaster& caster, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                     double distance, double size) {
   const double aside = 1e-5 * size;
   const Eigen::Vector3d u = direction.unitOrthogonal(), v = direction.cross(u);
   for (const Eigen::Vector3d& step : {u, v, Eigen::Vector3d(-u), Eigen::Vector3d(-v)}) {
-    const auto met = caster.closest(vec(point - distance * direction + aside * step), vec(direction));
+    const auto met = caster.closest(point - distance * direction + aside * step, direction);
     if (met && std::abs(met->distance_m - distance) < 100 * aside) return met->outside;
   }
   return true;
@@ -72,6 +57,7 @@ Motion motion_of(const Animatronic& animatronic, const AnimatronicOptions& optio
   motion.kind = animatronic.info().id;
   motion.source = "simulated: " + animatronic.info().sentence;
   motion.points_m = surface->points_m;
+  motion.material_m = shape_of(surface->vertices_m, 0);
   motion.mesh = [surface](Eigen::Index f) { return FrameMesh{shape_of(surface->vertices_m, f), surface->triangles}; };
   return motion;
 }
@@ -115,8 +101,7 @@ Ball ball_around(const Shapes& points_m) {
 Eigen::Array<bool, 1, Eigen::Dynamic> visible_in(const FrameMesh& mesh, const Eigen::Matrix3Xd& points_m,
                                                  const CameraFromObject& camera, Projection projection,
                                                  double tolerance_m, bool one_sided) {
-  const std::array<scene::Instance, 1> instances{instance_of(mesh)};
-  const render::RayCaster caster(instances);
+  const FrameCaster caster(mesh);
   const Eigen::Vector3d eye = -camera.rotation.transpose() * camera.translation;
   const Eigen::Vector3d axis = camera.rotation.row(2).transpose();
   const double size = 2 * (mesh.vertices_m.colwise() - mesh.vertices_m.rowwise().mean()).colwise().norm().maxCoeff();
@@ -127,7 +112,7 @@ Eigen::Array<bool, 1, Eigen::Dynamic> visible_in(const FrameMesh& mesh, const Ei
     const bool perspective = projection == Projection::perspective;
     const double distance = perspective ? (point - eye).norm() : 2 * size + allowed;
     const Eigen::Vector3d direction = perspective ? Eigen::Vector3d((point - eye) / distance) : axis;
-    const auto met = caster.closest(vec(point - distance * direction), vec(direction));
+    const auto met = caster.closest(point - distance * direction, direction);
     visible(p) = !met ? !one_sided || outside_beside(caster, point, direction, distance, size)
                       : met->distance_m >= distance - allowed && (met->outside || !one_sided);
   }

@@ -15,9 +15,10 @@ struct FrameMesh {
 };
 
 struct Motion {
-  std::string kind;                             // level of the factor "deformation"
-  std::string source;                           // what deforms
-  Shapes points_m;                              // 3F x P
+  std::string kind;             // level of the factor "deformation"
+  std::string source;           // what deforms
+  Shapes points_m;              // 3F x P
+  Eigen::Matrix3Xd material_m;  // of every vertex: a place that it keeps; empty where meshes differ between frames
   std::function<FrameMesh(Eigen::Index)> mesh;  // of a frame; safe from many threads
   double tolerance_m = 0;  // points may lie this far behind the surface: scans and tracks that differ
   bool one_sided = false;  // from behind a sheet its points are hidden, too; else they show on both sides
