@@ -12,6 +12,8 @@ complete -c nrsfm-make -l tracks -x -d 'Points that are followed on the meshes: 
 complete -c nrsfm-make -l name -x -d 'Of the scans: level of the factor deformation.'
 complete -c nrsfm-make -l unit -x -d 'Length of the unit of meshes and tracks.'
 complete -c nrsfm-make -l tolerance -x -d 'Tracked points may lie this far behind the mesh and still be seen.'
+complete -c nrsfm-make -l tracks-from -x -a 'geometry optical-flow' -d 'Whether tracks are the points themselves, or what a tracker finds of them in rendered pictures.'
+complete -c nrsfm-make -l flow-width -x -d 'Pixels of the rendered pictures width; their height is three quarters of it.'
 complete -c nrsfm-make -l one-sided -d 'Hide points of open sheets from behind; without it they show on both sides.'
 complete -c nrsfm-make -l input -s i -r -d 'Manifest to read; - is standard input.'
 complete -c nrsfm-make -l output -s o -r -d 'Where the manifest goes instead of standard output; written whole or not at all.'
