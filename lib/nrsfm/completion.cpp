@@ -10,12 +10,14 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/random.h"
 #include "nrsfm/factorization.h"
 
 namespace gonio::nrsfm {
@@ -198,6 +200,38 @@ Completion complete(const Sequence& sequence, Eigen::Index rank, int most_iterat
     result.w.row(row) = sequence.visible.row(row / 2).select(measured, result.w.row(row).array());
   }
   return result;
+}
+
+Eigen::Index completion_rank(const Sequence& sequence, double share, Eigen::Index most) {
+  Sequence less = sequence;  // without one visible track in twenty
+  Random random(1, 0x4e1d);
+  for (Eigen::Index f = 0; f < sequence.frames(); ++f) {
+    for (Eigen::Index p = 0; p < sequence.points(); ++p) {
+      const bool spare = less.visible.row(f).count() > 4 && less.visible.col(p).count() > 2;
+      if (less.visible(f, p) && spare && random.uniform() < 0.05) less.visible(f, p) = false;
+    }
+  }
+  const Eigen::MatrixXd w = interpolated(sequence);
+  const double energy = (w.colwise() - w.rowwise().mean()).squaredNorm() / static_cast<double>(w.size());
+  const double enough = std::max(share * share * energy, std::pow(noise_of(w), 2));
+  double least = std::numeric_limits<double>::infinity();
+  Eigen::Index chosen = 1;
+  for (Eigen::Index terms = 1; terms <= most && 3 * terms <= std::min(w.cols() - 1, w.rows()); ++terms) {
+    const Completion filled = complete(less, 3 * terms, 30);
+    double sum = 0, count = 1e-300;
+    for (Eigen::Index f = 0; f < sequence.frames(); ++f) {
+      for (Eigen::Index p = 0; p < sequence.points(); ++p) {
+        if (less.visible(f, p) || !sequence.visible(f, p)) continue;
+        const Eigen::Vector2d there = filled.w.block<2, 1>(2 * f, p) + filled.translation.segment<2>(2 * f);
+        sum += (there - w.block<2, 1>(2 * f, p)).squaredNorm() / 2;
+        ++count;
+      }
+    }
+    if (sum / count < 0.8 * least) chosen = terms;
+    least = std::min(least, sum / count);
+    if (sum / count <= enough || terms >= chosen + 2) break;
+  }
+  return chosen;
 }
 
 }  // namespace gonio::nrsfm

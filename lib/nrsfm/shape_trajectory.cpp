@@ -55,12 +55,26 @@ Eigen::MatrixXd motion_of(const ShapeTrajectoryProblem& problem, const Eigen::Ma
   return motion;
 }
 
-// The ridge of each column: none for the first shape, which is the mean.
-Eigen::VectorXd ridges_of(const ShapeTrajectoryProblem& problem, const Eigen::MatrixXd& motion) {
+// What |D_f|^2 c_fk^2 / 3 of a visible frame adds to the ridge of shape k of a point that `seen` of all frames see.
+double ridge_weight(const ShapeTrajectoryProblem& problem, Eigen::Index k, Eigen::Index seen) {
+  const double all_over_seen =
+      static_cast<double>(problem.visible.rows()) / static_cast<double>(std::max<Eigen::Index>(seen, 1));
+  return (k == 0 ? problem.mean_ridge : problem.ridge) * all_over_seen;
+}
+
+Eigen::Index seen_of(const ShapeTrajectoryProblem& problem, Eigen::Index point) {
+  return point < 0 ? problem.visible.rows() : problem.visible.col(point).count();
+}
+
+Eigen::VectorXd ridges_of(const ShapeTrajectoryProblem& problem, const Eigen::MatrixXd& motion, Eigen::Index point) {
+  double natural = 0;
+  for (Eigen::Index f = 0; f < problem.visible.rows() && problem.natural_size; ++f) {
+    if (point < 0 || problem.visible(f, point)) natural += problem.rows.middleRows<2>(2 * f).squaredNorm();
+  }
   Eigen::VectorXd ridges(motion.cols());
   for (Eigen::Index k = 0; k < motion.cols() / 3; ++k) {
-    const double energy = motion.middleCols<3>(3 * k).squaredNorm() / 3;
-    ridges.segment<3>(3 * k).setConstant((k == 0 ? 1e-14 : problem.ridge) * energy + 1e-300);
+    const double energy = problem.natural_size ? natural : motion.middleCols<3>(3 * k).squaredNorm();
+    ridges.segment<3>(3 * k).setConstant(ridge_weight(problem, k, seen_of(problem, point)) * energy / 3 + 1e-300);
   }
   return ridges;
 }
@@ -74,7 +88,7 @@ struct Factored {
 Factored factored(const ShapeTrajectoryProblem& problem, const Eigen::MatrixXd& coefficients, Eigen::Index point) {
   Factored result;
   result.motion = motion_of(problem, coefficients, point);
-  result.ridges = ridges_of(problem, result.motion);
+  result.ridges = ridges_of(problem, result.motion, point);
   const Eigen::Index rows = result.motion.rows(), columns = result.motion.cols();
   Eigen::MatrixXd stacked(rows + columns, columns);
   stacked.topRows(rows) = result.motion;
@@ -160,17 +174,27 @@ struct Normal {
   Eigen::VectorXd gradient;
 };
 
-// d cost / d C / 2 (F x K) into gradient_c, and B_f into `first` (K^2 x F, columns).
-void add_point(const ShapeTrajectoryProblem& problem, const Eliminated& point, Eigen::Index p,
-               Eigen::MatrixXd& gradient_c, Eigen::MatrixXd& first) {
+// d cost / d C / 2 (F x K) into gradient_c, and B_f into `first` (K^2 x F, columns). The ridges' energies move with C:
+// together they act as tracks at 0; one by one, r_k gains M_k (M_k'M_k + E_k)^-1 s_k dE_k.
+void add_point(const ShapeTrajectoryProblem& problem, const State& state, Eigen::Index p, Eigen::MatrixXd& gradient_c,
+               Eigen::MatrixXd& first) {
+  const Eliminated& point = state.points[static_cast<std::size_t>(p)];
   const Eigen::Index terms = gradient_c.cols();
   const Eigen::Map<const Eigen::Matrix3Xd> s(point.s.data(), 3, terms);
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(terms);
+  for (Eigen::Index k = 0; k < terms && !problem.natural_size; ++k) {
+    const double along = problem.complementary ? 2 * point.gradient_right.col(k).dot(s.col(k)) : s.col(k).squaredNorm();
+    pull(k) = ridge_weight(problem, k, seen_of(problem, p)) * along / 3;
+  }
   for (Eigen::Index f = 0; f < gradient_c.rows(); ++f) {
     if (!problem.visible(f, p)) continue;
     const auto d = problem.rows.middleRows<2>(2 * f);
     const Eigen::Matrix2Xd seen = d * s;
     first.col(f) += (seen.transpose() * seen).reshaped();
     for (Eigen::Index k = 0; k < terms; ++k) {
+      const double ridge = d.squaredNorm() * pull(k);
+      gradient_c(f, k) += ridge * state.coefficients(f, k);
+      if (!problem.complementary) first(k * (terms + 1), f) += ridge;
       gradient_c(f, k) -= point.gradient_left.col(k).segment<2>(2 * f).dot(seen.col(k));
       if (problem.complementary) {
         const auto& r = point.residuals[static_cast<std::size_t>(k)];
@@ -243,7 +267,7 @@ Normal normal_of(const ShapeTrajectoryProblem& problem, const State& state) {
   Eigen::MatrixXd first = Eigen::MatrixXd::Zero(terms * terms, frames);
   for (Eigen::Index p = 0; p < problem.tracks.cols(); ++p) {
     const Eliminated& point = state.points[static_cast<std::size_t>(p)];
-    add_point(problem, point, p, gradient_c, first);
+    add_point(problem, state, p, gradient_c, first);
     const Eigen::MatrixXd& basis = point.q.size() > 0 ? point.q : state.points.front().q;
     subtract_taken(problem, point, projected_slopes(problem, point, basis, p, slopes), normal.matrix);
   }
@@ -289,7 +313,7 @@ ShapeTrajectory fit_shape_trajectory(const ShapeTrajectoryProblem& problem, cons
         damping *= 8;
         continue;
       }
-      fit.converged = state.cost - next.cost <= 1e-7 * state.cost || next.cost <= floor;
+      fit.converged = state.cost - next.cost <= problem.tolerance * state.cost || next.cost <= floor;
       state = std::move(next);
       damping = std::max(damping / 10, 1e-14);
     }
@@ -302,42 +326,6 @@ ShapeTrajectory fit_shape_trajectory(const ShapeTrajectoryProblem& problem, cons
   fit.basis.resize(3 * state.coefficients.cols(), problem.tracks.cols());
   for (Eigen::Index p = 0; p < problem.tracks.cols(); ++p) {
     fit.basis.col(p) = state.points[static_cast<std::size_t>(p)].s;
-  }
-  return fit;
-}
-
-ShapeTrajectory fit_with_translation(ShapeTrajectoryProblem& problem, const Eigen::MatrixXd& start,
-                                     Eigen::VectorXd& translation) {
-  ShapeTrajectory fit = fit_shape_trajectory(problem, start);
-  const bool complete = problem.visible.all();
-  const double energy = problem.tracks.squaredNorm();
-  for (int round = 0; round < 10; ++round) {
-    const Eigen::Index terms = fit.coefficients.cols();
-    const Eigen::VectorXd middle = fit.basis.rowwise().mean();
-    fit.basis.colwise() -= middle;
-    if (complete) break;  // tracks less their mean have shapes less theirs
-    const Eigen::MatrixXd motion = motion_of(problem, fit.coefficients, -1);
-    double moved = 0;
-    for (Eigen::Index row = 0; row < problem.tracks.rows(); ++row) {
-      const auto visible = problem.visible.row(row / 2);
-      const Eigen::ArrayXd residual = (problem.tracks.row(row) - motion.row(row) * fit.basis).transpose().array();
-      double shift = 0;
-      for (Eigen::Index p = 0; p < visible.size(); ++p) shift += visible(p) ? residual(p) : 0;
-      shift /= static_cast<double>(std::max<Eigen::Index>(visible.count(), 1));
-      translation(row) += shift;
-      moved += shift * shift * static_cast<double>(visible.count());
-      for (Eigen::Index p = 0; p < visible.size(); ++p) problem.tracks(row, p) -= visible(p) ? shift : 0;
-    }
-    if (moved <= 1e-24 * energy || terms == 0) break;
-    const ShapeTrajectory next = fit_shape_trajectory(problem, fit.x);
-    const bool settled = fit.cost - next.cost <= 1e-6 * fit.cost;
-    const int iterations = fit.iterations + next.iterations;
-    fit = next;
-    fit.iterations = iterations;
-    if (settled) {
-      fit.basis.colwise() -= fit.basis.rowwise().mean().eval();
-      break;
-    }
   }
   return fit;
 }

@@ -26,11 +26,14 @@ struct ShapeTrajectoryProblem {
   std::function<Eigen::VectorXd(const Eigen::VectorXd&)> coefficients;
   std::function<Eigen::MatrixXd(const Eigen::VectorXd&)> slope;
   Eigen::Index held = 0;  // the first columns of X stay as they start
-  // Weight of |s_pk|^2 for the basis shapes after the first, over the mean of c_fk^2 |D_f|^2 / 3 summed over frames.
-  double ridge = 1e-14;
+  // Weights of |s_pk|^2, over the sum of c_fk^2 |D_f|^2 / 3 (of visible frames, times all over visible): of the basis
+  // shapes after the first, and of the first, which is the mean.
+  double ridge = 1e-14, mean_ridge = 1e-14;
+  bool natural_size = false;  // of C: ridges count as if all c_fk were 1, so that C cannot shrink them
   // Basis shape k explains what the shapes before it leave, S_k = M_k^+ (W - sum_(j < k) M_j S_j), not all together.
   bool complementary = false;
   int most_iterations = 100;
+  double tolerance = 1e-7;  // relative, of the cost
 };
 struct ShapeTrajectory {
   Eigen::MatrixXd x;             // d x q
@@ -43,7 +46,12 @@ struct ShapeTrajectory {
 ShapeTrajectory fit_shape_trajectory(const ShapeTrajectoryProblem& problem, const Eigen::MatrixXd& start);
 
 // The same where frames miss points, so that the mean of the visible ones is not that of all: the translation follows
-// the residuals in rounds; basis shapes have mean zero. `translation` and problem.tracks are updated.
+// the residuals in rounds; basis shapes have mean zero. `translation` and problem.tracks are updated. Points that few
+// frames see do not determine their 3K coordinates: their prior is normal, of the size that the fit itself has,
+//   ridge = sigma^2 / (F delta^2),   mean_ridge = sigma^2 / (F extent^2),
+// delta^2 the mean square of what a rigid shape with the same cameras leaves, extent^2 of what it explains; sigma^2 the
+// residuals' variance over what the fit leaves free, times (1 + rho) / (1 - rho) for their correlation rho over time.
+// Exact tracks of shapes that the model contains come back exactly.
 ShapeTrajectory fit_with_translation(ShapeTrajectoryProblem& problem, const Eigen::MatrixXd& start,
                                      Eigen::VectorXd& translation);
 

@@ -23,12 +23,8 @@ SolverParameter rank_parameter(const std::string& meaning) {
 }
 
 Eigen::Index terms_from_tracks(const Sequence& sequence, double share, Eigen::Index most) {
-  const Eigen::MatrixXd w = interpolated(sequence);
-  const Eigen::Index terms = rank_of(w.colwise() - w.rowwise().mean(), share, most);
-  if (sequence.complete()) return terms;
-  const Eigen::Index seen =
-      std::min(2 * sequence.visible.colwise().count().minCoeff(), sequence.visible.rowwise().count().minCoeff() - 1);
-  return std::clamp<Eigen::Index>(seen / 6, 1, terms);
+  if (!sequence.complete()) return completion_rank(sequence, share, most);
+  return rank_of(sequence.tracks.colwise() - sequence.tracks.rowwise().mean(), share, most);
 }
 
 Eigen::Index terms_of(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options,
@@ -87,8 +83,8 @@ Start start_for(const SolverInfo& info, const Sequence& sequence, const SolverOp
                 Solution& solution) {
   const bool free_scales = free_scales_of(info, sequence, options);
   const bool given = values_in_force(info, options.values).at("camera_rank") > 0;
-  Eigen::Index terms = terms_of(info, sequence, options, "camera_rank", 1e-3, 15);
-  if (!given && !sequence.complete()) terms = std::min(terms, rank);  // what completion adds supports no more
+  const bool guess = !given && !sequence.complete();  // what completion adds supports no more than the model's rank
+  Eigen::Index terms = guess ? rank : terms_of(info, sequence, options, "camera_rank", 1e-3, 15);
   Start start = centred_start(sequence, terms);
   const std::vector<Upgrade> upgrades = metric_upgrades(motion_rows(start.w, terms), {free_scales, options.seed});
   if (!given) terms = best_cameras(sequence, start, upgrades, rank);
@@ -131,7 +127,6 @@ Eigen::Index shapes_of_model(const SolverInfo& info, const Sequence& sequence, c
   const Eigen::Index given = static_cast<Eigen::Index>(values_in_force(info, options.values).at("rank"));
   const Eigen::Index rank = given > 0 ? given : shapes_from_tracks(sequence);
   require_rank(sequence, rank);
-  require_seen(sequence, 3 * rank);
   return rank;
 }
 

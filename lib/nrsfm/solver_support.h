@@ -12,12 +12,12 @@ bool free_scales_of(const SolverInfo& info, const Sequence& sequence, const Solv
 
 // "rank": shapes of the basis; 0: from the singular values of the tracks.
 SolverParameter rank_parameter(const std::string& meaning);
-// The value of `name` where it is set, else the least K that leaves `share` of the tracks' root mean square (missing
-// entries interpolated over time), no more than `most`.
+// The value of `name` where it is set, else the least K that leaves `share` of the tracks' root mean square, no more
+// than `most`.
 Eigen::Index terms_of(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options,
                       const std::string& name, double share, Eigen::Index most);
 
-// That K by itself; where tracks are missing, no more than half of what the least seen point and frame can do with.
+// That K by itself; where tracks are missing, the one that predicts tracks which it has not seen (completion_rank).
 Eigen::Index terms_from_tracks(const Sequence& sequence, double share, Eigen::Index most);
 
 // "dct_terms": cosines of the trajectories in shape space; 0: a tenth of the frames, at least twice the rank.

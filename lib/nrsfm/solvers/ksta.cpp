@@ -121,6 +121,7 @@ class Ksta : public Solver {
     if (unit > 0) {
       set_kernel(problem, centres_of(along / unit, centres), values.at("width"));
       problem.ridge = values.at("ridge");
+      problem.natural_size = true;
       const Eigen::MatrixXd x = problem.omega.transpose() * along / unit;
       fill(start, fit_with_translation(problem, x, start.translation), solution);
     } else {
