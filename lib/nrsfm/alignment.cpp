@@ -26,7 +26,7 @@ Moments moments_of(const X& x, const Q& q, bool centred) {
   Moments m;
   std::vector<Eigen::Index> both;
   for (Eigen::Index p = 0; p < x.cols(); ++p)
-    if (x.col(p).allFinite() && q.col(p).allFinite()) both.push_back(p);
+    if (is_finite(x.col(p)) && is_finite(q.col(p))) both.push_back(p);
   m.points = static_cast<Eigen::Index>(both.size());
   if (both.empty()) return m;
   if (centred) {
@@ -135,7 +135,7 @@ Matched matched(const Shapes& x, const Shapes& truth) {
   for (Eigen::Index f = 0; f < x.rows() / 3; ++f)
     for (Eigen::Index p = 0; p < x.cols(); ++p) {
       const Eigen::Vector3d a = shape_of(x, f).col(p), b = shape_of(truth, f).col(p);
-      if (!a.allFinite() || !b.allFinite()) continue;
+      if (!is_finite(a) || !is_finite(b)) continue;
       m.x.col(n) = a;
       m.q.col(n++) = b;
       m.frame.push_back(f);
@@ -156,7 +156,7 @@ void check_comparable(const Shapes& x, const Shapes& truth) {
   Eigen::Index both = 0;
   for (Eigen::Index f = 0; f < x.rows() / 3; ++f)
     for (Eigen::Index p = 0; p < x.cols(); ++p)
-      both += shape_of(x, f).col(p).allFinite() && shape_of(truth, f).col(p).allFinite() ? 1 : 0;
+      both += is_finite(shape_of(x, f).col(p)) && is_finite(shape_of(truth, f).col(p)) ? 1 : 0;
   if (both < 4)
     throw Error(Exit::data, "reconstruction",
                 "has " + std::to_string(both) + " finite points where the truth is known, 4 is the least");

@@ -28,6 +28,13 @@ struct Similarity {
 };
 Eigen::Matrix3Xd moved(const Similarity& s, const Eigen::Matrix3Xd& x);
 
+// Three finite numbers; of a fixed few, without a loop.
+template <class V>
+bool is_finite(const V& v) {
+  const double x = v(0), y = v(1), z = v(2);
+  return (x - x) + (y - y) + (z - z) == 0;
+}
+
 struct ProcrustesOptions {
   bool scale = true, reflection = true, translation = true;
 };

@@ -32,7 +32,7 @@ FrameSums sums_of(const Eigen::Matrix3Xd& y, const Eigen::Matrix3Xd& q) {
   FrameSums s;
   std::vector<Eigen::Index> both;
   for (Eigen::Index p = 0; p < y.cols(); ++p)
-    if (y.col(p).allFinite() && q.col(p).allFinite()) both.push_back(p);
+    if (is_finite(y.col(p)) && is_finite(q.col(p))) both.push_back(p);
   s.points = static_cast<Eigen::Index>(both.size());
   if (both.empty()) return s;
   const Eigen::Matrix3Xd a = y(Eigen::all, both), b = q(Eigen::all, both);
@@ -167,7 +167,7 @@ Shapes without_flips(const Shapes& x, const std::vector<Flip>& flips) {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     double n = 0;
     for (Eigen::Index p = 0; p < shape.cols(); ++p)
-      if (shape.col(p).allFinite()) centre += shape.col(p), n += 1;
+      if (is_finite(shape.col(p))) centre += shape.col(p), n += 1;
     if (n == 0) continue;
     centre /= n;
     for (Eigen::Index p = 0; p < shape.cols(); ++p) {

@@ -1,7 +1,7 @@
 // The least robust error over similarities: starts, both handednesses (errors.h, robust_fit.h). Coordinates are centred
 // and divided by their extents (medians, which outliers do not move) before, so that tolerances mean the same in every
-// unit; the truth is turned to its principal axes and x onto the truth by Procrustes, so that the search takes the same
-// way however they stood.
+// unit; the truth is turned to its principal axes, x onto the truth by Procrustes, and points are sorted by their
+// place, so that the search takes the same way however they stood and in whatever order they came.
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -9,7 +9,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <tuple>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -23,22 +25,19 @@ constexpr double small_error = 0.25;    // over the truth's extent: below, the P
 constexpr Eigen::Index parts = 8;       // of the sequence, whose own Procrustes are further starts
 constexpr double rival = 1.5;           // times the best cost: the other handedness is followed to its end, too
 constexpr Eigen::Index searched = 800;  // points among which valleys are looked for; all of them decide
-constexpr Eigen::Index sampled = 2000;  // for medians
 constexpr Eigen::Index polishable = 3000;
 constexpr int brief = 400;                                // evaluations
 constexpr double search_work = 1.6e4, polish_work = 2e6;  // points times starts; points times evaluations
 
 struct Normalized {
-  Matched points;
+  Matched points;  // in the order of the sequence
   Eigen::Vector3d centre_x, centre_q;
   double extent_x = 1, extent_q = 1;
   Eigen::Matrix3d turn_x, turn_q;  // before the search
 };
 
-// Of every so many values: units and a middle need no more.
 double median_of(const Eigen::VectorXd& all) {
-  const Eigen::Index step = std::max<Eigen::Index>(1, all.size() / sampled);
-  Eigen::VectorXd v = all(Eigen::seq(0, Eigen::last, step));
+  Eigen::VectorXd v = all;
   double* const middle = v.data() + v.size() / 2;
   std::nth_element(v.data(), middle, v.data() + v.size());
   return v.size() % 2 == 1 ? *middle : 0.5 * (*middle + *std::max_element(v.data(), middle));
@@ -95,6 +94,25 @@ Similarity start_of(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& q, bool m
   return s;
 }
 
+// To 2^-24 of the extent: what rounding has made of the same shapes elsewhere becomes the same numbers. Sorted by the
+// truth's places.
+Matched canonical(const Matched& m) {
+  const auto rounded = [](const Eigen::Matrix3Xd& v) {
+    constexpr double lift = 1.5 * (1 << 28);  // 2^52 times the step: the sum has no digits below it
+    return Eigen::Matrix3Xd((v.array() + lift) - lift);
+  };
+  const Matched r{rounded(m.x), rounded(m.q), {}};
+  std::vector<std::pair<double, Eigen::Index>> places;
+  for (Eigen::Index i = 0; i < r.q.cols(); ++i) places.emplace_back(r.q(2, i), i);
+  const auto rest = [&r](Eigen::Index i) { return std::tuple(r.q(1, i), r.q(0, i), r.x(2, i), r.x(1, i), r.x(0, i)); };
+  std::ranges::sort(places, [&](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first < b.first : rest(a.second) < rest(b.second);
+  });
+  std::vector<Eigen::Index> order;
+  for (const auto& [place, i] : places) order.push_back(i);
+  return {r.x(Eigen::all, order), r.q(Eigen::all, order), {}};
+}
+
 // As many as `work` affords.
 int affordable(double work, Eigen::Index points, int least, int most) {
   const double count = work / static_cast<double>(points);
@@ -106,7 +124,7 @@ Matched thinned(const Matched& m) {
   const Eigen::Index n = m.x.cols(), step = std::max<Eigen::Index>(1, n / searched);
   Matched out{Eigen::Matrix3Xd(3, n / step), Eigen::Matrix3Xd(3, n / step), {}};
   for (Eigen::Index i = 0; i < n / step; ++i) {
-    const Eigen::Index from = i * step + i % step;  // not the same points in every frame
+    const Eigen::Index from = i * step + i % step;
     out.x.col(i) = m.x.col(from), out.q.col(i) = m.q.col(from);
   }
   return out;
@@ -114,8 +132,9 @@ Matched thinned(const Matched& m) {
 
 class Search {
  public:
-  Search(const Matched& points, const RobustOptions& options)
-      : points_(points), options_(options), fit_(points.x, points.q, options.mean) {}
+  // `sequence`: all points in the sequence's order, for starts from its parts.
+  Search(const Matched& points, const Matched& sequence, const RobustOptions& options)
+      : points_(points), sequence_(sequence), options_(options), fit_(points.x, points.q, options.mean) {}
 
   // From Procrustes of all points with either handedness; where the error is large, from others.
   void look() {
@@ -178,12 +197,16 @@ class Search {
   // Parts of the sequence: a reconstruction that holds together there may be torn elsewhere.
   std::vector<Similarity> starts_of_parts() const {
     std::vector<Similarity> out;
-    const Eigen::Index n = points_.x.cols();
+    const auto& frame = sequence_.frame;
+    const auto begin_of = [&](Eigen::Index k) {
+      return std::ranges::lower_bound(frame, k * (frame.back() + 1) / parts) - frame.begin();
+    };
     for (Eigen::Index k = 0; k < parts; ++k) {
-      const Eigen::Index first = k * n / parts, count = (k + 1) * n / parts - first;
+      const Eigen::Index first = begin_of(k), count = begin_of(k + 1) - first;
+      if (count < 4) continue;
+      const Matched part = canonical({sequence_.x.middleCols(first, count), sequence_.q.middleCols(first, count), {}});
       for (const bool mirrored : {false, true})
-        if (count >= 4 && (!mirrored || options_.reflection))
-          out.push_back(start_of(points_.x.middleCols(first, count), points_.q.middleCols(first, count), mirrored));
+        if (!mirrored || options_.reflection) out.push_back(start_of(part.x, part.q, mirrored));
     }
     return out;
   }
@@ -203,7 +226,7 @@ class Search {
             Eigen::Vector3d::Zero()};
   }
 
-  const Matched& points_;
+  const Matched &points_, &sequence_;
   RobustOptions options_;
   RobustFit fit_;
   std::array<std::optional<RobustFit::Outcome>, 2> best_;  // rotation, reflection
@@ -217,26 +240,38 @@ double value_of(double cost, double extent, RobustMean mean) {
 double estimated_share(const Shapes& truth, Eigen::Index both) {
   Eigen::Index known = 0;
   for (Eigen::Index f = 0; f < truth.rows() / 3; ++f)
-    for (Eigen::Index p = 0; p < truth.cols(); ++p) known += shape_of(truth, f).col(p).allFinite() ? 1 : 0;
+    for (Eigen::Index p = 0; p < truth.cols(); ++p) known += is_finite(shape_of(truth, f).col(p)) ? 1 : 0;
   return static_cast<double>(both) / static_cast<double>(known);
+}
+
+// Of the points as they are, not rounded; where rounding is not small beside the error, at its own minimum.
+RobustFit::Outcome exact(const RobustFit::Outcome& found, const Matched& points, const RobustOptions& options) {
+  constexpr double well_above = 1e-4;  // of the extent
+  RobustFit fit(points.x, points.q, options.mean);
+  RobustFit::Outcome out = found;
+  out.state = fit.evaluate(found.state.at);
+  if (value_of(out.state.cost, 1, RobustMean::root_mean_square) > well_above) return out;
+  const RobustFit::Outcome own = fit.minimize(found.state.at, options.most_iterations);
+  return own.state.cost < out.state.cost ? own : out;
 }
 
 }  // namespace
 
 RobustError robust_error(const Shapes& x, const Shapes& truth, const RobustOptions& options) {
   const Normalized n = normalized(x, truth, options.reflection);
-  const bool thin = n.points.x.cols() >= 2 * searched;
-  const Matched few = thin ? thinned(n.points) : Matched{};
-  Search search(n.points, options);
+  const Matched points = canonical(n.points);
+  const bool thin = points.x.cols() >= 2 * searched;
+  const Matched few = thin ? thinned(points) : Matched{};
+  Search search(points, n.points, options);
   if (thin) {
-    Search coarse(few, options);
+    Search coarse(few, n.points, options);
     coarse.look();
     search.follow(coarse);
   } else {
     search.look();
   }
   search.polish();
-  const RobustFit::Outcome& best = search.best();
+  const RobustFit::Outcome best = exact(search.best(), n.points, options);
   const bool mirrored = best.state.at.mirrored();
   RobustError out;
   out.value = value_of(best.state.cost, n.extent_q, options.mean);

@@ -14,7 +14,7 @@ constexpr double band = 0.02;  // of a quartile's distance, to either side: whos
 constexpr Eigen::Index least_in_band = 8;
 constexpr double least_window = 0.02;           // about a squared quartile, relative: where the next one is looked for
 constexpr double nothing = 1e-14;               // a distance that rounding makes, against extents of 1
-constexpr double still = 1e-10, little = 1e-6;  // relative fall of the cost: at rest; negligible
+constexpr double still = 1e-8, little = 1e-5;  // relative fall of the cost: at rest; negligible
 
 // Sample quantile: linear between the order statistics about rank p (n - 1).
 double quantile_of(const std::vector<double>& two, double fraction) {
@@ -192,7 +192,7 @@ RobustFit::Outcome RobustFit::minimize(const Similarity& start, int most_iterati
     const State next = evaluate(stepped(state.at, p));
     const double fall = state.cost - next.cost;
     if (!(fall > 0) || !p.allFinite()) {
-      out.converged = predicted < little * state.cost && damping > 1e3;
+      out.converged = predicted < little * state.cost && damping > 1;
       if (damping > 1e12) break;
       damping = std::max(damping, 1e-6) * growth, growth *= 2;
       continue;
