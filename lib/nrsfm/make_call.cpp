@@ -2,6 +2,7 @@
 #include "nrsfm/make_call.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <optional>
 
@@ -32,6 +33,11 @@ AnimatronicOptions size_asked(const cli::Invocation& call) {
   return {call.integer("frames"), call.integer("points"), call.seed};
 }
 
+bool is_file_name(const std::string& name) {
+  return !name.empty() && name.front() != '.' &&
+         std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; });
+}
+
 bool by_flow(const cli::Invocation& call) {
   return call.text("tracks-from") == "optical-flow";
 }
@@ -39,7 +45,7 @@ bool by_flow(const cli::Invocation& call) {
 // What deforms: made when the first sequence of it is, since it takes longer than everything after it.
 class Stage {
  public:
-  explicit Stage(const cli::Invocation& call) : call_(call) {}
+  explicit Stage(cli::Invocation& call) : call_(call) {}
   const Motion& motion(const std::string& kind) {
     if (motion_ && motion_->kind == kind) return *motion_;
     motion_.reset();
@@ -47,6 +53,7 @@ class Stage {
       motion_ = motion_of_scans(call_.text("meshes"), call_.text("tracks"), call_.number("unit"));
     else
       motion_ = motion_of(*find_animatronic(kind), size_asked(call_));
+    for (const std::filesystem::path& file : motion_->files) call_.note_input(file);
     motion_->kind = kind;
     motion_->one_sided = call_.flag("one-sided");
     motion_->tolerance_m = call_.given("meshes") ? call_.number("tolerance") : 0;
@@ -54,7 +61,7 @@ class Stage {
   }
 
  private:
-  const cli::Invocation& call_;
+  cli::Invocation& call_;
   std::optional<Motion> motion_;
 };
 
@@ -140,6 +147,9 @@ Exit run_make(cli::Invocation& call) {
 void check_make(cli::Invocation& call) {
   if (call.out.empty() && !call.given("out"))
     throw Error(Exit::usage, "--out", "is missing", "name the folder for the sequences: --out sequences");
+  if (call.given("name") && !is_file_name(call.text("name")))
+    throw Error(Exit::usage, "--name", "is \"" + call.text("name") + "\", which no file can be called",
+                "take letters, digits, -, _ and dots");
   if (by_flow(call) && call.given("meshes"))
     throw Error(Exit::usage, "--tracks-from", "is optical-flow of scans, whose paint is not known",
                 "leave it out beside --meshes");

@@ -17,7 +17,10 @@
 namespace gonio::nrsfm {
 namespace {
 
-FrameMesh frame_mesh(const io::TriangleMesh& read, double unit_m) {
+FrameMesh read_frame(const std::filesystem::path& file, double unit_m) {
+  const io::TriangleMesh read = io::read_ply(file);
+  if (read.triangles.empty())
+    throw Error(Exit::data, file.string(), "has no triangles", "points alone hide nothing: export a mesh");
   FrameMesh mesh;
   mesh.vertices_m.resize(3, static_cast<Eigen::Index>(read.positions_m.size()));
   for (std::size_t v = 0; v < read.positions_m.size(); ++v) {
@@ -47,6 +50,23 @@ bool outside_beside(const FrameCaster& caster, const Eigen::Vector3d& point, con
     if (met && std::abs(met->distance_m - distance) < 100 * aside) return met->outside;
   }
   return true;
+}
+
+// Tracks of another unit or frame of reference lie elsewhere: the middle of the points is to be within the box of the
+// first mesh, and they have an extent.
+void require_nearby(const Motion& motion, const std::string& tracks, const std::string& mesh) {
+  if (ball_around(motion.points_m).radius_m == 0)
+    throw Error(Exit::data, tracks, "has all its points in one place", "they are to be points of a surface");
+  const Eigen::Matrix3Xd vertices = motion.mesh(0).vertices_m;
+  const Eigen::Vector3d lower = vertices.rowwise().minCoeff(), upper = vertices.rowwise().maxCoeff();
+  const Eigen::Vector3d middle = shape_of(motion.points_m, 0).rowwise().mean(), centre = (lower + upper) / 2;
+  const double size = (upper - lower).norm(), away = (middle - centre).norm();
+  const double spread = (shape_of(motion.points_m, 0).colwise() - middle).colwise().norm().maxCoeff();
+  if (away > size || spread > size || spread < 1e-3 * size)
+    throw Error(Exit::data, tracks,
+                "has points of extent " + shortest_text(2 * spread) + " m, " + shortest_text(away) +
+                    " m from the middle of " + mesh + ", which is " + shortest_text(size) + " m large",
+                "give both in the same unit and frame of reference");
 }
 
 }  // namespace
@@ -84,9 +104,10 @@ Motion motion_of_scans(const std::filesystem::path& meshes, const std::filesyste
     throw Error(Exit::data, tracks.string(),
                 "has " + std::to_string(motion.points_m.cols()) + " points with a place in every frame",
                 "4 is the least");
-  motion.mesh = [files, unit_m](Eigen::Index f) {
-    return frame_mesh(io::read_ply(files[static_cast<std::size_t>(f)]), unit_m);
-  };
+  motion.files = files;
+  motion.files.push_back(tracks);
+  motion.mesh = [files, unit_m](Eigen::Index f) { return read_frame(files[static_cast<std::size_t>(f)], unit_m); };
+  require_nearby(motion, tracks.string(), files.front().string());
   return motion;
 }
 

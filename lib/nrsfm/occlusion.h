@@ -23,6 +23,7 @@ struct Motion {
   double tolerance_m = 0;  // points may lie this far behind the surface: scans and tracks that differ
   bool one_sided = false;  // from behind a sheet its points are hidden, too; else they show on both sides
   std::vector<std::string> notes;
+  std::vector<std::filesystem::path> files;  // that it was read from
   Eigen::Index frames() const { return points_m.rows() / 3; }
 };
 Motion motion_of(const Animatronic& animatronic, const AnimatronicOptions& options);
