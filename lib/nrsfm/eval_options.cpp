@@ -82,6 +82,18 @@ std::vector<cli::Option> options_of_errors() {
   };
 }
 
+// The manifest's files are there, and whole.
+void check_files(const manifest::Document& document) {
+  for (std::size_t i = 0; i < document.reconstructions.size(); ++i) {
+    const manifest::ShapeReconstruction& r = document.reconstructions[i];
+    const std::string pointer = "/reconstructions/" + std::to_string(i);
+    if (r.folder.empty()) manifest::resolve(document, r.file, pointer + "/file");
+    const auto sequence = document.sequences.find(r.sequence);
+    if (sequence != document.sequences.end())
+      manifest::resolve(document, sequence->second.file, "/sequences/" + r.sequence + "/file");
+  }
+}
+
 }  // namespace
 
 std::vector<cli::Option> eval_options() {
@@ -105,6 +117,7 @@ void check_eval(cli::Invocation& call) {
                 call.has_document ? manifest::place(call.document, "/reconstructions") : "nrsfm-eval",
                 "has no reconstruction", "give a manifest with some, or --truth SEQUENCE RECONSTRUCTION...");
   check_analysis(call);
+  if (call.flag("check")) check_files(call.document);
   for (const char* file : {"csv", "html"})
     if (call.given(file)) check_writable(call.text(file));
 }

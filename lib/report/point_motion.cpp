@@ -85,7 +85,7 @@ std::string codes_of(const PointMotion& m, const Box& box) {
     for (const auto* set : {&m.truth, &m.found})
       for (std::size_t i = f * one; i < (f + 1) * one; ++i) {
         const double v = ((*set)[i] - box.low[i % 3]) / box.side * steps;
-        const int code = std::isfinite(v) ? std::clamp(static_cast<int>(std::lround(v)), 0, steps) : nowhere;
+        const int code = std::isfinite(v) ? static_cast<int>(std::lround(std::clamp<double>(v, 0, steps))) : nowhere;
         text += {digits[code >> 6], digits[code & 63]};
       }
   return text;

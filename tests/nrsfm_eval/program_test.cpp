@@ -115,6 +115,16 @@ TEST_F(EvalProgram, SimilarityHandAndOrderDoNotMatter) {
   }
 }
 
+TEST_F(EvalProgram, CheckLooksForTheFilesAndWritesNothing) {
+  EXPECT_EQ(run({"-i", path("m.json"), "--check", "--csv", path("e.csv")}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(path("e.csv")));
+  EXPECT_FALSE(std::filesystem::exists(path("out.json")));
+  std::filesystem::remove(path("good.mat"));
+  const Said said = run({"-i", path("m.json"), "--check"});
+  EXPECT_EQ(said.status, 66);
+  EXPECT_THAT(said.error, HasSubstr("\"good.mat\" cannot be read"));
+}
+
 TEST_F(EvalProgram, SaysWhereThereIsNoInterval) {
   ASSERT_EQ(run({"--truth", path("truth.mat"), path("good.mat"), "--block", "11"}).status, 0);
   const manifest::Evaluation few = manifest::read_document(path("out.json")).evaluations[0];

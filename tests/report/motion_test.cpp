@@ -62,6 +62,14 @@ TEST(PointMotion, StoresPointsToHalfAStep) {
       }
 }
 
+// What was found beyond the cube about the truth stands at its border, on the side where it is.
+TEST(PointMotion, FarPointsStandAtTheBorder) {
+  PointMotion m = turning_bar();
+  m.found[0] = 1e30f, m.found[1] = -1e30f;
+  const std::string codes = attribute(html(m), "codes");
+  EXPECT_EQ(codes.substr(24, 4), "/+AA");  // 4094 and 0, after 12 coordinates of the truth
+}
+
 TEST(PointMotion, StaysADrawingWithoutTheScriptAndIsEscaped) {
   const std::string text = html(turning_bar());
   EXPECT_THAT(text, HasSubstr("<svg viewBox"));
