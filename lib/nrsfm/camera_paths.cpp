@@ -1,5 +1,5 @@
-// See camera_paths.h. Places p(s), s from 0 to 1, in units of the distance about the centre; e = 40 degrees the height
-// of the camera over the horizon, so that sheets that lie there show one side:
+// See camera_paths.h. Places p(s), s from 0 to 1, in units of the distance about the centre; e = 20 degrees the height
+// of the camera over the horizon, so low that what lies there hides parts of itself:
 //   circle        (cos a cos e, sin a cos e, sin e),  a = 2 pi s - pi / 2
 //   half-circle   the same,  a = pi s - pi
 //   line          (2 s - 1, -cos e, sin e)
@@ -20,7 +20,7 @@
 namespace gonio::nrsfm {
 namespace {
 
-constexpr double height_rad = 40 * pi / 180;
+constexpr double height_rad = 20 * pi / 180;
 
 Eigen::Vector3d on_circle(double azimuth_rad) {
   return {std::cos(azimuth_rad) * std::cos(height_rad), std::sin(azimuth_rad) * std::cos(height_rad),
