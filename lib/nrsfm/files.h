@@ -1,4 +1,4 @@
-// Sequences and reconstructions as files: MATLAB v5 (.mat), NumPy archives (.npz), PLY per frame.
+// Sequences and reconstructions as files: MATLAB v5 (.mat), NumPy (.npz, or .npy with shapes), PLY per frame.
 //
 // Written .mat, the benchmark's naming: W (2F x P, NaN where missing), V (F x P, 1 where visible), S (3F x P truth),
 // R (2F x 3 rows of camera_from_object), T (3F, translation), K (3 x 3), projection, unit_m, factors (struct of text).
@@ -24,7 +24,7 @@ struct FileNames {  // empty: found by the names above
 // Error(no_input), Error(data) with file, variable, size and what was expected. `notes` gets what was assumed.
 Sequence read_sequence(const std::filesystem::path& file, const FileNames& names = {},
                        std::vector<std::string>* notes = nullptr);
-// `file`: .mat, .npz, or a folder / pattern (frame_*.ply) of PLY files, one per frame in the order of their names,
+// `file`: .mat, .npz, .npy, or a folder / pattern (frame_*.ply) of PLY files, one per frame in the order of their names,
 // numbers within them compared as numbers.
 Reconstruction read_reconstruction(const std::filesystem::path& file, const FileNames& names = {},
                                    std::vector<std::string>* notes = nullptr);

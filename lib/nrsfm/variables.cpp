@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/npz.h"
 
@@ -83,6 +84,26 @@ bool matches(std::string_view pattern, std::string_view name) {
          matches(pattern.substr(1), name.substr(1));
 }
 
+// Arrays of three dimensions: MATLAB's habit rows x points x frames, NumPy's frames x rows x points and frames x points
+// x rows. The axis of length `rows` tells which, the first one where several have it.
+Eigen::MatrixXd of_cube(const MatVariable& v, std::size_t rows, const std::string& where) {
+  const auto axis = static_cast<std::size_t>(std::ranges::find(v.size, rows) - v.size.begin());
+  if (axis == 3)
+    refuse(where, "is " + size_text(v.size) + " without an axis of " + std::to_string(rows) + " coordinates",
+           "arrays of three dimensions are " + std::to_string(rows) + " x points x frames, frames x " +
+               std::to_string(rows) + " x points or frames x points x " + std::to_string(rows));
+  const std::size_t frame_axis = axis == 0 ? 2 : 0, point_axis = 3 - axis - frame_axis;
+  const std::size_t stride[] = {1, v.size[0], v.size[0] * v.size[1]};
+  const std::size_t frames = v.size[frame_axis], points = v.size[point_axis];
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(rows * frames), static_cast<Eigen::Index>(points));
+  for (std::size_t p = 0; p < points; ++p)
+    for (std::size_t f = 0; f < frames; ++f)
+      for (std::size_t r = 0; r < rows; ++r)
+        out(static_cast<Eigen::Index>(rows * f + r), static_cast<Eigen::Index>(p)) =
+            v.values[f * stride[frame_axis] + p * stride[point_axis] + r * stride[axis]];
+  return out;
+}
+
 }  // namespace
 
 std::string size_text(const std::vector<std::size_t>& size) {
@@ -120,8 +141,13 @@ Variables::Variables(const std::filesystem::path& file) : place_(file.string()) 
     variables_ = io::read_mat(file);
   } else if (extension == ".npz") {
     for (const auto& [name, array] : io::read_npz(file)) variables_[name] = of_numpy(array);
+  } else if (extension == ".npy") {  // one array without a name: shapes, by the name that truth and answers share
+    io::NpyArray array;
+    if (!io::parse_npy(read_file(file), place_, array))
+      refuse(place_, "holds no numbers", "save an array of floats");
+    variables_["S"] = of_numpy(array);
   } else {
-    refuse(place_, "is neither .mat nor .npz", "name the file by what it is");
+    refuse(place_, "is neither .mat nor .npz nor .npy", "name the file by what it is");
   }
 }
 
@@ -170,17 +196,7 @@ Eigen::MatrixXd Variables::rows_by_frame(const std::string& name, Eigen::Index r
     }
     return out;
   }
-  if (v.size.size() == 3) {
-    if (v.size[0] != wanted)
-      refuse(where, "is " + size_text(v.size) + ", arrays of three dimensions are " + std::to_string(rows) +
-                        " x points x frames");
-    const Eigen::Map<const Eigen::MatrixXd> all(v.values.data(), rows,
-                                                static_cast<Eigen::Index>(v.size[1] * v.size[2]));
-    const auto points = static_cast<Eigen::Index>(v.size[1]), frames = static_cast<Eigen::Index>(v.size[2]);
-    Eigen::MatrixXd out(rows * frames, points);
-    for (Eigen::Index f = 0; f < frames; ++f) out.middleRows(rows * f, rows) = all.middleCols(points * f, points);
-    return out;
-  }
+  if (v.size.size() == 3) return of_cube(v, wanted, where);
   if (by_frame != nullptr) *by_frame = false;
   const Eigen::MatrixXd m = matrix_of(v, where);
   if (m.rows() == 0 || m.cols() == 0 || m.rows() % rows != 0)

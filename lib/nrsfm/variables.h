@@ -1,4 +1,4 @@
-// Variables of .mat and .npz files as arrays, and how the field names and lays out what it stores. For files.cpp.
+// Variables of .mat, .npz and .npy files as arrays, and how the field names and lays out what it stores. For files.cpp.
 #pragma once
 #include <Eigen/Core>
 #include <filesystem>
@@ -24,8 +24,8 @@ class Variables {
   std::string named(const std::string& given, std::initializer_list<const char*> usual) const;
   std::string list() const;  // of all names, for messages
 
-  // 3F x P; of a 3F x P matrix, a 3 x P x F array, a list of 3 x P, or a struct array with a field of 3 x P. `cameras`
-  // is told whether it was an array by frames, which stands in cameras by habit.
+  // 3F x P; of a 3F x P matrix, a 3 x P x F, F x 3 x P or F x P x 3 array, a list of 3 x P, or a struct array with a
+  // field of 3 x P. `by_frame` is told whether it was an array by frames, which stands in cameras by habit.
   Shapes shapes(const std::string& name, bool* by_frame = nullptr) const;
   Tracks tracks(const std::string& name) const;  // likewise with 2, or 3 where homogeneous
   Eigen::MatrixXd matrix(const std::string& name) const;

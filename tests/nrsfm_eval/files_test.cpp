@@ -229,5 +229,48 @@ TEST(SequenceFiles, RefuseInWords) {
   EXPECT_THAT(refusal([&] { write_sequence(example(), folder / "s.npz"); }, Exit::usage), HasSubstr("call it .mat"));
 }
 
+// numpy.save of doubles in C order: magic, version 1.0, length of the head, head, values.
+std::string npy(const std::vector<std::size_t>& size, const std::vector<double>& values) {
+  std::string shape;
+  for (const std::size_t n : size) shape += std::to_string(n) + ",";
+  std::string head = "{'descr': '<f8', 'fortran_order': False, 'shape': (" + shape + "), }";
+  head.append(63 - (10 + head.size()) % 64, ' ') += '\n';
+  std::string bytes = "\x93NUMPY\x01";
+  bytes += '\0';
+  bytes += static_cast<char>(head.size() % 256), bytes += static_cast<char>(head.size() / 256);
+  bytes += head;
+  return bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
+}
+
+// The axis of three coordinates tells which axis frames are on: NumPy's habits are read like MATLAB's.
+TEST(ReconstructionFiles, NumPysOrdersOfAxes) {
+  const gonio::tests::ScratchFolder folder;
+  const std::size_t frames = 6, points = 5;
+  const auto value = [](std::size_t f, std::size_t r, std::size_t p) { return double(100 * f + 10 * r + p); };
+  struct Order {
+    const char* name;
+    std::vector<std::size_t> size;
+    std::function<double(std::size_t, std::size_t, std::size_t)> at;
+  };
+  for (const Order& o :
+       {Order{"3 x P x F", {3, points, frames}, [&](auto r, auto p, auto f) { return value(f, r, p); }},
+        Order{"F x 3 x P", {frames, 3, points}, [&](auto f, auto r, auto p) { return value(f, r, p); }},
+        Order{"F x P x 3", {frames, points, 3}, [&](auto f, auto p, auto r) { return value(f, r, p); }}}) {
+    std::vector<double> values;
+    for (std::size_t a = 0; a < o.size[0]; ++a)
+      for (std::size_t b = 0; b < o.size[1]; ++b)
+        for (std::size_t c = 0; c < o.size[2]; ++c) values.push_back(o.at(a, b, c));
+    write_file(folder / "shapes.npy", npy(o.size, values));
+    const Shapes shapes = read_reconstruction(folder / "shapes.npy").shapes;
+    ASSERT_EQ(shapes.rows(), 18) << o.name;
+    ASSERT_EQ(shapes.cols(), 5) << o.name;
+    for (Eigen::Index row = 0; row < 18; ++row)
+      for (Eigen::Index p = 0; p < 5; ++p)
+        EXPECT_EQ(shapes(row, p), double(100 * (row / 3) + 10 * (row % 3) + p)) << o.name;
+  }
+  write_file(folder / "flat.npy", npy({6, 5, 2}, std::vector<double>(60)));
+  EXPECT_THAT(refusal([&] { read_reconstruction(folder / "flat.npy"); }), HasSubstr("6 x 5 x 2 without an axis of 3"));
+}
+
 }  // namespace
 }  // namespace gonio::nrsfm
