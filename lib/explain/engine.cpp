@@ -10,6 +10,7 @@
 #include "explain/judgement.h"
 #include "explain/law.h"
 #include "explain/noise.h"
+#include "explain/own_tests.h"
 #include "explain/plan.h"
 #include "explain/race.h"
 #include "explain/sentence.h"
@@ -240,6 +241,7 @@ Explanation explain(const Problem& problem, const Options& options) {
   compare_with_calibration(problem, e);
   find_law(all, e);
   make_plan(all, e);
+  if (const auto* own = dynamic_cast<const OwnTests*>(&problem)) own->conclude(e);
   write_sentence(problem, e);
   return e;
 }

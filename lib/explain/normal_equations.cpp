@@ -23,9 +23,9 @@ NormalEquations::Part NormalEquations::part_of(const GroupGram& gram,
     chosen.push_back(static_cast<Eigen::Index>(k));
     p.places.push_back(place);
   }
-  const Eigen::MatrixXd whole = gram.whole();
-  p.gram = whole(chosen, chosen);
-  p.score = whole(chosen, whole.cols() - 1);
+  const Eigen::MatrixXd &a = gram.half[0], &b = gram.half[1];
+  p.gram = a(chosen, chosen) + b(chosen, chosen);
+  p.score = a(chosen, a.cols() - 1) + b(chosen, b.cols() - 1);
   return p;
 }
 

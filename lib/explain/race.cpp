@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "explain/own_tests.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
 
@@ -40,6 +41,7 @@ bool is_protected(const std::string& name, const std::vector<std::string>& prote
 Race::Race(const System& system, const Options& options) : system_(system), options_(options) {
   const Problem& problem = system.problem();
   for (std::size_t c = 0; c < problem.candidates().size(); ++c) {
+    if (tested_apart(problem, c)) continue;
     const std::string& id = problem.candidates()[c].id();
     if (options.hypotheses.empty() ||
         std::find(options.hypotheses.begin(), options.hypotheses.end(), id) != options.hypotheses.end())

@@ -12,11 +12,12 @@ namespace gonio::explain {
 namespace {
 
 constexpr std::size_t most_parameters = 2;
+constexpr std::size_t numbers_of_a_list = 16;  // more are a list with no number that stands out
 
 // "lights/lamp/radius_m" -> "radius"; the unit goes with the value.
 std::string short_name(const std::string& full) {
   std::string name = full.substr(full.find_last_of("./") == std::string::npos ? 0 : full.find_last_of("./") + 1);
-  for (const char* unit : {"_m", "_rad", "_px", "_s", "_K", "_1", "_per_m", "_m_per_s"})
+  for (const char* unit : {"_per_px", "_m", "_rad", "_px", "_s", "_K", "_1", "_per_m", "_m_per_s"})
     if (name.size() > std::string(unit).size() && name.ends_with(unit)) {
       name.resize(name.size() - std::string(unit).size());
       break;
@@ -121,6 +122,7 @@ std::vector<std::string> minor_mechanisms(const Problem& problem, const Explanat
 
 std::string parameters_in_words(const Problem& problem, const Explanation& e, std::size_t candidate) {
   const std::vector<std::size_t>& own = problem.candidates()[candidate].parameters;
+  if (own.size() > numbers_of_a_list) return "";
   std::vector<const Estimate*> clear;  // of neutral, the clearest first
   const auto distance = [&](const Estimate* x) {
     return x->sigma > 0 ? std::abs(x->value - problem.parameters()[x->parameter].neutral) / x->sigma : 0;

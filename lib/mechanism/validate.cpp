@@ -15,9 +15,10 @@ bool exists(const manifest::Document& d, Target target, const std::string& name)
     case Target::light: return d.lights.contains(name);
     case Target::camera: return d.cameras.contains(name);
     case Target::board: return d.boards.contains(name);
-    case Target::object:
-      return std::ranges::any_of(d.objects, [&](const manifest::Object& o) { return o.id == name; });
-    case Target::scene: return false;
+    case Target::object: return std::ranges::any_of(d.objects, [&](const manifest::Object& o) { return o.id == name; });
+    case Target::scene:
+      if (!d.tables.empty() && name.starts_with("point ")) return true;  // of a table of tracks
+      return d.sequences.contains(name.substr(0, name.find('/')));       // "walking/point-7/frame-12"
   }
   return false;
 }

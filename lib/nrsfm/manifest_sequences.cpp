@@ -2,6 +2,8 @@
 #include "nrsfm/manifest_sequences.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <limits>
 #include <utility>
 
 #include "base/error.h"
@@ -33,7 +35,35 @@ void check_count(const char* what, std::optional<std::int64_t> said, Eigen::Inde
                 "correct the entry");
 }
 
+// The observation names of `use` that belong to this sequence, hidden.
+void hide(const manifest::MechanismUse& use, const std::string& id, const std::string& place, Sequence& s) {
+  for (const std::string& name : use.on) {
+    if (!name.starts_with(id + "/point-")) continue;
+    long point = -1, first = -1, last = -1;
+    const char* rest = name.c_str() + id.size();
+    if (std::sscanf(rest, "/point-%ld/frame-%ld", &point, &first) == 2)
+      last = first;
+    else if (std::sscanf(rest, "/point-%ld/frames-%ld-%ld", &point, &first, &last) != 3)
+      point = -1;
+    if (point < 0 || point >= s.points() || first < 0 || last < first || last >= s.frames())
+      throw Error(Exit::data, place,
+                  "\"" + name + "\" is no observation of " + std::to_string(s.frames()) + " frames of " +
+                      std::to_string(s.points()) + " points",
+                  "name it " + hidden_name(id, 0, 0, 0) + " or " + hidden_name(id, 0, 0, 1) + ", counted from 0");
+    s.visible.col(point).segment(first, last - first + 1) = false;
+    s.tracks.col(point)
+        .segment(2 * first, 2 * (last - first + 1))
+        .setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
 }  // namespace
+
+std::string hidden_name(const std::string& sequence, Eigen::Index point, Eigen::Index first, Eigen::Index last) {
+  const std::string at = sequence + "/point-" + std::to_string(point) + "/frame";
+  return first == last ? at + "-" + std::to_string(first)
+                       : at + "s-" + std::to_string(first) + "-" + std::to_string(last);
+}
 
 Sequence sequence_of(const manifest::Document& document, const std::string& id) {
   const auto found = document.sequences.find(id);
@@ -56,6 +86,8 @@ Sequence sequence_of(const manifest::Document& document, const std::string& id) 
     sequence.truth_frame = entry.truth_frame == "camera" ? ShapeFrame::camera : ShapeFrame::object;
   if (entry.unit_m) sequence.unit_m = *entry.unit_m;
   for (const auto& [factor, level] : entry.factors) sequence.factors[factor] = level;
+  if (const auto use = document.mechanisms.find("tracks.outliers"); use != document.mechanisms.end())
+    hide(use->second, id, manifest::place(document, "/mechanisms/tracks.outliers/on"), sequence);
   return sequence;
 }
 

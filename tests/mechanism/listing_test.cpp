@@ -32,8 +32,9 @@ const std::set<std::string> owed = words(
 // Terms of simulators that do not exist yet; they are declared with them.
 const std::set<std::string> of_other_simulators = {"print.growth", "print.light-bleed", "print.overcure",
                                                    "geometry.beam-hardening"};
-// Beyond the list: a rational lens is a family of the radial one; residue on a micro-structure, and its walls.
-const std::set<std::string> besides = {"lens.rational", "surface.residue", "surface.walls"};
+// Beyond the list: a rational lens is a family of the radial one; residue on a micro-structure, and its walls; a scale
+// for every frame of a film.
+const std::set<std::string> besides = {"lens.rational", "surface.residue", "surface.walls", "tracks.scale"};
 
 // Owed and not there yet: printed, until they are declared and leave this list.
 const std::set<std::string> awaited = {};

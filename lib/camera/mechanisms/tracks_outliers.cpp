@@ -6,13 +6,15 @@ namespace gonio::mechanism {
 const Mechanism& tracks_outliers() {
   static const Mechanism declaration{
       .id = "tracks.outliers",
-      .sentence = "Single tracks slipped: from some frame on they follow another spot than the point they began on.",
+      .sentence =
+          "Single tracks slipped, for a frame, for some or from a frame on: they follow another spot than the point "
+          "they began on.",
       .typical = "a few tracks in a hundred, by several px",
-      .equation = "(u, v) += (slip_u_px, slip_v_px) for the named points from the named frames on",
+      .equation = "(u, v) += (slip_u_px, slip_v_px) for the named points, from the named frames on or in them",
       .source = "Kalal, Mikolajczyk & Matas, ICPR 2010 (forward-backward error), for what it is and how it is caught",
       .stage = "sensor",
       .target = Target::scene,
-      .domains = {"tables"},
+      .domains = {"tables", "nrsfm"},
       .parameters = {{.name = "slip_u_px",
                       .unit = "px",
                       .lower = -1000,

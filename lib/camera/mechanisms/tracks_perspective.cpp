@@ -16,7 +16,7 @@ const Mechanism& tracks_perspective() {
       .source = "Hartley & Zisserman 2004, section 6.3 (from affine to projective cameras)",
       .stage = "pose",
       .target = Target::camera,
-      .domains = {"tables"},
+      .domains = {"tables", "nrsfm"},
       .parameters = {{.name = "inverse_focal_per_px",
                       .unit = "1/px",
                       .lower = 0,

@@ -1,0 +1,42 @@
+// Observations that do not follow: a solver's model is fitted so that these cannot bend it, then every observation is
+// held against what the others predict.
+//
+// Fit (robust_tracks.h): shapes point by point, turns and translations (and scales, where the solver freed them) frame
+// by frame, in turns, by reweighted least squares: least distances first, then Tukey's biweight (Huber & Ronchetti
+// 2009, sections 4.8, 7.8); the shapes' weights over time are the solver's. At last least squares without what lies
+// outside, until that stays the same. Test: D = |r|^2 / (sigma^2 (1 -+ h)), h the observation's leverage, where noise
+// is normal D / 2 is F(2, nu) as sigma is known no better than from nu observations, so that
+//   (1 + D / nu)^(-nu / 2) < alpha / N
+// for any of N observations has a chance of at most alpha (Bonferroni). sigma is the largest of all observations', from
+// the median of |r|^2, the frame's own and, from the lower quartile, as a track may slip for good, the point's own:
+// what a model leaves out smoothly widens these and singles out nothing.
+#pragma once
+#include <vector>
+
+#include "explain/nrsfm/solved_model.h"
+
+namespace gonio::explain::tracks {
+
+struct Run {  // of one point, frames that follow each other
+  Eigen::Index point = 0, first = 0, last = 0;
+  Eigen::Vector2d offset = Eigen::Vector2d::Zero();  // mean
+  double sigma = 0;                                  // of a coordinate of the mean
+};
+struct Outlying {
+  std::vector<Run> runs;         // by point, then frame
+  std::size_t observations = 0;  // among so many ...
+  std::size_t found = 0;         // ... so many lie outside
+  double p = 1;                  // chance of one as far out as the farthest, where noise is normal
+  double rms_offset = 0;         // of those found
+  std::size_t components = 0;    // that many points have in many frames and no camera makes: of shapes that are lacking
+  double noise = 0;              // one sigma of a coordinate, see noise_of
+  // RMS distance of sound observations on one half of a point's frames from where the other half, with and without
+  // those found, puts the point.
+  double held_out_with = 0, held_out_without = 0;
+};
+Outlying find_outlying(const Solved& solved, double false_alarm);
+
+// The sequence with those observations hidden.
+gonio::nrsfm::Sequence without(const gonio::nrsfm::Sequence& sequence, const std::vector<Run>& runs);
+
+}  // namespace gonio::explain::tracks

@@ -1,0 +1,24 @@
+// From a solver's answer to the model that it believes in (deforming_model.h).
+#pragma once
+#include <string>
+
+#include "explain/nrsfm/deforming_model.h"
+#include "nrsfm/sequence.h"
+
+namespace gonio::explain::tracks {
+
+struct Solved {
+  gonio::nrsfm::Sequence sequence;
+  gonio::nrsfm::Reconstruction reconstruction;  // object frame, with rotations
+  bool free_scales = false;                     // the solver gave every frame a scale of its own
+  std::string place;                            // for messages
+};
+
+// The shapes' weights over time are their temporal singular vectors, as many as leave a thousandth of the shapes.
+// Where d cosines hold these, d <= 0.6 of the frames, they may move within the cosines as the solver's did; d = K: not
+// at all. Otherwise they are free in every frame, except for a constant that they hold. At most 48 frames (more where
+// the shapes are many) and 40 points take part, evenly taken, unless `all` do. Error(data) where rotations are missing,
+// or too little is left to judge a model of so many shapes.
+SolvedModel solved_model(const Solved& solved, bool all = false);
+
+}  // namespace gonio::explain::tracks

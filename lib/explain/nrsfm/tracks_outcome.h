@@ -1,0 +1,38 @@
+// What comes out of a sequence's explanation: remarks, the upgraded manifest, pictures. Private to tracks_problem.cpp.
+#pragma once
+#include <string>
+
+#include "explain/explanation.h"
+#include "explain/nrsfm/outlying.h"
+#include "explain/nrsfm/tracks_problem.h"
+
+namespace gonio::explain {
+
+// "px" of a perspective camera; of an orthographic one the tracks' own, which nobody states.
+std::string track_unit(const gonio::nrsfm::Sequence& sequence);
+
+struct TracksView {
+  const Problem& problem;
+  const TracksInput& input;
+  const tracks::DeformingModel& model;
+  const tracks::Layout& layout;
+  const std::vector<std::vector<Eigen::Index>>& seen;
+  const std::vector<double>& start;
+  const tracks::Outlying& outlying;
+};
+
+// How near the camera is, how much the scales vary, what took part.
+std::string tracks_remarks(const TracksView& view, const Explanation& e);
+// tracks.outliers: observations to hide, by the names that nrsfm/manifest_sequences.h reads. tracks.perspective: the
+// sequence gets a perspective camera, with the focal length that was found unless one is known. tracks.scale: the
+// sequence's projection is one whose scale differs from frame to frame. Solvers then do not leave it out.
+void upgrade_tracks(const TracksView& view, const Explanation& e, manifest::Document& document);
+// Where shapes are lacking and repair more than what is named, nothing is.
+void conclude_shapes(const TracksView& view, Explanation& e);
+// tracks.outliers joins what the engine has found; alone it is held against sound observations that the robust fit
+// predicts. Where there is a mismatch that nothing repairs it is not named, and hidden all the same.
+void conclude_outliers(const TracksView& view, std::size_t candidate, Explanation& e);
+// Residuals over depth and over frames, before and after.
+Illustration illustrate_tracks(const TracksView& view, const Explanation& e);
+
+}  // namespace gonio::explain
