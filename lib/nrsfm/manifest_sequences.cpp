@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "nrsfm/files.h"
+#include "nrsfm/followed.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -59,7 +60,7 @@ void hide(const manifest::MechanismUse& use, const std::string& id, const std::s
 
 }  // namespace
 
-std::string hidden_name(const std::string& sequence, Eigen::Index point, Eigen::Index first, Eigen::Index last) {
+std::string hidden_name(const std::string& sequence, std::size_t point, std::size_t first, std::size_t last) {
   const std::string at = sequence + "/point-" + std::to_string(point) + "/frame";
   return first == last ? at + "-" + std::to_string(first)
                        : at + "s-" + std::to_string(first) + "-" + std::to_string(last);

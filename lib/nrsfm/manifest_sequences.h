@@ -14,9 +14,6 @@ namespace gonio::nrsfm {
 // Error(data) where `id` is not there or does not fit its file.
 Sequence sequence_of(const manifest::Document& document, const std::string& id);
 
-// How tracks.outliers names what is hidden: "walking/point-7/frame-12", "walking/point-7/frames-12-40", from 0.
-std::string hidden_name(const std::string& sequence, Eigen::Index point, Eigen::Index first, Eigen::Index last);
-
 // A sequence that came as a file of its own: its entry, under a name made of the file's.
 std::string enter_sequence(manifest::Document& document, const std::filesystem::path& file, const Sequence& sequence);
 

@@ -1,11 +1,11 @@
 // The test of single observations: its false alarms, what it finds, and what it must not take for outliers.
-#include "explain/nrsfm/outlying.h"
+#include "nrsfm/outlying.h"
 
 #include <gtest/gtest.h>
 
 #include "tracks_world.h"
 
-namespace gonio::explain::tracks {
+namespace gonio::nrsfm {
 namespace {
 
 using gonio::explain::testing::film;
@@ -18,7 +18,7 @@ std::size_t alarms(Film f, int films, double false_alarm, bool free_scales = fal
   std::size_t found = 0;
   for (int k = 0; k < films; ++k) {
     f.seed = 1000 + static_cast<std::uint64_t>(k);
-    found += find_outlying(known(film(f), free_scales).solved, false_alarm).found > 0;
+    found += find_outlying(known(film(f), free_scales), false_alarm).found > 0;
   }
   return found;
 }
@@ -40,7 +40,7 @@ TEST(Outlying, WhatTheBasisLacksIsNoOutlier) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Film f;
     f.shapes = 3, f.seed = 2000 + seed, f.points = 40;
-    const Outlying o = find_outlying(solved(film(f), "pta", {{"terms", 2}}).solved, 0.05);
+    const Outlying o = find_outlying(solved(film(f), "pta", {{"terms", 2}}), 0.05);
     found += o.found > 0;
     EXPECT_LT(o.noise, 2 * f.noise_px);
   }
@@ -65,10 +65,10 @@ TEST(Outlying, SlipsAreFoundWithTheirSizes) {
         slipped(t, p) = 1;
       }
     }
-    const Outlying o = find_outlying(known(s).solved, 0.01);
+    const Outlying o = find_outlying(known(s), 0.01);
     planted += static_cast<std::size_t>(slipped.sum());
-    for (const tracks::Run& run : o.runs)
-      for (Eigen::Index t = run.first; t <= run.last; ++t) (slipped(t, run.point) > 0 ? found : wrong) += 1;
+    for (const gonio::nrsfm::Run& run : o.runs)
+      for (std::size_t t = run.first; t <= run.last; ++t) (slipped(t, run.point) > 0 ? found : wrong) += 1;
     EXPECT_NEAR(o.rms_offset, 10 * f.noise_px, 2 * f.noise_px);
   }
   EXPECT_GE(found, planted * 95 / 100) << planted;
@@ -81,11 +81,11 @@ TEST(Outlying, ATrackThatSlippedHalfWayIsNotPassedOver) {
   f.shapes = 1;
   Sequence s = film(f);
   for (Eigen::Index t = 12; t < 20; ++t) s.tracks.block<2, 1>(2 * t, 5) += Eigen::Vector2d(6, -6);
-  const Outlying o = find_outlying(known(s).solved, 0.01);
+  const Outlying o = find_outlying(known(s), 0.01);
   ASSERT_FALSE(o.runs.empty());
-  for (const tracks::Run& run : o.runs) EXPECT_EQ(run.point, 5);
+  for (const gonio::nrsfm::Run& run : o.runs) EXPECT_EQ(run.point, 5u);
   EXPECT_GE(o.found, 6u);
 }
 
 }  // namespace
-}  // namespace gonio::explain::tracks
+}  // namespace gonio::nrsfm

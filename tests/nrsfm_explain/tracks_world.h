@@ -9,6 +9,7 @@
 #include "explain/engine.h"
 #include "explain/nrsfm/tracks_problem.h"
 #include "nrsfm/factorization.h"
+#include "nrsfm/follow.h"
 #include "nrsfm/solver.h"
 
 namespace gonio::explain::testing {
@@ -65,28 +66,27 @@ inline Sequence film(const Film& f) {
 }
 
 // The truth itself in the place of a solver's answer: an orthographic model of exactly that shape.
-inline TracksInput known(const Sequence& s, bool free_scales = false) {
-  TracksInput input;
-  input.sequence = s.name;
-  input.reconstruction = s.name + "-truth";
+inline gonio::nrsfm::Solved known(const Sequence& s, bool free_scales = false) {
   gonio::nrsfm::Reconstruction r;
   r.name = "truth", r.sequence = s.name, r.shapes = *s.truth;
   for (const gonio::nrsfm::CameraFromObject& c : s.cameras) r.rotations.emplace_back(c.rotation.topRows<2>());
-  input.solved = {s, r, free_scales, "film"};
-  return input;
+  return {s, r, free_scales, "film"};
 }
 
-inline TracksInput solved(const Sequence& s, const std::string& solver, const gonio::nrsfm::SolverValues& values) {
+inline gonio::nrsfm::Solved solved(const Sequence& s, const std::string& solver,
+                                   const gonio::nrsfm::SolverValues& values) {
   gonio::nrsfm::SolverOptions options;
   options.values = values;
   const gonio::nrsfm::Solution solution = gonio::nrsfm::solve(*gonio::nrsfm::find_solver(solver), s, options);
-  TracksInput input;
-  input.sequence = s.name;
-  input.reconstruction = s.name + "-" + solver;
-  input.solved = {s, solution.reconstruction, false, "film"};
   const auto scales = solution.values.find("free_scales");
-  input.solved.free_scales = scales != solution.values.end() && scales->second > 0;
-  return input;
+  return {s, solution.reconstruction, scales != solution.values.end() && scales->second > 0, "film"};
+}
+
+// As the manifest's entries name it.
+inline std::unique_ptr<Problem> problem_of(const gonio::nrsfm::Solved& solved) {
+  gonio::nrsfm::Followed followed = gonio::nrsfm::follow(solved, false_alarm_of_outliers);
+  followed.sequence = "film", followed.reconstruction = "film-" + solved.reconstruction.name;
+  return tracks_problem(std::move(followed));
 }
 
 struct Answer {
@@ -105,9 +105,9 @@ inline Options quick() {
   options.dummies = 6;
   return options;
 }
-inline Answer explained(TracksInput input, const Options& options = quick()) {
+inline Answer explained(const gonio::nrsfm::Solved& solved, const Options& options = quick()) {
   Answer a;
-  a.problem = tracks_problem(std::move(input));
+  a.problem = problem_of(solved);
   a.e = explain::explain(*a.problem, options);
   for (const std::size_t c : a.e.named) a.named.push_back(a.problem->candidates()[c].id());
   return a;

@@ -9,14 +9,15 @@ const Domain& nrsfm() {
       .name = "nrsfm",
       .sentence = "sequences of tracks with a reconstruction by an orthographic camera (nrsfm-solve)",
       .order = 6,
-      .applies = has_tracks,
+      .applies = gonio::nrsfm::has_followed,
       .problems =
           [](const manifest::Document& document, const ProblemOptions&) {
             std::vector<std::unique_ptr<Problem>> problems;
-            for (TracksInput& input : tracks_inputs(document)) problems.push_back(tracks_problem(std::move(input)));
+            for (gonio::nrsfm::Followed& followed : gonio::nrsfm::followed_tracks(document, false_alarm_of_outliers))
+              problems.push_back(tracks_problem(std::move(followed)));
             return problems;
           },
-      .files = tracks_files};
+      .files = gonio::nrsfm::followed_files};
   return domain;
 }
 

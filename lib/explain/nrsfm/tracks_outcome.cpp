@@ -5,14 +5,15 @@
 #include <cmath>
 
 #include "explain/wording.h"
-#include "nrsfm/manifest_sequences.h"
 #include "report/number_text.h"
 #include "report/plot.h"
 
 namespace gonio::explain {
 namespace {
 
-using gonio::nrsfm::Sequence;
+using gonio::nrsfm::Followed;
+using gonio::nrsfm::Outlying;
+using gonio::nrsfm::Run;
 
 bool is_named(const TracksView& v, const Explanation& e, const char* id) {
   return std::any_of(e.named.begin(), e.named.end(),
@@ -21,21 +22,19 @@ bool is_named(const TracksView& v, const Explanation& e, const char* id) {
 
 // Largest distance of a point along the line of sight from the shape's origin.
 double depth_of(const TracksView& v, const Explanation& e) {
-  const std::vector<tracks::DeformingModel::Frame> frames = v.model.frames(e.values);
   double depth = 0;
-  for (std::size_t p = 0; p < v.seen.size(); ++p)
-    for (const Eigen::Index f : v.seen[p])
-      depth = std::max(depth, std::abs(v.model.in_camera(e.values, frames[static_cast<std::size_t>(f)], p).z()));
+  for (std::size_t p = 0; p < v.followed.points.size(); ++p)
+    for (const Followed::Place& place : v.followed.places(e.values, p))
+      depth = std::max(depth, std::abs(place.camera[2]));
   return depth;
 }
 
 std::string perspective_remark(const TracksView& v, const Explanation& e) {
-  const double kappa = e.values[v.layout.perspective], sigma = e.sigma[v.layout.perspective];
-  const std::string unit = track_unit(v.input.solved.sequence);
+  const double kappa = e.values[v.followed.layout.perspective], sigma = e.sigma[v.followed.layout.perspective];
+  const std::string unit = track_unit(v.followed);
   const double focal = 1 / std::abs(kappa);
   std::string text = "The focal length is " + estimate_in_words(focal, focal * focal * sigma, unit);
-  if (const auto& pinhole = v.input.solved.sequence.pinhole)
-    text += " (the sequence states " + printed(pinhole->fx_px, 4) + ")";
+  if (v.followed.pinhole) text += " (the sequence states " + printed((*v.followed.pinhole)[0], 4) + ")";
   text += ", and depths reach " + share_in_words(std::abs(kappa) * depth_of(v, e)) + " of the distance.";
   if (kappa < 0) text += " The solver's depths are reversed: nearer is farther, which its camera cannot tell.";
   return text;
@@ -43,24 +42,25 @@ std::string perspective_remark(const TracksView& v, const Explanation& e) {
 
 std::string scale_remark(const TracksView& v, const Explanation& e) {
   double squares = 0, first = 0;
-  for (std::size_t p = v.layout.scale; p < v.layout.weight; ++p)
+  for (std::size_t p = v.followed.layout.scale; p < v.followed.layout.weight; ++p)
     squares += e.values[p] * e.values[p], first -= e.values[p];
   squares += first * first;
   return "Scales differ from frame to frame by " +
-         share_in_words(std::sqrt(squares / static_cast<double>(v.layout.weight - v.layout.scale + 1))) + " (rms).";
+         share_in_words(
+             std::sqrt(squares / static_cast<double>(v.followed.layout.weight - v.followed.layout.scale + 1))) +
+         " (rms).";
 }
 
 // The largest first.
-std::string outlier_remark(const TracksView& v) {
-  const tracks::Outlying& o = v.outlying;
+std::string outlier_remark(const TracksView& v, bool lacking) {
+  const Outlying& o = v.followed.outlying;
   std::string text = std::to_string(o.found) + " of " + std::to_string(o.observations) + " observations (" +
                      share_in_words(static_cast<double>(o.found) / static_cast<double>(o.observations)) +
-                     ") do not follow, by " + quantity(o.rms_offset, track_unit(v.input.solved.sequence), 3) +
-                     " (rms): ";
-  std::vector<const tracks::Run*> runs;
-  for (const tracks::Run& run : o.runs) runs.push_back(&run);
-  std::stable_sort(runs.begin(), runs.end(), [](const tracks::Run* a, const tracks::Run* b) {
-    return a->offset.norm() / a->sigma > b->offset.norm() / b->sigma;
+                     ") do not follow, by " + quantity(o.rms_offset, track_unit(v.followed), 3) + " (rms): ";
+  std::vector<const Run*> runs;
+  for (const Run& run : o.runs) runs.push_back(&run);
+  std::stable_sort(runs.begin(), runs.end(), [](const Run* a, const Run* b) {
+    return std::hypot(a->offset[0], a->offset[1]) / a->sigma > std::hypot(b->offset[0], b->offset[1]) / b->sigma;
   });
   constexpr std::size_t most = 5;
   for (std::size_t k = 0; k < std::min(most, runs.size()); ++k) {
@@ -69,79 +69,78 @@ std::string outlier_remark(const TracksView& v) {
     if (runs[k]->first != runs[k]->last) text += " to " + std::to_string(runs[k]->last);
   }
   if (runs.size() > most) text += " and " + std::to_string(runs.size() - most) + " more";
-  return text + " (counted from 0). Where nothing lies outside, one sequence in a hundred would have any.";
+  text += " (counted from 0).";
+  if (lacking) return text + " Deformation that the model lacks may look the same: they are not hidden.";
+  return text + " Where nothing lies outside, one sequence in a hundred would have any.";
 }
 
 constexpr double beyond_noise = 1.5;  // root mean square of what is left, over the noise: something is
 
 // Mean square distance beyond noise.
 double excess(const TracksView& v, double score) {
-  return score * score - 2 * v.outlying.noise * v.outlying.noise;
+  return score * score - 2 * v.followed.outlying.noise * v.followed.outlying.noise;
 }
 
 bool lacks_shapes(const TracksView& v, const Explanation& e) {
-  return v.outlying.components > 0 && e.fitted_after > beyond_noise * std::sqrt(2.0) * v.outlying.noise;
+  return e.fitted_after > beyond_noise * std::sqrt(2.0) * v.followed.outlying.noise;
 }
 
 std::string shapes_remark(const TracksView& v, const Explanation& e) {
-  const std::size_t more = (v.outlying.components + 2) / 3;
-  return "What is left, " + quantity(e.fitted_after, track_unit(v.input.solved.sequence), 3) + " where noise makes " +
-         quantity(std::sqrt(2.0) * v.outlying.noise, track_unit(v.input.solved.sequence), 2) +
-         ", many points have in many frames, and no camera makes it: the object deforms in more ways than the model. "
-         "Solve "
-         "with a rank of " +
-         std::to_string(static_cast<std::size_t>(v.model.start().terms()) + more) + ".";
+  const std::size_t more = std::max<std::size_t>(1, (v.followed.outlying.components + 2) / 3);
+  return "What is left, " + quantity(e.fitted_after, track_unit(v.followed), 3) + " where noise makes " +
+         quantity(std::sqrt(2.0) * v.followed.outlying.noise, track_unit(v.followed), 2) +
+         ", no camera makes: the object deforms in more ways than the model. Solve with a rank of " +
+         std::to_string(v.followed.terms + more) + ".";
 }
 
 std::string part_remark(const TracksView& v) {
-  const tracks::SolvedModel& m = v.model.start();
-  const Sequence& s = v.input.solved.sequence;
-  return "Held against " + v.input.reconstruction + ", " + std::to_string(m.terms()) +
-         (m.terms() == 1 ? " shape, on " : " shapes, on ") + std::to_string(m.frame_count()) + " of " +
-         std::to_string(s.frames()) + " frames and " + std::to_string(m.point_count()) + " of " +
-         std::to_string(s.points()) + " points.";
+  const Followed& f = v.followed;
+  return "Held against " + f.reconstruction + ", " + std::to_string(f.terms) +
+         (f.terms == 1 ? " shape, on " : " shapes, on ") + std::to_string(f.frames.size()) + " of " +
+         std::to_string(f.all_frames) + " frames and " + std::to_string(f.points.size()) + " of " +
+         std::to_string(f.all_points) + " points.";
 }
 
 // The sequence's camera: what it states, else a pinhole of the focal length that was found.
 std::string enter_camera(const TracksView& v, double focal, manifest::Document& document) {
-  const Sequence& s = v.input.solved.sequence;
-  std::string name = v.input.sequence + "-camera";
-  for (int k = 2; document.cameras.contains(name); ++k) name = v.input.sequence + "-camera-" + std::to_string(k);
-  const gonio::nrsfm::Pinhole pinhole =
-      s.pinhole.value_or(gonio::nrsfm::Pinhole{focal, focal, v.model.start().centre.x(), v.model.start().centre.y()});
+  std::string name = v.followed.sequence + "-camera";
+  for (int k = 2; document.cameras.contains(name); ++k) name = v.followed.sequence + "-camera-" + std::to_string(k);
+  const std::array<double, 4> k =
+      v.followed.pinhole.value_or(std::array{focal, focal, v.followed.centre[0], v.followed.centre[1]});
   manifest::Camera& camera = document.cameras[name];
-  camera.fx_px = manifest::Parameter(pinhole.fx_px), camera.fy_px = manifest::Parameter(pinhole.fy_px);
-  camera.cx_px = manifest::Parameter(pinhole.cx_px), camera.cy_px = manifest::Parameter(pinhole.cy_px);
-  camera.width_px = std::max(1, static_cast<int>(std::lround(2 * pinhole.cx_px + 1)));
-  camera.height_px = std::max(1, static_cast<int>(std::lround(2 * pinhole.cy_px + 1)));
+  camera.fx_px = manifest::Parameter(k[0]), camera.fy_px = manifest::Parameter(k[1]);
+  camera.cx_px = manifest::Parameter(k[2]), camera.cy_px = manifest::Parameter(k[3]);
+  camera.width_px = std::max(1, static_cast<int>(std::lround(2 * k[2] + 1)));
+  camera.height_px = std::max(1, static_cast<int>(std::lround(2 * k[3] + 1)));
   return name;
 }
 
 void upgrade_perspective(const TracksView& v, const Explanation& e, manifest::Document& document) {
-  const double kappa = e.values[v.layout.perspective];
-  manifest::TrackSequence& entry = document.sequences.at(v.input.sequence);
+  const double kappa = e.values[v.followed.layout.perspective];
+  manifest::TrackSequence& entry = document.sequences.at(v.followed.sequence);
   entry.projection = "perspective";
   if (entry.camera.empty()) entry.camera = enter_camera(v, 1 / std::abs(kappa), document);
   manifest::MechanismUse& use = document.mechanisms["tracks.perspective"];
   if (std::find(use.on.begin(), use.on.end(), entry.camera) != use.on.end()) return;
   use.on.push_back(entry.camera);
   use.parameters["inverse_focal_per_px"].value.push_back(kappa);
-  use.sigma["inverse_focal_per_px"].push_back(e.sigma[v.layout.perspective]);
+  use.sigma["inverse_focal_per_px"].push_back(e.sigma[v.followed.layout.perspective]);
 }
 
 void upgrade_scale(const TracksView& v, manifest::Document& document) {
-  document.sequences.at(v.input.sequence).projection = "perspective";
+  document.sequences.at(v.followed.sequence).projection = "perspective";
   manifest::MechanismUse& use = document.mechanisms["tracks.scale"];
-  if (std::find(use.on.begin(), use.on.end(), v.input.sequence) == use.on.end()) use.on.push_back(v.input.sequence);
+  if (std::find(use.on.begin(), use.on.end(), v.followed.sequence) == use.on.end())
+    use.on.push_back(v.followed.sequence);
 }
 
 void upgrade_outliers(const TracksView& v, manifest::Document& document) {
   manifest::MechanismUse& use = document.mechanisms["tracks.outliers"];
-  for (const tracks::Run& run : v.outlying.runs) {
-    use.on.push_back(gonio::nrsfm::hidden_name(v.input.sequence, run.point, run.first, run.last));
+  for (const Run& run : v.followed.outlying.runs) {
+    use.on.push_back(gonio::nrsfm::hidden_name(v.followed.sequence, run.point, run.first, run.last));
     const char* names[] = {"slip_u_px", "slip_v_px"};
-    for (Eigen::Index i = 0; i < 2; ++i) {
-      use.parameters[names[i]].value.push_back(run.offset(i));
+    for (std::size_t i = 0; i < 2; ++i) {
+      use.parameters[names[i]].value.push_back(run.offset[i]);
       use.sigma[names[i]].push_back(run.sigma);
     }
   }
@@ -173,15 +172,15 @@ Picture residuals_over(const TracksView& v, const Explanation& e, const Conditio
 
 }  // namespace
 
-std::string track_unit(const Sequence& sequence) {
-  return sequence.projection == gonio::nrsfm::Projection::perspective ? "px" : "track units";
+std::string track_unit(const Followed& followed) {
+  return followed.perspective ? "px" : "track units";
 }
 
 std::string tracks_remarks(const TracksView& v, const Explanation& e) {
   std::string text;
   if (is_named(v, e, "tracks.perspective")) text += perspective_remark(v, e) + " ";
   if (is_named(v, e, "tracks.scale")) text += scale_remark(v, e) + " ";
-  if (!v.outlying.runs.empty()) text += outlier_remark(v) + " ";
+  if (!v.followed.outlying.runs.empty()) text += outlier_remark(v, lacks_shapes(v, e)) + " ";
   if (lacks_shapes(v, e)) text += shapes_remark(v, e) + " ";
   return text + part_remark(v);
 }
@@ -189,7 +188,7 @@ std::string tracks_remarks(const TracksView& v, const Explanation& e) {
 void upgrade_tracks(const TracksView& v, const Explanation& e, manifest::Document& document) {
   if (is_named(v, e, "tracks.perspective")) upgrade_perspective(v, e, document);
   if (is_named(v, e, "tracks.scale")) upgrade_scale(v, document);
-  if (!v.outlying.runs.empty()) upgrade_outliers(v, document);
+  if (!v.followed.outlying.runs.empty() && !lacks_shapes(v, e)) upgrade_outliers(v, document);
 }
 
 // More shapes are no mechanism: where they would repair more than what is named, that is not the reason.
@@ -212,7 +211,7 @@ void conclude_shapes(const TracksView& v, Explanation& e) {
 }
 
 void conclude_outliers(const TracksView& v, std::size_t candidate, Explanation& e) {
-  const tracks::Outlying& o = v.outlying;
+  const Outlying& o = v.followed.outlying;
   const Candidate& c = v.problem.candidates()[candidate];
   Hypothesis h;
   h.name = c.id();
@@ -221,13 +220,15 @@ void conclude_outliers(const TracksView& v, std::size_t candidate, Explanation& 
   h.effect = o.held_out_with > 0 ? 1 - o.held_out_without / o.held_out_with : 0;
   h.wald_p = o.p;
   for (std::size_t k = 0; k < c.parameters.size(); ++k) {
-    const tracks::Run& run = o.runs[k / 2];
-    const double value = run.offset(static_cast<Eigen::Index>(k % 2)), reach = 1.96 * run.sigma;
+    const Run& run = o.runs[k / 2];
+    const double value = run.offset[k % 2], reach = 1.96 * run.sigma;
     h.parameters.push_back({c.parameters[k], value, run.sigma, value - reach, value + reach, false});
   }
-  const bool matters = h.effect >= e.matters;
+  const bool matters = h.effect >= e.matters, lacking = lacks_shapes(v, e);
   if (!matters) h.refused = "smaller than what matters";
+  if (lacking) h.refused = "deformation that the model lacks may look the same";
   e.scoreboard.push_back(h);
+  if (lacking) return;
   e.global_p = std::min(e.global_p, o.p);
   e.significant = true;
   if (!matters) {
@@ -236,7 +237,7 @@ void conclude_outliers(const TracksView& v, std::size_t candidate, Explanation& 
   }
   e.important = true;
   e.estimates.insert(e.estimates.end(), h.parameters.begin(), h.parameters.end());
-  if (e.verdict == Verdict::unknown) return;  // what else is there hides how far the rest can be trusted
+  if (e.verdict == Verdict::unknown) return;
   if (e.verdict == Verdict::null) {
     e.verdict = Verdict::named;
     e.conditions.clear();

@@ -3,22 +3,16 @@
 #include <string>
 
 #include "explain/explanation.h"
-#include "explain/nrsfm/outlying.h"
 #include "explain/nrsfm/tracks_problem.h"
 
 namespace gonio::explain {
 
 // "px" of a perspective camera; of an orthographic one the tracks' own, which nobody states.
-std::string track_unit(const gonio::nrsfm::Sequence& sequence);
+std::string track_unit(const gonio::nrsfm::Followed& followed);
 
 struct TracksView {
   const Problem& problem;
-  const TracksInput& input;
-  const tracks::DeformingModel& model;
-  const tracks::Layout& layout;
-  const std::vector<std::vector<Eigen::Index>>& seen;
-  const std::vector<double>& start;
-  const tracks::Outlying& outlying;
+  const gonio::nrsfm::Followed& followed;
 };
 
 // How near the camera is, how much the scales vary, what took part.
@@ -30,7 +24,7 @@ void upgrade_tracks(const TracksView& view, const Explanation& e, manifest::Docu
 // Where shapes are lacking and repair more than what is named, nothing is.
 void conclude_shapes(const TracksView& view, Explanation& e);
 // tracks.outliers joins what the engine has found; alone it is held against sound observations that the robust fit
-// predicts. Where there is a mismatch that nothing repairs it is not named, and hidden all the same.
+// predicts. Where shapes are lacking it is not named and nothing is hidden: deformation may look the same.
 void conclude_outliers(const TracksView& view, std::size_t candidate, Explanation& e);
 // Residuals over depth and over frames, before and after.
 Illustration illustrate_tracks(const TracksView& view, const Explanation& e);

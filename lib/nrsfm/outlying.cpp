@@ -1,14 +1,14 @@
 // See outlying.h.
-#include "explain/nrsfm/outlying.h"
+#include "nrsfm/outlying.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/random.h"
-#include "explain/nrsfm/robust_tracks.h"
+#include "nrsfm/robust_tracks.h"
 
-namespace gonio::explain::tracks {
+namespace gonio::nrsfm {
 namespace {
 
 constexpr int most_rounds = 8;  // until what lies outside stays the same
@@ -69,17 +69,19 @@ void gather_runs(const RobustTracks& fit, const Flags& outside, double sigma, Ou
   for (Eigen::Index p = 0; p < outside.cols(); ++p)
     for (Eigen::Index f = 0; f < outside.rows(); ++f) {
       if (!outside(f, p)) continue;
-      Run run{m.points[static_cast<std::size_t>(p)], m.frames[static_cast<std::size_t>(f)], 0, Eigen::Vector2d::Zero(),
-              0};
+      Run run;
+      run.point = static_cast<std::size_t>(m.points[static_cast<std::size_t>(p)]);
+      run.first = static_cast<std::size_t>(m.frames[static_cast<std::size_t>(f)]);
+      Eigen::Vector2d sum = Eigen::Vector2d::Zero();
       double count = 0, variance = 0;
       for (; f < outside.rows() && outside(f, p); ++f, ++count) {
         const Eigen::Vector2d r = fit.residual(f, p);
-        run.offset += r;
+        sum += r;
         variance += sigma * sigma * (1 + fit.leverage(f, p));
         squares += r.squaredNorm();
-        run.last = m.frames[static_cast<std::size_t>(f)];
+        run.last = static_cast<std::size_t>(m.frames[static_cast<std::size_t>(f)]);
       }
-      run.offset /= count;
+      run.offset = {sum.x() / count, sum.y() / count};
       run.sigma = std::sqrt(variance) / count;
       result.runs.push_back(run);
       result.found += static_cast<std::size_t>(count);
@@ -137,15 +139,16 @@ Outlying find_outlying(const Solved& solved, double false_alarm) {
   return result;
 }
 
-gonio::nrsfm::Sequence without(const gonio::nrsfm::Sequence& sequence, const std::vector<Run>& runs) {
-  gonio::nrsfm::Sequence s = sequence;
+Sequence without(const Sequence& sequence, const std::vector<Run>& runs) {
+  Sequence s = sequence;
   for (const Run& run : runs)
-    for (Eigen::Index f = run.first; f <= run.last; ++f) {
-      if (!s.visible(f, run.point)) continue;
-      s.visible(f, run.point) = false;
-      s.tracks.block<2, 1>(2 * f, run.point).setConstant(std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t frame = run.first; frame <= run.last; ++frame) {
+      const auto f = static_cast<Eigen::Index>(frame), p = static_cast<Eigen::Index>(run.point);
+      if (!s.visible(f, p)) continue;
+      s.visible(f, p) = false;
+      s.tracks.block<2, 1>(2 * f, p).setConstant(std::numeric_limits<double>::quiet_NaN());
     }
   return s;
 }
 
-}  // namespace gonio::explain::tracks
+}  // namespace gonio::nrsfm

@@ -13,30 +13,14 @@
 #pragma once
 #include <vector>
 
-#include "explain/nrsfm/solved_model.h"
+#include "nrsfm/followed.h"
+#include "nrsfm/solved_model.h"
 
-namespace gonio::explain::tracks {
+namespace gonio::nrsfm {
 
-struct Run {  // of one point, frames that follow each other
-  Eigen::Index point = 0, first = 0, last = 0;
-  Eigen::Vector2d offset = Eigen::Vector2d::Zero();  // mean
-  double sigma = 0;                                  // of a coordinate of the mean
-};
-struct Outlying {
-  std::vector<Run> runs;         // by point, then frame
-  std::size_t observations = 0;  // among so many ...
-  std::size_t found = 0;         // ... so many lie outside
-  double p = 1;                  // chance of one as far out as the farthest, where noise is normal
-  double rms_offset = 0;         // of those found
-  std::size_t components = 0;    // that many points have in many frames and no camera makes: of shapes that are lacking
-  double noise = 0;              // one sigma of a coordinate, see noise_of
-  // RMS distance of sound observations on one half of a point's frames from where the other half, with and without
-  // those found, puts the point.
-  double held_out_with = 0, held_out_without = 0;
-};
 Outlying find_outlying(const Solved& solved, double false_alarm);
 
 // The sequence with those observations hidden.
-gonio::nrsfm::Sequence without(const gonio::nrsfm::Sequence& sequence, const std::vector<Run>& runs);
+Sequence without(const Sequence& sequence, const std::vector<Run>& runs);
 
-}  // namespace gonio::explain::tracks
+}  // namespace gonio::nrsfm

@@ -2,16 +2,16 @@
 #pragma once
 #include <string>
 
-#include "explain/nrsfm/deforming_model.h"
+#include "nrsfm/deforming_model.h"
 #include "nrsfm/sequence.h"
 
-namespace gonio::explain::tracks {
+namespace gonio::nrsfm {
 
 struct Solved {
-  gonio::nrsfm::Sequence sequence;
-  gonio::nrsfm::Reconstruction reconstruction;  // object frame, with rotations
-  bool free_scales = false;                     // the solver gave every frame a scale of its own
-  std::string place;                            // for messages
+  Sequence sequence;
+  Reconstruction reconstruction;  // object frame, with rotations
+  bool free_scales = false;       // the solver gave every frame a scale of its own
+  std::string place;              // for messages
 };
 
 // The shapes' weights over time are their temporal singular vectors, as many as leave a thousandth of the shapes.
@@ -21,4 +21,4 @@ struct Solved {
 // or too little is left to judge a model of so many shapes.
 SolvedModel solved_model(const Solved& solved, bool all = false);
 
-}  // namespace gonio::explain::tracks
+}  // namespace gonio::nrsfm

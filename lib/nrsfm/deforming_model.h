@@ -15,9 +15,10 @@
 #include <span>
 #include <vector>
 
+#include "nrsfm/followed.h"
 #include "nrsfm/sequence.h"
 
-namespace gonio::explain::tracks {
+namespace gonio::nrsfm {
 
 // A solver's answer in the form above; `frames` and `points` say which of the sequence's take part.
 struct SolvedModel {
@@ -36,15 +37,6 @@ struct SolvedModel {
   Eigen::Index point_count() const { return static_cast<Eigen::Index>(points.size()); }
 };
 
-// Where each number stands in a vector of parameters.
-struct Layout {
-  std::size_t rotation = 0, shift = 0;  // of frame 0: three, two; those of frame f follow
-  std::size_t scale = 0;                // l of frame 1 (that of frame 0 is minus the sum)
-  std::size_t weight = 0;               // the entries of X that are not held, column after column
-  std::size_t basis = 0;                // of point 0: 3 K, shape after shape
-  std::size_t perspective = 0;          // kappa
-  std::size_t count = 0;
-};
 Layout layout_of(const SolvedModel& model);
 
 class DeformingModel {
@@ -86,4 +78,4 @@ class DeformingModel {
   std::vector<std::pair<Eigen::Index, Eigen::Index>> free_weights_;  // entries of X that are not held
 };
 
-}  // namespace gonio::explain::tracks
+}  // namespace gonio::nrsfm

@@ -7,9 +7,9 @@
 // in noise widths, plus sqrt(2F) + sqrt(P) times its nuclear norm, which is the least of (|A|^2 + |C|^2) / 2. Neither
 // single observations nor normal noise, whose largest singular value that is, are worth a component.
 #pragma once
-#include "explain/nrsfm/solved_model.h"
+#include "nrsfm/solved_model.h"
 
-namespace gonio::explain::tracks {
+namespace gonio::nrsfm {
 
 class RobustTracks {
  public:
@@ -62,4 +62,4 @@ class RobustTracks {
 // linear model of generous rank leaves; each is too large where the tracks have structure that it cannot follow.
 double noise_of(const Solved& solved, const RobustTracks& fit, double left);
 
-}  // namespace gonio::explain::tracks
+}  // namespace gonio::nrsfm

@@ -1,6 +1,6 @@
 // See solved_model.h. With M the F x 3P matrix of shapes, one row a frame, M = c B is its truncated singular value
 // decomposition; c = sqrt(F) U, so that weights are of the order of one.
-#include "explain/nrsfm/solved_model.h"
+#include "nrsfm/solved_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +8,8 @@
 #include "base/error.h"
 #include "nrsfm/factorization.h"
 
-namespace gonio::explain::tracks {
+namespace gonio::nrsfm {
 namespace {
-
-using gonio::nrsfm::Reconstruction;
-using gonio::nrsfm::Sequence;
-using gonio::nrsfm::shape_of;
 
 constexpr Eigen::Index most_frames = 48, most_points = 40, fewest_points = 8, fewest_frames = 8;
 constexpr double shape_share = 1e-3, cosine_share = 1e-3, constant_share = 1e-3;
@@ -60,7 +56,7 @@ Weights within(Eigen::MatrixXd omega, Eigen::MatrixXd x, bool held) {
 Weights weights_of(const Eigen::MatrixXd& u, Eigen::Index frames_taken) {
   const Eigen::Index frames = u.rows(), terms = u.cols();
   const double size = std::sqrt(static_cast<double>(frames));
-  const Eigen::MatrixXd cosines = gonio::nrsfm::dct_basis(frames, frames), spectrum = cosines.transpose() * u;
+  const Eigen::MatrixXd cosines = dct_basis(frames, frames), spectrum = cosines.transpose() * u;
   Eigen::Index d = frames;
   double beyond = 0;
   while (d > terms && (beyond += spectrum.row(d - 1).squaredNorm()) <= cosine_share * cosine_share * double(terms)) --d;
@@ -193,8 +189,7 @@ SolvedModel solved_model(const Solved& solved, bool all) {
   for (std::size_t f = 0; f < every.size(); ++f) every[f] = static_cast<Eigen::Index>(f);
   m.frames = all ? every : evenly(every, std::max(most_frames, 5 * terms));
   take_points(solved, estimated, terms, all, m);
-  for (const Eigen::Index f : m.frames)
-    m.rotation.push_back(gonio::nrsfm::completed(r.rotations[static_cast<std::size_t>(f)]));
+  for (const Eigen::Index f : m.frames) m.rotation.push_back(completed(r.rotations[static_cast<std::size_t>(f)]));
   const Weights weights = weights_of(svd.matrixU().leftCols(terms), m.frame_count());
   take_frames(weights, m);
   const Eigen::MatrixXd basis = (weights.omega * weights.x).colPivHouseholderQr().solve(one_row_a_frame(r, m.points));
@@ -204,4 +199,4 @@ SolvedModel solved_model(const Solved& solved, bool all) {
   return m;
 }
 
-}  // namespace gonio::explain::tracks
+}  // namespace gonio::nrsfm

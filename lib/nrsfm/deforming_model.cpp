@@ -1,12 +1,12 @@
 // See deforming_model.h. Derivatives of u: with n = 1 / (1 + kappa s q_z)
 //   du/dq_xy = n s I,   du/dq_z = -U n^2 kappa s,   du/dt = n I,   du/dkappa = -U n^2 s q_z,
 //   du/dl = n s q_xy - U n^2 kappa s q_z,   dq/dw = -[q]x J(w),  J the left Jacobian of the rotation vector.
-#include "explain/nrsfm/deforming_model.h"
+#include "nrsfm/deforming_model.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace gonio::explain::tracks {
+namespace gonio::nrsfm {
 namespace {
 
 constexpr double nearest = 1e-2;  // of 1 + kappa s z: points do not pass behind the camera
@@ -186,4 +186,4 @@ void DeformingModel::jacobian(std::span<const double> values, std::size_t point,
     fill_column(values, columns[c], point, seen, all, slopes, derivatives.subspan(c * rows, rows));
 }
 
-}  // namespace gonio::explain::tracks
+}  // namespace gonio::nrsfm

@@ -1,5 +1,5 @@
 // See robust_tracks.h.
-#include "explain/nrsfm/robust_tracks.h"
+#include "nrsfm/robust_tracks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "nrsfm/factorization.h"
 #include "stats/intervals.h"
 
-namespace gonio::explain::tracks {
+namespace gonio::nrsfm {
 namespace {
 
 constexpr int rounds_of_distances = 10, rounds_of_biweight = 10, rounds_of_squares = 4, rounds_of_remainder = 5;
@@ -272,7 +272,7 @@ void RobustTracks::find_leverages() {
 }
 
 double noise_of(const Solved& solved, const RobustTracks& fit, double left_by_fit) {
-  double sigma = std::min(left_by_fit, gonio::nrsfm::noise_of(gonio::nrsfm::interpolated(solved.sequence)));
+  double sigma = std::min(left_by_fit, noise_of(interpolated(solved.sequence)));
   Eigen::MatrixXd w = fit.completed();
   const SolvedModel& m = fit.model();
   double used = 0;
@@ -286,4 +286,4 @@ double noise_of(const Solved& solved, const RobustTracks& fit, double left_by_fi
   return std::min(sigma, std::sqrt(svd.singularValues().tail(svd.singularValues().size() - rank).squaredNorm() / left));
 }
 
-}  // namespace gonio::explain::tracks
+}  // namespace gonio::nrsfm
