@@ -24,7 +24,7 @@ struct FileNames {  // empty: found by the names above
 // Error(no_input), Error(data) with file, variable, size and what was expected. `notes` gets what was assumed.
 Sequence read_sequence(const std::filesystem::path& file, const FileNames& names = {},
                        std::vector<std::string>* notes = nullptr);
-// `file`: .mat, .npz, .npy, or a folder / pattern (frame_*.ply) of PLY files, one per frame in the order of their names,
+// `file`: .mat, .npz, .npy, or a folder or pattern (frame_*.ply) of PLY files, one per frame in the order of names,
 // numbers within them compared as numbers.
 Reconstruction read_reconstruction(const std::filesystem::path& file, const FileNames& names = {},
                                    std::vector<std::string>* notes = nullptr);
