@@ -15,6 +15,11 @@ Shapes anchored(const DeformingSurface& surface) {
   return points;
 }
 
+bool inside(const RigBox& box, const Eigen::Vector3d& point_m, double margin_m) {
+  const Eigen::Vector3d p = box.world_from_box.inverse() * point_m;
+  return (p.cwiseAbs().array() < box.half_m.array() + margin_m).all();
+}
+
 const Animatronic* find_animatronic(const std::string& id) {
   for (const Animatronic* animatronic : all_animatronics())
     if (animatronic->info().id == id) return animatronic;

@@ -1,6 +1,7 @@
 // Simulated animatronics: deforming triangle meshes with points to follow. Each kind is one file in animatronics/ (the
 // stem names the function, namespace gonio::nrsfm::animatronics); the build gathers them. Metres; z up.
 #pragma once
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -23,11 +24,23 @@ struct Anchor {
   double b1 = 0, b2 = 0;
 };
 
+// A rigid part of the rig that holds and moves a surface: it hides what is behind it, and nothing is followed on it.
+struct RigBox {
+  Eigen::Vector3d half_m = Eigen::Vector3d::Zero();
+  Eigen::Isometry3d world_from_box = Eigen::Isometry3d::Identity();
+};
+inline RigBox upright_box(const Eigen::Vector3d& centre_m, const Eigen::Vector3d& half_m) {
+  return {half_m, Eigen::Isometry3d(Eigen::Translation3d(centre_m))};
+}
+bool inside(const RigBox& box, const Eigen::Vector3d& point_m, double margin_m = 0);
+using Rig = std::vector<RigBox>;
+
 struct DeformingSurface {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // the same in every frame; a tear parts corners that coincide
   Shapes vertices_m;                                    // 3F x V
   std::vector<Anchor> anchors;                          // of the points that are followed
   Shapes points_m;                                      // 3F x P, on the surface of each frame
+  std::vector<Rig> rig;                                 // of each frame, the same boxes in the same order; or empty
   double residual = 0;  // of simulated ones: largest unbalanced force over the largest force, over all frames
   Eigen::Index frames() const { return vertices_m.rows() / 3; }
 };

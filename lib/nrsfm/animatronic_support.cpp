@@ -53,7 +53,7 @@ double eased(double s) {
 }
 
 Play::Play(Shell& shell, const Eigen::Matrix3Xd& start, const AnimatronicOptions& options)
-    : shell_(shell), rest_(start), x_(start), before_(start), options_(options) {
+    : shell_(shell), x_(start), before_(start), options_(options) {
   if (options.frames < 2)
     throw Error(Exit::usage, "--frames", "is " + std::to_string(options.frames), "2 is the least");
   if (options.points < 4)
@@ -80,16 +80,18 @@ void Play::step(double s, const std::function<void(double, Eigen::Matrix3Xd&)>& 
 }
 
 DeformingSurface Play::run(const std::function<void(double, Eigen::Matrix3Xd&)>& lead,
+                           const std::function<Rig(double)>& rig,
                            const std::function<bool(const Eigen::Matrix3Xd&)>& after) {
   constexpr Eigen::Index least_steps = 40;
   DeformingSurface out;
   out.triangles = shell_.triangles();
-  out.anchors = spread_anchors(out.triangles, rest_, options_.points, options_.seed);
   const Eigen::Index gaps = options_.frames - 1, parts = (least_steps + gaps - 1) / gaps;
   out.vertices_m.resize(3 * options_.frames, x_.cols());
   step(0, lead, after);
   before_ = x_;
   shape_of(out.vertices_m, 0) = x_;
+  for (Eigen::Index f = 0; f <= gaps; ++f) out.rig.push_back(rig(static_cast<double>(f) / static_cast<double>(gaps)));
+  out.anchors = spread_anchors(out.triangles, x_, out.rig.front(), options_.points, options_.seed);
   for (Eigen::Index f = 1; f <= gaps; ++f) {
     for (Eigen::Index k = 1; k <= parts; ++k)
       step(static_cast<double>((f - 1) * parts + k) / static_cast<double>(gaps * parts), lead, after);
@@ -100,12 +102,13 @@ DeformingSurface Play::run(const std::function<void(double, Eigen::Matrix3Xd&)>&
   return out;
 }
 
-std::vector<Anchor> spread_anchors(const Triangles& triangles, const Eigen::Matrix3Xd& rest, Eigen::Index count,
-                                   std::uint64_t seed) {
+std::vector<Anchor> spread_anchors(const Triangles& triangles, const Eigen::Matrix3Xd& x, const Rig& rig,
+                                   Eigen::Index count, std::uint64_t seed) {
+  constexpr double clear_m = 1e-3;  // of the rig
   std::vector<double> until;
   double total = 0;
   for (const auto& t : triangles) {
-    const Eigen::Vector3d a = rest.col(t[1]) - rest.col(t[0]), b = rest.col(t[2]) - rest.col(t[0]);
+    const Eigen::Vector3d a = x.col(t[1]) - x.col(t[0]), b = x.col(t[2]) - x.col(t[0]);
     until.push_back(total += a.cross(b).norm() / 2);
   }
   Random random(seed, 0xa0c4);
@@ -115,13 +118,14 @@ std::vector<Anchor> spread_anchors(const Triangles& triangles, const Eigen::Matr
   for (Eigen::Index p = 0; p < count; ++p) {
     double farthest = -1;
     anchors.emplace_back();
-    for (int c = 0; c < candidates; ++c) {
+    for (int c = 0; c < candidates || farthest < 0; ++c) {
       const auto place = std::upper_bound(until.begin(), until.end(), random.uniform() * total) - until.begin();
       const auto k = std::min(static_cast<std::size_t>(place), triangles.size() - 1);
       const double root = std::sqrt(random.uniform()), v = random.uniform();
       const Anchor anchor{static_cast<std::uint32_t>(k), root * (1 - v), root * v};
-      const Eigen::Vector3d q = (1 - root) * rest.col(triangles[k][0]) + anchor.b1 * rest.col(triangles[k][1]) +
-                                anchor.b2 * rest.col(triangles[k][2]);
+      const Eigen::Vector3d q =
+          (1 - root) * x.col(triangles[k][0]) + anchor.b1 * x.col(triangles[k][1]) + anchor.b2 * x.col(triangles[k][2]);
+      if (std::ranges::any_of(rig, [&q](const RigBox& box) { return inside(box, q, clear_m); })) continue;
       const double distance = p == 0 ? 0 : (taken.leftCols(p).colwise() - q).colwise().squaredNorm().minCoeff();
       if (distance <= farthest) continue;
       farthest = distance;

@@ -28,8 +28,9 @@ class Play {
   Play(Shell& shell, const Eigen::Matrix3Xd& start, const AnimatronicOptions& options);
   // For every frame: `lead(s, x)` puts the fixed vertices where they are at time s (0 at the first frame, 1 at the
   // last); `after(x)` may change the shell and returns whether it has, in which case equilibrium is sought again. Error
-  // (internal) where none is found.
+  // (internal) where none is found. `rig(s)`: the rig at time s.
   DeformingSurface run(const std::function<void(double, Eigen::Matrix3Xd&)>& lead,
+                       const std::function<Rig(double)>& rig,
                        const std::function<bool(const Eigen::Matrix3Xd&)>& after = {});
 
  private:
@@ -37,13 +38,14 @@ class Play {
             const std::function<bool(const Eigen::Matrix3Xd&)>& after);
 
   Shell& shell_;
-  Eigen::Matrix3Xd rest_, x_, before_;
+  Eigen::Matrix3Xd x_, before_;
   AnimatronicOptions options_;
   double residual_ = 0;
 };
 
-// Points spread over the surface with even density, away from each other (best of some candidates: Mitchell 1991).
-std::vector<Anchor> spread_anchors(const Triangles& triangles, const Eigen::Matrix3Xd& rest, Eigen::Index count,
-                                   std::uint64_t seed);
+// Points spread over the surface with even density, away from each other (best of some candidates: Mitchell 1991), and
+// outside of the rig's boxes. `x`: the vertices when the points are chosen.
+std::vector<Anchor> spread_anchors(const Triangles& triangles, const Eigen::Matrix3Xd& x, const Rig& rig,
+                                   Eigen::Index count, std::uint64_t seed);
 
 }  // namespace gonio::nrsfm

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <optional>
+#include <map>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "nrsfm/factorial.h"
 #include "nrsfm/files.h"
@@ -42,27 +43,37 @@ bool by_flow(const cli::Invocation& call) {
   return call.text("tracks-from") == "optical-flow";
 }
 
-// What deforms: made when the first sequence of it is, since it takes longer than everything after it.
+// What deforms: made where a file of it is to be written, all kinds at once, since that takes longer than everything
+// after it.
 class Stage {
  public:
   explicit Stage(cli::Invocation& call) : call_(call) {}
+  void prepare(const std::vector<std::string>& kinds) {
+    std::vector<Motion> made(kinds.size());
+    parallel_for(0, kinds.size(), [&](std::size_t k) { made[k] = motion_named(kinds[k]); });
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      for (const std::filesystem::path& file : made[k].files) call_.note_input(file);
+      motions_[kinds[k]] = std::move(made[k]);
+    }
+  }
   const Motion& motion(const std::string& kind) {
-    if (motion_ && motion_->kind == kind) return *motion_;
-    motion_.reset();
-    if (call_.given("meshes"))
-      motion_ = motion_of_scans(call_.text("meshes"), call_.text("tracks"), call_.number("unit"));
-    else
-      motion_ = motion_of(*find_animatronic(kind), size_asked(call_));
-    for (const std::filesystem::path& file : motion_->files) call_.note_input(file);
-    motion_->kind = kind;
-    motion_->one_sided = call_.flag("one-sided");
-    motion_->tolerance_m = call_.given("meshes") ? call_.number("tolerance") : 0;
-    return *motion_;
+    if (!motions_.contains(kind)) prepare({kind});
+    return motions_.at(kind);
   }
 
  private:
+  Motion motion_named(const std::string& kind) const {
+    Motion motion = call_.given("meshes")
+                        ? motion_of_scans(call_.text("meshes"), call_.text("tracks"), call_.number("unit"))
+                        : motion_of(*find_animatronic(kind), size_asked(call_));
+    motion.kind = kind;
+    motion.one_sided = call_.flag("one-sided");
+    motion.tolerance_m = call_.given("meshes") ? call_.number("tolerance") : 0;
+    return motion;
+  }
+
   cli::Invocation& call_;
-  std::optional<Motion> motion_;
+  std::map<std::string, Motion> motions_;
 };
 
 // What decides the content of a file, for --resume: all options that do, with the scans' files.
@@ -109,9 +120,7 @@ void enter(cli::Invocation& call, Stage& stage, const Sequence& s, const std::fi
   call.document.sequences[s.name] = entry;
 }
 
-void make(cli::Invocation& call, Stage& stage, const Cell& cell) {
-  const std::string name = name_of(cell, call.seed);
-  const std::filesystem::path path = call.output_path(name + ".mat");
+void make(cli::Invocation& call, Stage& stage, const Cell& cell, const std::filesystem::path& path) {
   if (call.resume && std::filesystem::exists(path)) {
     const std::string said = made_with_of(path);
     if (said != made_with(call))
@@ -136,11 +145,18 @@ std::vector<std::string> deformations(const cli::Invocation& call) {
 }  // namespace
 
 Exit run_make(cli::Invocation& call) {
+  const auto cells = design(deformations(call), levels(call, "path", path_names()), levels(call, "camera", cameras),
+                            by_flow(call) ? std::vector<std::string>{"with"} : levels(call, "missing", missing));
+  std::vector<std::filesystem::path> paths;  // refused before anything is simulated
+  std::vector<std::string> needed;
+  for (const Cell& cell : cells) {
+    paths.push_back(call.output_path(name_of(cell, call.seed) + ".mat"));
+    if (call.resume && std::filesystem::exists(paths.back())) continue;
+    if (std::ranges::find(needed, cell.deformation) == needed.end()) needed.push_back(cell.deformation);
+  }
   Stage stage(call);
-  for (const Cell& cell :
-       design(deformations(call), levels(call, "path", path_names()), levels(call, "camera", cameras),
-              by_flow(call) ? std::vector<std::string>{"with"} : levels(call, "missing", missing)))
-    make(call, stage, cell);
+  stage.prepare(needed);
+  for (std::size_t k = 0; k < cells.size(); ++k) make(call, stage, cells[k], paths[k]);
   return Exit::done;
 }
 
@@ -193,7 +209,7 @@ std::vector<cli::Option> make_options() {
        .help = "That are followed on each animatronic.",
        .preset = "100",
        .lower = 4,
-       .upper = 100000},
+       .upper = 10000},
       {.name = "distance",
        .type = Type::number,
        .help = "Of the camera from the middle, over the radius of the scene.",

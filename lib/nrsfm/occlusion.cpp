@@ -40,6 +40,21 @@ Shapes without_gaps(const Shapes& shapes) {
   return kept.leftCols(count);
 }
 
+void add_box(FrameMesh& mesh, const RigBox& box) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices_m.cols());
+  mesh.vertices_m.conservativeResize(3, mesh.vertices_m.cols() + 8);
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    mesh.vertices_m.col(first + corner) = box.world_from_box * sign.cwiseProduct(box.half_m);
+  }
+  constexpr std::array<std::array<std::uint32_t, 4>, 6> faces{
+      {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+  for (const auto& [a, b, c, d] : faces) {
+    mesh.triangles.push_back({first + a, first + b, first + c});
+    mesh.triangles.push_back({first + a, first + c, first + d});
+  }
+}
+
 // A ray past the rim of a sheet: what the sheet shows next to the point, outside where nothing is found.
 bool outside_beside(const FrameCaster& caster, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                     double distance, double size) {
@@ -71,14 +86,24 @@ void require_nearby(const Motion& motion, const std::string& tracks, const std::
 
 }  // namespace
 
-Motion motion_of(const Animatronic& animatronic, const AnimatronicOptions& options) {
-  const auto surface = std::make_shared<const DeformingSurface>(animatronic.make(options));
+Motion motion_of(DeformingSurface made) {
+  const auto surface = std::make_shared<const DeformingSurface>(std::move(made));
   Motion motion;
+  motion.points_m = surface->points_m;
+  motion.mesh = [surface](Eigen::Index f) {
+    FrameMesh mesh{shape_of(surface->vertices_m, f), surface->triangles};
+    if (!surface->rig.empty())
+      for (const RigBox& box : surface->rig[static_cast<std::size_t>(f)]) add_box(mesh, box);
+    return mesh;
+  };
+  motion.material_m = motion.mesh(0).vertices_m;
+  return motion;
+}
+
+Motion motion_of(const Animatronic& animatronic, const AnimatronicOptions& options) {
+  Motion motion = motion_of(animatronic.make(options));
   motion.kind = animatronic.info().id;
   motion.source = "simulated: " + animatronic.info().sentence;
-  motion.points_m = surface->points_m;
-  motion.material_m = shape_of(surface->vertices_m, 0);
-  motion.mesh = [surface](Eigen::Index f) { return FrameMesh{shape_of(surface->vertices_m, f), surface->triangles}; };
   return motion;
 }
 

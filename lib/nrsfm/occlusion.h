@@ -26,7 +26,9 @@ struct Motion {
   std::vector<std::filesystem::path> files;  // that it was read from
   Eigen::Index frames() const { return points_m.rows() / 3; }
 };
+// The surface with its rig.
 Motion motion_of(const Animatronic& animatronic, const AnimatronicOptions& options);
+Motion motion_of(DeformingSurface surface);
 // Scans: a folder or pattern of PLY meshes, one per frame in the order of their names, and the points that are followed
 // on them (files.h: read_reconstruction). Points without a place in some frame are left out, and a note says how many.
 // Error(data | no_input) where they do not fit.

@@ -22,7 +22,8 @@ Motion wavy_sheet(Eigen::Index frames) {
   Motion motion;
   motion.kind = "sheet";
   motion.material_m = mesh->vertices_m;
-  DeformingSurface one{sheet.triangles, mesh->vertices_m, spread_anchors(sheet.triangles, sheet.rest, 80, 2), {}, 0};
+  DeformingSurface one{
+      sheet.triangles, mesh->vertices_m, spread_anchors(sheet.triangles, sheet.rest, {}, 80, 2), {}, {}, 0};
   motion.points_m = anchored(one).replicate(frames, 1);
   motion.mesh = [mesh](Eigen::Index) { return *mesh; };
   return motion;

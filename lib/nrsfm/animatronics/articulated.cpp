@@ -1,5 +1,5 @@
 // An arm of four rigid links with three joints, in a sleeve of soft rubber. The sleeve is glued to the links and free
-// about the joints, where it finds its own equilibrium.
+// about the joints, where it finds its own equilibrium. Rig: the motor of 60 mm that holds the first link, on a column.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -105,7 +105,12 @@ class Articulated : public Animatronic {
       place(0, start, false);
       shell.settle(start);
     }
-    return Play(shell, start, options).run([&](double s, Eigen::Matrix3Xd& x) { place(s, x, false); });
+    return Play(shell, start, options)
+        .run([&](double s, Eigen::Matrix3Xd& x) { place(s, x, false); },
+             [](double) {
+               return Rig{upright_box({-0.015, 0, 0}, {0.03, 0.03, 0.03}),
+                          upright_box({-0.015, 0, -0.08}, {0.015, 0.015, 0.05})};
+             });
   }
 };
 

@@ -1,5 +1,6 @@
 // A rubber ball in a cup, glued to it up to 30 degrees below its equator, loses its air: it shrinks while it is taut,
 // then a dent falls in where it is worn flat. The gas inside obeys p V = c against the air outside; c falls.
+// Rig: the block that the cup is milled into.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -80,7 +81,10 @@ class Deflation : public Animatronic {
     Eigen::Matrix3Xd start = ball.rest;
     start.array() *= swelling;
     start.row(2).array() += radius_m * (swelling - 1);
-    return Play(shell, start, options).run(lead);
+    return Play(shell, start, options).run(lead, [](double) {
+      constexpr double rim_m = -0.5 * radius_m, floor_m = -radius_m - 0.01;
+      return Rig{upright_box({0, 0, (rim_m + floor_m) / 2}, {0.095, 0.095, (rim_m - floor_m) / 2})};
+    });
   }
 };
 

@@ -1,6 +1,7 @@
 // A sheet that is torn: the trouser tear test (ISO 6383-1). Two legs of a notched sheet are pulled apart, one up, one
 // down, and the tear runs along the line of symmetry. The two banks of that line are held together by bonds; one breaks
 // where its force exceeds the strength, and the shape after it is the equilibrium without it. A tear does not heal.
+// Rig: a clamp 20 mm thick on a block, grips of 16 mm on rods, under a portal of 20 mm bars 250 mm tall.
 #include <cmath>
 #include <map>
 
@@ -65,14 +66,29 @@ class Tearing : public Animatronic {
       const bool grip = rest(0, v) > length_m * 0.499 && std::abs(rest(1, v)) > 0.12 * width_m;
       shell.fixed[static_cast<std::size_t>(v)] = clamp || grip;
     }
+    const auto moved = [&](double s, bool upper) {  // how far a grip has come
+      const double path = reach * eased(s), up = upper ? path : -uneven * path;
+      return Eigen::Vector3d(-back * std::abs(up), 0.15 * up, up);
+    };
     const auto lead = [&](double s, Eigen::Matrix3Xd& x) {
       for (Eigen::Index v = 0; v < rest.cols(); ++v) {
         if (!shell.fixed[static_cast<std::size_t>(v)]) continue;
         x.col(v) = rest.col(v);
-        if (rest(0, v) < 0) continue;
-        const double path = reach * eased(s), up = rest(1, v) > 0 ? path : -uneven * path;
-        x.col(v) += Eigen::Vector3d(-back * std::abs(up), 0.15 * up, up);
+        if (rest(0, v) > 0) x.col(v) += moved(s, rest(1, v) > 0);
       }
+    };
+    const auto rig = [&](double s) {
+      constexpr double held_m = clamped * length_m / cells, wide_m = width_m / 2 + 0.008;
+      Rig parts{upright_box({(held_m - length_m) / 2 - 0.002, 0, 0}, {held_m / 2 + 0.002, wide_m, 0.01}),
+                upright_box({-length_m / 2 - 0.03, 0, -0.01}, {0.025, 0.05, 0.03})};
+      for (const double y : {-1.0, 1.0}) {
+        const Eigen::Vector3d grip = Eigen::Vector3d(length_m / 2 + 0.004, y * 0.28 * width_m, 0) + moved(s, y > 0);
+        parts.push_back(upright_box(grip, {0.008, 0.2 * width_m, 0.008}));
+        parts.push_back(upright_box(grip + Eigen::Vector3d(0.01, 0, y * 0.05), {0.006, 0.006, 0.058}));
+        parts.push_back(upright_box({0.115, y * (wide_m + 0.02), 0.01}, {0.01, 0.01, 0.12}));
+      }
+      parts.push_back(upright_box({0.115, 0, 0.14}, {0.01, wide_m + 0.03, 0.01}));
+      return parts;
     };
     const auto tear = [&](const Eigen::Matrix3Xd& x) {
       std::size_t worst = shell.bonds.size();
@@ -83,7 +99,7 @@ class Tearing : public Animatronic {
       shell.bonds[worst].broken = true;
       return true;
     };
-    return Play(shell, rest, options).run(lead, tear);
+    return Play(shell, rest, options).run(lead, rig, tear);
   }
 };
 
