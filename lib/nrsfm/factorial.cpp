@@ -27,7 +27,7 @@ void leave_out_unseen(Sequence& sequence, double least_seen) {
   if (kept.size() < 4)
     throw Error(Exit::data, sequence.name,
                 "has " + std::to_string(kept.size()) + " points that are seen in " + shortest_text(least) + " frames",
-                "4 is the least; take another path");
+                "4 is the least; take more frames, or another path");
   keep_points(sequence, kept);
 }
 
