@@ -8,8 +8,9 @@
 //   M   H_p = [m_p V_p] from sum_f (E[y y'] (x) D_f' D_f) vec H_p = vec sum_f D_f' (w - t_f) E[y]',  y = [1; z]
 //       camera: least squares on the mean shape, plus c^2 trace(R Q R'), Q = sum_p V_p Lambda_f^-1 V_p'
 //       sigma^2: the mean expected squared residual
-// Missing tracks need nothing besides. Start: rigid factorization, z from the largest temporal modes of its residuals.
-// Left out: the paper's linear dynamics of z (its EM-LDS).
+// Missing tracks need nothing besides. Start: the cameras of csf and the rigid shape that they see, z from the largest
+// temporal modes of its residuals; the paper starts at rigid cameras (camera_rank=1), from where walking ends at four
+// times the error. Left out: the paper's linear dynamics of z (its EM-LDS).
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -157,6 +158,11 @@ EmState start_state(const Start& start, Eigen::Index terms) {
   return state;
 }
 
+// Shapes that so many points and frames can have.
+Eigen::Index most_shapes(const Sequence& sequence) {
+  return std::max<Eigen::Index>(1, std::min(sequence.points() - 1, 2 * sequence.frames()) / 3);
+}
+
 class EmPpca : public Solver {
  public:
   const SolverInfo& info() const override {
@@ -169,23 +175,20 @@ class EmPpca : public Solver {
         true,
         true,
         false,
-        {rank_parameter("deformations besides the mean shape, K"),
-         {"camera_rank", 1, 1, 100, true, "rank at which the first rotations are estimated; 1: rigid, as the paper"},
-         free_scales_parameter()}};
+        {rank_parameter("deformations besides the mean shape, K"), camera_rank_parameter(), free_scales_parameter()}};
     return info;
   }
 
   Solution solve(const Sequence& sequence, const SolverOptions& options) const override {
     const bool free_scales = free_scales_of(info(), sequence, options);
     const Eigen::Index rank = std::max<Eigen::Index>(1, terms_of(info(), sequence, options, "rank", 1e-2, 8));
-    const Eigen::Index camera_rank = terms_of(info(), sequence, options, "camera_rank", 1, 1);
-    const Start start = start_from(sequence, camera_rank, {free_scales, options.seed});
+    Solution solution;
+    const Start start = start_for(info(), sequence, options, std::min(rank + 1, most_shapes(sequence)), solution);
     EmState state = start_state(start, rank);
     solve_basis(sequence, state);
     state.variance = expected_variance(sequence, state);
     const double floor = 1e-14 * start.w.squaredNorm() / static_cast<double>(start.w.size());
     const int most = options.most_iterations > 0 ? options.most_iterations : 150;
-    Solution solution;
     solution.converged = false;
     while (solution.iterations < most && !solution.converged) {
       throw_if_interrupted();
@@ -199,9 +202,7 @@ class EmPpca : public Solver {
       state.variance = variance;
     }
     fill_answer(sequence, state, solution.reconstruction);
-    solution.values = {{"rank", static_cast<double>(rank)},
-                       {"camera_rank", static_cast<double>(camera_rank)},
-                       {"free_scales", free_scales ? 1 : 0}};
+    solution.values["rank"] = static_cast<double>(rank);
     return solution;
   }
 
