@@ -13,7 +13,6 @@ namespace {
 
 constexpr Eigen::Index most_frames = 48, most_points = 40, fewest_points = 8, fewest_frames = 8;
 constexpr double shape_share = 1e-3, cosine_share = 1e-3, constant_share = 1e-3;
-constexpr double most_cosines = 0.6;  // of the frames: beyond, weights are free in every frame
 
 std::string text(Eigen::Index n) {
   return std::to_string(n);
@@ -53,7 +52,7 @@ Weights within(Eigen::MatrixXd omega, Eigen::MatrixXd x, bool held) {
   return {std::move(omega), std::move(x), Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>::Constant(d, terms, held)};
 }
 
-Weights weights_of(const Eigen::MatrixXd& u, Eigen::Index frames_taken) {
+Weights weights_of(const Eigen::MatrixXd& u) {
   const Eigen::Index frames = u.rows(), terms = u.cols();
   const double size = std::sqrt(static_cast<double>(frames));
   const Eigen::MatrixXd cosines = dct_basis(frames, frames), spectrum = cosines.transpose() * u;
@@ -61,8 +60,6 @@ Weights weights_of(const Eigen::MatrixXd& u, Eigen::Index frames_taken) {
   double beyond = 0;
   while (d > terms && (beyond += spectrum.row(d - 1).squaredNorm()) <= cosine_share * cosine_share * double(terms)) --d;
   if (d == terms) return within(size * cosines.leftCols(d), Eigen::MatrixXd::Identity(d, d), true);
-  if (double(d) <= most_cosines * double(frames_taken))
-    return within(size * cosines.leftCols(d), spectrum.topRows(d), false);
   const Eigen::VectorXd constant = Eigen::VectorXd::Constant(frames, 1 / size), inside = u.transpose() * constant;
   if (inside.norm() < 1 - constant_share * constant_share)
     return within(Eigen::MatrixXd::Identity(frames, frames), size * u, false);
@@ -190,7 +187,7 @@ SolvedModel solved_model(const Solved& solved, bool all) {
   m.frames = all ? every : evenly(every, std::max(most_frames, 5 * terms));
   take_points(solved, estimated, terms, all, m);
   for (const Eigen::Index f : m.frames) m.rotation.push_back(completed(r.rotations[static_cast<std::size_t>(f)]));
-  const Weights weights = weights_of(svd.matrixU().leftCols(terms), m.frame_count());
+  const Weights weights = weights_of(svd.matrixU().leftCols(terms));
   take_frames(weights, m);
   const Eigen::MatrixXd basis = (weights.omega * weights.x).colPivHouseholderQr().solve(one_row_a_frame(r, m.points));
   for (Eigen::Index p = 0; p < m.point_count(); ++p) m.basis.emplace_back(basis.middleCols<3>(3 * p).transpose());

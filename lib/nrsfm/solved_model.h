@@ -14,11 +14,12 @@ struct Solved {
   std::string place;              // for messages
 };
 
-// The shapes' weights over time are their temporal singular vectors, as many as leave a thousandth of the shapes.
-// Where d cosines hold these, d <= 0.6 of the frames, they may move within the cosines as the solver's did; d = K: not
-// at all. Otherwise they are free in every frame, except for a constant that they hold. At most 48 frames (more where
-// the shapes are many) and 40 points take part, evenly taken, unless `all` do. Error(data) where rotations are missing,
-// or too little is left to judge a model of so many shapes.
+// The shapes' weights over time are their temporal singular vectors, as many as leave a thousandth of the shapes. Where
+// as many cosines hold these they are fixed, as a trajectory basis fixes them. Otherwise they are free in every frame,
+// except for a constant that they hold: that weights are smooth is a solver's guess, and a scale for every frame would
+// take up whatever of the deformation is not. At most 48 frames (more where the shapes are many) and 40 points take
+// part, evenly taken, unless `all` do.
+// Error(data) where rotations are missing, or too little is left to judge a model of so many shapes.
 SolvedModel solved_model(const Solved& solved, bool all = false);
 
 }  // namespace gonio::nrsfm
