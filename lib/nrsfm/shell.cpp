@@ -77,9 +77,9 @@ void Shell::assemble_membrane(const Eigen::Matrix3Xd& x) {
   for (std::size_t k = 0; k < triangles_.size(); ++k) {
     const Element& e = triangle_[k];
     const Eigen::Matrix<double, 3, 2> f = deformation(k, x);
-    const Eigen::Matrix2d s = stress(e, f);
+    const Eigen::Matrix2d s = stress(f);
     const Eigen::Matrix3d ff = f * f.transpose();
-    const double c = e.area * e.weight * material_.young_pa * material_.thickness_m / (1 - nu * nu);
+    const double c = e.area * material_.young_pa * material_.thickness_m / (1 - nu * nu);
     std::array<Eigen::Vector3d, 3> fn;
     for (std::size_t i = 0; i < 3; ++i) fn[i] = f * e.slope[i];
     for (std::size_t i = 0; i < 3; ++i) {

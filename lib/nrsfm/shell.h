@@ -54,7 +54,6 @@ class Shell {
   double gas_nm = 0, outside_pa = 0;  // c and p0; c = 0: no gas
   std::vector<char> fixed;            // one per vertex
   std::vector<Bond> bonds;
-  void weaken(std::uint32_t triangle, double factor) { triangle_[triangle].weight *= factor; }
 
   double energy(const Eigen::Matrix3Xd& x) const;
   Eigen::Matrix3Xd gradient(const Eigen::Matrix3Xd& x, Eigen::VectorXd* magnitude = nullptr) const;
@@ -70,7 +69,7 @@ class Shell {
  private:
   struct Element {
     std::array<Eigen::Vector2d, 3> slope;  // gradients of the shape functions in the plane of rest
-    double area = 0, weight = 1;
+    double area = 0;
     std::array<int, 9> slot{};
   };
   struct Hinge {
@@ -88,14 +87,13 @@ class Shell {
   }
   void find_hinges(const Eigen::Matrix3Xd& rest);
   void lay_out();  // of the sparse matrix, for what is fixed
-  void assemble(const Eigen::Matrix3Xd& x);
   void assemble_membrane(const Eigen::Matrix3Xd& x);
   void assemble_rest(const Eigen::Matrix3Xd& x, bool exact);
   void add_curvature(const Hinge& h, std::array<Eigen::Vector3d, 4> corner, double moment);
   double search(Eigen::Matrix3Xd& x, double before, const Eigen::VectorXd& step, double slope) const;
   Eigen::VectorXd downhill(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& gradient, bool exact);
   Eigen::Matrix3Xd volume_gradient(const Eigen::Matrix3Xd& x) const;
-  Eigen::Matrix2d stress(const Element& element, const Eigen::Matrix<double, 3, 2>& f) const;
+  Eigen::Matrix2d stress(const Eigen::Matrix<double, 3, 2>& f) const;
   Eigen::Matrix<double, 3, 2> deformation(std::size_t triangle, const Eigen::Matrix3Xd& x) const;
   void add(int block, const Eigen::Matrix3d& value);
 

@@ -91,10 +91,10 @@ Eigen::Matrix<double, 3, 2> Shell::deformation(std::size_t k, const Eigen::Matri
   return f;
 }
 
-Eigen::Matrix2d Shell::stress(const Element& element, const Eigen::Matrix<double, 3, 2>& f) const {
+Eigen::Matrix2d Shell::stress(const Eigen::Matrix<double, 3, 2>& f) const {
   const Eigen::Matrix2d strain = (f.transpose() * f - Eigen::Matrix2d::Identity()) / 2;
   const double nu = material_.poisson;
-  const double stiffness = element.weight * material_.young_pa * material_.thickness_m / (1 - nu * nu);
+  const double stiffness = material_.young_pa * material_.thickness_m / (1 - nu * nu);
   return stiffness * ((1 - nu) * strain + nu * strain.trace() * Eigen::Matrix2d::Identity());
 }
 
@@ -103,7 +103,7 @@ double Shell::energy(const Eigen::Matrix3Xd& x) const {
   for (std::size_t k = 0; k < triangles_.size(); ++k) {
     const Eigen::Matrix<double, 3, 2> f = deformation(k, x);
     const Eigen::Matrix2d strain = (f.transpose() * f - Eigen::Matrix2d::Identity()) / 2;
-    sum += triangle_[k].area / 2 * (stress(triangle_[k], f).array() * strain.array()).sum();
+    sum += triangle_[k].area / 2 * (stress(f).array() * strain.array()).sum();
   }
   for (const Hinge& h : hinges_) {
     if (!holds(h)) continue;
@@ -132,7 +132,7 @@ Eigen::Matrix3Xd Shell::gradient(const Eigen::Matrix3Xd& x, Eigen::VectorXd* mag
   for (std::size_t k = 0; k < triangles_.size(); ++k) {
     const Element& e = triangle_[k];
     const Eigen::Matrix<double, 3, 2> f = deformation(k, x);
-    const Eigen::Matrix<double, 3, 2> p = e.area * (f * stress(e, f));
+    const Eigen::Matrix<double, 3, 2> p = e.area * (f * stress(f));
     for (std::size_t i = 0; i < 3; ++i) add_force(triangles_[k][i], p * e.slope[i]);
   }
   std::array<Eigen::Vector3d, 4> turn;
