@@ -12,7 +12,7 @@ namespace gonio::nrsfm {
 namespace {
 
 constexpr Eigen::Index most_frames = 48, most_points = 40, fewest_points = 8, fewest_frames = 8;
-constexpr double shape_share = 1e-3, cosine_share = 1e-3, constant_share = 1e-3;
+constexpr double shape_share = 1e-3, cosine_share = 1e-3;
 
 std::string text(Eigen::Index n) {
   return std::to_string(n);
@@ -60,20 +60,7 @@ Weights weights_of(const Eigen::MatrixXd& u) {
   double beyond = 0;
   while (d > terms && (beyond += spectrum.row(d - 1).squaredNorm()) <= cosine_share * cosine_share * double(terms)) --d;
   if (d == terms) return within(size * cosines.leftCols(d), Eigen::MatrixXd::Identity(d, d), true);
-  const Eigen::VectorXd constant = Eigen::VectorXd::Constant(frames, 1 / size), inside = u.transpose() * constant;
-  if (inside.norm() < 1 - constant_share * constant_share)
-    return within(Eigen::MatrixXd::Identity(frames, frames), size * u, false);
-  // [1, V]: V spans what of u is left beside the constant.
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(inside);
-  const Eigen::MatrixXd turn = qr.householderQ() * Eigen::MatrixXd::Identity(terms, terms);
-  Eigen::MatrixXd omega(frames, frames + 1), x = Eigen::MatrixXd::Zero(frames + 1, terms);
-  omega << Eigen::VectorXd::Ones(frames), Eigen::MatrixXd::Identity(frames, frames);
-  x(0, 0) = 1;
-  x.block(1, 1, frames, terms - 1) = size * u * turn.rightCols(terms - 1);
-  Weights w = within(std::move(omega), std::move(x), false);
-  w.held.col(0) = true;
-  w.held.row(0) = true;
-  return w;
+  return within(Eigen::MatrixXd::Identity(frames, frames), size * u, false);
 }
 
 // Rows of `omega` for the frames that take part; columns that vanish there go.
