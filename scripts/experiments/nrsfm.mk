@@ -7,6 +7,7 @@ PATHS   = circle half-circle line flyby zigzag tricky
 CAMERAS = orthographic perspective
 MISSING = with without
 SOLVERS = all
+SET     =
 FRAMES  = 40
 POINTS  = 60
 MODEL   = pairs
@@ -28,8 +29,8 @@ $(KINDS:%=run/%.json): run/%.json: | run
 
 # 2: some solvers failed on this sequence; its notes say why.
 $(CELLS:%=run/%.json): run/%.json: run/$$(firstword $$(subst -, ,$$*)).json
-> nrsfm-solve $(SOLVERS:%=--solver %) --sequence $* --threads 1 --resume \
->   --out run/answers -i $< -o $@ || test $$? -eq 2
+> nrsfm-solve $(SOLVERS:%=--solver %) $(SET:%=--set %) --sequence $* \
+>   --threads 1 --resume --out run/answers -i $< -o $@ || test $$? -eq 2
 
 $(CELLS:%=run/%.csv): run/%.csv: run/%.json
 > nrsfm-eval --measure robust-rms --centre --draws 0 --threads 1 \
