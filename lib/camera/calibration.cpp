@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "camera/bundle_adjustment.h"
+#include "stats/intervals.h"
 
 namespace gonio::camera {
 namespace {
@@ -21,13 +22,6 @@ constexpr std::size_t few_views = 6;              // too few to call one of them
 constexpr int weighing_rounds = 4;
 constexpr double largest_precision = 9;  // and its inverse: no view outweighs another by more than 81
 
-double median(std::vector<double> v) {
-  if (v.empty()) return 0;
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
-
 bool spans_a_plane(const View& view, const Board& board) {  // corners on one line allow no pose
   std::set<int> columns, rows;
   for (const Corner& c : view.corners) {
@@ -41,7 +35,7 @@ bool spans_a_plane(const View& view, const Board& board) {  // corners on one li
 double robust_noise(const std::vector<Vec2>& residual) {
   std::vector<double> sizes;
   for (const Vec2 r : residual) sizes.push_back(norm(r));
-  return median(sizes) / std::sqrt(2 * std::log(2.0));
+  return stats::median(sizes) / std::sqrt(2 * std::log(2.0));
 }
 
 double rms(const std::vector<Vec2>& residual) {
@@ -79,7 +73,7 @@ void set_precisions(const std::vector<View>& views, const CalibrationSetup& setu
       if (views[i].camera == c && state.view_weights[i] > 0 && views[i].noise_px > 0)
         known.push_back(views[i].noise_px);
     }
-    const double usual = median(known);
+    const double usual = known.empty() ? 0 : stats::median(known);
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (views[i].camera != c || state.view_weights[i] == 0) continue;
       const double noise = views[i].noise_px > 0 ? views[i].noise_px : usual;
@@ -88,18 +82,18 @@ void set_precisions(const std::vector<View>& views, const CalibrationSetup& setu
         variance[i].push_back(sigma * sigma);
       }
       const double scatter = robust_noise(residuals(views[i], setup, state, i));
-      excess.push_back(scatter * scatter - median(variance[i]));
+      excess.push_back(scatter * scatter - stats::median(variance[i]));
     }
-    const double common = std::max(0.0, median(excess));
+    const double common = std::max(0.0, stats::median(excess));
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (views[i].camera != c) continue;
       for (double& v : variance[i]) all.push_back(v = std::max(common + v, 1e-12));
     }
   }
-  const double reference = median(all);
+  const double reference = stats::median(all);
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (variance[i].empty()) continue;
-    result.views[i].sigma_px = std::sqrt(median(variance[i]));
+    result.views[i].sigma_px = std::sqrt(stats::median(variance[i]));
     for (std::size_t k = 0; k < variance[i].size(); ++k) {
       state.precision[i][k] = std::clamp(reference / variance[i][k], 1 / largest_precision, largest_precision);
     }
@@ -119,7 +113,7 @@ bool weigh_views(const std::vector<View>& views, const CalibrationSetup& setup, 
       used.push_back(scatter[i]);
     }
     if (used.size() < few_views) continue;
-    const double usual = median(used);
+    const double usual = stats::median(used);
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (scatter[i] == 0) continue;
       const double ratio = scatter[i] / usual;
@@ -190,7 +184,7 @@ void store_noise(const std::vector<View>& views, const Adjustment& state, Calibr
       if (views[i].camera != c || state.view_weights[i] == 0) continue;
       precision.insert(precision.end(), state.precision[i].begin(), state.precision[i].end());
     }
-    if (!precision.empty()) result.cameras[c].noise_px = result.noise_px / std::sqrt(median(precision));
+    if (!precision.empty()) result.cameras[c].noise_px = result.noise_px / std::sqrt(stats::median(precision));
   }
 }
 

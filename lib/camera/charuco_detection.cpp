@@ -22,6 +22,7 @@
 #include "camera/corner_refinement.h"
 #include "camera/grey_picture.h"
 #include "camera/marker_dictionary.h"
+#include "stats/intervals.h"
 
 namespace gonio::camera {
 namespace {
@@ -266,8 +267,7 @@ void grow(const GreyPicture& picture, const Board& board, bool legacy, const Det
       sigmas.push_back(c.sigma_px);
       present.insert(c.id);
     }
-    std::ranges::nth_element(sigmas, sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2));
-    const double usual = sigmas[sigmas.size() / 2];
+    const double usual = stats::median(sigmas);
     std::map<int, Prediction> predictions;
     std::vector<Prediction> list;
     for (int id = 0; id < board.corners(); ++id) {

@@ -14,6 +14,7 @@
 
 #include "camera/board_detectors.h"
 #include "camera/grey_picture.h"
+#include "stats/intervals.h"
 
 namespace gonio::camera {
 namespace {
@@ -27,12 +28,6 @@ constexpr double most_times_expected = 4;
 constexpr double mad_to_sigma = 1.4826;  // of a normal distribution
 
 using Field = std::map<int, Vec2>;  // by corner: deviation from the plane homography, px
-
-double median(std::vector<double> v) {
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
 
 Field deviations(const std::vector<Corner>& corners, const Board& board, double& square_px) {
   std::vector<cv::Point2d> from, to;
@@ -53,7 +48,7 @@ Field deviations(const std::vector<Corner>& corners, const Board& board, double&
     field[corners[i].id] = {to[i].x - mapped[i].x, to[i].y - mapped[i].y};
     sides.push_back(cv::norm(shifted[i] - mapped[i]));
   }
-  square_px = median(sides);
+  square_px = stats::median(sides);
   return field;
 }
 
@@ -79,7 +74,8 @@ double noise_of(const Field& field, const Board& board) {
   const Eigen::MatrixXd left = b - a * solver.solve(b);
   std::vector<double> sizes;
   for (const double v : left.reshaped()) sizes.push_back(std::abs(v));
-  return mad_to_sigma * median(sizes) * std::sqrt(static_cast<double>(n) / static_cast<double>(n - solver.rank()));
+  return mad_to_sigma * stats::median(sizes) *
+         std::sqrt(static_cast<double>(n) / static_cast<double>(n - solver.rank()));
 }
 
 // What a quadratic through the neighbours (up to two steps away) leaves of the corner's deviation; 0 with too few
@@ -110,7 +106,7 @@ void examine(Detection& detection, const Board& board) {
   if (detection.corners.empty()) return;
   std::vector<double> sigmas;
   for (const Corner& c : detection.corners) sigmas.push_back(c.sigma_px);
-  const double expected = detection.noise_px = median(sigmas);
+  const double expected = detection.noise_px = stats::median(sigmas);
   if (detection.corners.size() < 8) return;
   double square_px = 0;
   Field field = deviations(detection.corners, board, square_px);

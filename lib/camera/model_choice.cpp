@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "stats/intervals.h"
 
 namespace gonio::camera {
 namespace {
@@ -97,9 +98,7 @@ double typical_px(const std::vector<Fold>& folds) {
     }
   }
   if (sizes.empty()) return HUGE_VAL;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle / std::sqrt(2 * std::log(2.0));
+  return stats::median(sizes) / std::sqrt(2 * std::log(2.0));
 }
 
 std::string called(const ModelScore& score) {

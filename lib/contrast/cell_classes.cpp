@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stats/intervals.h"
+
 namespace gonio::contrast {
 namespace {
 
@@ -27,12 +29,9 @@ Eigen::MatrixXd terms_of(const CellPattern& pattern, const std::vector<std::size
 }
 
 double scatter_of(const Eigen::VectorXd& residual, double degrees) {
-  Eigen::VectorXd size = residual.cwiseAbs();
-  const auto n = size.size();
-  double* const middle = size.data() + n / 2;
-  std::nth_element(size.data(), middle, size.data() + n);
-  const double median = n % 2 == 1 ? *middle : (*middle + *std::max_element(size.data(), middle)) / 2;
-  return 1.4826 * median * std::sqrt(static_cast<double>(n) / degrees);
+  const Eigen::VectorXd size = residual.cwiseAbs();
+  const auto n = static_cast<std::size_t>(size.size());
+  return 1.4826 * stats::median({size.data(), n}) * std::sqrt(static_cast<double>(n) / degrees);
 }
 
 using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;  // terms x terms

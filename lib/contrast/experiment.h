@@ -20,13 +20,13 @@
 #include <utility>
 #include <vector>
 
+#include "geom/angle.h"
 #include "geom/vector.h"
 
 namespace gonio::contrast {
 
 enum class LightPlane { across, along };
 enum class Definition { difference, michelson };
-inline constexpr double degree = pi / 180;
 
 struct Experiment {
   double light_rad = 10 * degree;  // from the camera

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "stats/intervals.h"
+
 namespace gonio::explain {
 
 NoiseFindings settle_noise(System& system, const std::vector<double>& start) {
@@ -39,9 +41,8 @@ NoiseFindings settle_noise(System& system, const std::vector<double>& start) {
   }
   std::vector<double> level;
   for (const auto& [block, s] : blocks) level.push_back(s.first / s.second);
-  std::nth_element(level.begin(), level.begin() + static_cast<std::ptrdiff_t>(level.size() / 2), level.end());
   // Median of chi-square with two degrees over its mean is ln 2; for more rows a block it rises towards one.
-  const double bulk = std::max(1.0, level[level.size() / 2] / std::log(2.0));
+  const double bulk = std::max(1.0, stats::median(level) / std::log(2.0));
   for (const auto& [block, s] : blocks) {
     if (s.first / s.second <= 25 * bulk) continue;
     system.set_aside(block);

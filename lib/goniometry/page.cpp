@@ -12,6 +12,7 @@
 #include "render/preview.h"
 #include "report/number_text.h"
 #include "report/page.h"
+#include "stats/intervals.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -27,10 +28,7 @@ double median_relative_sigma(const Reconstruction& r) {
   for (std::size_t i = 0; i < std::min(r.table.brdf_per_sr.size(), r.sigma.brdf_per_sr.size()); ++i)
     if (r.table.brdf_per_sr[i] > 0 && r.sigma.brdf_per_sr[i] > 0)
       relative.push_back(static_cast<double>(r.sigma.brdf_per_sr[i]) / static_cast<double>(r.table.brdf_per_sr[i]));
-  if (relative.empty()) return std::nan("");
-  const auto middle = relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2);
-  std::ranges::nth_element(relative, middle);
-  return *middle;
+  return stats::median(relative);
 }
 
 std::vector<KeyNumber> key_numbers(const Outcome& outcome) {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/random.h"
+#include "stats/intervals.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -31,12 +32,6 @@ Eigen::MatrixXd design(const std::vector<PatchCell>& cells, int terms) {
   return a;
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 std::vector<double> sizes_of(const Eigen::VectorXd& residuals) {
   std::vector<double> sizes(static_cast<std::size_t>(residuals.size()));
   for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = std::abs(residuals[static_cast<Eigen::Index>(i)]);
@@ -48,8 +43,8 @@ Eigen::VectorXd least_median(const Eigen::MatrixXd& a, const Eigen::VectorXd& y)
   const auto terms = a.cols(), count = a.rows();
   Random random(1, static_cast<std::uint64_t>(count));
   Eigen::VectorXd best = Eigen::VectorXd::Zero(terms);
-  best[0] = median_of(std::vector<double>(y.data(), y.data() + count));
-  double least = median_of(sizes_of(y - a * best));
+  best[0] = stats::median({y.data(), static_cast<std::size_t>(count)});
+  double least = stats::median(sizes_of(y - a * best));
   std::vector<Eigen::Index> order(static_cast<std::size_t>(count));
   std::iota(order.begin(), order.end(), 0);
   for (int trial = 0; trial < trials; ++trial) {
@@ -63,7 +58,7 @@ Eigen::VectorXd least_median(const Eigen::MatrixXd& a, const Eigen::VectorXd& y)
     }
     const Eigen::VectorXd x = through.fullPivLu().solve(values);
     if (!x.allFinite()) continue;
-    const double median = median_of(sizes_of(y - a * x));
+    const double median = stats::median(sizes_of(y - a * x));
     if (median < least) least = median, best = x;
   }
   return best;
@@ -73,7 +68,7 @@ Eigen::VectorXd least_median(const Eigen::MatrixXd& a, const Eigen::VectorXd& y)
 Eigen::VectorXd refined(const Eigen::MatrixXd& a, const Eigen::VectorXd& y, Eigen::VectorXd x, double floor) {
   for (int step = 0; step < refinements; ++step) {
     const Eigen::VectorXd r = y - a * x;
-    const double limit = 2.5 * std::max(floor, mad_to_sigma * median_of(sizes_of(r)));
+    const double limit = 2.5 * std::max(floor, mad_to_sigma * stats::median(sizes_of(r)));
     Eigen::VectorXd near(a.rows());
     for (Eigen::Index i = 0; i < a.rows(); ++i) near[i] = std::abs(r[i]) <= limit ? 1 : 0;
     if (near.sum() < 2.0 * static_cast<double>(a.cols())) break;
@@ -84,11 +79,11 @@ Eigen::VectorXd refined(const Eigen::MatrixXd& a, const Eigen::VectorXd& y, Eige
 
 // How far each cell leaves the course of the majority, relative to the course; 0 where it does not.
 std::vector<double> deviations(const Eigen::MatrixXd& a, const Eigen::VectorXd& y, const std::vector<double>& noise) {
-  const double floor = std::max(median_of(noise), 1e-6 * median_of(sizes_of(y)));
+  const double floor = std::max(stats::median(noise), 1e-6 * stats::median(sizes_of(y)));
   const Eigen::VectorXd course = a * refined(a, y, least_median(a, y), floor);
   const Eigen::VectorXd r = y - course;
-  const double spread = std::max(floor, mad_to_sigma * median_of(sizes_of(r)));
-  const double least = least_deviation * median_of(sizes_of(course));
+  const double spread = std::max(floor, mad_to_sigma * stats::median(sizes_of(r)));
+  const double least = least_deviation * stats::median(sizes_of(course));
   std::vector<double> result(noise.size());
   for (std::size_t i = 0; i < noise.size(); ++i) {
     const double off = r[static_cast<Eigen::Index>(i)];

@@ -9,6 +9,7 @@
 #include "goniometry/irradiance.h"
 #include "goniometry/patch_cells.h"
 #include "scene/scene.h"
+#include "stats/intervals.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -41,12 +42,7 @@ struct Sums {
     area += pixel.area_m2;
     ratios.push_back(mean(l * inverse_of(t)));
   }
-  double middle() const {
-    std::vector<double> sorted = ratios;
-    const auto half = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::ranges::nth_element(sorted, half);
-    return sorted.size() % 2 == 1 ? *half : 0.5 * (*half + *std::max_element(sorted.begin(), half));
-  }
+  double middle() const { return stats::median(ratios); }
 };
 
 class Reader {

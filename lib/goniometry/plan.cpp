@@ -13,13 +13,13 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "geom/angle.h"
 #include "goniometry/reconstruction_parts.h"
 
 namespace gonio::goniometry {
 namespace {
 
 using Criterion = PlanOptions::Criterion;
-constexpr double degree = pi / 180;
 constexpr double azimuth_step = 15 * degree;
 constexpr double least_apart = 5 * degree;  // the lamp hides what is nearer to it
 constexpr int most_sweeps = 6;

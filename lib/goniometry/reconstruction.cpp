@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "geom/angle.h"
 #include "goniometry/reconstruction_parts.h"
 #include "surface/merl_table.h"
 
@@ -17,7 +18,6 @@ using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 constexpr std::size_t chunk_cells = 1024;
 constexpr float below_horizon = -1;
 constexpr double most_open = 0.2;  // of ln: beyond, a cell is known to a fifth or worse
-constexpr double degree = pi / 180;
 
 // Mapped values of all cells and their standard deviations, cell by cell, three channels.
 struct Mapped {

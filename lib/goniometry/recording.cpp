@@ -12,6 +12,7 @@
 #include "goniometry/recording_setup.h"
 #include "goniometry/tile.h"
 #include "render/sensor_chain.h"
+#include "stats/intervals.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -246,8 +247,7 @@ class Reduction {
         most = std::max(most, samples.f[r * bands() + b] / tile[static_cast<int>(b)]);
       ratios.push_back(most);
     }
-    std::ranges::nth_element(ratios, ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2));
-    const double ratio = ratios[ratios.size() / 2];
+    const double ratio = stats::median(ratios);
     const std::string place = recording_.tile->place;
     if (ratio < 1 / brightest_tile)
       throw Error(

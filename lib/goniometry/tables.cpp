@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "goniometry/tables_readings.h"
 #include "manifest/fields.h"
+#include "stats/intervals.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -113,9 +114,7 @@ std::vector<double> medians(const Readings& in) {
     std::vector<double> values;
     for (std::size_t i = b; i < in.f.size(); i += n)
       if (in.f[i] > 0) values.push_back(in.f[i]);
-    if (values.empty()) continue;
-    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-    out[b] = values[values.size() / 2];
+    if (!values.empty()) out[b] = stats::median(values);
   }
   return out;
 }

@@ -17,6 +17,7 @@
 #include "base/random.h"
 #include "nrsfm/errors.h"
 #include "nrsfm/robust_fit.h"
+#include "stats/intervals.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -36,11 +37,8 @@ struct Normalized {
   Eigen::Matrix3d turn_x, turn_q;  // before the search
 };
 
-double median_of(const Eigen::VectorXd& all) {
-  Eigen::VectorXd v = all;
-  double* const middle = v.data() + v.size() / 2;
-  std::nth_element(v.data(), middle, v.data() + v.size());
-  return v.size() % 2 == 1 ? *middle : 0.5 * (*middle + *std::max_element(v.data(), middle));
+double median_of(const Eigen::VectorXd& v) {
+  return stats::median({v.data(), static_cast<std::size_t>(v.size())});
 }
 
 // Rows: directions of least to largest spread, each towards the side of the longer tail; right-handed.

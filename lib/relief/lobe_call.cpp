@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "geom/angle.h"
 #include "io/picture.h"
 #include "relief/document.h"
 #include "relief/lobe_report.h"
@@ -17,8 +18,6 @@ namespace gonio::relief {
 namespace {
 
 using cli::Type;
-
-constexpr double degree = pi / 180;
 
 // "eta=1.5", "f0=0.9,0.8,0.6"; a smooth dielectric where nothing is said
 manifest::Parameters parameters_asked(const cli::Invocation& call) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "geom/angle.h"
 #include "io/picture.h"
 #include "report/colour_map.h"
 #include "report/number_text.h"
@@ -16,7 +17,7 @@ namespace {
 using report::number_text;
 using report::Series;
 
-constexpr double micro = 1e6, degree = pi / 180;
+constexpr double micro = 1e6;
 
 void paint(io::Image& image, int x, int y, report::Colour colour) {
   for (int c = 0; c < 3; ++c) image.at(x, y, c) = colour[static_cast<std::size_t>(c)];

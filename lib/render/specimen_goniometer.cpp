@@ -3,13 +3,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "geom/angle.h"
 #include "render/looking_at.h"
 
 namespace gonio::render {
 namespace {
 
 constexpr double patch_radius_m = 0.003, plate_m = 0.0075, tile_beside_m = 0.0085, tile_reflectance = 0.98;
-constexpr double degree = pi / 180;
 
 std::string text(const char* format, double angle_rad) {
   char buffer[32];

@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/random.h"
+#include "geom/angle.h"
 #include "io/ply.h"
 
 namespace gonio::render {
@@ -29,7 +30,7 @@ constexpr std::array<std::string_view, side> modules{                 // ISO/IEC
                                                      "############"};
 constexpr std::size_t worn = 4 * side + 8, scratched = 7 * side + 3;
 
-constexpr double cell_m = 0.001, apart_m = 0.2, distance_m = 0.3, degree = pi / 180;
+constexpr double cell_m = 0.001, apart_m = 0.2, distance_m = 0.3;
 constexpr double ridge_rad = 5 * degree, alpha = 0.2, spread = 0.02, quarter_rad = -90 * degree;
 constexpr double robot_m = 5e-5, robot_rad = 1e-4;
 

@@ -5,12 +5,13 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "geom/angle.h"
 #include "robot/pose_list.h"
 
 namespace gonio::robot {
 namespace {
 
-constexpr double millimetre = 1e-3, degree = pi / 180;
+constexpr double millimetre = 1e-3;
 
 std::vector<PoseConvention> named() {
   using enum RotationKind;

@@ -13,15 +13,18 @@ namespace gonio::stats {
 
 double quantile(std::span<const double> values, double p) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> sorted(values.begin(), values.end());
-  std::sort(sorted.begin(), sorted.end());
-  const double place = std::clamp(p, 0.0, 1.0) * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+  std::vector<double> v(values.begin(), values.end());
+  const double place = std::clamp(p, 0.0, 1.0) * static_cast<double>(v.size() - 1);
+  const auto below = v.begin() + static_cast<std::ptrdiff_t>(place);
+  std::nth_element(v.begin(), below, v.end());
+  const double between = place - std::floor(place);
+  if (between == 0) return *below;
+  return *below + between * (*std::min_element(below + 1, v.end()) - *below);
 }
 
-double median(std::span<const double> values) { return quantile(values, 0.5); }
+double median(std::span<const double> values) {
+  return quantile(values, 0.5);
+}
 
 double robust_sigma(std::span<const double> values) {
   const double centre = median(values);

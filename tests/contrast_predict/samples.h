@@ -21,7 +21,7 @@ inline contrast::Specimen ridged(double alpha_u, double alpha_v, double ridge_de
 }
 // The ridge angles of the experiment.
 inline contrast::Varied ridge_angles() {
-  return {"ridge_rad", {5 * contrast::degree, 10 * contrast::degree, 15 * contrast::degree, 20 * contrast::degree}};
+  return {"ridge_rad", {5 * degree, 10 * degree, 15 * degree, 20 * degree}};
 }
 inline const contrast::Means& means_over(const contrast::Prediction& p, const std::string& what) {
   for (const contrast::Means& m : p.means)

@@ -8,11 +8,10 @@
 #include "explain/engine.h"
 #include "explain/robot/robot_problem.h"
 #include "explain/robot_world.h"
+#include "geom/angle.h"
 
 namespace gonio::explain::tests {
 namespace {
-
-constexpr double degree = pi / 180;
 
 struct Answer {
   std::unique_ptr<RobotProblem> problem;

@@ -12,7 +12,6 @@
 namespace gonio::goniometry {
 namespace {
 
-using tests::degree;
 using tests::direction;
 
 // Three pictures of an even grey plate and a tile on it, without noise.

@@ -11,7 +11,6 @@
 namespace gonio::goniometry {
 namespace {
 
-using tests::degree;
 using tests::direction;
 
 manifest::FlatPatch disc(double radius_m) {

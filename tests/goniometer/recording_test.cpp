@@ -15,7 +15,6 @@
 namespace gonio::goniometry {
 namespace {
 
-using tests::degree;
 using tests::direction;
 
 constexpr double radius_m = 0.005, beside_m = 0.0135, camera_m = 0.45, light_m = 0.5;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "geom/angle.h"
 #include "goniometry/recording.h"
 #include "io/picture.h"
 #include "manifest/document.h"
@@ -13,8 +14,6 @@
 #include "scene/scene.h"
 
 namespace gonio::tests {
-
-inline constexpr double degree = pi / 180;
 
 inline Vec3 direction(double theta_rad, double phi_rad) {
   return {std::sin(theta_rad) * std::cos(phi_rad), std::sin(theta_rad) * std::sin(phi_rad), std::cos(theta_rad)};

@@ -13,8 +13,6 @@
 namespace gonio::goniometry {
 namespace {
 
-using tests::degree;
-
 void expect_found(const tests::RidgePlate& plate, std::uint64_t seed) {
   const tests::ScratchFolder folder;
   manifest::Document d = tests::ridge_recording(plate, {}, folder.path());

@@ -17,6 +17,7 @@
 #include "base/atomic_file.h"
 #include "base/random.h"
 #include "base/text.h"
+#include "geom/angle.h"
 #include "goniometry/plan.h"
 #include "goniometry/reconstruction.h"
 #include "goniometry/tables.h"
@@ -35,7 +36,7 @@ using goniometry::Samples;
 
 constexpr goniometry::Bins bins = {90, 18, 24};
 constexpr std::size_t counts[] = {5, 10, 20};
-constexpr double noise = 0.02, normal_95 = 1.96, degree = pi / 180;
+constexpr double noise = 0.02, normal_95 = 1.96;
 constexpr std::array<double, 4> edges_h = {5, 20, 45, 90};
 constexpr std::array<double, 3> edges_d = {30, 60, 90};
 constexpr std::size_t regions = edges_h.size() * edges_d.size();

@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "explain/tables/reflectance_rows.h"
+#include "geom/angle.h"
 #include "surface/surface.h"
 #include "tables/table_world.h"
 
 namespace gonio::explain::tables::tests {
-
-inline constexpr double degree = pi / 180;
 
 struct Paint {
   std::string base = R"({"model": "diffuse", "albedo": {"value": 0.3, "free": true}})";

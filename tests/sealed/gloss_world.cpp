@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/angle.h"
 #include "geom/vector.h"
 #include "sealed/film.h"
 #include "sealed/matter.h"
@@ -13,7 +14,7 @@
 namespace gonio::sealed {
 namespace {
 
-constexpr double f0 = 0.045, degree = pi / 180;
+constexpr double f0 = 0.045;
 
 // Roofs whose flanks rise by `tilt` to either side of v, level crests: a point is seen from where the next crest does
 // not hide it. Facets of roughness alpha on the flanks.

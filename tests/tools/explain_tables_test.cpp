@@ -9,6 +9,7 @@
 #include "base/random.h"
 #include "base/text.h"
 #include "data.h"
+#include "geom/angle.h"
 #include "manifest/document.h"
 #include "process.h"
 
@@ -47,8 +48,6 @@ class ExplainTables : public testing::Test {
   }
   ScratchFolder folder_;
 };
-
-constexpr double degree = 3.14159265358979323846 / 180;
 
 TEST_F(ExplainTables, ACsvBecomesAManifestThatRunsAgain) {
   write("d.csv", csv("theta [deg]", degree, 0.08));

@@ -8,6 +8,7 @@
 
 #include "explain/boards/boards_outcome.h"
 #include "explain/sentence.h"
+#include "stats/intervals.h"
 
 namespace gonio::explain {
 namespace {
@@ -46,10 +47,7 @@ std::map<long, Line> lines_of(const BoardsInput& input, std::size_t board, const
       row += 2;
     }
     if (view.board != board) continue;
-    for (auto& [place, mm] : own) {
-      std::nth_element(mm.begin(), mm.begin() + static_cast<std::ptrdiff_t>(mm.size() / 2), mm.end());
-      lines[place].mm.push_back(mm[mm.size() / 2]);
-    }
+    for (const auto& [place, mm] : own) lines[place].mm.push_back(stats::median(mm));
   }
   return lines;
 }

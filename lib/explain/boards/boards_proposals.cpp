@@ -5,13 +5,13 @@
 #include <numbers>
 
 #include "explain/boards/boards_outcome.h"
+#include "geom/angle.h"
 #include "manifest/codec.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr std::size_t fewest_corners = 6;
 
 struct Setting {

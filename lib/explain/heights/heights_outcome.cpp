@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "geom/vector.h"
+#include "geom/angle.h"
 #include "report/colour_map.h"
 #include "report/number_text.h"
 
@@ -13,7 +13,6 @@ namespace gonio::explain {
 namespace {
 
 using namespace heights;
-constexpr double degree = pi / 180;
 
 const Estimate* estimate_of(const Problem& problem, const Explanation& e, const std::string& name) {
   for (const Estimate& estimate : e.estimates)

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "geom/vector.h"
+#include "stats/intervals.h"
 
 namespace gonio::explain::heights {
 namespace {
@@ -36,14 +37,9 @@ std::vector<double> ring_medians(const TileSpectra& spectra, const std::vector<d
     if (ring.back() >= rings.size()) rings.resize(ring.back() + 1);
     rings[ring.back()].push_back(mean[i]);
   }
-  for (std::vector<double>& values : rings) {
-    if (values.empty()) continue;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    values = {*middle};
-  }
-  std::vector<double> result;
-  for (std::size_t i = 0; i < mean.size(); ++i) result.push_back(rings[ring[i]][0]);
+  std::vector<double> medians, result;
+  for (const std::vector<double>& values : rings) medians.push_back(stats::median(values));
+  for (std::size_t i = 0; i < mean.size(); ++i) result.push_back(medians[ring[i]]);
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "io/picture.h"
 #include "metric/linear_picture.h"
+#include "stats/intervals.h"
 
 namespace gonio::explain::images {
 namespace {
@@ -79,13 +80,6 @@ void read_mask(const manifest::Document& document, Recording& image) {
     if (!(mask.data[i * mask.channels.size()] > 0.5f)) image.counts[i] = 0;
 }
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 manifest::Noise measured_noise(const Recording& image) {
   std::vector<double> differences;
   const io::Image& p = image.picture;
@@ -97,7 +91,7 @@ manifest::Noise measured_noise(const Recording& image) {
       for (int c = 0; c < 3; ++c)
         differences.push_back(std::abs(double{p.at(x - 1, y, c)} - 2.0 * p.at(x, y, c) + p.at(x + 1, y, c)));
     }
-  const double sigma = median(differences) / 0.6745 / std::sqrt(6.0);
+  const double sigma = differences.empty() ? 0 : stats::median(differences) / 0.6745 / std::sqrt(6.0);
   return {.gain = 0, .read = std::max(sigma, 1e-6)};
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "io/picture.h"
+#include "stats/intervals.h"
 
 namespace gonio::explain::images {
 namespace {
@@ -74,9 +75,8 @@ manifest::Noise fitted(std::vector<Pair>& pairs) {
     for (std::size_t i = first; i < last; ++i) squares.push_back(pairs[i].half_square), mean += pairs[i].mean;
     if (squares.empty()) continue;
     mean /= static_cast<double>(squares.size());
-    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-    std::nth_element(squares.begin(), middle, squares.end());
-    const double variance = std::max(*middle / median_of_chi_square, 1e-14), weight = 1 / (variance * variance);
+    const double variance = std::max(stats::median(squares) / median_of_chi_square, 1e-14),
+                 weight = 1 / (variance * variance);
     w += weight, wx += weight * mean, wxx += weight * mean * mean;
     wy += weight * variance, wxy += weight * mean * variance;
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "explain/robot/robot_findings.h"
+#include "stats/intervals.h"
 
 namespace gonio::explain {
 namespace {
@@ -51,9 +52,7 @@ void align(RobotWork& work) {
       residuals.back().tail<3>() /= shift;
       sizes.push_back(residuals.back().norm());
     }
-    std::vector<double> sorted = sizes;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-    const double knee = std::max(2 * sorted[sorted.size() / 2], 1e-6);
+    const double knee = std::max(2 * stats::median(sizes), 1e-6);
     for (std::size_t v = 0; v < work.input.views.size(); ++v) {
       Eigen::MatrixXd j = differences(work, v, work.aligned)(Eigen::all, Eigen::seqN(0, 12));
       j.topRows<3>() /= rotation;

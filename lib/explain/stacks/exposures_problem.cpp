@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "stats/intervals.h"
 
 namespace gonio::explain::stacks {
 namespace {
@@ -239,11 +240,10 @@ std::optional<double> ExposuresProblem::noise_factor(std::span<const double> res
         differences.push_back(std::abs(seen[k].second - seen[k - 1].second));
     }
   if (differences.size() < 32) return std::nullopt;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
   // Every radiance takes one degree of freedom from its readings.
   const double rows = static_cast<double>(row), radiances = static_cast<double>(sites_.size());
-  return std::max(0.2, *middle / 0.6745 / std::sqrt(2.0) * std::sqrt(rows / std::max(1.0, rows - radiances)));
+  return std::max(
+      0.2, stats::median(differences) / 0.6745 / std::sqrt(2.0) * std::sqrt(rows / std::max(1.0, rows - radiances)));
 }
 
 std::vector<std::unique_ptr<Problem>> exposures_problems(const manifest::Document& document) {

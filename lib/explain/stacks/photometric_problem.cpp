@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "light/turn.h"
+#include "stats/intervals.h"
 
 namespace gonio::explain::stacks {
 namespace {
@@ -363,9 +364,7 @@ double PhotometricProblem::beside() const {
     }
   }
   if (differences.size() < 32) return 1;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return std::max(0.2, *middle / 0.6745 / std::sqrt(2.0));
+  return std::max(0.2, stats::median(differences) / 0.6745 / std::sqrt(2.0));
 }
 
 std::optional<double> PhotometricProblem::noise_factor(std::span<const double>) const {

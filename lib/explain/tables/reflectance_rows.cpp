@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "stats/intervals.h"
 #include "surface/microfacet.h"
 
 namespace gonio::explain::tables {
@@ -78,12 +79,6 @@ double off_plane(const std::vector<Vec3>& at, const std::vector<double>& z, std:
   h.diagonal() += Eigen::Vector3d(1e-9, 1e-9, 1e-9);  // points on a line
   const Eigen::Vector3d weights = h.ldlt().solve(Eigen::Vector3d(1, 0, 0));
   return (z[own] - weights.dot(a.transpose() * b)) / std::sqrt(1 + weights[0]);
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 using Incidence = std::array<long, 3>;
@@ -176,8 +171,8 @@ double reflectance_noise(const ReflectanceRows& rows, const std::vector<double>&
     for (const auto& [incidence, members] : series) neighbour_noise(rows, z, members, off);
   }
   double noise = 0;
-  if (off.size() >= fewest_for_noise) noise = 1.4826 * median_of(off);
-  if (exchanged.size() >= fewest_for_noise) noise = std::max(noise, 1.4826 * median_of(exchanged));
+  if (off.size() >= fewest_for_noise) noise = 1.4826 * stats::median(off);
+  if (exchanged.size() >= fewest_for_noise) noise = std::max(noise, 1.4826 * stats::median(exchanged));
   return noise > 0 ? std::max(noise, least_noise) : noise_unknown;
 }
 

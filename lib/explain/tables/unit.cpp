@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "geom/angle.h"
 #include "manifest/fields.h"
 
 namespace gonio::explain::tables {
@@ -18,7 +19,6 @@ struct Atom {
   std::string_view name, si;
   double factor;
 };
-constexpr double degree = std::numbers::pi / 180;
 constexpr std::array<Atom, 42> atoms = {
     {{"1", "", 1},           {"", "", 1},       {"%", "", 0.01},  {"DN", "", 1},      {"count", "", 1},
      {"counts", "", 1},      {"e", "", 1},      {"m", "m", 1},    {"mm", "m", 1e-3},  {"um", "m", 1e-6},

@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stats/intervals.h"
+
 namespace gonio::mesh {
 namespace {
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 // Distances from the median, and their robust standard deviation.
 struct Spread {
@@ -20,9 +16,9 @@ struct Spread {
 
 Spread spread_of(std::span<const double> deviations_m) {
   Spread spread{{deviations_m.begin(), deviations_m.end()}, 0};
-  const double centre = median_of(spread.distances);
+  const double centre = stats::median(spread.distances);
   for (double& d : spread.distances) d = std::abs(d - centre);
-  spread.sigma = 1.4826 * median_of(spread.distances);
+  spread.sigma = 1.4826 * stats::median(spread.distances);
   return spread;
 }
 

@@ -12,6 +12,7 @@
 #include "explain/images/observed.h"
 #include "explain/images/uses.h"
 #include "render/sensor_links.h"
+#include "stats/intervals.h"
 
 namespace gonio::mechanism {
 const Mechanism& sensor_prnu();
@@ -35,9 +36,7 @@ double size_of(const FixedPattern::OfView& view) {
     for (std::size_t i = 0; i < view.deviation.size(); ++i)
       if (const double d = view.deviation[i]; !std::isnan(d))
         ratios.push_back(d * d / (with_neighbours * size * size + view.variance[i]));
-    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-    std::nth_element(ratios.begin(), middle, ratios.end());
-    return *middle;
+    return stats::median(ratios);
   };
   double low = least, high = most;
   for (int i = 0; i < 12; ++i) {

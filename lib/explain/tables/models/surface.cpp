@@ -6,13 +6,13 @@
 #include "base/error.h"
 #include "explain/tables/model_parameters.h"
 #include "explain/tables/reflectance_parameters.h"
+#include "geom/angle.h"
 
 namespace gonio::explain::tables {
 namespace {
 
 using Kind = ReflectanceSlot::Kind;
 constexpr double step_share = 1e-4;  // of a parameter's size
-constexpr double degree = pi / 180;
 
 class BoundSurface final : public BoundModel {
  public:
