@@ -4,7 +4,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "cli/program.h"
+#include "cli/common_options.h"
 #include "contrast/measure_call.h"
 #include "contrast/predict_call.h"
 
@@ -36,8 +36,7 @@ std::vector<cli::Option> options() {
   std::vector<cli::Option> all = contrasts::predict_options();
   const std::vector<cli::Option> measure = contrasts::measure_options();
   all.insert(all.end(), measure.begin(), measure.end());
-  all.push_back(
-      {.name = "html", .type = Type::output_file, .help = "Write the report: one page that needs no network."});
+  all.push_back(cli::report_option());
   return all;
 }
 

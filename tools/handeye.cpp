@@ -1,7 +1,7 @@
 // handeye: how a camera is mounted on a robot, or stands before it, from images of a board at poses of the robot.
 #include "base/atomic_file.h"
 #include "base/progress.h"
-#include "cli/program.h"
+#include "cli/common_options.h"
 #include "robot/handeye/closed_forms.h"
 #include "robot/handeye_page.h"
 #include "robot/light_handeye.h"
@@ -87,7 +87,7 @@ std::vector<cli::Option> options() {
        .help = "Exit 2 where the board lies farther off than this at 95 %, at a pose not seen.",
        .dimension = Dimension::length,
        .lower = 0},
-      {.name = "html", .type = Type::output_file, .help = "Write the report: one page that needs no network."}};
+      cli::report_option()};
 }
 
 void read_poses(cli::Invocation& call) {

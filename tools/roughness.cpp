@@ -1,7 +1,7 @@
 // roughness: areal parameters and the distribution of normals of height maps (lib/relief/areal.h, normals.h).
 #include "base/atomic_file.h"
 #include "base/text.h"
-#include "cli/program.h"
+#include "cli/common_options.h"
 #include "relief/document.h"
 #include "relief/map_options.h"
 #include "relief/roughness_page.h"
@@ -54,8 +54,7 @@ std::vector<cli::Option> options() {
   std::vector<cli::Option> all = map_options();
   all.push_back(relief_option());
   all.push_back({.name = "csv", .type = Type::output_file, .help = "Write the figures as a table."});
-  all.push_back(
-      {.name = "html", .type = Type::output_file, .help = "Write the report: one page that needs no network."});
+  all.push_back(cli::report_option());
   return all;
 }
 

@@ -4,6 +4,10 @@
 
 namespace gonio::cli {
 
+Option report_option() {
+  return {.name = "html", .type = Type::output_file, .help = "Write the report: one page that needs no network."};
+}
+
 std::vector<Option> common_options(const Program& program) {
   std::vector<Option> all;
   const auto add = [&all](Option o) { all.push_back(std::move(o)); };

@@ -1,5 +1,6 @@
 // Options of nrsfm-eval, and what they need of each other. See eval_call.h.
 #include "base/atomic_file.h"
+#include "cli/common_options.h"
 #include "manifest/document.h"
 #include "nrsfm/alignment.h"
 #include "nrsfm/error_intervals.h"
@@ -70,7 +71,7 @@ std::vector<cli::Option> options_of_errors() {
            "Centre every frame of both before the robust measures: orthographic tracks do not tell how deep a shape "
            "stands."},
       {.name = "no-reflection", .help = "The robust measures' similarity may not be a reflection."},
-      {.name = "html", .type = Type::output_file, .help = "Write the report: one page that needs no network."},
+      cli::report_option(),
       {.name = "views",
        .type = Type::integer,
        .help = "Reconstructions that the page shows in space; each adds some 100 kB.",

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "cli/common_options.h"
 #include "geom/angle.h"
 #include "io/picture.h"
 #include "relief/document.h"
@@ -238,7 +239,7 @@ std::vector<cli::Option> lobe_options() {
        .preset = "3",
        .lower = 0,
        .upper = 12},
-      {.name = "html", .type = Type::output_file, .help = "Write the report: one page that needs no network."},
+      cli::report_option(),
       relief_option()};
   for (cli::Option& option : map_options()) all.push_back(std::move(option));
   return all;

@@ -87,13 +87,17 @@ struct Model {
   std::string name;      // "surface": the manifest's tables/T/model
   std::string sentence;  // what it predicts
   std::vector<Column> columns;
-  std::string score_name, unit;  // "relative RMSE", "1"
-  std::string group_noun;        // "series", "frame"
-  std::string group{};           // column that holds rows together where the table names none: "theta_i"
+  std::string score_name = "relative RMSE", unit = "1";
+  std::string group_noun = "group";  // "series", "frame"
+  std::string group{};               // column that holds rows together where the table names none: "theta_i"
   Importance importance = Importance::share_of_signal;
   std::unique_ptr<BoundModel> (*bind)(const manifest::Document& document, const std::string& name,
                                       const Table& table) = nullptr;
 };
+template <class Bound>  // a Model's `bind` that constructs it
+std::unique_ptr<BoundModel> bind_as(const manifest::Document& document, const std::string& name, const Table& table) {
+  return std::make_unique<Bound>(document, name, table);
+}
 std::span<const Model* const> all_models();  // sorted by name; defined in a generated source
 const Model* find_model(const std::string& name);
 

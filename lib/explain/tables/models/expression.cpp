@@ -98,14 +98,7 @@ const Model& expression() {
   static const Model model{.name = "expression",
                            .sentence = "A formula of the user's own over columns and parameters: a*cos(theta)+b.",
                            .columns = {},
-                           .score_name = "relative RMSE",
-                           .unit = "1",
-                           .group_noun = "group",
-                           .importance = Importance::share_of_signal,
-                           .bind = [](const manifest::Document& document, const std::string& name,
-                                      const Table& table) -> std::unique_ptr<BoundModel> {
-                             return std::make_unique<OwnModel>(document, name, table);
-                           }};
+                           .bind = bind_as<OwnModel>};
   return model;
 }
 

@@ -146,14 +146,7 @@ const Model& light() {
                                        {"lamp", "", "name of the light that is on", false},
                                        {"channel", "", "0, 1, 2: red, green, blue; left out: their mean", false},
                                        {"exposure_s", "s", "factor on the reading", false}},
-                           .score_name = "relative RMSE",
-                           .unit = "1",
-                           .group_noun = "group",
-                           .importance = Importance::share_of_signal,
-                           .bind = [](const manifest::Document& document, const std::string& name,
-                                      const Table& table) -> std::unique_ptr<BoundModel> {
-                             return std::make_unique<Illumination>(document, name, table);
-                           }};
+                           .bind = bind_as<Illumination>};
   return model;
 }
 

@@ -144,14 +144,7 @@ const Model& sensor() {
                                        {"radiance", "", "known radiance, in any unit; or", false},
                                        {"patch", "", "whose radiance is one unknown number", false},
                                        {"channel", "", "each has a gain, or radiances, of its own", false}},
-                           .score_name = "relative RMSE",
-                           .unit = "1",
-                           .group_noun = "group",
-                           .importance = Importance::share_of_signal,
-                           .bind = [](const manifest::Document& document, const std::string& name,
-                                      const Table& table) -> std::unique_ptr<BoundModel> {
-                             return std::make_unique<Sensor>(document, name, table);
-                           }};
+                           .bind = bind_as<Sensor>};
   return model;
 }
 

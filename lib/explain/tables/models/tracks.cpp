@@ -368,8 +368,7 @@ const Model& tracks() {
       .group_noun = "frame",
       .group = "frame",
       .importance = Importance::share_of_residual,
-      .bind = [](const manifest::Document& document, const std::string& name, const Table& table)
-          -> std::unique_ptr<BoundModel> { return std::make_unique<Tracks>(document, name, table); }};
+      .bind = bind_as<Tracks>};
   return model;
 }
 

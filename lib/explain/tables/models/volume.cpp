@@ -98,14 +98,7 @@ const Model& volume() {
                            .columns = {{"path_m", "m", "length through the material (transmittance)"},
                                        {"theta_i", "rad", "angle of incidence", false},
                                        {"wavelength_m", "m", "in vacuum", false}},
-                           .score_name = "relative RMSE",
-                           .unit = "1",
-                           .group_noun = "group",
-                           .importance = Importance::share_of_signal,
-                           .bind = [](const manifest::Document& document, const std::string& name,
-                                      const Table& table) -> std::unique_ptr<BoundModel> {
-                             return std::make_unique<Plate>(document, name, table);
-                           }};
+                           .bind = bind_as<Plate>};
   return model;
 }
 
