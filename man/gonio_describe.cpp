@@ -11,6 +11,7 @@
 #include "cli/roff.h"
 #include "manifest/reference.h"
 #include "mechanism/listing.h"
+#include "nrsfm/listing.h"
 
 namespace {
 
@@ -42,6 +43,7 @@ void write_all(const fs::path& root) {
   write_file(root / "man" / "gonio-manifest.5",
              page(root, "gonio-manifest", 5, "# SECTIONS\n" + manifest::manifest_fields_text()));
   write_file(root / "man" / "gonio-mechanisms.7", page(root, "gonio-mechanisms", 7, mechanism::markdown()));
+  write_file(root / "man" / "gonio-nrsfm.7", page(root, "gonio-nrsfm", 7, nrsfm::markdown()));
   for (const char* name : {"gonio", "gonio-conventions", "gonio-surfaces"})
     write_file(root / "man" / (std::string(name) + ".7"), page(root, name, 7));
   write_file(root / "schemas" / "manifest-1.schema.json", manifest::print_json(manifest::manifest_schema()) + "\n");

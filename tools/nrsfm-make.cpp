@@ -20,7 +20,8 @@ const cli::Program& gonio_program() {
                      "IJCV 129, 2021.",
                      "Grinspun, Hirani, Desbrun & Schroeder, Discrete shells, SCA 2003.",
                      "Bonet & Wood, Nonlinear continuum mechanics for finite element analysis, 2008."},
-      .see_also = {"render(1)", "explain(1)", "gonio-manifest(5)", "gonio-conventions(7)"},
+      .see_also = {"render(1)", "nrsfm-solve(1)", "explain(1)", "gonio-nrsfm(7)", "gonio-manifest(5)",
+                   "gonio-conventions(7)"},
       .check = nrsfm::check_make,
       .run = nrsfm::run_make};
   return program;

@@ -1,6 +1,7 @@
 // nrsfm-solve: shapes from tracks of things that deform (lib/nrsfm/solver.h).
 #include <iostream>
 
+#include "nrsfm/listing.h"
 #include "nrsfm/solve_call.h"
 
 namespace gonio::tools::nrsfm_solve {
@@ -38,7 +39,7 @@ const cli::Program& gonio_program() {
                      "from motion, PAMI 33, 2011.",
                      "Gotardo & Martinez, Computing smooth time-trajectories for camera and deformable shape in "
                      "structure from motion with occlusion, PAMI 33, 2011."},
-      .see_also = {"nrsfm-make(1)", "nrsfm-eval(1)", "gonio-manifest(5)"},
+      .see_also = {"nrsfm-make(1)", "nrsfm-eval(1)", "gonio-nrsfm(7)", "gonio-manifest(5)"},
       .check = nrsfm::check_solve,
       .run = run};
   return program;

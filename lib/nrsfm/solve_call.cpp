@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "base/parallel.h"
@@ -191,24 +190,6 @@ bool entered(cli::Invocation& call, const std::vector<Job>& jobs) {
 }
 
 }  // namespace
-
-std::string list_of_solvers() {
-  std::ostringstream text;
-  for (const Solver* solver : all_solvers()) {
-    const SolverInfo& info = solver->info();
-    const bool both = info.orthographic && info.perspective;
-    text << info.id << ": " << info.title << "\n  " << info.sentence << "\n  " << info.source << "\n  takes "
-         << (info.takes_missing ? "missing tracks" : "complete tracks only") << "; "
-         << (both               ? "cameras of all kinds"
-             : info.perspective ? "pinhole cameras"
-                                : "orthographic and weak-perspective cameras")
-         << "\n";
-    for (const SolverParameter& p : info.parameters)
-      text << "    " << p.name << "=" << shortest_text(p.preset) << "  (" << shortest_text(p.lower) << " .. "
-           << shortest_text(p.upper) << ") " << p.meaning << "\n";
-  }
-  return text.str();
-}
 
 std::vector<cli::Option> solve_options() {
   return {{.name = "solver",

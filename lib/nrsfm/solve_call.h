@@ -5,7 +5,6 @@
 // number of threads. A solver that cannot take a sequence, or fails on it, leaves its reason in the sequence's notes;
 // the call fails where no job has an answer.
 #pragma once
-#include <string>
 #include <vector>
 
 #include "base/error.h"
@@ -16,7 +15,5 @@ namespace gonio::nrsfm {
 std::vector<cli::Option> solve_options();
 void check_solve(cli::Invocation& call);
 Exit run_solve(cli::Invocation& call);
-
-std::string list_of_solvers();  // what they assume, their papers and parameters
 
 }  // namespace gonio::nrsfm

@@ -11,6 +11,7 @@
 #include "data.h"
 #include "manifest/document.h"
 #include "nrsfm/files.h"
+#include "nrsfm/listing.h"
 #include "nrsfm/solution_file.h"
 #include "nrsfm/solve_call.h"
 #include "nrsfm/variables.h"
