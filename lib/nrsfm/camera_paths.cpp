@@ -16,6 +16,7 @@
 
 #include "base/error.h"
 #include "geom/vector.h"
+#include "render/looking_at.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -51,12 +52,12 @@ Eigen::Vector3d place(const std::string& name, double s) {
   return reach * on_circle(-pi / 2) + Eigen::Vector3d(0.12 * std::sin(4 * pi * s), 0, 0.08 * std::sin(6 * pi * s));
 }
 
-// At `eye`, looking at `centre`: x right, y down, z forward; the world's z is up.
 CameraFromObject looking(const Eigen::Vector3d& eye, const Eigen::Vector3d& centre) {
+  const auto vec = [](const Eigen::Vector3d& v) { return Vec3{v.x(), v.y(), v.z()}; };
+  const Mat3 axes = matrix_of(render::looking_at(vec(eye), vec(centre)).rotation);
   CameraFromObject camera;
-  const Eigen::Vector3d forward = (centre - eye).normalized();
-  const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
-  camera.rotation << right.transpose(), forward.cross(right).transpose(), forward.transpose();
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) camera.rotation(row, column) = axes(column, row);
   camera.translation = -camera.rotation * eye;
   return camera;
 }

@@ -19,28 +19,47 @@ void keep_points(Sequence& sequence, const std::vector<Eigen::Index>& kept) {
   sequence.visible = Visible(sequence.visible(Eigen::all, kept));
 }
 
-void leave_out_unseen(Sequence& sequence, double least_seen) {
-  const auto least = std::max(2.0, least_seen * static_cast<double>(sequence.frames()));
+// Columns that enough frames see.
+std::vector<Eigen::Index> often_seen(const Visible& visible, double least_seen, const std::string& place) {
+  const double least = std::max(2.0, least_seen * static_cast<double>(visible.rows()));
   std::vector<Eigen::Index> kept;
-  for (Eigen::Index p = 0; p < sequence.points(); ++p)
-    if (static_cast<double>(sequence.visible.col(p).count()) >= least) kept.push_back(p);
+  for (Eigen::Index p = 0; p < visible.cols(); ++p)
+    if (static_cast<double>(visible.col(p).count()) >= least) kept.push_back(p);
   if (kept.size() < 4)
-    throw Error(Exit::data, sequence.name,
-                "has " + std::to_string(kept.size()) + " points that are seen in " + shortest_text(least) + " frames",
-                "4 is the least; take more frames, or another path");
-  keep_points(sequence, kept);
+    throw NoTracks(Exit::data, place,
+                   "has " + std::to_string(kept.size()) + " points that are seen in " +
+                       shortest_text(std::ceil(least)) + " of " + std::to_string(visible.rows()) + " frames",
+                   "4 is the least; take more frames, or another path");
+  return kept;
+}
+
+// Pictures from one frame to the next, so many that nothing moves farther than half a patch of the tracker's between
+// two of them. `tracks`: where the points truly are, pixels.
+Eigen::Index pictures_per_frame(const Tracks& tracks) {
+  constexpr double most_px = 6;
+  constexpr Eigen::Index most = 24;
+  const Eigen::Index rows = tracks.rows() - 2;
+  const Eigen::ArrayXXd step = tracks.bottomRows(rows) - tracks.topRows(rows);
+  double longest = 0;
+  for (Eigen::Index f = 0; f < rows / 2; ++f)
+    longest = std::max(longest, step.middleRows<2>(2 * f).matrix().colwise().norm().maxCoeff());
+  return std::clamp<Eigen::Index>(static_cast<Eigen::Index>(std::ceil(longest / most_px)), 1, most);
 }
 
 // Optical flow in the sequence's unit. Orthographic pictures have the scale that the pinhole has at its distance.
-Tracks tracked(const Motion& motion, const Sequence& s, const Pinhole& pinhole, int width_px, std::uint64_t seed) {
+Tracks tracked(const Motion& motion, const Take& take, const Sequence& s, int width_px, std::uint64_t seed) {
   const double share = static_cast<double>(width_px) / view_width_px;
   const bool orthographic = s.projection == Projection::orthographic;
+  const Pinhole& pinhole = take.pinhole;
+  const Ball ball = ball_around(motion.points_m);
   PictureView view;
   view.projection = s.projection;
   view.width = width_px, view.height = static_cast<int>(std::lround(view_height_px * share));
-  const double focal = orthographic ? view_height_px / (3 * ball_around(motion.points_m).radius_m) : pinhole.fx_px;
+  const double focal = orthographic ? view_height_px / (3 * ball.radius_m) : pinhole.fx_px;
   view.pinhole = {share * focal, share * focal, share * pinhole.cx_px, share * pinhole.cy_px};
-  Tracks tracks = flow_tracks(motion, s.cameras, view, seed);
+  const Eigen::Index gaps = s.frames() - 1, parts = pictures_per_frame(s.tracks * share * (orthographic ? focal : 1));
+  const auto cameras = camera_path(take.path, parts * gaps + 1, take.place);
+  Tracks tracks = flow_tracks(motion, *s.truth, take.visible.leftCols(s.points()), cameras, view, seed);
   if (!orthographic) return tracks / share;
   for (Eigen::Index f = 0; f < s.frames(); ++f) {
     tracks.row(2 * f) = (tracks.row(2 * f).array() - view.pinhole.cx_px) / view.pinhole.fx_px;
@@ -71,34 +90,57 @@ Pinhole view_pinhole(double distance_m, double radius_m) {
   return {f, f, view_width_px / 2.0, view_height_px / 2.0};
 }
 
-Sequence film(const Motion& motion, const Cell& cell, std::uint64_t seed, const ViewOptions& options) {
+Take take_of(const Motion& motion, const std::string& path, const std::string& camera, const ViewOptions& options) {
   const Ball ball = ball_around(motion.points_m);
   const double distance_m = options.distance * ball.radius_m;
+  Take take;
+  take.path = path, take.camera = camera;
+  take.pinhole = view_pinhole(distance_m, ball.radius_m);
+  take.place = {distance_m, ball.radius_m, ball.centre_m};
+  if (camera == "perspective") take.projection = Projection::perspective;
+  take.cameras = camera_path(path, motion.frames(), take.place);
+  const Visible visible = visible_points(motion, take.cameras, take.projection);
+  take.points = often_seen(visible, options.least_seen, motion.kind + "-" + path + "-" + camera);
+  take.wanted = take.points.size();
+  if (motion.wanted > 0) take.wanted = std::min(take.wanted, static_cast<std::size_t>(motion.wanted));
+  take.visible = visible(Eigen::all, take.points);
+  return take;
+}
+
+Sequence film(const Motion& motion, const Take& take, const Cell& cell, std::uint64_t seed,
+              const ViewOptions& options) {
   Sequence s;
   s.name = name_of(cell, seed);
-  s.projection = cell.camera == "perspective" ? Projection::perspective : Projection::orthographic;
-  s.cameras = camera_path(cell.path, motion.frames(), {distance_m, ball.radius_m, ball.centre_m});
-  const Pinhole pinhole = view_pinhole(distance_m, ball.radius_m);
-  if (s.projection == Projection::perspective) s.pinhole = pinhole;
-  s.tracks = project(motion.points_m, s.cameras, s.projection, pinhole);
-  s.truth = motion.points_m;
+  s.projection = take.projection;
+  s.cameras = take.cameras;
+  if (s.projection == Projection::perspective) s.pinhole = take.pinhole;
+  const bool by_flow = options.flow_width_px > 0;
+  std::vector<Eigen::Index> points = take.points;
+  points.resize(by_flow ? std::min(2 * take.wanted, points.size()) : take.wanted);
+  s.truth = Shapes(motion.points_m(Eigen::all, points));
+  s.tracks = project(*s.truth, s.cameras, s.projection, take.pinhole);
   s.unit_m = 1;
   s.factors = {
       {"deformation", cell.deformation}, {"path", cell.path}, {"camera", cell.camera}, {"missing", cell.missing}};
-  s.visible = Visible::Constant(motion.frames(), motion.points_m.cols(), true);
-  if (options.flow_width_px > 0) {
-    s.tracks = tracked(motion, s, pinhole, options.flow_width_px, seed);
+  s.visible = Visible::Constant(s.frames(), s.points(), true);
+  if (by_flow) {
+    s.tracks = tracked(motion, take, s, options.flow_width_px, seed);
     s.visible = !s.tracks(Eigen::seq(0, Eigen::last, 2), Eigen::all).array().isNaN();
-    leave_out_unseen(s, options.least_seen);
+    std::vector<Eigen::Index> kept = often_seen(s.visible, options.least_seen, s.name);
+    kept.resize(std::min(kept.size(), take.wanted));
+    keep_points(s, kept);
   } else if (cell.missing == "with") {
-    s.visible = visible_points(motion, s.cameras, s.projection);
-    leave_out_unseen(s, options.least_seen);
+    s.visible = take.visible.leftCols(s.points());
     for (Eigen::Index f = 0; f < s.frames(); ++f)
       for (Eigen::Index p = 0; p < s.points(); ++p)
         if (!s.visible(f, p)) s.tracks.block<2, 1>(2 * f, p).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   check(s, s.name);
   return s;
+}
+
+Sequence film(const Motion& motion, const Cell& cell, std::uint64_t seed, const ViewOptions& options) {
+  return film(motion, take_of(motion, cell.path, cell.camera, options), cell, seed, options);
 }
 
 }  // namespace gonio::nrsfm

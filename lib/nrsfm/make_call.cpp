@@ -5,9 +5,11 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "base/text.h"
 #include "nrsfm/factorial.h"
 #include "nrsfm/files.h"
@@ -60,6 +62,12 @@ class Stage {
     if (!motions_.contains(kind)) prepare({kind});
     return motions_.at(kind);
   }
+  // Neighbouring cells share it.
+  const Take& take(const Cell& cell, const ViewOptions& options) {
+    const std::string name = cell.deformation + "/" + cell.path + "/" + cell.camera;
+    if (name != taken_) take_ = take_of(motion(cell.deformation), cell.path, cell.camera, options), taken_ = name;
+    return take_;
+  }
 
  private:
   Motion motion_named(const std::string& kind) const {
@@ -74,7 +82,14 @@ class Stage {
 
   cli::Invocation& call_;
   std::map<std::string, Motion> motions_;
+  Take take_;
+  std::string taken_;
 };
+
+ViewOptions view_asked(const cli::Invocation& call) {
+  return {call.number("distance"), call.number("least-seen"),
+          by_flow(call) ? static_cast<int>(call.integer("flow-width")) : 0};
+}
 
 // What decides the content of a file, for --resume: all options that do, with the scans' files.
 std::string made_with(const cli::Invocation& call) {
@@ -106,8 +121,8 @@ void enter(cli::Invocation& call, Stage& stage, const Sequence& s, const std::fi
   entry.source = scans ? stage.motion(kind).source : "simulated: " + find_animatronic(kind)->info().sentence;
   if (scans) entry.notes = stage.motion(kind).notes;
   if (s.points() < points)
-    entry.notes.push_back(std::to_string(points - s.points()) + " of " + std::to_string(points) +
-                          " points are seen in fewer than " + call.text("least-seen") + " of the frames and left out");
+    entry.notes.push_back(std::to_string(s.points()) + " points of " + std::to_string(points) + ": no more are " +
+                          (by_flow(call) ? "found" : "seen") + " in " + call.text("least-seen") + " of the frames");
   if (by_flow(call)) {
     const TrackErrors errors = track_errors(s);
     const auto unit = [&s](double error) {
@@ -129,9 +144,9 @@ void make(cli::Invocation& call, Stage& stage, const Cell& cell, const std::file
     enter(call, stage, read_sequence(path), path);
     return;
   }
-  const Sequence sequence = film(stage.motion(cell.deformation), cell, call.seed,
-                                 {call.number("distance"), call.number("least-seen"),
-                                  by_flow(call) ? static_cast<int>(call.integer("flow-width")) : 0});
+  const ViewOptions view = view_asked(call);
+  const Motion& motion = stage.motion(cell.deformation);
+  const Sequence sequence = film(motion, stage.take(cell, view), cell, call.seed, view);
   write_sequence(sequence, path, made_with(call));
   enter(call, stage, sequence, path);
 }
@@ -156,8 +171,19 @@ Exit run_make(cli::Invocation& call) {
   }
   Stage stage(call);
   stage.prepare(needed);
-  for (std::size_t k = 0; k < cells.size(); ++k) make(call, stage, cells[k], paths[k]);
-  return Exit::done;
+  std::vector<NoTracks> left_out;
+  std::set<std::string> why;
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    try {
+      make(call, stage, cells[k], paths[k]);
+    } catch (const NoTracks& error) {
+      left_out.push_back(error);
+      why.insert(error.what());
+    }
+  }
+  if (left_out.size() == cells.size()) throw left_out.front();
+  for (const std::string& line : why) log(LogLevel::warning, line + "; left out");
+  return left_out.empty() ? Exit::done : Exit::quality;
 }
 
 void check_make(cli::Invocation& call) {
@@ -218,7 +244,7 @@ std::vector<cli::Option> make_options() {
        .upper = 1000},
       {.name = "least-seen",
        .type = Type::quantity,
-       .help = "With missing data, points that a smaller share of the frames sees are left out.",
+       .help = "Points that a smaller share of the frames sees are not followed.",
        .preset = "10%",
        .dimension = Dimension::ratio,
        .lower = 0,

@@ -101,7 +101,11 @@ Motion motion_of(DeformingSurface made) {
 }
 
 Motion motion_of(const Animatronic& animatronic, const AnimatronicOptions& options) {
-  Motion motion = motion_of(animatronic.make(options));
+  constexpr Eigen::Index reserve = 4;
+  AnimatronicOptions more = options;
+  more.points *= reserve;
+  Motion motion = motion_of(animatronic.make(more));
+  motion.wanted = options.points;
   motion.kind = animatronic.info().id;
   motion.source = "simulated: " + animatronic.info().sentence;
   return motion;

@@ -17,7 +17,8 @@ struct FrameMesh {
 struct Motion {
   std::string kind;             // level of the factor "deformation"
   std::string source;           // what deforms
-  Shapes points_m;              // 3F x P
+  Shapes points_m;              // 3F x P, the first ones preferred
+  Eigen::Index wanted = 0;      // points that a sequence is to have, the others stand by; 0: all of them
   Eigen::Matrix3Xd material_m;  // of every vertex: a place that it keeps; empty where meshes differ between frames
   std::function<FrameMesh(Eigen::Index)> mesh;  // of a frame; safe from many threads
   double tolerance_m = 0;  // points may lie this far behind the surface: scans and tracks that differ
@@ -26,7 +27,8 @@ struct Motion {
   std::vector<std::filesystem::path> files;  // that it was read from
   Eigen::Index frames() const { return points_m.rows() / 3; }
 };
-// The surface with its rig.
+// The surface with its rig. Of an animatronic four times as many points as are wanted stand by, since a path may never
+// see some.
 Motion motion_of(const Animatronic& animatronic, const AnimatronicOptions& options);
 Motion motion_of(DeformingSurface surface);
 // Scans: a folder or pattern of PLY meshes, one per frame in the order of their names, and the points that are followed

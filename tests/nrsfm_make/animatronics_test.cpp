@@ -57,6 +57,45 @@ void expect_no_self_penetration(const DeformingSurface& s, Eigen::Index frame) {
   }
 }
 
+bool crosses(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const std::array<Eigen::Vector3d, 3>& t) {
+  Eigen::Matrix3d m;
+  m << t[1] - t[0], t[2] - t[0], from - to;
+  const Eigen::Vector3d at = m.inverse() * (from - t[0]);  // two weights, the part of the way; not finite: parallel
+  return at.minCoeff() > 1e-9 && at.x() + at.y() < 1 - 1e-9 && at.z() < 1 - 1e-9;
+}
+
+// Edges that run through triangles which they do not belong to. Vertices that coincide in the first frame are one.
+int self_crossings(const DeformingSurface& s, Eigen::Index frame) {
+  const auto x = shape_of(s.vertices_m, frame), x0 = shape_of(s.vertices_m, 0);
+  std::map<std::array<long, 3>, std::uint32_t> places;
+  std::vector<std::uint32_t> same;
+  for (Eigen::Index v = 0; v < x0.cols(); ++v) {
+    const Eigen::Vector3d cell = (x0.col(v) / 1e-4).array().round();
+    same.push_back(
+        places.try_emplace({std::lround(cell.x()), std::lround(cell.y()), std::lround(cell.z())}, v).first->second);
+  }
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const auto& t : s.triangles) {
+    boxes.emplace_back(Eigen::Vector3d(x.col(t[0])));
+    boxes.back().extend(Eigen::Vector3d(x.col(t[1]))).extend(Eigen::Vector3d(x.col(t[2])));
+  }
+  int crossings = 0;
+  for (const auto& e : s.triangles)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = e[i], b = e[(i + 1) % 3];
+      if (a > b) continue;  // of two triangles with this edge one sees it in order
+      Eigen::AlignedBox3d edge{Eigen::Vector3d(x.col(a))};
+      edge.extend(Eigen::Vector3d(x.col(b)));
+      for (std::size_t k = 0; k < s.triangles.size(); ++k) {
+        if (!edge.intersects(boxes[k])) continue;
+        const auto& t = s.triangles[k];
+        if (std::ranges::any_of(t, [&](std::uint32_t v) { return same[v] == same[a] || same[v] == same[b]; })) continue;
+        crossings += crosses(x.col(a), x.col(b), {x.col(t[0]), x.col(t[1]), x.col(t[2])});
+      }
+    }
+  return crossings;
+}
+
 // Largest side of the box about all frames.
 double extent(const DeformingSurface& s) {
   double most = 0;
@@ -89,6 +128,16 @@ TEST_P(Kind, MovesWithoutJumps) {
   EXPECT_GT(*std::max_element(steps.begin(), steps.end()), 1e-3);
   for (std::size_t k = 1; k + 1 < steps.size(); ++k)
     EXPECT_LT(steps[k], 2 * std::max(steps[k - 1], steps[k + 1]) + 0.05 * extent(s)) << "after frame " << k;
+}
+
+TEST_P(Kind, NeverRunsThroughItself) {
+  const DeformingSurface& s = made(GetParam());
+  for (Eigen::Index f = 0; f < s.frames(); ++f) EXPECT_EQ(self_crossings(s, f), 0) << "frame " << f;
+  DeformingSurface through = s;  // one vertex is pushed far away, through what lies between
+  const Eigen::Index v = s.triangles[s.triangles.size() / 2][0], w = s.triangles[s.triangles.size() / 5][0];
+  const Eigen::Vector3d from = s.vertices_m.block<3, 1>(0, v), to = s.vertices_m.block<3, 1>(0, w);
+  through.vertices_m.block<3, 1>(0, v) = to + (to - from) / 2 + Eigen::Vector3d(2e-3, 1e-3, -5e-3);
+  EXPECT_GT(self_crossings(through, 0), 0);
 }
 
 // The rig's parts hold the surface and stay out of what is seen of it; they move without jumps, too, and hide

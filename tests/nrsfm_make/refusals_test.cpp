@@ -137,6 +137,34 @@ TEST_F(MakeProgram, SequencesOfScansAreEntered) {
   EXPECT_TRUE(s.visible.all());  // a sheet shows on both sides
 }
 
+// Points on a wall's far side, which a camera that hardly moves never sees and one that goes around does: the cells
+// without tracks are left out, the others written.
+TEST_F(MakeProgram, LeavesOutCellsWithoutTracks) {
+  Shapes behind(9, 5);
+  for (int f = 0; f < 3; ++f) {
+    io::TriangleMesh wall;
+    wall.positions_m = {{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}};
+    wall.triangles = {{0, 2, 1}, {0, 3, 2}};
+    io::write_ply(path("scans/f" + std::to_string(f) + ".ply"), wall);
+    shape_of(behind, f) << -0.7, 0.8, 0.1, -0.3, 0.5, 0.01, 0.01, 0.01, 0.01, 0.01, -0.8, -0.5, 0.9, 0.2, 0.6;
+  }
+  write_tracks("behind.mat", behind);
+  const Words call{"--meshes", path("scans"), "--tracks", path("behind.mat"), "--camera", "perspective",
+                   "--name",   "wall",        "--out",    path("o"),          "--path",   "tricky"};
+  expect_refused(call, 65, "wall-tricky-perspective");
+  Words both = call;
+  both.insert(both.end(), {"--path", "flyby"});
+  const Said said = run(both);
+  EXPECT_EQ(said.status, 2) << said.error;
+  EXPECT_EQ(std::count(said.error.begin(), said.error.end(), '\n'), 1) << said.error;
+  EXPECT_THAT(said.error, HasSubstr("wall-tricky-perspective"));
+  EXPECT_THAT(said.error, HasSubstr("left out"));
+  const manifest::Document document = manifest::read_document(path("m.json"));
+  EXPECT_EQ(document.sequences.size(), 2u);
+  EXPECT_TRUE(document.sequences.contains("wall-flyby-perspective-with"));
+  EXPECT_FALSE(fs::exists(folder_ / "o" / "wall-tricky-perspective-with.mat"));
+}
+
 // The same call again writes the same and simulates nothing; another call's files are not taken for its own.
 TEST_F(MakeProgram, ResumeKeepsOnlyFilesOfTheSameCall) {
   const Words call{"--kind",   "stretching", "--path",   "circle", "--path", "line",    "--missing", "with",

@@ -142,7 +142,7 @@ TEST(Film, MissingDataIsStructured) {
   const Sequence with = film(ball, {"ball", "circle", "perspective", "with"}, 1, {});
   const Sequence without = film(ball, {"ball", "circle", "perspective", "without"}, 1, {});
   EXPECT_TRUE(without.complete());
-  EXPECT_EQ(without.points(), 384);
+  EXPECT_EQ(without.points(), with.points());
   EXPECT_GT(with.missing_share(), 0.35);
   EXPECT_LT(with.missing_share(), 0.75);
   // Hidden in a frame mostly means hidden in the next: far fewer changes than of entries thrown at random.
@@ -157,6 +157,53 @@ TEST(Film, MissingDataIsStructured) {
   // The whole scene lies in the picture.
   EXPECT_GT(without.tracks.minCoeff(), 0);
   EXPECT_LT(without.tracks.maxCoeff(), view_width_px);
+}
+
+// The cells with and without missing data follow the same points, so many as are wanted, of those that enough frames
+// see, whichever of them is made.
+TEST(Film, TwinsDifferInNothingButWhatIsHidden) {
+  Motion ball = turning_ball(20);
+  ball.wanted = 100;
+  for (const std::string& path : path_names())
+    for (const char* camera : {"orthographic", "perspective"}) {
+      const Sequence with = film(ball, {"ball", path, camera, "with"}, 1, {.least_seen = 0.25});
+      const Sequence without = film(ball, {"ball", path, camera, "without"}, 1, {.least_seen = 0.25});
+      ASSERT_EQ(with.points(), 100) << path;
+      ASSERT_EQ(without.points(), 100) << path;
+      EXPECT_EQ((*with.truth - *without.truth).cwiseAbs().maxCoeff(), 0);
+      EXPECT_TRUE(without.complete());
+      EXPECT_TRUE(path != "circle" || !with.complete());
+      EXPECT_GE(with.visible.cast<int>().colwise().sum().minCoeff(), 5) << path;
+      for (Eigen::Index f = 0; f < with.frames(); ++f)
+        for (Eigen::Index p = 0; p < with.points(); ++p) {
+          const Eigen::Vector2d a = with.tracks.block<2, 1>(2 * f, p), b = without.tracks.block<2, 1>(2 * f, p);
+          if (with.visible(f, p))
+            ASSERT_EQ(a, b);
+          else
+            ASSERT_TRUE(a.array().isNaN().all());
+        }
+    }
+  // The side that a camera hardly moving never sees is not followed, and others take its place.
+  const Sequence tricky = film(ball, {"ball", "tricky", "perspective", "without"}, 1, {});
+  EXPECT_LT((*tricky.truth)(Eigen::seq(1, Eigen::last, 3), Eigen::all).maxCoeff(), 0.35);
+  EXPECT_GT(ball.points_m.leftCols(100)(Eigen::seq(1, Eigen::last, 3), Eigen::all).maxCoeff(), 0.5);
+  Motion few = ball;
+  few.points_m = ball.points_m.leftCols(140);
+  EXPECT_LT(film(few, {"ball", "tricky", "perspective", "with"}, 1, {}).points(), 100);
+}
+
+TEST(Film, AnimatronicsHaveAsManyPointsAsAreWanted) {
+  const Sheet sheet = flat_sheet(0.2, 0.1, 12);  // anchors that stand by change none of those that are preferred
+  const auto few = spread_anchors(sheet.triangles, sheet.rest, {}, 30, 5);
+  const auto many = spread_anchors(sheet.triangles, sheet.rest, {}, 120, 5);
+  for (std::size_t k = 0; k < few.size(); ++k) {
+    EXPECT_EQ(few[k].triangle, many[k].triangle);
+    EXPECT_EQ(few[k].b1, many[k].b1);
+  }
+  const Motion motion = motion_of(*find_animatronic("stretching"), {.frames = 8, .points = 30, .seed = 2});
+  EXPECT_GT(motion.points_m.cols(), 30);
+  for (const char* path : {"circle", "tricky"})
+    EXPECT_EQ(film(motion, {"stretching", path, "perspective", "with"}, 1, {}).points(), 30);
 }
 
 TEST(Film, DesignIsFullFactorial) {
