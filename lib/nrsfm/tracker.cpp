@@ -2,6 +2,7 @@
 #include "nrsfm/tracker.h"
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <opencv2/core.hpp>
@@ -25,7 +26,9 @@ cv::Point2f point(const Eigen::Vector2d& place_px) {
 struct Tracker::Impl {
   struct Followed {
     std::optional<Patch> patch;
-    Warp warp;  // of the patch in the last picture
+    Warp warp;           // of the patch in the last picture
+    double area = 1;     // of the patch over that of the first
+    double largest = 1;  // that the area has been
   };
   TrackerOptions options;
   GreyPicture last;              // of which only the pixels are used
@@ -40,11 +43,17 @@ struct Tracker::Impl {
     Warp warp{f.warp.a, expected};
     const auto likeness = f.patch->align(now, warp);
     if (!likeness || *likeness < options.likeness || (warp.t - expected).norm() > options.correction_px) return false;
+    const double area = f.area * warp.a.determinant();
+    f.largest = std::max(f.largest, area);
+    if (area < options.left * f.largest) return false;
     f.warp = warp;
     const Eigen::Vector2d sizes = Eigen::JacobiSVD<Eigen::Matrix2d>(warp.a).singularValues();
     if (sizes.maxCoeff() < options.change && sizes.minCoeff() * options.change > 1) return true;
-    if (auto anew = Patch::of(now, warp.t, options.half_px))
-      f = {std::move(anew), {Eigen::Matrix2d::Identity(), warp.t}};
+    auto anew = Patch::of(now, warp.t, options.half_px);
+    if (!anew) return true;
+    f.patch = std::move(anew);
+    f.warp.a.setIdentity();
+    f.area = area;
     return true;
   }
 };

@@ -4,7 +4,8 @@
 //   sum_x (I(W(x)) - g T(x) - b)^2 = min
 // by the inverse compositional method (Baker & Matthews 2004; with light: Bartoli 2008). Where the warp has made the
 // patch much larger, smaller or flatter, the picture's own takes its place. A point is lost where Lucas-Kanade does not
-// find its way back, or what is found is not like the patch: something stands before it. It stays lost.
+// find its way back, where what is found is not like the patch (something stands before it), or where the patch has
+// shrunk to a fraction (its surface turns away, and what is found next slips along the silhouette). It stays lost.
 #pragma once
 #include <memory>
 
@@ -17,6 +18,7 @@ struct TrackerOptions {
   double back_px = 0.5;      // the way back may miss the place where it began by this
   double likeness = 0.85;    // least correlation of a patch and what it is found to be
   double change = 1.33;      // of the patch's size in any direction, until a new one is taken
+  double left = 0.2;         // of the largest area that a patch has had: with less it turns away
   double correction_px = 2;  // the warp's place may lie this far from Lucas and Kanade's
 };
 

@@ -118,6 +118,49 @@ TEST(Flow, LosesWhatIsCovered) {
   EXPECT_LT(kept_hidden, 0.2 * hidden);
 }
 
+// A drum turns by a quarter: what goes behind is lost, and does not slip along the silhouette.
+TEST(Flow, LosesWhatTurnsAway) {
+  constexpr Eigen::Index frames = 13;
+  const Sheet sheet = flat_sheet(0.3, 0.2, 40);
+  Motion motion;
+  motion.material_m = sheet.rest;
+  DeformingSurface drum{sheet.triangles,
+                        Shapes(3 * frames, sheet.rest.cols()),
+                        spread_anchors(sheet.triangles, sheet.rest, {}, 120, 2),
+                        {},
+                        {},
+                        0};
+  for (Eigen::Index f = 0; f < frames; ++f)
+    for (Eigen::Index v = 0; v < sheet.rest.cols(); ++v) {
+      constexpr double radius = 0.1;
+      const double angle = sheet.rest(0, v) / radius + (static_cast<double>(f) / (frames - 1) - 0.5) * pi / 2;
+      drum.vertices_m.block<3, 1>(3 * f, v) << radius * std::sin(angle), sheet.rest(1, v), radius * std::cos(angle);
+    }
+  motion.points_m = anchored(drum);
+  motion.mesh = [&drum](Eigen::Index f) { return FrameMesh{shape_of(drum.vertices_m, f), drum.triangles}; };
+  const std::vector<CameraFromObject> cameras(frames, [] {
+    CameraFromObject camera = turning(1, 0).front();
+    camera.rotation = Eigen::AngleAxisd(pi, Eigen::Vector3d::UnitX()).toRotationMatrix();
+    return camera;
+  }());
+  const Visible seen = visible_points(motion, cameras, Projection::perspective);
+  const Tracks tracks = flow_tracks(motion, motion.points_m, seen, cameras, small_view(), 1);
+  const Tracks truth = project(motion.points_m, cameras, Projection::perspective, small_view().pinhole);
+  int followed = 0, hidden = 0, slipped = 0;
+  for (Eigen::Index f = 0; f < frames; ++f)
+    for (Eigen::Index p = 0; p < tracks.cols(); ++p) {
+      if (std::isnan(tracks(2 * f, p))) continue;
+      ++followed;
+      hidden += !seen(f, p);
+      slipped += (tracks - truth).block<2, 1>(2 * f, p).norm() > 1.5;
+    }
+  ASSERT_GT((!seen.row(0) && seen.row(frames - 1)).count(), 15);
+  ASSERT_GT((seen.row(0) && !seen.row(frames - 1)).count(), 15);
+  ASSERT_GT(followed, 500);
+  EXPECT_LT(hidden, followed / 50);
+  EXPECT_LT(slipped, followed / 50);
+}
+
 // Orthographic and perspective pictures have the same scale at the middle; errors are told in the sequence's unit.
 TEST(Flow, SequencesHaveRealErrors) {
   const Motion motion = wavy_sheet(6, 0.003);
