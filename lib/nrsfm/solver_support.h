@@ -25,7 +25,8 @@ SolverParameter dct_terms_parameter();
 Eigen::Index dct_terms_of(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options,
                           Eigen::Index rank);
 
-// "camera_rank": rank K at which rotations are estimated; 0: the one that lets the model reproject.
+// "camera_rank": rank K at which rotations are estimated (metric_upgrade); -1: those of a rigid shape with the least
+// reprojection error (rigid_motion.h); 0: of all these the ones that let `rank` shapes reproject and be small together.
 SolverParameter camera_rank_parameter();
 // Rotations at that rank; records "camera_rank" and "free_scales" in solution.values.
 Start start_for(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options, Eigen::Index rank,

@@ -103,13 +103,14 @@ class Ksta : public Solver {
 
   Solution solve(const Sequence& sequence, const SolverOptions& options) const override {
     const SolverValues values = values_in_force(info(), options.values);
-    const Eigen::Index rank = std::max<Eigen::Index>(2, shapes_of_model(info(), sequence, options));
+    const Eigen::Index most = std::min(sequence.points() - 1, 2 * sequence.frames()) / 3;  // that tracks hold
+    const Eigen::Index rank = std::min(most, std::max<Eigen::Index>(2, shapes_of_model(info(), sequence, options)));
     const Eigen::Index d = dct_terms_of(info(), sequence, options, rank);
     Eigen::Index q = static_cast<Eigen::Index>(values.at("dimensions"));
     if (q == 0) q = std::min<Eigen::Index>(3, rank - 1);
     q = std::min(q, rank);
     Eigen::Index centres = static_cast<Eigen::Index>(values.at("centres"));
-    if (centres == 0) centres = rank;
+    if (centres == 0) centres = std::min(rank, most - 1);  // beside the constant
     require_rank(sequence, centres + 1);
     Solution solution;
     Start start = start_for(info(), sequence, options, rank, solution);
