@@ -116,7 +116,7 @@ Sequence film(const Motion& motion, const Take& take, const Cell& cell, std::uin
   if (s.projection == Projection::perspective) s.pinhole = take.pinhole;
   const bool by_flow = options.flow_width_px > 0;
   std::vector<Eigen::Index> points = take.points;
-  points.resize(by_flow ? std::min(2 * take.wanted, points.size()) : take.wanted);
+  if (!by_flow) points.resize(take.wanted);
   s.truth = Shapes(motion.points_m(Eigen::all, points));
   s.tracks = project(*s.truth, s.cameras, s.projection, take.pinhole);
   s.unit_m = 1;

@@ -50,7 +50,7 @@ struct Take {
 };
 Take take_of(const Motion& motion, const std::string& path, const std::string& camera, const ViewOptions& options);
 
-// What a virtual camera sees of a take's points, or a tracker finds of twice as many: the first that it follows long
+// What a virtual camera sees of a take's points, or what a tracker finds of all: the first that it follows long
 // enough.
 Sequence film(const Motion& motion, const Take& take, const Cell& cell, std::uint64_t seed, const ViewOptions& options);
 Sequence film(const Motion& motion, const Cell& cell, std::uint64_t seed, const ViewOptions& options);
