@@ -14,34 +14,31 @@ Sequence recorded(const char* set) {
   return s;
 }
 
-// e3D of the authors' own reconstructions (Shat beside the tracks; SOURCE.md) after one rotation of the sequence, and
-// after one rotation per frame.
-TEST(Recorded, pta_reaches_the_authors_reconstruction_of_yoga) {
-  GONIO_NEEDS_DATA("nrsfm/pta_mocap/yoga.mat");
-  const Sequence s = recorded("nrsfm/pta_mocap/yoga.mat");
-  const Solution solution = answer("pta", s, {{"terms", 11}});
-  EXPECT_NEAR(error_of(solution, s, Alignment::global_rotation), 0.1483, 0.05 * 0.1483);
-  EXPECT_NEAR(error_of(solution, s, Alignment::frame_rotation), 0.0476, 0.05 * 0.0476);
+struct Authors {
+  std::string name;
+  double terms = 0;
+  double rotation = 0, per_frame = 0;  // e3D after one rotation of the sequence, and after one per frame
+};
+void PrintTo(const Authors& authors, std::ostream* out) {
+  *out << authors.name;
 }
+class AuthorsOfPta : public ::testing::TestWithParam<Authors> {};
+// Of their own reconstructions (Shat beside the tracks; SOURCE.md).
+INSTANTIATE_TEST_SUITE_P(Recorded, AuthorsOfPta,
+                         ::testing::Values(Authors{"yoga", 11, 0.1483, 0.0476}, Authors{"stretch", 12, 0.1087, 0.0818},
+                                           Authors{"drink", 13, 0.0249, 0.0226}),
+                         [](const auto& test) { return test.param.name; });
 
-TEST(Recorded, pta_reaches_the_authors_reconstruction_of_stretch) {
-  GONIO_NEEDS_DATA("nrsfm/pta_mocap/stretch.mat");
-  const Sequence s = recorded("nrsfm/pta_mocap/stretch.mat");
-  const Solution solution = answer("pta", s, {{"terms", 12}});
-  EXPECT_NEAR(error_of(solution, s, Alignment::global_rotation), 0.1087, 0.05 * 0.1087);
-  EXPECT_NEAR(error_of(solution, s, Alignment::frame_rotation), 0.0818, 0.05 * 0.0818);
+TEST_P(AuthorsOfPta, reconstruction_is_reached) {
+  GONIO_NEEDS_DATA("nrsfm/pta_mocap");
+  const Sequence s = recorded(("nrsfm/pta_mocap/" + GetParam().name + ".mat").c_str());
+  const Solution solution = answer("pta", s, {{"terms", GetParam().terms}});
+  EXPECT_NEAR(error_of(solution, s, Alignment::global_rotation), GetParam().rotation, 0.05 * GetParam().rotation);
+  EXPECT_NEAR(error_of(solution, s, Alignment::frame_rotation), GetParam().per_frame, 0.05 * GetParam().per_frame);
 }
 
 // 0.3954 (K = 2) and 0.1796 are the figures of PTA in table 1 of Gotardo & Martinez 2011 (from memory). Equations that
 // weigh |A|^2 = 1, |B|^2 = 1 and A . B = 0 alike give 0.3953 for walking, but depend on the image's orientation.
-TEST(Recorded, pta_reaches_the_authors_reconstruction_of_drink) {
-  GONIO_NEEDS_DATA("nrsfm/pta_mocap/drink.mat");
-  const Sequence s = recorded("nrsfm/pta_mocap/drink.mat");
-  const Solution solution = answer("pta", s, {{"terms", 13}});
-  EXPECT_NEAR(error_of(solution, s, Alignment::global_rotation), 0.0249, 0.05 * 0.0249);
-  EXPECT_NEAR(error_of(solution, s, Alignment::frame_rotation), 0.0226, 0.05 * 0.0226);
-}
-
 TEST(Recorded, pta_of_walking_and_shark) {
   GONIO_NEEDS_DATA("nrsfm/torresani/walking_rearranged.mat");
   const Sequence walking = recorded("nrsfm/torresani/walking_rearranged.mat");

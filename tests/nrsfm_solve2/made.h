@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "base/error.h"
 #include "base/random.h"
 #include "nrsfm/errors.h"
 #include "nrsfm/factorization.h"
@@ -104,6 +105,39 @@ inline double error_of(const Solution& solution, const Sequence& s, Alignment al
   Shapes other = s.truth_frame == ShapeFrame::camera ? x : Shapes(-x);
   for (Eigen::Index f = 0; f < s.frames() && s.truth_frame == ShapeFrame::camera; ++f) other.row(3 * f + 2) *= -1;
   return std::min(e3d(x, *s.truth, alignment), e3d(other, *s.truth, alignment));
+}
+
+// The same things seen by a turned, larger, shifted image, points in reverse and, with `frames`, frames too.
+inline Sequence reordered(const Sequence& s, bool frames) {
+  Sequence other = s;
+  const Eigen::Matrix2d turn = 7.5 * Eigen::Rotation2Dd(0.8).toRotationMatrix();
+  for (Eigen::Index f = 0; f < s.frames(); ++f) {
+    const Eigen::Index from = frames ? s.frames() - 1 - f : f;
+    other.tracks.middleRows<2>(2 * f) =
+        (turn * s.tracks.middleRows<2>(2 * from).rowwise().reverse()).colwise() + Eigen::Vector2d(100, -40);
+    shape_of(*other.truth, f) = 7.5 * shape_of(*s.truth, from).rowwise().reverse();
+  }
+  return other;
+}
+
+// The error before and after that, relative to before.
+inline double change_when_reordered(const std::string& solver, const Sequence& s, const SolverValues& values,
+                                    bool frames) {
+  const double before = error_of(answer(solver, s, values), s, Alignment::frame_rotation);
+  const Sequence other = reordered(s, frames);
+  return std::abs(error_of(answer(solver, other, values), other, Alignment::frame_rotation) - before) / before;
+}
+
+// What a solver says of a sequence that misses one track; empty where it does not refuse as bad data.
+inline std::string refusal_of_a_missing_track(const std::string& solver) {
+  Sequence s = low_rank_sequence(20, 15, 2, 0);
+  hide(s, 3, 4);
+  try {
+    answer(solver, s);
+  } catch (const Error& error) {
+    return error.code() == Exit::data ? error.what() : "";
+  }
+  return "";
 }
 
 }  // namespace gonio::nrsfm::testing

@@ -5,11 +5,14 @@
 // in turns (Zhu, Huang, De la Torre & Lucey, CVPR 2014, section 3: complex motion does not fit one low-rank basis, but
 // its parts do). The paper asks for C of low rank; without corruption such a C is a function of the singular vectors of
 // S# alone (Favaro, Vidal & Ravichandran, CVPR 2011), which the nuclear norm judges already, so that the
-// self-expression here is the sparse one. Both terms start at a ratio of `weight`. The first turn is the answer of
-// spfm, with its cameras. Complete data only.
+// self-expression here is the sparse one. How sparse the tracks say: C from half of the points has to predict the
+// tracks of the other half. Both terms start at a ratio of `weight`. The first turn is the answer of spfm, with its
+// cameras. Complete data only.
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "nrsfm/factorization.h"
 #include "nrsfm/low_rank.h"
@@ -19,12 +22,61 @@
 namespace gonio::nrsfm::solvers {
 namespace {
 
+constexpr double kLeastSparsity = 1.01;
+constexpr std::array kSparsities{2.0, 5.0, 12.5, 30.0, 80.0};
+
 // D with D S# = what of each shape, less the mean, is not a sum of the others that it goes with.
 Eigen::MatrixXd apart_of(const Eigen::MatrixXd& shapes, double sparsity) {
   Eigen::MatrixXd apart = -self_expression(shapes, sparsity).transpose();
   apart.diagonal().array() += 1;
   apart.colwise() -= apart.rowwise().mean().eval();
   return apart;
+}
+
+// Squares of tracks that `sparsity` predicts of points which C has not seen: C from every other point, the tracks of
+// the rest in frame f from their shapes in other frames.
+double predicted_error(const Shapes& shapes, const Eigen::MatrixXd& tracks, const Eigen::MatrixXd& cameras,
+                       double sparsity) {
+  const Eigen::Index points = shapes.cols();
+  double sum = 0;
+  for (const Eigen::Index half : {0, 1}) {
+    const Shapes seen = shapes(Eigen::all, Eigen::seq(half, points - 1, 2));
+    const auto rest = Eigen::seq(1 - half, points - 1, 2);
+    const Eigen::MatrixXd c = self_expression(rearranged(seen), sparsity);
+    Eigen::MatrixXd others = rearranged(shapes(Eigen::all, rest));
+    const Eigen::RowVectorXd mean = others.colwise().mean();
+    others.rowwise() -= mean;
+    const Shapes told = arranged((c.transpose() * others).rowwise() + mean);
+    for (Eigen::Index f = 0; f < tracks.rows() / 2; ++f) {
+      const Eigen::MatrixXd there = cameras.middleRows<2>(2 * f) * shape_of(told, f);
+      sum += (tracks.middleRows<2>(2 * f)(Eigen::all, rest) - there).squaredNorm();
+    }
+  }
+  return sum;
+}
+
+// The least sparsity that predicts tracks within 1 % of their root mean square, or their noise; else the one that
+// predicts them best. Over at most 300 frames.
+double sparsity_of(const Shapes& shapes, const Start& start) {
+  const Eigen::Index frames = start.w.rows() / 2, taken = std::min<Eigen::Index>(frames, 300);
+  Shapes some(3 * taken, shapes.cols());
+  Eigen::MatrixXd tracks(2 * taken, shapes.cols()), cameras(2 * taken, 3);
+  for (Eigen::Index k = 0; k < taken; ++k) {
+    const Eigen::Index f = k * frames / taken;
+    shape_of(some, k) = shape_of(shapes, f);
+    tracks.middleRows<2>(2 * k) = start.w.middleRows<2>(2 * f);
+    cameras.middleRows<2>(2 * k) = start.rows.middleRows<2>(2 * f);
+  }
+  const double noise = std::pow(noise_of(start.w), 2) * static_cast<double>(tracks.size());
+  const double enough = std::max(1e-4 * tracks.squaredNorm(), noise);
+  double best = kSparsities.front(), least = std::numeric_limits<double>::infinity();
+  for (const double sparsity : kSparsities) {
+    const double error = predicted_error(some, tracks, cameras, sparsity);
+    if (error < least) best = sparsity;
+    least = std::min(least, error);
+    if (error <= enough) break;
+  }
+  return best;
 }
 
 class Subspaces : public Solver {
@@ -41,7 +93,8 @@ class Subspaces : public Solver {
         false,
         {camera_rank_parameter(),
          {"weight", 0.1, 0, 1000, false, "of the distance from the subspaces, against the nuclear norm"},
-         {"sparsity", 5, 1.01, 10000, false, "how many times less than at which no frame helps another alpha is"},
+         {"sparsity", 0, 0, 10000, false,
+          "how many times less than at which no frame helps another alpha is; 0: from points left out"},
          {"rounds", 5, 1, 50, true, "turns of shapes and subspaces"},
          free_scales_parameter()}};
     return info;
@@ -58,6 +111,8 @@ class Subspaces : public Solver {
     const int rounds = static_cast<int>(values.at("rounds"));
     solution.iterations = found.iterations;
     const double weight = values.at("weight");
+    if (values.at("sparsity") == 0) values["sparsity"] = sparsity_of(found.shapes, start);
+    values["sparsity"] = std::max(values.at("sparsity"), kLeastSparsity);
     double change = 0;
     for (int round = 0; round < rounds && weight > 0 && found.nuclear_norm > 0; ++round) {
       const Eigen::MatrixXd rows = rearranged(found.shapes);
