@@ -135,6 +135,13 @@ TEST_F(MakeProgram, SequencesOfScansAreEntered) {
   const Sequence s = read_sequence(path("o/sheet-line-perspective-with.mat"));
   EXPECT_EQ((*s.truth - shapes_).cwiseAbs().maxCoeff(), 0);
   EXPECT_TRUE(s.visible.all());  // a sheet shows on both sides
+  // A cell alone is the same as among others.
+  ASSERT_EQ(run({"--meshes", path("scans"), "--tracks", path("tracks.mat"), "--path", "line", "--name", "sheet",
+                 "--camera", "perspective", "--missing", "without", "--out", path("alone"), "--force"})
+                .status,
+            0);
+  const std::string name = "sheet-line-perspective-without.mat";
+  EXPECT_EQ(read_file(folder_ / "alone" / name), read_file(folder_ / "o" / name));
 }
 
 // Points on a wall's far side, which a camera that hardly moves never sees and one that goes around does: the cells
