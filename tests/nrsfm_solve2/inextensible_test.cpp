@@ -136,15 +136,18 @@ TEST(Mdh, refuses_in_words) {
 
 struct Recorded {
   std::string name;
-  double rmse = 0;   // of the published depths, after one scale and per-frame rotation (SOURCE.md of the set)
-  double share = 1;  // of it that this program may have: four frames of the cushion hold less than the published graph
+  double rmse = 0;  // of the published depths, after one scale and per-frame rotation (SOURCE.md of the set)
+  // Of it that this program may have. Four frames of the cushion say little of which points are neighbours: the error
+  // falls from 39 mm with 6 neighbours to 31 with 20 and 26 with 50.
+  double share = 1;
+  double neighbours = 10;
 };
 void PrintTo(const Recorded& r, std::ostream* out) {
   *out << r.name;
 }
 class Totem : public ::testing::TestWithParam<Recorded> {};
 INSTANTIATE_TEST_SUITE_P(Recorded, Totem,
-                         ::testing::Values(Recorded{"cushion", 24.989, 1.5}, Recorded{"kinectPaper", 6.545},
+                         ::testing::Values(Recorded{"cushion", 24.989, 1.25, 20}, Recorded{"kinectPaper", 6.545},
                                            Recorded{"whiteCartoonTshirt", 0.655}),
                          [](const auto& test) { return test.param.name; });
 
@@ -159,7 +162,7 @@ TEST_P(Totem, is_near_the_truth_and_deeper_than_the_published_depths) {
   Sequence s = read_sequence(folder / ("data_" + GetParam().name + ".mat"));
   s.projection = Projection::perspective;
   s.pinhole = Pinhole{k[0], k[4], k[6], k[7]};
-  const Solution solution = answer("mdh", s, {{"neighbours", 10}});
+  const Solution solution = answer("mdh", s, {{"neighbours", GetParam().neighbours}});
   EXPECT_TRUE(solution.converged);
   const double error = rmse(solution.reconstruction.shapes, *s.truth, Alignment::frame_rotation_one_scale);
   RecordProperty("rmse", std::to_string(error));

@@ -3,13 +3,42 @@
 // c_f1 = 1: S_1 is the rigid shape, and what deforms is held to its residual, which keeps basis shapes from cancelling
 // each other in depth as general rank-3K factors may. X minimizes the reprojection error over visible tracks (Gotardo &
 // Martinez, CVPR 2011, "Non-rigid structure from motion with complementary rank-3 spaces"; the equations are derived
-// here from that model, see shape_trajectory.h). Rotations as in csf. Left out: the paper's growth of d in rounds.
+// here from that model, see shape_trajectory.h). Rotations as in csf. The error has many minima: more cosines may end
+// higher than few. Two starts: the first K cosines, as in csf; and csf's answer, its weights turned to a constant and
+// the principal coordinates of its shapes. In these weights are uncorrelated, so that M_j' M_k is near 0 and basis
+// shapes fitted one by one are near those fitted together. The second goes on where it leaves clearly less after a few
+// steps. Left out: the paper's growth of d in rounds.
 #include "nrsfm/factorization.h"
+#include "nrsfm/principal_curve.h"
 #include "nrsfm/shape_trajectory.h"
 #include "nrsfm/solver_support.h"
 
 namespace gonio::nrsfm::solvers {
 namespace {
+
+constexpr int kStepsOfEachStart = 20;
+constexpr double kClearly = 0.9;  // of the error
+
+ShapeTrajectory tried(ShapeTrajectoryProblem problem, Eigen::VectorXd translation, bool complementary,
+                      const Eigen::MatrixXd& from) {
+  problem.complementary = complementary;
+  problem.held = complementary ? 1 : 0;
+  problem.most_iterations = kStepsOfEachStart;
+  return fit_with_translation(problem, from, translation);
+}
+
+ShapeTrajectory better_start(const ShapeTrajectoryProblem& problem, const Eigen::VectorXd& translation,
+                             const Eigen::MatrixXd& cosines) {
+  const Eigen::Index terms = cosines.cols();
+  const ShapeTrajectory plain = tried(problem, translation, true, cosines);
+  if (terms < 2) return plain;
+  const ShapeTrajectory smooth = tried(problem, translation, false, cosines);
+  Eigen::MatrixXd principal = cosines;
+  principal.rightCols(terms - 1) = problem.omega.transpose() * principal_coordinates(smooth, terms - 1);
+  principal.rightCols(terms - 1).colwise().normalize();
+  const ShapeTrajectory turned = tried(problem, translation, true, principal);
+  return turned.cost < kClearly * kClearly * plain.cost ? turned : plain;
+}
 
 class Csf2 : public Solver {
  public:
@@ -33,11 +62,13 @@ class Csf2 : public Solver {
     Solution solution;
     Start start = start_for(info(), sequence, options, rank, solution);
     ShapeTrajectoryProblem problem = linear_problem(sequence, start, d);
+    const ShapeTrajectory begun = better_start(problem, start.translation, Eigen::MatrixXd::Identity(d, rank));
     problem.complementary = true;
     problem.held = 1;
     if (options.most_iterations > 0) problem.most_iterations = options.most_iterations;
-    const ShapeTrajectory fit = fit_with_translation(problem, Eigen::MatrixXd::Identity(d, rank), start.translation);
+    const ShapeTrajectory fit = fit_with_translation(problem, begun.x, start.translation);
     fill(start, fit, solution);
+    solution.iterations += begun.iterations;
     solution.values["rank"] = static_cast<double>(rank);
     solution.values["dct_terms"] = static_cast<double>(d);
     return solution;

@@ -12,29 +12,12 @@
 #include <vector>
 
 #include "nrsfm/factorization.h"
+#include "nrsfm/principal_curve.h"
 #include "nrsfm/shape_trajectory.h"
 #include "nrsfm/solver_support.h"
 
 namespace gonio::nrsfm::solvers {
 namespace {
-
-// Rows y_f with |y_f - y_g| the distance of the shapes of frames f and g, in principal axes, less their mean; q
-// columns.
-Eigen::MatrixXd principal_coordinates(const ShapeTrajectory& fit, Eigen::Index dimensions) {
-  const Eigen::Index terms = fit.coefficients.cols();
-  Eigen::MatrixXd gram(terms, terms);
-  for (Eigen::Index k = 0; k < terms; ++k) {
-    for (Eigen::Index l = 0; l < terms; ++l) {
-      gram(k, l) = fit.basis.middleRows<3>(3 * k).cwiseProduct(fit.basis.middleRows<3>(3 * l)).sum();
-    }
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shape_axes(gram);
-  const Eigen::VectorXd roots = shape_axes.eigenvalues().cwiseMax(0).cwiseSqrt();
-  Eigen::MatrixXd along = fit.coefficients * shape_axes.eigenvectors() * roots.asDiagonal();
-  along.rowwise() -= along.colwise().mean().eval();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(along.transpose() * along);
-  return along * axes.eigenvectors().rightCols(dimensions).rowwise().reverse();
-}
 
 double median_distance(const Eigen::MatrixXd& along) {
   std::vector<double> distances;
