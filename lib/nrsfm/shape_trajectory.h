@@ -45,9 +45,9 @@ struct ShapeTrajectory {
 };
 ShapeTrajectory fit_shape_trajectory(const ShapeTrajectoryProblem& problem, const Eigen::MatrixXd& start);
 
-// The same where frames miss points, so that the mean of the visible ones is not that of all: the translation follows
-// the residuals in rounds; basis shapes have mean zero. `translation` and problem.tracks are updated. Points that few
-// frames see do not determine their 3K coordinates: their prior is normal, of the size that the fit itself has,
+// The same with what tracks leave open. Where frames miss points the translation follows the residuals in rounds; basis
+// shapes have mean zero. `translation` and problem.tracks are updated. Few frames, or cameras that hardly turn, do not
+// determine the 3K coordinates of a point: their prior is normal, of the size that the fit itself has,
 //   ridge = sigma^2 / (F delta^2),   mean_ridge = sigma^2 / (F extent^2),
 // delta^2 the mean square of what a rigid shape with the same cameras leaves, extent^2 of what it explains; sigma^2 the
 // residuals' variance over what the fit leaves free, times (1 + rho) / (1 - rho) for their correlation rho over time.

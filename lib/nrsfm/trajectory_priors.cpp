@@ -1,4 +1,4 @@
-// Translations of frames that miss points, and priors for points that few frames see.
+// Translations of frames that miss points, and priors for what frames and cameras leave open.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -97,11 +97,6 @@ RigidSizes fit_rigid(ShapeTrajectoryProblem& problem, Eigen::VectorXd& translati
 
 ShapeTrajectory fit_with_translation(ShapeTrajectoryProblem& problem, const Eigen::MatrixXd& start,
                                      Eigen::VectorXd& translation) {
-  if (problem.visible.all()) {  // tracks less their mean have shapes less theirs
-    ShapeTrajectory fit = fit_shape_trajectory(problem, start);
-    fit.basis.colwise() -= fit.basis.rowwise().mean().eval();
-    return fit;
-  }
   const double energy = problem.tracks.squaredNorm(), least = problem.ridge;
   const double frames = static_cast<double>(problem.visible.rows());
   const RigidSizes sizes = fit_rigid(problem, translation);

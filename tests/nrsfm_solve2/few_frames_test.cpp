@@ -47,5 +47,34 @@ TEST(FewFrames, are_enough_where_tracks_are_exact) {
   EXPECT_LT(error_of(answer("csf", s, values), s, Alignment::global_similarity), 1e-2);
 }
 
+// Complete tracks, true cameras that hardly turn, and more basis shapes than there are: without the priors noise
+// becomes depth there, too.
+TEST(Priors, keep_depths_in_bounds_where_cameras_hardly_turn) {
+  Sequence s = low_rank_sequence(40, 40, 2, 0);
+  Random random(9);
+  for (Eigen::Index f = 0; f < s.frames(); ++f) {
+    CameraFromObject& camera = s.cameras[std::size_t(f)];
+    const Eigen::AngleAxisd whole(camera.rotation);
+    camera.rotation = Eigen::AngleAxisd(0.25 * whole.angle(), whole.axis()).toRotationMatrix();
+    s.tracks.middleRows<2>(2 * f) = (camera.rotation * shape_of(*s.truth, f)).topRows<2>();
+  }
+  s.tracks += 0.02 * normals(80, 40, random);
+  Start start = centred_start(s, 5);
+  start.rows.resize(80, 3);
+  for (Eigen::Index f = 0; f < s.frames(); ++f)
+    start.rows.middleRows<2>(2 * f) = s.cameras[std::size_t(f)].rotation.topRows<2>();
+  ShapeTrajectoryProblem problem = linear_problem(s, start, 10);
+  const Eigen::MatrixXd cosines = Eigen::MatrixXd::Identity(10, 5);
+  const auto error = [&](const ShapeTrajectory& fit) {
+    return e3d(shapes_of(fit.coefficients, fit.basis), *s.truth, Alignment::none);
+  };
+  const double without = error(fit_shape_trajectory(problem, cosines));
+  const double with = error(fit_with_translation(problem, cosines, start.translation));
+  RecordProperty("without", std::to_string(without));
+  RecordProperty("with", std::to_string(with));
+  EXPECT_LT(with, 0.5 * without);
+  EXPECT_LT(with, 0.08);
+}
+
 }  // namespace
 }  // namespace gonio::nrsfm::testing
