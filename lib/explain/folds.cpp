@@ -63,47 +63,60 @@ Eigen::MatrixXd without_own_numbers(const Linearisation& l, const GroupGram& gra
 
 }  // namespace
 
-Folds::Fold Folds::fold_of(const System& system, const Linearisation& l, const Eigen::MatrixXd& joint,
-                           const GroupGram* left_out, Eigen::VectorXd& length) const {
+Folds::Fold Folds::everything(const Linearisation& l, const Eigen::MatrixXd& joint) {
   const auto own = static_cast<Eigen::Index>(l.own), all = static_cast<Eigen::Index>(l.columns.size());
-  Eigen::MatrixXd sums = joint;
-  if (left_out != nullptr) {
-    std::vector<Eigen::Index> places(left_out->columns.begin(), left_out->columns.end());
-    places.push_back(all);
-    sums(places, places) -= left_out->whole();
-    for (Eigen::Index c = 0; c < all; ++c) {  // what the group alone has leaves rounding behind
-      if (sums(c, c) > 1e-12 * joint(c, c)) continue;
-      sums.row(c).setZero();
-      sums.col(c).setZero();
-    }
-  }
   std::vector<std::size_t> columns(l.own);
   for (std::size_t c = 0; c < l.own; ++c) columns[c] = c;
-  const NormalEquations equations(l, columns, left_out == nullptr ? NormalEquations::none : left_out->group);
-  const Eigen::MatrixXd cross = sums.block(0, own, own, all - own);
+  const NormalEquations equations(l, columns);
+  const Eigen::MatrixXd cross = joint.block(0, own, own, all - own);
   Eigen::MatrixXd moved(own, all - own + 1);  // U and u
   moved << equations.solve(cross), equations.solve(equations.gradient());
   Fold fold;
-  length = sums.diagonal().segment(own, all - own);
-  fold.normal = sums.block(own, own, all - own, all - own + 1) - cross.transpose() * moved;
-  for (Eigen::Index f = 0; f < all - own; ++f) {
+  full_ = joint.diagonal().segment(own, all - own);
+  fold.normal = joint.block(own, own, all - own, all - own + 1) - cross.transpose() * moved;
+  add_priors(l, full_, fold);
+  return fold;
+}
+
+void Folds::add_priors(const Linearisation& l, const Eigen::VectorXd& length, Fold& fold) const {
+  const Eigen::Index last = fold.normal.cols() - 1;
+  for (Eigen::Index f = 0; f < last; ++f) {
     const LinearColumn& column = l.columns[l.own + static_cast<std::size_t>(f)];
     fold.normal(f, f) += column.prior_precision + ridge * length[f];
-    fold.normal(f, all - own) += column.prior_pull;
+    fold.normal(f, last) += column.prior_pull;
   }
-  if (left_out == nullptr) return fold;
-  fold.group = left_out->group;
+}
+
+// `moved`: rows for all own columns; those of single groups are zero.
+Folds::Fold Folds::without(const System& system, const Linearisation& l, const GroupGram& left_out,
+                           const Eigen::MatrixXd& normal, const Eigen::MatrixXd& moved) const {
+  Fold fold;
+  fold.normal = normal;
+  Eigen::VectorXd length = full_;
+  for (std::size_t k = 0; k < left_out.columns.size(); ++k) {
+    if (left_out.columns[k] < l.own) continue;
+    const auto f = static_cast<Eigen::Index>(left_out.columns[k] - l.own), i = static_cast<Eigen::Index>(k);
+    length[f] -= left_out.half[0](i, i) + left_out.half[1](i, i);
+    if (!(length[f] > 1e-12 * full_[f])) length[f] = 0;  // what the group alone has leaves rounding behind
+  }
+  add_priors(l, length, fold);
+  fold.group = left_out.group;
   fold.rows = static_cast<double>(system.used_rows(fold.group));
-  const Eigen::MatrixXd basis = held_out_basis(l, *left_out, moved);
+  const Eigen::MatrixXd basis = held_out_basis(l, left_out, moved);
   std::vector<Eigen::Index> numbers;
-  for (std::size_t k = 0; k < left_out->columns.size(); ++k)
-    if (left_out->columns[k] < l.own && l.columns[left_out->columns[k]].local == fold.group)
+  bool foreign_numbers = false;
+  for (std::size_t k = 0; k < left_out.columns.size(); ++k) {
+    if (l.columns[left_out.columns[k]].local != fold.group) continue;
+    if (left_out.columns[k] < l.own)
       numbers.push_back(static_cast<Eigen::Index>(k));
+    else
+      foreign_numbers = true;
+  }
   fold.halved = !numbers.empty();
   for (std::size_t half = 0; half < 2; ++half) {
-    const Eigen::MatrixXd b = numbers.empty() ? basis : without_own_numbers(l, *left_out, basis, numbers, half);
-    fold.judged[half] = b.transpose() * left_out->half[1 - half] * b;
-    fold.fitted[half] = b.transpose() * left_out->half[half] * b;
+    const Eigen::MatrixXd b = numbers.empty() ? basis : without_own_numbers(l, left_out, basis, numbers, half);
+    fold.judged[half] = b.transpose() * (left_out.half[1 - half] * b);
+    if (foreign_numbers) fold.fitted[half] = b.transpose() * (left_out.half[half] * b);
   }
   return fold;
 }
@@ -120,11 +133,16 @@ Folds::Folds(const System& system, const Linearisation& l) {
     local_.push_back(l.columns[c].local);
     side_.push_back(side_of(system, l.columns[c]));
   }
-  all_ = fold_of(system, l, joint, nullptr, full_);
+  all_ = everything(l, joint);
   folds_.resize(l.grams.size());
-  parallel_for(0, l.grams.size(), [&](std::size_t g) {
-    Eigen::VectorXd length;
-    folds_[g] = fold_of(system, l, joint, &l.grams[g], length);
+  std::vector<std::size_t> own(l.own), foreign(l.columns.size() - l.own);
+  for (std::size_t c = 0; c < l.columns.size(); ++c) (c < l.own ? own[c] : foreign[c - l.own]) = c;
+  const LeaveOneOut others(l, own, foreign);
+  others.each([&](std::size_t g, const WithoutGroup& w) {
+    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(l.own), w.moved.cols());
+    for (std::size_t k = 0; k < others.shared().size(); ++k)
+      moved.row(static_cast<Eigen::Index>(others.shared()[k])) = w.moved.row(static_cast<Eigen::Index>(k));
+    folds_[g] = without(system, l, l.grams[g], w.normal, moved);
   });
   for (const Fold& fold : folds_) rows_ += fold.rows;
   own_ = held_out({});

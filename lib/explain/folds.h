@@ -35,11 +35,13 @@ class Folds {
     double rows = 0;
     Eigen::MatrixXd normal;     // S and, in the last column, b
     Eigen::MatrixXd judged[2];  // quadratic form in (t, 1) on the other half than the one fitted
-    Eigen::MatrixXd fitted[2];  // the same on the half that own numbers of the group are fitted on
+    Eigen::MatrixXd fitted[2];  // the same on the half that own numbers of the group are fitted on; where there are any
     bool halved = false;        // the model itself has numbers of this group
   };
-  Fold fold_of(const System& system, const Linearisation& l, const Eigen::MatrixXd& joint, const GroupGram* left_out,
-               Eigen::VectorXd& length) const;
+  Fold everything(const Linearisation& l, const Eigen::MatrixXd& joint);
+  Fold without(const System& system, const Linearisation& l, const GroupGram& left_out, const Eigen::MatrixXd& normal,
+               const Eigen::MatrixXd& moved) const;
+  void add_priors(const Linearisation& l, const Eigen::VectorXd& length, Fold& fold) const;
   double squares(const Fold& fold, const std::vector<Eigen::Index>& foreign) const;
   Eigen::VectorXd solved(const Fold& fold, const std::vector<Eigen::Index>& shared) const;
 

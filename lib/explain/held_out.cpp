@@ -89,15 +89,13 @@ struct Fold {
   std::vector<char> in_play;
   Eigen::VectorXd step, in_gram;
 };
-Fold fold_step(const Linearisation& l, const std::vector<std::size_t>& columns, const GroupGram& gram) {
-  const NormalEquations equations(l, columns, gram.group);
-  const Eigen::MatrixXd solution = equations.solve(equations.gradient());
+Fold fold_of(const Linearisation& l, const std::vector<std::size_t>& columns, const LeaveOneOut& others,
+             const WithoutGroup& without, const GroupGram& gram) {
   Fold fold{std::vector<char>(l.columns.size(), 0), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(l.columns.size())),
             Eigen::VectorXd::Zero(static_cast<Eigen::Index>(gram.columns.size()))};
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    fold.in_play[columns[c]] = 1;
-    fold.step[static_cast<Eigen::Index>(columns[c])] = solution(static_cast<Eigen::Index>(c), 0);
-  }
+  for (const std::size_t c : columns) fold.in_play[c] = 1;
+  for (std::size_t k = 0; k < others.shared().size(); ++k)
+    fold.step[static_cast<Eigen::Index>(others.shared()[k])] = without.moved(static_cast<Eigen::Index>(k), 0);
   for (std::size_t k = 0; k < gram.columns.size(); ++k) {
     const std::size_t c = gram.columns[k];
     if (fold.in_play[c] && l.columns[c].local != gram.group)
@@ -139,9 +137,10 @@ HeldOut held_out_by_step(const System& system, const Fit& fit, const Slopes* kep
   std::vector<std::size_t> columns(l.columns.size());
   for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = c;
   std::vector<GroupScore> scores(l.grams.size());
-  parallel_for(0, l.grams.size(), [&](std::size_t g) {
+  const LeaveOneOut others(l, columns);
+  others.each([&](std::size_t g, const WithoutGroup& without) {
     const GroupGram& gram = l.grams[g];
-    const Fold fold = fold_step(l, columns, gram);
+    const Fold fold = fold_of(l, columns, others, without, gram);
     std::vector<double> values = fit.values;
     const auto move = [&](std::size_t c, double step) {
       const std::size_t p = l.columns[c].parameter;
@@ -161,9 +160,10 @@ HeldOut held_out_by_step(const System& system, const Fit& fit, const Slopes* kep
 
 HeldOut held_out_linear(const System& system, const Linearisation& l, const std::vector<std::size_t>& columns) {
   std::vector<GroupScore> scores(l.grams.size());
-  parallel_for(0, l.grams.size(), [&](std::size_t g) {
+  const LeaveOneOut others(l, columns);
+  others.each([&](std::size_t g, const WithoutGroup& without) {
     const GroupGram& gram = l.grams[g];
-    const Fold fold = fold_step(l, columns, gram);
+    const Fold fold = fold_of(l, columns, others, without, gram);
     for (const int half : {0, 1}) {
       const LocalStep own = local_step(l, gram, fold.in_play, fold.in_gram, half);
       Eigen::VectorXd step(fold.in_gram.size() + 1);

@@ -13,6 +13,19 @@ constexpr double ridge = 1e-13;
 
 }  // namespace
 
+Eigen::VectorXd downhill(const Linearisation& l) {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(l.columns.size()));
+  for (std::size_t c = 0; c < l.columns.size(); ++c) result[static_cast<Eigen::Index>(c)] = l.columns[c].prior_pull;
+  for (const GroupGram& gram : l.grams) {
+    const Eigen::MatrixXd &a = gram.half[0], &b = gram.half[1];
+    for (std::size_t k = 0; k < gram.columns.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      result[static_cast<Eigen::Index>(gram.columns[k])] += a(i, a.cols() - 1) + b(i, b.cols() - 1);
+    }
+  }
+  return result;
+}
+
 NormalEquations::Part NormalEquations::part_of(const GroupGram& gram,
                                                const std::vector<Eigen::Index>& place_in_subset) {
   Part p;
@@ -24,7 +37,10 @@ NormalEquations::Part NormalEquations::part_of(const GroupGram& gram,
     p.places.push_back(place);
   }
   const Eigen::MatrixXd &a = gram.half[0], &b = gram.half[1];
-  p.gram = a(chosen, chosen) + b(chosen, chosen);
+  if (chosen.size() == gram.columns.size())
+    p.gram = (a + b).topLeftCorner(a.rows() - 1, a.cols() - 1);
+  else
+    p.gram = a(chosen, chosen) + b(chosen, chosen);
   p.score = a(chosen, a.cols() - 1) + b(chosen, b.cols() - 1);
   return p;
 }
@@ -66,7 +82,8 @@ NormalEquations::NormalEquations(const Linearisation& l, const std::vector<std::
 void NormalEquations::eliminate(const Part& p, const std::vector<Eigen::Index>& place_in_shared,
                                 Eigen::MatrixXd& reduced) {
   const Eigen::VectorXd scale = scale_(p.places);
-  const Eigen::MatrixXd h = scale.asDiagonal() * p.gram * scale.asDiagonal();
+  Eigen::MatrixXd h = p.gram;
+  for (Eigen::Index k = 0; k < h.cols(); ++k) h.col(k).array() *= scale.array() * scale[k];
   std::vector<Eigen::Index> in_local, in_shared, shared_places;
   Local local;
   for (std::size_t k = 0; k < p.places.size(); ++k) {
@@ -84,7 +101,7 @@ void NormalEquations::eliminate(const Part& p, const std::vector<Eigen::Index>& 
   local.factor.compute(own);
   local.coupling = Eigen::MatrixXd::Zero(own.rows(), reduced.cols());
   local.coupling(Eigen::all, shared_places) = h(in_local, in_shared);
-  reduced.noalias() -= local.coupling.transpose() * local.factor.solve(local.coupling);
+  reduced.triangularView<Eigen::Lower>() -= local.coupling.transpose() * local.factor.solve(local.coupling);
   locals_.push_back(std::move(local));
 }
 

@@ -14,6 +14,8 @@ class OwnTests {
   virtual ~OwnTests() = default;
   // Places in Problem::candidates of what is tested here; these do not run in the race.
   virtual std::vector<std::size_t> tested() const = 0;
+  // Relative fall of the squares that ends a fit. Where the model is known to lack much, its last digits say nothing.
+  virtual double tolerance() const { return 1e-9; }
   // Adds to a finished explanation what these tests have found; its sentence is written afterwards.
   virtual void conclude(Explanation& explanation) const = 0;
 };

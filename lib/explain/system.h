@@ -12,6 +12,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -160,6 +161,42 @@ class NormalEquations {
   std::vector<Local> locals_;
   Eigen::LDLT<Eigen::MatrixXd> factor_;
   Eigen::VectorXd gradient_, diagonal_, scale_, lift_;  // lift: priors, damping and ridge on the scaled diagonal
+};
+
+// J'r + prior pull of all columns.
+Eigen::VectorXd downhill(const Linearisation& linearisation);
+
+// What all groups but one say. Each group's own numbers are eliminated once, then sums over the others are formed by
+// halving, so that nothing is subtracted.
+struct WithoutGroup {
+  Eigen::MatrixXd moved;   // shared columns' steps, one row for each of LeaveOneOut::shared(): towards the foreign
+                           // columns and, last, the residual (with the priors' pull)
+  Eigen::MatrixXd normal;  // foreign x (foreign, residual): what the model's columns leave of these
+};
+class LeaveOneOut {
+ public:
+  // `columns`: the model's; `foreign`: others, which take no step.
+  LeaveOneOut(const Linearisation& linearisation, const std::vector<std::size_t>& columns,
+              const std::vector<std::size_t>& foreign = {});
+  const std::vector<std::size_t>& shared() const { return shared_; }  // the model's columns that are no group's own
+  // visit(place in Linearisation::grams, ...), from several threads at once.
+  void each(const std::function<void(std::size_t, const WithoutGroup&)>& visit) const;
+
+ private:
+  struct Part {                        // of one group
+    std::vector<Eigen::Index> places;  // among shared, foreign and residual
+    Eigen::MatrixXd matrix;
+  };
+  void eliminate(const Linearisation& l, const GroupGram& gram, const std::vector<Eigen::Index>& place,
+                 const std::vector<char>& own);
+  void visit_within(std::size_t first, std::size_t last, Eigen::MatrixXd others,
+                    const std::function<void(std::size_t, const WithoutGroup&)>& visit) const;
+  WithoutGroup solved(Eigen::MatrixXd sums) const;
+
+  std::vector<std::size_t> shared_;
+  Eigen::VectorXd prior_, pull_, scale_;  // of the shared columns
+  Eigen::Index size_ = 0;                 // shared, foreign, residual
+  std::vector<Part> parts_;
 };
 
 }  // namespace gonio::explain

@@ -19,14 +19,23 @@ constexpr double least_left = 0.1;  // of a block's residual that the fit leaves
 // blocks that it rests on, (sum a)^2 / sum a^2 with a the variance that each of them brings: Satterthwaite's degrees of
 // freedom.
 struct Meat {
-  Eigen::MatrixXd scores;
+  Eigen::MatrixXd scores;  // of one group: at `places` only
+  std::vector<Eigen::Index> places;
   Eigen::VectorXd sum, squares;  // of a
 };
 
-// V sqrt(d) of C = V d V'.
+constexpr Eigen::Index many_columns = 100;  // beyond: eigenvectors take too long
+
+// L of C = L L': V sqrt(d) of C = V d V', or by Cholesky.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& c) {
   const Eigen::VectorXd scale = c.diagonal().unaryExpr([](double d) { return d > 0 ? std::sqrt(d) : 0.0; });
   const Eigen::VectorXd inverse = scale.unaryExpr([](double d) { return d > 0 ? 1 / d : 0.0; });
+  if (c.rows() > many_columns) {
+    const Eigen::LDLT<Eigen::MatrixXd> factor(inverse.asDiagonal() * c * inverse.asDiagonal());
+    Eigen::MatrixXd root = factor.matrixL();
+    root = (root * factor.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal()).eval();
+    return scale.asDiagonal() * (factor.transpositionsP().transpose() * root).eval();
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * c * inverse.asDiagonal());
   return scale.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
@@ -68,7 +77,7 @@ Meat meat_of_group(const System& system, const Fit& fit, const Eigen::MatrixXd& 
   for (Eigen::Index i = 0; i < r.size(); ++i)
     blocks[o.block[o.first[group] + static_cast<std::size_t>(i)]].push_back(i);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(j.cols(), j.cols());
-  Meat meat{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+  Meat meat{{}, places, Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   for (const auto& [block, rows] : blocks) {
     const Eigen::MatrixXd own = j(rows, Eigen::all);
     const Eigen::VectorXd u = corrected_score(own, root, r(rows));
@@ -77,7 +86,7 @@ Meat meat_of_group(const System& system, const Fit& fit, const Eigen::MatrixXd& 
     meat.sum += brings;
     meat.squares += brings.cwiseAbs2();
   }
-  meat.scores(places, places) = sum;
+  meat.scores = std::move(sum);
   return meat;
 }
 
@@ -86,8 +95,12 @@ Meat meat_of(const System& system, const Fit& fit, const Eigen::MatrixXd& invers
   parallel_for(0, parts.size(),
                [&](std::size_t k) { parts[k] = meat_of_group(system, fit, inverse, system.groups[k], kept); });
   const auto n = static_cast<Eigen::Index>(fit.inner.size());
-  Meat total{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
-  for (const Meat& part : parts) total.scores += part.scores, total.sum += part.sum, total.squares += part.squares;
+  Meat total{Eigen::MatrixXd::Zero(n, n), {}, Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+  for (const Meat& part : parts) {
+    total.scores(part.places, part.places) += part.scores;
+    total.sum += part.sum;
+    total.squares += part.squares;
+  }
   return total;
 }
 
@@ -96,10 +109,13 @@ Meat meat_of(const System& system, const Fit& fit, const Eigen::MatrixXd& invers
 Eigen::VectorXd jackknife(const System& system, const Linearisation& l, const std::vector<std::size_t>& columns) {
   const auto n = static_cast<Eigen::Index>(columns.size());
   const auto groups = static_cast<Eigen::Index>(l.grams.size());
-  Eigen::MatrixXd steps(n, groups);
-  parallel_for(0, l.grams.size(), [&](std::size_t g) {
-    const NormalEquations equations(l, columns, l.grams[g].group);
-    steps.col(static_cast<Eigen::Index>(g)) = equations.solve(equations.gradient());
+  const LeaveOneOut others(l, columns);
+  std::vector<Eigen::Index> places;  // of the shared columns, which stand in the same order
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    if (l.columns[columns[c]].local == LinearColumn::everywhere) places.push_back(static_cast<Eigen::Index>(c));
+  Eigen::MatrixXd steps = Eigen::MatrixXd::Zero(n, groups);
+  others.each([&](std::size_t g, const WithoutGroup& without) {
+    steps.col(static_cast<Eigen::Index>(g))(places) = without.moved.col(0);
   });
   const Eigen::VectorXd centre = steps.rowwise().mean();
   Eigen::VectorXd variance = (steps.colwise() - centre).rowwise().squaredNorm();

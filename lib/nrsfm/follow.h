@@ -1,7 +1,10 @@
 // Making what followed.h offers of matrices in memory.
 #pragma once
+#include <atomic>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "nrsfm/deforming_model.h"
 #include "nrsfm/followed.h"
@@ -10,12 +13,17 @@
 namespace gonio::nrsfm {
 
 struct Followed::Parts {
+  Parts(Sequence s, DeformingModel m, Outlying o, bool free)
+      : sequence(std::move(s)), model(std::move(m)), outlying(std::move(o)), free_scales(free) {}
   Sequence sequence;  // less what does not follow
   DeformingModel model;
   Outlying outlying;
   bool free_scales = false;
   std::vector<std::vector<std::size_t>> seen;     // of every point that takes part: places of frames
   std::vector<std::vector<Eigen::Index>> places;  // the same
+  mutable std::once_flag near_camera_asked{};
+  mutable NearCamera near_camera{};
+  mutable std::atomic<bool> near_camera_known{false};
 };
 // The truth, if there is any, is not looked at.
 Followed follow(const Solved& solved, double false_alarm);

@@ -9,6 +9,7 @@
 #include "nrsfm/files.h"
 #include "nrsfm/follow.h"
 #include "nrsfm/manifest_sequences.h"
+#include "nrsfm/near_camera.h"
 #include "nrsfm/outlying.h"
 
 namespace gonio::nrsfm {
@@ -91,9 +92,9 @@ std::shared_ptr<const Followed::Parts> parts_of(const Solved& solved, double fal
   sound.sequence = without(solved.sequence, outlying.runs);
   sound.sequence.truth.reset();  // nobody who measures has it
   sound.sequence.cameras.clear();
-  DeformingModel model(solved_model(sound));
-  auto parts = std::make_shared<Followed::Parts>(
-      Followed::Parts{std::move(sound.sequence), std::move(model), std::move(outlying), solved.free_scales, {}, {}});
+  DeformingModel model(settled(sound.sequence, solved_model(sound)));
+  auto parts = std::make_shared<Followed::Parts>(std::move(sound.sequence), std::move(model), std::move(outlying),
+                                                 solved.free_scales);
   const SolvedModel& m = parts->model.start();
   for (const Eigen::Index p : m.points) {
     parts->places.emplace_back();
@@ -159,6 +160,19 @@ std::vector<Followed::Place> Followed::places(std::span<const double> values, st
     result.push_back({{q.x(), q.y(), q.z()}, {at.x() - centre[0], at.y() - centre[1]}});
   }
   return result;
+}
+
+const NearCamera& Followed::near_camera() const {
+  std::call_once(parts_->near_camera_asked, [&] {
+    const double enough = beyond_noise * std::sqrt(2.0) * outlying.noise;
+    parts_->near_camera = find_near_camera(parts_->sequence, parts_->model.start(), enough);
+    parts_->near_camera_known = true;
+  });
+  return parts_->near_camera;
+}
+
+const NearCamera* Followed::asked_nearby() const {
+  return parts_->near_camera_known && !parts_->near_camera.steps.empty() ? &parts_->near_camera : nullptr;
 }
 
 Followed follow(const Solved& solved, double false_alarm) {

@@ -43,6 +43,30 @@ struct Outlying {
   double held_out_with = 0, held_out_without = 0;
 };
 
+inline constexpr double beyond_noise = 1.5;  // root mean square of what is left, over the noise: something is
+
+// Perspective on top of as many shapes as the solver has, and one more; see near_camera.h. Distances are root mean
+// squares, in the tracks' unit.
+struct NearCamera {
+  static constexpr std::size_t stretches = 8;  // of frames: witnesses over time
+  struct Step {
+    std::size_t shapes = 0;
+    double fitted_without = 0, fitted_with = 0, held_out_without = 0, held_out_with = 0;
+    double log_gain = 0;                         // held out, mean over points of log(without / with)
+    double t_of_points = 0, t_of_stretches = 0;  // of that, by points and by stretches of frames
+    double kappa = 0, sigma = 0;
+    double depth = 0;            // largest, along the line of sight
+    double surviving_share = 0;  // of its signature, after all that the shapes and frames can imitate
+    double visible_from = 0;     // share of the distance that depths must reach for perspective to show
+  };
+  bool lacking = false;  // shapes, with weights free in every frame; nothing else is known where none is
+  std::vector<Step> steps;
+  double of_a_shape = 0;  // log gain of the next shape by itself
+  bool stands = false;
+  double sigma = 0, lower = 0, upper = 0;               // of the last step's kappa; 95 %
+  std::vector<double> residual_without, residual_with;  // of the first step: two numbers for each of seen(), by points
+};
+
 class Followed {
  public:
   struct Parts;
@@ -72,6 +96,8 @@ class Followed {
     std::array<double, 2> picture{};  // without perspective, from c0
   };
   std::vector<Place> places(std::span<const double> values, std::size_t point) const;
+  const NearCamera& near_camera() const;   // found at the first call
+  const NearCamera* asked_nearby() const;  // null where nobody has called, or no shapes are lacking
 
  private:
   std::shared_ptr<const Parts> parts_;

@@ -11,7 +11,8 @@
 namespace gonio::nrsfm {
 namespace {
 
-constexpr int most_rounds = 8;  // until what lies outside stays the same
+constexpr int most_rounds = 8;        // until what lies outside stays the same
+constexpr Eigen::Index most_gap = 3;  // frames between which a step is one
 
 using Flags = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
@@ -45,9 +46,8 @@ std::vector<double> finite(const Values& values) {
   return result;
 }
 
-// D of every observation; NaN where not seen.
-Eigen::ArrayXXd distances_of(const RobustTracks& fit) {
-  Eigen::ArrayXXd d = squares_of(fit);
+// Over the largest of the variances of all, of the frame's and of the point's.
+Eigen::ArrayXXd over_variances(Eigen::ArrayXXd d) {
   const double all = variance_of(finite(d.reshaped()));
   Eigen::ArrayXd of_point(d.cols()), of_frame(d.rows());
   for (Eigen::Index p = 0; p < d.cols(); ++p) of_point(p) = variance_of(finite(d.col(p)), 0.25);
@@ -56,6 +56,51 @@ Eigen::ArrayXXd distances_of(const RobustTracks& fit) {
     for (Eigen::Index p = 0; p < d.cols(); ++p)
       d(f, p) /= std::max({all, of_point(p), of_frame(f), std::numeric_limits<double>::min()});
   return d;
+}
+
+// D of every observation; NaN where not seen.
+Eigen::ArrayXXd distances_of(const RobustTracks& fit) {
+  return over_variances(squares_of(fit));
+}
+
+// Where the residual of the frame seen before is, if that is not long ago; -1 otherwise.
+Eigen::Index seen_before(const RobustTracks& fit, Eigen::Index f, Eigen::Index p) {
+  for (Eigen::Index g = f - 1; g >= std::max<Eigen::Index>(0, f - most_gap); --g)
+    if (fit.seen(g, p)) return g;
+  return -1;
+}
+
+// D of the steps that residuals take from the frame seen before; NaN where there is none.
+Eigen::ArrayXXd steps_of(const RobustTracks& fit) {
+  const SolvedModel& m = fit.model();
+  Eigen::ArrayXXd d =
+      Eigen::ArrayXXd::Constant(m.frame_count(), m.point_count(), std::numeric_limits<double>::quiet_NaN());
+  for (Eigen::Index f = 0; f < d.rows(); ++f)
+    for (Eigen::Index p = 0; p < d.cols(); ++p)
+      if (const Eigen::Index g = fit.seen(f, p) ? seen_before(fit, f, p) : -1; g >= 0)
+        d(f, p) = (fit.residual(f, p) - fit.residual(g, p)).squaredNorm();
+  return over_variances(d);
+}
+
+// Runs that begin or end with a step as far out as they are themselves. Deformation that the model lacks comes and
+// goes.
+Flags abrupt(const RobustTracks& fit, const Flags& outside, double limit) {
+  const Eigen::ArrayXXd step = steps_of(fit);
+  Flags kept = Flags::Constant(outside.rows(), outside.cols(), false);
+  for (Eigen::Index p = 0; p < outside.cols(); ++p)
+    for (Eigen::Index f = 0; f < outside.rows(); ++f) {
+      if (!outside(f, p)) continue;
+      const Eigen::Index first = f;
+      while (f + 1 < outside.rows() && outside(f + 1, p)) ++f;
+      bool jumps = step(first, p) > limit;
+      for (Eigen::Index after = f + 1; after < std::min(outside.rows(), f + 1 + most_gap); ++after)
+        if (fit.seen(after, p)) {
+          jumps = jumps || step(after, p) > limit;
+          break;
+        }
+      kept.col(p).segment(first, f - first + 1) = jumps;
+    }
+  return kept;
 }
 
 // Chance of so large a D, or a larger one.
@@ -125,6 +170,11 @@ Outlying find_outlying(const Solved& solved, double false_alarm) {
     const Flags now = d > limit;
     if ((now == outside).all()) break;
     outside = now;
+  }
+  if (const Flags jumping = abrupt(fit, outside, limit); (jumping != outside).any()) {
+    outside = jumping;
+    fit.refit(outside);
+    d = distances_of(fit);
   }
   Outlying result;
   result.observations = static_cast<std::size_t>(n);

@@ -7,11 +7,14 @@
 #include "explain/wording.h"
 #include "report/number_text.h"
 #include "report/plot.h"
+#include "stats/distributions.h"
 
 namespace gonio::explain {
 namespace {
 
+using gonio::nrsfm::beyond_noise;
 using gonio::nrsfm::Followed;
+using gonio::nrsfm::NearCamera;
 using gonio::nrsfm::Outlying;
 using gonio::nrsfm::Run;
 
@@ -29,15 +32,26 @@ double depth_of(const TracksView& v, const Explanation& e) {
   return depth;
 }
 
+double gain_of(const NearCamera::Step& step) {
+  return 1 - std::exp(-step.log_gain);
+}
+
 std::string perspective_remark(const TracksView& v, const Explanation& e) {
   const double kappa = e.values[v.followed.layout.perspective], sigma = e.sigma[v.followed.layout.perspective];
   const std::string unit = track_unit(v.followed);
   const double focal = 1 / std::abs(kappa);
   std::string text = "The focal length is " + estimate_in_words(focal, focal * focal * sigma, unit);
   if (v.followed.pinhole) text += " (the sequence states " + printed((*v.followed.pinhole)[0], 4) + ")";
-  text += ", and depths reach " + share_in_words(std::abs(kappa) * depth_of(v, e)) + " of the distance.";
+  const NearCamera* near = v.followed.asked_nearby();
+  const double depth = near == nullptr ? depth_of(v, e) : near->steps.back().depth;
+  text += ", and depths reach " + share_in_words(std::abs(kappa) * depth) + " of the distance.";
   if (kappa < 0) text += " The solver's depths are reversed: nearer is farther, which its camera cannot tell.";
-  return text;
+  if (near == nullptr) return text;
+  const NearCamera::Step &first = near->steps.front(), &last = near->steps.back();
+  return text + " On top of " + std::to_string(first.shapes) + " and of " + std::to_string(last.shapes) +
+         " shapes this one number lowers the error of unseen observations by " + share_in_words(gain_of(first)) +
+         " and " + share_in_words(gain_of(last)) + ", the next shape by itself by " +
+         share_in_words(1 - std::exp(-near->of_a_shape)) + ".";
 }
 
 std::string scale_remark(const TracksView& v, const Explanation& e) {
@@ -74,8 +88,6 @@ std::string outlier_remark(const TracksView& v, bool lacking) {
   return text + " Where nothing lies outside, one sequence in a hundred would have any.";
 }
 
-constexpr double beyond_noise = 1.5;  // root mean square of what is left, over the noise: something is
-
 // Mean square distance beyond noise.
 double excess(const TracksView& v, double score) {
   return score * score - 2 * v.followed.outlying.noise * v.followed.outlying.noise;
@@ -91,6 +103,21 @@ std::string shapes_remark(const TracksView& v, const Explanation& e) {
          quantity(std::sqrt(2.0) * v.followed.outlying.noise, track_unit(v.followed), 2) +
          ", no camera makes: the object deforms in more ways than the model. Solve with a rank of " +
          std::to_string(v.followed.terms + more) + ".";
+}
+
+constexpr double hidden_share = 0.5;  // of the distance: perspective that shows from here on is as good as hidden
+
+// How near the camera would have to be, where perspective is not named.
+std::string hidden_remark(const NearCamera& near) {
+  double from = 0;
+  for (const NearCamera::Step& step : near.steps) from = std::max(from, step.visible_from);
+  if (from > hidden_share)
+    return "Whether the camera is near cannot be told: with so many shapes, depths over the distance would not show "
+           "below " +
+           share_in_words(hidden_share) + ".";
+  return "No perspective is found that both numbers of shapes agree on; from this solution it would show from depths "
+         "of " +
+         share_in_words(from) + " of the distance on.";
 }
 
 std::string part_remark(const TracksView& v) {
@@ -182,6 +209,8 @@ std::string tracks_remarks(const TracksView& v, const Explanation& e) {
   if (is_named(v, e, "tracks.scale")) text += scale_remark(v, e) + " ";
   if (!v.followed.outlying.runs.empty()) text += outlier_remark(v, lacks_shapes(v, e)) + " ";
   if (lacks_shapes(v, e)) text += shapes_remark(v, e) + " ";
+  if (const NearCamera* near = v.followed.asked_nearby(); near != nullptr && !is_named(v, e, "tracks.perspective"))
+    text += hidden_remark(*near) + " ";
   return text + part_remark(v);
 }
 
@@ -191,11 +220,9 @@ void upgrade_tracks(const TracksView& v, const Explanation& e, manifest::Documen
   if (!v.followed.outlying.runs.empty() && !lacks_shapes(v, e)) upgrade_outliers(v, document);
 }
 
-// More shapes are no mechanism: where they would repair more than what is named, that is not the reason.
-void conclude_shapes(const TracksView& v, Explanation& e) {
-  if (!lacks_shapes(v, e)) return;
-  e.significant = e.important = true;
-  if (!e.named.empty() && excess(v, e.fitted_after) < 0.5 * excess(v, e.fitted_before)) return;
+namespace {
+
+void name_nothing(Explanation& e) {
   for (Hypothesis& h : e.scoreboard)
     if (h.refused.empty() && h.kind == Hypothesis::Kind::mechanisms)
       h.refused = "leaves more than it repairs: the object deforms in more ways than the model";
@@ -208,6 +235,78 @@ void conclude_shapes(const TracksView& v, Explanation& e) {
   e.residual_after = e.residual_before;
   e.fitted_after = e.fitted_before;
   e.held_out_after = e.held_out_before;
+}
+
+Hypothesis nested_hypothesis(const TracksView& v, const NearCamera& near, std::size_t candidate, const Explanation& e) {
+  const NearCamera::Step& first = near.steps.front();
+  const Candidate& c = v.problem.candidates()[candidate];
+  Hypothesis h;
+  h.name = c.id();
+  h.candidates = {candidate};
+  h.held_out = first.held_out_with;
+  h.effect = gain_of(first);
+  h.gain = first.log_gain;
+  h.gain_sigma = first.t_of_points > 0 ? first.log_gain / first.t_of_points : 0;
+  h.wald_p = 0;
+  for (const NearCamera::Step& step : near.steps)
+    h.wald_p = std::max(h.wald_p, stats::student_upper(step.t_of_stretches, double(NearCamera::stretches) - 1));
+  const double value = near.steps.back().kappa;
+  h.parameters.push_back({c.parameters[0], value, near.sigma, near.lower, near.upper, false});
+  if (!near.stands) h.refused = "is not what both numbers of shapes agree on";
+  if (near.stands && h.effect < e.matters) h.refused = "smaller than what matters";
+  return h;
+}
+
+void name_perspective(const NearCamera& near, std::size_t candidate, const Hypothesis& h, Explanation& e) {
+  const NearCamera::Step& first = near.steps.front();
+  const Estimate& kappa = h.parameters[0];
+  e.verdict = Verdict::named;
+  e.named = {candidate};
+  e.estimates = h.parameters;
+  e.values[kappa.parameter] = kappa.value;
+  e.sigma[kappa.parameter] = kappa.sigma;
+  e.residual_before = near.residual_without;
+  e.residual_after = near.residual_with;
+  e.held_out_before = first.held_out_without;
+  e.held_out_after = first.held_out_with;
+  e.fitted_before = first.fitted_without;
+  e.fitted_after = first.fitted_with;
+  e.outside.reset();
+}
+
+// The smallest amplitude that these shapes let through.
+void limit_perspective(const NearCamera& near, std::size_t candidate, Explanation& e) {
+  double from = 0, depth = 0;
+  for (const NearCamera::Step& step : near.steps)
+    if (step.visible_from > from) from = step.visible_from, depth = step.depth;
+  std::erase_if(e.isolability, [&](const Isolability& i) { return i.candidate == candidate; });
+  Isolability limit;
+  limit.candidate = candidate;
+  limit.surviving_share = near.steps.back().surviving_share;
+  if (depth > 0) limit.detection_limit = limit.limit_with_others = {from / depth};
+  limit.visible = from <= hidden_share;
+  e.isolability.push_back(limit);
+}
+
+}  // namespace
+
+// More shapes are no mechanism: where they would repair more than what is named, that is not the reason.
+void conclude_shapes(const TracksView& v, std::optional<std::size_t> candidate, Explanation& e) {
+  if (!lacks_shapes(v, e)) return;
+  e.significant = e.important = true;
+  const bool repaired = !e.named.empty() && excess(v, e.fitted_after) < 0.5 * excess(v, e.fitted_before);
+  if (repaired && !is_named(v, e, "tracks.perspective")) return;
+  if (candidate) v.followed.near_camera();
+  const NearCamera* near = candidate ? v.followed.asked_nearby() : nullptr;
+  if (repaired && near != nullptr && near->stands) return;
+  name_nothing(e);
+  if (near == nullptr) return;
+  limit_perspective(*near, *candidate, e);
+  const Hypothesis h = nested_hypothesis(v, *near, *candidate, e);
+  std::erase_if(e.scoreboard, [&](const Hypothesis& other) { return other.candidates == h.candidates; });
+  e.minor.clear();
+  e.scoreboard.push_back(h);
+  if (h.refused.empty()) name_perspective(*near, *candidate, h, e);
 }
 
 void conclude_outliers(const TracksView& v, std::size_t candidate, Explanation& e) {

@@ -41,6 +41,8 @@ class TracksProblem final : public Problem, public OwnTests {
     for (std::size_t p = 0; p < layout_.count; ++p)
       parameters_[p].start += start_[p], parameters_[p].neutral = start_[p];
     choose_base();
+    const bool free_weights = layout_.basis > layout_.weight;
+    lacking_ = free_weights && !followed_.inverse_focal && followed_.near_camera().lacking;
     name_outliers();
     observe();
   }
@@ -65,11 +67,19 @@ class TracksProblem final : public Problem, public OwnTests {
   }
   std::string remarks(const Explanation& e) const override { return tracks_remarks(view(), e); }
   void apply(const Explanation& e, manifest::Document& document) const override { upgrade_tracks(view(), e, document); }
+  // Where shapes are lacking nothing is raced: see conclude_shapes().
   std::vector<std::size_t> tested() const override {
-    return outlying_.runs.empty() ? std::vector<std::size_t>{} : std::vector<std::size_t>{candidates_.size() - 1};
+    std::vector<std::size_t> places;
+    for (std::size_t c = 0; c < candidates_.size(); ++c)
+      if (lacking_ || (c + 1 == candidates_.size() && !outlying_.runs.empty())) places.push_back(c);
+    return places;
   }
+  double tolerance() const override { return lacking_ ? 1e-3 : OwnTests::tolerance(); }
   void conclude(Explanation& e) const override {
-    conclude_shapes(view(), e);
+    std::optional<std::size_t> perspective;
+    for (std::size_t c = 0; c < candidates_.size(); ++c)
+      if (candidates_[c].id() == "tracks.perspective") perspective = c;
+    conclude_shapes(view(), perspective, e);
     if (outlying_.runs.empty()) return;
     conclude_outliers(view(), candidates_.size() - 1, e);
   }
@@ -222,6 +232,7 @@ class TracksProblem final : public Problem, public OwnTests {
   const Layout& layout_;
   std::vector<double> start_;
   double extent_ = 0;  // root mean square of a coordinate
+  bool lacking_ = false;
 };
 
 }  // namespace
