@@ -13,6 +13,7 @@ namespace {
 
 constexpr int most_rounds = 8;        // until what lies outside stays the same
 constexpr Eigen::Index most_gap = 3;  // frames between which a step is one
+constexpr double abrupt_share = 0.7;  // of a run's offset: what its ends step by at least
 
 using Flags = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
@@ -46,8 +47,9 @@ std::vector<double> finite(const Values& values) {
   return result;
 }
 
-// Over the largest of the variances of all, of the frame's and of the point's.
-Eigen::ArrayXXd over_variances(Eigen::ArrayXXd d) {
+// D of every observation; NaN where not seen.
+Eigen::ArrayXXd distances_of(const RobustTracks& fit) {
+  Eigen::ArrayXXd d = squares_of(fit);
   const double all = variance_of(finite(d.reshaped()));
   Eigen::ArrayXd of_point(d.cols()), of_frame(d.rows());
   for (Eigen::Index p = 0; p < d.cols(); ++p) of_point(p) = variance_of(finite(d.col(p)), 0.25);
@@ -58,47 +60,38 @@ Eigen::ArrayXXd over_variances(Eigen::ArrayXXd d) {
   return d;
 }
 
-// D of every observation; NaN where not seen.
-Eigen::ArrayXXd distances_of(const RobustTracks& fit) {
-  return over_variances(squares_of(fit));
-}
-
-// Where the residual of the frame seen before is, if that is not long ago; -1 otherwise.
+// The frame that sees the point before or after, if it is not far; -1 otherwise.
 Eigen::Index seen_before(const RobustTracks& fit, Eigen::Index f, Eigen::Index p) {
   for (Eigen::Index g = f - 1; g >= std::max<Eigen::Index>(0, f - most_gap); --g)
     if (fit.seen(g, p)) return g;
   return -1;
 }
-
-// D of the steps that residuals take from the frame seen before; NaN where there is none.
-Eigen::ArrayXXd steps_of(const RobustTracks& fit) {
-  const SolvedModel& m = fit.model();
-  Eigen::ArrayXXd d =
-      Eigen::ArrayXXd::Constant(m.frame_count(), m.point_count(), std::numeric_limits<double>::quiet_NaN());
-  for (Eigen::Index f = 0; f < d.rows(); ++f)
-    for (Eigen::Index p = 0; p < d.cols(); ++p)
-      if (const Eigen::Index g = fit.seen(f, p) ? seen_before(fit, f, p) : -1; g >= 0)
-        d(f, p) = (fit.residual(f, p) - fit.residual(g, p)).squaredNorm();
-  return over_variances(d);
+Eigen::Index seen_after(const RobustTracks& fit, Eigen::Index f, Eigen::Index p) {
+  for (Eigen::Index g = f + 1; g < std::min(fit.model().frame_count(), f + 1 + most_gap); ++g)
+    if (fit.seen(g, p)) return g;
+  return -1;
 }
 
-// Runs that begin or end with a step as far out as they are themselves. Deformation that the model lacks comes and
-// goes.
-Flags abrupt(const RobustTracks& fit, const Flags& outside, double limit) {
-  const Eigen::ArrayXXd step = steps_of(fit);
+// Residual's step between two frames, both of which see the point.
+double step_of(const RobustTracks& fit, Eigen::Index f, Eigen::Index g, Eigen::Index p) {
+  return (fit.residual(f, p) - fit.residual(g, p)).norm();
+}
+
+// Runs that are as abrupt as slips: at every end that is seen, the step is most of what the run lies off by. What the
+// model lacks comes and goes.
+Flags abrupt(const RobustTracks& fit, const Flags& outside) {
   Flags kept = Flags::Constant(outside.rows(), outside.cols(), false);
   for (Eigen::Index p = 0; p < outside.cols(); ++p)
     for (Eigen::Index f = 0; f < outside.rows(); ++f) {
       if (!outside(f, p)) continue;
       const Eigen::Index first = f;
-      while (f + 1 < outside.rows() && outside(f + 1, p)) ++f;
-      bool jumps = step(first, p) > limit;
-      for (Eigen::Index after = f + 1; after < std::min(outside.rows(), f + 1 + most_gap); ++after)
-        if (fit.seen(after, p)) {
-          jumps = jumps || step(after, p) > limit;
-          break;
-        }
-      kept.col(p).segment(first, f - first + 1) = jumps;
+      double squares = 0;
+      for (; f < outside.rows() && outside(f, p); ++f) squares += fit.residual(f, p).squaredNorm();
+      const double least = abrupt_share * std::sqrt(squares / static_cast<double>(f - first));
+      const Eigen::Index before = seen_before(fit, first, p), after = seen_after(fit, f - 1, p);
+      const bool begins = before >= 0 && step_of(fit, first, before, p) < least;
+      const bool ends = after >= 0 && step_of(fit, f - 1, after, p) < least;
+      kept.col(p).segment(first, f - first) = (before >= 0 || after >= 0) && !begins && !ends;
     }
   return kept;
 }
@@ -171,7 +164,7 @@ Outlying find_outlying(const Solved& solved, double false_alarm) {
     if ((now == outside).all()) break;
     outside = now;
   }
-  if (const Flags jumping = abrupt(fit, outside, limit); (jumping != outside).any()) {
+  if (const Flags jumping = abrupt(fit, outside); (jumping != outside).any()) {
     outside = jumping;
     fit.refit(outside);
     d = distances_of(fit);

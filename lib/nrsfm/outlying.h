@@ -10,8 +10,8 @@
 // for any of N observations has a chance of at most alpha (Bonferroni). sigma is the largest of all observations', from
 // the median of |r|^2, the frame's own and, from the lower quartile, as a track may slip for good, the point's own:
 // what a model leaves out smoothly widens these and singles out nothing. What of it is left nevertheless, a few points
-// that bend away for a while, comes and goes: only what begins or ends with a step, from one frame to the next, that is
-// as far out among the steps of all is an outlier.
+// that bend away for a while, comes and goes: a run of outliers begins and ends, where that is seen, with a step from
+// one frame to the next of 0.7 of what it lies off by.
 #pragma once
 #include <vector>
 

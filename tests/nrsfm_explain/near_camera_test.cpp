@@ -95,8 +95,8 @@ TEST(NearCamera, PerspectiveIsFoundBeneathShapesThatAreLacking) {
     EXPECT_EQ(n.steps[1].shapes, n.steps[0].shapes + 1);
     found += n.stands;
     for (const NearCamera::Step& step : n.steps)
-      std::printf("%zu shapes: gain %.2f, t %.1f and %.1f, kappa %.3g +- %.2g; a shape %.2f\n", step.shapes, step.log_gain,
-                  step.t_of_points, step.t_of_stretches, step.kappa, step.sigma, n.of_a_shape);
+      std::printf("%zu shapes: gain %.2f, t %.1f and %.1f, kappa %.3g +- %.2g; a shape %.2f\n", step.shapes,
+                  step.log_gain, step.t_of_points, step.t_of_stretches, step.kappa, step.sigma, n.of_a_shape);
     const double sign = n.steps[1].kappa < 0 ? -1 : 1;
     holds += std::min(sign * n.lower, sign * n.upper) <= 8e-4 && 8e-4 <= std::max(sign * n.lower, sign * n.upper);
   }
