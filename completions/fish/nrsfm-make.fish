@@ -6,7 +6,7 @@ complete -c nrsfm-make -l missing -x -a 'with without' -d 'With or without the p
 complete -c nrsfm-make -l frames -x -d 'Of each simulated sequence.'
 complete -c nrsfm-make -l points -x -d 'That are followed on each animatronic.'
 complete -c nrsfm-make -l distance -x -d 'Of the camera from the middle, over the radius of the scene.'
-complete -c nrsfm-make -l least-seen -x -d 'With missing data, points that a smaller share of the frames sees are left out.'
+complete -c nrsfm-make -l least-seen -x -d 'Points that a smaller share of the frames sees are not followed.'
 complete -c nrsfm-make -l meshes -x -d 'Instead of animatronics: folder or pattern of PLY meshes, one per frame.'
 complete -c nrsfm-make -l tracks -x -d 'Points that are followed on the meshes: .mat, .npz, or PLY files per frame.'
 complete -c nrsfm-make -l name -x -d 'Of the scans: level of the factor deformation.'
