@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "explain/scaling.h"
 
 namespace gonio::explain {
 namespace {
@@ -23,7 +24,7 @@ int side_of(const System& system, const LinearColumn& column) {
 
 // (M + small) x = rhs with unit diagonal.
 Eigen::MatrixXd scaled_solve(const Eigen::MatrixXd& m, const Eigen::MatrixXd& rhs, double small) {
-  const Eigen::VectorXd scale = m.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  const Eigen::VectorXd scale = unit_scale(m.diagonal());
   Eigen::MatrixXd scaled = scale.asDiagonal() * m * scale.asDiagonal();
   scaled.diagonal().array() += small;
   return scale.asDiagonal() * scaled.ldlt().solve(Eigen::MatrixXd(scale.asDiagonal() * rhs));

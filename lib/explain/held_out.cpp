@@ -10,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "explain/fit.h"
+#include "explain/scaling.h"
 
 namespace gonio::explain {
 namespace {
@@ -77,7 +78,7 @@ LocalStep local_step(const Linearisation& l, const GroupGram& gram, const std::v
     own(i, i) += l.columns[result.columns[k]].prior_precision;
     rhs[i] += l.columns[result.columns[k]].prior_pull;
   }
-  const Eigen::VectorXd scale = own.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  const Eigen::VectorXd scale = unit_scale(own.diagonal());
   Eigen::MatrixXd scaled = scale.asDiagonal() * own * scale.asDiagonal();
   scaled.diagonal().array() += 1e-9;
   result.step = scale.asDiagonal() * scaled.ldlt().solve(Eigen::VectorXd(scale.asDiagonal() * rhs));

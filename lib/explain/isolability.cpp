@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "explain/scaling.h"
 #include "explain/signature.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
@@ -16,7 +17,7 @@ constexpr double invisible_share = 1e-3;
 
 // G^-1/2 on the range of G.
 Eigen::MatrixXd inverse_root(const Eigen::MatrixXd& gram) {
-  const Eigen::VectorXd scale = gram.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  const Eigen::VectorXd scale = unit_scale(gram.diagonal());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
   const Eigen::VectorXd root =
       eigen.eigenvalues().unaryExpr([](double v) { return v > 1e-9 ? 1 / std::sqrt(v) : 0.0; });
@@ -52,7 +53,7 @@ double mattering(const System& system, const Projection& p, const BlockScores& s
 // Diagonal of G^-1: the largest squared component of an effect of unit length, whatever the other components are.
 // Infinite where a direction has no length.
 Eigen::VectorXd largest_components(const Eigen::MatrixXd& gram, const Eigen::VectorXd& full) {
-  const Eigen::VectorXd scale = full.unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  const Eigen::VectorXd scale = unit_scale(full);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
   Eigen::VectorXd result = Eigen::VectorXd::Zero(gram.rows());
   for (Eigen::Index k = 0; k < gram.rows(); ++k)

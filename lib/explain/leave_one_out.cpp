@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "explain/scaling.h"
 #include "explain/system.h"
 
 namespace gonio::explain {
 namespace {
 
-constexpr double ridge = 1e-13;             // as in normal_equations.cpp
 constexpr std::size_t groups_a_task = 5;    // whose sums of others are formed by one thread
 constexpr Eigen::Index many_columns = 100;  // beyond: factored by blocks
 
@@ -52,7 +52,7 @@ LeaveOneOut::LeaveOneOut(const Linearisation& l, const std::vector<std::size_t>&
       }
     eliminate(l, gram, place, own);
   }
-  scale_ = whole.unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  scale_ = unit_scale(whole);
 }
 
 void LeaveOneOut::eliminate(const Linearisation& l, const GroupGram& gram, const std::vector<Eigen::Index>& place,
@@ -80,10 +80,9 @@ void LeaveOneOut::eliminate(const Linearisation& l, const GroupGram& gram, const
       lift[k] = column.prior_precision;
       right(k, right.cols() - 1) += column.prior_pull;
     }
-    const Eigen::VectorXd scale =
-        (matrix.diagonal() + lift).unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+    const Eigen::VectorXd scale = unit_scale(matrix.diagonal() + lift);
     matrix = (scale.asDiagonal() * matrix * scale.asDiagonal()).eval();
-    matrix.diagonal() += Eigen::VectorXd(lift.cwiseProduct(scale).cwiseProduct(scale).array() + ridge);
+    matrix.diagonal() += Eigen::VectorXd(lift.cwiseProduct(scale).cwiseProduct(scale).array() + unit_ridge);
     const Eigen::MatrixXd scaled = scale.asDiagonal() * right;
     right = scale.asDiagonal() * matrix.ldlt().solve(scaled);
     part.matrix.noalias() -= coupling.transpose() * right;
@@ -118,7 +117,7 @@ WithoutGroup LeaveOneOut::solved(Eigen::MatrixXd sums) const {
   const Eigen::Index rest = size_ - shared;
   WithoutGroup result;
   Eigen::MatrixXd matrix = scale_.asDiagonal() * sums.topLeftCorner(shared, shared) * scale_.asDiagonal();
-  matrix.diagonal().array() += prior_.array() * scale_.array().square() + ridge;
+  matrix.diagonal().array() += prior_.array() * scale_.array().square() + unit_ridge;
   Eigen::MatrixXd right = sums.topRightCorner(shared, rest);
   right.col(rest - 1) += pull_;
   right = (scale_.asDiagonal() * right).eval();

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "explain/scaling.h"
 #include "explain/signature.h"
 #include "stats/intervals.h"
 
@@ -25,7 +26,7 @@ Explained explained_by(const Projection& p, const std::vector<Eigen::Index>& pla
   const Eigen::MatrixXd g = p.surviving(places, places);
   const Eigen::VectorXd b = p.score(places);
   const Eigen::VectorXd length = p.full.diagonal()(places);
-  const Eigen::VectorXd scale = length.unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  const Eigen::VectorXd scale = unit_scale(length);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * g * scale.asDiagonal());
   Explained e;
   Eigen::VectorXd z = eigen.eigenvectors().transpose() * (scale.asDiagonal() * b);

@@ -3,16 +3,10 @@
 // Adjustment", section 6.1).
 #include <cmath>
 
+#include "explain/scaling.h"
 #include "explain/system.h"
 
 namespace gonio::explain {
-namespace {
-
-// Relative to the unit diagonal of the scaled matrix: below this a direction carries no information.
-constexpr double ridge = 1e-13;
-
-}  // namespace
-
 Eigen::VectorXd downhill(const Linearisation& l) {
   Eigen::VectorXd result(static_cast<Eigen::Index>(l.columns.size()));
   for (std::size_t c = 0; c < l.columns.size(); ++c) result[static_cast<Eigen::Index>(c)] = l.columns[c].prior_pull;
@@ -72,8 +66,8 @@ NormalEquations::NormalEquations(const Linearisation& l, const std::vector<std::
       gradient_[p.places[k]] += p.score[i];
     }
   }
-  scale_ = diagonal_.unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
-  lift_ = prior.cwiseProduct(scale_).cwiseProduct(scale_).array() + damping + ridge;
+  scale_ = unit_scale(diagonal_);
+  lift_ = prior.cwiseProduct(scale_).cwiseProduct(scale_).array() + damping + unit_ridge;
   Eigen::MatrixXd reduced = lift_(shared_).asDiagonal();
   for (const Part& p : parts) eliminate(p, place_in_shared, reduced);
   factor_.compute(reduced);

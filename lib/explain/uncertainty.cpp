@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "explain/fit.h"
+#include "explain/scaling.h"
 #include "stats/distributions.h"
 
 namespace gonio::explain {
@@ -199,7 +200,7 @@ double neutral_p(const System& system, const Fit& fit, const Uncertainty& u, con
   }
   if (places.empty()) return 1;
   const Eigen::MatrixXd c = (by_blocks ? u.by_blocks : u.covariance)(places, places);
-  const Eigen::VectorXd scale = c.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
+  const Eigen::VectorXd scale = unit_scale(c.diagonal());
   const Eigen::Map<const Eigen::VectorXd> d(distance.data(), static_cast<Eigen::Index>(distance.size()));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * c * scale.asDiagonal());
   const Eigen::VectorXd z = eigen.eigenvectors().transpose() * (scale.asDiagonal() * d);
