@@ -56,7 +56,7 @@ struct Isolability {
 // and its standard error (over blocks).
 struct Curve {
   std::string condition, unit, value_unit;
-  std::vector<double> centre, before, after, sigma;
+  std::vector<double> centre, before, after, sigma;  // after: empty where nobody knows it
 };
 struct LocatedCondition {
   std::string name, unit, stage;

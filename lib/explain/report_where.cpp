@@ -87,7 +87,7 @@ report::Plot curve_plot(const Curve& curve, const std::string& after_name) {
   plot.series = {
       {.kind = Series::Kind::line, .x = centre, .y = before, .style = 0},
       {.kind = Series::Kind::points, .name = "base model", .x = centre, .y = before, .sigma = sigma, .style = 0}};
-  if (after_name.empty()) return plot;
+  if (after_name.empty() || after.empty()) return plot;
   plot.series.push_back({.kind = Series::Kind::line, .x = centre, .y = after, .style = 1});
   plot.series.push_back(
       {.kind = Series::Kind::points, .name = after_name, .x = centre, .y = after, .sigma = sigma, .style = 1});

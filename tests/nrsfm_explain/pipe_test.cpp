@@ -58,5 +58,26 @@ TEST_F(TracksPipe, SlipsThatAreNamedAreLeftOutByTheNextCall) {
   EXPECT_LT(error_of("second.json"), 0.5 * error_of("first.json"));
 }
 
+// What the engine has drawn of its own fits is not what is left where perspective is named beneath lacking shapes.
+TEST_F(TracksPipe, PerspectiveBeneathLackingShapesIsLocatedByItsOwnFit) {
+  const Ended e = shell(
+      "nrsfm-make --kind deflation --path circle --camera perspective --missing without --frames 20 --points 40 "
+      "--out tracks | nrsfm-solve --solver csf --out answers | explain --html why.html >why.json");
+  ASSERT_EQ(e.status, 0) << e.err;
+  const manifest::Document document = manifest::read_document((folder_ / "why.json").string());
+  const manifest::Value& entry = document.explanations.back();
+  ASSERT_EQ(entry.find("named")->as_array().at(0).find("mechanism")->as_string(), "tracks.perspective");
+  int better = 0, groups = 0;
+  for (const manifest::Value& g : entry.find("located")->find("groups")->as_array()) {
+    better += g.find("after")->as_number() < g.find("before")->as_number();
+    ++groups;
+  }
+  EXPECT_EQ(groups, 40);
+  EXPECT_GT(better, 30);
+  const std::string page = gonio::read_file(folder_ / "why.html");
+  const std::size_t curves = page.find("Which curve"), sure = page.find("How sure", curves);
+  EXPECT_EQ(page.substr(curves, sure - curves).find("with the named physics"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace gonio::explain

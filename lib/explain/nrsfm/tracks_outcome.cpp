@@ -257,7 +257,24 @@ Hypothesis nested_hypothesis(const TracksView& v, const NearCamera& near, std::s
   return h;
 }
 
-void name_perspective(const NearCamera& near, std::size_t candidate, const Hypothesis& h, Explanation& e) {
+// The engine has located its own fits, which did not hold what is named now: groups are scored anew, and no curve is
+// drawn of what is left.
+void relocate(const Observations& o, Explanation& e) {
+  for (LocatedCondition& c : e.conditions) c.curve.after.clear();
+  for (LocatedGroup& located : e.groups) {
+    const auto g = static_cast<std::size_t>(std::find(o.group.begin(), o.group.end(), located.name) - o.group.begin());
+    double before = 0, after = 0, norm = 0;
+    for (std::size_t i = o.first[g]; i < o.first[g + 1]; ++i) {
+      before += e.residual_before[i] * e.residual_before[i];
+      after += e.residual_after[i] * e.residual_after[i];
+      norm += o.norm[i];
+    }
+    if (norm > 0) located.before = std::sqrt(before / norm), located.after = std::sqrt(after / norm);
+  }
+}
+
+void name_perspective(const TracksView& v, const NearCamera& near, std::size_t candidate, const Hypothesis& h,
+                      Explanation& e) {
   const NearCamera::Step& first = near.steps.front();
   const Estimate& kappa = h.parameters[0];
   e.verdict = Verdict::named;
@@ -272,6 +289,7 @@ void name_perspective(const NearCamera& near, std::size_t candidate, const Hypot
   e.fitted_before = first.fitted_without;
   e.fitted_after = first.fitted_with;
   e.outside.reset();
+  relocate(v.problem.observations(), e);
 }
 
 // The smallest amplitude that these shapes let through.
@@ -306,7 +324,7 @@ void conclude_shapes(const TracksView& v, std::optional<std::size_t> candidate, 
   std::erase_if(e.scoreboard, [&](const Hypothesis& other) { return other.candidates == h.candidates; });
   e.minor.clear();
   e.scoreboard.push_back(h);
-  if (h.refused.empty()) name_perspective(*near, *candidate, h, e);
+  if (h.refused.empty()) name_perspective(v, *near, *candidate, h, e);
 }
 
 void conclude_outliers(const TracksView& v, std::size_t candidate, Explanation& e) {
