@@ -7,6 +7,7 @@ set(GONIO_GENERATED ${CMAKE_BINARY_DIR}/generated)
 # gonio_room(NAME THIRD_PARTY...): lib/NAME/**.cpp as an object library. Vendored and system headers are -isystem.
 function(gonio_room name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/${name}/*.cpp)
+  gonio_in_units(sources lib/${name})
   set(GONIO_THIRD_PARTY ${GONIO_THIRD_PARTY} ${ARGN} CACHE INTERNAL "")
   if(NOT sources)
     return()
@@ -23,6 +24,10 @@ function(gonio_room name)
     endif()
   endforeach()
   target_link_libraries(room_${name} PRIVATE ${ARGN})
+  if(GONIO_UNITS)
+    # In a unit every source counts as a header: what a type private to one source holds alarms GCC.
+    target_compile_options(room_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
   set(GONIO_ROOMS ${GONIO_ROOMS} room_${name} CACHE INTERNAL "")
 endfunction()
 

@@ -3,8 +3,11 @@
 #include "camera/bundle_adjustment.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+
+#include "linear/solve.h"
 
 namespace gonio::camera {
 namespace {
@@ -48,7 +51,7 @@ Step damped_step(const NormalEquations& n, double damping) {
   if (k > 0) {
     const Vector scale = n.a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Matrix scaled = scale.asDiagonal() * s * scale.asDiagonal();
-    step.shared = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * g);
+    step.shared = scale.asDiagonal() * linear::solve_ldlt(scaled, scale.asDiagonal() * g);
   }
   const auto gain = [damping](const auto& d, const auto& gradient, const auto& diagonal) {
     return d.dot(gradient) + damping * d.dot(diagonal.cwiseProduct(d));

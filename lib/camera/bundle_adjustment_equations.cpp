@@ -1,9 +1,10 @@
 // The normal equations, view by view.
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "camera/bundle_adjustment.h"
+#include "linear/solve.h"
 
 namespace gonio::camera {
 namespace {
@@ -166,7 +167,7 @@ NormalEquations normal_equations(const std::vector<View>& views, const Calibrati
 Eigen::MatrixXd schur_complement(const NormalEquations& n) {
   Matrix s = n.a;
   for (std::size_t p = 0; p < n.c.size(); ++p) {
-    if (n.c[p](0, 0) > 0) s.noalias() -= n.b[p] * n.c[p].ldlt().solve(n.b[p].transpose());
+    if (n.c[p](0, 0) > 0) s.noalias() -= n.b[p] * linear::solve_ldlt(n.c[p], n.b[p].transpose());
   }
   return 0.5 * (s + s.transpose());
 }

@@ -9,12 +9,14 @@
 // noise explains (Birge's ratio with shots as the witnesses; Birge, Phys. Rev. 40, 1932; Liang & Zeger, Biometrika 73,
 // 1986). cov(shared) is multiplied by f where it exceeds 1. Parameters are scaled to unit diagonal of A, so
 // that the smallest eigenvalue of the scaled S says which share of some direction's information the poses leave.
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "camera/bundle_adjustment.h"
+#include "linear/symmetric_eigen.h"
 
 namespace gonio::camera {
 namespace {
@@ -93,7 +95,7 @@ Matrix shared_inverse(const NormalEquations& n) {
   const Matrix s = schur_complement(n);
   if (s.rows() == 0) return s;
   const Eigen::VectorXd scale = n.a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scale.asDiagonal() * s * scale.asDiagonal());
+  const linear::SymmetricEigen<Matrix> eigen(scale.asDiagonal() * s * scale.asDiagonal());
   if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()(0) > least_share)) return {};
   const Matrix root = scale.asDiagonal() * eigen.eigenvectors();
   const Matrix inverse = root * eigen.eigenvalues().cwiseInverse().asDiagonal() * root.transpose();

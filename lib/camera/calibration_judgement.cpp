@@ -9,12 +9,13 @@
 // a sag w that the fit leaves out moves the lens by S_l^-1 S_lw w, at a thousandth of the board's side (what the
 // flattest boards on sale promise) and at right angles to the noise; and the solution (dl, dw) is what freeing the sag
 // would do, because the residuals of this very fit say that the board is bent.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "base/text.h"
 #include "camera/bundle_adjustment.h"
+#include "linear/solve.h"
 
 namespace gonio::camera {
 namespace {
@@ -59,15 +60,15 @@ SagEffects sag_effects(const std::vector<View>& views, const CalibrationSetup& s
   const Matrix s = schur_complement(n);
   Eigen::VectorXd g = n.g;
   for (std::size_t p = 0; p < n.c.size(); ++p) {
-    if (n.c[p](0, 0) > 0) g -= n.b[p] * n.c[p].ldlt().solve(n.h[p]);
+    if (n.c[p](0, 0) > 0) g -= n.b[p] * linear::solve_ldlt(n.c[p], n.h[p]);
   }
   const Matrix cross = s(free, held);
   SagEffects effects;
   effects.usual =
-      s(free, free).ldlt().solve(cross) * Eigen::Map<const Eigen::VectorXd>(size.data(), cross.cols()).asDiagonal();
+      linear::solve_ldlt(s(free, free), cross) * Eigen::Map<const Eigen::VectorXd>(size.data(), cross.cols()).asDiagonal();
   const Eigen::VectorXd scale = n.a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Matrix scaled = scale.asDiagonal() * s * scale.asDiagonal();
-  const Eigen::VectorXd change = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * g);
+  const Eigen::VectorXd change = scale.asDiagonal() * linear::solve_ldlt(scaled, scale.asDiagonal() * g);
   effects.freed = change(free);
   effects.significance =
       change.dot(g) / std::max(1e-300, result.noise_px * result.noise_px) / static_cast<double>(held.size());

@@ -6,7 +6,8 @@
 // its neighbours misses by far is a mistake, not noise.
 #include "camera/corner_detection.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>

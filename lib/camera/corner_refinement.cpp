@@ -1,7 +1,10 @@
 // The fit of corner_refinement.h.
 #include "camera/corner_refinement.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>

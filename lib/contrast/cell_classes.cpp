@@ -1,7 +1,8 @@
 // Smooth robust polynomials through the cells of a class (contrast/cell_classes.h).
 #include "contrast/cell_classes.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 

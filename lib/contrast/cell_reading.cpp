@@ -1,10 +1,13 @@
 // Two kinds of cells told apart (contrast/cell_reading.h).
 #include "contrast/cell_reading.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "linear/solve.h"
+#include "linear/svd.h"
 
 namespace gonio::contrast {
 namespace {
@@ -23,7 +26,7 @@ Eigen::VectorXd standardised(const CellPattern& pattern, const CellMeans& means)
     right += row(cell) * means.mean[cell];
   }
   if (normal(0, 0) < 6) return z;
-  const Eigen::Vector3d plane = normal.ldlt().solve(right);
+  const Eigen::Vector3d plane = linear::solve_ldlt(normal, right);
   double square = 0;
   for (std::size_t cell = 0; cell < pattern.cells(); ++cell) {
     if (!std::isfinite(means.mean[cell])) continue;
@@ -60,7 +63,7 @@ std::vector<std::uint8_t> split_cells(const CellPattern& pattern, const std::vec
                                       const std::vector<int>& placement) {
   Eigen::MatrixXd z(static_cast<Eigen::Index>(pattern.cells()), static_cast<Eigen::Index>(views.size()));
   for (std::size_t v = 0; v < views.size(); ++v) z.col(static_cast<Eigen::Index>(v)) = standardised(pattern, *views[v]);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(z, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const linear::JacobiSvd<Eigen::MatrixXd> svd(z, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::VectorXd score = svd.matrixU().col(0), loading = svd.matrixV().col(0);
   const Cut cut = best_cut(score);
   if (cut.explained < least) return {};

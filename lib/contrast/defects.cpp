@@ -1,7 +1,7 @@
 // Cells unlike their class (contrast/defects.h).
 #include "contrast/defects.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +9,8 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "contrast/cell_classes.h"
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 #include "stats/intervals.h"
 
 namespace gonio::contrast {
@@ -45,7 +47,7 @@ Eigen::MatrixXd correlation(const Eigen::MatrixXd& z) {
 
 // Along the eigenvectors of the correlation, each over its variance, but no variance below that of an independent view.
 Eigen::VectorXd distances2(const Eigen::MatrixXd& z, const Eigen::MatrixXd& r) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(r);
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(r);
   const Eigen::MatrixXd along = z * eigen.eigenvectors();
   return along.array().square().matrix() * eigen.eigenvalues().cwiseMax(1).cwiseInverse() /
          static_cast<double>(z.cols());
@@ -62,7 +64,7 @@ double quantile_of(const Eigen::VectorXd& values, double share) {
 class Null {
  public:
   Null(const CellPattern& pattern, const std::vector<std::size_t>& cells, const Eigen::MatrixXd& r)
-      : shape_(pattern, cells), root_(r.llt().matrixL()) {}
+      : shape_(pattern, cells), root_(linear::Llt(r).lower()) {}
   Eigen::VectorXd draw(Random& random) const {
     Eigen::MatrixXd z(shape_.cells(), root_.rows());
     for (Eigen::Index i = 0; i < z.rows(); ++i)

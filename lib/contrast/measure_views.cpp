@@ -1,11 +1,12 @@
 // Contrast of single views, their directions, and which of them belong together (contrast/measure_views.h).
 #include "contrast/measure_views.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "linear/symmetric_eigen.h"
 #include "stats/intervals.h"
 
 namespace gonio::contrast {
@@ -38,7 +39,7 @@ Vec3 main_direction(const std::vector<Vec3>& directions, Vec3 normal) {
     spread += Eigen::Vector3d(flat.x, flat.y, flat.z) * Eigen::RowVector3d(flat.x, flat.y, flat.z);
   }
   if (spread.trace() < 1e-8) return Basis(normal).t;
-  const Eigen::Vector3d axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+  const Eigen::Vector3d axis = linear::SymmetricEigen<Eigen::Matrix3d>(spread).eigenvectors().col(2);
   Eigen::Index most = 0;
   axis.cwiseAbs().maxCoeff(&most);
   const double sign = axis(most) < 0 ? -1 : 1;

@@ -1,7 +1,8 @@
 // Outlines of samples and the order of their corners (contrast/sample_outline.h).
 #include "contrast/sample_outline.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -10,6 +11,7 @@
 #include "contrast/cell_reading.h"
 #include "contrast/matrix_code.h"
 #include "contrast/view_map.h"
+#include "linear/solve.h"
 #include "stats/intervals.h"
 
 namespace gonio::contrast {
@@ -169,7 +171,7 @@ std::optional<Line> line_through(const std::vector<Vec2>& points, Vec2 from, Vec
       right += weight[i] * row * dot(points[i] - middle, normal);
     }
     if (!(sums.determinant() > 0)) return std::nullopt;
-    line = sums.ldlt().solve(right);
+    line = linear::solve_ldlt(sums, right);
     const auto residual = [&](std::size_t i) {
       return dot(points[i] - middle, normal) - line(0) - line(1) * dot(points[i] - middle, along);
     };

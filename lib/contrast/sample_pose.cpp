@@ -1,13 +1,14 @@
 // The sample's pose from marked corners and a robot's poses (contrast/sample_pose.h).
 #include "contrast/sample_pose.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <opencv2/calib3d.hpp>
 
 #include "base/error.h"
+#include "linear/solve.h"
 
 namespace gonio::contrast {
 namespace {
@@ -144,7 +145,7 @@ Solved solve(const Problem& problem, State state) {
     for (int attempt = 0; attempt < 12 && !better && !solved.rests; ++attempt, damping *= 10) {
       Eigen::MatrixXd damped = solved.normal;
       damped.diagonal() += damping * solved.normal.diagonal();
-      const Eigen::VectorXd step = -damped.ldlt().solve(slope);
+      const Eigen::VectorXd step = -linear::solve_ldlt(damped, slope);
       const State next = stepped(problem, solved.state, step);
       const Eigen::VectorXd after = residuals(problem, next);
       if (after.size() == 0 || !(after.squaredNorm() <= r.squaredNorm())) continue;
@@ -176,7 +177,7 @@ SamplePose pose_of(const Problem& problem, const Solved& solved) {
   pose.degrees = 2 * pose.marks - 6;
   const double widening = pose.degrees > 0 ? std::max(1.0, solved.chi2 / pose.degrees) : 1;
   const Eigen::MatrixXd covariance =
-      solved.normal.ldlt().solve(Eigen::MatrixXd::Identity(solved.normal.rows(), solved.normal.cols())) * widening;
+      linear::solve_ldlt(solved.normal, Eigen::MatrixXd::Identity(solved.normal.rows(), solved.normal.cols())) * widening;
   for (Eigen::Index i = 0; i < 6; ++i)
     for (Eigen::Index k = 0; k < 6; ++k) pose.covariance[static_cast<std::size_t>(6 * i + k)] = covariance(i, k);
   const Eigen::VectorXd r = residuals(problem, solved.state);

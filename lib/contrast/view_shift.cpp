@@ -1,11 +1,12 @@
 // The displacements that lay a pattern onto its picture (contrast/view_shift.h).
 #include "contrast/view_shift.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
+#include "linear/solve.h"
 #include "stats/distributions.h"
 
 namespace gonio::contrast {
@@ -178,7 +179,7 @@ ViewShift lay_onto(const GreyView& view, const CellPattern& pattern, const ViewM
                    const CornerShifts& start) {
   ViewShift result{start, prior, 0, false};
   const Matrix8 wide = Eigen::Map<const RowMajor8>(prior.data()) + exact_px * exact_px * Matrix8::Identity();
-  const Matrix8 stiff = wide.inverse();
+  const Matrix8 stiff = linear::inverse(wide);
   Vector8 first;
   for (int k = 0; k < 4; ++k) {
     first(2 * k) = start[static_cast<std::size_t>(k)].x;
@@ -192,7 +193,7 @@ ViewShift lay_onto(const GreyView& view, const CellPattern& pattern, const ViewM
     if (!(sums.squares > 0)) return result;  // no border shows
     const double weight = sums.weight / (sums.squares * soft.shared);
     const Matrix8 normal = sums.normal * weight + stiff;
-    const Vector8 step = -normal.ldlt().solve(sums.slope * weight + stiff * d);
+    const Vector8 step = -linear::solve_ldlt(normal, sums.slope * weight + stiff * d);
     const double length = step.cwiseAbs().maxCoeff(), most = 0.5;
     d += step * (length > most ? most / length : 1.0);
     if (length > 1e-3) continue;
@@ -200,7 +201,7 @@ ViewShift lay_onto(const GreyView& view, const CellPattern& pattern, const ViewM
     result.credible = result.distance2 <= stats::chi2_quantile(1 - doubtful, 8);
     if (!result.credible) return result;
     for (int k = 0; k < 4; ++k) result.by_px[static_cast<std::size_t>(k)] = {d(2 * k), d(2 * k + 1)};
-    Eigen::Map<RowMajor8>(result.covariance.data()) = normal.inverse();
+    Eigen::Map<RowMajor8>(result.covariance.data()) = linear::inverse(normal);
     return result;
   }
   return result;

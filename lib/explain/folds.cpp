@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "explain/scaling.h"
+#include "linear/solve.h"
 
 namespace gonio::explain {
 namespace {
@@ -27,7 +28,7 @@ Eigen::MatrixXd scaled_solve(const Eigen::MatrixXd& m, const Eigen::MatrixXd& rh
   const Eigen::VectorXd scale = unit_scale(m.diagonal());
   Eigen::MatrixXd scaled = scale.asDiagonal() * m * scale.asDiagonal();
   scaled.diagonal().array() += small;
-  return scale.asDiagonal() * scaled.ldlt().solve(Eigen::MatrixXd(scale.asDiagonal() * rhs));
+  return scale.asDiagonal() * linear::solve_ldlt(scaled, Eigen::MatrixXd(scale.asDiagonal() * rhs));
 }
 
 // Columns (t, 1) of one group in terms of its gram's columns: own shared ones have moved by u - U t.

@@ -3,12 +3,13 @@
 // V / tr V^2), d = (tr V)^2 / tr V^2.
 #include "explain/global_test.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "linear/symmetric_eigen.h"
 #include "stats/distributions.h"
 
 namespace gonio::explain {
@@ -39,7 +40,7 @@ Standardised standardised(const Look& look, std::size_t blocks) {
   const Eigen::VectorXd scale =
       u.colwise().norm().transpose().unaryExpr([](double length) { return length > 0 ? 1 / length : 0.0; });
   const Eigen::MatrixXd v = u * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(v.transpose() * v);
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(v.transpose() * v);
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < columns; ++k)
     if (eigen.eigenvalues()[k] > least_share) kept.push_back(k);

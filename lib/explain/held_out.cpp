@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "explain/fit.h"
 #include "explain/scaling.h"
+#include "linear/solve.h"
 
 namespace gonio::explain {
 namespace {
@@ -81,7 +82,7 @@ LocalStep local_step(const Linearisation& l, const GroupGram& gram, const std::v
   const Eigen::VectorXd scale = unit_scale(own.diagonal());
   Eigen::MatrixXd scaled = scale.asDiagonal() * own * scale.asDiagonal();
   scaled.diagonal().array() += 1e-9;
-  result.step = scale.asDiagonal() * scaled.ldlt().solve(Eigen::VectorXd(scale.asDiagonal() * rhs));
+  result.step = scale.asDiagonal() * linear::solve_ldlt(scaled, Eigen::VectorXd(scale.asDiagonal() * rhs));
   return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include "explain/scaling.h"
 #include "explain/signature.h"
+#include "linear/symmetric_eigen.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
 
@@ -18,7 +19,7 @@ constexpr double invisible_share = 1e-3;
 // G^-1/2 on the range of G.
 Eigen::MatrixXd inverse_root(const Eigen::MatrixXd& gram) {
   const Eigen::VectorXd scale = unit_scale(gram.diagonal());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
   const Eigen::VectorXd root =
       eigen.eigenvalues().unaryExpr([](double v) { return v > 1e-9 ? 1 / std::sqrt(v) : 0.0; });
   return scale.asDiagonal() * eigen.eigenvectors() * root.asDiagonal();
@@ -54,7 +55,7 @@ double mattering(const System& system, const Projection& p, const BlockScores& s
 // Infinite where a direction has no length.
 Eigen::VectorXd largest_components(const Eigen::MatrixXd& gram, const Eigen::VectorXd& full) {
   const Eigen::VectorXd scale = unit_scale(full);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
   Eigen::VectorXd result = Eigen::VectorXd::Zero(gram.rows());
   for (Eigen::Index k = 0; k < gram.rows(); ++k)
     for (Eigen::Index d = 0; d < gram.rows(); ++d) {
@@ -121,7 +122,7 @@ std::vector<Isolability> isolability(const System& system, const Projection& p, 
     places.push_back(p.foreign(structures, s));
     const std::vector<Eigen::Index>& own = places.back();
     const Eigen::MatrixXd root = inverse_root(p.full(own, own));
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shares(root.transpose() * p.surviving(own, own) * root);
+    const linear::SymmetricEigen<Eigen::MatrixXd> shares(root.transpose() * p.surviving(own, own) * root);
     entry.surviving_share = own.empty() ? 0 : std::sqrt(std::clamp(shares.eigenvalues().maxCoeff(), 0.0, 1.0));
     entry.visible = false;
     const Candidate& candidate = system.problem().candidates()[entry.candidate];

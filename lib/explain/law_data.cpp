@@ -1,9 +1,11 @@
 // See law_data.h.
 #include "explain/law_data.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "linear/qr.h"
 
 namespace gonio::explain {
 
@@ -155,7 +157,7 @@ Eigen::MatrixXd LawData::covariance(const RawColumns& columns, const Eigen::Vect
   for (const Eigen::VectorXd& u : scores) meat += u * u.transpose();
   const double rows = static_cast<double>(rows_),
                spent = static_cast<double>(own_.columns.size()) + static_cast<double>(n);
-  const Eigen::MatrixXd inverse = (p.transpose() * p).completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd inverse = linear::LeastNorm(p.transpose() * p).pseudo_inverse();
   return inverse * meat * inverse * (rows / std::max(1.0, rows - spent));
 }
 

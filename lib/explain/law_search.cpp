@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "linear/solve.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
 
@@ -170,7 +171,7 @@ void judge(const LawData& data, const Law& law, const Eigen::VectorXd& c, const 
   const Eigen::MatrixXd part = rows_of(law.projected, judged);
   const Eigen::MatrixXd p = part.leftCols(part.cols() - 1), r = part.rightCols(1);
   way.law = fall_of(part, c);
-  way.own = fall_of(part, (p.transpose() * p).ldlt().solve(p.transpose() * r).col(0));
+  way.own = fall_of(part, linear::solve_ldlt(p.transpose() * p, p.transpose() * r).col(0));
   way.curve = fall_of(rows_of(data.projected(hats), judged), data.coefficients(hats, fitted));
   way.block.assign(data.blocks(), 0.0);
   double norm = 0;

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <set>
 
+#include "linear/qr.h"
+#include "linear/symmetric_eigen.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
 
@@ -44,7 +46,7 @@ double fall_of(const Eigen::MatrixXd& projected, std::size_t k, const Mask& mask
     gram += c * c.transpose();
     score += c * projected(i, projected.cols() - 1);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(gram);
+  const linear::SymmetricEigen<Eigen::Matrix2d> eigen(gram);
   double fall = 0;
   for (Eigen::Index d = 0; d < 2; ++d)
     if (eigen.eigenvalues()[d] > least_survivor * eigen.eigenvalues()[1])
@@ -110,7 +112,7 @@ double chance(const LawData& data, const std::vector<Term>& terms, std::size_t l
   RawColumns columns;
   for (const Term& t : terms) columns.push_back(column_of(data.system(), t));
   const Eigen::VectorXd c = data.coefficients(columns, {});
-  const double statistic = c.dot(data.covariance(columns, c).completeOrthogonalDecomposition().solve(c));
+  const double statistic = c.dot(linear::LeastNorm(data.covariance(columns, c)).solve(c));
   return stats::sidak(stats::chi2_upper(statistic, 3), static_cast<double>(looks));
 }
 

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "explain/scaling.h"
 #include "explain/system.h"
+#include "linear/solve.h"
 
 namespace gonio::explain {
 namespace {
@@ -15,10 +16,10 @@ constexpr Eigen::Index many_columns = 100;  // beyond: factored by blocks
 
 Eigen::MatrixXd factored_solve(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
   if (matrix.rows() > many_columns) {
-    const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
+    const linear::Llt factor(matrix);
     if (factor.info() == Eigen::Success) return factor.solve(right);
   }
-  return matrix.ldlt().solve(right);
+  return linear::solve_ldlt(matrix, right);
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ void LeaveOneOut::eliminate(const Linearisation& l, const GroupGram& gram, const
     matrix = (scale.asDiagonal() * matrix * scale.asDiagonal()).eval();
     matrix.diagonal() += Eigen::VectorXd(lift.cwiseProduct(scale).cwiseProduct(scale).array() + unit_ridge);
     const Eigen::MatrixXd scaled = scale.asDiagonal() * right;
-    right = scale.asDiagonal() * matrix.ldlt().solve(scaled);
+    right = scale.asDiagonal() * linear::solve_ldlt(matrix, scaled);
     part.matrix.noalias() -= coupling.transpose() * right;
   }
   parts_.push_back(std::move(part));

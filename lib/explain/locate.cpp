@@ -7,6 +7,7 @@
 
 #include "explain/scaling.h"
 #include "explain/signature.h"
+#include "linear/symmetric_eigen.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain {
@@ -27,7 +28,7 @@ Explained explained_by(const Projection& p, const std::vector<Eigen::Index>& pla
   const Eigen::VectorXd b = p.score(places);
   const Eigen::VectorXd length = p.full.diagonal()(places);
   const Eigen::VectorXd scale = unit_scale(length);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * g * scale.asDiagonal());
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(scale.asDiagonal() * g * scale.asDiagonal());
   Explained e;
   Eigen::VectorXd z = eigen.eigenvectors().transpose() * (scale.asDiagonal() * b);
   for (Eigen::Index k = 0; k < z.size(); ++k) {

@@ -70,7 +70,7 @@ NormalEquations::NormalEquations(const Linearisation& l, const std::vector<std::
   lift_ = prior.cwiseProduct(scale_).cwiseProduct(scale_).array() + damping + unit_ridge;
   Eigen::MatrixXd reduced = lift_(shared_).asDiagonal();
   for (const Part& p : parts) eliminate(p, place_in_shared, reduced);
-  factor_.compute(reduced);
+  factor_ = linear::Ldlt(reduced);
 }
 
 void NormalEquations::eliminate(const Part& p, const std::vector<Eigen::Index>& place_in_shared,
@@ -92,7 +92,7 @@ void NormalEquations::eliminate(const Part& p, const std::vector<Eigen::Index>& 
   if (in_local.empty()) return;
   Eigen::MatrixXd own = h(in_local, in_local);
   own.diagonal() += lift_(local.places);
-  local.factor.compute(own);
+  local.factor = linear::Ldlt(own);
   local.coupling = Eigen::MatrixXd::Zero(own.rows(), reduced.cols());
   local.coupling(Eigen::all, shared_places) = h(in_local, in_shared);
   reduced.triangularView<Eigen::Lower>() -= local.coupling.transpose() * local.factor.solve(local.coupling);

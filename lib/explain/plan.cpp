@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include "explain/fit.h"
+#include "linear/qr.h"
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 
 namespace gonio::explain {
 namespace {
@@ -51,8 +54,8 @@ class Prospect {
       if (const double length = nuisance.col(c).norm(); length > 0) nuisance.col(c) /= length;
     basis_ = Eigen::MatrixXd(rows, 0);
     if (nuisance.cols() > 0 && rows > 0) {
-      const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(nuisance);
-      basis_ = qr.householderQ() * Eigen::MatrixXd::Identity(rows, qr.rank());
+      const linear::PivotedQr qr(nuisance);
+      basis_ = qr.orthonormal(qr.rank());
     }
     open_ = Eigen::MatrixXd(rows, 0);
     if (uncertain.parameters.empty() || rows == 0) return;
@@ -60,7 +63,7 @@ class Prospect {
     Eigen::MatrixXd j(rows, static_cast<Eigen::Index>(uncertain.parameters.size()));
     for (std::size_t k = 0; k < uncertain.parameters.size(); ++k)
       j.col(static_cast<Eigen::Index>(k)) = derivative(e.values, uncertain.parameters[k]);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(uncertain.covariance);
+    const linear::SymmetricEigen<Eigen::MatrixXd> eigen(uncertain.covariance);
     const Eigen::VectorXd root = eigen.eigenvalues().cwiseMax(0).cwiseSqrt();
     open_ = without_nuisance(j) * eigen.eigenvectors() * root.asDiagonal();
   }
@@ -77,7 +80,7 @@ class Prospect {
     d = without_nuisance(d);
     const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(open_.cols(), open_.cols()) + open_.transpose() * open_;
     const Eigen::VectorXd shared = open_.transpose() * d;
-    const double squared = d.squaredNorm() - (shared.size() > 0 ? shared.dot(inner.ldlt().solve(shared)) : 0);
+    const double squared = d.squaredNorm() - (shared.size() > 0 ? shared.dot(linear::solve_ldlt(inner, shared)) : 0);
     return std::isfinite(squared) ? std::sqrt(std::max(0.0, squared)) : 0;
   }
 

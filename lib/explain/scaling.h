@@ -1,6 +1,6 @@
 // Columns scaled to unit length, so that units do not matter where normal equations are factored.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 
 namespace gonio::explain {

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "linear/qr.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
 
@@ -86,11 +87,11 @@ void Structures::add_changes(const System& system, const std::vector<double>& va
     return there;
   };
   const Eigen::VectorXd here = system.residual(values, group);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> slopes(system.jacobian(at(start), group, c.parameters));
+  const linear::PivotedQr slopes(system.jacobian(at(start), group, c.parameters));
   std::vector<std::pair<double, std::size_t>> kept;  // part that the slopes do not span, the largest first
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Eigen::VectorXd change = here - system.residual(at(points[k]), group);
-    const Eigen::VectorXd outside = (slopes.householderQ().adjoint() * change).tail(change.size() - slopes.rank());
+    const Eigen::VectorXd outside = slopes.turned(change).tail(change.size() - slopes.rank());
     if (outside.norm() > spanned * change.norm()) kept.emplace_back(-outside.norm(), k);
   }
   std::sort(kept.begin(), kept.end());

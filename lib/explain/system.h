@@ -9,7 +9,7 @@
 //
 // Eigen stays within lib/explain: this header is private to it.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "explain/problem.h"
+#include "linear/solve.h"
 
 namespace gonio::explain {
 
@@ -145,7 +146,7 @@ class NormalEquations {
  private:
   struct Local {
     std::vector<Eigen::Index> places;  // in `columns`
-    Eigen::LDLT<Eigen::MatrixXd> factor;
+    linear::Ldlt factor;
     Eigen::MatrixXd coupling;  // local x shared, scaled
   };
   struct Part {                        // one group's share, restricted to the subset
@@ -159,7 +160,7 @@ class NormalEquations {
 
   std::vector<Eigen::Index> shared_;
   std::vector<Local> locals_;
-  Eigen::LDLT<Eigen::MatrixXd> factor_;
+  linear::Ldlt factor_;
   Eigen::VectorXd gradient_, diagonal_, scale_, lift_;  // lift: priors, damping and ridge on the scaled diagonal
 };
 

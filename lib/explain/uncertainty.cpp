@@ -6,6 +6,8 @@
 #include "base/parallel.h"
 #include "explain/fit.h"
 #include "explain/scaling.h"
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 #include "stats/distributions.h"
 
 namespace gonio::explain {
@@ -32,27 +34,25 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& c) {
   const Eigen::VectorXd scale = c.diagonal().unaryExpr([](double d) { return d > 0 ? std::sqrt(d) : 0.0; });
   const Eigen::VectorXd inverse = scale.unaryExpr([](double d) { return d > 0 ? 1 / d : 0.0; });
   if (c.rows() > many_columns) {
-    const Eigen::LDLT<Eigen::MatrixXd> factor(inverse.asDiagonal() * c * inverse.asDiagonal());
-    Eigen::MatrixXd root = factor.matrixL();
-    root = (root * factor.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal()).eval();
-    return scale.asDiagonal() * (factor.transpositionsP().transpose() * root).eval();
+    const linear::Ldlt factor(inverse.asDiagonal() * c * inverse.asDiagonal());
+    return scale.asDiagonal() * factor.root();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * c * inverse.asDiagonal());
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(inverse.asDiagonal() * c * inverse.asDiagonal());
   return scale.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 // J'(I - H)^-1/2 r of one block, H = A A' with A = J L: in the block's rows or in the parameters, whichever are fewer.
 Eigen::VectorXd corrected_score(const Eigen::MatrixXd& j, const Eigen::MatrixXd& l, const Eigen::VectorXd& r) {
   const Eigen::MatrixXd a = j * l;
-  const auto root = [](const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& eigen) {
+  const auto root = [](const linear::SymmetricEigen<Eigen::MatrixXd>& eigen) {
     return Eigen::VectorXd((1 - eigen.eigenvalues().array()).max(least_left).rsqrt());
   };
   if (a.rows() <= a.cols()) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a * a.transpose());
+    const linear::SymmetricEigen<Eigen::MatrixXd> eigen(a * a.transpose());
     return j.transpose() * (eigen.eigenvectors() * (root(eigen).asDiagonal() * (eigen.eigenvectors().transpose() * r)));
   }
   // (I - A A')^-1/2 = I + A V ((1 - d)^-1/2 - 1) / d V' A' with A'A = V d V'.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a.transpose() * a);
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(a.transpose() * a);
   Eigen::VectorXd factor = root(eigen).array() - 1;
   for (Eigen::Index k = 0; k < factor.size(); ++k)
     factor[k] = eigen.eigenvalues()[k] > 1e-12 ? factor[k] / eigen.eigenvalues()[k] : 0.5;
@@ -202,7 +202,7 @@ double neutral_p(const System& system, const Fit& fit, const Uncertainty& u, con
   const Eigen::MatrixXd c = (by_blocks ? u.by_blocks : u.covariance)(places, places);
   const Eigen::VectorXd scale = unit_scale(c.diagonal());
   const Eigen::Map<const Eigen::VectorXd> d(distance.data(), static_cast<Eigen::Index>(distance.size()));
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * c * scale.asDiagonal());
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(scale.asDiagonal() * c * scale.asDiagonal());
   const Eigen::VectorXd z = eigen.eigenvectors().transpose() * (scale.asDiagonal() * d);
   double statistic = 0, rank = 0;
   for (Eigen::Index k = 0; k < z.size(); ++k) {

@@ -1,7 +1,8 @@
 // Principal components of many tables, a block of rings at a time.
 #include "goniometry/basis.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,6 +10,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -111,7 +114,7 @@ class BasisBuilder {
     Eigen::MatrixXd gram = gram_[0];
     for (std::size_t lane = 1; lane < lanes; ++lane) gram += gram_[lane];
     gram = gram.selfadjointView<Eigen::Lower>();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+    const linear::SymmetricEigen<Eigen::MatrixXd> eigen(gram);
     const Eigen::VectorXd falling = eigen.eigenvalues().reverse().cwiseMax(0);
     const double total = falling.sum(), freedom = static_cast<double>(samples_ - 1);
     double rest = total;
@@ -155,7 +158,7 @@ class BasisBuilder {
     Eigen::MatrixXd rows(p.rows(), p.cols());
     for (std::size_t c = 0; c < basis_.classes(); ++c) {
       const std::vector<Eigen::Index> group = samples_of(c);
-      const Eigen::MatrixXd own = p(group, group), all = p(group, Eigen::all), solved = own.llt().solve(all);
+      const Eigen::MatrixXd own = p(group, group), all = p(group, Eigen::all), solved = linear::Llt(own).solve(all);
       rows(group, Eigen::all) = solved;
     }
     return rows;

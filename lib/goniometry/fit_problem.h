@@ -4,7 +4,7 @@
 // Unknowns x: first what bands share, S of them, then C colours of band 0, of band 1, ...: a residual of band b depends
 // on S + C numbers, and the normal equations are gathered as blocks S x S, S x C and C x C per band.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstdint>
 #include <string>

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "goniometry/fit_problem.h"
+#include "linear/solve.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -48,7 +49,7 @@ Step step_of(const Normal& at, const Eigen::VectorXd& unit, const std::vector<Ei
   const Eigen::VectorXd stretch = scale.cwiseProduct(unit(free));
   Eigen::MatrixXd h = stretch.asDiagonal() * at.h(free, free) * stretch.asDiagonal();
   h.diagonal().array() += damping;
-  const Eigen::VectorXd g = stretch.cwiseProduct(at.downhill(free)), s = h.ldlt().solve(g);
+  const Eigen::VectorXd g = stretch.cwiseProduct(at.downhill(free)), s = linear::solve_ldlt(h, g);
   return {scale.cwiseProduct(s), 2 * g.dot(s) - s.dot(h * s)};
 }
 

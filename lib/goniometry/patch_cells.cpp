@@ -1,12 +1,14 @@
 // Smooth courses over a patch and what leaves them (goniometry/patch_cells.h).
 #include "goniometry/patch_cells.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "base/random.h"
+#include "linear/qr.h"
 #include "stats/intervals.h"
 
 namespace gonio::goniometry {
@@ -72,7 +74,7 @@ Eigen::VectorXd refined(const Eigen::MatrixXd& a, const Eigen::VectorXd& y, Eige
     Eigen::VectorXd near(a.rows());
     for (Eigen::Index i = 0; i < a.rows(); ++i) near[i] = std::abs(r[i]) <= limit ? 1 : 0;
     if (near.sum() < 2.0 * static_cast<double>(a.cols())) break;
-    x = (near.asDiagonal() * a).colPivHouseholderQr().solve(near.cwiseProduct(y));
+    x = linear::PivotedQr(near.asDiagonal() * a).solve(near.cwiseProduct(y));
   }
   return x;
 }
@@ -102,7 +104,7 @@ Scatter scatter_of(const std::vector<PatchCell>& cells) {
   Eigen::VectorXd root(static_cast<Eigen::Index>(cells.size()));
   for (std::size_t i = 0; i < cells.size(); ++i) root[static_cast<Eigen::Index>(i)] = std::sqrt(mean(cells[i].weight));
   const Eigen::MatrixXd a = root.asDiagonal() * design(cells, terms);
-  const auto solver = a.colPivHouseholderQr();
+  const auto solver = linear::PivotedQr(a);
   std::array<double, 3> variance{};
   for (int band = 0; band < 3; ++band) {
     Eigen::VectorXd y(root.size());

@@ -4,7 +4,7 @@
 // ln (1 + q' S q / r).
 #include "goniometry/plan.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,6 +15,8 @@
 #include "base/text.h"
 #include "geom/angle.h"
 #include "goniometry/reconstruction_parts.h"
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -103,7 +105,7 @@ Known known_of(const Basis& basis, const PlanOptions& options) {
   return known;
 }
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& information) {
-  return information.llt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  return linear::Llt(information).solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
 }
 
 // M, and the mean of rest^2, which no measurement lowers.
@@ -130,7 +132,7 @@ Whole whole_of(const Basis& basis) {
 double condition_of(const Eigen::MatrixXd& columns) {
   const Eigen::MatrixXd gram = columns.cols() <= columns.rows() ? Eigen::MatrixXd(columns.transpose() * columns)
                                                                 : Eigen::MatrixXd(columns * columns.transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram, Eigen::EigenvaluesOnly);
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(gram, Eigen::EigenvaluesOnly);
   const double least = eigen.eigenvalues().minCoeff(), most = eigen.eigenvalues().maxCoeff();
   return least > 1e-14 * most ? std::sqrt(most / least) : 1e7;
 }
@@ -260,12 +262,12 @@ PlanQuality plan_quality(const Basis& basis, const std::vector<PlannedPair>& pai
   const Whole whole = whole_of(basis);
   const Known known = known_of(basis, options);
   const Eigen::Index k = c.q.rows();
-  const Eigen::LLT<Eigen::MatrixXd> factor(known.information +
+  const linear::Llt factor(known.information +
                                            c.q * c.noise.cwiseInverse().asDiagonal() * c.q.transpose());
   const Eigen::MatrixXd s = factor.solve(Eigen::MatrixXd::Identity(k, k));
   Eigen::MatrixXd rows(k, known.q.cols() + c.q.cols());
   rows << known.q, c.q;
-  return {std::sqrt((s * whole.m).trace() + whole.rest), -2 * factor.matrixLLT().diagonal().array().log().sum(),
+  return {std::sqrt((s * whole.m).trace() + whole.rest), -2 * factor.diagonal().array().log().sum(),
           condition_of(rows)};
 }
 

@@ -10,6 +10,8 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "goniometry/reconstruction_parts.h"
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 #include "stats/intervals.h"
 
 namespace gonio::goniometry {
@@ -47,7 +49,7 @@ class Others {
     const Eigen::VectorXd mean = sum / n;
     Eigen::MatrixXd covariance = (squares - n * mean * mean.transpose()) / (n - 1);
     covariance.diagonal().array() += 1e-9;
-    return {mean, covariance.llt().matrixL()};
+    return {mean, linear::Llt(covariance).lower()};
   }
 
  private:
@@ -101,7 +103,7 @@ Estimator map_estimator(const Observed& observed, const Prior& prior) {
   const Eigen::Index k = prior.factor.rows();
   const Eigen::MatrixXd bracket =
       Eigen::MatrixXd::Identity(k, k) + seen.transpose() * observed.noise.cwiseInverse().asDiagonal() * seen;
-  const Eigen::MatrixXd turned = bracket.llt().matrixL().solve(prior.factor.transpose());
+  const Eigen::MatrixXd turned = linear::Llt(bracket).solve_lower(prior.factor.transpose());
   return {turned.transpose() * (turned * weighted.transpose()), turned.transpose()};
 }
 
@@ -109,10 +111,10 @@ Estimator tikhonov_estimator(const Observed& observed, const Prior& prior, doubl
   const Eigen::Index k = prior.factor.rows();
   Eigen::MatrixXd normal = observed.q.transpose() * observed.q;
   normal.diagonal().array() += eta_per_sample;
-  const Eigen::MatrixXd gain = normal.llt().solve(observed.q.transpose());
+  const Eigen::MatrixXd gain = linear::Llt(normal).solve(observed.q.transpose());
   const Eigen::MatrixXd open = (Eigen::MatrixXd::Identity(k, k) - gain * observed.q) * prior.factor;
   const Eigen::MatrixXd covariance = open * open.transpose() + gain * observed.noise.asDiagonal() * gain.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(covariance);
   return {gain, eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal()};
 }
 
@@ -129,7 +131,7 @@ class Evidence {
   Evidence(const Observed& observed, const Prior& prior, const Eigen::VectorXd& y) {
     const Eigen::VectorXd off = y - observed.q * prior.mean, weights = observed.noise.cwiseInverse();
     const Eigen::MatrixXd seen = observed.q * prior.factor;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(seen.transpose() * weights.asDiagonal() * seen);
+    const linear::SymmetricEigen<Eigen::MatrixXd> eigen(seen.transpose() * weights.asDiagonal() * seen);
     const Eigen::VectorXd along = eigen.eigenvectors().transpose() * (seen.transpose() * weights.cwiseProduct(off));
     const double largest = eigen.eigenvalues().maxCoeff();
     left_ = off.dot(weights.cwiseProduct(off));

@@ -1,7 +1,7 @@
 // Inside of reconstruction.cpp: observations as rows of a basis, their estimator, and its calibration. Notation:
 // goniometry/reconstruction.h.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cstdint>
 
 #include "goniometry/reconstruction.h"

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/parallel.h"
+#include "linear/symmetric_eigen.h"
 #include "stats/distributions.h"
 
 namespace gonio::goniometry {
@@ -47,7 +48,7 @@ struct Inverse {
 Inverse inverse_of(const Eigen::MatrixXd& h) {
   if (h.rows() == 0) return {h, h, {}};  // every number is at a bound
   const Eigen::VectorXd scale = h.diagonal().array().max(1e-300).rsqrt().matrix();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * h * scale.asDiagonal());
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(scale.asDiagonal() * h * scale.asDiagonal());
   Eigen::VectorXd root = Eigen::VectorXd::Zero(h.rows());
   Inverse inverse{{}, {}, std::vector<bool>(static_cast<std::size_t>(h.rows()), true)};
   for (Eigen::Index k = 0; k < h.rows(); ++k) {
@@ -68,7 +69,7 @@ Inverse inverse_of(const Eigen::MatrixXd& h) {
 // A block's score freed of its own pull: g + K L V ((1 - d)^-1/2 - 1) / d V' L' g, with K = J'J of the block, L the
 // root of the inverse, and L' K L = V d V'.
 Eigen::VectorXd corrected(const Eigen::MatrixXd& k, const Eigen::VectorXd& g, const Eigen::MatrixXd& root) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(root.transpose() * k * root);
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(root.transpose() * k * root);
   Eigen::VectorXd factor = (1 - eigen.eigenvalues().array()).max(least_left).rsqrt() - 1;
   for (Eigen::Index i = 0; i < factor.size(); ++i)
     factor[i] = eigen.eigenvalues()[i] > 1e-12 ? factor[i] / eigen.eigenvalues()[i] : 0.5;

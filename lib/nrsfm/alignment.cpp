@@ -1,12 +1,14 @@
 // See alignment.h.
 #include "nrsfm/alignment.h"
 
-#include <Eigen/SVD>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
+#include "linear/svd.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -47,7 +49,7 @@ struct Turn {
   double trace = 0;
 };
 Turn turn_of(const Eigen::Matrix3d& product, bool reflection) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(product, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const linear::JacobiSvd<Eigen::Matrix3d> svd(product, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Vector3d sign = Eigen::Vector3d::Ones();
   if (!reflection && svd.matrixU().determinant() * svd.matrixV().determinant() < 0) sign(2) = -1;
   return {svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose(), svd.singularValues().dot(sign)};

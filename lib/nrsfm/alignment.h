@@ -1,6 +1,7 @@
 // Laying a reconstruction onto the truth before their distance counts. What is aligned changes the answer by factors
 // (pickup of Akhter et al. 2011: 0.24 without rotation, 0.06 with one per frame), so that it always has a name.
 #pragma once
+#include <Eigen/Core>
 #include <Eigen/LU>
 #include <string>
 #include <vector>

@@ -1,6 +1,8 @@
 // Points on deforming surfaces (animatronic.h).
 #include "nrsfm/animatronic.h"
 
+#include <Eigen/LU>
+
 namespace gonio::nrsfm {
 
 Shapes anchored(const DeformingSurface& surface) {

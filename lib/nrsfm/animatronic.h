@@ -1,6 +1,7 @@
 // Simulated animatronics: deforming triangle meshes with points to follow. Each kind is one file in animatronics/ (the
 // stem names the function, namespace gonio::nrsfm::animatronics); the build gathers them. Metres; z up.
 #pragma once
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>

@@ -1,6 +1,7 @@
 // See animatronic_support.h.
 #include "nrsfm/animatronic_support.h"
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 //   tricky        towards the scene and back, 1.3 to 0.75, with small motions across
 #include "nrsfm/camera_paths.h"
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>

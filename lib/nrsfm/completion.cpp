@@ -7,7 +7,7 @@
 // Maximum likelihood (alternating least squares, v -> 0) extrapolates without bounds where a point is seen in few
 // frames; the posteriors' spread keeps that in bounds, and shrinks columns that the tracks do not support. After each
 // sweep the factors turn to their principal axes (E[b b'] = I, E[A'A] diagonal), without which it crawls (section 4.3).
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,6 +18,9 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/random.h"
+#include "linear/solve.h"
+#include "linear/svd.h"
+#include "linear/symmetric_eigen.h"
 #include "nrsfm/factorization.h"
 
 namespace gonio::nrsfm {
@@ -36,7 +39,7 @@ TwoFactors started(const Eigen::MatrixXd& w, Eigen::Index rank) {
   TwoFactors at;
   at.t = w.rowwise().mean();
   const Eigen::MatrixXd less = w.colwise() - at.t;
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(less, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const linear::DividedSvd svd(less, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const double root = std::sqrt(static_cast<double>(w.cols()));
   const double energy = less.squaredNorm() / static_cast<double>(less.size());
   at.a = svd.matrixU().leftCols(rank) * svd.singularValues().head(rank).asDiagonal() / root;
@@ -68,7 +71,7 @@ void sweep_points(const Sequence& sequence, TwoFactors& at) {
       right.noalias() +=
           at.a.middleRows<2>(2 * f).transpose() * (sequence.tracks.block<2, 1>(2 * f, p) - at.t.segment<2>(2 * f));
     }
-    const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
+    const linear::Ldlt solver(normal);
     at.b.col(p) = solver.solve(right);
     at.spread_b[static_cast<std::size_t>(p)] = at.noise * solver.solve(Eigen::MatrixXd::Identity(r, r));
   }
@@ -81,13 +84,13 @@ void turn_to_axes(TwoFactors& at) {
   at.b.colwise() -= mean;
   Eigen::MatrixXd square = at.b * at.b.transpose();
   for (const Eigen::MatrixXd& spread : at.spread_b) square += spread;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> points(square / static_cast<double>(at.b.cols()));
+  const linear::SymmetricEigen<Eigen::MatrixXd> points(square / static_cast<double>(at.b.cols()));
   const Eigen::VectorXd roots = points.eigenvalues().cwiseMax(1e-300).cwiseSqrt();
   const Eigen::MatrixXd whitened = points.eigenvectors() * roots.asDiagonal();
   Eigen::MatrixXd motion = whitened.transpose() * at.a.transpose() * at.a * whitened;
   for (const Eigen::MatrixXd& spread : at.spread_a) motion += 2 * whitened.transpose() * spread * whitened;
   const Eigen::MatrixXd axes =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(motion).eigenvectors().rowwise().reverse();
+      linear::SymmetricEigen<Eigen::MatrixXd>(motion).eigenvectors().rowwise().reverse();
   const Eigen::MatrixXd back = whitened * axes;
   const Eigen::MatrixXd forth =
       axes.transpose() * roots.cwiseInverse().asDiagonal() * points.eigenvectors().transpose();
@@ -115,7 +118,7 @@ void sweep_frames(const Sequence& sequence, TwoFactors& at) {
     }
     Eigen::MatrixXd normal = square;
     normal.diagonal() += at.noise * at.prior.cwiseInverse();
-    const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
+    const linear::Ldlt solver(normal);
     at.a.middleRows<2>(2 * f) = solver.solve(right).transpose();
     Eigen::MatrixXd& own = at.spread_a[static_cast<std::size_t>(f)];
     own = at.noise * solver.solve(Eigen::MatrixXd::Identity(r, r));

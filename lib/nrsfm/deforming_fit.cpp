@@ -3,9 +3,13 @@
 //   du/dkappa = -n^2 q_z U.
 #include "nrsfm/deforming_fit.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "linear/solve.h"
+#include "linear/svd.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -60,10 +64,10 @@ TwoRows by_frame(const DeformingShape& s, Eigen::Index f, Eigen::Index p, const 
   return rows;
 }
 
-Eigen::LLT<Eigen::MatrixXd> ridged(Eigen::MatrixXd normal) {
+linear::Llt ridged(Eigen::MatrixXd normal) {
   const double least = point_ridge * normal.trace() / static_cast<double>(normal.rows());
   normal.diagonal().array() += least > 0 ? least : 1.0;
-  return normal.llt();
+  return linear::Llt(normal);
 }
 
 // The points where the frames put them, by Gauss-Newton; exact in one round without perspective.
@@ -127,9 +131,9 @@ Reduced reduced_equations(const UsedTracks& tracks, const DeformingShape& s) {
       r.right.segment(f * own, own).noalias() += g.transpose() * d.residual;
       r.right(size - 1) += d.by_kappa.dot(d.residual);
     }
-    const Eigen::LLT<Eigen::MatrixXd> factor = ridged(std::move(normal));
-    factor.matrixL().solveInPlace(coupling);
-    factor.matrixL().solveInPlace(right);
+    const linear::Llt factor = ridged(std::move(normal));
+    coupling = factor.solve_lower(coupling);
+    right = factor.solve_lower(right);
     eliminated.middleRows(n * p, n) = coupling;
     eliminated_right.segment(n * p, n) = right;
   }
@@ -146,9 +150,9 @@ Eigen::VectorXd step_of(const Reduced& r, double damping, bool perspective) {
   const double typical = r.whole.head(r.whole.size() - 1).mean();
   matrix.diagonal().array() += damping * r.whole.array() + 1e-12 * typical;
   const Eigen::Index last = right.size() - 1;
-  if (perspective && r.whole(last) > 0) return matrix.selfadjointView<Eigen::Lower>().llt().solve(right);
+  if (perspective && r.whole(last) > 0) return linear::Llt(matrix).solve(right);
   Eigen::VectorXd step = Eigen::VectorXd::Zero(right.size());
-  step.head(last) = matrix.topLeftCorner(last, last).selfadjointView<Eigen::Lower>().llt().solve(right.head(last));
+  step.head(last) = linear::Llt(matrix.topLeftCorner(last, last)).solve(right.head(last));
   return step;
 }
 
@@ -223,7 +227,7 @@ PerspectiveColumn perspective_column(const UsedTracks& tracks, const DeformingSh
   Eigen::MatrixXd matrix = r.matrix.topLeftCorner(last, last);
   matrix.diagonal().array() += 1e-9 * r.whole.head(last).array() + 1e-12 * r.whole.head(last).mean();
   const Eigen::VectorXd frames =
-      matrix.selfadjointView<Eigen::Lower>().llt().solve(r.matrix.row(last).head(last).transpose());
+      linear::Llt(matrix).solve(r.matrix.row(last).head(last).transpose());
   column.surviving = column.whole;
   for (Eigen::Index p = 0; p < tracks.used.cols(); ++p) {
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
@@ -250,7 +254,7 @@ DeformingShape with_further_shape(const UsedTracks& tracks, DeformingShape s) {
   const Eigen::MatrixXd e = residuals(tracks, s);
   Eigen::MatrixXd in_time(frames, 2 * points);
   for (Eigen::Index f = 0; f < frames; ++f) in_time.row(f) = e.middleRows<2>(2 * f).reshaped().transpose();
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(in_time, Eigen::ComputeThinU);
+  const linear::DividedSvd svd(in_time, Eigen::ComputeThinU);
   double most = -1;
   Eigen::VectorXd best_weights;
   Eigen::Matrix3Xd best_shape;
@@ -266,7 +270,7 @@ DeformingShape with_further_shape(const UsedTracks& tracks, DeformingShape s) {
         normal += w(f) * w(f) * camera.transpose() * camera;
         b += w(f) * camera.transpose() * e.middleRows<2>(2 * f);
       }
-      b = normal.ldlt().solve(b).eval();
+      b = linear::solve_ldlt(normal, b).eval();
       taken = 0;
       for (Eigen::Index f = 0; f < frames; ++f) {
         const Eigen::Matrix2Xd seen = s.rotation[static_cast<std::size_t>(f)].topRows<2>() * b;

@@ -8,7 +8,7 @@
 // themselves, as in variable projection, without which the valley between weights and shapes is not walked to its end
 // (Hong & Fitzgibbon, ICCV 2015). Per step one system of F (5 + K) + 1 numbers.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <vector>
 
 namespace gonio::nrsfm {

@@ -3,6 +3,7 @@
 //   du/dl = n s q_xy - U n^2 kappa s q_z,   dq/dw = -[q]x J(w),  J the left Jacobian of the rotation vector.
 #include "nrsfm/deforming_model.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 

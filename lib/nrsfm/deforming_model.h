@@ -10,7 +10,7 @@
 //
 // Units: tracks' for u, t, c0 and, as the scales' mean is 1, for S; kappa is one over the focal length, 1 / unit.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 #include <vector>

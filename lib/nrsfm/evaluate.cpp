@@ -1,6 +1,7 @@
 // See evaluate.h.
 #include "nrsfm/evaluate.h"
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>

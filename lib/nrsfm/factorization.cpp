@@ -1,11 +1,15 @@
 // Centred tracks, truncated factors, trajectory bases, nearest rotations and single cameras.
 #include "nrsfm/factorization.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "linear/solve.h"
+#include "linear/svd.h"
+#include "linear/symmetric_eigen.h"
 #include "nrsfm/solver.h"
 
 namespace gonio::nrsfm {
@@ -42,7 +46,7 @@ Seen seen_of(const Eigen::Matrix2Xd& tracks, const Eigen::Array<bool, 1, Eigen::
   seen.shape_mean = count > 0 ? Eigen::Vector3d(shape_seen.rowwise().mean()) : Eigen::Vector3d::Zero();
   tracks_seen.colwise() -= seen.track_mean;
   shape_seen.colwise() -= seen.shape_mean;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> root(spread);
+  const linear::SymmetricEigen<Eigen::Matrix3d> root(spread);
   seen.shape.rightCols<3>() = root.eigenvectors() * root.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
   return seen;
 }
@@ -73,7 +77,7 @@ Centred centred(const Sequence& sequence) {
 }
 
 Eigen::MatrixXd motion_rows(const Eigen::MatrixXd& w, Eigen::Index terms) {
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(w, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const linear::DividedSvd svd(w, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::Index columns = 3 * terms, there = std::min(columns, svd.singularValues().size());
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(w.rows(), columns);
   rows.leftCols(there) = svd.matrixU().leftCols(there) * svd.singularValues().head(there).cwiseSqrt().asDiagonal();
@@ -94,7 +98,7 @@ double noise_of(const Eigen::MatrixXd& w) {
 }
 
 Eigen::Index rank_of(const Eigen::MatrixXd& w, double share, Eigen::Index most) {
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(w);
+  const linear::DividedSvd svd(w);
   const Eigen::VectorXd energy = svd.singularValues().array().square();
   const Eigen::Index limit = std::max<Eigen::Index>(1, std::min(most, energy.size() / 3));
   const double noise = std::pow(noise_of(w), 2) * static_cast<double>(w.size());
@@ -119,7 +123,7 @@ Eigen::MatrixXd dct_basis(Eigen::Index frames, Eigen::Index terms) {
 }
 
 CameraRows nearest_rows(const CameraRows& a) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const linear::JacobiSvd<Eigen::MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
   return svd.matrixU() * svd.matrixV().transpose();
 }
 
@@ -155,7 +159,7 @@ WeakCamera fit_camera(const Eigen::Matrix2Xd& tracks, const Eigen::Array<bool, 1
       }
       normal.diagonal().array() += damping * normal.trace() + 1e-300;
       WeakCamera tried = camera;
-      tried.rotation = nearest_rows(camera.rotation * turned_by(normal.ldlt().solve(gradient)));
+      tried.rotation = nearest_rows(camera.rotation * turned_by(linear::solve_ldlt(normal, gradient)));
       if (free_scale) tried.scale = best_scale(seen, tried.rotation, camera.scale);
       const double tried_cost = cost_of(tried);
       if (!(tried_cost < cost)) {

@@ -1,7 +1,9 @@
 // See files.h.
 #include "nrsfm/files.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 

@@ -4,12 +4,13 @@
 //   y - 2 n (n . y): the difference is 4 n' C n,               r = n' C n / (|n . y| |n . q|)
 // Of unknown n the least n' C n: the eigenvector of the least eigenvalue of (C + C') / 2. The similarity itself suffers
 // from flips, so that it is found again without those found, until they stay.
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
+#include "linear/symmetric_eigen.h"
 #include "nrsfm/errors.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
@@ -66,7 +67,7 @@ Candidate candidate(const FrameSums& s, FlipKind kind, const Eigen::Vector3d* de
   if (depth != nullptr) {
     c.normal = *depth;
   } else {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (s.yq + s.yq.transpose()));
+    const linear::SymmetricEigen<Eigen::Matrix3d> solver(0.5 * (s.yq + s.yq.transpose()));
     c.normal = solver.eigenvectors().col(0);
   }
   const double along = c.normal.dot(s.yq * c.normal);

@@ -5,7 +5,7 @@
 //   (D - sum B_f' H_f^-1 B_f) dd + nu 1 = -g_d + sum B_f' H_f^-1 g_f,   1'dd = 0,   dz_f = -H_f^-1 (g_f + B_f dd)
 #include "nrsfm/inextensible.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,7 @@
 #include <set>
 
 #include "base/atomic_file.h"
+#include "linear/solve.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -76,7 +77,7 @@ double barrier(const Cones& cones, const Point& at, double t) {
 }
 
 struct FrameTerms {
-  Eigen::LLT<Eigen::MatrixXd> factor;  // of H_f
+  linear::Llt factor;  // of H_f
   Eigen::VectorXd gradient;
   Sparse mixed;  // B_f
 };
@@ -116,7 +117,7 @@ FrameTerms frame_terms(const Cones& cones, const Point& at, double t, Eigen::Ind
   }
   terms.mixed.resize(points, cones.edges);
   terms.mixed.setFromTriplets(mixed.begin(), mixed.end());
-  terms.factor.compute(hessian);
+  terms.factor = linear::Llt(hessian);
   return terms;
 }
 
@@ -135,7 +136,7 @@ Step newton(const Cones& cones, const Point& at, double t) {
     schur.noalias() -= frame.mixed.transpose() * solved;
     right += solved.transpose() * frame.gradient;
   }
-  const Eigen::LLT<Eigen::MatrixXd> factor(schur);
+  const linear::Llt factor(schur);
   step.sound = step.sound && factor.info() == Eigen::Success;
   if (!step.sound) return step;
   const Eigen::VectorXd along = factor.solve(right), even = factor.solve(Eigen::VectorXd::Ones(cones.edges));

@@ -6,10 +6,15 @@
 // one F x F factorization for all points. rho follows the two residuals (Boyd et al. 2011, equation 3.13).
 #include "nrsfm/low_rank.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
 
 #include "base/atomic_file.h"
+#include "linear/solve.h"
+#include "linear/svd.h"
+#include "linear/symmetric_eigen.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -63,7 +68,7 @@ Thresholded thresholded(const Eigen::MatrixXd& m, double threshold) {
   } else {
     gram.noalias() = m * m.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(gram);
   const Eigen::VectorXd s = eigen.eigenvalues().cwiseMax(0).cwiseSqrt();
   Thresholded result;
   while (result.rank < s.size() && s(s.size() - 1 - result.rank) > threshold) ++result.rank;
@@ -80,7 +85,7 @@ Thresholded thresholded(const Eigen::MatrixXd& m, double threshold) {
 // <Q, least> for the multiplier Q freed of what it has along the depths and shrunk into |Q|_2 <= 1.
 double lower_bound(const Depths& depths, const Eigen::MatrixXd& multiplier) {
   const Eigen::MatrixXd q = multiplier - depths.lifted(depths.along(multiplier));
-  const double norm = Eigen::BDCSVD<Eigen::MatrixXd>(q).singularValues()(0);
+  const double norm = linear::DividedSvd(q).singularValues()(0);
   return norm > 0 ? q.cwiseProduct(depths.least).sum() / std::max(norm, 1.0) : 0;
 }
 
@@ -101,7 +106,7 @@ class DepthStep {
     if (problem_.laplacian.size() == 0) return;
     Eigen::MatrixXd normal = problem_.coupling * coupled_;
     normal.diagonal().array() += rho;
-    factor_.compute(normal);
+    factor_ = linear::Llt(normal);
   }
   Eigen::MatrixXd operator()(const Eigen::MatrixXd& target) const {
     Eigen::MatrixXd y = depths_.along(target);
@@ -114,7 +119,7 @@ class DepthStep {
   const Depths& depths_;
   double rho_ = 1;
   Eigen::MatrixXd pull_, coupled_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  linear::Llt factor_;
 };
 
 }  // namespace
@@ -167,7 +172,7 @@ LowRankShapes low_rank_shapes(const LowRankProblem& problem, const LowRankOption
   }
   result.converged = result.converged || size == 0;
   result.shapes = arranged(s);
-  result.nuclear_norm = Eigen::BDCSVD<Eigen::MatrixXd>(s).singularValues().sum();
+  result.nuclear_norm = linear::DividedSvd(s).singularValues().sum();
   result.bound = problem.laplacian.size() > 0 ? 0 : lower_bound(depths, rho * u);
   return result;
 }

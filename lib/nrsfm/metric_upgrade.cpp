@@ -3,7 +3,7 @@
 //   (|A|^2 - |B|^2) / sqrt(2),   sqrt(2) w ((|A|^2 + |B|^2) / 2 - s^2),   sqrt(2) A . B
 // For w = 1 their squares add up to |M_f G G' M_f' - s^2 I|_F^2; for any w a turn of the image does not change their
 // sum. Where scales are free w is small (it keeps frames from vanishing) and s follows the rows in a few rounds.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +11,9 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/random.h"
+#include "linear/qr.h"
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 #include "nrsfm/factorization.h"
 
 namespace gonio::nrsfm {
@@ -87,7 +90,7 @@ Candidate minimized(const Problem& problem, Eigen::MatrixXd transform, int most_
     for (int tries = 0; tries < 12 && !better; ++tries) {
       Eigen::MatrixXd damped = normal;
       damped.diagonal().array() += damping * (normal.diagonal().array() + floor) + 1e-300;
-      const Eigen::VectorXd step = damped.selfadjointView<Eigen::Lower>().ldlt().solve(gradient);
+      const Eigen::VectorXd step = linear::solve_ldlt(damped, gradient);
       const Eigen::MatrixXd tried = transform - step.reshaped(n, 3);
       Residuals tried_at = residuals_of(problem, tried);
       better = tried_at.cost < at.cost;
@@ -126,13 +129,13 @@ Eigen::Matrix3d linear_start(const Problem& problem) {
     equations.row(3 * f + 2) = std::sqrt(2) * form(a, b);
     right(3 * f + 1) = std::sqrt(2) * problem.weight;
   }
-  const Eigen::VectorXd q = equations.colPivHouseholderQr().solve(right);
+  const Eigen::VectorXd q = linear::PivotedQr(equations).solve(right);
   Eigen::Matrix3d gram;
   for (int e = 0; e < 6; ++e) {
     const auto [i, j] = entries[static_cast<std::size_t>(e)];
     gram(i, j) = gram(j, i) = q(e);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(gram);
+  const linear::SymmetricEigen<Eigen::Matrix3d> eigen(gram);
   const double floor = 1e-6 * eigen.eigenvalues().cwiseAbs().maxCoeff();
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(floor).cwiseSqrt().asDiagonal();
 }

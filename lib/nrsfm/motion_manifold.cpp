@@ -1,7 +1,9 @@
 // Power iterations on rows, and the certificate of their limit.
 #include "nrsfm/motion_manifold.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+
+#include "linear/symmetric_eigen.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -42,7 +44,7 @@ bool is_maximum(const Matrix6& a, const CameraRows& rows) {
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 2; ++j) slack.block<3, 3>(3 * i, 3 * j).diagonal().array() += multiplier(i, j);
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(slack, Eigen::EigenvaluesOnly);
+  const linear::SymmetricEigen<Matrix6> eigen(slack, Eigen::EigenvaluesOnly);
   return eigen.eigenvalues()(0) > -1e-5 * a.trace();
 }
 
@@ -66,7 +68,7 @@ OnManifold nearest_motion(const Eigen::MatrixXd& motion, const CameraRows& start
     best.certified = is_maximum(a, rows);
   };
   consider(start);
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(a);
+  const linear::SymmetricEigen<Matrix6> eigen(a);
   for (int i = 5; i >= 0 && !best.certified; --i) consider(nearest_rows(mat(eigen.eigenvectors().col(i))));
   for (int i = 5; i >= 1 && !best.certified; --i) {
     for (const double sign : {1.0, -1.0}) {

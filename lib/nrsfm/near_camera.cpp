@@ -1,6 +1,7 @@
 // See near_camera.h.
 #include "nrsfm/near_camera.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>

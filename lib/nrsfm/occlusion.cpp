@@ -1,6 +1,7 @@
 // See occlusion.h.
 #include "nrsfm/occlusion.h"
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>

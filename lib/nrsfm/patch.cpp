@@ -1,6 +1,7 @@
 // See patch.h. The step d of the patch's own warp is linear, with the light free: I(W(x)) = g T(x) + g T'(x) d + b.
 #include "nrsfm/patch.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,6 @@
 // One patch of a tracker, aligned to other pictures by an affine warp. For tracker.cpp.
 #pragma once
+#include <Eigen/Cholesky>
 #include <optional>
 
 #include "nrsfm/pictures.h"

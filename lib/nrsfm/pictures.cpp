@@ -1,7 +1,7 @@
 // See pictures.h.
 #include "nrsfm/pictures.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/random.h"
+#include "linear/solve.h"
 #include "nrsfm/frame_caster.h"
 
 namespace gonio::nrsfm {
@@ -139,7 +140,7 @@ bool is_one_surface(const GreyPicture& picture, const Eigen::Vector2d& place_px,
     }
   if (!depths.allFinite()) return false;
   const Eigen::Matrix3d normal = by_place * by_place.transpose();
-  const Eigen::Vector3d plane = normal.ldlt().solve(by_place * depths);
+  const Eigen::Vector3d plane = linear::solve_ldlt(normal, by_place * depths);
   return (depths - by_place.transpose() * plane).cwiseAbs().maxCoeff() < extent_m / 2;
 }
 

@@ -1,7 +1,9 @@
 // Principal axes of the shapes that K weights and K basis shapes make, from Gram matrices of size K.
 #include "nrsfm/principal_curve.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+
+#include "linear/symmetric_eigen.h"
 
 namespace gonio::nrsfm {
 
@@ -13,11 +15,11 @@ Eigen::MatrixXd principal_coordinates(const ShapeTrajectory& fit, Eigen::Index d
       gram(k, l) = fit.basis.middleRows<3>(3 * k).cwiseProduct(fit.basis.middleRows<3>(3 * l)).sum();
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shape_axes(gram);
+  const linear::SymmetricEigen<Eigen::MatrixXd> shape_axes(gram);
   const Eigen::VectorXd roots = shape_axes.eigenvalues().cwiseMax(0).cwiseSqrt();
   Eigen::MatrixXd along = fit.coefficients * shape_axes.eigenvectors() * roots.asDiagonal();
   along.rowwise() -= along.colwise().mean().eval();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(along.transpose() * along);
+  const linear::SymmetricEigen<Eigen::MatrixXd> axes(along.transpose() * along);
   return along * axes.eigenvectors().rightCols(dimensions).rowwise().reverse();
 }
 

@@ -5,11 +5,15 @@
 // A camera's parameters: turn v (R exp([v]x)), translation, logarithm of the scale (left alone where scales are held).
 #include "nrsfm/rigid_motion.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "base/atomic_file.h"
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -118,7 +122,7 @@ Step step_of(const Equations& e, double damping) {
   Eigen::MatrixXd reduced = Eigen::MatrixXd::Identity(kept.size(), kept.size());
   reduced.selfadjointView<Eigen::Lower>().rankUpdate(link.transpose(), -1);
   reduced.diagonal().array() += 1e-13;
-  kept = reduced.selfadjointView<Eigen::Lower>().ldlt().solve(kept - link.transpose() * gone).eval();
+  kept = linear::solve_ldlt(reduced, kept - link.transpose() * gone).eval();
   gone -= link * kept;
   undo_factors(cameras, step.cameras);
   undo_factors(points, step.points);
@@ -170,7 +174,7 @@ void descend(const Sequence& sequence, const RigidOptions& options, RigidMotion&
 bool turn_flat_frames(const Sequence& sequence, bool free_scales, RigidMotion& at) {
   const Eigen::Vector3d middle = at.shape.rowwise().mean();
   const Eigen::Matrix3Xd less = at.shape.colwise() - middle;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(Eigen::Matrix3d(less * less.transpose()));
+  const linear::SymmetricEigen<Eigen::Matrix3d> axes(Eigen::Matrix3d(less * less.transpose()));
   const Eigen::Vector3d normal = axes.eigenvectors().col(0);
   const auto cost = [&](Eigen::Index f) {
     double sum = 0;
@@ -212,7 +216,7 @@ Eigen::Matrix3Xd rigid_shape(const Sequence& sequence, const std::vector<WeakCam
       normal += rows.transpose() * rows;
       right += rows.transpose() * (sequence.tracks.block<2, 1>(2 * f, p) - camera.translation);
     }
-    shape.col(p) = normal.ldlt().solve(right);
+    shape.col(p) = linear::solve_ldlt(normal, right);
   }
   return shape;
 }

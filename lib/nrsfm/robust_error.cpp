@@ -2,9 +2,8 @@
 // and divided by their extents (medians, which outliers do not move) before, so that tolerances mean the same in every
 // unit; the truth is turned to its principal axes, x onto the truth by Procrustes, and points are sorted by their
 // place, so that the search takes the same way however they stood and in whatever order they came.
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +14,8 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "linear/svd.h"
+#include "linear/symmetric_eigen.h"
 #include "nrsfm/errors.h"
 #include "nrsfm/robust_fit.h"
 #include "stats/intervals.h"
@@ -44,7 +45,7 @@ double median_of(const Eigen::VectorXd& v) {
 // Rows: directions of least to largest spread, each towards the side of the longer tail; right-handed.
 Eigen::Matrix3d principal_axes(const Eigen::Matrix3Xd& q) {
   const Eigen::Matrix3Xd centred = q.colwise() - q.rowwise().mean();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(centred * centred.transpose());
+  const linear::SymmetricEigen<Eigen::Matrix3d> solver(centred * centred.transpose());
   Eigen::Matrix3d rows = solver.eigenvectors().transpose();
   for (int i = 1; i < 3; ++i)
     if ((rows.row(i) * centred).array().cube().sum() < 0) rows.row(i) *= -1;
@@ -73,7 +74,7 @@ Normalized normalized(const Shapes& x, const Shapes& truth, bool reflection) {
 }
 
 Similarity restored(const Similarity& s, const Normalized& n) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(n.turn_q.transpose() * s.rotation * n.turn_x,
+  const linear::JacobiSvd<Eigen::Matrix3d> svd(n.turn_q.transpose() * s.rotation * n.turn_x,
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
   Similarity out;
   out.rotation = svd.matrixU() * svd.matrixV().transpose();

@@ -1,11 +1,13 @@
 // See robust_fit.h.
 #include "nrsfm/robust_fit.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "linear/solve.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -187,7 +189,7 @@ RobustFit::Outcome RobustFit::minimize(const Similarity& start, int most_iterati
     StepMatrix damped = d.matrix;
     const double floor = 1e-9 * d.matrix.diagonal().maxCoeff() + std::numeric_limits<double>::min();
     for (int i = 0; i < 7; ++i) damped(i, i) += damping * std::max(d.matrix(i, i), floor);
-    const Step p = -damped.ldlt().solve(d.gradient);
+    const Step p = -linear::solve_ldlt(damped, d.gradient);
     const double predicted = -(d.gradient.dot(p) + 0.5 * p.dot(d.matrix * p));
     const State next = evaluate(stepped(state.at, p));
     const double fall = state.cost - next.cost;

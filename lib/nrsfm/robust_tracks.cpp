@@ -1,11 +1,15 @@
 // See robust_tracks.h.
 #include "nrsfm/robust_tracks.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "linear/qr.h"
+#include "linear/solve.h"
+#include "linear/svd.h"
 #include "nrsfm/factorization.h"
 #include "stats/intervals.h"
 
@@ -81,11 +85,10 @@ double RobustTracks::freedom() const {
 // Components of A C that have shrunk to nothing go.
 void RobustTracks::truncate() {
   if (a_.cols() == 0) return;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> of_a(a_), of_c(c_.transpose());
+  const linear::HouseholderQr of_a(a_), of_c(c_.transpose());
   const Eigen::Index q = a_.cols();
-  const Eigen::MatrixXd qa = of_a.householderQ() * Eigen::MatrixXd::Identity(a_.rows(), q);
-  const Eigen::MatrixXd qc = of_c.householderQ() * Eigen::MatrixXd::Identity(c_.cols(), q);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(qa.transpose() * a_ * c_ * qc, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::MatrixXd &qa = of_a.thin_q(), &qc = of_c.thin_q();
+  const linear::JacobiSvd<Eigen::MatrixXd> svd(qa.transpose() * a_ * c_ * qc, Eigen::ComputeThinU | Eigen::ComputeThinV);
   Eigen::Index kept = 0;
   while (kept < q && svd.singularValues()(kept) > least_component * typical()) ++kept;
   const Eigen::VectorXd roots = svd.singularValues().head(kept).cwiseSqrt();
@@ -102,7 +105,7 @@ void RobustTracks::fit_remainder(double ridge) {
     for (Eigen::Index p = 0; p < points; ++p)
       if (weight_(f, p) > 0) e.block<2, 1>(2 * f, p) = residual(f, p) + remainder(f, p);
   if (c_.squaredNorm() == 0) {
-    const Eigen::BDCSVD<Eigen::MatrixXd> svd(e, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const linear::DividedSvd svd(e, Eigen::ComputeThinU | Eigen::ComputeThinV);
     const Eigen::VectorXd roots = svd.singularValues().head(q).cwiseSqrt();
     c_ = roots.asDiagonal() * svd.matrixV().leftCols(q).transpose();
     a_ = svd.matrixU().leftCols(q) * roots.asDiagonal();
@@ -110,7 +113,7 @@ void RobustTracks::fit_remainder(double ridge) {
   const auto solve = [q, ridge](Eigen::MatrixXd normal, const Eigen::MatrixXd& right) -> Eigen::MatrixXd {
     const double least = 1e-9 * normal.trace() / static_cast<double>(q);
     normal.diagonal().array() += ridge + (least > 0 ? least : 1.0);
-    return normal.ldlt().solve(right);
+    return linear::solve_ldlt(normal, right);
   };
   for (int round = 0; round < rounds_of_remainder; ++round) {
     for (Eigen::Index f = 0; f < frames; ++f) {
@@ -197,7 +200,7 @@ Eigen::VectorXd RobustTracks::shape(Eigen::Index p, const Eigen::ArrayXd& weight
     right.noalias() += weights(f) * m.transpose() * (track(f, p) - model_.translation.col(f));
   }
   normal.diagonal().array() += 1e-9 * normal.trace() / static_cast<double>(n);
-  return normal.ldlt().solve(right);
+  return linear::solve_ldlt(normal, right);
 }
 
 void RobustTracks::fit_points() {
@@ -219,7 +222,7 @@ void RobustTracks::fit_frames() {
     }
     const double ridge = 1e-12 * normal.trace();
     normal.diagonal().array() += ridge + (ridge > 0 ? 0.0 : 1.0);
-    const Eigen::Matrix<double, 6, 1> step = normal.ldlt().solve(right);
+    const Eigen::Matrix<double, 6, 1> step = linear::solve_ldlt(normal, right);
     rotation = turned_by(step.head<3>()) * rotation;
     model_.translation.col(f) += step.segment<2>(3);
     model_.log_scale(f) += step(5);
@@ -260,7 +263,7 @@ void RobustTracks::find_leverages() {
     const Eigen::VectorXd scale = normal.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
     normal = (scale.asDiagonal() * normal * scale.asDiagonal()).eval();
     normal.diagonal().array() += 1e-9;
-    const Eigen::LDLT<Eigen::MatrixXd> factor(normal);
+    const linear::Ldlt factor(normal);
     for (Eigen::Index f = 0; f < seen_.rows(); ++f) {
       if (!seen_(f, p)) continue;
       const Eigen::MatrixXd m = scale.asDiagonal() * design(f).transpose();
@@ -282,7 +285,7 @@ double noise_of(const Solved& solved, const RobustTracks& fit, double left_by_fi
   const Eigen::Index rank = std::min(3 * m.terms() + 9, std::min(w.rows(), w.cols()) / 2);
   const double left = double((w.rows() - rank) * (w.cols() - 1 - rank)) - (double(w.size()) - used);
   if (rank <= 3 * m.terms() || !(left > 0)) return sigma;
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(w);
+  const linear::DividedSvd svd(w);
   return std::min(sigma, std::sqrt(svd.singularValues().tail(svd.singularValues().size() - rank).squaredNorm() / left));
 }
 

@@ -1,11 +1,13 @@
 // The lasso by alternating directions, and least squares on its support.
 #include "nrsfm/self_expression.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -18,7 +20,7 @@ Eigen::MatrixXd lasso(const Eigen::MatrixXd& shapes, double sparsity) {
   Eigen::MatrixXd apart = gram.cwiseAbs();
   apart.diagonal().setZero();
   const double alpha = apart.colwise().maxCoeff().minCoeff() / sparsity;  // above it a column of C would be zero
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(gram);
   const Eigen::Index rank = std::min(frames, shapes.cols());
   const Eigen::MatrixXd v = eigen.eigenvectors().rightCols(rank);
   const Eigen::VectorXd lambda = eigen.eigenvalues().tail(rank).cwiseMax(0);
@@ -54,7 +56,7 @@ Eigen::MatrixXd refitted(const Eigen::MatrixXd& shapes, const Eigen::MatrixXd& c
     Eigen::MatrixXd normal = gram(support, support);
     normal.diagonal().array() += ridge;
     const Eigen::VectorXd right = gram(support, f);
-    const Eigen::VectorXd c = normal.ldlt().solve(right);
+    const Eigen::VectorXd c = linear::solve_ldlt(normal, right);
     for (std::size_t i = 0; i < support.size(); ++i) weights(support[i], f) = c(static_cast<Eigen::Index>(i));
   }
   return weights;

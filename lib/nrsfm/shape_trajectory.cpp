@@ -1,12 +1,15 @@
 // Levenberg-Marquardt on trajectories in shape space by variable projection.
 #include "nrsfm/shape_trajectory.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "linear/qr.h"
+#include "linear/solve.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -81,7 +84,7 @@ Eigen::VectorXd ridges_of(const ShapeTrajectoryProblem& problem, const Eigen::Ma
 
 struct Factored {
   Eigen::MatrixXd motion, q;  // q: the upper part of the orthonormal factor of [M; ridge]
-  Eigen::HouseholderQR<Eigen::MatrixXd> qr;
+  linear::HouseholderQr qr;
   Eigen::VectorXd ridges;
 };
 
@@ -93,15 +96,15 @@ Factored factored(const ShapeTrajectoryProblem& problem, const Eigen::MatrixXd& 
   Eigen::MatrixXd stacked(rows + columns, columns);
   stacked.topRows(rows) = result.motion;
   stacked.bottomRows(columns) = result.ridges.cwiseSqrt().asDiagonal();
-  result.qr.compute(stacked);
-  result.q = (result.qr.householderQ() * Eigen::MatrixXd::Identity(rows + columns, columns)).topRows(rows);
+  result.qr = linear::HouseholderQr(stacked);
+  result.q = result.qr.thin_q().topRows(rows);
   return result;
 }
 
 Eliminated together(const Factored& at, const Eigen::VectorXd& w) {
   Eliminated point;
   const Eigen::Index columns = at.motion.cols();
-  const auto upper = at.qr.matrixQR().topRows(columns).triangularView<Eigen::Upper>();
+  const auto upper = at.qr.upper().triangularView<Eigen::Upper>();
   point.s = upper.solve(at.q.transpose() * w);
   point.residual = w - at.motion * point.s;
   point.cost = point.residual.squaredNorm() + point.s.cwiseAbs2().dot(at.ridges);
@@ -306,7 +309,7 @@ ShapeTrajectory fit_shape_trajectory(const ShapeTrajectoryProblem& problem, cons
       Eigen::MatrixXd damped = normal.matrix.bottomRightCorner(free, free);
       damped.diagonal().array() += damping * mean + 1e-300;
       Eigen::MatrixXd tried = state.x;
-      tried.reshaped().tail(free) -= damped.ldlt().solve(normal.gradient.tail(free));
+      tried.reshaped().tail(free) -= linear::solve_ldlt(damped, normal.gradient.tail(free));
       State next = state_of(problem, tried);
       better = next.cost < state.cost;
       if (!better) {

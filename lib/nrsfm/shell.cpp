@@ -1,7 +1,7 @@
 // Equilibrium of shells: the matrix of second derivatives and Newton's method (shell.h).
 #include "nrsfm/shell.h"
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <set>

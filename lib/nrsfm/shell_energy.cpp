@@ -1,5 +1,7 @@
 // Energies of shells and their first derivatives (shell.h).
+#include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>

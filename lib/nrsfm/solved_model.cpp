@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "linear/qr.h"
+#include "linear/svd.h"
 #include "nrsfm/factorization.h"
 
 namespace gonio::nrsfm {
@@ -161,7 +163,7 @@ SolvedModel solved_model(const Solved& solved, bool all) {
                 "estimates " + text(static_cast<Eigen::Index>(estimated.size())) + " points in all frames, " +
                     text(fewest_points) + " are the least");
   const Eigen::MatrixXd shapes = one_row_a_frame(r, estimated);
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(shapes, Eigen::ComputeThinU);
+  const linear::DividedSvd svd(shapes, Eigen::ComputeThinU);
   const double total = svd.singularValues().squaredNorm();
   Eigen::Index terms = svd.singularValues().size();
   double left = 0;
@@ -176,7 +178,7 @@ SolvedModel solved_model(const Solved& solved, bool all) {
   for (const Eigen::Index f : m.frames) m.rotation.push_back(completed(r.rotations[static_cast<std::size_t>(f)]));
   const Weights weights = weights_of(svd.matrixU().leftCols(terms));
   take_frames(weights, m);
-  const Eigen::MatrixXd basis = (weights.omega * weights.x).colPivHouseholderQr().solve(one_row_a_frame(r, m.points));
+  const Eigen::MatrixXd basis = linear::PivotedQr(weights.omega * weights.x).solve(one_row_a_frame(r, m.points));
   for (Eigen::Index p = 0; p < m.point_count(); ++p) m.basis.emplace_back(basis.middleCols<3>(3 * p).transpose());
   place_frames(solved, m);
   m.centre = s.pinhole ? Eigen::Vector2d(s.pinhole->cx_px, s.pinhole->cy_px) : m.translation.rowwise().mean().eval();

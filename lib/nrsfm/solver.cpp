@@ -1,7 +1,7 @@
 // What every call of a solver has in common: values in force, refusals, names, the reprojection error.
 #include "nrsfm/solver.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <sstream>
 

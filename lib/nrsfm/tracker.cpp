@@ -1,7 +1,8 @@
 // See tracker.h.
 #include "nrsfm/tracker.h"
 
-#include <Eigen/SVD>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +10,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "base/parallel.h"
+#include "linear/svd.h"
 #include "nrsfm/patch.h"
 
 namespace gonio::nrsfm {
@@ -47,7 +49,7 @@ struct Tracker::Impl {
     f.largest = std::max(f.largest, area);
     if (area < options.left * f.largest) return false;
     f.warp = warp;
-    const Eigen::Vector2d sizes = Eigen::JacobiSVD<Eigen::Matrix2d>(warp.a).singularValues();
+    const Eigen::Vector2d sizes = linear::JacobiSvd<Eigen::Matrix2d>(warp.a).singularValues();
     if (sizes.maxCoeff() < options.change && sizes.minCoeff() * options.change > 1) return true;
     auto anew = Patch::of(now, warp.t, options.half_px);
     if (!anew) return true;

@@ -1,8 +1,9 @@
 // Translations of frames that miss points, and priors for what frames and cameras leave open.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "linear/solve.h"
 #include "nrsfm/shape_trajectory.h"
 
 namespace gonio::nrsfm {
@@ -80,7 +81,7 @@ RigidSizes fit_rigid(ShapeTrajectoryProblem& problem, Eigen::VectorXd& translati
         const auto rows = problem.rows.middleRows<2>(2 * f);
         if (problem.visible(f, p)) normal += rows.transpose() * rows;
       }
-      rigid.basis.col(p) = normal.ldlt().solve(problem.rows.transpose() * problem.tracks.col(p));
+      rigid.basis.col(p) = linear::solve_ldlt(normal, problem.rows.transpose() * problem.tracks.col(p));
     }
     rigid.basis.colwise() -= rigid.basis.rowwise().mean().eval();
     const Eigen::MatrixXd seen = predicted(problem, rigid);

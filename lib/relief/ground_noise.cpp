@@ -1,13 +1,14 @@
 // See ground_noise.h.
 #include "relief/ground_noise.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "linear/solve.h"
 #include "relief/areal.h"
 #include "relief/fft.h"
 
@@ -176,7 +177,7 @@ Fitted scored(const std::vector<Periodograms>& all, VectorXd theta) {
     }
     information.diagonal() *= 1 + damping;
     information.diagonal().array() += 1e-6;
-    VectorXd step = information.ldlt().solve(score);
+    VectorXd step = linear::solve_ldlt(information, score);
     const double largest = step.cwiseAbs().maxCoeff();
     if (largest > 1) step *= 1 / largest;
     const VectorXd next = fit.theta + step;
@@ -229,7 +230,7 @@ MatrixXd covariance_of(const std::vector<Periodograms>& all, const Fitted& fit) 
   }
   // a part without power leaves its cell undetermined: a large sigma, not a division by zero
   information.diagonal().array() += 1e-6;
-  const MatrixXd inverse = information.inverse(), model = neighbours * overlaps * inverse,
+  const MatrixXd inverse = linear::inverse(information), model = neighbours * overlaps * inverse,
                  sandwich = overlaps * inverse * scatter * inverse;
   MatrixXd larger = model;
   for (Eigen::Index k = 0; k < size; ++k) {

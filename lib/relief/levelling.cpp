@@ -1,11 +1,12 @@
 // From a map as measured to the surface whose roughness is asked for (areal.h): levelling and filters.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "linear/solve.h"
 #include "relief/areal.h"
 
 namespace gonio::relief {
@@ -34,7 +35,7 @@ Eigen::VectorXd level(io::HeightMap& map, int count) {
       normal.selfadjointView<Eigen::Lower>().rankUpdate(t);
       right += t * z;
     }
-  const Eigen::VectorXd c = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+  const Eigen::VectorXd c = linear::solve_ldlt(normal, right);
   for (std::size_t y = 0; y < map.height; ++y)
     for (std::size_t x = 0; x < map.width; ++x)
       map.z_m[y * map.width + x] -= c.dot(terms(unit_place(x, map.width), unit_place(y, map.height), count));

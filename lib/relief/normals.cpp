@@ -1,7 +1,8 @@
 // See normals.h.
 #include "relief/normals.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>

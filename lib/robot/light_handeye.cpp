@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "linear/svd.h"
+#include "linear/symmetric_eigen.h"
 #include "robot/handeye/matrices.h"
 #include "robot/handeye/observability.h"
 #include "stats/distributions.h"
@@ -141,7 +143,7 @@ Matrix9 information(const std::vector<Row>& rows, double robot_m) {
 
 Matrix9 pseudo_inverse(const Matrix9& n) {
   const Vector9 scale = n.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Matrix9> e(scale.asDiagonal() * n * scale.asDiagonal());
+  const linear::SymmetricEigen<Matrix9> e(scale.asDiagonal() * n * scale.asDiagonal());
   Vector9 inverse = Vector9::Zero();
   for (int i = 0; i < 9; ++i) inverse(i) = e.eigenvalues()(i) > 1e-12 ? 1 / e.eigenvalues()(i) : 0;
   const Matrix9 root = scale.asDiagonal() * e.eigenvectors();
@@ -201,7 +203,7 @@ Eigen::MatrixXd free_directions(const std::vector<LightSample>& samples, const S
     }
     more += at(other) / disturbances;
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix9> e(n);
+  const linear::SymmetricEigen<Matrix9> e(n);
   Eigen::MatrixXd free(9, 0);
   for (int k = 0; k < 9; ++k) {
     const Vector9 v = e.eigenvectors().col(k);
@@ -216,7 +218,7 @@ Eigen::MatrixXd free_directions(const std::vector<LightSample>& samples, const S
 void say(const std::string& what, const Eigen::MatrixXd& block, const std::string& joint, const std::string& frame,
          std::vector<std::string>& words) {
   if (block.cols() == 0) return;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(block, Eigen::ComputeThinU);
+  const linear::JacobiSvd<Eigen::MatrixXd> svd(block, Eigen::ComputeThinU);
   std::vector<Vector3> reached;
   for (Eigen::Index k = 0; k < svd.singularValues().size(); ++k) {
     if (svd.singularValues()(k) > part_of_direction) reached.push_back(svd.matrixU().col(k));

@@ -3,7 +3,7 @@
 // and turns it into G U, G orthonormal: SS(T) = |G_T' Q'y|^2. Robust: the hypothesis is that neither B nor T is there,
 // less that of B alone: with the Cholesky factor L of cov(G_[B T]' Q'y), the squares of L^-1 G_[B T]' Q'y that belong
 // to T (car::Anova's conjugate complement; for type III nothing is in B).
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "linear/solve.h"
 #include "stats/anova_projections.h"
 #include "stats/incomplete_beta.h"
 #include "stats/model_columns.h"
@@ -112,8 +113,8 @@ Tested test(const Projections& fit, const ModelColumns& columns, std::size_t ter
   if (!robust || b == a) return result;
   Eigen::MatrixXd g(turned.q.rows(), r - a);
   g << turned.q.rightCols(r - b), turned.q.middleCols(a, b - a);
-  const Eigen::LLT<Eigen::MatrixXd> cholesky(g.transpose() * fit.covariance * g);
-  const Eigen::VectorXd w = cholesky.matrixL().solve(g.transpose() * fit.z);
+  const linear::Llt cholesky(g.transpose() * fit.covariance * g);
+  const Eigen::VectorXd w = cholesky.solve_lower(g.transpose() * fit.z);
   result.wald = cholesky.info() == Eigen::Success ? w.tail(b - a).squaredNorm() : nan;
   return result;
 }

@@ -2,7 +2,7 @@
 //   sum over blocks of v_b c_ib,   c_ib = l_ib' e_b,   v_b = -1 or 1,
 // e_b the residuals of block b against a fit without it, (1 - Q_b Q_b')^-1 residual_b (CR3), times sqrt((G - 1) / G) of
 // G blocks. Nothing is refitted. Few blocks: critical values grow by Student's over the normal quantile, G - 1 degrees.
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/text.h"
+#include "linear/symmetric_eigen.h"
 #include "stats/anova_projections.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
@@ -41,7 +42,7 @@ Eigen::VectorXd left_out(const Anova& fit, const std::vector<Index>& rows) {
   Eigen::VectorXd e(q.rows());
   for (Index i = 0; i < e.size(); ++i)
     e(i) = fit.residuals[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])];
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd::Identity(q.rows(), q.rows()) -
+  const linear::SymmetricEigen<Eigen::MatrixXd> solver(Eigen::MatrixXd::Identity(q.rows(), q.rows()) -
                                                               q * q.transpose());
   Eigen::VectorXd turned = solver.eigenvectors().transpose() * e;
   for (Index i = 0; i < turned.size(); ++i)

@@ -2,11 +2,12 @@
 // then one signed column sum per direction.
 #include "stats/sign_flip.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "linear/symmetric_eigen.h"
 #include "stats/distributions.h"
 
 namespace gonio::stats {
@@ -22,7 +23,7 @@ Eigen::MatrixXd whitened(const ScoreFamily& family, std::size_t blocks) {
   Eigen::VectorXd scale(length.size());
   for (Eigen::Index k = 0; k < length.size(); ++k) scale[k] = length[k] > 0 ? 1 / length[k] : 0;
   const Eigen::MatrixXd v = u * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(v.transpose() * v);
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(v.transpose() * v);
   const Eigen::VectorXd& values = eigen.eigenvalues();
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < values.size(); ++k)

@@ -1,4 +1,5 @@
 // Virtual cameras: paths, projections, and which points the surface hides.
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>

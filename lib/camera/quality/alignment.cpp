@@ -1,8 +1,12 @@
 // See alignment.h.
 #include "camera/quality/alignment.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <cmath>
+
+#include "linear/solve.h"
+#include "linear/svd.h"
 
 namespace gonio::camera {
 namespace {
@@ -23,7 +27,7 @@ Rigid<frame::Camera, frame::Camera> aligned(const std::vector<Vec3>& from, const
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < from.size(); ++i)
     sum += (vector_of(to[i]) - mean_to) * (vector_of(from[i]) - mean_from).transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const linear::JacobiSvd<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity();
   mirror(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
   const Eigen::Matrix3d r = svd.matrixU() * mirror * svd.matrixV().transpose();
@@ -51,7 +55,7 @@ BoardPose pose_under(const View& view, const Board& board, const Intrinsics& len
         gradient += weight * (axis == 0 ? r.x : r.y) * h;
       }
     }
-    const Eigen::Matrix<double, 6, 1> change = normal.ldlt().solve(gradient);
+    const Eigen::Matrix<double, 6, 1> change = linear::solve_ldlt(normal, gradient);
     if (!change.allFinite()) break;
     pose = moved(pose, {change[0], change[1], change[2], change[3], change[4], change[5]});
     if (change.head<3>().norm() < 1e-10 && change.tail<3>().norm() < 1e-10) break;

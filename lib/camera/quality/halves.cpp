@@ -1,7 +1,7 @@
 // See halves.h.
 #include "camera/quality/halves.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <map>
 
@@ -9,6 +9,8 @@
 #include "camera/camera_model.h"
 #include "camera/quality/alignment.h"
 #include "camera/quality/linear_law.h"
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 #include "stats/distributions.h"
 
 namespace gonio::camera {
@@ -70,18 +72,18 @@ double chance_of_numbers(const Calibration& a, const Calibration& b, const Eigen
   const Eigen::VectorXd unit = covariance.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd correlation = unit.asDiagonal() * covariance * unit.asDiagonal();
   const Eigen::VectorXd z = unit.asDiagonal() * d;
-  return stats::chi2_upper(z.dot(correlation.ldlt().solve(z)), static_cast<double>(a.shared.size()));
+  return stats::chi2_upper(z.dot(linear::solve_ldlt(correlation, z)), static_cast<double>(a.shared.size()));
 }
 
 // The chance of a mean square this large under N(0, sum of both covariances), where it is d' W d.
 double chance_of_pixels(double mean_square, const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& w) {
   const Eigen::VectorXd unit = covariance.diagonal().cwiseSqrt();
   const Eigen::MatrixXd correlation = unit.cwiseInverse().asDiagonal() * covariance * unit.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(correlation);
   const Eigen::MatrixXd root =
       unit.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
   const Eigen::VectorXd weights =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(root.transpose() * w * root).eigenvalues();
+      linear::SymmetricEigen<Eigen::MatrixXd>(root.transpose() * w * root).eigenvalues();
   Random random(1, 0x68616c66u);
   std::size_t above = 0;
   for (std::size_t n = 0; n < draws; ++n) {

@@ -1,6 +1,6 @@
 // The matrices behind ProjectionLaw. For sources of this folder only: the types are Eigen's.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <array>
 #include <string>
 #include <utility>

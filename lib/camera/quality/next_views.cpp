@@ -1,7 +1,8 @@
 // See next_views.h.
 #include "camera/quality/next_views.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +11,8 @@
 #include "base/parallel.h"
 #include "camera/camera_model.h"
 #include "camera/quality/linear_law.h"
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 #include "stats/intervals.h"
 
 namespace gonio::camera {
@@ -152,11 +155,11 @@ Eigen::MatrixXd target_of(const ProjectionLaw& law, const CameraResult& camera, 
 
 // Covariance after information J is added: S - S J^1/2 (1 + J^1/2 S J^1/2)^-1 J^1/2 S, without inverting S.
 Eigen::MatrixXd updated(const Eigen::MatrixXd& s, const Eigen::MatrixXd& information) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (information + information.transpose()));
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(0.5 * (information + information.transpose()));
   const Eigen::MatrixXd root = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
   const Eigen::MatrixXd middle = Eigen::MatrixXd::Identity(s.rows(), s.cols()) + root.transpose() * s * root;
   const Eigen::MatrixXd sr = s * root;
-  return s - sr * middle.ldlt().solve(sr.transpose());
+  return s - sr * linear::solve_ldlt(middle, sr.transpose());
 }
 
 // The law with a view added.

@@ -1,6 +1,7 @@
 // See projection_law.h.
 #include "camera/quality/projection_law.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 

@@ -1,12 +1,13 @@
 // See spectrum_model.h.
 #include "explain/heights/spectrum_model.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "geom/vector.h"
+#include "linear/solve.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain::heights {
@@ -117,7 +118,7 @@ std::vector<double> SpectrumModel::start(const std::vector<Tile>& tiles) const {
     h += row * row.transpose();
     b += row * mean[i];
   }
-  const Eigen::VectorXd solution = h.ldlt().solve(b);
+  const Eigen::VectorXd solution = linear::solve_ldlt(h, b);
   return {solution.data(), solution.data() + solution.size()};
 }
 

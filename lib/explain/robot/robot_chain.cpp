@@ -1,7 +1,10 @@
 // See robot_chain.h.
 #include "explain/robot/robot_chain.h"
 
+#include <Eigen/Cholesky>
 #include <cmath>
+
+#include "linear/solve.h"
 
 namespace gonio::explain {
 namespace {
@@ -180,7 +183,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> measured_slopes(const RobotInput::View&
       mixed += weight * row * own;
     }
   }
-  return -normal.ldlt().solve(mixed);
+  return -linear::solve_ldlt(normal, mixed);
 }
 
 }  // namespace gonio::explain

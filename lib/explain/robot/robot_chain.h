@@ -6,7 +6,7 @@
 // nominal flange (s the sign of approach), then moved on along its path by the lag, then its position scaled by the
 // growth of the links: with all a_i and d_i times a factor, the flange's position is times this factor.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <array>
 
 #include "explain/robot/robot_problem.h"

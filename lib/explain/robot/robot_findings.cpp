@@ -1,11 +1,13 @@
 // See robot_findings.h: parts of the scatter, what is entangled with the mounting, and words.
 #include "explain/robot/robot_findings.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "explain/sentence.h"
+#include "linear/qr.h"
 
 namespace gonio::explain {
 namespace {
@@ -29,7 +31,7 @@ Eigen::MatrixXd beyond_mounting(const RobotWork& work, const std::vector<PoseMat
   const std::vector<std::size_t> mounting(work.parameters.base.begin(), work.parameters.base.begin() + 12);
   Eigen::MatrixXd m = stacked(work, whitener, mounting);
   m.colwise().normalize();
-  return columns - m * m.completeOrthogonalDecomposition().solve(columns);
+  return columns - m * linear::LeastNorm(m).solve(columns);
 }
 
 // From a change of the board's pose in a view to the shift of the board's middle, in the camera's axes.
@@ -113,7 +115,7 @@ std::array<double, 2> noise_m2(const RobotWork& work, const FinalNoise& f) {
   const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
   const Eigen::MatrixXd inverse = scale.asDiagonal() *
-                                  scaled.completeOrthogonalDecomposition().solve(Eigen::MatrixXd::Identity(n, n)) *
+                                  linear::LeastNorm(scaled).solve(Eigen::MatrixXd::Identity(n, n)) *
                                   scale.asDiagonal();
   std::array<double, 2> sums{};
   for (std::size_t i = 0; i < f.views.size(); ++i)

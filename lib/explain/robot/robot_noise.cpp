@@ -3,10 +3,13 @@
 // H.
 #include "explain/robot/robot_noise.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 #include "stats/distributions.h"
 
 namespace gonio::explain {
@@ -25,7 +28,7 @@ struct Sums {
 // H^-1 on the range of H, columns scaled to unit length.
 Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& h) {
   const Eigen::VectorXd scale = h.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * h * scale.asDiagonal());
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(scale.asDiagonal() * h * scale.asDiagonal());
   const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr([](double v) { return v > 1e-8 ? 1 / v : 0.0; });
   const Eigen::MatrixXd half = scale.asDiagonal() * eigen.eigenvectors();
   return half * inverse.asDiagonal() * half.transpose();
@@ -86,7 +89,7 @@ Eigen::Vector2d variances(const std::vector<NoisyView>& views, const std::vector
     // Both components in units of their own present size.
     const Eigen::Matrix2d scaled = variance.asDiagonal() * s.information * variance.asDiagonal();
     const Eigen::Vector2d step =
-        (scaled + 1e-9 * Eigen::Matrix2d::Identity()).ldlt().solve(Eigen::Vector2d(variance.asDiagonal() * s.score));
+        linear::solve_ldlt(scaled + 1e-9 * Eigen::Matrix2d::Identity(), Eigen::Vector2d(variance.asDiagonal() * s.score));
     Eigen::Vector2d next = variance;
     for (int k = 0; k < 2; ++k) next[k] = std::max(lowest[k], variance[k] * std::clamp(1 + step[k], 0.1, 10.0));
     const double change = ((next - variance).cwiseQuotient(variance)).cwiseAbs().maxCoeff();
@@ -112,7 +115,7 @@ RobotNoise robot_noise(const std::vector<NoisyView>& views, const Eigen::VectorX
     for (std::size_t v = 0; v < views.size(); ++v) {
       if (noise.outlier[v]) continue;
       const PoseChange r = views[v].residual - views[v].jacobian * noise.estimate;
-      const double distance = r.dot(views[v].covariance(noise.rotation_rad, noise.shift_m).ldlt().solve(r));
+      const double distance = r.dot(linear::solve_ldlt(views[v].covariance(noise.rotation_rad, noise.shift_m), r));
       if (distance > worst) worst = distance, at = v;
     }
     if (worst <= limit || removed == views.size() / 10) break;

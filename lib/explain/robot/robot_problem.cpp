@@ -1,6 +1,7 @@
 // See robot_problem.h: the tables that the engine works on, whitened view by view.
 #include "explain/robot/robot_problem.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 

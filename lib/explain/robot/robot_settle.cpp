@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "explain/robot/robot_findings.h"
+#include "linear/solve.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain {
@@ -65,7 +66,7 @@ void align(RobotWork& work) {
     Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
     scaled.diagonal().array() += 1e-10;
     const Eigen::VectorXd step =
-        scale.asDiagonal() * scaled.ldlt().solve(Eigen::VectorXd(scale.asDiagonal() * gradient));
+        scale.asDiagonal() * linear::solve_ldlt(scaled, Eigen::VectorXd(scale.asDiagonal() * gradient));
     for (std::size_t k = 0; k < 12; ++k) work.aligned[base[k]] += step[static_cast<Eigen::Index>(k)];
     if (step.norm() < 1e-9) break;
   }

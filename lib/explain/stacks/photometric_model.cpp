@@ -1,10 +1,11 @@
 // See photometric_model.h.
 #include "explain/stacks/photometric_model.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "linear/solve.h"
 #include "surface/fresnel.h"
 #include "surface/interface_albedo.h"
 #include "surface/microfacet.h"
@@ -35,7 +36,7 @@ Vec3 least_squares(const std::vector<PatchLight>& lights, const std::vector<doub
     a += l * l.transpose();
     r += l * y[k];
   }
-  const Eigen::Vector3d b = a.ldlt().solve(r);
+  const Eigen::Vector3d b = linear::solve_ldlt(a, r);
   return {b.x(), b.y(), b.z()};
 }
 
@@ -108,7 +109,7 @@ Patch fitted_patch(const PatchModel& model, const PatchReadings& readings, const
     Eigen::MatrixXd h = j.transpose() * j;
     h.diagonal() *= 1 + damping;
     h.diagonal().array() += 1e-12 * h.trace();
-    const Eigen::VectorXd moved = v + h.ldlt().solve(Eigen::VectorXd(j.transpose() * r));
+    const Eigen::VectorXd moved = v + linear::solve_ldlt(h, Eigen::VectorXd(j.transpose() * r));
     const Eigen::VectorXd then = residuals(moved);
     if (!(then.squaredNorm() < r.squaredNorm())) {
       damping *= 10;

@@ -1,9 +1,10 @@
 // See tables_problem.h. The engine's own fit needs noise and conditions, which are made from this one's predictions.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "explain/tables/tables_problem.h"
+#include "linear/solve.h"
 
 namespace gonio::explain::tables {
 namespace {
@@ -51,7 +52,7 @@ std::vector<double> preliminary_fit(const Problem& problem) {
     Eigen::MatrixXd lifted = normal.gram;
     lifted.diagonal() *= 1 + damping;
     lifted.diagonal().array() += 1e-300;
-    const Eigen::VectorXd step = lifted.ldlt().solve(normal.gradient);
+    const Eigen::VectorXd step = linear::solve_ldlt(lifted, normal.gradient);
     std::vector<double> moved = values;
     for (std::size_t k = 0; k < problem.base().size(); ++k) {
       const Parameter& p = problem.parameters()[problem.base()[k]];

@@ -1,12 +1,13 @@
 // See reflectance_rows.h.
 #include "explain/tables/reflectance_rows.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "base/error.h"
+#include "linear/solve.h"
 #include "stats/intervals.h"
 #include "surface/microfacet.h"
 
@@ -77,7 +78,7 @@ double off_plane(const std::vector<Vec3>& at, const std::vector<double>& z, std:
   }
   Eigen::Matrix3d h = a.transpose() * a;
   h.diagonal() += Eigen::Vector3d(1e-9, 1e-9, 1e-9);  // points on a line
-  const Eigen::Vector3d weights = h.ldlt().solve(Eigen::Vector3d(1, 0, 0));
+  const Eigen::Vector3d weights = linear::solve_ldlt(h, Eigen::Vector3d(1, 0, 0));
   return (z[own] - weights.dot(a.transpose() * b)) / std::sqrt(1 + weights[0]);
 }
 

@@ -1,8 +1,12 @@
 // See tracks_pose.h.
 #include "explain/tables/tracks_pose.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
+
+#include "linear/qr.h"
+#include "linear/solve.h"
+#include "linear/svd.h"
 
 namespace gonio::explain::tables {
 
@@ -29,8 +33,8 @@ WeakPose weak_pose(std::span<const Vec3> points_m, std::span<const Vec2> pixels)
   Eigen::Matrix<double, 2, 3> from_front = Eigen::Matrix<double, 2, 3>::Zero();
   from_front(0, 0) = from_front(1, 1) = front;
   const Eigen::Matrix3d lifted = square + pull * Eigen::Matrix3d::Identity();
-  const Eigen::Matrix<double, 2, 3> affine = lifted.ldlt().solve((cross + pull * from_front).transpose()).transpose();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(affine, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::Matrix<double, 2, 3> affine = linear::solve_ldlt(lifted, (cross + pull * from_front).transpose()).transpose();
+  const linear::JacobiSvd<Eigen::MatrixXd> svd(affine, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::Matrix<double, 2, 3> rows = svd.matrixU() * svd.matrixV().transpose();
   pose.scale_px_per_m = svd.singularValues().mean();
   const Vec3 x{rows(0, 0), rows(0, 1), rows(0, 2)}, y{rows(1, 0), rows(1, 1), rows(1, 2)}, z = gonio::cross(x, y);
@@ -51,7 +55,7 @@ std::vector<double> beyond_quadratic(std::span<const Vec3> points, std::span<con
   }
   for (Eigen::Index c = 0; c < terms; ++c) a.col(c) /= std::max(1e-300, a.col(c).norm());
   const Eigen::MatrixXd left =
-      (y - a * a.colPivHouseholderQr().solve(y)) * std::sqrt(static_cast<double>(n) / static_cast<double>(n - terms));
+      (y - a * linear::PivotedQr(a).solve(y)) * std::sqrt(static_cast<double>(n) / static_cast<double>(n - terms));
   return {left.data(), left.data() + left.size()};
 }
 

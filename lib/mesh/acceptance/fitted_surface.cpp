@@ -2,13 +2,15 @@
 // about the points' centroid, so that clouds far from the origin lose no digits.
 #include "mesh/acceptance/fitted_surface.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "base/error.h"
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 #include "mesh/acceptance/rejection.h"
 
 namespace gonio::mesh {
@@ -53,9 +55,9 @@ Column algebraic_sphere(std::span<const Vec3> q, const std::vector<char>& counts
     a += row * row.transpose();
     b += row * (dot(q[i], q[i]) / scale2);
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(a);
+  const linear::SymmetricEigen<Matrix> eigen(a);
   if (!(eigen.eigenvalues()[0] > 1e-12 * eigen.eigenvalues()[3])) refuse_cap(place, "its points lie in a plane");
-  const Column s = a.ldlt().solve(b) * 1.0;
+  const Column s = linear::solve_ldlt(a, b) * 1.0;
   const double radius2 = s[3] + s.head<3>().squaredNorm();
   return {s[0] * scale, s[1] * scale, s[2] * scale, scale * std::sqrt(std::max(radius2, 0.0))};
 }
@@ -89,7 +91,7 @@ Column refined(std::span<const Vec3> q, const std::vector<char>& counts, Column 
       system.normal(3, 3) = 1;
       system.gradient[3] = 0;
     }
-    const Column move = system.normal.ldlt().solve(system.gradient);
+    const Column move = linear::solve_ldlt(system.normal, system.gradient);
     if (!move.allFinite()) break;
     s -= move;
     if (move.norm() < 1e-13 * s[3]) break;
@@ -153,7 +155,7 @@ SphereFit fit_sphere(std::span<const Vec3> points_m, std::optional<double> held_
 PlaneFit fit_plane(std::span<const Vec3> points_m, const std::string& place) {
   check_points(points_m, place);
   PlaneFit result;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+  linear::SymmetricEigen<Eigen::Matrix3d> eigen;
   std::vector<char> counts;
   const auto fit = [&](const std::vector<char>& mask) {
     counts = mask;
@@ -165,7 +167,7 @@ PlaneFit fit_plane(std::span<const Vec3> points_m, const std::string& place) {
       const Eigen::Vector3d e(d.x, d.y, d.z);
       scatter += e * e.transpose();
     }
-    eigen.compute(scatter);
+    eigen = linear::SymmetricEigen<Eigen::Matrix3d>(scatter);
     const auto n = eigen.eigenvectors().col(0);
     result.normal = {n[0], n[1], n[2]};
     if (dot(result.normal, result.centroid_m) > 0) result.normal = -result.normal;

@@ -1,5 +1,6 @@
 // An arm of four rigid links with three joints, in a sleeve of soft rubber. The sleeve is glued to the links and free
 // about the joints, where it finds its own equilibrium. Rig: the motor of 60 mm that holds the first link, on a column.
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>

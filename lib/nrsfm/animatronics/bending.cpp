@@ -2,6 +2,7 @@
 // Paper bends far more easily than it stretches, so that the sheet stays close to a developable one. The clamps stand
 // where a circular arc would hold them without a force; then one leans and turns, and the paper is skewed. Rig: jaws
 // 18 mm thick, each between two posts 100 mm tall, a motor behind either.
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>

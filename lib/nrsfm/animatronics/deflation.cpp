@@ -1,7 +1,7 @@
 // A rubber ball in a cup, glued to it up to 30 degrees below its equator, loses its air: it shrinks while it is taut,
 // then a dent falls in where it is worn flat. The gas inside obeys p V = c against the air outside; c falls.
 // Rig: the block that the cup is milled into.
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,6 +1,7 @@
 // A sheet of rubber that hangs between two bars, pulled taut and long while the bars turn against each other. It
 // narrows as its Poisson's ratio says. Rig: bars 18 mm thick, a motor behind either, two guide rods of 20 mm beside the
 // sheet.
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cmath>
 

@@ -14,7 +14,8 @@
 // independent noise, and on the way to the greatest likelihood, where `extrapolate` (extrapolation.h) leads, rotations
 // and depths take it up (walking: error 0.13 after 150 plain turns, 0.18 at the maximum; a shark that the model
 // contains: 0.09 and 0.07). Left out: the paper's linear dynamics of z (its EM-LDS).
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -22,6 +23,9 @@
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "linear/qr.h"
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 #include "nrsfm/extrapolation.h"
 #include "nrsfm/factorization.h"
 #include "nrsfm/solver_support.h"
@@ -65,13 +69,13 @@ double expect(const Sequence& sequence, EmState& state) {
       right.noalias() += slopes.transpose() * left / state.variance;
       squares += left.squaredNorm() / state.variance;
     }
-    const Eigen::LLT<Eigen::MatrixXd> factor(precision);
+    const linear::Llt factor(precision);
     const Eigen::VectorXd mean = factor.solve(right);
     state.covariance[static_cast<std::size_t>(f)] = factor.solve(Eigen::MatrixXd::Identity(terms, terms));
     state.weights.row(f).tail(terms) = mean.transpose();
     const double seen = 2 * static_cast<double>(sequence.visible.row(f).count());
     likelihood -= (squares - right.dot(mean) + seen * std::log(state.variance)) / 2;
-    likelihood -= factor.matrixLLT().diagonal().array().log().sum();
+    likelihood -= factor.diagonal().array().log().sum();
   }
   return likelihood;
 }
@@ -99,7 +103,7 @@ void solve_basis(const Sequence& sequence, EmState& state) {
       right += (back * state.weights.row(f)).reshaped();
     }
     normal.diagonal().array() += 1e-12 * normal.trace() + 1e-300;
-    state.basis.col(p) = normal.ldlt().solve(right);
+    state.basis.col(p) = linear::solve_ldlt(normal, right);
   }
 }
 
@@ -201,7 +205,7 @@ Eigen::MatrixXd temporal_modes(const Start& start, const Eigen::MatrixXd& rigid,
     const CameraRows d = start.rows.middleRows<2>(2 * f);
     by_frame.row(f) = (d.transpose() * (start.w.middleRows<2>(2 * f) - d * rigid)).reshaped().transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(by_frame * by_frame.transpose());
+  const linear::SymmetricEigen<Eigen::MatrixXd> modes(by_frame * by_frame.transpose());
   return std::sqrt(static_cast<double>(frames)) * modes.eigenvectors().rightCols(terms).rowwise().reverse();
 }
 
@@ -212,7 +216,7 @@ EmState start_state(const Start& start, Eigen::Index terms) {
     state.cameras.push_back({start.upgrade.rotations[static_cast<std::size_t>(f)], start.upgrade.scales(f),
                              start.translation.segment<2>(2 * f)});
   }
-  const Eigen::MatrixXd rigid = start.rows.colPivHouseholderQr().solve(start.w);
+  const Eigen::MatrixXd rigid = linear::PivotedQr(start.rows).solve(start.w);
   state.basis = Eigen::MatrixXd::Zero(3 * (terms + 1), start.w.cols());
   state.basis.topRows<3>() = rigid;
   state.weights = Eigen::MatrixXd::Ones(frames, terms + 1);

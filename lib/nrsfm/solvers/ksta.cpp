@@ -6,7 +6,7 @@
 // between shapes), the z_b frames of that curve far from each other, sigma `width` times the median distance of frames
 // (Gotardo & Martinez, ICCV 2011, "Kernel non-rigid structure from motion": the model; the way of its fit is derived
 // here). Left out: centres z_b that move with the curve.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <vector>

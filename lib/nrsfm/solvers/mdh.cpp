@@ -6,7 +6,7 @@
 // frames, here in the plane at depth 1. Answers stand in each frame's camera; lengths are known up to one factor for
 // the sequence, chosen so that depths are 1 on average. Points that a frame does not see have no estimate there. What
 // the prior leaves out: stretching, and points whose neighbours lie across a fold.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <cstdio>
 #include <limits>

@@ -10,11 +10,14 @@
 // sigma^2 the residuals' variance over what is left free: shapes that noise alone supports die out, and exact tracks
 // come back exactly. Two starts, both with the cameras of csf: the mean and the first K - 1 modes of the shapes of
 // least nuclear norm (low_rank.h), and of csf's shapes; the one with less error after a few turns goes on.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "base/atomic_file.h"
+#include "linear/qr.h"
+#include "linear/solve.h"
+#include "linear/svd.h"
 #include "nrsfm/low_rank.h"
 #include "nrsfm/motion_manifold.h"
 #include "nrsfm/solver_support.h"
@@ -47,10 +50,10 @@ Eigen::MatrixXd motion_of(const State& state) {
 // Weights of unit covariance, the first as it was but for its size: products c B stay what they are.
 void balance(State& state) {
   const Eigen::Index frames = state.weights.rows(), terms = state.weights.cols(), points = state.basis.cols();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(state.weights);
+  const linear::HouseholderQr qr(state.weights);
   const double root = std::sqrt(static_cast<double>(frames));
-  const Eigen::MatrixXd upper = Eigen::MatrixXd(qr.matrixQR().topRows(terms).triangularView<Eigen::Upper>()) / root;
-  state.weights = qr.householderQ() * Eigen::MatrixXd::Identity(frames, terms) * root;
+  const Eigen::MatrixXd upper = qr.upper() / root;
+  state.weights = qr.thin_q() * root;
   Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(3 * terms, points);
   for (Eigen::Index k = 0; k < terms; ++k) {
     for (Eigen::Index l = k; l < terms; ++l) {
@@ -79,7 +82,7 @@ void solve_basis(const Sequence& sequence, State& state) {
       right.noalias() +=
           rows.transpose() * (sequence.tracks.block<2, 1>(2 * f, p) - state.translation.segment<2>(2 * f));
     }
-    state.basis.col(p) = normal.ldlt().solve(right);
+    state.basis.col(p) = linear::solve_ldlt(normal, right);
   }
 }
 
@@ -129,7 +132,7 @@ void solve_weights(const FrameView& view, double variance, FrameMotion& motion) 
   Eigen::MatrixXd normal = seen.transpose() * seen;
   normal.diagonal().array() += 1e-12 * normal.trace() / static_cast<double>(terms);
   normal.diagonal().tail(terms - 1).array() += variance;
-  motion.weights = normal.ldlt().solve(seen.transpose() * view.tracks.reshaped());
+  motion.weights = linear::solve_ldlt(normal, seen.transpose() * view.tracks.reshaped());
   motion.residual = (view.tracks.reshaped() - seen * motion.weights).squaredNorm();
   motion.cost = motion.residual + variance * motion.weights.tail(terms - 1).squaredNorm();
 }
@@ -155,7 +158,7 @@ double solve_frames(const Sequence& sequence, State& state) {
     CameraRows& rotation = state.rotations[static_cast<std::size_t>(f)];
     Eigen::MatrixXd normal = view.basis * view.basis.transpose();
     normal.diagonal().array() += state.variance + 1e-12 * normal.trace();
-    const Eigen::MatrixXd free = normal.ldlt().solve(view.basis * view.tracks.transpose()).transpose();
+    const Eigen::MatrixXd free = linear::solve_ldlt(normal, view.basis * view.tracks.transpose()).transpose();
     const OnManifold projected = nearest_motion(free, rotation);
     state.certified += projected.certified ? 1 : 0;
     FrameMotion best = polished(view, state.variance, {rotation, state.weights.row(f).transpose()});
@@ -185,7 +188,7 @@ State state_from(const Sequence& sequence, const Start& start, const Shapes& sha
   Eigen::MatrixXd less = rearranged(shapes);
   const Eigen::RowVectorXd mean = less.colwise().mean();
   less.rowwise() -= mean;
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(less, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const linear::DividedSvd svd(less, Eigen::ComputeThinU | Eigen::ComputeThinV);
   state.weights = Eigen::MatrixXd::Ones(frames, terms);
   state.basis.resize(3 * terms, sequence.points());
   state.basis.topRows<3>() = arranged(mean);

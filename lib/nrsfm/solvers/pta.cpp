@@ -3,10 +3,12 @@
 // L is 2F x 3K: W has rank 3K, and the three columns of L that belong to the constant curve are the rotations but for a
 // factor. So the 3K x 3 corrective transform that makes the rows of W's left factor orthonormal gives the rotations
 // (metric_upgrade); L follows from them, and A = L^+ W (Akhter, Sheikh, Khan & Kanade, NIPS 2008; PAMI 2011).
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <limits>
 
+#include "linear/qr.h"
+#include "linear/symmetric_eigen.h"
 #include "nrsfm/factorization.h"
 #include "nrsfm/solver_support.h"
 
@@ -28,7 +30,7 @@ Eigen::MatrixXd trajectories_of(const Start& start, Eigen::Index terms) {
 }
 
 double condition_of(const Eigen::MatrixXd& a) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a.transpose() * a, Eigen::EigenvaluesOnly);
+  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(a.transpose() * a, Eigen::EigenvaluesOnly);
   const double least = eigen.eigenvalues()(0), most = eigen.eigenvalues()(eigen.eigenvalues().size() - 1);
   return least > 0 ? std::sqrt(most / least) : std::numeric_limits<double>::infinity();
 }
@@ -62,7 +64,7 @@ class Pta : public Solver {
     const Start start = start_for(info(), sequence, cameras, trial, solution);
     while (!given && terms > 1 && condition_of(trajectories_of(start, terms)) > kMostCondition) --terms;
     const Eigen::MatrixXd theta = dct_basis(sequence.frames(), terms), trajectories = trajectories_of(start, terms);
-    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> qr(trajectories);  // least norm where not determined
+    const linear::LeastNorm qr(trajectories);  // least norm where not determined
     if (qr.rank() < 3 * terms) {
       solution.notes.push_back("the camera's motion does not determine " + std::to_string(3 * terms - qr.rank()) +
                                " of " + std::to_string(3 * terms) + " coefficients of each point");

@@ -5,7 +5,7 @@
 // error over cameras and shape (rigid_motion.h), the likeliest answer for independent normal errors. It is not the
 // preset because tracks of a shape that deforms are not of that kind: there a smaller reprojection error buys rotations
 // too small and depths too large (bas-relief).
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "nrsfm/factorization.h"
 #include "nrsfm/rigid_motion.h"

@@ -5,7 +5,7 @@
 // the positive semidefinite cone and refines the answer by the same equations. Shapes: the paper relaxes W = R S by
 // mu/2 |W - R S|^2 and lets mu fall (fixed-point continuation); this is its limit, solved as it stands (low_rank.h),
 // with a bound that says how near the minimum it is. Noise stays in the shapes' image coordinates. Complete data only.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cstdio>
 
 #include "nrsfm/factorization.h"

@@ -8,7 +8,7 @@
 // self-expression here is the sparse one. How sparse the tracks say: C from half of the points has to predict the
 // tracks of the other half. Both terms start at a ratio of `weight`. The first turn is the answer of spfm, with its
 // cameras. Complete data only.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <cstdio>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/solve.h"
 #include "robot/handeye/closed_forms.h"
 #include "robot/handeye/next_poses.h"
 #include "robot/handeye/pose_adjustment.h"
@@ -27,7 +28,7 @@ Parts parts_of(const Setup& setup, const std::vector<View>& views, const Refined
   const double n = static_cast<double>(std::max<std::size_t>(1, views.size()));
   for (const View& view : views) {
     const CornerInformation c = corner_information(setup, view, view.camera_from_board, r.noise.corner);
-    const Matrix6 covariance = r.noise.corner * r.noise.corner * c.information.ldlt().solve(Matrix6::Identity());
+    const Matrix6 covariance = r.noise.corner * r.noise.corner * linear::solve_ldlt(c.information, Matrix6::Identity());
     const Vec3 middle = view.camera_from_board.rotate(setup.middle_m());
     Eigen::Matrix<double, 3, 6> moves;
     moves << -cross_matrix(eigen_of(middle)), Matrix3::Identity();

@@ -3,6 +3,7 @@
 // singular vectors; unit length and orthogonality of its two parts (eqs. 34 and 35) leave one quadratic equation.
 #include <cmath>
 
+#include "linear/symmetric_eigen.h"
 #include "robot/handeye/motions.h"
 
 namespace gonio::robot::handeye {
@@ -32,7 +33,7 @@ Solution daniilidis(const Motions& motions) {
     const auto t = equations(m);
     n.noalias() += t.transpose() * t;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 8, 8>> e(n);
+  const linear::SymmetricEigen<Eigen::Matrix<double, 8, 8>> e(n);
   const Eigen::Vector4d u1 = e.eigenvectors().col(0).head<4>(), v1 = e.eigenvectors().col(0).tail<4>();
   const Eigen::Vector4d u2 = e.eigenvectors().col(1).head<4>(), v2 = e.eigenvectors().col(1).tail<4>();
   // (l1 u1 + l2 u2) . (l1 v1 + l2 v2) = 0; of the two ratios that one which leaves the longer real part. Ratios are

@@ -1,9 +1,12 @@
 // Rigid motions as Eigen matrices, and the projections onto rotations that the solvers share. For sources of this
 // folder only.
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/LU>
 
 #include "geom/rigid.h"
+#include "linear/svd.h"
+#include "linear/symmetric_eigen.h"
 
 namespace gonio::robot::handeye {
 
@@ -33,7 +36,7 @@ inline Matrix3 cross_matrix(const Vector3& v) {
 // The rotation that maximises trace(R' m): Arun, Huang & Blostein, PAMI 9(5), 1987, with Umeyama's sign (PAMI 13(4),
 // 1991).
 inline Matrix3 nearest_rotation(const Matrix3& m) {
-  const Eigen::JacobiSVD<Matrix3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const linear::JacobiSvd<Matrix3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
   return svd.matrixU() * Vector3(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
 }
@@ -45,7 +48,7 @@ inline Matrix3 rotation_in_multiple(const Matrix3& m) {
 // Solution of n x = b for a symmetric, positive semidefinite n: along directions whose eigenvalue is below `share` of
 // the largest, x is zero.
 inline Eigen::VectorXd solve_semidefinite(const Eigen::MatrixXd& n, const Eigen::VectorXd& b, double share = 1e-13) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> e(n);
+  const linear::SymmetricEigen<Eigen::MatrixXd> e(n);
   Eigen::VectorXd y = e.eigenvectors().transpose() * b;
   const double limit = share * e.eigenvalues().cwiseAbs().maxCoeff();
   for (Eigen::Index i = 0; i < y.size(); ++i) y(i) = e.eigenvalues()(i) > limit ? y(i) / e.eigenvalues()(i) : 0;

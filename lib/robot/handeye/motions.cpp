@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "linear/symmetric_eigen.h"
+
 namespace gonio::robot::handeye {
 namespace {
 
@@ -38,7 +40,7 @@ Matrix3 signless_rotation(const std::vector<Motion>& pairs) {
     }
     n.noalias() += k.transpose() * k;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> e(n);
+  const linear::SymmetricEigen<Eigen::Matrix<double, 9, 9>> e(n);
   const Eigen::Matrix<double, 9, 1> v = e.eigenvectors().col(0);
   return rotation_in_multiple(Eigen::Map<const Matrix3>(v.data()));
 }
@@ -105,7 +107,7 @@ Solution with_board(const Motions& motions, const Rigid<Mount, frame::Camera>& x
     squares.noalias() += q * q.transpose();
     sum += z.translation_m;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> e(squares);
+  const linear::SymmetricEigen<Eigen::Matrix4d> e(squares);
   return {x,
           {quaternion_from(rotation_of(e.eigenvectors().col(3))),
            sum / static_cast<double>(std::max<std::size_t>(1, motions.samples.size()))}};

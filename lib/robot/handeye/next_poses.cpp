@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "linear/solve.h"
 #include "robot/handeye/pose_adjustment.h"
 #include "stats/intervals.h"
 
@@ -79,7 +80,7 @@ std::vector<Candidate> candidates(const Setup& setup, const View& like, double d
           if (view.corners.empty()) continue;
           const CornerInformation c = corner_information(setup, view, view.camera_from_board, 1);
           const ObservedPose o{view.base_from_tool, view.camera_from_board,
-                               s2 * c.information.ldlt().solve(Matrix6::Identity()), true, setup.middle_m()};
+                               s2 * linear::solve_ldlt(c.information, Matrix6::Identity()), true, setup.middle_m()};
           list.push_back({words_of(setup.kind, tilt, azimuth, spin, far * distance_m),
                           information(setup.kind, {o}, refined.solution, refined.noise)});
         }
@@ -90,7 +91,7 @@ std::vector<Candidate> candidates(const Setup& setup, const View& like, double d
 double spread(const Matrix12& n, double distance_m) {
   Matrix12 scaled = n;
   scaled.diagonal() *= 1 + 1e-12;
-  const Matrix12 covariance = scaled.ldlt().solve(Matrix12::Identity());
+  const Matrix12 covariance = linear::solve_ldlt(scaled, Matrix12::Identity());
   return covariance.diagonal().segment<3>(0).sum() * distance_m * distance_m +
          covariance.diagonal().segment<3>(3).sum();
 }

@@ -1,10 +1,14 @@
 #include "robot/handeye/observability.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "base/random.h"
+#include "linear/solve.h"
+#include "linear/svd.h"
+#include "linear/symmetric_eigen.h"
 #include "robot/handeye/pose_adjustment.h"
 
 namespace gonio::robot::handeye {
@@ -25,7 +29,7 @@ std::vector<ObservedPose> observed_poses(const Setup& setup, const std::vector<V
     if (!counts[i]) continue;
     const CornerInformation c = corner_information(setup, views[i], views[i].camera_from_board, refined.noise.corner);
     list.push_back({views[i].base_from_tool, views[i].camera_from_board,
-                    s2 * c.information.ldlt().solve(Matrix6::Identity()), true, setup.middle_m()});
+                    s2 * linear::solve_ldlt(c.information, Matrix6::Identity()), true, setup.middle_m()});
   }
   return list;
 }
@@ -60,7 +64,7 @@ Basis12 geometrically_free(const Setup& setup, std::vector<ObservedPose> poses, 
   Vector12 scale;
   scale << Vector3::Constant(1 / reach), Vector3::Ones(), Vector3::Constant(1 / reach), Vector3::Ones();
   const Matrix12 n = scale.asDiagonal() * information(setup.kind, poses, refined.solution, unit) * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix12> e(n);
+  const linear::SymmetricEigen<Matrix12> e(n);
   std::vector<int> free;
   for (int k = 0; k < 12; ++k) {
     if (e.eigenvalues()(k) < rounding_share * e.eigenvalues()(11)) free.push_back(k);
@@ -81,7 +85,7 @@ Basis12 free_directions(const Setup& setup, const std::vector<ObservedPose>& pos
   Matrix12 more = Matrix12::Zero();
   Random random(24871);
   for (int k = 0; k < disturbances; ++k) more += at(disturbed(setup.kind, poses, refined, random)) / disturbances;
-  const Eigen::SelfAdjointEigenSolver<Matrix12> e(n);
+  const linear::SymmetricEigen<Matrix12> e(n);
   std::vector<int> free;
   for (int k = 0; k < 12; ++k) {
     const Vector12 v = e.eigenvectors().col(k);
@@ -95,7 +99,7 @@ Basis12 free_directions(const Setup& setup, const std::vector<ObservedPose>& pos
 std::vector<Vector3> reached(const Eigen::MatrixXd& block) {
   std::vector<Vector3> list;
   if (block.cols() == 0) return list;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(block, Eigen::ComputeThinU);
+  const linear::JacobiSvd<Eigen::MatrixXd> svd(block, Eigen::ComputeThinU);
   for (Eigen::Index k = 0; k < svd.singularValues().size(); ++k) {
     if (svd.singularValues()(k) > part_of_direction) list.push_back(svd.matrixU().col(k));
   }
@@ -139,7 +143,7 @@ Observability observe(const Setup& setup, const std::vector<View>& views, const 
   // First the turns, then the shifts that remain where nothing turns.
   Eigen::MatrixXd turns(6, free.cols());
   turns << free.topRows<3>(), free.middleRows<3>(6);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(turns, Eigen::ComputeFullV);
+  const linear::JacobiSvd<Eigen::MatrixXd> svd(turns, Eigen::ComputeFullV);
   std::vector<Eigen::Index> still;
   for (Eigen::Index k = 0; k < free.cols(); ++k) {
     if (k >= svd.singularValues().size() || svd.singularValues()(k) < part_of_direction) still.push_back(k);

@@ -7,8 +7,12 @@
 // group.
 #include "robot/handeye/pose_adjustment.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "linear/solve.h"
+#include "linear/symmetric_eigen.h"
 
 namespace gonio::robot::handeye {
 namespace {
@@ -61,7 +65,7 @@ struct Normal {
 Normal normal_equations(const std::vector<Linearised>& rows, const Noise& noise) {
   Normal n;
   for (const Linearised& row : rows) {
-    const Matrix6x12 weighted = covariance_of(row.camera, row.turn, noise).ldlt().solve(row.j);
+    const Matrix6x12 weighted = linear::solve_ldlt(covariance_of(row.camera, row.turn, noise), row.j);
     n.information.noalias() += row.j.transpose() * weighted;
     n.gradient.noalias() += weighted.transpose() * row.e;
   }
@@ -71,7 +75,7 @@ Normal normal_equations(const std::vector<Linearised>& rows, const Noise& noise)
 // Symmetric solve under unit diagonal; directions without information stay where they are.
 Matrix12 pseudo_inverse(const Matrix12& n) {
   const Vector12 scale = n.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Matrix12> e(scale.asDiagonal() * n * scale.asDiagonal());
+  const linear::SymmetricEigen<Matrix12> e(scale.asDiagonal() * n * scale.asDiagonal());
   Vector12 inverse = Vector12::Zero();
   for (int i = 0; i < 12; ++i) inverse(i) = e.eigenvalues()(i) > 1e-12 ? 1 / e.eigenvalues()(i) : 0;
   const Matrix12 root = scale.asDiagonal() * e.eigenvectors();

@@ -1,8 +1,10 @@
 #include "robot/handeye/refinement.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "linear/solve.h"
 #include "robot/handeye/pose_adjustment.h"
 #include "stats/distributions.h"
 
@@ -47,7 +49,7 @@ ObservedPose observed_pose(const Setup& setup, const View& view, const camera::B
 camera::BoardPose joint_pose(Kind kind, const ObservedPose& o, const Solution& s, const Noise& noise) {
   const Deviation d = deviation(kind, o, s);
   const Vector6 change =
-      -o.covariance * d.by_pose.transpose() * deviation_covariance(d, o, noise).ldlt().solve(d.value);
+      -o.covariance * d.by_pose.transpose() * linear::solve_ldlt(deviation_covariance(d, o, noise), d.value);
   return moved_by(o.camera_from_board, change);
 }
 
@@ -61,8 +63,8 @@ Matrix12 spread_of_lens(const Setup& setup, const std::vector<View>& views, cons
     if (!observed[i].counts) continue;
     const CornerInformation c = corner_information(setup, views[i], observed[i].camera_from_board, result.noise.corner);
     const Deviation d = deviation(setup.kind, observed[i], result.solution);
-    const Matrix6x12 weighted = deviation_covariance(d, observed[i], result.noise).ldlt().solve(d.by_mountings);
-    slope.noalias() += weighted.transpose() * d.by_pose * -c.information.ldlt().solve(c.lens);
+    const Matrix6x12 weighted = linear::solve_ldlt(deviation_covariance(d, observed[i], result.noise), d.by_mountings);
+    slope.noalias() += weighted.transpose() * d.by_pose * -linear::solve_ldlt(c.information, c.lens);
   }
   const Eigen::Map<const Eigen::MatrixXd> lens(setup.lens_covariance.data(), k, k);
   const Eigen::MatrixXd change = -covariance * slope;
@@ -75,7 +77,7 @@ void enter_covariance(const Setup& setup, const std::vector<View>& views, const 
   const Vector12 scale = n.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Matrix12 scaled = scale.asDiagonal() * n * scale.asDiagonal();
   const Matrix12 inverse =
-      scale.asDiagonal() * Matrix12(scaled.ldlt().solve(Matrix12::Identity())) * scale.asDiagonal();
+      scale.asDiagonal() * Matrix12(linear::solve_ldlt(scaled, Matrix12::Identity())) * scale.asDiagonal();
   const auto used = std::ranges::count_if(observed, [](const ObservedPose& o) { return o.counts; });
   const double freedom = 3.0 * static_cast<double>(used) - 6;
   const double widening = stats::student_quantile(0.975, std::max(1.0, freedom)) / stats::normal_quantile(0.975);
@@ -114,14 +116,14 @@ Refined refine(const Setup& setup, const std::vector<View>& views, const std::ve
       Vector6 change;
       change << eigen_of(rotation_vector_of(pose.rotation * conjugate(old.rotation))),
           eigen_of(pose.translation_m - old.translation_m);
-      if (counts[i]) largest = std::max(largest, std::sqrt(change.dot(observed[i].covariance.ldlt().solve(change))));
+      if (counts[i]) largest = std::max(largest, std::sqrt(change.dot(linear::solve_ldlt(observed[i].covariance, change))));
       result.camera_from_board[i] = pose;
     }
     if (largest < 1e-3) break;
   }
   for (const ObservedPose& o : observed) {
     const Deviation d = deviation(setup.kind, o, result.solution);
-    const double distance2 = d.value.dot(deviation_covariance(d, o, result.noise).ldlt().solve(d.value));
+    const double distance2 = d.value.dot(linear::solve_ldlt(deviation_covariance(d, o, result.noise), d.value));
     result.mismatches.push_back({vec_of(d.value.tail<3>()), vec_of(d.value.head<3>()), distance2});
   }
   enter_covariance(setup, views, observed, result);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/solve.h"
 #include "robot/handeye/pose_adjustment.h"
 
 namespace gonio::robot::handeye {
@@ -42,7 +43,7 @@ Solution minimise_reprojection(const Setup& setup, const std::vector<View>& view
   double damping = 1e-6;
   for (int step = 0; step < most_steps && damping < 1e8; ++step) {
     const Matrix12 damped = at.information + damping * Matrix12(at.information.diagonal().asDiagonal());
-    const Vector12 change = -damped.ldlt().solve(at.gradient);
+    const Vector12 change = -linear::solve_ldlt(damped, at.gradient);
     const Solution next = moved_by(s, change);
     const Normal there = normal_equations(setup, views, next);
     if (!(there.squares <= at.squares)) {

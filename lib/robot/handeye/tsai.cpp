@@ -2,6 +2,7 @@
 // problem in its Gibbs vector g = tan(angle / 2) axis:  (P_a + P_b) x g = P_b - P_a.  A Gibbs vector is infinite at 180
 // degrees; so the camera's axes are first turned by 0 or 180 degrees about one of x, y, z, whichever leaves an angle of
 // at most 120 degrees, as one of four always does.
+#include "linear/symmetric_eigen.h"
 #include "robot/handeye/motions.h"
 
 namespace gonio::robot::handeye {
@@ -15,7 +16,7 @@ Eigen::Vector4d homogeneous(const Motions& motions) {
     k << m.a.tail<3>() - m.b.tail<3>(), cross_matrix(m.a.tail<3>() + m.b.tail<3>());
     n.noalias() += k.transpose() * k;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> e(n);
+  const linear::SymmetricEigen<Eigen::Matrix4d> e(n);
   return e.eigenvectors().col(0);
 }
 

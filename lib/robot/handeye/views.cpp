@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "linear/solve.h"
 #include "robot/handeye/corner_information.h"
 
 namespace gonio::robot::handeye {
@@ -71,7 +72,7 @@ camera::BoardPose pose_by_camera(const Setup& setup, const View& view) {
     factor = std::sqrt(std::max(1.0, at.squares / std::max(1.0, at.coordinates - 6)));
     at = corner_information(setup, view, pose, factor);
     const Matrix6 damped = at.information + damping * Matrix6(at.information.diagonal().asDiagonal());
-    const Vector6 change = -damped.ldlt().solve(at.gradient);
+    const Vector6 change = -linear::solve_ldlt(damped, at.gradient);
     const camera::BoardPose next = moved_by(pose, change);
     const CornerInformation there = corner_information(setup, view, next, factor);
     if (!there.in_front || there.squares > at.squares * (1 + 1e-12)) {

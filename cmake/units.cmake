@@ -1,0 +1,44 @@
+# Units: several sources compiled as one, so that headers and templates are read once for all of them (cmake/units.pl says
+# which sources go together, and why a unit means the same). A whole build takes a fraction of the time; after an edit the
+# rest of the unit is compiled again, so the preset `develop` does without.
+
+# gonio_make_units(TREE LINES): writes the units of every folder of TREE, of about LINES lines each.
+function(gonio_make_units tree lines)
+  find_program(PERL perl)
+  if(NOT GONIO_UNITS OR NOT PERL)
+    return()
+  endif()
+  set(request "")
+  file(GLOB folders LIST_DIRECTORIES true ${CMAKE_SOURCE_DIR}/${tree}/*)
+  foreach(folder IN LISTS folders)
+    get_filename_component(name ${folder} NAME)
+    if(IS_DIRECTORY ${folder} AND NOT EXISTS ${folder}/CMakeLists.txt)
+      file(GLOB_RECURSE sources ${folder}/*.cpp)
+      list(LENGTH sources count)
+      if(count GREATER 4)  # the few sources of lib/linear are long enough, each by itself
+        list(JOIN sources " " sources)
+        string(APPEND request "${name} ${sources}\n")
+      endif()
+    endif()
+  endforeach()
+  file(WRITE ${CMAKE_BINARY_DIR}/units/${tree}.request "${request}")
+  execute_process(COMMAND ${PERL} ${CMAKE_SOURCE_DIR}/cmake/units.pl ${CMAKE_BINARY_DIR}/units/${tree} ${CMAKE_SOURCE_DIR}/lib ${lines}
+                  INPUT_FILE ${CMAKE_BINARY_DIR}/units/${tree}.request OUTPUT_VARIABLE answer COMMAND_ERROR_IS_FATAL ANY)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/units.pl)
+  string(STRIP "${answer}" answer)
+  string(REPLACE ";" "|" answer "${answer}")
+  string(REPLACE "\n" ";" answer "${answer}")
+  foreach(line IN LISTS answer)
+    string(REPLACE "|" ";" units "${line}")
+    list(POP_FRONT units name)
+    set_property(GLOBAL PROPERTY GONIO_UNITS_${tree}/${name} ${units})
+  endforeach()
+endfunction()
+
+# gonio_in_units(SOURCES FOLDER): puts the units of FOLDER (lib/camera) into the variable SOURCES, where there are any.
+function(gonio_in_units sources folder)
+  get_property(units GLOBAL PROPERTY GONIO_UNITS_${folder})
+  if(units)
+    set(${sources} ${units} PARENT_SCOPE)
+  endif()
+endfunction()
