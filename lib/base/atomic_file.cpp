@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/temporaries.h"
 
 namespace gonio {
 namespace {
@@ -37,8 +38,7 @@ static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may only 
 
 extern "C" void on_signal(int) {
   const int saved = errno;
-  for (auto& t : temporaries)
-    if (t.state.load() == Temporary::live) ::unlink(t.path.data());
+  remove_temporaries();
   if (signals_seen.fetch_add(1) > 0) ::_exit(static_cast<int>(Exit::try_again));
   errno = saved;
 }
@@ -199,6 +199,11 @@ void write_named(const std::filesystem::path& target, std::string_view bytes) {
 }
 
 }  // namespace
+
+void remove_temporaries() noexcept {
+  for (auto& t : temporaries)
+    if (t.state.load() == Temporary::live) ::unlink(t.path.data());
+}
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {
   throw_if_interrupted();

@@ -17,6 +17,7 @@
 #include <mutex>
 
 #include "base/atomic_file.h"
+#include "base/fault.h"
 
 namespace gonio {
 namespace {
@@ -67,6 +68,7 @@ class LowestFailure {
 
 void run_chunk(std::size_t first, std::size_t last, const std::function<void(std::size_t)>& body,
                LowestFailure& failure) {
+  guard_stack_of_this_thread();
   for (std::size_t i = first; i < last && !failure.precedes(i); ++i) {
     try {
       if (i == first) throw_if_interrupted();

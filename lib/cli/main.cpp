@@ -12,6 +12,7 @@
 #include <new>
 
 #include "base/atomic_file.h"
+#include "base/fault.h"
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -246,6 +247,7 @@ Exit run(const Program& program, int argc, char** argv) {
 int main(const Program& program, int argc, char** argv) {
   set_program_name(program.name);
   install_signal_handlers();
+  install_fault_handlers();
   Exit code = Exit::internal;
   try {
     code = run(program, argc, argv);
