@@ -19,6 +19,7 @@
 #include "cli/common_options.h"
 #include "cli/help.h"
 #include "cli/invocation.h"
+#include "manifest/file_paths.h"
 #include "mechanism/validate.h"
 
 namespace gonio::cli {
@@ -176,10 +177,7 @@ void check_places(const Invocation& call) {
 // Can everything be written? What lies below --out is asked after that folder was made, the rest before.
 void prepare_places(const Invocation& call) {
   const auto below_out = [&call](const fs::path& path) {
-    if (call.out.empty()) return false;
-    const fs::path inside =
-        fs::absolute(path).lexically_normal().lexically_relative((fs::absolute(call.out) / "").lexically_normal());
-    return !inside.empty() && *inside.begin() != "..";
+    return !call.out.empty() && manifest::lies_within(path, call.out);
   };
   for (const bool below : {false, true}) {
     if (below && !call.out.empty()) make_folder(call.out);

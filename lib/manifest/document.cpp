@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "manifest/document_references.h"
+#include "manifest/file_paths.h"
 #include "manifest/section_tables.h"
 
 namespace gonio::manifest {
@@ -181,11 +182,7 @@ Document read_document(const fs::path& path, const ReadOptions& options) {
 Value to_value(const Document& d, const fs::path& folder) {
   Value out = Value::object({{"gonio", 1}});
   Document copy = d;
-  const fs::path target = fs::absolute(folder.empty() ? fs::path(".") : folder).lexically_normal();
-  const fs::path source = fs::absolute(d.folder).lexically_normal();
-  if (target != source)
-    for (auto& [id, file] : copy.files)
-      file.path = (source / file.path).lexically_normal().lexically_relative(target).generic_string();
+  move_to_folder(copy, folder);
   for_each_section(copy, [&](const char* key, auto& section) {
     const Value* original = d.original.find(key);
     Value v = write_section(section, original);
@@ -208,15 +205,10 @@ fs::path resolve(const Document& d, const std::string& file_id, const std::strin
   if (found == d.files.end()) throw Error(Exit::data, where, "names file \"" + file_id + "\", which is not in files");
   const File& file = found->second;
   const std::string at = place(d, "/files/" + file_id);
-  const fs::path path = (d.folder / file.path).lexically_normal();
-  if (!d.allow_outside) {
-    std::error_code ignored;
-    const fs::path root = fs::weakly_canonical(fs::absolute(d.folder.empty() ? "." : d.folder), ignored);
-    const fs::path inside = fs::weakly_canonical(fs::absolute(path), ignored).lexically_relative(root);
-    if (inside.empty() || *inside.begin() == "..")
-      throw Error(Exit::data, at + "/path", "\"" + file.path + "\" leaves the manifest's folder",
-                  "move the file, or allow it with --allow-outside");
-  }
+  const fs::path path = place_of_entry(d.folder, file.path);
+  if (!d.allow_outside && !lies_within(path, d.folder))
+    throw Error(Exit::data, at + "/path", "\"" + file.path + "\" leaves the manifest's folder",
+                "move the file, or allow it with --allow-outside");
   std::error_code error;
   const auto bytes = fs::file_size(path, error);
   if (error) throw Error(Exit::no_input, at + "/path", "\"" + file.path + "\" cannot be read: " + error.message());
@@ -233,10 +225,7 @@ fs::path resolve(const Document& d, const std::string& file_id, const std::strin
 
 std::string add_file(Document& d, const fs::path& path, const std::string& id) {
   File file;
-  file.path = fs::absolute(path)
-                  .lexically_normal()
-                  .lexically_relative(fs::absolute(d.folder).lexically_normal())
-                  .generic_string();
+  file.path = entry_for(path, d.folder);
   file.bytes = fs::file_size(path);
   file.sha256 = sha256_of_file(path);
   std::string name = id;

@@ -12,6 +12,7 @@
 #include "contrast/sample_outline.h"
 #include "data.h"
 #include "io/picture.h"
+#include "manifest/file_paths.h"
 #include "render/path_tracer.h"
 #include "render/ray_caster.h"
 #include "render/sensor_chain.h"
@@ -142,7 +143,7 @@ void photograph(const manifest::Document& document, const std::string& placement
 TEST(BoardPose, TheSampleIsFoundByTheBoardThatItLiesOn) {
   const tests::ScratchFolder folder;
   manifest::Document document = render::matrix_specimen(folder.path());
-  document.folder = folder.path();
+  manifest::move_to_folder(document, folder.path());
   const Sheet sheet = add_sheet(document, folder.path());
   const double lift_m = 2e-4, apart_m = document.objects[1].world_from_object->translation_m.x;
   for (manifest::Object& object : document.objects) object.world_from_object->translation_m = {0, 0, lift_m};

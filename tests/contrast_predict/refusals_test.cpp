@@ -6,6 +6,7 @@
 
 #include "cli/program.h"
 #include "contrast/predict_call.h"
+#include "data.h"
 #include "samples.h"
 
 namespace gonio::tests {
@@ -26,8 +27,8 @@ Said predict_with(std::vector<std::string> arguments, const std::string& manifes
   program.takes_out = program.takes_seed = true;
   program.check = contrast::predict_check;
   program.run = contrast::predict_call;
-  const std::string folder = testing::TempDir() + "contrast_refusals";
-  std::filesystem::create_directories(folder);
+  const tests::ScratchFolder scratch;
+  const std::string folder = scratch.path();
   if (!manifest.empty()) {
     std::ofstream(folder + "/m.json") << manifest;
     arguments.insert(arguments.end(), {"-i", folder + "/m.json"});

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "data.h"
 #include "io/ply.h"
 #include "nrsfm/animatronic_support.h"
 #include "nrsfm/factorial.h"
@@ -215,8 +216,8 @@ TEST(Film, DesignIsFullFactorial) {
 }
 
 TEST(Scans, MeshesAndTracksOfAFolder) {
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "nrsfm_make_scans";
-  std::filesystem::remove_all(folder);
+  const gonio::tests::ScratchFolder scratch;
+  const std::filesystem::path& folder = scratch.path();
   std::filesystem::create_directories(folder / "ball");
   FrameMesh mesh = sphere(8);
   Shapes points(6, 48);

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "data.h"
 #include "explain/tables/quick_table.h"
 #include "explain/tables/reflectance_surface.h"
 #include "reflectance/paint_world.h"
@@ -250,14 +251,14 @@ TEST(ThinFilm, LimitsOfAiry) {
 
 // A table alone stands on Lambert's law; one whose scale is not trusted finds it as its gain.
 TEST(Reflectance, ATableAloneIsHeldAgainstLambert) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "gonio_reflectance_alone.csv";
+  const gonio::tests::ScratchFolder folder;
+  const std::filesystem::path file = folder / "alone.csv";
   std::ofstream(file) << "theta_i [rad],phi_i [rad],theta_o [rad],phi_o [rad],f [1/sr]\n0.1,0,0.2,0,0.3\n";
   const manifest::Document document = quick_document({.file = file, .model = "surface", .observed = {"f"}});
   const manifest::Table& table = document.tables.begin()->second;
   ASSERT_TRUE(document.surfaces.contains(table.surface));
   EXPECT_EQ(document.surfaces.at(table.surface).model, "diffuse");
   EXPECT_TRUE(document.surfaces.at(table.surface).parameters.at("albedo").free);
-  std::filesystem::remove(file);
 }
 
 TEST(Reflectance, AGainIsFittedBesideAKnownColour) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "data.h"
 #include "explain/tables/quick_table.h"
 #include "table_world.h"
 
@@ -158,7 +159,8 @@ TEST(Columns, ThatNeverVaryAreNotWorthAQuestion) {
 }
 
 TEST(QuickTables, AModelThatIsMisspeltIsNotTakenForAConstant) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "gonio_tables_misspelt.csv";
+  const gonio::tests::ScratchFolder folder;
+  const std::filesystem::path file = folder / "misspelt.csv";
   std::ofstream(file) << "exposure_s,value\n1,2\n";
   try {
     quick_document({.file = file, .model = "sensr", .observed = {"value"}});
@@ -172,7 +174,6 @@ TEST(QuickTables, AModelThatIsMisspeltIsNotTakenForAConstant) {
                 .tables.begin()
                 ->second.expression,
             "a");
-  std::filesystem::remove(file);
 }
 
 }  // namespace
