@@ -12,6 +12,7 @@
 #include "base/hash.h"
 #include "manifest/document_references.h"
 #include "manifest/file_paths.h"
+#include "manifest/frame_loops.h"
 #include "manifest/section_tables.h"
 
 namespace gonio::manifest {
@@ -166,6 +167,7 @@ Document parse_document(std::string_view text, const std::string& name, const fs
     d.provenance = *v;
   }
   check_references(d);
+  check_frames(d);
   return d;
 }
 
