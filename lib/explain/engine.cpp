@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/error.h"
 #include "base/random.h"
 #include "explain/compensation.h"
 #include "explain/judgement.h"
@@ -22,14 +23,13 @@ namespace {
 constexpr std::size_t groups_for_a_test_set = 16;
 
 // A quarter of the groups, drawn by the seed, is opened once at the end; with few groups every one takes turns instead.
-std::vector<std::size_t> draw_test_groups(std::size_t groups, std::uint64_t seed) {
-  if (groups < groups_for_a_test_set) return {};
-  std::vector<std::size_t> order(groups);
-  for (std::size_t g = 0; g < groups; ++g) order[g] = g;
+std::vector<std::size_t> draw_test_groups(const std::vector<std::size_t>& groups, std::uint64_t seed) {
+  if (groups.size() < groups_for_a_test_set) return {};
+  std::vector<std::size_t> order = groups;
   Random random(seed, 0x74657374u);
-  for (std::size_t g = groups - 1; g > 0; --g)
-    std::swap(order[g], order[random.below(static_cast<std::uint32_t>(g + 1))]);
-  order.resize(std::max<std::size_t>(2, groups / 4));
+  for (std::size_t k = order.size() - 1; k > 0; --k)
+    std::swap(order[k], order[random.below(static_cast<std::uint32_t>(k + 1))]);
+  order.resize(std::max<std::size_t>(2, groups.size() / 4));
   std::sort(order.begin(), order.end());
   return order;
 }
@@ -45,6 +45,16 @@ double mismatch_p(const System& all, const std::vector<double>& start, Options o
   options.dummies = 0;
   const Race race(all, options);
   return remainder(race, race.base(start), options).global_p;
+}
+
+System in_play(const Problem& problem, const Options& options) {
+  System system(problem, options.seed);
+  if (system.groups.empty())
+    throw Error(Exit::data, problem.domain(),
+                "not one of the observations of " + std::to_string(problem.observations().groups()) + " " +
+                    problem.group_noun() + "s counts",
+                "look for masks, clipping and missing values that take all of them away");
+  return system;
 }
 
 std::vector<double> starting_values(const Problem& problem) {
@@ -69,6 +79,7 @@ void locate_groups(const System& system, Explanation& e) {
   const Observations& o = system.observations();
   double total = 0;
   for (std::size_t g = 0; g < o.groups(); ++g) {
+    if (system.used_rows(g) == 0) continue;
     LocatedGroup located{o.group[g], 0, 0, 0};
     double norm = 0;
     for (std::size_t i = o.first[g]; i < o.first[g + 1]; ++i) {
@@ -187,7 +198,7 @@ std::string verdict_name(Verdict verdict) {
 }
 
 double null_test(const Problem& problem, const Options& options) {
-  System system(problem, options.seed);
+  System system = in_play(problem, options);
   const std::vector<double> start = starting_values(problem);
   settle_noise(system, start);
   return mismatch_p(system, start, options);
@@ -207,13 +218,13 @@ void place_stage(const Problem& problem, Explanation& e) {
 Explanation explain(const Problem& problem, const Options& options) {
   Explanation e;
   e.matters = options.matters;
-  System all(problem, options.seed);
+  System all = in_play(problem, options);
   const std::vector<double> start = starting_values(problem);
   const NoiseFindings noise = settle_noise(all, start);
   e.noise_factor = noise.factor;
   e.outlier_blocks = noise.outlier_blocks;
 
-  e.test_groups = draw_test_groups(all.groups.size(), options.seed);
+  e.test_groups = draw_test_groups(all.groups, options.seed);
   System chosen_on = all;
   set_aside_groups(e.test_groups, chosen_on);
   const Race race(chosen_on, options);

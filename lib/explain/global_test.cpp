@@ -9,7 +9,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "linear/symmetric_eigen.h"
+#include "explain/blocks.h"
 #include "stats/distributions.h"
 
 namespace gonio::explain {
@@ -40,12 +40,12 @@ Standardised standardised(const Look& look, std::size_t blocks) {
   const Eigen::VectorXd scale =
       u.colwise().norm().transpose().unaryExpr([](double length) { return length > 0 ? 1 / length : 0.0; });
   const Eigen::MatrixXd v = u * scale.asDiagonal();
-  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(v.transpose() * v);
+  const SymmetricEigen eigen = eigen_of(v.transpose() * v);
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < columns; ++k)
-    if (eigen.eigenvalues()[k] > least_share) kept.push_back(k);
-  const Eigen::VectorXd root = eigen.eigenvalues()(kept).cwiseSqrt().cwiseInverse();
-  return {v * (eigen.eigenvectors()(Eigen::all, kept) * root.asDiagonal()), static_cast<double>(kept.size())};
+    if (eigen.values[k] > least_share) kept.push_back(k);
+  const Eigen::VectorXd root = eigen.values(kept).cwiseSqrt().cwiseInverse();
+  return {v * (eigen.vectors(Eigen::all, kept) * root.asDiagonal()), static_cast<double>(kept.size())};
 }
 
 }  // namespace

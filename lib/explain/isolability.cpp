@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "explain/blocks.h"
 #include "explain/scaling.h"
 #include "explain/signature.h"
-#include "linear/symmetric_eigen.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
 
@@ -19,10 +19,9 @@ constexpr double invisible_share = 1e-3;
 // G^-1/2 on the range of G.
 Eigen::MatrixXd inverse_root(const Eigen::MatrixXd& gram) {
   const Eigen::VectorXd scale = unit_scale(gram.diagonal());
-  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
-  const Eigen::VectorXd root =
-      eigen.eigenvalues().unaryExpr([](double v) { return v > 1e-9 ? 1 / std::sqrt(v) : 0.0; });
-  return scale.asDiagonal() * eigen.eigenvectors() * root.asDiagonal();
+  const SymmetricEigen eigen = eigen_of(scale.asDiagonal() * gram * scale.asDiagonal());
+  const Eigen::VectorXd root = eigen.values.unaryExpr([](double v) { return v > 1e-9 ? 1 / std::sqrt(v) : 0.0; });
+  return scale.asDiagonal() * eigen.vectors * root.asDiagonal();
 }
 
 // Noncentrality of a chi-square with so many degrees which its test at `level` finds with 80 % power: mean degrees + l,
@@ -55,11 +54,11 @@ double mattering(const System& system, const Projection& p, const BlockScores& s
 // Infinite where a direction has no length.
 Eigen::VectorXd largest_components(const Eigen::MatrixXd& gram, const Eigen::VectorXd& full) {
   const Eigen::VectorXd scale = unit_scale(full);
-  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
+  const SymmetricEigen eigen = eigen_of(scale.asDiagonal() * gram * scale.asDiagonal());
   Eigen::VectorXd result = Eigen::VectorXd::Zero(gram.rows());
   for (Eigen::Index k = 0; k < gram.rows(); ++k)
     for (Eigen::Index d = 0; d < gram.rows(); ++d) {
-      const double part = std::pow(scale[k] * eigen.eigenvectors()(k, d), 2), length = eigen.eigenvalues()[d];
+      const double part = std::pow(scale[k] * eigen.vectors(k, d), 2), length = eigen.values[d];
       if (length > least_share)
         result[k] += part / length;
       else if (part > 1e-9 * scale[k] * scale[k])
@@ -122,8 +121,8 @@ std::vector<Isolability> isolability(const System& system, const Projection& p, 
     places.push_back(p.foreign(structures, s));
     const std::vector<Eigen::Index>& own = places.back();
     const Eigen::MatrixXd root = inverse_root(p.full(own, own));
-    const linear::SymmetricEigen<Eigen::MatrixXd> shares(root.transpose() * p.surviving(own, own) * root);
-    entry.surviving_share = own.empty() ? 0 : std::sqrt(std::clamp(shares.eigenvalues().maxCoeff(), 0.0, 1.0));
+    const SymmetricEigen shares = eigen_of(root.transpose() * p.surviving(own, own) * root);
+    entry.surviving_share = std::sqrt(std::clamp(shares.largest(), 0.0, 1.0));
     entry.visible = false;
     const Candidate& candidate = system.problem().candidates()[entry.candidate];
     const double white = noncentrality(static_cast<double>(own.size()), level);

@@ -5,9 +5,9 @@
 #include <map>
 #include <numeric>
 
+#include "explain/blocks.h"
 #include "explain/scaling.h"
 #include "explain/signature.h"
-#include "linear/symmetric_eigen.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain {
@@ -28,19 +28,19 @@ Explained explained_by(const Projection& p, const std::vector<Eigen::Index>& pla
   const Eigen::VectorXd b = p.score(places);
   const Eigen::VectorXd length = p.full.diagonal()(places);
   const Eigen::VectorXd scale = unit_scale(length);
-  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(scale.asDiagonal() * g * scale.asDiagonal());
+  const SymmetricEigen eigen = eigen_of(scale.asDiagonal() * g * scale.asDiagonal());
   Explained e;
-  Eigen::VectorXd z = eigen.eigenvectors().transpose() * (scale.asDiagonal() * b);
+  Eigen::VectorXd z = eigen.vectors.transpose() * (scale.asDiagonal() * b);
   for (Eigen::Index k = 0; k < z.size(); ++k) {
-    if (eigen.eigenvalues()[k] < least_survivor) {
+    if (eigen.values[k] < least_survivor) {
       z[k] = 0;
       continue;
     }
-    e.squares += z[k] * z[k] / eigen.eigenvalues()[k];
+    e.squares += z[k] * z[k] / eigen.values[k];
     e.rank += 1;
-    z[k] /= eigen.eigenvalues()[k];
+    z[k] /= eigen.values[k];
   }
-  e.coefficients = scale.asDiagonal() * (eigen.eigenvectors() * z);
+  e.coefficients = scale.asDiagonal() * (eigen.vectors * z);
   return e;
 }
 
@@ -141,7 +141,7 @@ std::vector<LocatedCondition> locate(const System& system, const Projection& p, 
     LocatedCondition located;
     located.name = condition.name, located.unit = condition.unit, located.stage = condition.stage;
     const Explained e = explained_by(p, p.foreign(structures, s));
-    located.share = std::clamp((e.squares - e.rank) / excess, 0.0, 1.0);
+    located.share = excess > 0 ? std::clamp((e.squares - e.rank) / excess, 0.0, 1.0) : 0;
     result.push_back(std::move(located));
   }
   std::stable_sort(result.begin(), result.end(),

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "explain/blocks.h"
 #include "explain/fit.h"
-#include "linear/qr.h"
 #include "linear/solve.h"
-#include "linear/symmetric_eigen.h"
 
 namespace gonio::explain {
 namespace {
@@ -52,20 +51,16 @@ class Prospect {
         nuisance(i, c) = at_.nuisance[static_cast<std::size_t>(c)][static_cast<std::size_t>(i)] / sigma(i);
     for (Eigen::Index c = 0; c < nuisance.cols(); ++c)
       if (const double length = nuisance.col(c).norm(); length > 0) nuisance.col(c) /= length;
-    basis_ = Eigen::MatrixXd(rows, 0);
-    if (nuisance.cols() > 0 && rows > 0) {
-      const linear::PivotedQr qr(nuisance);
-      basis_ = qr.orthonormal(qr.rank());
-    }
+    basis_ = basis_of(nuisance);
     open_ = Eigen::MatrixXd(rows, 0);
     if (uncertain.parameters.empty() || rows == 0) return;
     // sqrt(C) folded into the derivatives: 1 + J C J' = 1 + K K'.
     Eigen::MatrixXd j(rows, static_cast<Eigen::Index>(uncertain.parameters.size()));
     for (std::size_t k = 0; k < uncertain.parameters.size(); ++k)
       j.col(static_cast<Eigen::Index>(k)) = derivative(e.values, uncertain.parameters[k]);
-    const linear::SymmetricEigen<Eigen::MatrixXd> eigen(uncertain.covariance);
-    const Eigen::VectorXd root = eigen.eigenvalues().cwiseMax(0).cwiseSqrt();
-    open_ = without_nuisance(j) * eigen.eigenvectors() * root.asDiagonal();
+    const SymmetricEigen eigen = eigen_of(uncertain.covariance);
+    const Eigen::VectorXd root = eigen.values.cwiseMax(0).cwiseSqrt();
+    open_ = without_nuisance(j) * eigen.vectors * root.asDiagonal();
   }
 
   // By how many standard errors the measurement would part the fit from `other`.

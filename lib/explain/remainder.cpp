@@ -38,7 +38,8 @@ Competitor linear_competitor(const Race& race, const Evidence& e, std::size_t s)
     return result;
   }
   const Eigen::VectorXd step = e.folds->step(places);
-  h.effect = std::sqrt(std::max(0.0, step.dot(e.scores.raw_surviving(places, places) * step)) / e.scores.norm);
+  const double moved = step.dot(e.scores.raw_surviving(places, places) * step);
+  h.effect = e.scores.norm > 0 ? std::sqrt(std::max(0.0, moved) / e.scores.norm) : 0;
   return result;
 }
 

@@ -2,6 +2,7 @@
 #include "explain/sentence.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "explain/compensation.h"
@@ -84,6 +85,24 @@ std::string minor_sentence(const Problem& problem, const Explanation& e) {
   return names.empty() ? "" : " Also there, but smaller than what matters: " + names + ".";
 }
 
+// Groups of which no observation counts took no part.
+std::string unused_sentence(const Problem& problem) {
+  constexpr std::size_t most_names = 4;
+  const Observations& o = problem.observations();
+  std::vector<std::string> names;
+  for (std::size_t g = 0; g < o.groups(); ++g)
+    if (o.first[g + 1] == o.first[g]) names.push_back(o.group[g]);
+  if (names.empty()) return "";
+  const std::size_t more = names.size() > most_names ? names.size() - most_names : 0;
+  std::string text = " " + problem.group_noun() + (names.size() == 1 ? " " : "s ");
+  for (std::size_t k = 0; k + more < names.size(); ++k)
+    text += (k == 0 ? "" : more == 0 && k + 1 == names.size() ? " and " : ", ") + names[k];
+  if (more > 0) text += " and " + std::to_string(more) + " more";
+  text[1] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[1])));
+  return text + (names.size() == 1 ? " takes no part: all that it shows" : " take no part: all that they show") +
+         " is masked, clipped or missing.";
+}
+
 // The measurement that tells two mechanisms apart, from either one's declaration.
 std::string told_apart(const mechanism::Mechanism& a, const std::string& b) {
   for (const mechanism::Confusion& c : a.mistaken_for)
@@ -146,7 +165,7 @@ std::string measurement(const Problem& problem, const Explanation& e) {
 
 void write_sentence(const Problem& problem, Explanation& e) {
   e.sentence = e.named.empty() ? plain_sentence(problem, e) : named_sentence(problem, e);
-  e.sentence += minor_sentence(problem, e);
+  e.sentence += minor_sentence(problem, e) + unused_sentence(problem);
   if (const std::string remarks = problem.remarks(e); !remarks.empty()) e.sentence += " " + remarks;
   if (!e.shortened.empty()) e.sentence += " " + e.shortened;
   e.next_measurement = measurement(problem, e);

@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "linear/qr.h"
+#include "explain/blocks.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
 
@@ -87,13 +87,13 @@ void Structures::add_changes(const System& system, const std::vector<double>& va
     return there;
   };
   const Eigen::VectorXd here = system.residual(values, group);
-  const linear::PivotedQr slopes(system.jacobian(at(start), group, c.parameters));
+  Eigen::MatrixXd changes(here.size(), static_cast<Eigen::Index>(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k)
+    changes.col(static_cast<Eigen::Index>(k)) = here - system.residual(at(points[k]), group);
+  const Eigen::VectorXd outside = lengths_outside(system.jacobian(at(start), group, c.parameters), changes);
   std::vector<std::pair<double, std::size_t>> kept;  // part that the slopes do not span, the largest first
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const Eigen::VectorXd change = here - system.residual(at(points[k]), group);
-    const Eigen::VectorXd outside = slopes.turned(change).tail(change.size() - slopes.rank());
-    if (outside.norm() > spanned * change.norm()) kept.emplace_back(-outside.norm(), k);
-  }
+  for (Eigen::Index k = 0; k < outside.size(); ++k)
+    if (outside[k] > spanned * changes.col(k).norm()) kept.emplace_back(-outside[k], static_cast<std::size_t>(k));
   std::sort(kept.begin(), kept.end());
   if (kept.size() > most_changes) kept.resize(most_changes);
   for (const auto& [length, k] : kept) {
@@ -226,9 +226,7 @@ GroupScores group_scores(const System& system, const Projection& p, const Struct
     surviving.row(i) /= system.weight(row);
     scores.norm += o.norm[row];
   }
-  scores.raw_surviving = Eigen::MatrixXd::Zero(foreign, foreign);
-  scores.raw_surviving.selfadjointView<Eigen::Lower>().rankUpdate(surviving.transpose());
-  scores.raw_surviving.triangularView<Eigen::StrictlyUpper>() = scores.raw_surviving.transpose();
+  scores.raw_surviving = gram_of(surviving);
   scores.variance = Eigen::VectorXd::Zero(foreign);
   for (const auto& [block, sum] : scores.blocks) scores.variance += sum.cwiseAbs2();
   return scores;

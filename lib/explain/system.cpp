@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "explain/blocks.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain {
@@ -27,7 +28,8 @@ CurveBasis curve_basis(const Observations& observations, std::size_t condition, 
 
 System::System(const Problem& problem, std::uint64_t seed) : problem_(problem) {
   const Observations& o = problem.observations();
-  for (std::size_t g = 0; g < o.groups(); ++g) groups.push_back(g);
+  for (std::size_t g = 0; g < o.groups(); ++g)
+    if (o.first[g + 1] > o.first[g]) groups.push_back(g);
   aside_.assign(o.rows(), 0);
   half_.resize(o.rows());
   for (std::size_t i = 0; i < o.rows(); ++i) half_[i] = static_cast<char>(split_mix(split_mix(seed) ^ o.block[i]) & 1);
@@ -45,6 +47,7 @@ void System::set_aside(std::size_t block) {
   const Observations& o = observations();
   for (std::size_t i = 0; i < o.rows(); ++i)
     if (o.block[i] == block) aside_[i] = 1, weight_[i] = 0;
+  std::erase_if(groups, [&](std::size_t g) { return used_rows(g) == 0; });
 }
 
 std::size_t System::used_rows(std::size_t group) const {
@@ -243,11 +246,7 @@ GroupGram group_gram(const System& system, const Linearisation& l, std::span<con
   std::vector<Eigen::Index> rows[2];
   for (Eigen::Index i = 0; i < a.rows(); ++i) rows[system.half(first + static_cast<std::size_t>(i))].push_back(i);
   for (std::size_t h = 0; h < 2; ++h) {
-    const Eigen::MatrixXd part = a(rows[h], Eigen::all);
-    gram.half[h] = Eigen::MatrixXd::Zero(a.cols(), a.cols());
-    if (rows[h].empty()) continue;  // a group of one block
-    gram.half[h].selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
-    gram.half[h].triangularView<Eigen::StrictlyUpper>() = gram.half[h].transpose();
+    gram.half[h] = gram_of(a(rows[h], Eigen::all));  // a group of one block has but one half
   }
   return gram;
 }

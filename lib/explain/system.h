@@ -48,7 +48,9 @@ class System {
 
   const Problem& problem() const { return problem_; }
   const Observations& observations() const { return problem_.observations(); }
-  std::vector<std::size_t> groups;  // in play, ascending; the others do not exist for a fit
+  // In play, ascending; the others do not exist for a fit. A group of which nothing is used, because all of its
+  // readings are masked, clipped or set aside, is not in play: nothing can be fitted to it, held out or judged.
+  std::vector<std::size_t> groups;
 
   void set_noise_factor(double factor);
   void set_aside(std::size_t block);

@@ -4,10 +4,10 @@
 #include <map>
 
 #include "base/parallel.h"
+#include "explain/blocks.h"
 #include "explain/fit.h"
 #include "explain/scaling.h"
 #include "linear/solve.h"
-#include "linear/symmetric_eigen.h"
 #include "stats/distributions.h"
 
 namespace gonio::explain {
@@ -37,27 +37,27 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& c) {
     const linear::Ldlt factor(inverse.asDiagonal() * c * inverse.asDiagonal());
     return scale.asDiagonal() * factor.root();
   }
-  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(inverse.asDiagonal() * c * inverse.asDiagonal());
-  return scale.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const SymmetricEigen eigen = eigen_of(inverse.asDiagonal() * c * inverse.asDiagonal());
+  return scale.asDiagonal() * eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 // J'(I - H)^-1/2 r of one block, H = A A' with A = J L: in the block's rows or in the parameters, whichever are fewer.
 Eigen::VectorXd corrected_score(const Eigen::MatrixXd& j, const Eigen::MatrixXd& l, const Eigen::VectorXd& r) {
   const Eigen::MatrixXd a = j * l;
-  const auto root = [](const linear::SymmetricEigen<Eigen::MatrixXd>& eigen) {
-    return Eigen::VectorXd((1 - eigen.eigenvalues().array()).max(least_left).rsqrt());
+  const auto root = [](const SymmetricEigen& eigen) {
+    return Eigen::VectorXd((1 - eigen.values.array()).max(least_left).rsqrt());
   };
   if (a.rows() <= a.cols()) {
-    const linear::SymmetricEigen<Eigen::MatrixXd> eigen(a * a.transpose());
-    return j.transpose() * (eigen.eigenvectors() * (root(eigen).asDiagonal() * (eigen.eigenvectors().transpose() * r)));
+    const SymmetricEigen eigen = eigen_of(a * a.transpose());
+    return j.transpose() * (eigen.vectors * (root(eigen).asDiagonal() * (eigen.vectors.transpose() * r)));
   }
   // (I - A A')^-1/2 = I + A V ((1 - d)^-1/2 - 1) / d V' A' with A'A = V d V'.
-  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(a.transpose() * a);
+  const SymmetricEigen eigen = eigen_of(a.transpose() * a);
   Eigen::VectorXd factor = root(eigen).array() - 1;
   for (Eigen::Index k = 0; k < factor.size(); ++k)
-    factor[k] = eigen.eigenvalues()[k] > 1e-12 ? factor[k] / eigen.eigenvalues()[k] : 0.5;
-  const Eigen::VectorXd pulled = eigen.eigenvectors().transpose() * (a.transpose() * r);
-  return j.transpose() * (r + a * (eigen.eigenvectors() * (factor.asDiagonal() * pulled)));
+    factor[k] = eigen.values[k] > 1e-12 ? factor[k] / eigen.values[k] : 0.5;
+  const Eigen::VectorXd pulled = eigen.vectors.transpose() * (a.transpose() * r);
+  return j.transpose() * (r + a * (eigen.vectors * (factor.asDiagonal() * pulled)));
 }
 
 Meat meat_of_group(const System& system, const Fit& fit, const Eigen::MatrixXd& inverse, std::size_t group,
@@ -202,12 +202,12 @@ double neutral_p(const System& system, const Fit& fit, const Uncertainty& u, con
   const Eigen::MatrixXd c = (by_blocks ? u.by_blocks : u.covariance)(places, places);
   const Eigen::VectorXd scale = unit_scale(c.diagonal());
   const Eigen::Map<const Eigen::VectorXd> d(distance.data(), static_cast<Eigen::Index>(distance.size()));
-  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(scale.asDiagonal() * c * scale.asDiagonal());
-  const Eigen::VectorXd z = eigen.eigenvectors().transpose() * (scale.asDiagonal() * d);
+  const SymmetricEigen eigen = eigen_of(scale.asDiagonal() * c * scale.asDiagonal());
+  const Eigen::VectorXd z = eigen.vectors.transpose() * (scale.asDiagonal() * d);
   double statistic = 0, rank = 0;
   for (Eigen::Index k = 0; k < z.size(); ++k) {
-    if (eigen.eigenvalues()[k] < 1e-9) continue;
-    statistic += z[k] * z[k] / eigen.eigenvalues()[k];
+    if (eigen.values[k] < 1e-9) continue;
+    statistic += z[k] * z[k] / eigen.values[k];
     rank += 1;
   }
   return rank > 0 ? stats::chi2_upper(statistic, rank) : 1;

@@ -8,8 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include "explain/blocks.h"
 #include "linear/solve.h"
-#include "linear/symmetric_eigen.h"
 #include "stats/distributions.h"
 
 namespace gonio::explain {
@@ -28,9 +28,9 @@ struct Sums {
 // H^-1 on the range of H, columns scaled to unit length.
 Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& h) {
   const Eigen::VectorXd scale = h.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
-  const linear::SymmetricEigen<Eigen::MatrixXd> eigen(scale.asDiagonal() * h * scale.asDiagonal());
-  const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr([](double v) { return v > 1e-8 ? 1 / v : 0.0; });
-  const Eigen::MatrixXd half = scale.asDiagonal() * eigen.eigenvectors();
+  const SymmetricEigen eigen = eigen_of(scale.asDiagonal() * h * scale.asDiagonal());
+  const Eigen::VectorXd inverse = eigen.values.unaryExpr([](double v) { return v > 1e-8 ? 1 / v : 0.0; });
+  const Eigen::MatrixXd half = scale.asDiagonal() * eigen.vectors;
   return half * inverse.asDiagonal() * half.transpose();
 }
 
