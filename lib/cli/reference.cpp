@@ -20,6 +20,53 @@ std::string option_item(const Option& o, const std::string& head) {
          (remarks.empty() ? "" : " " + roff_text("(" + remarks + ")")) + "\n";
 }
 
+std::string section_head(const std::string& name) {
+  return ".SH " + (name.find(' ') == std::string::npos ? name : "\"" + name + "\"") + "\n";
+}
+
+std::string prose_of(std::string_view prose, const std::string& name) {
+  return roff_from_markdown(section_of(prose, name));
+}
+
+// Sections that have a place of their own on every page.
+const std::vector<std::string>& placed_sections() {
+  static const std::vector<std::string> names{"NAME",        "SYNOPSIS",   "DESCRIPTION", "OPTIONS", "EXIT STATUS",
+                                              "ENVIRONMENT", "FILES",      "NOTES",       "CAVEATS", "BUGS",
+                                              "EXAMPLES",    "REFERENCES", "SEE ALSO"};
+  return names;
+}
+
+std::vector<std::string> own_sections(std::string_view prose) {
+  std::vector<std::string> own = headings_of(prose);
+  std::erase_if(own, [](const std::string& name) { return std::ranges::count(placed_sections(), name) > 0; });
+  return own;
+}
+
+std::string exit_items(const Program& program) {
+  std::string out;
+  for (const auto& row : exit_table()) {
+    const auto own = std::ranges::find(program.exits, row.code, &std::pair<Exit, std::string>::first);
+    out += ".TP\n\\fB" + std::to_string(static_cast<int>(row.code)) + "\\fR\n" +
+           roff_text(own != program.exits.end() ? own->second : std::string(row.meaning)) + "\n";
+  }
+  return out;
+}
+
+std::string file_items(const Program& program) {
+  std::string out;
+  const auto sections = [&out](const char* verb, const std::vector<std::string>& names) {
+    if (names.empty()) return;
+    out += ".PP\n" + std::string(verb);
+    for (std::size_t i = 0; i < names.size(); ++i) out += (i == 0 ? " \\fB" : ", \\fB") + roff_text(names[i]) + "\\fR";
+    out += " of the manifest.\n";
+  };
+  sections("Reads the sections", program.sections_read);
+  sections("Writes the sections", program.sections_written);
+  for (const auto& [pattern, meaning] : program.files)
+    out += ".TP\n\\fB" + roff_text(pattern) + "\\fR\n" + roff_text(meaning) + "\n";
+  return out;
+}
+
 std::vector<Option> all_options(const Program& program) {
   std::vector<Option> all = program.options;
   for (const auto& o : common_options(program)) all.push_back(o);
@@ -41,36 +88,31 @@ std::string man_header(const std::string& name, int section, const std::string& 
 
 std::string man_page(const Program& program, std::string_view prose) {
   std::string out = man_header(program.name, 1, program.sentence);
-  out += ".SH SYNOPSIS\n.nf\n";
+  const auto open = [&](const std::string& name) { out += section_head(name) + prose_of(prose, name); };
+  const auto open_where_written = [&](const std::vector<std::string>& names) {
+    for (const std::string& name : names)
+      if (!section_of(prose, name).empty()) open(name);
+  };
+  open("SYNOPSIS");
+  out += ".nf\n";
   for (const auto& form : program.synopsis) out += "\\fB" + roff_text(program.name) + "\\fR " + roff_text(form) + "\n";
-  out += ".fi\n.SH DESCRIPTION\n" + roff_from_markdown(section_of(prose, "DESCRIPTION"));
-  out += ".SH OPTIONS\n";
+  out += ".fi\n";
+  open("DESCRIPTION");
+  open_where_written(own_sections(prose));
+  open("OPTIONS");
   for (const auto& o : program.operands) out += option_item(o, o.name);
   for (const auto& o : program.options) out += option_item(o, head_of(o));
   out += ".SS \"Options of every gonio program\"\n";
   for (const auto& o : common_options(program)) out += option_item(o, head_of(o));
-  out += ".SH \"EXIT STATUS\"\n";
-  for (const auto& row : exit_table()) {
-    const auto own = std::ranges::find(program.exits, row.code, &std::pair<Exit, std::string>::first);
-    out += ".TP\n\\fB" + std::to_string(static_cast<int>(row.code)) + "\\fR\n" +
-           roff_text(own != program.exits.end() ? own->second : std::string(row.meaning)) + "\n";
-  }
-  out += ".SH FILES\n";
-  const auto sections = [&out](const char* verb, const std::vector<std::string>& names) {
-    if (names.empty()) return;
-    out += ".PP\n" + std::string(verb);
-    for (std::size_t i = 0; i < names.size(); ++i) out += (i == 0 ? " \\fB" : ", \\fB") + roff_text(names[i]) + "\\fR";
-    out += " of the manifest.\n";
-  };
-  sections("Reads the sections", program.sections_read);
-  sections("Writes the sections", program.sections_written);
-  for (const auto& [pattern, meaning] : program.files)
-    out += ".TP\n\\fB" + roff_text(pattern) + "\\fR\n" + roff_text(meaning) + "\n";
-  if (const std::string examples = section_of(prose, "EXAMPLES"); !examples.empty())
-    out += ".SH EXAMPLES\n" + roff_from_markdown(examples);
-  if (!program.references.empty()) out += ".SH REFERENCES\n";
+  open("EXIT STATUS");
+  out += exit_items(program);
+  open_where_written({"ENVIRONMENT"});
+  open("FILES");
+  out += file_items(program);
+  open_where_written({"NOTES", "CAVEATS", "BUGS", "EXAMPLES"});
+  if (!program.references.empty()) open("REFERENCES");
   for (const auto& r : program.references) out += ".PP\n" + roff_text(r) + "\n";
-  out += ".SH \"SEE ALSO\"\n";
+  open("SEE ALSO");
   std::vector<std::string> also = program.see_also;
   for (const char* page : {"gonio(7)", "gonio-manifest(5)", "gonio-conventions(7)"})
     if (std::ranges::find(also, page) == also.end()) also.emplace_back(page);

@@ -7,8 +7,9 @@
 
 namespace gonio::cli {
 
-// man1 page. `prose`: the hand-written Markdown with "# DESCRIPTION" and "# EXAMPLES"; OPTIONS, EXIT STATUS, FILES,
-// REFERENCES and SEE ALSO come from the description.
+// man1 page, its sections in the order of man-pages(7). `prose`: the hand-written Markdown. Its own sections follow
+// "# DESCRIPTION" in their order, "# EXAMPLES" and remarks such as "# NOTES" stand late; what it says under the name of
+// a section that comes from the description (OPTIONS, EXIT STATUS, FILES, REFERENCES, SEE ALSO) opens that section.
 std::string man_page(const Program& program, std::string_view prose);
 // Header of any other page of the manual: .TH and NAME.
 std::string man_header(const std::string& name, int section, const std::string& sentence);

@@ -1,7 +1,6 @@
 #include "cli/roff.h"
 
 #include <sstream>
-#include <vector>
 
 namespace gonio::cli {
 namespace {
@@ -15,12 +14,20 @@ void escape(char c, std::string& out) {
     out += c;
 }
 
+// Split at "|"; "\\|" is a bar within a cell.
 std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream in(line.substr(1));
-  for (std::string cell; std::getline(in, cell, '|');) {
+  std::vector<std::string> cells(1);
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    if (line[i] == '|')
+      cells.emplace_back();
+    else if (line[i] == '\\' && i + 1 < line.size() && line[i + 1] == '|')
+      cells.back() += line[++i];
+    else
+      cells.back() += line[i];
+  }
+  for (std::string& cell : cells) {
     const auto first = cell.find_first_not_of(' '), last = cell.find_last_not_of(' ');
-    cells.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
+    cell = first == std::string::npos ? "" : cell.substr(first, last - first + 1);
   }
   if (!cells.empty() && cells.back().empty()) cells.pop_back();
   return cells;
@@ -41,6 +48,17 @@ void print_table(const std::vector<std::vector<std::string>>& rows, std::string&
     out += '\n';
   }
   out += ".TE\n.PP\n";
+}
+
+// visit(line, is it a "# HEADING"?): within fenced code a line that starts with # is none.
+template <class Visit>
+void each_line(std::string_view text, const Visit& visit) {
+  std::istringstream in{std::string(text)};
+  bool code = false;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("```")) code = !code;
+    visit(line, !code && line.starts_with("# "));
+  }
 }
 
 }  // namespace
@@ -113,18 +131,23 @@ std::string roff_from_markdown(std::string_view text) {
 }
 
 std::string section_of(std::string_view text, std::string_view name) {
-  std::istringstream in{std::string(text)};
   std::string out;
-  bool inside = false, code = false;
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("```")) code = !code;
-    if (!code && line.starts_with("# ")) {
+  bool inside = false;
+  each_line(text, [&](const std::string& line, bool heading) {
+    if (heading)
       inside = std::string_view(line).substr(2) == name;
-      continue;
-    }
-    if (inside) out += line + "\n";
-  }
+    else if (inside)
+      out += line + "\n";
+  });
   return out;
+}
+
+std::vector<std::string> headings_of(std::string_view text) {
+  std::vector<std::string> names;
+  each_line(text, [&](const std::string& line, bool heading) {
+    if (heading) names.push_back(line.substr(2));
+  });
+  return names;
 }
 
 }  // namespace gonio::cli

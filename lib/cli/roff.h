@@ -1,9 +1,10 @@
 // A little Markdown to roff, for the hand-written prose of man pages: "# HEADING", paragraphs, "- item" lists, fenced
 // code, `code`,
-// **bold**, *emphasis*, and "| a | b |" tables.
+// **bold**, *emphasis*, and "| a | b |" tables, with "\|" for a bar within a cell.
 #pragma once
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace gonio::cli {
 
@@ -11,5 +12,7 @@ std::string roff_text(std::string_view text);  // one line: escapes, `code`, **b
 std::string roff_from_markdown(std::string_view text);
 // The part of `text` below the heading "# NAME" up to the next one; empty where there is none.
 std::string section_of(std::string_view text, std::string_view name);
+// The names of the "# NAME" headings, in their order.
+std::vector<std::string> headings_of(std::string_view text);
 
 }  // namespace gonio::cli

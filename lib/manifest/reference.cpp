@@ -6,11 +6,18 @@
 namespace gonio::manifest {
 namespace {
 
+// A cell of a table, in which a bar would begin the next one.
+std::string in_cell(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
+  return out;
+}
+
 template <class Record>
 std::string rows(const std::string& heading, const std::string& what, const std::vector<Field<Record>>& fields) {
   std::string out = "## " + heading + "\n" + what + "\n\n| key | unit | meaning |\n| --- | --- | --- |\n";
   for (const auto& f : fields)
-    out += "| " + f.name + (f.required ? " (needed)" : "") + " | " + f.unit + " | " + f.sentence + " |\n";
+    out += "| " + f.name + (f.required ? " (needed)" : "") + " | " + f.unit + " | " + in_cell(f.sentence) + " |\n";
   return out + "\n";
 }
 
@@ -21,8 +28,8 @@ std::string model_rows(const std::string& heading, const std::string& what, Fami
            "\n\n";
     out += "| key | unit | meaning |\n| --- | --- | --- |\n";
     for (const auto& p : model->parameters)
-      out += "| " + p.name + (p.preset ? "" : " (needed)") + " | " + (p.unit == "1" ? "" : p.unit) + " | " + p.meaning +
-             " |\n";
+      out += "| " + p.name + (p.preset ? "" : " (needed)") + " | " + (p.unit == "1" ? "" : p.unit) + " | " +
+             in_cell(p.meaning) + " |\n";
     out += "\n";
   }
   return out;
