@@ -58,8 +58,9 @@ struct Misfit {
   bool contradicts() const { return shift_m > shift_limit_m || turn_rad > turn_limit_rad; }
 };
 
-Vec3 unit_or_zero(Vec3 v) {
-  return norm(v) > 0 ? normalized(v) : Vec3{};
+// Of nothing: between the axes, so that its variance is their mean.
+Vec3 direction_of(Vec3 v) {
+  return normalized(norm(v) > 0 ? v : Vec3{1, 1, 1});
 }
 
 // The link's motion against that of the way from its `to` to its `from`.
@@ -72,7 +73,7 @@ Misfit misfit_of(const std::vector<Link>& links, const Link& link, const Way& wa
   const Motion closing = motion_of(link);
   const Vec3 shift = closing.translation_m - behind[0].translation_m;
   const Vec3 turn = rotation_vector_of(normalized(closing.rotation * conjugate(behind[0].rotation)));
-  const Vec3 u = unit_or_zero(shift), v = unit_or_zero(turn);
+  const Vec3 u = direction_of(shift), v = direction_of(turn);
   const Spread own = spread_of(link);
   double shift_variance = dot(own.translation, u * u), turn_variance = dot(own.rotation, v * v);
   Motion before;  // what precedes each stride

@@ -178,12 +178,12 @@ TEST(FrameLoops, TheInverseOfALinkMustSayTheSame) {
 
 TEST(FrameLoops, ManyFramesAreNoBurden) {
   std::vector<Link> links;
-  for (int i = 0; i < 20000; ++i)
+  for (int i = 0; i < 4000; ++i)
     links.push_back(link(format("f%d", i), format("f%d", i + 1), {{1, 0, 0, 0}, {1e-3, 0, 0}}));
   EXPECT_EQ(refusal(links), "");
-  links.push_back(link("f0", "f20000", {{1, 0, 0, 0}, {20, 0, 0}}));
+  links.push_back(link("f0", "f4000", {{1, 0, 0, 0}, {4, 0, 0}}));
   EXPECT_EQ(refusal(links), "");
-  links.back().translation_m.x = 21;
+  links.back().translation_m.x = 5;
   EXPECT_THAT(refusal(links), HasSubstr("off by 1000 mm"));
 }
 
@@ -202,7 +202,8 @@ TEST(FrameLoops, AManifestIsRefusedWhenItIsRead) {
   } catch (const Error& e) {
     EXPECT_THAT(e.what(),
                 HasSubstr("rig.json#/frames/2: \"world\" from \"board\" contradicts the way by base (/frames/0, "
-                          "/frames/1): off by 100 mm and 0 degrees (limits 0.0"));
+                          "/frames/1): off by 100 mm and 0 degrees (limits 0.0"
+                          "13 mm, 0.0011 degrees); correct one"));
   }
 }
 
