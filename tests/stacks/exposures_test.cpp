@@ -178,5 +178,15 @@ TEST(Exposures, EveryDeclaredConditionOfACandidateIsThere) {
           << c.id() << " is seen in " << name;
 }
 
+// A recorded stack whose longest exposure is clipped throughout: it takes no part, which is said, and the others are
+// explained. The file's resampling averaged readings that were clipped, so that they end below full scale.
+TEST(Exposures, APictureOfWhichNothingCountsTakesNoPart) {
+  GONIO_NEEDS_DATA("cases/crash-exposures.json");
+  const Outcome r = run(manifest::read_document(gonio::tests::data("cases/crash-exposures.json")));
+  EXPECT_NE(r.explanation.sentence.find("Exposure 3916 takes no part"), std::string::npos) << r.explanation.sentence;
+  EXPECT_EQ(r.explanation.groups.size(), 6u);
+  for (const std::string& id : r.named) EXPECT_EQ(id, "sensor.saturation");
+}
+
 }  // namespace
 }  // namespace gonio::explain::stacks
