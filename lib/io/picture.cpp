@@ -13,7 +13,7 @@
 namespace gonio::io {
 namespace {
 
-constexpr const char* readable = "use .exr, .png, .jpg, .jpeg, .tif or .tiff";
+constexpr const char* readable = "use .exr, .png, .jpg, .jpeg, .tif, .tiff, .bmp or .tga";
 
 std::string lower_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -27,7 +27,7 @@ std::string lower_extension(const std::filesystem::path& path) {
 PictureFormat picture_format(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".exr") return PictureFormat::exr;
-  for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff"}) {
+  for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".tga"}) {
     if (extension == known) return PictureFormat::raster;
   }
   throw Error(Exit::data, path.string(), "'" + extension + "' is not a picture that can be read", readable);

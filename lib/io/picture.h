@@ -1,4 +1,5 @@
-// Pictures from and to files: OpenEXR (linear floats) and 8/16-bit PNG, JPEG, TIFF, by extension.
+// Pictures from and to files: OpenEXR (linear floats) and 8/16-bit PNG, JPEG, TIFF, BMP, TGA. The
+// extension says which of the two, a file's beginning which codec.
 #pragma once
 #include <filesystem>
 

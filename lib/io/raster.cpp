@@ -1,5 +1,5 @@
-// 8 and 16-bit pictures by OpenCV's codecs. IMREAD_UNCHANGED: neither the camera's orientation tag nor a colour profile
-// is applied, so that a pixel keeps the place and the code that the sensor gave it.
+// 8 and 16-bit pictures by OpenCV's codecs, TGA by io/tga.h. IMREAD_UNCHANGED: neither the camera's orientation tag nor
+// a colour profile is applied, so that a pixel keeps the place and the code that the sensor gave it.
 #include "io/raster.h"
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "io/raster_header.h"
+#include "io/tga.h"
 
 namespace gonio::io {
 namespace {
@@ -23,6 +24,24 @@ void decode(const std::string& bytes, const std::string& place, int flags, cv::M
     throw Error(Exit::data, place, "cannot be decoded (" + failure.err + ")", "export or copy it again");
   }
   if (!decoded) throw Error(Exit::data, place, "the pixels cannot be decoded", "export or copy it again");
+}
+
+cv::Mat mat_of(const TgaCodes& tga) {  // OpenCV's order of channels is TGA's
+  return cv::Mat(tga.height, tga.width, CV_8UC(tga.channels), const_cast<std::uint8_t*>(tga.codes.data())).clone();
+}
+
+// The weights that OpenCV's decoders have, in steps of 2^-14.
+GreyImage grey_of_codes(const TgaCodes& tga) {
+  GreyImage grey{tga.width, tga.height, {}, {}};
+  if (tga.channels == 1) {
+    grey.bytes = tga.codes;
+    return grey;
+  }
+  grey.bytes.reserve(tga.codes.size() / 3);
+  for (std::size_t i = 0; i < tga.codes.size(); i += 3)
+    grey.bytes.push_back(static_cast<std::uint8_t>(
+        (1868 * tga.codes[i] + 9617 * tga.codes[i + 1] + 4899 * tga.codes[i + 2] + 8192) >> 14));
+  return grey;
 }
 
 template <class Code>
@@ -64,6 +83,7 @@ void fill(const Image& image, const std::vector<int>& sources, cv::Mat& picture)
 Image decode_raster(const std::string& bytes, const std::string& place) {
   const RasterHeader header = read_raster_header(bytes, place);
   check_decoded_size(header.width, header.height, 3 * sizeof(float), bytes.size(), place);
+  if (header.kind == RasterKind::tga) return scaled<std::uint8_t>(mat_of(decode_tga(bytes, place)));
   cv::Mat picture;
   decode(bytes, place, cv::IMREAD_UNCHANGED, picture);
   if (picture.depth() == CV_8U) return scaled<std::uint8_t>(picture);
@@ -74,6 +94,7 @@ Image decode_raster(const std::string& bytes, const std::string& place) {
 GreyImage decode_grey(const std::string& bytes, const std::string& place) {
   const RasterHeader header = read_raster_header(bytes, place);
   check_decoded_size(header.width, header.height, 3 * sizeof(float), bytes.size(), place);
+  if (header.kind == RasterKind::tga) return grey_of_codes(decode_tga(bytes, place));
   GreyImage grey{static_cast<int>(header.width), static_cast<int>(header.height), {}, {}};
   grey.bytes.resize(header.width * header.height);
   cv::Mat picture(grey.height, grey.width, CV_8U, grey.bytes.data());  // filled in place where the file has 8 bits

@@ -1,4 +1,4 @@
-// 8 and 16-bit PNG, JPEG and TIFF, behind io/picture.h.
+// 8 and 16-bit PNG, JPEG and TIFF, 8-bit BMP and TGA, behind io/picture.h.
 #pragma once
 #include <filesystem>
 #include <string>

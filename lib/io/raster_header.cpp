@@ -1,4 +1,5 @@
-// PNG (ISO 15948), JPEG (ITU-T T.81) and TIFF 6.0, as far as is needed to know the size and that the file is whole. The
+// PNG (ISO 15948), JPEG (ITU-T T.81) and TIFF 6.0, as far as is needed to know the size and that the file is whole (BMP
+// and TGA: bmp.h, tga.h). The
 // libraries that decode them allocate what the header claims and paint what is missing grey; hence this look
 // beforehand.
 #include "io/raster_header.h"
@@ -7,6 +8,8 @@
 #include <optional>
 
 #include "base/error.h"
+#include "io/bmp.h"
+#include "io/tga.h"
 
 namespace gonio::io {
 namespace {
@@ -87,7 +90,7 @@ RasterHeader png(std::string_view bytes, const std::string& place) {
     if (body.starts_with("IEND")) break;
     at += length + 12;
   }
-  return {read.big(16, 4), read.big(20, 4), read.byte(24) == 16 ? 16 : 8};
+  return {read.big(16, 4), read.big(20, 4), read.byte(24) == 16 ? 16 : 8, RasterKind::png};
 }
 
 bool starts_frame(std::uint8_t marker) {  // SOF0 .. SOF15 without DHT, JPG, DAC
@@ -106,7 +109,7 @@ RasterHeader jpeg(std::string_view bytes, const std::string& place) {
       ++at;
       continue;
     }
-    if (starts_frame(marker)) header = {read.big(at + 7, 2), read.big(at + 5, 2), 8};
+    if (starts_frame(marker)) header = {read.big(at + 7, 2), read.big(at + 5, 2), 8, RasterKind::jpeg};
     at += 2 + read.big(at + 2, 2);
     if (marker == 0xda) break;
   }
@@ -125,6 +128,7 @@ class Tiff {
     const std::size_t entries = number(directory, 2);
     std::optional<std::size_t> offsets, counts;
     RasterHeader result;
+    result.kind = RasterKind::tiff;
     for (std::size_t i = 0; i < entries; ++i) {
       const std::size_t entry = directory + 2 + 12 * i;
       const std::size_t tag = number(entry, 2);
@@ -166,7 +170,9 @@ RasterHeader read_raster_header(std::string_view bytes, const std::string& place
   if (bytes.starts_with("\x89PNG\r\n\x1a\n"sv)) return png(bytes, place);
   if (bytes.starts_with("\xff\xd8"sv)) return jpeg(bytes, place);
   if (bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv)) return Tiff(bytes, place).header();
-  refuse(place, "is neither PNG, JPEG nor TIFF inside");
+  if (is_bmp(bytes)) return read_bmp_header(bytes, place);
+  if (is_tga(bytes)) return read_tga_header(bytes, place);
+  refuse(place, "is neither PNG, JPEG, TIFF, BMP nor TGA inside");
 }
 
 void check_decoded_size(std::uint64_t width, std::uint64_t height, std::uint64_t pixel_bytes, std::uint64_t file_bytes,

@@ -1,4 +1,5 @@
-// What the headers of PNG, JPEG and TIFF files claim, read without a decoder and without allocating what they claim.
+// What the headers of PNG, JPEG, TIFF, BMP and TGA files claim, read without a decoder and without allocating what they
+// claim.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -6,12 +7,15 @@
 
 namespace gonio::io {
 
+enum class RasterKind { png, jpeg, tiff, bmp, tga };
+
 struct RasterHeader {
   std::uint64_t width = 0, height = 0;
   int code_bits = 8;  // 16 where the file says so; fewer than 8 are read as 8
+  RasterKind kind = RasterKind::png;
 };
 
-// Error(data) at `place` for a file that is none of the three, is cut off or has a damaged structure.
+// Error(data) at `place` for a file that is none of these, is cut off or has a damaged structure.
 RasterHeader read_raster_header(std::string_view bytes, const std::string& place);
 
 // Refuses a picture whose `pixel_bytes` once decoded cannot come from a file of `file_bytes`: above a size that harms

@@ -1,4 +1,4 @@
-// Any bytes as a PNG, JPEG or TIFF file: an image or Error(data), never anything else.
+// Any bytes as a PNG, JPEG, TIFF, BMP or TGA file: an image or Error(data), never anything else.
 #include <cstdint>
 #include <string>
 
