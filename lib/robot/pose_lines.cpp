@@ -18,8 +18,10 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
+}  // namespace
+
 // Without comment and brackets; `p[1, 2]` loses its p, too.
-std::string bare(std::string_view line) {
+std::string bare_line(std::string_view line) {
   for (const std::string_view mark : {"#", "%", "//"}) line = line.substr(0, line.find(mark));
   std::string text;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -33,7 +35,7 @@ std::string bare(std::string_view line) {
 
 // Fields between commas, semicolons and blanks. A comma between two digits is a decimal comma where the line has
 // another separator that works: `0,5 0,25` and `0,5; 0,25`.
-std::vector<std::string> fields_of(const std::string& text, const std::string& place) {
+std::vector<std::string> fields_of_line(const std::string& text, const std::string& place) {
   bool inner = false, other = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] == ';') other = true;
@@ -65,7 +67,7 @@ std::vector<std::string> fields_of(const std::string& text, const std::string& p
   return fields;
 }
 
-std::optional<double> number(const std::string& text) {
+std::optional<double> number_of_field(const std::string& text) {
   const char* begin = text.data() + (text.size() > 1 && text[0] == '+' ? 1 : 0);
   double value = 0;
   const auto end = std::from_chars(begin, text.data() + text.size(), value);
@@ -73,7 +75,12 @@ std::optional<double> number(const std::string& text) {
   return value;
 }
 
-}  // namespace
+double finite_number(const std::string& field, const std::string& place) {
+  const std::optional<double> value = number_of_field(field);
+  if (!value) throw Error(Exit::data, place, "\"" + field + "\" is no number");
+  if (!std::isfinite(*value)) throw Error(Exit::data, place, field + " is not a finite number", "drop this pose");
+  return *value;
+}
 
 std::vector<NumberLine> number_lines(std::string_view text, const std::string& file) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // byte order mark
@@ -82,27 +89,22 @@ std::vector<NumberLine> number_lines(std::string_view text, const std::string& f
   int count = 0;
   while (!text.empty()) {
     const auto end = text.find('\n');
-    const std::string line = bare(text.substr(0, end));
+    const std::string line = bare_line(text.substr(0, end));
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     NumberLine result{{}, {}, file + ":" + std::to_string(++count)};
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const std::vector<std::string> fields = fields_of(line, result.place);
+    const std::vector<std::string> fields = fields_of_line(line, result.place);
     std::size_t numbers = 0;
-    for (const std::string& f : fields) numbers += number(f).has_value();
+    for (const std::string& f : fields) numbers += number_of_field(f).has_value();
     if (numbers == 0 && lines.empty() && !header_seen) {
       header_seen = true;
       continue;
     }
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      const std::optional<double> value = number(fields[i]);
-      if (!value && i == 0 && numbers > 0) {
+      if (i == 0 && numbers > 0 && !number_of_field(fields[i]))
         result.name = fields[i];
-        continue;
-      }
-      if (!value) throw Error(Exit::data, result.place, "\"" + fields[i] + "\" is no number");
-      if (!std::isfinite(*value))
-        throw Error(Exit::data, result.place, fields[i] + " is not a finite number", "drop this pose");
-      result.numbers.push_back(*value);
+      else
+        result.numbers.push_back(finite_number(fields[i], result.place));
     }
     lines.push_back(std::move(result));
   }

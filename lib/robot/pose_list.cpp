@@ -122,8 +122,17 @@ std::vector<NumberLine> matrix_lines(const std::vector<NumberLine>& lines) {
   return joined;
 }
 
+// A block's label may state a unit of length: that of the convention, or --pose-length.
+void check_length(const NumberLine& line, const PoseConvention& c) {
+  const double stated = line.length == "mm" ? 1e-3 : line.length == "cm" ? 1e-2 : 1;
+  if (!line.length.empty() && std::abs(stated / c.metres_per_length - 1) > 1e-9)
+    throw Error(Exit::data, line.place, "its translation is stated in " + line.length + ", and another unit is asked for",
+                "name that unit: --pose-length " + line.length);
+}
+
 ListedPose pose_of(const NumberLine& line, const PoseListFormat& format) {
   const PoseConvention& c = format.convention;
+  check_length(line, c);
   ListedPose listed{{}, line.place, line.name};
   Rigid<frame::Base, frame::Tool>& pose = listed.base_from_tool;
   if (c.rotation == RotationKind::matrix) {
@@ -179,7 +188,7 @@ PoseList poses_of(const std::vector<NumberLine>& lines, const PoseListFormat& fo
 }  // namespace
 
 PoseList parse_pose_list(std::string_view text, const std::string& file, const PoseListFormat& format) {
-  return poses_of(number_lines(text, file), format, file);
+  return poses_of(pose_lines(text, file), format, file);
 }
 
 PoseList read_pose_list(const std::filesystem::path& path, const PoseListFormat& format) {

@@ -3,8 +3,9 @@
 //
 // Text files, one pose per line (matrices: also four lines of four numbers, or one file per pose). Separators: comma,
 // semicolon, space, tab; brackets as in `p[...]` are passed over; `#`, `%` and `//` begin comments; one header line is
-// tolerated; a first field that is no number is the pose's name. Decimal commas are refused. Results: base_from_tool,
-// metres, unit quaternions.
+// tolerated; a first field that is no number is the pose's name. Or blocks of numbers under labels, "Rotation:" and
+// "Translation:", for every pose (pose_lines.h). Decimal commas are refused. Results: base_from_tool, metres, unit
+// quaternions.
 //
 // Rounding is repaired up to stated limits (rotation matrices: largest entry of |R'R - I| <= 1e-4, by polar
 // decomposition; quaternions: | |q| - 1 | <= 1e-3, divided by their length). Beyond them, left-handed rotations,
