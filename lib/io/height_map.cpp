@@ -22,7 +22,12 @@ bool is_nms(std::string_view file) {
 }  // namespace
 
 bool is_height_map(std::string_view beginning) {
-  return beginning.starts_with(surf) || beginning.starts_with(opd) || beginning.starts_with(zip) || is_nms(beginning);
+  return beginning.starts_with(surf) || beginning.starts_with(opd) || beginning.starts_with(zip) || is_nms(beginning) ||
+         is_plu(beginning);
+}
+
+bool is_height_picture(std::string_view beginning) {
+  return beginning.starts_with(exr) || beginning.starts_with(tiff_low) || beginning.starts_with(tiff_high);
 }
 
 HeightMap parse_height_map(std::string_view file, const std::string& place, const HeightPicture& picture) {
@@ -30,8 +35,8 @@ HeightMap parse_height_map(std::string_view file, const std::string& place, cons
   if (file.starts_with(opd)) return parse_opd(file, place);
   if (file.starts_with(zip)) return parse_x3p(file, place);
   if (is_nms(file)) return parse_nms(file, place);
-  if (file.starts_with(exr) || file.starts_with(tiff_low) || file.starts_with(tiff_high))
-    return parse_height_picture(file, place, picture);
+  if (is_plu(file)) return parse_plu(file, place);
+  if (is_height_picture(file)) return parse_height_picture(file, place, picture);
   refuse_map(place, "is no height map that gonio reads: it begins like none of them");
 }
 

@@ -5,6 +5,7 @@
 //         from the lower left corner
 //   .nms  NanoFocus usurf "OM_MS_2.0": a 3468-byte head, 16-bit integers between a lowest and a highest height
 //   .x3p  ISO 25178-72: a zip archive of main.xml and a binary matrix, row after row, metres
+//   .plu  Sensofar PLu: a 500-byte head that begins with a date, 32-bit floats, um
 //   OpenEXR, TIFF (32-bit floats or 16-bit codes): pictures, which do not say what a pixel is: HeightPicture does
 // Which one a file is says its beginning, not its name. Heights in metres, row after row from the top; NaN where the
 // instrument measured nothing. Steps are those between neighbouring points of a row (x) and of a column (y).
@@ -35,8 +36,10 @@ struct HeightPicture {
 // Error(data | no_input). Lengths are checked against the file before anything is allocated.
 HeightMap read_height_map(const std::filesystem::path& path, const HeightPicture& picture = {});
 HeightMap parse_height_map(std::string_view file, const std::string& place, const HeightPicture& picture = {});
-// Files that describe themselves, pictures not among them; 16 bytes suffice.
+// Files that describe themselves, pictures not among them; height_map_beginning bytes suffice.
+inline constexpr std::size_t height_map_beginning = 32;
 bool is_height_map(std::string_view beginning);
+bool is_height_picture(std::string_view beginning);  // OpenEXR or TIFF, by whatever it shows
 
 // Digital Surf format 1, 32 bit, heights in steps of a 2^-30th of their range; for tests and for handing maps on.
 void write_surf(const std::filesystem::path& path, const HeightMap& map);
@@ -51,6 +54,8 @@ HeightMap parse_surf(std::string_view file, const std::string& place);
 HeightMap parse_opd(std::string_view file, const std::string& place);
 HeightMap parse_nms(std::string_view file, const std::string& place);
 HeightMap parse_x3p(std::string_view file, const std::string& place);
+bool is_plu(std::string_view beginning);
+HeightMap parse_plu(std::string_view file, const std::string& place);
 HeightMap parse_height_picture(std::string_view file, const std::string& place, const HeightPicture& picture);
 void write_height_picture(const std::filesystem::path& path, const HeightMap& map);
 

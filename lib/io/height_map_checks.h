@@ -11,7 +11,7 @@ namespace gonio::io {
 inline constexpr std::int64_t most_points_a_side = 32768;
 
 [[noreturn]] inline void refuse_map(const std::string& place, const std::string& problem) {
-  throw Error(Exit::data, place, problem, "copy it again, or export it as .x3p, .sur, .opd or .nms");
+  throw Error(Exit::data, place, problem, "copy it again, or export it as .x3p, .sur, .opd, .nms or .plu");
 }
 
 inline void check_map_size(std::int64_t width, std::int64_t height, const std::string& place) {

@@ -17,7 +17,7 @@ double step(double given, const std::string& own, const char* axis, const std::s
   if (given > 0) return checked_step(given, axis, place);
   if (own.empty())
     throw Error(Exit::data, place, std::string("does not say how far its points lie apart along ") + axis,
-                "state the step");
+                "state it: --step 1.6um; in a manifest reliefs/NAME/step_m");
   return checked_step(std::strtod(own.c_str(), nullptr), axis, place);
 }
 
@@ -37,7 +37,7 @@ HeightMap of_exr(std::string_view file, const std::string& place, const HeightPi
     throw Error(Exit::data, place,
                 p.channel.empty() ? "has " + std::to_string(image.channels.size()) + " channels and none named Z"
                                   : "has no channel \"" + p.channel + "\"",
-                "name the one that holds the heights");
+                "name the one that holds the heights: --channel NAME");
   HeightMap map{static_cast<std::size_t>(image.width),
                 static_cast<std::size_t>(image.height),
                 step(p.step_x_m, text("step_x_m"), "x", place),
@@ -66,7 +66,9 @@ HeightMap of_tiff(std::string_view file, const std::string& place, const HeightP
   const RasterHeader header = read_raster_header(bytes, place);
   check_decoded_size(header.width, header.height, sizeof(float), bytes.size(), place);
   check_map_size(static_cast<std::int64_t>(header.width), static_cast<std::int64_t>(header.height), place);
-  if (!(p.unit_m > 0)) throw Error(Exit::data, place, "does not say what its numbers count", "state the unit");
+  if (!(p.unit_m > 0))
+    throw Error(Exit::data, place, "does not say what its numbers count",
+                "state it: --unit um; in a manifest reliefs/NAME/unit_m");
   cv::Mat picture;
   try {
     const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));

@@ -3,8 +3,13 @@
 // and L are integers of 16 and 32 bits, F and D floats of 32 and 64. What was not measured is NaN, or has a zero in a
 // mask of one bit per point, the lowest bit of a byte first. Numbers are little-endian, x runs fastest. Checksums are
 // compared where there are any; the archive's own are compared always.
+//
+// What writers do besides: all files in one folder of the archive; any prefix of names and any name of the root
+// element; names with backslashes, links from the root; an increment of 0 where the heights are absolute, which have
+// none.
 #include <zip.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <limits>
 #include <memory>
@@ -42,12 +47,45 @@ Archive opened(std::string_view file, const std::string& place) {
   return Archive(archive);
 }
 
+constexpr const char* description = "main.xml";
+
+// The folder that main.xml lies in, "" or "name/": the outermost one.
+std::string top_folder(const Archive& archive, const std::string& place) {
+  std::string found;
+  bool any = false;
+  for (zip_int64_t i = 0; i < zip_get_num_entries(archive.get(), 0); ++i) {
+    const char* raw = zip_get_name(archive.get(), static_cast<zip_uint64_t>(i), 0);
+    std::string_view name = raw == nullptr ? "" : raw;
+    if (!name.ends_with(description)) continue;
+    name.remove_suffix(std::string_view(description).size());
+    if (!name.empty() && name.back() != '/' && name.back() != '\\') continue;  // an other-main.xml
+    if (any && name.size() >= found.size()) continue;
+    found = name, any = true;
+  }
+  if (!any) refuse_map(place, std::string("has no file \"") + description + "\" in it");
+  return found;
+}
+
+// The entry that main.xml, or a link in it, calls `name`; negative: none.
+zip_int64_t entry_of(const Archive& archive, const std::string& folder, std::string name) {
+  std::ranges::replace(name, '\\', '/');
+  while (name.starts_with("./") || name.starts_with("/")) name.erase(0, name.find('/') + 1);
+  std::string backward = name;
+  std::ranges::replace(backward, '/', '\\');
+  for (const zip_flags_t flags : {zip_flags_t{0}, zip_flags_t{ZIP_FL_NOCASE}})
+    for (const std::string& path : {folder + name, folder + backward, name, backward})
+      if (const zip_int64_t at = zip_name_locate(archive.get(), path.c_str(), flags); at >= 0) return at;
+  return -1;
+}
+
 // One file of the archive, of exactly `bytes` where that is not 0.
-std::string content(const Archive& archive, const std::string& name, std::uint64_t bytes, std::uint64_t file_bytes,
-                    const std::string& place) {
+std::string content(const Archive& archive, const std::string& folder, const std::string& name, std::uint64_t bytes,
+                    std::uint64_t file_bytes, const std::string& place) {
+  const zip_int64_t at = entry_of(archive, folder, name);
+  const auto index = static_cast<zip_uint64_t>(at);
   zip_stat_t stat;
   zip_stat_init(&stat);
-  if (zip_stat(archive.get(), name.c_str(), 0, &stat) != 0 || (stat.valid & ZIP_STAT_SIZE) == 0)
+  if (at < 0 || zip_stat_index(archive.get(), index, 0, &stat) != 0 || (stat.valid & ZIP_STAT_SIZE) == 0)
     refuse_map(place, "has no file \"" + name + "\" in it");
   if (bytes > 0 && stat.size != bytes)
     refuse_map(place, "has " + std::to_string(stat.size) + " bytes in " + name + " where its points are " +
@@ -55,7 +93,7 @@ std::string content(const Archive& archive, const std::string& name, std::uint64
   if (stat.size > most_squeezed * file_bytes || (bytes == 0 && stat.size > most_xml_bytes))
     refuse_map(place, "claims " + std::to_string(stat.size) + " bytes in " + name + ", more than it can hold");
   std::string text(stat.size, '\0');
-  zip_file_t* entry = zip_fopen(archive.get(), name.c_str(), 0);
+  zip_file_t* entry = zip_fopen_index(archive.get(), index, 0);
   const zip_int64_t read = entry == nullptr ? -1 : zip_fread(entry, text.data(), text.size());
   char beyond;  // the checksum is compared where the file ends
   const bool ends = read == static_cast<zip_int64_t>(text.size()) && zip_fread(entry, &beyond, 1) == 0;
@@ -124,6 +162,11 @@ Coding coding_of(pugi::xml_node cz, const std::string& place) {
   refuse_map(place, "stores its heights as \"" + type.substr(0, 20) + "\", and I, L, F and D are known");
 }
 
+void check_feature(const std::string& type, const std::string& place) {
+  if (type == "PRF") refuse_map(place, "holds a profile, not an area");
+  if (type == "PCL") refuse_map(place, "holds a cloud of points, not a map");
+}
+
 double stored(std::string_view points, std::size_t i, char type) {
   switch (type) {
     case 'I': return stored_at<std::int16_t>(points, 2 * i);
@@ -137,16 +180,21 @@ double stored(std::string_view points, std::size_t i, char type) {
 
 HeightMap parse_x3p(std::string_view file, const std::string& place) {
   const Archive archive = opened(file, place);
-  const std::string xml = content(archive, "main.xml", 0, file.size(), place);
+  const std::string folder = top_folder(archive, place),
+                    xml = content(archive, folder, description, 0, file.size(), place);
   pugi::xml_document document;
   const pugi::xml_parse_result parsed = document.load_buffer(xml.data(), xml.size());
   if (!parsed) refuse_map(place, std::string("has a main.xml that is no XML (") + parsed.description() + ")");
   const pugi::xml_node root = document.document_element(), axes = element(root, {"Record1", "Axes"}),
                        size = element(root, {"Record3", "MatrixDimension"}),
                        link = element(root, {"Record3", "DataLink"});
-  if (without_prefix(root.name()) != "ISO5436_2" || axes.empty()) refuse_map(place, "has no axes in its main.xml");
-  if (text_of(element(root, {"Record1", "FeatureType"})) == "PRF") refuse_map(place, "holds a profile, not an area");
-  if (size.empty() || link.empty()) refuse_map(place, "holds no matrix in a file of its own");
+  if (axes.empty())
+    refuse_map(place, std::string("has no Record1/Axes in its main.xml, whose root is \"") +
+                          std::string(root.name()).substr(0, 40) + "\"");
+  check_feature(text_of(element(root, {"Record1", "FeatureType"})), place);
+  if (size.empty() || link.empty())
+    refuse_map(place, element(root, {"Record3", "DataList"}).empty() ? "holds no matrix in a file of its own"
+                                                                     : "holds its points in main.xml, one by one");
   for (const char* axis : {"CX", "CY"})
     if (text_of(element(axes, {axis, "AxisType"})) == "A")
       refuse_map(place, "states every place of its points by itself; only even steps are read");
@@ -159,15 +207,17 @@ HeightMap parse_x3p(std::string_view file, const std::string& place) {
   map.step_y_m = checked_step(number_of(element(axes, {"CY", "Increment"}), 0, "increment", place), "y", place);
   const pugi::xml_node cz = element(axes, {"CZ"});
   const Coding coding = coding_of(cz, place);
-  const double increment = number_of(element(cz, {"Increment"}), 1, "increment", place),
+  const double stated = number_of(element(cz, {"Increment"}), 1, "increment", place),
+               increment = stated == 0 && text_of(element(cz, {"AxisType"})) == "A" ? 1 : stated,
                offset = number_of(element(cz, {"Offset"}), 0, "offset", place);
+  if (increment == 0) refuse_map(place, "states a step of height of 0");
   const std::size_t count = map.width * map.height;
   const std::string points =
-      content(archive, text_of(element(link, {"PointDataLink"})), count * coding.bytes, file.size(), place);
+      content(archive, folder, text_of(element(link, {"PointDataLink"})), count * coding.bytes, file.size(), place);
   check_sum(points, element(link, {"MD5ChecksumPointData"}), "points", place);
   const std::string mask_name = text_of(element(link, {"ValidPointsLink"}));
   const std::string mask =
-      mask_name.empty() ? std::string() : content(archive, mask_name, (count + 7) / 8, file.size(), place);
+      mask_name.empty() ? std::string() : content(archive, folder, mask_name, (count + 7) / 8, file.size(), place);
   if (!mask.empty()) check_sum(mask, element(link, {"MD5ChecksumValidPoints"}), "a mask", place);
   map.z_m.resize(count);
   for (std::size_t i = 0; i < count; ++i) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <regex>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -143,7 +144,8 @@ TEST(X3p, ForgedAndDamagedArchivesAreRefusedInALine) {
   EXPECT_THAT(with({.sum = md5("other")}), HasSubstr("has points whose checksum is another"));
   EXPECT_THAT(with({.mask_name = "valid.bin"}), HasSubstr("has no file \"valid.bin\""));
   EXPECT_THAT(refusal(archive({{"main.xml", "<p:ISO5436_2>"}})), HasSubstr("no XML"));
-  EXPECT_THAT(refusal(archive({{"main.xml", "<other/>"}})), HasSubstr("no axes"));
+  EXPECT_THAT(refusal(archive({{"main.xml", "<other/>"}})),
+              HasSubstr("no Record1/Axes in its main.xml, whose root is \"other\""));
   EXPECT_THAT(refusal(archive({{"picture.png", "x"}})), HasSubstr("has no file \"main.xml\""));
   // what an archive claims is not allocated
   EXPECT_NE(refusal(archive({{"bindata/data.bin", points}, {"main.xml", xml({})}}, 0xfffffff0u)), "none");
@@ -153,6 +155,65 @@ TEST(X3p, ForgedAndDamagedArchivesAreRefusedInALine) {
   std::string flipped = good;  // the archive's own checksum tells
   flipped[good.find("PK\x01\x02") - 5] ^= 1;
   EXPECT_THAT(refusal(flipped), HasSubstr("damaged"));
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+// What writers do differently and readers of theirs take: the same heights from each.
+TEST(X3p, VariantsOfOneMap) {
+  const std::string points = matrix<std::int16_t>({0, 1, -2, 300, 4, 5}), mask = "\x3f",
+                    description = xml({.mask_name = "bindata/valid.bin"});
+  const auto in = [&](const std::string& folder, const std::string& main) {
+    return archive(
+        {{folder + "bindata/data.bin", points}, {folder + "bindata/valid.bin", mask}, {folder + "main.xml", main}});
+  };
+  const std::vector<std::pair<std::string, std::string>> variants = {
+      {"as it is", in("", description)},
+      {"a top folder", in("scan 7/", description)},
+      {"a deeper folder", in("a/b/", description)},
+      {"beside copies deeper down", archive({{"old/main.xml", "<other/>"},
+                                             {"main.xml", description},
+                                             {"bindata/data.bin", points},
+                                             {"bindata/valid.bin", mask}})},
+      {"another prefix", in("", replaced(replaced(description, "p:ISO", "x:ISO"), "xmlns:p", "xmlns:x"))},
+      {"a prefix everywhere", in("", std::regex_replace(description, std::regex("<(/?)([A-Z])"), "<$1n:$2"))},
+      {"no prefix", in("", replaced(replaced(description, "p:ISO", "ISO"), "xmlns:p", "xmlns"))},
+      {"root ISO5436", in("", replaced(description, "p:ISO5436_2", "ISO5436"))},
+      {"root ISO25178-72", in("t/", replaced(description, "p:ISO5436_2", "iso:ISO25178-72"))},
+      {"backslashes", in("", replaced(description, "bindata/", "bindata\\"))},
+      {"names with backslashes",
+       archive(
+           {{"scan\\bindata\\data.bin", points}, {"scan\\bindata\\valid.bin", mask}, {"scan\\main.xml", description}})},
+      {"links from the root", in("t/", replaced(description, "bindata/", "/bindata/"))},
+      {"links from the root of the archive", in("t/", replaced(description, "bindata/", "t/bindata/"))},
+      {"other letters", in("", replaced(description, "bindata/data.bin", "bindata/DATA.bin"))},
+      {"no feature type", in("", replaced(description, "<FeatureType>SUR</FeatureType>", ""))}};
+  for (const auto& [what, file] : variants) {
+    SCOPED_TRACE(what);
+    ASSERT_EQ(refusal(file), "none");
+    const HeightMap map = parse_height_map(file, "t.x3p");
+    ASSERT_EQ(map.z_m.size(), 6u);
+    EXPECT_NEAR(map.at(0, 1), 305e-9, 1e-20);
+    EXPECT_DOUBLE_EQ(map.step_y_m, 3e-6);
+  }
+  // Heights that are absolute have no increment: 0 is not their unit.
+  const std::string metres = matrix<double>({1e-7, 0, 0, 0, 0, 2e-7});
+  EXPECT_EQ(parse_height_map(archive({{"main.xml", xml({.type = "D", .z = "<Increment>0</Increment>"})},
+                                      {"bindata/data.bin", metres}}),
+                             "t")
+                .at(2, 1),
+            2e-7);
+  EXPECT_THAT(refusal(in("", replaced(replaced(description, "<CZ><AxisType>A", "<CZ><AxisType>I"), "<Increment>1e-9<",
+                                      "<Increment>0<"))),
+              HasSubstr("step of height of 0"));
+  EXPECT_THAT(refusal(in("", replaced(description, ">SUR<", ">PCL<"))), HasSubstr("cloud of points"));
+  EXPECT_THAT(refusal(in("", replaced(description, ">SUR<", ">PRF<"))), HasSubstr("profile"));
+  EXPECT_THAT(refusal(archive({{"not-main.xml", description}, {"bindata/data.bin", points}})),
+              HasSubstr("has no file \"main.xml\""));
 }
 
 TEST(HeightMap, WhatIsWrittenIsReadAgain) {
@@ -172,7 +233,7 @@ TEST(HeightMap, WhatIsWrittenIsReadAgain) {
         EXPECT_NEAR(back.z_m[i], map.z_m[i], std::string_view(name) == "m.x3p" ? 0 : 2e-13) << name;
     }
   }
-  EXPECT_TRUE(is_height_map(read_file(folder / "m.x3p").substr(0, 16)));
+  EXPECT_TRUE(is_height_map(read_file(folder / "m.x3p").substr(0, height_map_beginning)));
   const std::string first = read_file(folder / "m.x3p");
   write_height_map(folder / "n.x3p", map);
   EXPECT_EQ(first, read_file(folder / "n.x3p"));
