@@ -16,6 +16,7 @@
 #include <exception>
 
 #include "base/error.h"
+#include "io/little_endian.h"
 #include "io/raster_header.h"
 
 namespace gonio::io {
@@ -96,7 +97,26 @@ std::string shown(std::string what) {
   return what;
 }
 
+// The library allocates what an attribute claims before it reads it. Name, type, both ended by a zero, length, value;
+// an empty name ends them. What is wrong with the rest, the library says.
+void check_attributes(const std::string& bytes, const std::string& place) {
+  std::size_t at = 8;  // behind the signature and the version
+  while (at < bytes.size() && bytes[at] != '\0') {
+    const std::size_t name = bytes.find('\0', at), type = name == std::string::npos ? name : bytes.find('\0', name + 1);
+    if (type == std::string::npos || bytes.size() - type < 5) return;
+    const auto length = stored_at<std::int32_t>(bytes, type + 1);
+    const std::size_t left = bytes.size() - type - 5;
+    if (length < 0 || static_cast<std::size_t>(length) > left)
+      throw Error(Exit::data, place,
+                  "its head claims " + std::to_string(length) + " bytes for one entry, and " + std::to_string(left) +
+                      " are left",
+                  "export or copy it again");
+    at = type + 5 + static_cast<std::size_t>(length);
+  }
+}
+
 Image decode(const std::string& bytes, const std::string& place) {
+  check_attributes(bytes, place);
   Imf::Header::setMaxImageSize(longest_side_px, longest_side_px);
   MemoryInput stream(bytes);
   Imf::InputFile file(stream, 0);
@@ -138,6 +158,7 @@ Image decode_exr(const std::string& bytes, const std::string& place) {
 
 ExrAttributes exr_attributes(const std::string& bytes, const std::string& place) {
   return guarded(place, [&] {
+    check_attributes(bytes, place);
     MemoryInput stream(bytes);
     const Imf::InputFile file(stream, 0);
     ExrAttributes texts;

@@ -100,6 +100,22 @@ TEST(Exr, AnySingleDamagedByteIsHandled) {
   }
 }
 
+TEST(Exr, AHugeEntryOfTheHeadIsRefusedBeforeAnythingIsAllocated) {
+  const tests::ScratchFolder folder;
+  write_picture(folder / "a.exr", random_image(16, 16, {"R", "G", "B"}, 8));
+  for (const std::int32_t length : {2147483647, -1, 100000}) {
+    std::string bytes = read_file(folder / "a.exr");
+    std::memcpy(bytes.data() + bytes.find("compression", bytes.find("compression") + 1) + 12, &length, 4);
+    try {
+      decode_exr(bytes, "b.exr");
+      ADD_FAILURE() << length;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), Exit::data);
+      EXPECT_THAT(error.problem(), testing::HasSubstr("claims " + std::to_string(length) + " bytes"));
+    }
+  }
+}
+
 TEST(Exr, AHugeWindowIsRefusedBeforeAnythingIsAllocated) {
   const tests::ScratchFolder folder;
   write_picture(folder / "a.exr", random_image(16, 16, {"R", "G", "B"}, 8));
