@@ -14,21 +14,27 @@ namespace {
 using namespace gonio::relief;
 
 // Writes the map and enters it; the relief's name.
-std::string written(cli::Invocation& call, const char* kind, const Made& what) {
+std::string written(cli::Invocation& call, const std::filesystem::path& to, const char* kind, const Made& what) {
   const io::HeightMap map = map_of(what.relief);
-  io::write_height_map(call.text("to"), map);
-  const std::string name = enter_map(call.document, call.text("to"), map);
+  io::write_height_map(to, map);
+  const std::string name = enter_map(call.document, to, map);
   manifest::ReliefMap& relief = call.document.reliefs.at(name);
   relief.kind = kind, relief.design = what.design;
   return name;
 }
 
 Exit generate(cli::Invocation& call) {
-  written(call, call.text("ACTION").c_str(), made(call));
+  const std::string& kind = call.text("ACTION");
+  const std::filesystem::path to =
+      call.given("to") ? std::filesystem::path(call.text("to")) : call.output_path(kind + ".x3p");
+  written(call, to, kind.c_str(), made(call));
   return Exit::done;
 }
 
 Exit fit_ground(cli::Invocation& call) {
+  const std::filesystem::path page = call.given("html") ? std::filesystem::path(call.text("html"))
+                                     : call.out.empty() ? std::filesystem::path()
+                                                        : call.output_path("report.html");
   std::vector<io::HeightMap> maps;
   std::vector<std::string> files, names;
   for (const AskedMap& asked : maps_asked(call)) {
@@ -40,9 +46,10 @@ Exit fit_ground(cli::Invocation& call) {
       fit_ground_noise(maps, files, {.parts = call.given("parts") ? static_cast<int>(call.integer("parts")) : 0});
   manifest::GroundNoiseFit entry = ground_entry(ground, call.given("layer") ? call.number("layer") : 0);
   entry.reliefs = names;
-  if (call.given("html")) write_file(call.text("html"), ground_page(ground, files));
+  if (!page.empty()) write_file(page, ground_page(ground, files));
   if (call.given("to"))
-    entry.example = written(call, "noise", noise_like(ground, maps[0], call.seed, call.flag("periodic")));
+    entry.example =
+        written(call, call.text("to"), "noise", noise_like(ground, maps[0], call.seed, call.flag("periodic")));
   call.document.ground_noises[call.text("name")] = std::move(entry);
   return Exit::done;
 }
@@ -52,8 +59,8 @@ void check(cli::Invocation& call) {
   if (fits) check_maps(call);
   if (!fits && !call.texts("MAP").empty())
     throw Error(Exit::usage, call.texts("MAP").front(), "is not read by " + call.text("ACTION"), "leave it out");
-  if (!fits && !call.given("to"))
-    throw Error(Exit::usage, "--to", "is missing", "name the map to write: --to relief.x3p");
+  if (!fits && !call.given("to") && call.out.empty())
+    throw Error(Exit::usage, "--to", "is missing", "name the map to write: --to relief.x3p, or --out DIR");
   if (call.given("to") && !io::writes_height_map(call.text("to")))
     throw Error(Exit::usage, call.text("to"), "is no kind of height map that gonio writes",
                 "name it .sur, .x3p or .exr");
@@ -81,9 +88,12 @@ const cli::Program& gonio_program() {
                     .required = true},
                    map_operand()},
       .standalone = {"sq", "angle", "amplitude"},
+      .takes_out = true,
       .takes_seed = true,
       .sections_read = {"files", "reliefs"},
       .sections_written = {"files", "reliefs", "ground_noises"},
+      .files = {{"noise.x3p, ridges.x3p, sinusoid.x3p", "the map that was made, where --to names no other place"},
+                {"report.html", "ground-noise: the report"}},
       .references = {"Lewis, Algorithms for solid noise synthesis, SIGGRAPH 1989.",
                      "Frisvad & Wyvill, Fast high-quality noise, GRAPHITE 2007.",
                      "Luongo et al., Microstructure control in 3D printing with digital light processing, Computer "

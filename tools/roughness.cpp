@@ -37,7 +37,15 @@ void check(cli::Invocation& call) {
     if (call.given(option)) check_writable(call.text(option));
 }
 
+// Named by the user, else below --out, else nowhere.
+std::filesystem::path place_of(const cli::Invocation& call, const char* option, const char* name) {
+  if (call.given(option)) return call.text(option);
+  return call.out.empty() ? std::filesystem::path() : call.output_path(name);
+}
+
 Exit run(cli::Invocation& call) {
+  const std::filesystem::path csv = place_of(call, "csv", "roughness.csv"),
+                              page = place_of(call, "html", "report.html");
   const Treatment treatment = treatment_asked(call);
   std::vector<Measured> all;
   for (const AskedMap& asked : maps_asked(call)) {
@@ -45,8 +53,8 @@ Exit run(cli::Invocation& call) {
     all.push_back(measured(read.map, treatment, read.file));
     enter_roughness(call.document.reliefs.at(read.name), all.back());
   }
-  if (call.given("csv")) write_file(call.text("csv"), csv_of(all));
-  if (call.given("html")) write_file(call.text("html"), roughness_page(all));
+  if (!csv.empty()) write_file(csv, csv_of(all));
+  if (!page.empty()) write_file(page, roughness_page(all));
   return Exit::done;
 }
 
@@ -67,8 +75,10 @@ const cli::Program& gonio_program() {
       .synopsis = {"[OPTION]... MAP...", "[OPTION]... [-i FILE | manifest.json]"},
       .options = options(),
       .operands = {map_operand()},
+      .takes_out = true,
       .sections_read = {"files", "reliefs"},
       .sections_written = {"files", "reliefs"},
+      .files = {{"report.html", "the report page"}, {"roughness.csv", "the figures as a table"}},
       .references = {"ISO 25178-2, Surface texture: areal: terms, definitions and parameters, 2021.",
                      "ISO 16610-61, Filtration: linear areal filters: Gaussian filters, 2015.",
                      "Flyvbjerg & Petersen, Error estimates on averages of correlated data, J. Chem. Phys. 91, 1989.",

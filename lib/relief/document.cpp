@@ -23,10 +23,7 @@ std::string name_of(const manifest::Document& document, const std::string& file,
 }
 
 io::HeightPicture picture_for(const cli::Invocation& call, const manifest::ReliefMap& relief) {
-  io::HeightPicture picture;
-  if (relief.step_m.size() == 2) picture.step_x_m = relief.step_m[0], picture.step_y_m = relief.step_m[1];
-  picture.unit_m = relief.unit_m.value_or(0);
-  picture.channel = relief.channel;
+  io::HeightPicture picture = picture_of(relief);
   const io::HeightPicture said = picture_asked(call);
   if (said.step_x_m > 0) picture.step_x_m = picture.step_y_m = said.step_x_m;
   if (said.step_y_m > 0) picture.step_y_m = said.step_y_m;
@@ -56,7 +53,7 @@ cli::Option map_operand() {
   return {.name = "MAP",
           .type = cli::Type::input_file,
           .help =
-              "Height maps: .sur, .opd, .nms, .x3p, OpenEXR or TIFF; or one manifest that ends in .json. Without "
+              "Height maps: .sur, .opd, .nms, .x3p, .plu, OpenEXR or TIFF; or one manifest that ends in .json. Without "
               "any: the reliefs of the manifest.",
           .repeat = true};
 }
@@ -87,7 +84,16 @@ std::vector<AskedMap> maps_asked(const cli::Invocation& call) {
 }
 
 void check_maps(const cli::Invocation& call) {
+  picture_asked(call);
   maps_asked(call);
+}
+
+io::HeightPicture picture_of(const manifest::ReliefMap& relief) {
+  io::HeightPicture picture;
+  if (relief.step_m.size() == 2) picture.step_x_m = relief.step_m[0], picture.step_y_m = relief.step_m[1];
+  picture.unit_m = relief.unit_m.value_or(0);
+  picture.channel = relief.channel;
+  return picture;
 }
 
 NamedMap read_map(cli::Invocation& call, const AskedMap& asked) {
@@ -104,12 +110,12 @@ NamedMap read_map(cli::Invocation& call, const AskedMap& asked) {
   call.note_input(asked.file);
   const io::HeightPicture picture = picture_asked(call);
   NamedMap read{{}, asked.file.string(), io::read_height_map(asked.file, picture)};
-  read.name = enter_map(document, asked.file, read.map);
-  remember(document.reliefs.at(read.name), read.map, picture);
+  read.name = enter_map(document, asked.file, read.map, picture);
   return read;
 }
 
-std::string enter_map(manifest::Document& document, const fs::path& path, const io::HeightMap& map) {
+std::string enter_map(manifest::Document& document, const fs::path& path, const io::HeightMap& map,
+                      const io::HeightPicture& picture) {
   const auto before = document.files;
   const std::string stem = file_stem(path.stem().string());
   const std::string id = manifest::add_file(document, path, stem), name = name_of(document, id, stem);
@@ -117,7 +123,7 @@ std::string enter_map(manifest::Document& document, const fs::path& path, const 
   manifest::ReliefMap& relief = document.reliefs[name];
   if (known != before.end() && known->second.sha256 != document.files.at(id).sha256) relief = {};
   relief.file = id;
-  remember(relief, map, {});
+  remember(relief, map, picture);
   return name;
 }
 

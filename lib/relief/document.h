@@ -30,10 +30,13 @@ struct NamedMap {
   std::string file;  // as messages and pages call it
   io::HeightMap map;
 };
+// What the manifest remembers of a picture's numbers.
+io::HeightPicture picture_of(const manifest::ReliefMap& relief);
 // Reads it and enters it. A relief whose file has changed since is entered anew: what was said of it no longer holds.
 NamedMap read_map(cli::Invocation& call, const AskedMap& asked);
-// Enters the map that was written to `path`; the relief's name.
-std::string enter_map(manifest::Document& document, const std::filesystem::path& path, const io::HeightMap& map);
+// Enters the map that lies at `path`, and what a picture's numbers mean; the relief's name.
+std::string enter_map(manifest::Document& document, const std::filesystem::path& path, const io::HeightMap& map,
+                      const io::HeightPicture& picture = {});
 
 // What the command line says of levelling and filters, else what the relief's figures rest on, else levelling alone.
 Treatment treatment_for(const cli::Invocation& call, const manifest::ReliefMap& relief);

@@ -2,6 +2,10 @@
 #include "relief/map_options.h"
 
 #include <algorithm>
+#include <cctype>
+
+#include "base/error.h"
+#include "base/quantity.h"
 
 namespace gonio::relief {
 
@@ -12,33 +16,62 @@ const std::vector<std::string>& levelling_names() {
   return names;
 }
 
-std::vector<cli::Option> map_options() {
-  const auto length = [](const char* name, const char* help) {
-    return cli::Option{
-        .name = name, .type = Type::quantity, .help = help, .dimension = Dimension::length, .lower = 1e-12, .upper = 1};
-  };
-  return {{.name = "levelling",
-           .type = Type::choice,
-           .help = "What is taken off the heights first, fitted by least squares; their mean always is.",
-           .preset = "plane",
-           .choices = levelling_names()},
-          length("s-filter",
-                 "Nesting index of the S-filter, which smooths: Gaussian, half of such a wave passes. Default: none."),
-          length("l-filter", "Nesting index of the L-filter, which takes longer waves away. Default: none."),
-          length("step", "Distance of neighbouring points, where an OpenEXR or TIFF does not say it."),
-          length("step-y", "That along columns, where it is another."),
-          length("unit", "What a height of 1 means in an OpenEXR (default: 1 m) or TIFF."),
+namespace {
+
+constexpr double shortest_m = 1e-12, longest_m = 1;
+
+cli::Option map_length(const char* name, const char* help) {
+  return {.name = name,
+          .type = Type::quantity,
+          .help = help,
+          .dimension = Dimension::length,
+          .lower = shortest_m,
+          .upper = longest_m};
+}
+
+// "um" is what people say for 1um.
+double unit_of_heights(const std::string& text) {
+  const bool bare = !text.empty() && std::isalpha(static_cast<unsigned char>(text[0]));
+  const double metres = parse_quantity((bare ? "1" : "") + text, Dimension::length, "--unit");
+  if (!(metres >= shortest_m && metres <= longest_m))
+    throw Error(Exit::usage, "--unit", "'" + text + "' is outside 1e-12 to 1 m", "say what a height of 1 means: um");
+  return metres;
+}
+
+}  // namespace
+
+std::vector<cli::Option> picture_options() {
+  return {map_length("step", "Distance of neighbouring points, where an OpenEXR or TIFF does not say it."),
+          map_length("step-y", "That along columns, where it is another."),
+          {.name = "unit",
+           .type = Type::text,
+           .help = "What a height of 1 means in an OpenEXR (default: 1 m) or TIFF: um, 25nm.",
+           .metavar = "LENGTH"},
           {.name = "channel",
            .type = Type::text,
            .help = "Channel of an OpenEXR that holds the heights, where it has several and none named Z.",
            .metavar = "NAME"}};
 }
 
+std::vector<cli::Option> map_options() {
+  std::vector<cli::Option> all = {
+      {.name = "levelling",
+       .type = Type::choice,
+       .help = "What is taken off the heights first, fitted by least squares; their mean always is.",
+       .preset = "plane",
+       .choices = levelling_names()},
+      map_length("s-filter",
+                 "Nesting index of the S-filter, which smooths: Gaussian, half of such a wave passes. Default: none."),
+      map_length("l-filter", "Nesting index of the L-filter, which takes longer waves away. Default: none.")};
+  for (cli::Option& option : picture_options()) all.push_back(std::move(option));
+  return all;
+}
+
 io::HeightPicture picture_asked(const cli::Invocation& call) {
   io::HeightPicture picture;
   if (call.given("step")) picture.step_x_m = picture.step_y_m = call.number("step");
   if (call.given("step-y")) picture.step_y_m = call.number("step-y");
-  if (call.given("unit")) picture.unit_m = call.number("unit");
+  if (call.given("unit")) picture.unit_m = unit_of_heights(call.text("unit"));
   if (call.given("channel")) picture.channel = call.text("channel");
   return picture;
 }

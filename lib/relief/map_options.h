@@ -9,7 +9,8 @@
 
 namespace gonio::relief {
 
-std::vector<cli::Option> map_options();
+std::vector<cli::Option> picture_options();  // --step, --step-y, --unit, --channel
+std::vector<cli::Option> map_options();      // these, --levelling and the filters
 io::HeightPicture picture_asked(const cli::Invocation& call);
 Treatment treatment_asked(const cli::Invocation& call);
 const std::vector<std::string>& levelling_names();

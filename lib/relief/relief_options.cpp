@@ -78,9 +78,7 @@ std::vector<cli::Option> relief_options() {
        .preset = "ground"},
       {.name = "html", .type = Type::output_file, .help = "ground-noise: write the report."},
       relief_option()};
-  for (cli::Option& option : map_options())
-    if (option.name != "levelling" && option.name != "s-filter" && option.name != "l-filter")
-      all.push_back(std::move(option));
+  for (cli::Option& option : picture_options()) all.push_back(std::move(option));
   for (cli::Option& option : all)
     if (option.name == "step")
       option.help = "noise: distance of neighbouring points. ground-noise: that of an OpenEXR or TIFF.";

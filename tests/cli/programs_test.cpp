@@ -48,6 +48,21 @@ TEST(Programs, DescriptionsAreComplete) {
   }
 }
 
+// What one program asks before it replaces a file, all ask: whoever writes files has a folder for them, --out, and
+// refuses to replace what lies there without --force.
+TEST(Programs, WhoeverWritesFilesTakesOutAndForce) {
+  for (const auto* program : cli::all_programs()) {
+    const bool writes = !program->files.empty() || std::ranges::any_of(program->options, [](const cli::Option& o) {
+      return o.type == cli::Type::output_file;
+    });
+    if (!writes) continue;
+    std::set<std::string> names;
+    for (const auto& o : all_options(*program)) names.insert(o.name);
+    EXPECT_THAT(names, testing::IsSupersetOf({"out", "force"})) << program->name;
+    EXPECT_FALSE(program->files.empty()) << program->name << " does not say what it writes below --out";
+  }
+}
+
 TEST(Programs, HelpVersionAndDescriptionGoToStandardOutput) {
   for (const auto* program : cli::all_programs()) {
     SCOPED_TRACE(program->name);

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "base/atomic_file.h"
@@ -17,6 +19,27 @@ namespace {
 
 using testing::HasSubstr;
 using Words = std::vector<std::string>;
+
+// A TIFF of 32-bit floats in one strip, x + 10 y, little-endian, from its description.
+std::string float_tiff(unsigned width, unsigned height) {
+  std::string file;
+  const auto put = [&file](unsigned value, int bytes) {
+    for (int i = 0; i < bytes; ++i) file += static_cast<char>(value >> (8 * i) & 255);
+  };
+  file = "II";
+  put(42, 2), put(8 + 4 * width * height, 4);
+  for (unsigned y = 0; y < height; ++y)
+    for (unsigned x = 0; x < width; ++x) put(std::bit_cast<unsigned>(static_cast<float>(x + 10 * y)), 4);
+  const std::vector<std::array<unsigned, 4>> entries = {
+      {256, 3, 1, width}, {257, 3, 1, height}, {258, 3, 1, 32},
+      {259, 3, 1, 1},     {262, 3, 1, 1},      {273, 4, 1, 8},
+      {277, 3, 1, 1},     {278, 3, 1, height}, {279, 4, 1, 4 * width * height},
+      {339, 3, 1, 3}};
+  put(static_cast<unsigned>(entries.size()), 2);
+  for (const auto& [tag, type, count, value] : entries) put(tag, 2), put(type, 2), put(count, 4), put(value, 4);
+  put(0, 4);
+  return file;
+}
 
 // The manifest that a program wrote, read as the next one would.
 manifest::Document document_of(const tests::Ended& ended, const tests::ScratchFolder& folder) {
@@ -40,6 +63,55 @@ TEST(Roughness, EntersFiguresAndWritesTableAndPage) {
   EXPECT_EQ(d.files.at(map.file).bytes, std::filesystem::file_size(folder / "wave.x3p"));
   EXPECT_THAT(read_file(folder / "r.csv"), HasSubstr("\"wave.x3p\",Sa,m,"));
   EXPECT_THAT(read_file(folder / "r.html"), HasSubstr("Sku"));
+}
+
+TEST(Roughness, WritesBelowOutAndReplacesWithForceOnly) {
+  const tests::ScratchFolder folder;
+  io::write_height_map(folder / "wave.x3p", map_of(sinusoid(2e-6, 1e-4, 1e-4)));
+  EXPECT_EQ(tests::run({"roughness", "--out", "o", "wave.x3p"}, folder.path()).status, 0);
+  EXPECT_THAT(read_file(folder / "o/roughness.csv"), HasSubstr("\"wave.x3p\",Sa,m,"));
+  EXPECT_THAT(read_file(folder / "o/report.html"), HasSubstr("Sku"));
+  write_file(folder / "o/roughness.csv", "mine");
+  const auto again = tests::run({"roughness", "--out", "o", "wave.x3p"}, folder.path());
+  EXPECT_EQ(again.status, 73);
+  EXPECT_THAT(again.err, HasSubstr("exists; --force replaces it"));
+  EXPECT_EQ(read_file(folder / "o/roughness.csv"), "mine");
+  EXPECT_EQ(tests::run({"roughness", "--out", "o", "--force", "wave.x3p"}, folder.path()).status, 0);
+  EXPECT_THAT(read_file(folder / "o/roughness.csv"), HasSubstr("Sa"));
+}
+
+TEST(Relief, WritesBelowOutAndReplacesWithForceOnly) {
+  const tests::ScratchFolder folder;
+  const Words make{"relief", "sinusoid", "--amplitude", "1um", "--wave-x", "0.1mm", "--out", "o"};
+  const manifest::Document d = document_of(tests::run(make, folder.path()), folder);
+  EXPECT_EQ(d.files.at(d.reliefs.at("sinusoid").file).path, "o/sinusoid.x3p");
+  const auto again = tests::run(make, folder.path());
+  EXPECT_EQ(again.status, 73);
+  EXPECT_THAT(again.err, HasSubstr("exists; --force replaces it"));
+  Words forced = make;
+  forced.push_back("--force");
+  EXPECT_EQ(tests::run(forced, folder.path()).status, 0);
+}
+
+TEST(Roughness, UnitsMayBeNamedAloneAndAreChecked) {
+  const tests::ScratchFolder folder;
+  write_file(folder / "m.tif", float_tiff(4, 3));
+  const auto measured = [&](const Words& options) {
+    Words words{"roughness", "--levelling", "none", "--step", "2um", "m.tif"};
+    words.insert(words.end(), options.begin(), options.end());
+    return tests::run(words, folder.path());
+  };
+  const manifest::Document d = document_of(measured({"--unit", "um"}), folder);
+  EXPECT_EQ(d.reliefs.at("m").unit_m, 1e-6);
+  EXPECT_EQ(document_of(measured({"--unit", "25nm"}), folder).reliefs.at("m").unit_m, 25e-9);
+  for (const char* unit : {"deg", "-1um", "3km", "", "5"}) {
+    const auto refused = measured({"--unit", unit});
+    EXPECT_EQ(refused.status, 64) << unit << refused.err;
+    EXPECT_THAT(refused.err, HasSubstr("--unit"));
+  }
+  const auto without = measured({});
+  EXPECT_EQ(without.status, 65);
+  EXPECT_THAT(without.err, HasSubstr("--unit um"));
 }
 
 TEST(Roughness, PassesOnWhatItDoesNotKnowAndTheMapsAreItsOwn) {

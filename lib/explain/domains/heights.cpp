@@ -7,7 +7,7 @@ namespace gonio::explain::domains {
 const Domain& heights() {
   static const Domain domain{
       .name = "heights",
-      .sentence = "a table of the model \"heights\", whose file is a height map (.sur, .opd, .nms)",
+      .sentence = "a table of the model \"heights\", whose file is a height map (.sur, .opd, .nms, .x3p, .plu, OpenEXR, TIFF)",
       .order = 5,
       .applies = has_heights,
       .problems =

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "explain/heights/heights_problem.h"
+#include "relief/document.h"
 
 namespace gonio::explain {
 namespace {
@@ -16,6 +17,13 @@ const manifest::MechanismUse* use_of(const manifest::Document& document, const c
   if (found == document.mechanisms.end()) return nullptr;
   const std::vector<std::string>& on = found->second.on;
   return on.empty() || std::find(on.begin(), on.end(), surface) != on.end() ? &found->second : nullptr;
+}
+
+// "reliefs" says what the numbers of a picture mean.
+io::HeightPicture picture_of_file(const manifest::Document& document, const std::string& file) {
+  for (const auto& [name, relief] : document.reliefs)
+    if (relief.file == file) return relief::picture_of(relief);
+  return {};
 }
 
 }  // namespace
@@ -34,8 +42,9 @@ std::vector<HeightsInput> heights_inputs(const manifest::Document& document) {
     input.place = manifest::place(document, "/tables/" + name);
     if (table.file.empty())
       throw Error(Exit::data, input.place, "names no file",
-                  "give the height map: \"file\": id of a .sur, .opd, .nms or .x3p");
-    input.map = io::read_height_map(manifest::resolve(document, table.file, "/tables/" + name + "/file"));
+                  "give the height map: \"file\": id of a .sur, .opd, .nms, .x3p, .plu, OpenEXR or TIFF");
+    input.map = io::read_height_map(manifest::resolve(document, table.file, "/tables/" + name + "/file"),
+                                    picture_of_file(document, table.file));
     if (const manifest::MechanismUse* use = use_of(document, "surface.micro-ridges", table.surface))
       input.ridges = *use, input.has_ridges = use->parameters.contains("ridge_period_m");
     if (const manifest::MechanismUse* use = use_of(document, "surface.anisotropy", table.surface))
