@@ -20,7 +20,7 @@ const cli::Program& gonio_program() {
       .takes_out = true,
       .takes_seed = true,
       .sections_read = {"files", "tables", "goniometer", "images", "cameras", "lights", "surfaces", "mechanisms"},
-      .sections_written = {"files", "surfaces", "surface_fits"},
+      .sections_written = {"files", "surfaces", "surface_fits", "tables"},
       .files = {{"NAME.html", "the report page"},
                 {"NAME.csv", "samples with prediction and residual"},
                 {"NAME.binary", "--reconstruct: the whole table in MERL's format"},

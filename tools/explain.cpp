@@ -1,11 +1,14 @@
 // explain: from a mismatch between recordings and simulation to the physics that was left out
 // (explain/explain_document.h).
+#include <filesystem>
 #include <iostream>
 
 #include "cli/program.h"
 #include "explain/domains.h"
 #include "explain/explain_document.h"
 #include "explain/tables/quick_table.h"
+#include "goniometry/sample_table.h"
+#include "relief/map_options.h"
 
 namespace gonio::tools::explain {
 namespace {
@@ -34,6 +37,10 @@ gonio::explain::ExplainRequest request_of(cli::Invocation& call) {
 void read_table(cli::Invocation& call) {
   const std::vector<std::string>& operands = call.texts("FILE");
   if (operands.empty() && !call.given("table")) {
+    for (const char* name : {"step", "step-y", "unit", "channel"})
+      if (call.given(name))
+        throw Error(Exit::usage, std::string("--") + name, "says something about a height map, and none is given",
+                    "name it: explain map.tif --step 1.6um --unit um; in a manifest reliefs say it");
     for (const char* name : {"model", "observed", "sigma", "group", "block", "units", "free"})
       if (call.given(name))
         throw Error(Exit::usage, std::string("--") + name, "says something about a table, and none is given",
@@ -44,18 +51,28 @@ void read_table(cli::Invocation& call) {
     throw Error(Exit::usage, "explain", "has more than one thing to explain", "give one manifest, or one table");
   gonio::explain::tables::QuickTable quick;
   quick.file = operands.empty() ? call.text("table") : operands[0];
+  if (!std::filesystem::exists(quick.file))
+    throw Error(Exit::no_input, quick.file.string(), "does not exist", "name a table, a height map or a manifest");
   call.note_input(quick.file);
   call.has_document = true;
-  if (gonio::explain::tables::is_height_map(quick.file)) {
-    call.document = gonio::explain::tables::height_map_document(quick.file);
+  using gonio::explain::tables::HeightMapKind;
+  const HeightMapKind heights = gonio::explain::tables::height_map_kind(quick.file);
+  for (const cli::Option& option : relief::picture_options())
+    if (call.given(option.name) && heights != HeightMapKind::picture)
+      throw Error(Exit::usage, "--" + option.name,
+                  "says what the numbers of an OpenEXR or TIFF mean, and " + quick.file.string() + " is none",
+                  "leave it out");
+  if (heights != HeightMapKind::none) {
+    call.document = gonio::explain::tables::height_map_document(quick.file, relief::picture_asked(call));
     return;
   }
+  const bool reflectance = goniometry::describes_itself(quick.file);
   for (const char* needed : {"model", "observed"})
-    if (!call.given(needed))
+    if (!reflectance && !call.given(needed))
       throw Error(Exit::usage, quick.file.string(), std::string("is a table without --") + needed,
                   "explain data.csv --model 'a*cos(theta)+b' --observed f --free a=1,b=0");
-  quick.model = call.text("model");
-  quick.observed = call.texts("observed");
+  quick.model = call.given("model") ? call.text("model") : "surface";
+  quick.observed = call.given("observed") ? call.texts("observed") : std::vector<std::string>{"f"};
   quick.sigma = call.texts("sigma");
   if (call.given("group")) quick.group = call.text("group");
   if (call.given("block")) quick.block = call.text("block");
@@ -64,8 +81,20 @@ void read_table(cli::Invocation& call) {
   call.document = gonio::explain::tables::quick_document(quick);
 }
 
+// What is written below --out is named after recordings and domains, and only where there is something to show: asked
+// for before the work, by the beginnings of the names.
+void check_out(const cli::Invocation& call) {
+  if (call.out.empty() || call.force || !std::filesystem::is_directory(call.out)) return;
+  for (const auto& entry : std::filesystem::directory_iterator(call.out)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("effect-") || name.starts_with("evidence-"))
+      throw Error(Exit::cannot_create, entry.path().string(), "exists", "--force replaces it");
+  }
+}
+
 void check(cli::Invocation& call) {
   if (call.flag("list")) return;
+  check_out(call);
   gonio::explain::check_hypotheses(call.texts("hypotheses"));
   read_table(call);
   if (!call.has_document)
@@ -90,7 +119,8 @@ std::vector<cli::Option> table_options() {
   return {
       {.name = "table",
        .type = Type::input_file,
-       .help = "Explain this table, CSV or JSON ({\"units\": {...}, \"rows\": [{...}, ...]}), instead of a manifest."},
+       .help =
+           "Explain this table, text in columns, JSON ({\"units\": {...}, \"rows\": [{...}, ...]}), .brdf or .binary."},
       {.name = "model",
        .type = Type::text,
        .help = "What predicts the table: sensor, light, volume, surface, tracks, or an expression over columns.",
@@ -177,6 +207,7 @@ std::vector<cli::Option> engine_options() {
 std::vector<cli::Option> options() {
   std::vector<cli::Option> all = engine_options();
   for (cli::Option& option : table_options()) all.push_back(std::move(option));
+  for (cli::Option& option : relief::picture_options()) all.push_back(std::move(option));
   return all;
 }
 
@@ -187,21 +218,25 @@ const cli::Program& gonio_program() {
       .name = "explain",
       .sentence = "find the physics that a simulation left out",
       .synopsis = {"[OPTION]... [-i FILE | recording.json]",
-                   "[OPTION]... data.csv --model MODEL --observed COLUMN [--free NAME=VALUE,...]", "--list"},
+                   "[OPTION]... data.csv --model MODEL --observed COLUMN [--free NAME=VALUE,...]",
+                   "[OPTION]... paint.brdf", "[OPTION]... map.tif --step LENGTH --unit LENGTH", "--list"},
       .options = options(),
       .operands = {{.name = "FILE",
                     .type = Type::input_file,
-                    .help = "Recordings with their base model, a manifest that ends in .json; or a table as CSV.",
+                    .help =
+                        "Recordings with their base model, a manifest that ends in .json; or a table; or a height map.",
                     .repeat = true}},
       .standalone = {"list", "table"},
       .takes_out = true,
       .takes_seed = true,
       .sections_read = {"files", "boards", "cameras", "images", "meshes", "surfaces", "lights", "objects", "tables",
-                        "mechanisms", "sequences", "reconstructions"},
+                        "mechanisms", "sequences", "reconstructions", "reliefs", "surface_fits"},
       .sections_written = {"boards", "cameras", "images", "surfaces", "lights", "tables", "files", "mechanisms",
-                           "sequences", "explanations"},
+                           "sequences", "reliefs", "explanations"},
       .files = {{"report.html", "one self-contained page: where, which curve, how sure, what to measure next"},
-                {"mask-*.png", "images: where the mismatch is"}},
+                {"effect-IMAGE.exr", "images and stacks: how far the named physics, or the mismatch, moves each pixel"},
+                {"evidence-DOMAIN.csv",
+                 "every observation with its prediction before and after, where there is a mismatch"}},
       .exits = {{Exit::done, "No mismatch that matters, or the physics that explains it is named."},
                 {Exit::negative, "There is a mismatch that matters, and no physics in the library repairs it."},
                 {Exit::quality,

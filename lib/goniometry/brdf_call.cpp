@@ -2,6 +2,7 @@
 #include "goniometry/brdf_call.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -14,6 +15,7 @@
 #include "goniometry/plan.h"
 #include "goniometry/plots.h"
 #include "goniometry/recording.h"
+#include "goniometry/sample_table.h"
 #include "goniometry/spectra.h"
 #include "io/picture.h"
 #include "manifest/fields.h"
@@ -24,6 +26,9 @@ namespace gonio::goniometry {
 namespace {
 
 namespace fs = std::filesystem;
+
+// That change what a table says.
+constexpr std::array<const char*, 6> reading_options = {"columns", "angles", "bands", "mirror", "grazing", "noise"};
 
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
@@ -84,20 +89,24 @@ Basis basis_for(cli::Invocation& call, const Bins& bins) {
 std::vector<Outcome> read_inputs(cli::Invocation& call) {
   const TableOptions options = table_options(call);
   std::vector<Outcome> outcomes;
-  const auto add = [&](const std::string& name, const std::string& source, ReadTable read) {
+  const auto add = [&](const std::string& name, const std::string& source, ReadTable read) -> Outcome& {
     outcomes.push_back({.name = name, .source = source, .read = std::move(read)});
+    return outcomes.back();
   };
+  const bool as_it_is = std::ranges::none_of(reading_options, [&](const char* option) { return call.given(option); });
   for (const std::string& file : call.texts("FILE")) {
     const fs::path path = file;
     call.note_input(path);
-    add(path.stem().string(), path.filename().string(), read_table(path, options));
+    Outcome& outcome = add(path.stem().string(), path.filename().string(), read_table(path, options));
+    if (as_it_is && describes_itself(path)) outcome.file = path;
   }
   if (!outcomes.empty() || !call.has_document) return outcomes;
   const std::vector<std::string>&tables = call.texts("table"), &samples = call.texts("sample");
   const bool all = tables.empty() && samples.empty();
   for (const auto& [name, table] : call.document.tables)
     if (all ? table.model == "surface" : std::ranges::find(tables, name) != tables.end())
-      add(table.surface.empty() ? name : table.surface, "tables/" + name, read_table(call.document, name, options));
+      add(table.surface.empty() ? name : table.surface, "tables/" + name, read_table(call.document, name, options))
+          .table_name = name;
   for (const auto& [name, patch] : call.document.goniometer) {
     const bool tile = !patch.reflectance.empty() || !patch.surface.empty();
     if (all ? tile : std::ranges::find(samples, name) == samples.end()) continue;
@@ -225,6 +234,7 @@ void write_outputs(cli::Invocation& call, Outcome& outcome) {
   }
   write_below(call, outcome, "page", page, page_of(outcome, sphere));
   enter(call.document, outcome, table_file);  // with the files
+  if (whole || outcome.chosen() != nullptr) enter_table(call.document, outcome);
 }
 
 Exit print_plan(cli::Invocation& call) {

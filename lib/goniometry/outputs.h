@@ -22,6 +22,8 @@ struct Outcome {
   std::string name;    // of the surface
   std::string source;  // file, table or goniometer sample
   ReadTable read{};
+  std::filesystem::path file{};  // that alone says all that `read` holds; empty: options had a say, or there is none
+  std::string table_name{};      // in the manifest's tables, where it came from there
   Fits fits{};
   std::optional<Reconstruction> reconstruction{};
   std::shared_ptr<const surface::MeasuredTable> table{};  // of the reconstruction, over table_scale

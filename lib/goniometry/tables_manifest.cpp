@@ -4,6 +4,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "goniometry/sample_table.h"
 #include "goniometry/tables_readings.h"
 
 namespace gonio::goniometry {
@@ -64,7 +65,7 @@ ReadTable read_table(const manifest::Document& document, const std::string& name
     readings = column_readings(inline_table(section, place + "/rows"), stated);
   } else {
     const std::filesystem::path path = manifest::resolve(document, section.file, "/tables/" + name + "/file");
-    if (section.columns.empty()) {
+    if (section.columns.empty() || describes_itself(path)) {
       ReadTable table = read_table(path, options);
       table.samples.name = name;
       return table;

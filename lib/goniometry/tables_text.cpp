@@ -11,6 +11,8 @@
 namespace gonio::goniometry {
 namespace {
 
+constexpr const char* white_space = " \t\r\v\f";
+
 bool is_comment(std::string_view line) {
   return line.starts_with('#') || line.starts_with('%') || line.starts_with('!') || line.starts_with("//");
 }
@@ -70,11 +72,11 @@ std::vector<Line> lines_of(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     std::string line(text.substr(at, end - at));
-    while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t')) line.pop_back();
+    line.resize(line.find_last_not_of(white_space) + 1);
     ++number;
     at = end + 1;
-    if (line.find_first_not_of(" \t") == std::string::npos) continue;
-    lines.push_back({number, line.substr(line.find_first_not_of(" \t"))});
+    if (line.empty()) continue;
+    lines.push_back({number, line.substr(line.find_first_not_of(white_space))});
   }
   return lines;
 }
@@ -143,7 +145,12 @@ TextTable parse_text_table(std::string_view text, const std::string& name) {
     if (!is_comment(lines[i].text)) first = i;
   }
   if (first == lines.size()) throw Error(Exit::data, name, "is empty: it holds no line of numbers");
-  const char separator = separator_of(lines[first].text);
+  char separator = separator_of(lines[first].text);
+  const auto bare = [](const Line& line) {
+    return !is_comment(line.text) && line.text.find('\t') == std::string::npos;
+  };
+  if (separator == '\t' && std::any_of(lines.begin() + static_cast<std::ptrdiff_t>(first), lines.end(), bare))
+    separator = ' ';  // tabs among blanks
   std::vector<std::string> fields = split(lines[first].text, separator);
   const bool named = std::ranges::none_of(fields, is_number);
   if (named && separator == ',') {

@@ -91,6 +91,27 @@ TEST_F(BrdfFit, ReadsBackTheSamplesThatItWrites) {
               b.surfaces.at("paint").parameters.at("alpha").scalar(), 1e-4);
 }
 
+// explain has the samples and the surface that was fitted to them: nothing is left out of its own example, and of one
+// whose second lobe the model lacks, the lobe is.
+TEST_F(BrdfFit, HandsItsSamplesOnToExplain) {
+  write("paint.csv", run({"--example"}).out);
+  const auto explained = [&](const std::vector<std::string>& fit, int status) {
+    const Ended fitted = run(fit);
+    EXPECT_EQ(fitted.status, status) << fitted.err;
+    const Ended ended = tests::Process({"explain", "--dummies", "4"}, folder_.path(), fitted.out).end();
+    EXPECT_TRUE(ended.status == 0 || ended.status == 1) << ended.err;
+    return manifest::parse_document(ended.out, "explained", folder_.path());
+  };
+  const auto own = explained({"--model", "coated-diffuse", "--isotropic", "paint.csv"}, 0);
+  EXPECT_EQ(own.tables.at("paint").surface, "paint");
+  EXPECT_EQ(own.tables.at("paint").sigma, std::vector<std::string>{"f_sigma"});
+  EXPECT_EQ(own.explanations.at(0).find("verdict")->as_string(), "null")
+      << own.explanations.at(0).find("sentence")->as_string();
+  const auto matte = explained({"--model", "diffuse", "paint.csv"}, 2);
+  EXPECT_EQ(matte.explanations.at(0).find("named")->as_array().at(0).find("mechanism")->as_string(),
+            "surface.interface");
+}
+
 TEST_F(BrdfFit, ManifestsWithTables) {
   std::string text = table();
   write("t.csv", text);
@@ -101,6 +122,8 @@ TEST_F(BrdfFit, ManifestsWithTables) {
   EXPECT_NE(ended.status, 65) << ended.err;
   const auto document = manifest::parse_document(ended.out, "out", folder_.path());
   EXPECT_EQ(document.surface_fits.at("t").source, "tables/t");
+  EXPECT_EQ(document.tables.at("t").surface, "t");
+  EXPECT_EQ(document.tables.at("t").file, "f");
   EXPECT_EQ(run({"--table", "u", "m.json"}).status, 65);
 }
 

@@ -11,6 +11,7 @@
 #include "base/random.h"
 #include "base/text.h"
 #include "data.h"
+#include "goniometry/sample_table.h"
 #include "goniometry/tables_text.h"
 #include "io/merl.h"
 #include "manifest/document.h"
@@ -217,6 +218,41 @@ TEST_F(Tables, RecordedTables) {
                  {.columns = parse_columns(columns_text("phi_in", "theta_in", "phi_out", "theta_out"), "")});
   EXPECT_EQ(aluminium.samples.rows() + aluminium.dropped.size(), 1785u);
   EXPECT_EQ(aluminium.convention.mirror, Mirror::opposite);
+}
+
+// What brdf-fit hands on is read again as the same samples: bands by wavelength, holes, noise.
+TEST(SampleTable, RoundTrip) {
+  Samples samples;
+  samples.name = "t";
+  samples.band_name = {"650 nm", "450 nm"}, samples.band_m = {650e-9, 450e-9};
+  Random random(5);
+  for (const Row& row : grid()) {
+    samples.wi.push_back(direction(row.theta_i, row.phi_i)), samples.wo.push_back(direction(row.theta_o, row.phi_o));
+    samples.series.push_back(0), samples.place.push_back("");
+    for (int b = 0; b < 2; ++b)
+      samples.f.push_back(row.f * (1 + b)), samples.sigma.push_back(0.01 + 0.01 * random.uniform());
+  }
+  samples.f[3] = std::nan("");
+  manifest::Document document;
+  document.tables["t"] = sample_table(samples);
+  const std::string text = manifest::print_document(document, ".");
+  const Samples back = read_table(manifest::parse_document(text, "again", "."), "t").samples;
+  ASSERT_EQ(back.rows(), samples.rows());
+  ASSERT_EQ(back.bands(), 2u);
+  EXPECT_NEAR(back.band_m[0], 450e-9, 1e-15);
+  for (std::size_t r = 0; r < back.rows(); ++r) {
+    EXPECT_LT(norm(back.wi[r] - samples.wi[r]), 1e-12);
+    EXPECT_LT(norm(back.wo[r] - samples.wo[r]), 1e-12);
+    for (std::size_t b = 0; b < 2; ++b) {
+      const std::size_t here = 2 * r + b, there = 2 * r + 1 - b;
+      if (there == 3) {
+        EXPECT_TRUE(std::isnan(back.f[here]));
+        continue;
+      }
+      EXPECT_EQ(back.f[here], samples.f[there]);
+      EXPECT_EQ(back.sigma[here], samples.sigma[there]);
+    }
+  }
 }
 
 }  // namespace

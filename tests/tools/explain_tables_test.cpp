@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/atomic_file.h"
@@ -153,6 +154,48 @@ TEST_F(ExplainTables, WhatIsWrongIsSaidInOneLine) {
     EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
     EXPECT_EQ(ended.out, "");
   }
+}
+
+TEST_F(ExplainTables, WhatLiesBelowOutIsReplacedWithForceOnly) {
+  write("d.csv", csv("theta [deg]", degree, 0.08));
+  std::vector<std::string> call = quick("d.csv");
+  call.insert(call.end(), {"--dummies", "2", "--html", "page.html", "--out", "o"});
+  ASSERT_EQ(explain(call).status, 0);
+  ASSERT_TRUE(std::filesystem::exists(folder_ / "o/evidence-tables.csv"));
+  write("o/evidence-tables.csv", "mine");
+  const Ended again = explain(call);
+  EXPECT_EQ(again.status, 73);
+  EXPECT_THAT(again.err, HasSubstr("evidence-tables.csv: exists; --force replaces it"));
+  EXPECT_EQ(read_file(folder_ / "o/evidence-tables.csv"), "mine");
+  call.push_back("--force");
+  EXPECT_EQ(explain(call).status, 0);
+  EXPECT_NE(read_file(folder_ / "o/evidence-tables.csv"), "mine");
+}
+
+// Options that say what a picture's numbers mean say nothing about other files.
+TEST_F(ExplainTables, HeightMapsAndTablesHaveTheirOwnOptions) {
+  write("d.csv", csv("theta [deg]", degree, 0));
+  std::vector<std::string> call = quick("d.csv");
+  call.insert(call.end(), {"--step", "1um"});
+  const Ended step = explain(call);
+  EXPECT_EQ(step.status, 64);
+  EXPECT_THAT(step.err, HasSubstr("--step: says what the numbers of an OpenEXR or TIFF mean, and d.csv is none"));
+  EXPECT_EQ(explain({"--unit", "um"}).status, 64);
+  EXPECT_EQ(explain({"none.tif", "--step", "1um"}).status, 66);
+  write("m.tif", std::string("II*\0\x08\0\0\0\0\0", 10));
+  const Ended cut = explain({"m.tif", "--step", "1um", "--unit", "um"});
+  EXPECT_EQ(cut.status, 65);
+  EXPECT_THAT(cut.err, HasSubstr("m.tif: "));
+  EXPECT_EQ(std::ranges::count(cut.err, '\n'), 1);
+}
+
+TEST_F(ExplainTables, ABlankSeparatedTableIsReadLikeAnyOther) {
+  std::string text = csv("theta_deg", degree, 0.08);
+  std::ranges::replace(text, ',', ' ');
+  write("d.txt", text);
+  const Ended ended = explain(quick("d.txt"));
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("\"light.drift\""));
 }
 
 }  // namespace

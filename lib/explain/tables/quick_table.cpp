@@ -11,8 +11,8 @@
 #include "base/text.h"
 #include "explain/tables/read_table.h"
 #include "explain/tables/table_model.h"
-#include "io/height_map.h"
 #include "manifest/fields.h"
+#include "relief/document.h"
 
 namespace gonio::explain::tables {
 namespace {
@@ -78,22 +78,28 @@ std::vector<std::pair<std::string, double>> parse_numbers(const std::string& tex
   return numbers;
 }
 
-bool is_height_map(const std::filesystem::path& file) {
-  std::string beginning(16, '\0');
+HeightMapKind height_map_kind(const std::filesystem::path& file) {
+  std::string beginning(io::height_map_beginning, '\0');
   std::ifstream stream(file, std::ios::binary);
   stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
   beginning.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, stream.gcount())));
-  return io::is_height_map(beginning);
+  return io::is_height_map(beginning)       ? HeightMapKind::own
+         : io::is_height_picture(beginning) ? HeightMapKind::picture
+                                            : HeightMapKind::none;
 }
 
-manifest::Document height_map_document(const std::filesystem::path& file) {
+manifest::Document height_map_document(const std::filesystem::path& file, const io::HeightPicture& picture) {
   manifest::Document document;
   document.name = file.string();
   document.allow_outside = true;
   const std::string name = file_stem(file.stem().string());
   manifest::Table section;
   section.model = "heights";
-  section.file = manifest::add_file(document, file, name);
+  if (height_map_kind(file) == HeightMapKind::picture)
+    section.file =
+        document.reliefs.at(relief::enter_map(document, file, io::read_height_map(file, picture), picture)).file;
+  else
+    section.file = manifest::add_file(document, file, name);
   document.tables[name] = std::move(section);
   return document;
 }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/height_map.h"
 #include "manifest/document.h"
 
 namespace gonio::explain::tables {
@@ -21,9 +22,11 @@ struct QuickTable {
 // not state, the rows enter inline in SI. Error(usage) at the option, Error(data) at the file.
 manifest::Document quick_document(const QuickTable& quick);
 
-// A height map (io/height_map.h), which describes itself, as a table of the model "heights".
-bool is_height_map(const std::filesystem::path& file);
-manifest::Document height_map_document(const std::filesystem::path& file);
+// A height map (io/height_map.h) as a table of the model "heights". What a picture's numbers mean, which it does not
+// say itself, enters "reliefs" as roughness(1) writes it.
+enum class HeightMapKind { none, own, picture };
+HeightMapKind height_map_kind(const std::filesystem::path& file);
+manifest::Document height_map_document(const std::filesystem::path& file, const io::HeightPicture& picture = {});
 
 // "a=1,b=0.5" and "theta=deg,f=1/sr". Error(usage) at `place`.
 std::vector<std::pair<std::string, std::string>> parse_pairs(const std::string& text, const std::string& place);

@@ -8,6 +8,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "explain/tables/unit.h"
+#include "goniometry/sample_table.h"
+#include "goniometry/tables_text.h"
 #include "io/csv.h"
 #include "manifest/fields.h"
 
@@ -37,15 +39,19 @@ bool parses(const std::string& text) {
   }
 }
 
-Cells cells_of(const io::Csv& csv) {
-  return {csv.header,
-          csv.rows.size(),
-          [&csv](std::size_t r, std::size_t c) { return !parses(csv.rows[r][c]); },
-          [&csv](std::size_t r, std::size_t c) {
-            return io::csv_number(csv.rows[r][c], csv.place(r) + ": " + csv.header[c]);
+Cells cells_of(const goniometry::TextTable& table) {
+  for (std::size_t c = 0; c < table.heading.size(); ++c)
+    if (table.heading[c].empty())
+      throw Error(Exit::data, table.heading_place(), "column " + std::to_string(c + 1) + " has no name",
+                  "the first line, or the last comment above the numbers, names every column");
+  return {table.heading,
+          table.rows.size(),
+          [&table](std::size_t r, std::size_t c) { return !parses(table.rows[r][c]); },
+          [&table](std::size_t r, std::size_t c) {
+            return io::csv_number(table.rows[r][c], table.place(r) + ": " + table.heading[c]);
           },
-          [&csv](std::size_t r, std::size_t c) { return csv.rows[r][c]; },
-          csv.name + ":1"};
+          [&table](std::size_t r, std::size_t c) { return table.rows[r][c]; },
+          table.heading_place()};
 }
 
 double json_number(const Value& cell, const std::string& place) {
@@ -166,9 +172,17 @@ RawTable raw_of(const Cells& cells, const manifest::Table& section, const std::s
   return table;
 }
 
+RawTable of_samples(const goniometry::ReadTable& read, const manifest::Table& section, const std::string& place) {
+  const manifest::Table all = goniometry::sample_table(read.samples);
+  std::vector<std::string> headings;
+  for (const auto& [column, unit] : all.columns) headings.push_back(column + " [" + unit + "]");
+  return raw_of(cells_of(all.rows, std::move(headings), read.samples.name), section, place);
+}
+
 }  // namespace
 
 RawTable read_raw(const std::filesystem::path& path, const manifest::Table& section, const std::string& place) {
+  if (goniometry::describes_itself(path)) return of_samples(goniometry::read_table(path), section, place);
   const std::string name = path.filename().string(), text = read_file(path, largest_file);
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first != std::string::npos && (text[first] == '{' || text[first] == '[')) {
@@ -176,8 +190,8 @@ RawTable read_raw(const std::filesystem::path& path, const manifest::Table& sect
     Value rows;
     return raw_of(cells_of_objects(file, name, rows), section, place);
   }
-  const io::Csv csv = io::parse_csv(text, name);
-  return raw_of(cells_of(csv), section, place);
+  const goniometry::TextTable table = goniometry::parse_text_table(text, name);
+  return raw_of(cells_of(table), section, place);
 }
 
 RawTable read_inline(const manifest::Table& section, const std::string& place) {

@@ -1,7 +1,8 @@
-// From the manifest's "tables" to numbers in SI: a CSV file with a header line, a JSON file {"units": {...}, "rows":
-// [{column: value, ...}, ...]}, or rows inline. Units come from the manifest's `columns` (SI), and where the file's own
-// heading states one ("theta_i [deg]"), values are converted from that.
-// Where a table names no sigma, columns named after the observed ones are taken: f_sigma is that of f.
+// From the manifest's "tables" to numbers in SI: a file of columns with names (goniometry/tables_text.h), Cornell's
+// .brdf or MERL's .binary (goniometry/sample_table.h), a JSON file {"units": {...}, "rows": [{column: value, ...},
+// ...]}, or rows inline. Units come from the manifest's `columns` (SI), and where the file's own heading states one
+// ("theta_i [deg]"), values are converted from that. Where a table names no sigma, columns named after the observed
+// ones are taken: f_sigma is that of f.
 //
 // Groups, which are held out together: equal values (to a millionth of their range) of the table's `group` column, of
 // the model's own, or of `series`; without these, the rows are cut into contiguous stretches along the telling column

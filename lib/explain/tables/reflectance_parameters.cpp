@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "base/error.h"
 #include "explain/tables/model_parameters.h"
@@ -96,27 +98,38 @@ class Collector {
     scratch_.surfaces = {surface};
   }
 
-  // Values of the base surface in every band, and its free numbers: those marked free, else its colours.
+  // Values of the base surface in every band, and its free numbers: those marked free, else those that brdf-fit(1) has
+  // fitted, else its colours.
   void base_parameters() {
     const surface::Values& values = scratch_.surfaces[0].values;
     const auto& infos = out_.base_model->info().parameters;
     const manifest::Parameters& given = document_.surfaces.at(section_.surface).parameters;
     const bool marked =
         gain_.free || std::any_of(given.begin(), given.end(), [](const auto& p) { return p.second.free; });
+    const std::set<std::string> fitted = fitted_names();
     const std::size_t bands = rows_.band_name.size();
     out_.base_values.assign((bands + 2) / 3, values);
     for (std::size_t i = 0; i < infos.size(); ++i) {
       const auto parameter = given.find(infos[i].name);
-      const bool free = marked ? parameter != given.end() && parameter->second.free : infos[i].rgb;
+      const bool free = marked            ? parameter != given.end() && parameter->second.free
+                        : !fitted.empty() ? fitted.contains(infos[i].name)
+                                          : infos[i].rgb;
       const manifest::Parameter stated = parameter != given.end() ? parameter->second : manifest::Parameter{};
-      const manifest::Parameter* fitted = fitted_bands(infos[i].name);
+      const manifest::Parameter* in_bands = fitted_bands(infos[i].name);
       for (std::size_t b = 0; b < bands && infos[i].components == 3; ++b) {
-        const double value = fitted != nullptr ? fitted->value[b] : values.v[i][rows_.component(b)];
+        const double value = in_bands != nullptr ? in_bands->value[b] : values.v[i][rows_.component(b)];
         set_component(out_.base_values[b / 3].v[i], b % 3, value);
         if (free) enter_base(infos[i], value, b, stated);
       }
       if (free && infos[i].components == 1) enter_base(infos[i], values.scalar(i), ReflectanceSlot::all, stated);
     }
+  }
+  std::set<std::string> fitted_names() const {
+    std::set<std::string> names;
+    const auto fit = document_.surface_fits.find(section_.surface);
+    if (fit != document_.surface_fits.end() && fit->second.model == out_.base_model->info().id)
+      for (const auto& [name, values] : fit->second.parameters) names.insert(name);
+    return names;
   }
   void gain() {
     out_.gain = gain_.parameter.start;
