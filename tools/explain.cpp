@@ -1,13 +1,11 @@
 // explain: from a mismatch between recordings and simulation to the physics that was left out
 // (explain/explain_document.h).
-#include <filesystem>
 #include <iostream>
 
 #include "cli/program.h"
 #include "explain/domains.h"
 #include "explain/explain_document.h"
-#include "explain/tables/quick_table.h"
-#include "goniometry/sample_table.h"
+#include "explain/quick_call.h"
 #include "relief/map_options.h"
 
 namespace gonio::tools::explain {
@@ -33,70 +31,11 @@ gonio::explain::ExplainRequest request_of(cli::Invocation& call) {
   return request;
 }
 
-// A table on the command line becomes a manifest.
-void read_table(cli::Invocation& call) {
-  const std::vector<std::string>& operands = call.texts("FILE");
-  if (operands.empty() && !call.given("table")) {
-    for (const char* name : {"step", "step-y", "unit", "channel"})
-      if (call.given(name))
-        throw Error(Exit::usage, std::string("--") + name, "says something about a height map, and none is given",
-                    "name it: explain map.tif --step 1.6um --unit um; in a manifest reliefs say it");
-    for (const char* name : {"model", "observed", "sigma", "group", "block", "units", "free"})
-      if (call.given(name))
-        throw Error(Exit::usage, std::string("--") + name, "says something about a table, and none is given",
-                    "name it: explain data.csv --model 'a*cos(theta)+b' --observed f --free a=1,b=0");
-    return;
-  }
-  if (call.has_document || operands.size() + call.given("table") > 1)
-    throw Error(Exit::usage, "explain", "has more than one thing to explain", "give one manifest, or one table");
-  gonio::explain::tables::QuickTable quick;
-  quick.file = operands.empty() ? call.text("table") : operands[0];
-  if (!std::filesystem::exists(quick.file))
-    throw Error(Exit::no_input, quick.file.string(), "does not exist", "name a table, a height map or a manifest");
-  call.note_input(quick.file);
-  call.has_document = true;
-  using gonio::explain::tables::HeightMapKind;
-  const HeightMapKind heights = gonio::explain::tables::height_map_kind(quick.file);
-  for (const cli::Option& option : relief::picture_options())
-    if (call.given(option.name) && heights != HeightMapKind::picture)
-      throw Error(Exit::usage, "--" + option.name,
-                  "says what the numbers of an OpenEXR or TIFF mean, and " + quick.file.string() + " is none",
-                  "leave it out");
-  if (heights != HeightMapKind::none) {
-    call.document = gonio::explain::tables::height_map_document(quick.file, relief::picture_asked(call));
-    return;
-  }
-  const bool reflectance = goniometry::describes_itself(quick.file);
-  for (const char* needed : {"model", "observed"})
-    if (!reflectance && !call.given(needed))
-      throw Error(Exit::usage, quick.file.string(), std::string("is a table without --") + needed,
-                  "explain data.csv --model 'a*cos(theta)+b' --observed f --free a=1,b=0");
-  quick.model = call.given("model") ? call.text("model") : "surface";
-  quick.observed = call.given("observed") ? call.texts("observed") : std::vector<std::string>{"f"};
-  quick.sigma = call.texts("sigma");
-  if (call.given("group")) quick.group = call.text("group");
-  if (call.given("block")) quick.block = call.text("block");
-  if (call.given("units")) quick.units = gonio::explain::tables::parse_pairs(call.text("units"), "--units");
-  if (call.given("free")) quick.free = gonio::explain::tables::parse_numbers(call.text("free"), "--free");
-  call.document = gonio::explain::tables::quick_document(quick);
-}
-
-// What is written below --out is named after recordings and domains, and only where there is something to show: asked
-// for before the work, by the beginnings of the names.
-void check_out(const cli::Invocation& call) {
-  if (call.out.empty() || call.force || !std::filesystem::is_directory(call.out)) return;
-  for (const auto& entry : std::filesystem::directory_iterator(call.out)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("effect-") || name.starts_with("evidence-"))
-      throw Error(Exit::cannot_create, entry.path().string(), "exists", "--force replaces it");
-  }
-}
-
 void check(cli::Invocation& call) {
   if (call.flag("list")) return;
-  check_out(call);
+  gonio::explain::check_out(call);
   gonio::explain::check_hypotheses(call.texts("hypotheses"));
-  read_table(call);
+  gonio::explain::read_operand(call);
   if (!call.has_document)
     throw Error(Exit::no_input, "explain", "has no manifest to read",
                 "pipe one in, or name it: explain recording.json; or a table: explain data.csv --model ...");

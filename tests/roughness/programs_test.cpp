@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <bit>
 #include <cmath>
 
@@ -30,13 +29,12 @@ std::string float_tiff(unsigned width, unsigned height) {
   put(42, 2), put(8 + 4 * width * height, 4);
   for (unsigned y = 0; y < height; ++y)
     for (unsigned x = 0; x < width; ++x) put(std::bit_cast<unsigned>(static_cast<float>(x + 10 * y)), 4);
-  const std::vector<std::array<unsigned, 4>> entries = {
-      {256, 3, 1, width}, {257, 3, 1, height}, {258, 3, 1, 32},
-      {259, 3, 1, 1},     {262, 3, 1, 1},      {273, 4, 1, 8},
-      {277, 3, 1, 1},     {278, 3, 1, height}, {279, 4, 1, 4 * width * height},
-      {339, 3, 1, 3}};
-  put(static_cast<unsigned>(entries.size()), 2);
-  for (const auto& [tag, type, count, value] : entries) put(tag, 2), put(type, 2), put(count, 4), put(value, 4);
+  const auto entry = [&](unsigned tag, unsigned type, unsigned value) {
+    put(tag, 2), put(type, 2), put(1, 4), put(value, 4);
+  };
+  put(10, 2);
+  entry(256, 3, width), entry(257, 3, height), entry(258, 3, 32), entry(259, 3, 1), entry(262, 3, 1), entry(273, 4, 8);
+  entry(277, 3, 1), entry(278, 3, height), entry(279, 4, 4 * width * height), entry(339, 3, 3);
   put(0, 4);
   return file;
 }

@@ -36,7 +36,7 @@ TEST_F(ColumnFiles, EverySeparatorMeansTheSame) {
   const std::vector<std::pair<std::string, std::string>> files = {
       {"a.csv", "lamp,theta [deg],f\nred,90,1.5\nblue,180,-2e-3\n"},
       {"b.txt", "lamp theta [deg] f\nred 90 1.5\nblue 180 -2e-3\n"},
-      {"c.txt", "  lamp   theta_deg\t f \r\n\r\n  red   90   1.5\r\n  blue  180 -2e-3  \r\n"},
+      {"c.txt", "  lamp   theta [deg]\t f \r\n\r\n  red   90   1.5\r\n  blue  180 -2e-3  \r\n"},
       {"d.tsv", "lamp\ttheta [deg]\tf\nred\t90\t1.5\nblue\t180\t-2e-3\n"},
       {"e.csv", "lamp; theta [deg]; f\nred; 90; 1.5\nblue; 180; -2e-3\n"},
       {"f.dat", "# a scan\n# lamp theta [deg] f\nred 90 1.5\nblue 180 -2e-3\n# the end\n"}};
