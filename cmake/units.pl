@@ -132,7 +132,9 @@ sub scan {
       push @statement, '{}';
       push @statement, @enumerators if $head =~ /^enum\b/ && $head !~ /^enum (?:class|struct)\b/;
       # A function ends with its body; a type or a variable goes on to its semicolon.
-      $declare->() if !$type && $head =~ /\(/ && $head !~ /=/ && $head !~ /^(?:const|constexpr|static|inline)* ?\w+ \w+ \{/;
+      (my $outside = $head) =~ s/operator (?:[^\w\s(] ?)+//;
+      1 while $outside =~ s/\([^()]*\)//;
+      $declare->() if !$type && $head =~ /\(/ && $outside !~ /=/;
       next;
     }
     if ($x eq '}' && !$round) { pop @spaces; @statement = (); next }

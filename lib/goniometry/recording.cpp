@@ -188,7 +188,7 @@ class Reduction {
     if (!reading.refusal.empty()) return drop(view, reading.refusal);
     if (std::isnan(reading.sigma.x)) return drop(view, "too few pixels to judge their scatter, and no noise is stated");
     const std::size_t light = light_of(view);
-    Scale scale;
+    TileScale scale;
     if (recording_.tile) {
       const auto found = scales.at(view, light, recording_.image(view).time_s);
       if (!found) return drop(view, no_scale(view));

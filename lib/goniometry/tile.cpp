@@ -11,8 +11,8 @@ Rgb per_band(const auto& of) {
   return {of(0), of(1), of(2)};
 }
 
-Scale mean_of(const std::vector<const TileReading*>& readings) {
-  Scale result;
+TileScale mean_of(const std::vector<const TileReading*>& readings) {
+  TileScale result;
   double widest = 1;
   const auto weight = [](const TileReading& r, int band) { return 1 / (r.sigma[band] * r.sigma[band]); };
   const Rgb total = per_band([&](int b) {
@@ -41,9 +41,9 @@ Scale mean_of(const std::vector<const TileReading*>& readings) {
   return result;
 }
 
-Scale between(const TileReading& before, const TileReading& after, double time_s) {
+TileScale between(const TileReading& before, const TileReading& after, double time_s) {
   const double span = *after.time_s - *before.time_s, t = span > 0 ? (time_s - *before.time_s) / span : 0.5;
-  Scale result;
+  TileScale result;
   result.value = before.scale * (1 - t) + after.scale * t;
   result.sigma = per_band([&](int b) { return std::hypot((1 - t) * before.sigma[b], t * after.sigma[b]); });
   result.views = {before.view, after.view};
@@ -52,11 +52,11 @@ Scale between(const TileReading& before, const TileReading& after, double time_s
 
 }  // namespace
 
-std::optional<Scale> Scales::at(std::size_t view, std::size_t light, std::optional<double> time_s) const {
+std::optional<TileScale> Scales::at(std::size_t view, std::size_t light, std::optional<double> time_s) const {
   std::vector<const TileReading*> same;
   for (const TileReading& reading : readings_) {
     if (reading.light != light) continue;
-    if (reading.view == view) return Scale{reading.scale, reading.sigma, {view}};
+    if (reading.view == view) return TileScale{reading.scale, reading.sigma, {view}};
     same.push_back(&reading);
   }
   if (same.empty()) return std::nullopt;

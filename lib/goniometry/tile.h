@@ -19,7 +19,7 @@ struct TileReading {
   Rgb scale, sigma;
 };
 
-struct Scale {
+struct TileScale {
   Rgb value{1, 1, 1}, sigma{0, 0, 0};
   std::vector<std::size_t> views;  // of the tile that it rests on
 };
@@ -28,7 +28,7 @@ class Scales {
  public:
   explicit Scales(std::vector<TileReading> readings) : readings_(std::move(readings)) {}
   // Nothing where no picture shows the tile under this light.
-  std::optional<Scale> at(std::size_t view, std::size_t light, std::optional<double> time_s) const;
+  std::optional<TileScale> at(std::size_t view, std::size_t light, std::optional<double> time_s) const;
   // Of the readings under this light: standard deviation about their mean, relative, and what their uncertainties
   // expect of it; brightest band. Nothing for fewer than two.
   struct Wander {

@@ -20,7 +20,7 @@ TEST(Scales, TheSamePictureComesFirst) {
 }
 
 TEST(Scales, MeansAreWeighted) {
-  const Scale mean = *Scales({reading(0, 0, {}, 2, 0.1), reading(1, 0, {}, 2.3, 0.2)}).at(7, 0, {});
+  const TileScale mean = *Scales({reading(0, 0, {}, 2, 0.1), reading(1, 0, {}, 2.3, 0.2)}).at(7, 0, {});
   EXPECT_NEAR(mean.value.y, (4 * 2 + 2.3) / 5, 1e-12);
   EXPECT_NEAR(mean.sigma.y, 1 / std::sqrt(125), 1e-12);
   EXPECT_EQ(mean.views.size(), 2u);
