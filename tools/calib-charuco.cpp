@@ -3,6 +3,7 @@
 #include "camera/board_drawing.h"
 #include "camera/calibrate_document_options.h"
 #include "cli/program.h"
+#include "manifest/sections/board.h"
 
 namespace gonio::tools::calib_charuco {
 namespace {

@@ -5,6 +5,7 @@
 #include "camera/calibrate_document.h"
 #include "camera/undistort_document.h"
 #include "cli/program.h"
+#include "manifest/sections/image.h"
 #include "metric/linear_picture.h"
 
 namespace gonio::tools::develop {
@@ -23,13 +24,14 @@ std::vector<std::size_t> chosen_images(cli::Invocation& call) {
   std::vector<std::size_t> chosen;
   const std::size_t known = call.document.images.size();
   if (call.given("PHOTOGRAPH")) {
-    if (!call.given("camera") && call.document.cameras.size() != 1)
+    const auto cameras = names_in(call.document, "cameras");
+    if (!call.given("camera") && cameras.size() != 1)
       throw Error(Exit::usage, "--camera",
-                  "is missing, and the manifest has " + std::to_string(call.document.cameras.size()) + " cameras");
+                  "is missing, and the manifest has " + std::to_string(cameras.size()) + " cameras");
     camera::enter_pictures(call.texts("PHOTOGRAPH"), "pinhole", call.document);
     for (std::size_t i = known; i < call.document.images.size(); ++i) {
       manifest::ImageEntry& image = call.document.images[i];
-      image.camera = call.given("camera") ? call.text("camera") : call.document.cameras.begin()->first;
+      image.camera = call.given("camera") ? call.text("camera") : cameras.front();
       image.board.clear();
       if (call.given("response")) image.response = call.text("response");
       chosen.push_back(i);

@@ -3,6 +3,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "cli/program.h"
+#include "manifest/sections/ground_noise.h"
+#include "manifest/sections/relief.h"
 #include "relief/document.h"
 #include "relief/ground_noise.h"
 #include "relief/made.h"

@@ -2,6 +2,7 @@
 #include "base/atomic_file.h"
 #include "base/text.h"
 #include "cli/common_options.h"
+#include "manifest/sections/relief.h"
 #include "relief/document.h"
 #include "relief/map_options.h"
 #include "relief/roughness_page.h"

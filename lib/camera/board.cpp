@@ -7,6 +7,8 @@
 
 #include "base/error.h"
 #include "camera/marker_dictionary.h"
+#include "manifest/document.h"
+#include "manifest/sections/board.h"
 
 namespace gonio::camera {
 namespace {

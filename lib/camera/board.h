@@ -16,8 +16,7 @@
 #include "camera/board_terms.h"
 #include "camera/marker_dictionary.h"
 #include "geom/vector.h"
-#include "manifest/document.h"
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::camera {
 

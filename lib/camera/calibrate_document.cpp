@@ -11,6 +11,10 @@
 #include "camera/detection_failure.h"
 #include "camera/model_choice.h"
 #include "camera/quality/quality_page.h"
+#include "manifest/document.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
 
 namespace gonio::camera {
 namespace {

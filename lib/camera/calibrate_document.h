@@ -15,7 +15,7 @@
 
 #include "base/error.h"
 #include "camera/calibration.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::camera {
 

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/quantity.h"
+#include "manifest/sections/board.h"
 
 namespace gonio::camera {
 namespace {

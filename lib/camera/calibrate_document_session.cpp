@@ -9,8 +9,12 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "camera/detection_failure.h"
+#include "camera/intrinsics.h"
 #include "io/grey.h"
 #include "io/picture.h"
+#include "manifest/document.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/image.h"
 
 namespace gonio::camera {
 namespace {
@@ -34,8 +38,9 @@ std::vector<std::string> board_ids_of(const manifest::Document& document, std::s
 std::string camera_id_of(const manifest::Document& document, std::size_t index) {
   const std::string& given = document.images[index].camera;
   if (!given.empty()) return given;
-  if (document.cameras.size() == 1) return document.cameras.begin()->first;
-  if (document.cameras.empty()) return "camera";
+  const auto cameras = names_in(document, "cameras");
+  if (cameras.size() == 1) return cameras.front();
+  if (cameras.empty()) return "camera";
   throw Error(Exit::data, manifest::place(document, image_pointer(index) + "/camera"), "missing",
               "say which of the cameras took the image");
 }
@@ -120,9 +125,8 @@ void check_sizes(const manifest::Document& document, const Session& session) {
                       size(first->width_px, first->height_px),
                   "do not crop or scale photographs of one camera");
     }
-    const auto known = document.cameras.find(id);
-    if (known == document.cameras.end() || known->second.width_px == 0) continue;
-    if (known->second.width_px == first->width_px && known->second.height_px == first->height_px) continue;
+    const auto [width_px, height_px] = picture_size_px(document, id);
+    if (width_px == 0 || (width_px == first->width_px && height_px == first->height_px)) continue;
     throw Error(Exit::data, manifest::place(document, "/cameras/" + id + "/width_px"),
                 "the camera's size differs from its images'", "give the size of the photographs in pixels");
   }

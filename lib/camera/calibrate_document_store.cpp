@@ -4,6 +4,11 @@
 
 #include "camera/calibrate_document_session.h"
 #include "camera/corner_table.h"
+#include "manifest/document.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/rig.h"
 
 namespace gonio::camera {
 namespace {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "manifest/sections/camera.h"
 
 namespace gonio::camera {
 namespace {
@@ -70,6 +71,15 @@ CameraModel::CameraModel(const manifest::Camera& camera, const std::string& plac
 CameraModel::CameraModel(const Intrinsics& lens, int width_px, int height_px)
     : width_px_(width_px), height_px_(height_px), lens_(lens) {
   find_limits();
+}
+
+CameraModel CameraModel::parallel(double px_per_m, int width_px, int height_px) {
+  CameraModel camera;
+  camera.width_px_ = width_px;
+  camera.height_px_ = height_px;
+  camera.orthographic_ = true;
+  camera.lens_ = {px_per_m, px_per_m, 0.5 * (width_px - 1), 0.5 * (height_px - 1), {}};
+  return camera;
 }
 
 void CameraModel::find_limits() {

@@ -5,7 +5,7 @@
 
 #include "camera/intrinsics.h"
 #include "geom/vector.h"
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::camera {
 
@@ -22,6 +22,8 @@ class CameraModel {
   // 0.
   CameraModel(const manifest::Camera& camera, const std::string& place);
   CameraModel(const Intrinsics& lens, int width_px, int height_px);
+  // Orthographic, its principal point in the middle of the image.
+  static CameraModel parallel(double px_per_m, int width_px, int height_px);
 
   // Pixel of a point in the camera frame, metres; nothing for points behind a perspective camera or beyond the radius
   // up to which the distortion is one-to-one. A fisheye sees beyond 90 degrees from its axis.
@@ -36,6 +38,7 @@ class CameraModel {
   bool orthographic() const { return orthographic_; }
 
  private:
+  CameraModel() = default;
   void find_limits();
   Vec2 undistort(Vec2 distorted) const;
 

@@ -10,6 +10,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "manifest/document.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::camera {
 namespace {

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "manifest/document.h"
+#include "manifest/sections/camera.h"
 
 namespace gonio::camera {
 namespace {
@@ -126,6 +128,25 @@ void store(const Intrinsics& intrinsics, manifest::Camera& camera) {
       camera.distortion[std::string(distortion_names[i])] = v;
     }
   }
+}
+
+void enter_pinhole(manifest::Document& document, const std::string& name, int width_px, int height_px, double focal_px) {
+  manifest::Camera& camera = document.cameras[name];
+  camera.width_px = width_px;
+  camera.height_px = height_px;
+  camera.fx_px = camera.fy_px = focal_px;
+  camera.cx_px = (width_px - 1) / 2.0;
+  camera.cy_px = (height_px - 1) / 2.0;
+}
+
+std::string mosaic_of(const manifest::Document& document, const std::string& name) {
+  const manifest::Camera* camera = find_camera(document, name);
+  return camera == nullptr ? "" : camera->mosaic;
+}
+
+std::array<int, 2> picture_size_px(const manifest::Document& document, const std::string& name) {
+  const manifest::Camera* camera = find_camera(document, name);
+  return camera == nullptr ? std::array{0, 0} : std::array{camera->width_px, camera->height_px};
 }
 
 }  // namespace gonio::camera

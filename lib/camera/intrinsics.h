@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "camera/lens_terms.h"
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::camera {
 
@@ -62,5 +62,13 @@ std::string model_with(const std::string& model, const TermSet& terms);
 Intrinsics intrinsics_of(const manifest::Camera& camera, const std::string& place);
 // Values only: fx_px .. cy_px, and of the distortion what the model is calibrated with or what is not at its preset.
 void store(const Intrinsics& intrinsics, manifest::Camera& camera);
+
+// A new camera `name` in the document: a pinhole whose principal point is the picture's middle.
+void enter_pinhole(manifest::Document& document, const std::string& name, int width_px, int height_px, double focal_px);
+
+// The filters over the pixels of the camera `name`, as its section says; none where the document has no such camera.
+std::string mosaic_of(const manifest::Document& document, const std::string& name);
+// Its columns and rows; zero where the document has no such camera or does not say.
+std::array<int, 2> picture_size_px(const manifest::Document& document, const std::string& name);
 
 }  // namespace gonio::camera

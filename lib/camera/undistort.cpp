@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "manifest/sections/camera.h"
 
 namespace gonio::camera {
 namespace {

@@ -21,7 +21,7 @@
 
 #include "camera/camera_model.h"
 #include "io/image.h"
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::camera {
 

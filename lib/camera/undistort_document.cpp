@@ -8,6 +8,9 @@
 #include "base/text.h"
 #include "io/codes.h"
 #include "io/picture.h"
+#include "manifest/document.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
 
 namespace gonio::camera {
 namespace {

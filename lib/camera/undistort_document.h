@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "camera/undistort.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
+#include "manifest/value.h"
 
 namespace gonio::camera {
 

@@ -9,7 +9,11 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "camera/intrinsics.h"
 #include "io/csv.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::contrast {
 namespace {
@@ -36,9 +40,8 @@ Columns columns_of(const std::vector<std::string>& names, const std::string& pla
 }
 
 void check_in_picture(const CornerMark& mark, const manifest::ImageEntry& image, const manifest::Document& document) {
-  const auto camera = document.cameras.find(image.camera);
-  if (camera == document.cameras.end() || camera->second.width_px == 0) return;
-  const int width = camera->second.width_px, height = camera->second.height_px;
+  const auto [width, height] = camera::picture_size_px(document, image.camera);
+  if (width == 0) return;
   if (mark.pixel.x < -0.5 || mark.pixel.y < -0.5 || mark.pixel.x > width - 0.5 || mark.pixel.y > height - 0.5)
     throw Error(Exit::data, mark.place,
                 format("puts corner %d at (%g, %g) px, outside the picture of %d x %d px", mark.corner, mark.pixel.x,

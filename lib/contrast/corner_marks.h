@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geom/vector.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::contrast {
 

@@ -12,6 +12,8 @@
 #include "contrast/measure_input.h"
 #include "contrast/measure_views.h"
 #include "contrast/view_shift.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
 #include "stats/distributions.h"
 
 namespace gonio::contrast {

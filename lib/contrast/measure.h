@@ -34,7 +34,7 @@
 #include "contrast/pattern.h"
 #include "contrast/sample_pose.h"
 #include "contrast/segmentation.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 #include "metric/exposure.h"
 
 namespace gonio::contrast {

@@ -8,6 +8,10 @@
 #include "base/text.h"
 #include "contrast/matrix_code.h"
 #include "contrast/sample_outline.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/pattern.h"
 #include "metric/linear_picture.h"
 
 namespace gonio::contrast {
@@ -127,8 +131,8 @@ InputView view_of(const manifest::Document& document, std::size_t image, int pla
   if (entry.file.empty())
     throw Error(Exit::data, view.place, "has no file: there is no picture \"" + entry.id + "\" to measure",
                 "render or photograph it first, and enter the file");
-  if (const auto camera = document.cameras.find(entry.camera); camera != document.cameras.end())
-    view.camera.emplace(camera->second, manifest::place(document, "/cameras/" + entry.camera));
+  if (const manifest::Camera* camera = find_camera(document, entry.camera))
+    view.camera.emplace(*camera, manifest::place(document, "/cameras/" + entry.camera));
   if (view.camera) view.pose = camera_pose(entry, options);
   view.full_scale = full_scale_of(document, entry.camera, options);
   for (const CornerMark& mark : marks)

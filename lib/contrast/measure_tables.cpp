@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "manifest/document.h"
+#include "manifest/sections/contrast.h"
+#include "manifest/sections/pattern.h"
 
 namespace gonio::contrast {
 namespace {

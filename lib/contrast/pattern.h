@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "geom/vector.h"
-#include "manifest/document.h"
 
 namespace gonio::contrast {
 

@@ -12,6 +12,8 @@
 #include "contrast/contrast_options.h"
 #include "contrast/optimize_page.h"
 #include "contrast/predict_page.h"
+#include "manifest/sections/contrast.h"
+#include "manifest/sections/surface.h"
 #include "surface/surface.h"
 
 namespace gonio::contrast {

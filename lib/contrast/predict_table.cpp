@@ -2,6 +2,7 @@
 // angles in degrees, for people's spreadsheets; the names say so.
 #include "base/text.h"
 #include "contrast/predict.h"
+#include "manifest/sections/contrast.h"
 
 namespace gonio::contrast {
 namespace {

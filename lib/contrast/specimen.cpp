@@ -6,6 +6,12 @@
 
 #include "base/error.h"
 #include "contrast/contrast_options.h"
+#include "manifest/document.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 #include "scene/scene.h"
 
 namespace gonio::contrast {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "contrast/experiment.h"
-#include "manifest/document.h"
 #include "manifest/model.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::contrast {
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "manifest/document.h"
 
 namespace gonio::explain {
 namespace {

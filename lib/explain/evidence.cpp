@@ -7,6 +7,7 @@
 
 #include "base/atomic_file.h"
 #include "explain/law_data.h"
+#include "manifest/document.h"
 
 namespace gonio::explain {
 namespace {

@@ -13,6 +13,7 @@
 #include "explain/entry.h"
 #include "explain/evidence.h"
 #include "explain/report.h"
+#include "manifest/document.h"
 #include "mechanism/listing.h"
 
 namespace gonio::explain {

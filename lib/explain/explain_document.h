@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "explain/domain.h"
 #include "explain/engine.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::explain {
 

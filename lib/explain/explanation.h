@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "explain/problem.h"
+#include "manifest/value.h"
 
 namespace gonio::explain {
 

@@ -18,7 +18,8 @@
 #include <string>
 #include <vector>
 
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
+#include "manifest/value.h"
 #include "mechanism/mechanism.h"
 
 namespace gonio::explain {

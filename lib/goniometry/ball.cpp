@@ -1,6 +1,14 @@
 // A sphere of a surface, path traced: a small distant-looking lamp high on the left, a dim sky all around.
 #include "base/error.h"
+#include "camera/intrinsics.h"
 #include "goniometry/outputs.h"
+#include "manifest/document.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 #include "render/looking_at.h"
 #include "render/path_tracer.h"
 
@@ -21,10 +29,7 @@ io::Image sphere_picture(const manifest::Document& document, const std::string& 
   manifest::Light& sky = scene.lights["sky"];
   sky.model = "uniform";
   sky.parameters = {{"radiance", 0.12}};
-  manifest::Camera& camera = scene.cameras["camera"];
-  camera.width_px = camera.height_px = pixels;
-  camera.fx_px = camera.fy_px = 3.6 * pixels;
-  camera.cx_px = camera.cy_px = 0.5 * (pixels - 1);
+  camera::enter_pinhole(scene, "camera", pixels, pixels, 3.6 * pixels);
   manifest::ImageEntry image;
   image.id = "sphere", image.camera = "camera";
   static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =

@@ -19,6 +19,9 @@
 #include "goniometry/spectra.h"
 #include "io/picture.h"
 #include "manifest/fields.h"
+#include "manifest/sections/flat_patch.h"
+#include "manifest/sections/surface.h"
+#include "manifest/sections/table.h"
 #include "render/preview.h"
 #include "report/heat_drawing.h"
 

@@ -8,6 +8,9 @@
 #include "goniometry/checks.h"
 #include "goniometry/plausible.h"
 #include "goniometry/spectra.h"
+#include "manifest/document.h"
+#include "manifest/sections/surface.h"
+#include "manifest/sections/surface_fit.h"
 #include "report/number_text.h"
 
 namespace gonio::goniometry {

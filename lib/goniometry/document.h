@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "goniometry/outputs.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::goniometry {
 

@@ -13,7 +13,7 @@
 #include "goniometry/tables.h"
 #include "io/image.h"
 #include "io/merl.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 #include "surface/merl_table.h"
 
 namespace gonio::goniometry {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "manifest/sections/flat_patch.h"
 
 namespace gonio::goniometry {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "camera/camera_model.h"
 #include "geom/rigid.h"
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::goniometry {
 

@@ -20,6 +20,7 @@
 
 #include "goniometry/patch.h"
 #include "light/light.h"
+#include "manifest/noise.h"
 #include "metric/linear_picture.h"
 #include "surface/surface.h"
 

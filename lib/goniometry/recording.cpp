@@ -11,6 +11,8 @@
 #include "base/parallel.h"
 #include "goniometry/recording_setup.h"
 #include "goniometry/tile.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
 #include "render/sensor_chain.h"
 #include "stats/intervals.h"
 

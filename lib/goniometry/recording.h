@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "goniometry/samples.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::goniometry {
 

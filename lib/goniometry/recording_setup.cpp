@@ -7,6 +7,12 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -63,7 +69,7 @@ void check_image(const manifest::Document& document, std::size_t index, bool per
   const manifest::ImageEntry& image = document.images[index];
   const std::string place = manifest::place(document, "/images/" + std::to_string(index));
   if (image.file.empty()) throw Error(Exit::data, place, "has no recording", "name its file under \"file\"");
-  if (image.camera.empty() || !document.cameras.contains(image.camera))
+  if (image.camera.empty() || !has_entry(document, "cameras", image.camera))
     throw Error(Exit::data, place + "/camera", "is missing", "name one of `cameras`");
   if (!image.world_from_camera)
     throw Error(Exit::data, place + "/world_from_camera", "is missing: from where the sample was seen is not known",

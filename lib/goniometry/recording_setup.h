@@ -8,6 +8,8 @@
 #include "goniometry/patch_reading.h"
 #include "goniometry/recording.h"
 #include "manifest/document.h"
+#include "manifest/sections/flat_patch.h"
+#include "manifest/sections/image.h"
 #include "scene/scene.h"
 
 namespace gonio::goniometry {

@@ -19,7 +19,7 @@
 #include "geom/vector.h"
 #include "goniometry/convention.h"
 #include "goniometry/samples.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::goniometry {
 

@@ -6,6 +6,8 @@
 #include "base/error.h"
 #include "goniometry/sample_table.h"
 #include "goniometry/tables_readings.h"
+#include "manifest/document.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::goniometry {
 namespace {

@@ -14,7 +14,6 @@
 #include "geom/vector.h"
 #include "io/image.h"
 #include "manifest/model.h"
-#include "manifest/sections.h"
 #include "optics/mueller.h"
 
 namespace gonio::light {

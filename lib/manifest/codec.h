@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "geom/rigid.h"
-#include "manifest/sections.h"
+#include "manifest/noise.h"
+#include "manifest/parameter.h"
+#include "manifest/pose.h"
 #include "manifest/value.h"
 
 namespace gonio::manifest {

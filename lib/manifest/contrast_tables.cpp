@@ -1,6 +1,8 @@
 // Field tables of the sections about patterns of cells and their contrasts.
 #include "manifest/field_makers.h"
 #include "manifest/section_tables.h"
+#include "manifest/sections/contrast.h"
+#include "manifest/sections/pattern.h"
 
 namespace gonio::manifest {
 
@@ -55,5 +57,10 @@ const std::vector<Field<Contrast>>& contrast_fields() {
       field("cells", &Contrast::cells, "", "measure: cells that counted")};
   return table;
 }
+
+GONIO_RECORD(PatternPlacement, pattern_placement_fields);
+GONIO_RECORD(PatternDefect, pattern_defect_fields);
+GONIO_RECORD(Pattern, pattern_fields);
+GONIO_RECORD(Contrast, contrast_fields);
 
 }  // namespace gonio::manifest

@@ -14,6 +14,33 @@
 #include "manifest/file_paths.h"
 #include "manifest/frame_loops.h"
 #include "manifest/section_tables.h"
+#include "manifest/sections/acceptance.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/comparison.h"
+#include "manifest/sections/contrast.h"
+#include "manifest/sections/evaluation.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/flat_patch.h"
+#include "manifest/sections/frame_link.h"
+#include "manifest/sections/ground_noise.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/light_position.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/mounting.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/pattern.h"
+#include "manifest/sections/reconstruction.h"
+#include "manifest/sections/relief.h"
+#include "manifest/sections/rendering.h"
+#include "manifest/sections/rig.h"
+#include "manifest/sections/robot.h"
+#include "manifest/sections/sequence.h"
+#include "manifest/sections/surface.h"
+#include "manifest/sections/surface_fit.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::manifest {
 namespace {
@@ -137,6 +164,38 @@ const std::vector<std::string>& section_names() {
 }
 
 }  // namespace
+
+Document::Document() = default;
+Document::~Document() = default;
+Document::Document(const Document&) = default;
+Document::Document(Document&&) noexcept = default;
+Document& Document::operator=(const Document&) = default;
+Document& Document::operator=(Document&&) noexcept = default;
+
+std::vector<std::string> names_in(const Document& document, std::string_view section) {
+  std::vector<std::string> names;
+  bool known = false;
+  for_each_section(document, [&]<class Section>(const char* key, const Section& entries) {
+    if (section != key) return;
+    known = true;
+    if constexpr (requires { entries.begin()->first; })
+      for (const auto& [name, entry] : entries) names.push_back(name);
+    else if constexpr (requires { entries.front().id; })
+      for (const auto& entry : entries) names.push_back(entry.id);
+  });
+  if (!known) throw Error(Exit::internal, document.name, "is asked for the section \"" + std::string(section) + "\"");
+  return names;
+}
+
+bool has_entry(const Document& document, std::string_view section, const std::string& name) {
+  const auto names = names_in(document, section);
+  return std::ranges::find(names, name) != names.end();
+}
+
+const Camera* find_camera(const Document& document, const std::string& name) {
+  const auto found = document.cameras.find(name);
+  return found == document.cameras.end() ? nullptr : &found->second;
+}
 
 std::string place(const Document& document, const std::string& pointer) {
   return document.name + "#" + pointer;

@@ -4,15 +4,26 @@
 #pragma once
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
+#include "manifest/value.h"
 
 namespace gonio::manifest {
 
+// The sections' types are only declared here, so that their fields stay out of sources that do not touch them
+// (manifest/sections/forward.h). Containers of them are what GCC's and LLVM's libraries allow as members as long as no
+// member function is called; those that every user of Document would call are therefore defined in document.cpp.
 struct Document {
+  Document();
+  ~Document();
+  Document(const Document& other);
+  Document(Document&& other) noexcept;
+  Document& operator=(const Document& other);
+  Document& operator=(Document&& other) noexcept;
+
   std::map<std::string, File> files;
   std::vector<Link> frames;
   std::map<std::string, Board> boards;
@@ -68,6 +79,12 @@ std::string print_document(const Document& document, const std::filesystem::path
 std::filesystem::path resolve(const Document& document, const std::string& file_id, const std::string& user);
 // Enters an existing file with its size and hash under `id` (made unique when taken by another file). Returns the id.
 std::string add_file(Document& document, const std::filesystem::path& path, const std::string& id);
+
+// For sources that ask no more of a section than who is in it, and so do not see its fields: the keys of the entries of
+// `section` ("cameras", ...) or, where it is a list ("images", ...), their ids, in their order; whether `name` is one.
+std::vector<std::string> names_in(const Document& document, std::string_view section);
+bool has_entry(const Document& document, std::string_view section, const std::string& name);
+const Camera* find_camera(const Document& document, const std::string& name);  // null where there is none
 
 // "NAME#/cameras/c" for messages.
 std::string place(const Document& document, const std::string& pointer);

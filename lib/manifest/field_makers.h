@@ -8,6 +8,19 @@
 
 namespace gonio::manifest {
 
+// The codec of a section whose table is defined in the same source.
+#define GONIO_RECORD(TYPE, TABLE)                                        \
+  TYPE Codec<TYPE>::read(const Value& value, const std::string& place) { \
+    return read_record(value, TABLE(), place);                           \
+  }                                                                      \
+  Value Codec<TYPE>::write(const TYPE& member) {                         \
+    return write_record(member, TABLE());                                \
+  }                                                                      \
+  Value Codec<TYPE>::schema() {                                          \
+    return record_schema(TABLE());                                       \
+  }                                                                      \
+  static_assert(true)  // so that a semicolon follows
+
 template <class Record>
 Field<Record> custom(std::string name, std::string unit, std::string sentence, Value schema,
                      std::function<void(Record&, const Value&, const std::string&)> read,

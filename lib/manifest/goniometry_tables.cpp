@@ -1,6 +1,8 @@
 // Field tables of the sections about reflectance: samples before a goniometer, fits of surfaces.
 #include "manifest/field_makers.h"
 #include "manifest/section_tables.h"
+#include "manifest/sections/flat_patch.h"
+#include "manifest/sections/surface_fit.h"
 
 namespace gonio::manifest {
 
@@ -86,5 +88,10 @@ const std::vector<Field<SurfaceFit>>& surface_fit_fields() {
       field("files", &SurfaceFit::files, "", "written beside it: merl, csv, page, sphere, ...; file ids")};
   return table;
 }
+
+GONIO_RECORD(FlatPatch, flat_patch_fields);
+GONIO_RECORD(AlternativeFit, alternative_fit_fields);
+GONIO_RECORD(DroppedRows, dropped_rows_fields);
+GONIO_RECORD(SurfaceFit, surface_fit_fields);
 
 }  // namespace gonio::manifest

@@ -1,35 +1,13 @@
-// Field tables of the sections about instruments: quality of cameras, rigs, robots, mountings, scanners.
+// Field tables of the sections about instruments: rigs, robots, mountings, scanners.
 #include "manifest/field_makers.h"
 #include "manifest/section_tables.h"
+#include "manifest/sections/acceptance.h"
+#include "manifest/sections/light_position.h"
+#include "manifest/sections/mounting.h"
+#include "manifest/sections/rig.h"
+#include "manifest/sections/robot.h"
 
 namespace gonio::manifest {
-
-const std::vector<Field<SeenBoard>>& seen_board_fields() {
-  static const std::vector<Field<SeenBoard>> table{
-      field("board", &SeenBoard::board, "", "name of the board").needed(),
-      field("camera_from_board", &SeenBoard::camera_from_board, "", "takes board to camera coordinates"),
-      field("rms_px", &SeenBoard::rms_px, "px", "root mean square of the reprojection error").range(0, infinite),
-      field("weight", &SeenBoard::weight, "", "in fits; 0: dropped").range(0, 1)};
-  return table;
-}
-
-const std::vector<Field<CameraQuality>>& camera_quality_fields() {
-  static const std::vector<Field<CameraQuality>> table{
-      field("predicts_within_px", &CameraQuality::predicts_within_px, "px",
-            "at 95 %, over the image at the distances below; what the fit's covariance expects")
-          .range(0, infinite),
-      field("distances_m", &CameraQuality::distances_m, "m", "from the camera"),
-      field("halves_differ_px", &CameraQuality::halves_differ_px, "px",
-            "root mean square over the image of the difference between calibrations of either half of the views")
-          .range(0, infinite),
-      field("halves_expected_px", &CameraQuality::halves_expected_px, "px", "what their covariances expect of it")
-          .range(0, infinite),
-      field("halves_agree", &CameraQuality::halves_agree, "", "false: something is not modelled"),
-      field("coverage", &CameraQuality::coverage, "", "share of the image that corners reach").range(0, 1),
-      field("next", &CameraQuality::next, "", "what to photograph next, one sentence each"),
-      field("files", &CameraQuality::files, "", "maps and pictures by name: projection-sigma, ...; file ids")};
-  return table;
-}
 
 const std::vector<Field<RigMember>>& rig_member_fields() {
   static const std::vector<Field<RigMember>> table{
@@ -143,5 +121,15 @@ const std::vector<Field<AcceptanceResult>>& acceptance_fields() {
       field("rejected", &AcceptanceResult::rejected, "", "points left out as outliers")};
   return table;
 }
+
+GONIO_RECORD(RigMember, rig_member_fields);
+GONIO_RECORD(Rig, rig_fields);
+GONIO_RECORD(DhRow, dh_row_fields);
+GONIO_RECORD(Robot, robot_fields);
+GONIO_RECORD(HeldOut, held_out_fields);
+GONIO_RECORD(ScatterParts, scatter_parts_fields);
+GONIO_RECORD(Mounting, mounting_fields);
+GONIO_RECORD(LightPosition, light_position_fields);
+GONIO_RECORD(AcceptanceResult, acceptance_fields);
 
 }  // namespace gonio::manifest

@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "manifest/sections.h"
+#include "geom/vector.h"
+#include "manifest/parameter.h"
 
 namespace gonio::manifest {
 

@@ -6,6 +6,9 @@
 #include "manifest/field_makers.h"
 #include "manifest/model.h"
 #include "manifest/section_tables.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/surface.h"
 
 namespace gonio::manifest {
 namespace {

@@ -1,6 +1,9 @@
 // Field tables of the sections about shapes that deform: sequences, reconstructions, evaluations.
 #include "manifest/field_makers.h"
 #include "manifest/section_tables.h"
+#include "manifest/sections/evaluation.h"
+#include "manifest/sections/reconstruction.h"
+#include "manifest/sections/sequence.h"
 
 namespace gonio::manifest {
 
@@ -93,5 +96,11 @@ const std::vector<Field<Evaluation>>& evaluation_fields() {
       field("files", &T::files, "", "written beside it; file ids")};
   return table;
 }
+
+GONIO_RECORD(TrackSequence, track_sequence_fields);
+GONIO_RECORD(ShapeReconstruction, shape_reconstruction_fields);
+GONIO_RECORD(EvaluatedError, evaluated_error_fields);
+GONIO_RECORD(DetectedFlip, detected_flip_fields);
+GONIO_RECORD(Evaluation, evaluation_fields);
 
 }  // namespace gonio::manifest

@@ -1,5 +1,4 @@
-// Numbers that a fit may move, with their sigmas, and rigid motions with theirs: what sections of the manifest are made
-// of.
+// Numbers that a fit may move, with their sigmas: what sections of the manifest are made of.
 #pragma once
 #include <map>
 #include <optional>
@@ -7,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "geom/rigid.h"
+#include "geom/vector.h"
 
 namespace gonio::manifest {
 
@@ -33,17 +32,5 @@ struct Parameter {
 };
 using Parameters = std::map<std::string, Parameter>;
 using Sigmas = std::map<std::string, std::vector<double>>;  // one standard deviation beside a fitted value, same key
-
-struct PoseSigma {
-  std::vector<double> rotation_rad;   // 1 or 3 (x, y, z of a rotation vector applied on the left, in the `to` frame)
-  std::vector<double> translation_m;  // 1 or 3
-  bool operator==(const PoseSigma&) const = default;
-};
-// `{"rotation": [w,x,y,z], "translation_m": [x,y,z], "sigma": {...}}`; on input also `{"matrix": 4x4 row-major}`.
-template <class To, class From>
-struct Pose : Rigid<To, From> {
-  std::optional<PoseSigma> sigma;
-  bool operator==(const Pose&) const = default;
-};
 
 }  // namespace gonio::manifest

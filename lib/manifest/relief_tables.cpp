@@ -1,5 +1,8 @@
 // Field tables of the sections about heights: maps, their roughness and lobes, ground noises.
 #include "manifest/field_makers.h"
+#include "manifest/section_tables.h"
+#include "manifest/sections/ground_noise.h"
+#include "manifest/sections/relief.h"
 
 namespace gonio::manifest {
 
@@ -110,5 +113,13 @@ const std::vector<Field<GroundNoiseFit>>& ground_noise_fields() {
       field("example", &GroundNoiseFit::example, "", "name in reliefs of a map made with it")};
   return table;
 }
+
+GONIO_RECORD(ReliefTreatment, relief_treatment_fields);
+GONIO_RECORD(RoughnessFigure, roughness_figure_fields);
+GONIO_RECORD(NormalsFit, normals_fit_fields);
+GONIO_RECORD(ReliefLobe, relief_lobe_fields);
+GONIO_RECORD(ReliefMap, relief_map_fields);
+GONIO_RECORD(GroundNoisePart, ground_noise_part_fields);
+GONIO_RECORD(GroundNoiseFit, ground_noise_fields);
 
 }  // namespace gonio::manifest

@@ -1,10 +1,10 @@
 // The field tables of the manifest's sections, and the codecs that follow from them. Defined in sections.cpp,
-// modelled.cpp, instrument_tables.cpp, goniometry_tables.cpp, contrast_tables.cpp and nrsfm_tables.cpp.
+// modelled.cpp and *_tables.cpp, each of which sees the sections that it describes and no other.
 #pragma once
 #include <vector>
 
 #include "manifest/fields.h"
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::manifest {
 
@@ -50,68 +50,60 @@ const std::vector<Field<EvaluatedError>>& evaluated_error_fields();
 const std::vector<Field<DetectedFlip>>& detected_flip_fields();
 const std::vector<Field<Evaluation>>& evaluation_fields();
 
-#define GONIO_RECORD(TYPE, TABLE)                                                                                 \
-  template <>                                                                                                     \
-  struct Codec<TYPE> {                                                                                            \
-    static TYPE read(const Value& value, const std::string& place) { return read_record(value, TABLE(), place); } \
-    static Value write(const TYPE& member) { return write_record(member, TABLE()); }                              \
-    static Value schema() { return record_schema(TABLE()); }                                                      \
-  }
-GONIO_RECORD(File, file_fields);
-GONIO_RECORD(Link, link_fields);
-GONIO_RECORD(Board, board_fields);
-GONIO_RECORD(CameraQuality, camera_quality_fields);
-GONIO_RECORD(Camera, camera_fields);
-GONIO_RECORD(SeenBoard, seen_board_fields);
-GONIO_RECORD(ImageEntry, image_fields);
-GONIO_RECORD(Mesh, mesh_fields);
-GONIO_RECORD(Object, object_fields);
-GONIO_RECORD(Table, table_fields);
-GONIO_RECORD(Rendering, rendering_fields);
-GONIO_RECORD(Comparison, comparison_fields);
-GONIO_RECORD(RigMember, rig_member_fields);
-GONIO_RECORD(Rig, rig_fields);
-GONIO_RECORD(DhRow, dh_row_fields);
-GONIO_RECORD(Robot, robot_fields);
-GONIO_RECORD(HeldOut, held_out_fields);
-GONIO_RECORD(ScatterParts, scatter_parts_fields);
-GONIO_RECORD(Mounting, mounting_fields);
-GONIO_RECORD(LightPosition, light_position_fields);
-GONIO_RECORD(AcceptanceResult, acceptance_fields);
-GONIO_RECORD(FlatPatch, flat_patch_fields);
-GONIO_RECORD(AlternativeFit, alternative_fit_fields);
-GONIO_RECORD(DroppedRows, dropped_rows_fields);
-GONIO_RECORD(SurfaceFit, surface_fit_fields);
-GONIO_RECORD(PatternPlacement, pattern_placement_fields);
-GONIO_RECORD(PatternDefect, pattern_defect_fields);
-GONIO_RECORD(Pattern, pattern_fields);
-GONIO_RECORD(Contrast, contrast_fields);
-GONIO_RECORD(ReliefTreatment, relief_treatment_fields);
-GONIO_RECORD(RoughnessFigure, roughness_figure_fields);
-GONIO_RECORD(NormalsFit, normals_fit_fields);
-GONIO_RECORD(ReliefLobe, relief_lobe_fields);
-GONIO_RECORD(ReliefMap, relief_map_fields);
-GONIO_RECORD(GroundNoisePart, ground_noise_part_fields);
-GONIO_RECORD(GroundNoiseFit, ground_noise_fields);
-GONIO_RECORD(TrackSequence, track_sequence_fields);
-GONIO_RECORD(ShapeReconstruction, shape_reconstruction_fields);
-GONIO_RECORD(EvaluatedError, evaluated_error_fields);
-GONIO_RECORD(DetectedFlip, detected_flip_fields);
-GONIO_RECORD(Evaluation, evaluation_fields);
-#undef GONIO_RECORD
-
-// Surfaces, lights and mechanisms are read against the registries instead of a table.
-#define GONIO_REGISTERED(TYPE)                                      \
+// Defined beside the tables (GONIO_RECORD in field_makers.h); of surfaces, lights, laws and mechanisms, which are read
+// against the registries instead of a table, in modelled.cpp. No section is complete here.
+#define GONIO_SECTION_CODEC(TYPE)                                   \
   template <>                                                       \
   struct Codec<TYPE> {                                              \
     static TYPE read(const Value& value, const std::string& place); \
     static Value write(const TYPE& member);                         \
     static Value schema();                                          \
   }
-GONIO_REGISTERED(LawUse);
-GONIO_REGISTERED(Surface);
-GONIO_REGISTERED(Light);
-GONIO_REGISTERED(MechanismUse);
-#undef GONIO_REGISTERED
+GONIO_SECTION_CODEC(File);
+GONIO_SECTION_CODEC(Link);
+GONIO_SECTION_CODEC(Board);
+GONIO_SECTION_CODEC(CameraQuality);
+GONIO_SECTION_CODEC(Camera);
+GONIO_SECTION_CODEC(SeenBoard);
+GONIO_SECTION_CODEC(ImageEntry);
+GONIO_SECTION_CODEC(Mesh);
+GONIO_SECTION_CODEC(Object);
+GONIO_SECTION_CODEC(Table);
+GONIO_SECTION_CODEC(Rendering);
+GONIO_SECTION_CODEC(Comparison);
+GONIO_SECTION_CODEC(RigMember);
+GONIO_SECTION_CODEC(Rig);
+GONIO_SECTION_CODEC(DhRow);
+GONIO_SECTION_CODEC(Robot);
+GONIO_SECTION_CODEC(HeldOut);
+GONIO_SECTION_CODEC(ScatterParts);
+GONIO_SECTION_CODEC(Mounting);
+GONIO_SECTION_CODEC(LightPosition);
+GONIO_SECTION_CODEC(AcceptanceResult);
+GONIO_SECTION_CODEC(FlatPatch);
+GONIO_SECTION_CODEC(AlternativeFit);
+GONIO_SECTION_CODEC(DroppedRows);
+GONIO_SECTION_CODEC(SurfaceFit);
+GONIO_SECTION_CODEC(PatternPlacement);
+GONIO_SECTION_CODEC(PatternDefect);
+GONIO_SECTION_CODEC(Pattern);
+GONIO_SECTION_CODEC(Contrast);
+GONIO_SECTION_CODEC(ReliefTreatment);
+GONIO_SECTION_CODEC(RoughnessFigure);
+GONIO_SECTION_CODEC(NormalsFit);
+GONIO_SECTION_CODEC(ReliefLobe);
+GONIO_SECTION_CODEC(ReliefMap);
+GONIO_SECTION_CODEC(GroundNoisePart);
+GONIO_SECTION_CODEC(GroundNoiseFit);
+GONIO_SECTION_CODEC(TrackSequence);
+GONIO_SECTION_CODEC(ShapeReconstruction);
+GONIO_SECTION_CODEC(EvaluatedError);
+GONIO_SECTION_CODEC(DetectedFlip);
+GONIO_SECTION_CODEC(Evaluation);
+GONIO_SECTION_CODEC(LawUse);
+GONIO_SECTION_CODEC(Surface);
+GONIO_SECTION_CODEC(Light);
+GONIO_SECTION_CODEC(MechanismUse);
+#undef GONIO_SECTION_CODEC
 
 }  // namespace gonio::manifest

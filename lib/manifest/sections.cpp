@@ -1,8 +1,19 @@
+// Field tables of the sections that most manifests have: files, frames, boards, cameras, images, objects, pictures.
 #include <algorithm>
 
 #include "base/error.h"
 #include "manifest/field_makers.h"
 #include "manifest/section_tables.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/comparison.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/frame_link.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/rendering.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::manifest {
 namespace {
@@ -53,6 +64,24 @@ const std::vector<Field<Board>>& board_fields() {
   return table;
 }
 
+const std::vector<Field<CameraQuality>>& camera_quality_fields() {
+  static const std::vector<Field<CameraQuality>> table{
+      field("predicts_within_px", &CameraQuality::predicts_within_px, "px",
+            "at 95 %, over the image at the distances below; what the fit's covariance expects")
+          .range(0, infinite),
+      field("distances_m", &CameraQuality::distances_m, "m", "from the camera"),
+      field("halves_differ_px", &CameraQuality::halves_differ_px, "px",
+            "root mean square over the image of the difference between calibrations of either half of the views")
+          .range(0, infinite),
+      field("halves_expected_px", &CameraQuality::halves_expected_px, "px", "what their covariances expect of it")
+          .range(0, infinite),
+      field("halves_agree", &CameraQuality::halves_agree, "", "false: something is not modelled"),
+      field("coverage", &CameraQuality::coverage, "", "share of the image that corners reach").range(0, 1),
+      field("next", &CameraQuality::next, "", "what to photograph next, one sentence each"),
+      field("files", &CameraQuality::files, "", "maps and pictures by name: projection-sigma, ...; file ids")};
+  return table;
+}
+
 const std::vector<Field<Camera>>& camera_fields() {
   static const std::vector<Field<Camera>> table{
       field("model", &Camera::model, "", "how rays map to pixels")
@@ -73,6 +102,15 @@ const std::vector<Field<Camera>>& camera_fields() {
       field("mosaic", &Camera::mosaic, "",
             "filters over the pixels; polarizers: [90 45; 135 0] degrees, rows from the top")
           .one_of({"RGGB", "GRBG", "GBRG", "BGGR", "polarizers"})};
+  return table;
+}
+
+const std::vector<Field<SeenBoard>>& seen_board_fields() {
+  static const std::vector<Field<SeenBoard>> table{
+      field("board", &SeenBoard::board, "", "name of the board").needed(),
+      field("camera_from_board", &SeenBoard::camera_from_board, "", "takes board to camera coordinates"),
+      field("rms_px", &SeenBoard::rms_px, "px", "root mean square of the reprojection error").range(0, infinite),
+      field("weight", &SeenBoard::weight, "", "in fits; 0: dropped").range(0, 1)};
   return table;
 }
 
@@ -227,5 +265,18 @@ const std::vector<Field<Comparison>>& comparison_fields() {
       field("files", &Comparison::files, "", "file ids of what was written beside it")};
   return table;
 }
+
+GONIO_RECORD(File, file_fields);
+GONIO_RECORD(Link, link_fields);
+GONIO_RECORD(Board, board_fields);
+GONIO_RECORD(CameraQuality, camera_quality_fields);
+GONIO_RECORD(Camera, camera_fields);
+GONIO_RECORD(SeenBoard, seen_board_fields);
+GONIO_RECORD(ImageEntry, image_fields);
+GONIO_RECORD(Mesh, mesh_fields);
+GONIO_RECORD(Object, object_fields);
+GONIO_RECORD(Table, table_fields);
+GONIO_RECORD(Rendering, rendering_fields);
+GONIO_RECORD(Comparison, comparison_fields);
 
 }  // namespace gonio::manifest

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "manifest/document.h"
 #include "manifest/fields.h"
+#include "manifest/sections/mechanism_use.h"
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {
@@ -11,14 +13,14 @@ namespace {
 
 bool exists(const manifest::Document& d, Target target, const std::string& name) {
   switch (target) {
-    case Target::surface: return d.surfaces.contains(name);
-    case Target::light: return d.lights.contains(name);
-    case Target::camera: return d.cameras.contains(name);
-    case Target::board: return d.boards.contains(name);
-    case Target::object: return std::ranges::any_of(d.objects, [&](const manifest::Object& o) { return o.id == name; });
+    case Target::surface: return has_entry(d, "surfaces", name);
+    case Target::light: return has_entry(d, "lights", name);
+    case Target::camera: return has_entry(d, "cameras", name);
+    case Target::board: return has_entry(d, "boards", name);
+    case Target::object: return has_entry(d, "objects", name);
     case Target::scene:
       if (!d.tables.empty() && name.starts_with("point ")) return true;  // of a table of tracks
-      return d.sequences.contains(name.substr(0, name.find('/')));       // "walking/point-7/frame-12"
+      return has_entry(d, "sequences", name.substr(0, name.find('/')));  // "walking/point-7/frame-12"
   }
   return false;
 }

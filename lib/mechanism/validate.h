@@ -1,6 +1,6 @@
 // The manifest's `mechanisms` section against the registry: ids, parameters, bounds of lists, targets that exist.
 #pragma once
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::mechanism {
 

@@ -3,6 +3,10 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "manifest/document.h"
+#include "manifest/sections/comparison.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/rendering.h"
 
 namespace gonio::metric {
 

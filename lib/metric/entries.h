@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 #include "metric/comparison.h"
 
 namespace gonio::metric {

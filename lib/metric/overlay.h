@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "manifest/sections.h"
+#include "manifest/noise.h"
 #include "metric/linear_picture.h"
 
 namespace gonio::metric {

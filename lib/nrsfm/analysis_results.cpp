@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "io/csv.h"
 #include "manifest/document.h"
+#include "manifest/sections/evaluation.h"
 #include "nrsfm/analysis.h"
 
 namespace gonio::nrsfm {

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "manifest/nrsfm_sections.h"
+#include "manifest/sections/evaluation.h"
+#include "manifest/sections/forward.h"
 #include "nrsfm/analysis.h"
 #include "nrsfm/eval_views.h"
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/text.h"
+#include "manifest/sections/evaluation.h"
 
 namespace gonio::nrsfm {
 namespace {

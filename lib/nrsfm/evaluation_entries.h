@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "manifest/nrsfm_sections.h"
+#include "manifest/sections/forward.h"
 #include "nrsfm/evaluate.h"
 #include "nrsfm/submissions.h"
 

@@ -6,6 +6,10 @@
 #include <limits>
 
 #include "base/error.h"
+#include "manifest/document.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/reconstruction.h"
+#include "manifest/sections/sequence.h"
 #include "nrsfm/files.h"
 #include "nrsfm/follow.h"
 #include "nrsfm/manifest_sequences.h"

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "manifest/sections/sequence.h"
 #include "nrsfm/factorial.h"
 #include "nrsfm/files.h"
 #include "nrsfm/flow.h"

@@ -7,6 +7,11 @@
 #include <utility>
 
 #include "base/error.h"
+#include "manifest/document.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/reconstruction.h"
+#include "manifest/sections/sequence.h"
 #include "nrsfm/files.h"
 #include "nrsfm/followed.h"
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 #include "nrsfm/sequence.h"
 #include "nrsfm/solver.h"
 

@@ -12,6 +12,7 @@
 #include "base/progress.h"
 #include "base/quantity.h"
 #include "base/text.h"
+#include "manifest/sections/sequence.h"
 #include "nrsfm/files.h"
 #include "nrsfm/manifest_sequences.h"
 #include "nrsfm/solution_file.h"

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 
+#include "manifest/sections/reconstruction.h"
+#include "manifest/sections/sequence.h"
 #include "nrsfm/files.h"
 #include "nrsfm/manifest_sequences.h"
 

@@ -6,6 +6,9 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "manifest/fields.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/ground_noise.h"
+#include "manifest/sections/relief.h"
 #include "relief/map_options.h"
 
 namespace gonio::relief {

@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "manifest/sections/relief.h"
+#include "manifest/sections/surface_fit.h"
+#include "manifest/sections/table.h"
 #include "report/number_text.h"
 
 namespace gonio::relief {

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
 #include "relief/lobe_surface.h"
 
 namespace gonio::relief {

@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
+#include "manifest/sections/surface.h"
 #include "relief/lobe.h"
 #include "relief/normals.h"
 

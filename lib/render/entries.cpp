@@ -4,6 +4,11 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/rendering.h"
+#include "manifest/sections/surface.h"
 
 namespace gonio::render {
 namespace {

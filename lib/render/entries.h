@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 #include "render/session.h"
 
 namespace gonio::render {

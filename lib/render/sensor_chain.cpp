@@ -8,7 +8,11 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "camera/intrinsics.h"
 #include "geom/vector.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
 #include "render/image_seed.h"
 #include "render/mosaic.h"
 #include "render/sensor_links.h"
@@ -156,8 +160,7 @@ Sensor sensor_of(const manifest::Document& document, std::size_t image) {
   const manifest::ImageEntry& entry = document.images.at(image);
   Sensor sensor;
   sensor.camera = entry.camera;
-  if (const auto camera = document.cameras.find(entry.camera); camera != document.cameras.end())
-    sensor.mosaic = camera->second.mosaic;
+  sensor.mosaic = camera::mosaic_of(document, entry.camera);
   if (entry.noise) sensor.noise = *entry.noise;
   sensor.exposure_s = entry.exposure_s.value_or(0);
   for (const auto& [id, use] : document.mechanisms) {

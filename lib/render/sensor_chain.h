@@ -23,7 +23,8 @@
 #include <string>
 
 #include "io/image.h"
-#include "manifest/document.h"
+#include "manifest/noise.h"
+#include "manifest/sections/forward.h"
 #include "mechanism/mechanism.h"
 #include "render/tone_curve.h"
 

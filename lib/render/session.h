@@ -10,7 +10,7 @@
 
 #include "io/exr.h"
 #include "io/image.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 #include "render/passes.h"
 #include "render/ray_caster.h"
 #include "render/stopping.h"

@@ -6,7 +6,10 @@
 #include "base/atomic_file.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "camera/intrinsics.h"
 #include "io/picture.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
 #include "render/entries.h"
 #include "render/mosaic.h"
 #include "render/preview.h"
@@ -24,8 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* polarizers = "polarizers";
 
 bool behind_polarizers(const manifest::Document& document, std::size_t image) {
-  const auto camera = document.cameras.find(document.images[image].camera);
-  return camera != document.cameras.end() && camera->second.mosaic == polarizers;
+  return camera::mosaic_of(document, document.images[image].camera) == polarizers;
 }
 
 // The document with what --with switches on.

@@ -10,7 +10,14 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "camera/intrinsics.h"
 #include "io/ply.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 #include "render/looking_at.h"
 #include "render/specimen_board.h"
 #include "render/specimen_glass.h"
@@ -119,10 +126,7 @@ void add_lamps(manifest::Document& document) {
 }
 
 void add_images(manifest::Document& document) {
-  manifest::Camera& camera = document.cameras["camera"];
-  camera.width_px = camera.height_px = 160;
-  camera.fx_px = camera.fy_px = 420;
-  camera.cx_px = camera.cy_px = 79.5;
+  camera::enter_pinhole(document, "camera", 160, 160, 420);
   const std::vector<Vec3> positions_m = {{0, -0.44, 0.26}, {0.32, -0.28, 0.24}, {-0.30, -0.26, 0.34}};
   for (std::size_t i = 0; i < positions_m.size(); ++i)
     for (const auto& [lamp, unused] : document.lights) {

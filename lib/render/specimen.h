@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::render {
 

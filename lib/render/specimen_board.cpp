@@ -5,6 +5,14 @@
 #include "base/atomic_file.h"
 #include "camera/board_drawing.h"
 #include "geom/rigid.h"
+#include "manifest/document.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 
 namespace gonio::render {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 #include <filesystem>
 
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::render {
 

@@ -7,7 +7,14 @@
 #include <cmath>
 
 #include "base/atomic_file.h"
+#include "camera/intrinsics.h"
 #include "io/picture.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 #include "render/looking_at.h"
 
 namespace gonio::render {
@@ -141,12 +148,7 @@ manifest::Document glass_specimen(const std::filesystem::path& out) {
   };
   add("cloth", "cloth", 0);
   add("bowl", "glass", 0.0005);  // on the cloth's threads, not in them
-  manifest::Camera& camera = document.cameras["camera"];
-  camera.width_px = 320;
-  camera.height_px = 240;
-  camera.fx_px = camera.fy_px = 560;
-  camera.cx_px = 159.5;
-  camera.cy_px = 119.5;
+  camera::enter_pinhole(document, "camera", 320, 240, 560);
   document.images = {view("front", {0.02, -0.30, 0.16}), view("side", {0.26, -0.12, 0.22})};
   return document;
 }

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "io/ply.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::render {
 

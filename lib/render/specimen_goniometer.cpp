@@ -3,7 +3,15 @@
 #include <cmath>
 #include <cstdio>
 
+#include "camera/intrinsics.h"
 #include "geom/angle.h"
+#include "manifest/document.h"
+#include "manifest/sections/flat_patch.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 #include "render/looking_at.h"
 
 namespace gonio::render {
@@ -45,10 +53,7 @@ void add_plates(manifest::Document& document) {
 }
 
 void add_camera(manifest::Document& document, const Arc& arc) {
-  manifest::Camera& camera = document.cameras["camera"];
-  camera.width_px = camera.height_px = 96;
-  camera.fx_px = camera.fy_px = 96 * arc.camera_distance_m / 0.023;
-  camera.cx_px = camera.cy_px = 47.5;
+  camera::enter_pinhole(document, "camera", 96, 96, 96 * arc.camera_distance_m / 0.023);
 }
 
 }  // namespace

@@ -10,7 +10,8 @@
 #pragma once
 #include <vector>
 
-#include "manifest/document.h"
+#include "geom/vector.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::render {
 

@@ -8,8 +8,16 @@
 
 #include "base/atomic_file.h"
 #include "base/random.h"
+#include "camera/intrinsics.h"
 #include "geom/angle.h"
 #include "io/ply.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/pattern.h"
+#include "manifest/sections/surface.h"
 
 namespace gonio::render {
 namespace {
@@ -111,10 +119,7 @@ manifest::Document matrix_specimen(const std::filesystem::path& out) {
   manifest::Light& lamp = document.lights["lamp"];
   lamp.model = "directional";
   lamp.parameters = {{"towards", std::vector<double>{0.04, 0.17, 0.98}}, {"watt_per_m2", 4.0}};
-  manifest::Camera& camera = document.cameras["camera"];
-  camera.width_px = camera.height_px = 150;
-  camera.fx_px = camera.fy_px = 2400;
-  camera.cx_px = camera.cy_px = 74.5;
+  camera::enter_pinhole(document, "camera", 150, 150, 2400);
   manifest::Pattern& pattern = document.patterns["sample"];
   pattern.kind = "data-matrix";
   pattern.rows = pattern.columns = side;

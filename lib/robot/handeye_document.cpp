@@ -8,6 +8,12 @@
 #include "camera/board.h"
 #include "camera/corner_table.h"
 #include "camera/intrinsics.h"
+#include "manifest/document.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/frame_link.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mounting.h"
 
 namespace gonio::robot {
 namespace {

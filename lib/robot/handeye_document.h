@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 #include "robot/handeye/analysis.h"
 #include "robot/pose_list.h"
 

@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "geom/rigid.h"
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
+#include "manifest/sections/robot.h"
 
 namespace gonio::robot {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "geom/rigid.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::robot {
 

@@ -3,6 +3,10 @@
 #include <set>
 
 #include "base/error.h"
+#include "manifest/document.h"
+#include "manifest/sections/frame_link.h"
+#include "manifest/sections/light_position.h"
+#include "manifest/sections/mounting.h"
 #include "report/number_text.h"
 #include "report/page.h"
 #include "robot/light_handeye.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 #include "robot/kinematics.h"
 
 namespace gonio::robot {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "manifest/sections/mechanism_use.h"
 
 namespace gonio::scene {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
 #include "mechanism/mechanism.h"
 
 namespace gonio::scene {

@@ -4,6 +4,8 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "camera/intrinsics.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/mechanism_use.h"
 #include "scene/amounts.h"
 #include "scene/mechanisms.h"
 

@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "camera/intrinsics.h"
 #include "light/turn.h"
+#include "manifest/sections/mechanism_use.h"
 #include "scene/amounts.h"
 #include "scene/light_covers.h"
 #include "scene/placement.h"

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
 #include "mechanism/mechanism.h"
 #include "scene/scene.h"
 

@@ -5,6 +5,7 @@
 #include "base/assignment.h"
 #include "base/error.h"
 #include "base/quantity.h"
+#include "manifest/sections/mechanism_use.h"
 #include "scene/mechanisms.h"
 
 namespace gonio::scene {

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "manifest/sections/mechanism_use.h"
 #include "scene/amounts.h"
 
 namespace gonio::scene {

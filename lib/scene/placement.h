@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
 #include "mechanism/mechanism.h"
 #include "scene/scene.h"
 

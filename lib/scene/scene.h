@@ -19,7 +19,7 @@
 #include "geom/rigid.h"
 #include "io/image.h"
 #include "light/light.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 #include "mesh/mesh.h"
 #include "optics/bands.h"
 #include "surface/surface.h"

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "manifest/sections/surface.h"
 #include "surface/law.h"
 #include "surface/subsurface.h"
 

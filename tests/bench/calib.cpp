@@ -141,7 +141,7 @@ int recode(const std::filesystem::path& from, const std::filesystem::path& to, c
 
 std::vector<double> nine_of_manifest(const std::filesystem::path& path) {
   const manifest::Document document = manifest::read_document(path, {.allow_outside = true});
-  const Intrinsics found = intrinsics_of(document.cameras.begin()->second, "cameras");
+  const Intrinsics found = intrinsics_of(*find_camera(document, names_in(document, "cameras").front()), "cameras");
   std::vector<double> nine{found.fx_px, found.fy_px, found.cx_px, found.cy_px};
   for (const char* name : {"k1", "k2", "p1", "p2", "k3"}) nine.push_back(found.distortion[distortion_index(name, "")]);
   return nine;

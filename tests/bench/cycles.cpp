@@ -25,10 +25,16 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "camera/intrinsics.h"
 #include "io/merl.h"
 #include "io/picture.h"
 #include "io/ply.h"
 #include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 #include "render/looking_at.h"
 #include "render/specimen_glass.h"
 #include "stats/distributions.h"
@@ -50,12 +56,7 @@ void add_object(Document& document, const std::string& id, const std::string& su
 }
 
 void add_camera(Document& document, Vec3 position_m, Vec3 target_m, int width_px, int height_px, double focal_px) {
-  manifest::Camera& camera = document.cameras["camera"];
-  camera.width_px = width_px;
-  camera.height_px = height_px;
-  camera.fx_px = camera.fy_px = focal_px;
-  camera.cx_px = (width_px - 1) / 2.0;
-  camera.cy_px = (height_px - 1) / 2.0;
+  camera::enter_pinhole(document, "camera", width_px, height_px, focal_px);
   manifest::ImageEntry image;
   image.id = "view";
   image.camera = "camera";

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "base/random.h"
+#include "manifest/document.h"
 #include "render/path_tracer.h"
 #include "render/specimen.h"
 

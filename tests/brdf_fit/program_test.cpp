@@ -10,6 +10,8 @@
 #include "data.h"
 #include "geom/vector.h"
 #include "manifest/document.h"
+#include "manifest/sections/surface.h"
+#include "manifest/sections/surface_fit.h"
 #include "process.h"
 
 namespace gonio {

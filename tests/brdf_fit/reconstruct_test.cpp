@@ -13,6 +13,8 @@
 #include "goniometry/reconstruction.h"
 #include "io/merl.h"
 #include "manifest/document.h"
+#include "manifest/sections/surface.h"
+#include "manifest/sections/surface_fit.h"
 #include "process.h"
 
 namespace gonio {

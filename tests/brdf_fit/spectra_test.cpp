@@ -11,6 +11,8 @@
 #include "goniometry/document.h"
 #include "goniometry/page.h"
 #include "goniometry/plots.h"
+#include "manifest/document.h"
+#include "manifest/sections/surface_fit.h"
 #include "report/heat_drawing.h"
 
 namespace gonio::goniometry {

@@ -13,6 +13,7 @@
 #include "camera/marker_dictionary.h"
 #include "data.h"
 #include "io/picture.h"
+#include "manifest/sections/board.h"
 
 namespace gonio::camera {
 namespace {

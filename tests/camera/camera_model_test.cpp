@@ -4,12 +4,15 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
 #include "base/random.h"
 #include "camera/board_projection.h"
+#include "manifest/document.h"
+#include "manifest/sections/camera.h"
 
 namespace gonio::camera {
 namespace {
@@ -164,6 +167,23 @@ void expect_refused(const manifest::Camera& camera, const std::string& place) {
   }
 }
 
+TEST(CameraModel, ParallelIsTheOrthographicCameraOfAManifest) {
+  manifest::Camera c;
+  c.model = "orthographic";
+  c.width_px = 30;
+  c.height_px = 21;
+  c.px_per_m = 100;
+  const CameraModel stated(c, "t"), made = CameraModel::parallel(100, 30, 21);
+  EXPECT_TRUE(made.orthographic());
+  EXPECT_EQ(made.width_px(), 30);
+  EXPECT_EQ(made.height_px(), 21);
+  const Vec3 point{0.01, -0.02, 0.5};
+  EXPECT_EQ(made.project(point)->x, stated.project(point)->x);
+  EXPECT_EQ(made.project(point)->y, stated.project(point)->y);
+  EXPECT_EQ(made.ray({3, 4}).origin_m, stated.ray({3, 4}).origin_m);
+  EXPECT_EQ(made.ray({3, 4}).direction, stated.ray({3, 4}).direction);
+}
+
 TEST(CameraModel, RefusesWhatIsNoCamera) {
   manifest::Camera c = pinhole();
   c.fx_px = -5.0;
@@ -196,6 +216,24 @@ TEST(Intrinsics, StoreAndReadGiveTheSameNumbers) {
   EXPECT_EQ(before.distortion, after.distortion);
   EXPECT_EQ(before.fx_px, after.fx_px);
   EXPECT_EQ(before.cy_px, after.cy_px);
+}
+
+TEST(Intrinsics, ADocumentsCameraIsAskedWithoutItsFields) {
+  manifest::Document document;
+  enter_pinhole(document, "c", 64, 41, 50);
+  const manifest::Camera& entered = document.cameras.at("c");
+  EXPECT_EQ(entered.model, "pinhole");
+  const Intrinsics lens = intrinsics_of(entered, "t");
+  EXPECT_EQ(lens.fx_px, 50);
+  EXPECT_EQ(lens.fy_px, 50);
+  EXPECT_EQ(lens.cx_px, 31.5);
+  EXPECT_EQ(lens.cy_px, 20);
+  EXPECT_EQ(picture_size_px(document, "c"), (std::array{64, 41}));
+  EXPECT_EQ(picture_size_px(document, "d"), (std::array{0, 0}));
+  EXPECT_EQ(mosaic_of(document, "c"), "");
+  document.cameras["c"].mosaic = "RGGB";
+  EXPECT_EQ(mosaic_of(document, "c"), "RGGB");
+  EXPECT_EQ(mosaic_of(document, "d"), "");
 }
 
 }  // namespace

@@ -6,6 +6,9 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "data.h"
+#include "manifest/document.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::camera {
 namespace {

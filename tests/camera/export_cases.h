@@ -12,6 +12,8 @@
 #include "base/error.h"
 #include "camera/camera_model.h"
 #include "camera/export/formats.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
 
 namespace gonio::camera {
 

@@ -5,6 +5,8 @@
 #include <sstream>
 
 #include "export_cases.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
 
 namespace gonio::camera {
 namespace {

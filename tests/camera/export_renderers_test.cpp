@@ -3,6 +3,8 @@
 #include <cstdlib>
 
 #include "export_cases.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
 #include "manifest/value.h"
 
 namespace gonio::camera {

@@ -10,6 +10,7 @@
 
 #include "base/random.h"
 #include "camera/camera_model.h"
+#include "manifest/sections/camera.h"
 
 namespace gonio::camera {
 namespace {

@@ -11,6 +11,10 @@
 #include "data.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/rig.h"
 #include "process.h"
 
 namespace gonio::camera {

@@ -8,6 +8,12 @@
 #include "camera/corner_table.h"
 #include "data.h"
 #include "io/picture.h"
+#include "manifest/document.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/rig.h"
+#include "manifest/sections/table.h"
 #include "synthetic_board.h"
 
 namespace gonio::camera {

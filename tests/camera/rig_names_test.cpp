@@ -5,6 +5,8 @@
 #include "base/error.h"
 #include "camera/calibrate_document.h"
 #include "data.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
 
 namespace gonio::camera {
 namespace {

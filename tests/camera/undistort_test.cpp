@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "manifest/sections/camera.h"
 
 namespace gonio::camera {
 namespace {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "data.h"
+#include "manifest/document.h"
 #include "sample_world.h"
 #include "stats/distributions.h"
 

@@ -8,11 +8,19 @@
 #include "base/atomic_file.h"
 #include "camera/board_drawing.h"
 #include "camera/calibrate_document.h"
+#include "camera/intrinsics.h"
 #include "contrast/measure.h"
 #include "contrast/sample_outline.h"
 #include "data.h"
 #include "io/picture.h"
+#include "manifest/document.h"
 #include "manifest/file_paths.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/pattern.h"
+#include "manifest/sections/surface.h"
 #include "render/path_tracer.h"
 #include "render/ray_caster.h"
 #include "render/sensor_chain.h"
@@ -152,12 +160,7 @@ TEST(BoardPose, TheSampleIsFoundByTheBoardThatItLiesOn) {
   std::erase_if(document.images, [](const auto& image) { return image.id.back() == '0' || image.id.back() == '4'; });
   for (manifest::ImageEntry& image : document.images)
     if (image.group == "after") image.world_from_camera->translation_m.x -= apart_m;
-  manifest::Camera& camera = document.cameras["camera"];
-  camera.width_px = 440;
-  camera.height_px = 330;
-  camera.fx_px = camera.fy_px = 1950;
-  camera.cx_px = 219.5;
-  camera.cy_px = 164.5;
+  camera::enter_pinhole(document, "camera", 440, 330, 1950);
   std::vector<manifest::ImageEntry> images;
   for (const char* placement : {"before", "after"}) photograph(document, placement, folder.path(), images);
   document.images = images;

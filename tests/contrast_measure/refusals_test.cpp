@@ -7,9 +7,14 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "camera/intrinsics.h"
 #include "contrast/measure.h"
 #include "data.h"
 #include "io/picture.h"
+#include "manifest/document.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/pattern.h"
 
 namespace gonio::contrast {
 namespace {
@@ -111,11 +116,7 @@ TEST_P(MeasureRefusal, SaysWhatAndWhere) {
 }
 
 void enter_camera(Session& s, int width) {
-  manifest::Camera camera;
-  camera.width_px = camera.height_px = width;
-  camera.fx_px = camera.fy_px = 1000;
-  camera.cx_px = camera.cy_px = 39.5;
-  s.document.cameras["camera"] = camera;
+  camera::enter_pinhole(s.document, "camera", width, width, 1000);
   for (auto& image : s.document.images) image.camera = "camera";
 }
 

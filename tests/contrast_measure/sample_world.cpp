@@ -7,9 +7,18 @@
 #include "base/random.h"
 #include "base/text.h"
 #include "camera/camera_model.h"
+#include "camera/intrinsics.h"
 #include "contrast/matrix_code.h"
 #include "io/picture.h"
 #include "io/ply.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/pattern.h"
+#include "manifest/sections/surface.h"
+#include "manifest/sections/table.h"
 #include "render/path_tracer.h"
 #include "render/ray_caster.h"
 #include "render/sensor_chain.h"
@@ -102,18 +111,10 @@ manifest::Surface ridged(const std::vector<CellSurface>& cells) {
   return surface;
 }
 
-manifest::Camera camera_of(const SampleWorld& world) {
-  manifest::Camera camera;
-  camera.width_px = camera.height_px = world.side_px;
-  camera.fx_px = camera.fy_px = world.focal_px;
-  camera.cx_px = camera.cy_px = (world.side_px - 1) / 2.0;
-  return camera;
-}
-
 manifest::Document base_document(const SampleWorld& world, const std::filesystem::path& folder) {
   manifest::Document document;
   document.folder = folder;
-  document.cameras["camera"] = camera_of(world);
+  camera::enter_pinhole(document, "camera", world.side_px, world.side_px, world.focal_px);
   document.lights["lamp"].parameters = {{"position_m", std::vector<double>{lamp_m.x, lamp_m.y, lamp_m.z}},
                                         {"watt_per_sr", lamp_watt_per_sr}};
   io::write_ply(folder / "plate.ply", plate(world.pattern));
@@ -227,7 +228,9 @@ manifest::Document photographed(const SampleWorld& world, const std::filesystem:
 }
 
 Vec2 true_corner_px(const SampleWorld& world, int placement, std::size_t tilt, int corner) {
-  const camera::CameraModel camera(camera_of(world), "camera");
+  const double middle_px = (world.side_px - 1) / 2.0;
+  const camera::CameraModel camera({world.focal_px, world.focal_px, middle_px, middle_px, {}}, world.side_px,
+                                   world.side_px);
   const Vec2 p = world.pattern.corner_m(corner);
   return *camera.project(inverse(camera_at(world, world.tilts_rad[tilt])) *
                          (world_from_pattern(world, placement) * Vec3{p.x, p.y, 0}));

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "contrast/measure.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::tests {
 

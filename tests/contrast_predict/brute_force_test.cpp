@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "manifest/document.h"
+#include "manifest/sections/mechanism_use.h"
 #include "samples.h"
 #include "surface/fresnel.h"
 

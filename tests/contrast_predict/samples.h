@@ -3,6 +3,7 @@
 #include <string>
 
 #include "contrast/predict.h"
+#include "manifest/document.h"
 
 namespace gonio::tests {
 

@@ -9,6 +9,7 @@
 #include "explain/boards/boards_problem.h"
 #include "explain/engine.h"
 #include "manifest/document.h"
+#include "manifest/sections/mechanism_use.h"
 
 namespace gonio::explain::tests {
 namespace {

@@ -9,6 +9,8 @@
 #include "explain/robot/robot_problem.h"
 #include "explain/robot_world.h"
 #include "geom/angle.h"
+#include "manifest/document.h"
+#include "manifest/sections/mounting.h"
 
 namespace gonio::explain::tests {
 namespace {

@@ -7,6 +7,10 @@
 #include "base/error.h"
 #include "explain/robot/robot_findings.h"
 #include "explain/robot_world.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mounting.h"
+#include "manifest/sections/table.h"
 #include "robot/ur_calibration.h"
 
 namespace gonio::explain::tests {

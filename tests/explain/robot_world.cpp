@@ -5,6 +5,12 @@
 #include <random>
 
 #include "camera/corner_table.h"
+#include "manifest/document.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mounting.h"
+#include "manifest/sections/robot.h"
 
 namespace gonio::explain::tests {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::explain::tests {
 

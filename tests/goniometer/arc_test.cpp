@@ -4,6 +4,8 @@
 #include <set>
 
 #include "data.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/surface.h"
 #include "recordings.h"
 #include "render/specimen_goniometer.h"
 

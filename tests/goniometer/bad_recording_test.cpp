@@ -5,8 +5,13 @@
 #include <functional>
 
 #include "base/error.h"
+#include "camera/intrinsics.h"
 #include "data.h"
 #include "light/irradiance.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/flat_patch.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mechanism_use.h"
 #include "recordings.h"
 
 namespace gonio::goniometry {
@@ -20,10 +25,7 @@ class BadRecordingTest : public testing::Test {
   BadRecordingTest() {
     d_.folder = folder_.path();
     d_.name = "recording.json";
-    manifest::Camera& camera = d_.cameras["camera"];
-    camera.width_px = camera.height_px = 48;
-    camera.fx_px = camera.fy_px = 700;
-    camera.cx_px = camera.cy_px = 23.5;
+    camera::enter_pinhole(d_, "camera", 48, 48, 700);
     const Vec3 at = direction(25 * degree, 0) * 0.5;
     d_.lights["lamp"].parameters = {{"position_m", std::vector<double>{at.x, at.y, at.z}}, {"watt_per_sr", 1.0}};
     add_patch("sample", -0.006);
@@ -43,7 +45,7 @@ class BadRecordingTest : public testing::Test {
   // Radiance `sample` where x < 0, else `tile`: the border's image is a line through the middle of the picture.
   void write(int i, int width, int height, double sample, double tile, float spoil = 0) {
     io::Image picture(width, height, {"R", "G", "B"});
-    const camera::CameraModel camera(d_.cameras["camera"], "camera");
+    const camera::CameraModel camera(*find_camera(d_, "camera"), "camera");
     const auto& pose = *d_.images[i].world_from_camera;
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {

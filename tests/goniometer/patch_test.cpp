@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "goniometry/patch_cells.h"
+#include "manifest/sections/flat_patch.h"
 #include "recordings.h"
 
 namespace gonio::goniometry {
@@ -30,13 +31,11 @@ Rigid<frame::Camera, frame::Object> seen_from(double theta_rad, double phi_rad, 
   return {back.rotation, back.translation_m};
 }
 
-camera::CameraModel distorted(const std::string& model, double k1) {
-  manifest::Camera camera;
-  camera.model = model;
-  camera.width_px = 320, camera.height_px = 240;
-  camera.fx_px = 700, camera.fy_px = 690, camera.cx_px = 165, camera.cy_px = 117;
-  camera.distortion["k1"] = k1;
-  return {camera, "camera"};
+camera::CameraModel distorted(double k1, double fisheye = 0) {
+  camera::Intrinsics lens{700, 690, 165, 117, {}};
+  lens.distortion[camera::LensTerm::k1] = k1;
+  lens.distortion[camera::LensTerm::fisheye] = fisheye;
+  return {lens, 320, 240};
 }
 
 double area_of(const Footprint& print) {
@@ -49,7 +48,7 @@ double area_of(const Footprint& print) {
 TEST(Footprint, CoversThePatchButForItsEdge) {
   const Patch patch(disc(0.04), "p");
   for (const auto& camera :
-       {distorted("radial-tangential", -0.25), distorted("radial-tangential", 0.2), distorted("fisheye", 0.02)})
+       {distorted(-0.25), distorted(0.2), distorted(0.02, 1)})
     for (const double theta : {2 * degree, 45 * degree, 75 * degree}) {
       const Footprint print = footprint(patch, camera, seen_from(theta, 0.7, 0.45));
       ASSERT_TRUE(print.refusal.empty()) << print.refusal;
@@ -64,7 +63,7 @@ TEST(Footprint, CoversThePatchButForItsEdge) {
 
 TEST(Footprint, PixelsLieWhereTheLensPutsThem) {
   const Patch patch(polygon({{-0.02, -0.03}, {0.03, -0.02}, {0.02, 0.03}, {-0.01, 0.01}}), "p");
-  const auto camera = distorted("radial-tangential", -0.25);
+  const auto camera = distorted(-0.25);
   const auto pose = seen_from(40 * degree, 2.1, 0.4);
   const Footprint print = footprint(patch, camera, pose);
   ASSERT_GT(print.pixels.size(), 500u);
@@ -78,7 +77,7 @@ TEST(Footprint, PixelsLieWhereTheLensPutsThem) {
 }
 
 TEST(Footprint, APartOutsideThePictureIsSaid) {
-  const auto camera = distorted("radial-tangential", -0.25);
+  const auto camera = distorted(-0.25);
   const Footprint print = footprint(Patch(disc(0.2), "p"), camera, seen_from(0.3, 0, 0.45));
   EXPECT_NE(print.refusal.find("outside the picture"), std::string::npos);
 }

@@ -10,6 +10,13 @@
 #include "base/error.h"
 #include "chi_square.h"
 #include "data.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/flat_patch.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 #include "recordings.h"
 
 namespace gonio::goniometry {

@@ -8,6 +8,7 @@
 #include "goniometry/recording.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/sections/image.h"
 #include "render/looking_at.h"
 #include "render/path_tracer.h"
 #include "render/virtual_sensor.h"

@@ -4,7 +4,13 @@
 #include <algorithm>
 #include <string>
 
+#include "camera/intrinsics.h"
 #include "io/ply.h"
+#include "manifest/sections/flat_patch.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 #include "recordings.h"
 
 namespace gonio::tests {
@@ -59,10 +65,8 @@ inline manifest::Document ridge_recording(const RidgePlate& plate, const RidgeVi
   manifest::FlatPatch& patch = d.goniometer["plate"];
   patch.world_from_sample.emplace();
   patch.radius_m = plate.radius_m;
-  manifest::Camera& camera = d.cameras["camera"];
-  camera.width_px = camera.height_px = views.width_px;
-  camera.fx_px = camera.fy_px = views.width_px * views.camera_m / (2.4 * plate.radius_m);
-  camera.cx_px = camera.cy_px = 0.5 * (views.width_px - 1);
+  camera::enter_pinhole(d, "camera", views.width_px, views.width_px,
+                        views.width_px * views.camera_m / (2.4 * plate.radius_m));
   for (const double theta : views.light_thetas_rad)
     for (const double phi : views.light_phis_rad) {
       const std::string lamp = "lamp-" + std::to_string(d.lights.size());

@@ -9,7 +9,7 @@
 #include "explain/engine.h"
 #include "explain/images/images_problem.h"
 #include "io/image.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::tests {
 

@@ -2,6 +2,8 @@
 
 #include "base/random.h"
 #include "io/picture.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
 #include "render/path_tracer.h"
 #include "render/ray_caster.h"
 #include "render/sensor_chain.h"

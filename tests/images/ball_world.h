@@ -6,7 +6,7 @@
 
 #include "data.h"
 #include "io/image.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::tests {
 

@@ -10,6 +10,8 @@
 #include "ball_world.h"
 #include "base/random.h"
 #include "explain/images/images_problem.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
 
 namespace gonio::explain {
 namespace {

@@ -14,6 +14,7 @@
 #include "explain/images/images_problem.h"
 #include "io/picture.h"
 #include "light/turn.h"
+#include "manifest/document.h"
 #include "process.h"
 
 namespace gonio::explain {

@@ -9,6 +9,8 @@
 #include "ball_world.h"
 #include "explain/engine.h"
 #include "explain/images/images_problem.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
 
 namespace gonio::explain {
 namespace {

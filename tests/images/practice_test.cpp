@@ -9,6 +9,7 @@
 #include "data.h"
 #include "explain/engine.h"
 #include "explain/images/images_problem.h"
+#include "manifest/document.h"
 
 namespace gonio::explain {
 namespace {

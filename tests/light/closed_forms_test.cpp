@@ -6,6 +6,7 @@
 #include "io/picture.h"
 #include "light/irradiance.h"
 #include "light/turn.h"
+#include "manifest/sections/light.h"
 
 namespace gonio::tests {
 namespace {

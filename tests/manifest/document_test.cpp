@@ -7,6 +7,10 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "data.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/surface.h"
 
 namespace gonio::manifest {
 namespace {
@@ -26,6 +30,36 @@ std::string refusal(const std::string& text, Exit code = Exit::data) {
   }
   ADD_FAILURE() << "accepted: " << text;
   return {};
+}
+
+TEST(Document, SaysWhoIsInASection) {
+  Document d;
+  d.cameras["left"].model = "fisheye";
+  d.cameras["right"];
+  d.images.resize(2);
+  d.images[0].id = "second";
+  d.images[1].id = "first";
+  EXPECT_THAT(names_in(d, "cameras"), testing::ElementsAre("left", "right"));
+  EXPECT_THAT(names_in(d, "images"), testing::ElementsAre("second", "first"));
+  EXPECT_THAT(names_in(d, "boards"), testing::IsEmpty());
+  EXPECT_THROW(names_in(d, "camera"), Error);  // a name that is none of the manifest's
+  EXPECT_TRUE(has_entry(d, "images", "first"));
+  EXPECT_FALSE(has_entry(d, "cameras", "first"));
+  ASSERT_NE(find_camera(d, "left"), nullptr);
+  EXPECT_EQ(find_camera(d, "left")->model, "fisheye");
+  EXPECT_EQ(find_camera(d, "middle"), nullptr);
+}
+
+TEST(Document, CopiesAndMovesCarryTheSections) {
+  Document d;
+  d.cameras["c"].width_px = 7;
+  d.images.emplace_back().id = "i";
+  Document copy = d;
+  copy.cameras["c"].width_px = 8;
+  EXPECT_EQ(d.cameras.at("c").width_px, 7);
+  const Document moved = std::move(copy);
+  EXPECT_EQ(moved.cameras.at("c").width_px, 8);
+  EXPECT_EQ(moved.images.at(0).id, "i");
 }
 
 TEST(Document, PracticeManifestsReadAndAreWrittenAsTheyWere) {

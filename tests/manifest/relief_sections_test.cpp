@@ -4,6 +4,9 @@
 
 #include "base/error.h"
 #include "manifest/document.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/ground_noise.h"
+#include "manifest/sections/relief.h"
 
 namespace gonio::manifest {
 namespace {

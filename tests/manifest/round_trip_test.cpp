@@ -6,6 +6,13 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "manifest/document.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 
 namespace gonio::manifest {
 namespace {

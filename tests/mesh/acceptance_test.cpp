@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "manifest/sections/acceptance.h"
 #include "mesh/acceptance/figures.h"
 #include "stats/intervals.h"
 

@@ -14,6 +14,7 @@
 #include "base/text.h"
 #include "io/csv.h"
 #include "manifest/document.h"
+#include "manifest/sections/evaluation.h"
 #include "report/page.h"
 
 namespace gonio::nrsfm {

@@ -8,6 +8,7 @@
 #include "eval_program.h"
 #include "io/csv.h"
 #include "io/mat.h"
+#include "manifest/sections/evaluation.h"
 #include "nrsfm/variables.h"
 
 namespace gonio::nrsfm {

@@ -5,6 +5,7 @@
 #include "base/atomic_file.h"
 #include "data.h"
 #include "manifest/document.h"
+#include "manifest/sections/evaluation.h"
 #include "nrsfm/files.h"
 #include "process.h"
 #include "tracks_world.h"

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "explain/explain_document.h"
+#include "manifest/document.h"
 #include "nrsfm/alignment.h"
 #include "nrsfm/errors.h"
 #include "nrsfm/files.h"

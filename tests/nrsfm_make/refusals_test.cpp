@@ -8,6 +8,7 @@
 #include "data.h"
 #include "io/ply.h"
 #include "manifest/document.h"
+#include "manifest/sections/sequence.h"
 #include "nrsfm/files.h"
 #include "nrsfm/make_call.h"
 

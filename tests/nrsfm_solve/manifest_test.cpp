@@ -4,6 +4,10 @@
 
 #include "base/error.h"
 #include "data.h"
+#include "manifest/document.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/reconstruction.h"
+#include "manifest/sections/sequence.h"
 #include "nrsfm/files.h"
 #include "nrsfm/manifest_sequences.h"
 #include "synthetic.h"

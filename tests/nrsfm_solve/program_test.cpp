@@ -10,6 +10,8 @@
 #include "base/atomic_file.h"
 #include "data.h"
 #include "manifest/document.h"
+#include "manifest/sections/reconstruction.h"
+#include "manifest/sections/sequence.h"
 #include "nrsfm/files.h"
 #include "nrsfm/listing.h"
 #include "nrsfm/solution_file.h"

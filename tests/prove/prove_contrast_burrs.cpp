@@ -15,6 +15,8 @@
 #include "base/atomic_file.h"
 #include "base/text.h"
 #include "contrast/brute_force.h"
+#include "manifest/document.h"
+#include "manifest/sections/surface.h"
 #include "report/number_text.h"
 #include "report/page.h"
 

@@ -10,6 +10,7 @@
 
 #include "contrast_measure/sample_world.h"
 #include "data.h"
+#include "manifest/document.h"
 #include "stats/distributions.h"
 
 namespace gonio::prove {

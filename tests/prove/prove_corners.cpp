@@ -10,6 +10,7 @@
 #include "camera/corner_detection.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/sections/camera.h"
 
 namespace gonio::camera {
 namespace {

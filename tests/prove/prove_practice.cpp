@@ -21,6 +21,7 @@
 #include "explain/engine.h"
 #include "explain/images/body_walks.h"
 #include "explain/images/images_problem.h"
+#include "manifest/document.h"
 
 namespace gonio::prove {
 namespace {

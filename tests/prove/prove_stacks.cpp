@@ -18,6 +18,7 @@
 #include "explain/stacks/exposures_problem.h"
 #include "explain/stacks/photometric_problem.h"
 #include "io/picture.h"
+#include "manifest/document.h"
 
 namespace gonio::explain::stacks {
 namespace {

@@ -7,6 +7,7 @@
 #include "data.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/sections/camera.h"
 #include "process.h"
 
 namespace gonio::camera::tests {

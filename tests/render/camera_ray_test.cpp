@@ -9,7 +9,7 @@
 namespace gonio::render {
 namespace {
 
-scene::View view_of(const manifest::Camera& camera, const scene::ThinLens& lens) {
+scene::View view_of(const camera::CameraModel& camera, const scene::ThinLens& lens) {
   scene::Scene scene = tests::SceneBuilder().view(camera, {0.3, -0.2, 1.1}, {0.4, 0.2, -0.7}).scene();
   scene.views[0].lens = lens;
   return scene.views[0];
@@ -33,10 +33,9 @@ TEST(CameraRay, WithoutApertureIsThePinholesToTheLastBit) {
 
 TEST(CameraRay, ThePlaneInFocusIsSharpAndOthersSpreadOverTheCircleOfConfusion) {
   constexpr double radius = 0.02, focus = 0.8, f_px = 80;
-  manifest::Camera distorted = tests::pinhole(64, f_px);
-  distorted.model = "radial-tangential";
-  distorted.distortion["k1"] = -0.1;
-  for (const manifest::Camera& camera : {tests::pinhole(64, f_px), distorted}) {
+  camera::Intrinsics distorted = tests::pinhole_lens(64, f_px);
+  distorted.distortion[camera::LensTerm::k1] = -0.1;
+  for (const camera::CameraModel& camera : {tests::pinhole(64, f_px), camera::CameraModel(distorted, 64, 64)}) {
     const scene::View view = view_of(camera, {radius, focus});
     const CameraRays rays(view);
     Random random(2);
@@ -60,12 +59,7 @@ TEST(CameraRay, ThePlaneInFocusIsSharpAndOthersSpreadOverTheCircleOfConfusion) {
 }
 
 TEST(CameraRay, OrthographicConesAreAsWideEverywhere) {
-  manifest::Camera camera;
-  camera.model = "orthographic";
-  camera.width_px = camera.height_px = 10;
-  camera.px_per_m = 100;
-  camera.cx_px = camera.cy_px = 4.5;
-  const scene::View view = view_of(camera, {0.01, 0.5});
+  const scene::View view = view_of(camera::CameraModel::parallel(100, 10, 10), {0.01, 0.5});
   const CameraRays rays(view);
   for (const Vec2 pixel : {Vec2{0, 0}, Vec2{9, 3}}) {
     const Vec3 sharp = at_depth(view, rays.principal(pixel), 0.75);

@@ -11,6 +11,7 @@ namespace gonio::render {
 namespace {
 
 using tests::pinhole;
+using tests::pinhole_lens;
 using tests::SceneBuilder;
 using tests::two_sided;
 
@@ -46,11 +47,7 @@ TEST(Caustic, MirrorImageOfAPointLamp) {
     builder.object(slab(5, 0.1, 0), glass(builder, 1.5, 1e4));
     builder.object(scene::Plane{8, 8}, builder.diffuse(0.6), {0, 0, 1}, {pi, 0, 0});
     builder.light("point", {{"position_m", std::vector<double>{0, 0, 0.5}}, {"watt_per_sr", 2.0}});
-    manifest::Camera camera;  // looks up; 2 x 2 pixels of half a metre
-    camera.model = "orthographic";
-    camera.width_px = camera.height_px = 2;
-    camera.px_per_m = 2;
-    camera.cx_px = camera.cy_px = 0.5;
+    const auto camera = camera::CameraModel::parallel(2, 2, 2);  // looks up; 2 x 2 pixels of half a metre
     const auto scene = builder.view(camera, {x, 0, 0.7}, {0, 0, 0}).scene();
     const RayCaster caster(scene.instances);
     const auto found = two_sided(scene, caster, {.max_bounces = 4}, 16, 256, 30000);
@@ -98,10 +95,10 @@ TEST(Caustic, BallLensSeenByAnOrthographicCamera) {
 }
 TEST(Caustic, BallLensSeenThroughADistortingLens) {
   Lens lens;
-  manifest::Camera camera = pinhole(12, 14);
-  camera.model = "radial-tangential";
-  camera.distortion = {{"k1", -0.2}, {"p1", 0.02}};
-  expect_agreement(lens.builder.view(camera, {0.35, 0, 0.3}, {0, -pi + 0.8, 0}).scene(), 256);
+  camera::Intrinsics distorting = pinhole_lens(12, 14);
+  distorting.distortion[camera::LensTerm::k1] = -0.2;
+  distorting.distortion[camera::LensTerm::p1] = 0.02;
+  expect_agreement(lens.builder.view({distorting, 12, 12}, {0.35, 0, 0.3}, {0, -pi + 0.8, 0}).scene(), 256);
 }
 TEST(Caustic, BallLensOutOfFocus) {
   Lens lens;

@@ -96,11 +96,7 @@ TEST(Bouguer, SlabAtSeveralAngles) {
     builder.object(box({-5, -5, -0.01}, {5, 5, 0.01}), glass(builder, 1.5, 0, 40));
     builder.object(scene::Plane{400, 400}, builder.diffuse(0), {0, 0, 3}, {pi, 0, 0});
     builder.light("uniform", {{"radiance", 1.0}});
-    manifest::Camera camera;
-    camera.model = "orthographic";
-    camera.width_px = camera.height_px = 2;
-    camera.px_per_m = 1000;
-    camera.cx_px = camera.cy_px = 0.5;
+    const auto camera = camera::CameraModel::parallel(1000, 2, 2);
     const auto scene = builder.view(camera, {0, std::sin(angle), std::cos(angle)}, {pi + angle, 0, 0}).scene();
     expect_value(mean_of(render_view(scene, {.spp = 16384})), slab(std::cos(angle), 1.5, 40, 0.02), 1e-6);
   }
@@ -152,9 +148,7 @@ TEST(Refraction, ApparentDepth) {
   builder.object(scene::Plane{0.1, 0.1}, builder.diffuse(1), {0.15, 0, -0.5});
   builder.object(scene::Plane{10, 10}, builder.diffuse(0), {0, 0, -0.9});
   builder.light("uniform", {{"radiance", 1.0}});
-  manifest::Camera camera = pinhole(161, 400);
-  camera.height_px = 3;
-  camera.cy_px = 1;
+  const camera::CameraModel camera({400, 400, 80, 1, {}}, 161, 3);
   const auto scene = builder.view(camera, {0, 0, 1}, {pi, 0, 0}).scene();
   const io::Image image = render_view(scene, {.spp = 256});
   double sum = 0, moment = 0;
@@ -180,8 +174,7 @@ TEST(Media, CameraInside) {
   builder.object(scene::Sphere{1}, glass(builder, 1, 0, 2));  // index 1: nothing but absorption
   builder.object(scene::Plane{0.5, 0.5}, builder.diffuse(0.8), {0, 0, -0.5});
   builder.light("point", {{"position_m", std::vector<double>{0, 0, 0.25}}, {"watt_per_sr", 1.0}});
-  manifest::Camera camera = pinhole(2, 1e6);
-  const auto scene = builder.view(camera, {0, 0, 0}, {pi, 0, 0}).scene();
+  const auto scene = builder.view(pinhole(2, 1e6), {0, 0, 0}, {pi, 0, 0}).scene();
   const double truth = 0.8 / pi / (0.75 * 0.75) * std::exp(-2 * (0.5 + 0.75));
   expect_value(mean_of(render_view(scene, {.spp = 16})), truth, 1e-4);
 }

@@ -7,6 +7,7 @@ namespace gonio::render {
 namespace {
 
 using tests::pinhole;
+using tests::pinhole_lens;
 using tests::render_view;
 using tests::SceneBuilder;
 
@@ -19,10 +20,12 @@ SceneBuilder ball_on_table() {
 }
 
 TEST(Geometry, PositionsProjectToTheirPixelsThroughADistortedLens) {
-  manifest::Camera camera = pinhole(40, 45);
-  camera.model = "thin-prism";
-  camera.distortion = {{"k1", -0.28}, {"k2", 0.07}, {"p1", 0.002}, {"p2", -0.001}, {"s1", 0.003}, {"s3", -0.002}};
-  const auto scene = ball_on_table().view(camera, {0.05, -0.3, 0.5}, {-2.6, 0.1, 0.05}).scene();
+  using camera::LensTerm;
+  camera::Intrinsics lens = pinhole_lens(40, 45);
+  lens.distortion[LensTerm::k1] = -0.28, lens.distortion[LensTerm::k2] = 0.07;
+  lens.distortion[LensTerm::p1] = 0.002, lens.distortion[LensTerm::p2] = -0.001;
+  lens.distortion[LensTerm::s1] = 0.003, lens.distortion[LensTerm::s3] = -0.002;
+  const auto scene = ball_on_table().view({lens, 40, 40}, {0.05, -0.3, 0.5}, {-2.6, 0.1, 0.05}).scene();
   const io::Image image = render_view(scene, {.spp = 4});
   const int id = image.channel("id"), position = image.channel("position.X"), normal = image.channel("normal.X");
   const auto camera_from_world = inverse(scene.views[0].world_from_camera);

@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
 #include "mechanism/mechanism.h"
 #include "render/path_tracer.h"
 #include "render/sensor_chain.h"

@@ -28,14 +28,9 @@ scene::Scene screen_over_glass(const std::string& floor, const manifest::Paramet
   SceneBuilder builder;
   builder.object(scene::Sphere{0.5}, builder.surface("dielectric", {{"eta", 1.5}, {"alpha", 0.0}}), {0.4, 0, 0.8});
   builder.object(scene::Plane{6, 6}, builder.surface(floor, parameters));
-  manifest::Camera camera;
-  camera.model = "orthographic";
-  camera.width_px = camera.height_px = 2;
-  camera.px_per_m = 4;
-  camera.cx_px = camera.cy_px = 0.5;
   // Turned about its x axis by 120 degrees: it looks along (0, sin 120, cos 120), down at 30 degrees to the floor.
   const Vec3 forward{0, std::sin(2 * pi / 3), std::cos(2 * pi / 3)};
-  builder.view(camera, forward * -2, {-2 * pi / 3, 0, 0});
+  builder.view(camera::CameraModel::parallel(4, 2, 2), forward * -2, {-2 * pi / 3, 0, 0});
   scene::Scene scene = builder.scene();
   scene::Light light;
   light.id = "screen";

@@ -39,14 +39,9 @@ inline void add_emitter(scene::Scene& scene, std::shared_ptr<const light::Emitte
 
 // One pixel that looks along `forward`, its x axis along `right`; the ray through its middle starts at `eye_m`.
 inline scene::View one_pixel(Vec3 eye_m, Vec3 forward, Vec3 right) {
-  manifest::Camera camera;
-  camera.model = "orthographic";
-  camera.width_px = camera.height_px = 1;
-  camera.px_per_m = 1e6;
-  camera.cx_px = camera.cy_px = 0;
   const Vec3 down = cross(forward, right);
   const Mat3 rotation{{right.x, down.x, forward.x, right.y, down.y, forward.y, right.z, down.z, forward.z}};
-  scene::View view{.image = "view", .camera = camera::CameraModel(camera, "test")};
+  scene::View view{.image = "view", .camera = camera::CameraModel::parallel(1e6, 1, 1)};
   view.world_from_camera = {quaternion_of(rotation), eye_m};
   return view;
 }

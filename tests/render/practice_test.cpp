@@ -15,6 +15,7 @@
 #include "data.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/sections/image.h"
 #include "render/path_tracer.h"
 #include "scene/scene.h"
 

@@ -8,6 +8,11 @@
 #include "data.h"
 #include "io/exr.h"
 #include "io/ply.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/rendering.h"
 #include "progressive_scene.h"
 #include "render/share.h"
 

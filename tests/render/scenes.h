@@ -38,11 +38,11 @@ class SceneBuilder {
                                 surface});
     return *this;
   }
-  SceneBuilder& view(const manifest::Camera& camera, Vec3 position_m, Vec3 rotation_vector) {
+  SceneBuilder& view(const camera::CameraModel& camera, Vec3 position_m, Vec3 rotation_vector) {
     std::vector<std::size_t> lights;
     for (std::size_t i = 0; i < scene_.appearance.lights.size(); ++i) lights.push_back(i);
     scene_.views.push_back({"view",
-                            camera::CameraModel(camera, "test"),
+                            camera,
                             {quaternion_of_rotation_vector(rotation_vector), position_m},
                             lights,
                             {1, 1, 1},
@@ -52,12 +52,7 @@ class SceneBuilder {
   }
   // Looks down at the point (x, y, 0) from `height_m`; the picture spans `extent_m`.
   SceneBuilder& look_down(double x, double y, double extent_m, int size_px = 8, double height_m = 5) {
-    manifest::Camera camera;
-    camera.model = "orthographic";
-    camera.width_px = camera.height_px = size_px;
-    camera.px_per_m = size_px / extent_m;
-    camera.cx_px = camera.cy_px = (size_px - 1) / 2.0;
-    return view(camera, {x, y, height_m}, {pi, 0, 0});
+    return view(camera::CameraModel::parallel(size_px / extent_m, size_px, size_px), {x, y, height_m}, {pi, 0, 0});
   }
   scene::Scene scene() const { return scene_; }
 
@@ -65,12 +60,12 @@ class SceneBuilder {
   scene::Scene scene_;
 };
 
-inline manifest::Camera pinhole(int size_px, double focal_px) {
-  manifest::Camera camera;
-  camera.width_px = camera.height_px = size_px;
-  camera.fx_px = camera.fy_px = focal_px;
-  camera.cx_px = camera.cy_px = (size_px - 1) / 2.0;
-  return camera;
+inline camera::Intrinsics pinhole_lens(int size_px, double focal_px) {
+  const double centre_px = (size_px - 1) / 2.0;
+  return {focal_px, focal_px, centre_px, centre_px, {}};
+}
+inline camera::CameraModel pinhole(int size_px, double focal_px) {
+  return {pinhole_lens(size_px, focal_px), size_px, size_px};
 }
 
 inline io::Image render_view(const scene::Scene& scene, const render::Options& options) {

@@ -1,4 +1,5 @@
 // The links of a camera's chain, one by one; |z| < 4.5 where there is noise.
+#include "camera/intrinsics.h"
 #include "render/sensor_chain.h"
 
 #include <gmock/gmock.h>
@@ -7,6 +8,9 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "geom/vector.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
 
 namespace gonio::render {
 namespace {
@@ -23,7 +27,7 @@ io::Image picture_of(int width, int height, std::uint64_t seed) {
 
 manifest::Document document_with(const std::map<std::string, manifest::MechanismUse>& mechanisms) {
   manifest::Document document;
-  document.cameras["cam"].mosaic = "";
+  camera::enter_pinhole(document, "cam", 64, 64, 64);
   manifest::ImageEntry image;
   image.id = "view";
   image.camera = "cam";

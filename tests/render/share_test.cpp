@@ -14,6 +14,7 @@
 #include "data.h"
 #include "io/exr.h"
 #include "made_up_integrator.h"
+#include "manifest/sections/object.h"
 #include "progressive_scene.h"
 #include "render/film.h"
 

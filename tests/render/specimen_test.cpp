@@ -7,6 +7,8 @@
 
 #include "data.h"
 #include "io/ply.h"
+#include "manifest/document.h"
+#include "manifest/sections/object.h"
 #include "render/preview.h"
 #include "render/specimen_glass.h"
 #include "render/virtual_sensor.h"

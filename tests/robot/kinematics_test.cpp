@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "data.h"
+#include "manifest/document.h"
 #include "robot/ur_calibration.h"
 
 namespace gonio::robot {

@@ -10,6 +10,9 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "manifest/document.h"
+#include "manifest/sections/light_position.h"
+#include "manifest/sections/mounting.h"
 
 namespace gonio::robot {
 namespace {

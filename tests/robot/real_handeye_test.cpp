@@ -11,6 +11,9 @@
 #include "base/atomic_file.h"
 #include "data.h"
 #include "manifest/document.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/frame_link.h"
+#include "manifest/sections/mounting.h"
 #include "process.h"
 #include "robot/handeye_document.h"
 

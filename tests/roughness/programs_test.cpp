@@ -10,6 +10,12 @@
 #include "data.h"
 #include "io/height_map.h"
 #include "manifest/document.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/ground_noise.h"
+#include "manifest/sections/relief.h"
+#include "manifest/sections/surface.h"
+#include "manifest/sections/surface_fit.h"
+#include "manifest/sections/table.h"
 #include "process.h"
 #include "relief/ridges.h"
 

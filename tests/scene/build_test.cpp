@@ -8,6 +8,8 @@
 #include "data.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/object.h"
 #include "scene/mechanisms.h"
 #include "scene/scene.h"
 

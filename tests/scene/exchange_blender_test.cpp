@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "exchange_cases.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
 #include "process.h"
 
 namespace gonio::scene {

@@ -2,6 +2,8 @@
 #include "base/error.h"
 #include "exchange_cases.h"
 #include "io/ply.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 
 namespace gonio::scene {
 namespace {

@@ -5,6 +5,11 @@
 #include <set>
 
 #include "exchange_cases.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 #include "manifest/value.h"
 #include "scene/exchange/geometry.h"
 

@@ -3,6 +3,10 @@
 
 #include "base/error.h"
 #include "exchange_cases.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/object.h"
 #include "manifest/value.h"
 
 namespace gonio::scene {
@@ -30,8 +34,7 @@ TEST(Exchange, EveryFormatIsRepeatable) {
 TEST(Exchange, LossesPointIntoTheManifestAndSayWhatIsShownInstead) {
   Letter letter;
   manifest::Document document = letter.document;
-  document.cameras["c"].model = "radial-tangential";
-  document.cameras["c"].distortion["k1"] = -0.2;
+  bend_lens(document);
   document.mechanisms["optics.vignetting"].parameters["falloff"] = 0.1;
   document.mechanisms["transport.indirect"].parameters["strength"] = 0.5;
   const Scene scene = build_scene(document);

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/mechanism_use.h"
 
 namespace gonio::scene {
 namespace {

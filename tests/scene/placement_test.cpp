@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "manifest/sections/mechanism_use.h"
 
 namespace gonio::scene {
 namespace {

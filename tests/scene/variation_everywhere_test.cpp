@@ -85,13 +85,8 @@ struct Stage {
           "objects": [{"id": "o", "mesh": "cube", "surface": "s"}]})";
     scene::Scene built = scene::build_scene(manifest::parse_document(text, "s.json", folder.path()));
     built.instances[0].world_from_object = {quaternion_of_rotation_vector({0.7, 0.5, 0.2}), {}};
-    manifest::Camera camera;
-    camera.model = "orthographic";
-    camera.width_px = camera.height_px = size_px;
-    camera.px_per_m = size_px / 1.8;
-    camera.cx_px = camera.cy_px = (size_px - 1) / 2.0;
     built.views.push_back({"view",
-                           camera::CameraModel(camera, "test"),
+                           camera::CameraModel::parallel(size_px / 1.8, size_px, size_px),
                            {quaternion_of_rotation_vector({pi, 0, 0}), {0, 0, 5}},
                            {0, 1},
                            {1, 1, 1},

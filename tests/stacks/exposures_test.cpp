@@ -9,6 +9,7 @@
 #include "explain/engine.h"
 #include "explain/stacks/exposures_problem.h"
 #include "io/picture.h"
+#include "manifest/document.h"
 #include "stacks/stack_world.h"
 
 namespace gonio::explain::stacks {

@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <random>
 
+#include "geom/vector.h"
 #include "io/codes.h"
 #include "io/picture.h"
+#include "manifest/document.h"
 
 namespace gonio::tests {
 namespace {

@@ -4,6 +4,10 @@
 
 #include "cases.h"
 #include "manifest/document.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
+#include "manifest/sections/surface.h"
 #include "scene/scene.h"
 #include "surface/law.h"
 

@@ -4,6 +4,7 @@
 
 #include "explain/tables/lamp_state.h"
 #include "light/irradiance.h"
+#include "manifest/sections/light.h"
 #include "table_world.h"
 
 namespace gonio::explain::tables::tests {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "manifest/sections/mechanism_use.h"
 #include "table_world.h"
 
 namespace gonio::explain::tables::tests {

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "data.h"
 #include "explain/tables/quick_table.h"
+#include "manifest/sections/table.h"
 #include "table_world.h"
 
 namespace gonio::explain::tables::tests {

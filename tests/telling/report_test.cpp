@@ -11,6 +11,8 @@
 #include "explain/engine.h"
 #include "explain/entry.h"
 #include "explain/evidence.h"
+#include "manifest/document.h"
+#include "manifest/sections/file.h"
 #include "telling/law_world.h"
 
 namespace gonio::explain::tests {

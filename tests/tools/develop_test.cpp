@@ -10,6 +10,10 @@
 #include "io/codes.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/rendering.h"
 #include "process.h"
 
 namespace gonio::tests {

@@ -12,6 +12,9 @@
 #include "data.h"
 #include "geom/angle.h"
 #include "manifest/document.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/table.h"
 #include "process.h"
 
 namespace gonio::tests {

@@ -7,6 +7,7 @@
 #include "base/atomic_file.h"
 #include "data.h"
 #include "manifest/document.h"
+#include "manifest/sections/evaluation.h"
 #include "process.h"
 
 namespace gonio::tests {

@@ -12,6 +12,10 @@
 #include "io/picture.h"
 #include "io/ply.h"
 #include "manifest/document.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/rendering.h"
+#include "manifest/sections/surface.h"
 #include "process.h"
 #include "render/share.h"
 

@@ -5,6 +5,7 @@
 #include "base/atomic_file.h"
 #include "data.h"
 #include "manifest/document.h"
+#include "manifest/sections/image.h"
 #include "process.h"
 
 namespace gonio::tests {

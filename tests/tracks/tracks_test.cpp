@@ -10,6 +10,7 @@
 #include "explain/tables/tables_problem.h"
 #include "explain/tables/tracks_pose.h"
 #include "manifest/document.h"
+#include "manifest/sections/mechanism_use.h"
 #include "tracks/mat_file.h"
 
 namespace gonio::explain::tables {

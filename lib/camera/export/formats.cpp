@@ -11,6 +11,9 @@
 #include "base/text.h"
 #include "camera/camera_model.h"
 #include "camera/intrinsics.h"
+#include "manifest/document.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/image.h"
 
 namespace gonio::camera {
 namespace {

@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "geom/rigid.h"
-#include "manifest/document.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::camera {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "manifest/sections/camera_quality.h"
 #include "stats/intervals.h"
 
 namespace gonio::camera {

@@ -7,6 +7,8 @@
 
 #include "base/atomic_file.h"
 #include "io/picture.h"
+#include "manifest/document.h"
+#include "manifest/sections/camera.h"
 #include "report/colour_map.h"
 #include "report/number_text.h"
 #include "report/page.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "camera/quality/quality.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::camera {
 

@@ -6,6 +6,12 @@
 #include "camera/board.h"
 #include "camera/corner_table.h"
 #include "explain/boards/boards_problem.h"
+#include "manifest/document.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/table.h"
 #include "mechanism/mechanism.h"
 
 namespace gonio::explain {

@@ -4,6 +4,11 @@
 #include <cmath>
 
 #include "explain/boards/boards_outcome.h"
+#include "manifest/document.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
 
 namespace gonio::explain {
 namespace {

@@ -1,6 +1,8 @@
 // Board corners, as calib-charuco writes them.
 #include "explain/boards/boards_problem.h"
 #include "explain/domain.h"
+#include "manifest/document.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::explain::domains {
 

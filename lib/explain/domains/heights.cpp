@@ -1,6 +1,8 @@
 // Height maps: is the surface isotropic, or has it a lay or ridges?
 #include "explain/domain.h"
 #include "explain/heights/heights_problem.h"
+#include "manifest/document.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::explain::domains {
 

@@ -1,6 +1,9 @@
 // Linear images of a scene whose geometry is known.
 #include "explain/domain.h"
 #include "explain/images/images_problem.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mesh.h"
 
 namespace gonio::explain::domains {
 

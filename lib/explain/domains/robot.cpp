@@ -1,6 +1,7 @@
 // Hand-eye sets: board poses against the robot's own.
 #include "explain/domain.h"
 #include "explain/robot/robot_problem.h"
+#include "manifest/document.h"
 
 namespace gonio::explain::domains {
 

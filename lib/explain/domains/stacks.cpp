@@ -2,6 +2,8 @@
 #include "explain/domain.h"
 #include "explain/stacks/exposures_problem.h"
 #include "explain/stacks/photometric_problem.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
 
 namespace gonio::explain::domains {
 

@@ -2,6 +2,8 @@
 // and whatever an expression describes.
 #include "explain/domain.h"
 #include "explain/tables/tables_problem.h"
+#include "manifest/document.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::explain::domains {
 

@@ -3,6 +3,9 @@
 
 #include "base/error.h"
 #include "explain/heights/heights_problem.h"
+#include "manifest/document.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/table.h"
 #include "relief/document.h"
 
 namespace gonio::explain {

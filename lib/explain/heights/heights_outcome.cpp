@@ -6,6 +6,8 @@
 #include <cstdio>
 
 #include "geom/angle.h"
+#include "manifest/document.h"
+#include "manifest/sections/mechanism_use.h"
 #include "report/colour_map.h"
 #include "report/number_text.h"
 

@@ -12,6 +12,7 @@
 
 #include "explain/problem.h"
 #include "io/height_map.h"
+#include "manifest/sections/mechanism_use.h"
 
 namespace gonio::explain {
 

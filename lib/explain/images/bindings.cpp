@@ -6,6 +6,10 @@
 
 #include "base/error.h"
 #include "explain/images/uses.h"
+#include "manifest/document.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/surface.h"
 
 namespace gonio::explain::images {
 namespace {

@@ -7,7 +7,7 @@
 #include "explain/images/scene_state.h"
 #include "explain/images/term.h"
 #include "explain/problem.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::explain::images {
 

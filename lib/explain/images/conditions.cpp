@@ -8,6 +8,8 @@
 #include "explain/images/fixed_pattern.h"
 #include "explain/images/observed.h"
 #include "light/polarized_emitter.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
 
 namespace gonio::explain::images {
 namespace {

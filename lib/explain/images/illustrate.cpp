@@ -9,6 +9,7 @@
 #include "explain/images/images_problem.h"
 #include "explain/images/pictures.h"
 #include "io/picture.h"
+#include "manifest/document.h"
 
 namespace gonio::explain::images {
 namespace {

@@ -10,6 +10,8 @@
 #include "explain/images/conditions.h"
 #include "explain/images/repeats.h"
 #include "explain/images/uses.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
 #include "scene/scene.h"
 
 namespace gonio::explain::images {

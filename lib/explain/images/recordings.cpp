@@ -10,6 +10,10 @@
 
 #include "base/error.h"
 #include "io/picture.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/object.h"
 #include "metric/linear_picture.h"
 #include "stats/intervals.h"
 
@@ -101,9 +105,10 @@ std::size_t view_of(const manifest::Document& document, const manifest::ImageEnt
   if (entry.world_from_camera) pose = {entry.world_from_camera->rotation, entry.world_from_camera->translation_m};
   for (std::size_t v = 0; v < recordings.views.size(); ++v)
     if (recordings.views[v].camera == entry.camera && recordings.views[v].world_from_camera == pose) return v;
-  const manifest::Camera& camera = document.cameras.at(entry.camera);
   recordings.views.push_back(
-      {entry.camera, camera::CameraModel(camera, manifest::place(document, "/cameras/" + entry.camera)), pose});
+      {entry.camera,
+       camera::CameraModel(*find_camera(document, entry.camera), manifest::place(document, "/cameras/" + entry.camera)),
+       pose});
   return recordings.views.size() - 1;
 }
 
@@ -122,7 +127,7 @@ Recordings read_recordings(const manifest::Document& document) {
   for (std::size_t i = 0; i < document.images.size(); ++i) {
     const manifest::ImageEntry& entry = document.images[i];
     if (entry.weight && *entry.weight == 0) continue;
-    if (!document.cameras.contains(entry.camera))
+    if (!has_entry(document, "cameras", entry.camera))
       refuse(document, i, "/camera", "names no camera: \"" + entry.camera + "\"", "enter it in cameras");
     Recording image;
     image.id = entry.id;

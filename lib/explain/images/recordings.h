@@ -14,7 +14,9 @@
 #include "camera/camera_model.h"
 #include "geom/rigid.h"
 #include "io/image.h"
-#include "manifest/document.h"
+#include "manifest/noise.h"
+#include "manifest/parameter.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::explain::images {
 

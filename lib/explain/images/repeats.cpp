@@ -6,6 +6,8 @@
 
 #include "base/error.h"
 #include "io/picture.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain::images {

@@ -5,6 +5,10 @@
 #include "base/error.h"
 #include "light/light.h"
 #include "light/turn.h"
+#include "manifest/document.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/surface.h"
 
 namespace gonio::explain::images {
 namespace {

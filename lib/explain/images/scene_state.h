@@ -6,7 +6,7 @@
 
 #include "explain/images/light_cache.h"
 #include "geom/vector.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 #include "surface/surface.h"
 
 namespace gonio::explain::images {

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "explain/images/surface_rule.h"
+#include "manifest/document.h"
+#include "manifest/sections/mechanism_use.h"
 
 namespace gonio::explain::images {
 namespace {

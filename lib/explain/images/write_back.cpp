@@ -5,6 +5,11 @@
 
 #include "explain/explanation.h"
 #include "explain/images/bindings.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/surface.h"
 
 namespace gonio::explain::images {
 namespace {

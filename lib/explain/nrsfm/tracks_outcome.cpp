@@ -5,6 +5,10 @@
 #include <cmath>
 
 #include "explain/wording.h"
+#include "manifest/document.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/sequence.h"
 #include "report/number_text.h"
 #include "report/plot.h"
 #include "stats/distributions.h"

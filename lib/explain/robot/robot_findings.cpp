@@ -8,6 +8,7 @@
 
 #include "explain/sentence.h"
 #include "linear/qr.h"
+#include "manifest/sections/mounting.h"
 
 namespace gonio::explain {
 namespace {

@@ -5,6 +5,12 @@
 #include "camera/board.h"
 #include "camera/corner_table.h"
 #include "explain/robot/robot_problem.h"
+#include "manifest/document.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mounting.h"
+#include "manifest/sections/table.h"
 #include "robot/ur_calibration.h"
 
 namespace gonio::explain {

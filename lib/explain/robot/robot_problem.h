@@ -25,6 +25,7 @@
 #include "camera/board_projection.h"
 #include "explain/explanation.h"
 #include "explain/problem.h"
+#include "manifest/sections/mounting.h"
 #include "robot/kinematics.h"
 
 namespace gonio::explain {

@@ -5,6 +5,12 @@
 
 #include "base/progress.h"
 #include "explain/robot/robot_findings.h"
+#include "manifest/document.h"
+#include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/mounting.h"
 
 namespace gonio::explain {
 namespace {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "manifest/document.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain::stacks {

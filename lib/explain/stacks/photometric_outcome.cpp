@@ -8,6 +8,9 @@
 #include "explain/stacks/photometric_problem.h"
 #include "explain/stacks/stack_manifest.h"
 #include "explain/stacks/stack_pictures.h"
+#include "manifest/document.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mechanism_use.h"
 
 namespace gonio::explain::stacks {
 namespace {

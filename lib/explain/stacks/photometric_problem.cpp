@@ -7,6 +7,9 @@
 
 #include "base/error.h"
 #include "light/turn.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain::stacks {

@@ -7,8 +7,13 @@
 #include <set>
 
 #include "base/error.h"
+#include "camera/intrinsics.h"
 #include "io/codes.h"
 #include "io/picture.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/object.h"
 #include "metric/linear_picture.h"
 
 namespace gonio::explain::stacks {
@@ -170,8 +175,8 @@ std::vector<std::vector<std::size_t>> stacks_of(const Document& document, Kind k
 Stack read_stack(const Document& document, const std::vector<std::size_t>& entries, Kind kind) {
   Stack stack;
   stack.camera = document.images[entries[0]].camera;
-  if (const auto camera = document.cameras.find(stack.camera); camera != document.cameras.end())
-    stack.step = camera->second.mosaic.empty() ? 1 : 2;
+  if (has_entry(document, "cameras", stack.camera))
+    stack.step = camera::mosaic_of(document, stack.camera).empty() ? 1 : 2;
   for (const std::size_t i : entries) {
     const ImageEntry& e = document.images[i];
     StackImage image;

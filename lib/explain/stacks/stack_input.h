@@ -14,7 +14,8 @@
 
 #include "geom/vector.h"
 #include "io/image.h"
-#include "manifest/document.h"
+#include "manifest/noise.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::explain::stacks {
 

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
 #include "metric/linear_picture.h"
 
 namespace gonio::explain::stacks {

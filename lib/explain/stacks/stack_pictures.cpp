@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "io/picture.h"
+#include "manifest/document.h"
 
 namespace gonio::explain::stacks {
 namespace {

@@ -8,6 +8,9 @@
 
 #include "base/error.h"
 #include "light/irradiance.h"
+#include "manifest/document.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mechanism_use.h"
 
 namespace gonio::explain::tables {
 namespace {

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "manifest/sections/table.h"
+
 namespace gonio::explain::tables {
 
 ModelParameter model_parameter(const manifest::Table& section, const std::string& table, const std::string& name,

@@ -11,7 +11,11 @@
 #include "base/text.h"
 #include "explain/tables/read_table.h"
 #include "explain/tables/table_model.h"
+#include "io/height_map.h"
+#include "manifest/document.h"
 #include "manifest/fields.h"
+#include "manifest/sections/surface.h"
+#include "manifest/sections/table.h"
 #include "relief/document.h"
 
 namespace gonio::explain::tables {

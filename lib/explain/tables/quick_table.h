@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/height_map.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::explain::tables {
 

@@ -12,6 +12,7 @@
 #include "goniometry/tables_text.h"
 #include "io/csv.h"
 #include "manifest/fields.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::explain::tables {
 namespace {

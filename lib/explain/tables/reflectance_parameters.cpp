@@ -9,7 +9,11 @@
 
 #include "base/error.h"
 #include "explain/tables/model_parameters.h"
+#include "manifest/document.h"
 #include "manifest/reference.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/surface.h"
+#include "manifest/sections/table.h"
 #include "scene/mechanisms.h"
 
 namespace gonio::explain::tables {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "explain/tables/unit.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::explain::tables {
 

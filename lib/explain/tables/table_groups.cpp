@@ -8,6 +8,8 @@
 #include "base/text.h"
 #include "explain/tables/read_table.h"
 #include "explain/tables/unit.h"
+#include "manifest/document.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::explain::tables {
 namespace {

@@ -5,6 +5,9 @@
 #include "base/text.h"
 #include "explain/explanation.h"
 #include "explain/tables/tables_problem.h"
+#include "manifest/document.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/table.h"
 #include "report/plot.h"
 
 namespace gonio::explain::tables {

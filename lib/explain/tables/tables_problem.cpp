@@ -9,7 +9,10 @@
 #include "explain/tables/table_conditions.h"
 #include "explain/tables/table_noise.h"
 #include "explain/tables/unit.h"
+#include "manifest/document.h"
 #include "manifest/fields.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::explain::tables {
 namespace {

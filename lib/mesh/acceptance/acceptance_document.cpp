@@ -9,6 +9,8 @@
 #include "base/progress.h"
 #include "base/quantity.h"
 #include "io/ply.h"
+#include "manifest/document.h"
+#include "manifest/sections/acceptance.h"
 #include "mesh/acceptance/figures.h"
 
 namespace gonio::mesh {

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "geom/vector.h"
-#include "manifest/document.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::mesh {
 

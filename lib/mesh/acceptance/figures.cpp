@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/random.h"
+#include "manifest/sections/acceptance.h"
 #include "stats/intervals.h"
 
 namespace gonio::mesh {

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "manifest/sections.h"
+#include "manifest/sections/forward.h"
 #include "mesh/acceptance/fitted_surface.h"
 
 namespace gonio::mesh {

@@ -9,6 +9,8 @@
 #include "explain/tables/model_parameters.h"
 #include "explain/tables/table_model.h"
 #include "explain/tables/unit.h"
+#include "manifest/document.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::explain::tables {
 namespace {

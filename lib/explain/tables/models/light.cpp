@@ -8,6 +8,8 @@
 #include "explain/tables/lamp_state.h"
 #include "explain/tables/model_parameters.h"
 #include "explain/tables/table_conditions.h"
+#include "manifest/document.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::explain::tables {
 namespace {

@@ -10,6 +10,8 @@
 #include "explain/tables/model_parameters.h"
 #include "explain/tables/table_conditions.h"
 #include "explain/tables/table_model.h"
+#include "manifest/document.h"
+#include "manifest/sections/table.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain::tables {

@@ -7,6 +7,10 @@
 #include "explain/tables/model_parameters.h"
 #include "explain/tables/reflectance_parameters.h"
 #include "geom/angle.h"
+#include "manifest/document.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/surface.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::explain::tables {
 namespace {

@@ -16,6 +16,9 @@
 #include "explain/tables/table_model.h"
 #include "explain/tables/tracks_pose.h"
 #include "explain/tables/tracks_slips.h"
+#include "manifest/document.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/table.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain::tables {

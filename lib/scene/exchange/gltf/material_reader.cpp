@@ -8,6 +8,7 @@
 #include "io/exr.h"
 #include "io/picture.h"
 #include "io/raster.h"
+#include "manifest/sections/surface.h"
 #include "scene/exchange/gltf/gltf.h"
 #include "surface/interface_albedo.h"
 

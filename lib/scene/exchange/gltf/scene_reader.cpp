@@ -4,6 +4,11 @@
 #include <set>
 
 #include "base/text.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mesh.h"
+#include "manifest/sections/object.h"
 #include "scene/exchange/geometry.h"
 #include "scene/exchange/gltf/gltf.h"
 

@@ -1,5 +1,4 @@
-// The sections about heights of surfaces: maps, measured or designed, with what their roughness and their lobes are,
-// and the noise that a process adds to what it makes. A part of sections.h, which explains frames and units.
+// "reliefs": maps of heights, measured or designed, with what their roughness and their lobes are.
 //
 // Frame of a map: x along its rows, y up the picture, z out of the surface; azimuths counter-clockwise from x.
 #pragma once
@@ -59,19 +58,5 @@ struct ReliefMap {                                    // "reliefs"
   std::vector<ReliefLobe> lobes;
   std::string table, surface;  // of the lobes: name in tables; what the normals make of the facets: name in surfaces
 };
-struct GroundNoisePart {
-  double sq_m = 0, cell_m = 0;
-  Sigmas sigma;
-  std::optional<double> weight;  // of the published form, over layer_m
-};
-struct GroundNoiseFit {              // "ground_noises"
-  std::vector<std::string> reliefs;  // that it was fitted to
-  std::vector<GroundNoisePart> parts;
-  std::optional<double> white_m;
-  Sigmas sigma;
-  std::optional<double> layer_m, misfit, log_rms;
-  std::optional<std::int64_t> tiles;
-  std::vector<double> criterion;  // Schwarz's, for 1, 2, ... parts, less the least
-  std::string example;            // name in reliefs of a map made with it
-};
+
 }  // namespace gonio::manifest

@@ -1,0 +1,16 @@
+// "lights".
+#pragma once
+#include <string>
+
+#include "manifest/parameter.h"
+
+namespace gonio::manifest {
+
+struct Light {
+  std::string model = "point";
+  Parameters parameters;
+  std::string file;  // picture or table of models that have one: file id
+  Sigmas sigma;
+};
+
+}  // namespace gonio::manifest

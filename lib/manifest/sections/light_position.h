@@ -1,0 +1,17 @@
+// "light_positions": of lights that a robot carries.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "manifest/pose.h"
+
+namespace gonio::manifest {
+
+struct LightPosition {  // "light_positions": where a light was while its robot stood at a pose
+  std::string id, light, robot;
+  std::optional<Pose<frame::Base, frame::Tool>> base_from_tool;
+  std::vector<double> position_m, sigma_m;  // world; sigma: 1 or 3
+};
+
+}  // namespace gonio::manifest
