@@ -12,7 +12,6 @@
 #include "goniometry/recording_setup.h"
 #include "goniometry/tile.h"
 #include "manifest/sections/image.h"
-#include "manifest/sections/mechanism_use.h"
 #include "render/sensor_chain.h"
 #include "stats/intervals.h"
 
@@ -291,7 +290,7 @@ class Reduction {
         note("The output of the light \"" + recording_.scene.appearance.lights[light].id +
              "\" wandered: readings of the tile scatter by " + number(100 * wander->relative) + " %, their noise by " +
              number(100 * wander->expected) + " %.");
-    for (const auto& [id, use] : recording_.document->mechanisms)
+    for (const std::string& id : names_in(*recording_.document, "mechanisms"))
       if ((id.starts_with("sensor.") && id != "sensor.saturation" && id != "sensor.black-offset") ||
           (id.starts_with("optics.") && id != "optics.vignetting"))
         note("The mechanism " + id + " is not undone in the pictures.");

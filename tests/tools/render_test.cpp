@@ -8,7 +8,6 @@
 #include "manifest/document.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
-#include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/rendering.h"
 #include "manifest/sections/surface.h"
 #include "process.h"

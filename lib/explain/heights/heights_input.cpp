@@ -49,9 +49,9 @@ std::vector<HeightsInput> heights_inputs(const manifest::Document& document) {
     input.map = io::read_height_map(manifest::resolve(document, table.file, "/tables/" + name + "/file"),
                                     picture_of_file(document, table.file));
     if (const manifest::MechanismUse* use = use_of(document, "surface.micro-ridges", table.surface))
-      input.ridges = *use, input.has_ridges = use->parameters.contains("ridge_period_m");
+      input.ridges = use->parameters, input.has_ridges = use->parameters.contains("ridge_period_m");
     if (const manifest::MechanismUse* use = use_of(document, "surface.anisotropy", table.surface))
-      input.lay = *use, input.has_lay = true;
+      input.lay = use->parameters, input.has_lay = true;
     inputs.push_back(std::move(input));
   }
   return inputs;

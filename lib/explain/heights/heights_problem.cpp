@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "explain/explanation.h"
 #include "explain/heights/heights_outcome.h"
-#include "manifest/sections/mechanism_use.h"
 
 namespace gonio::explain {
 namespace {
@@ -92,9 +91,9 @@ class HeightsProblem final : public Problem {
   std::vector<std::string> on() const {
     return input_.surface.empty() ? std::vector<std::string>{} : std::vector<std::string>{input_.surface};
   }
-  static double given(const manifest::MechanismUse& use, const std::string& name, double otherwise) {
-    const auto found = use.parameters.find(name);
-    return found != use.parameters.end() && found->second.given() ? found->second.scalar() : otherwise;
+  static double given(const manifest::Parameters& parameters, const std::string& name, double otherwise) {
+    const auto found = parameters.find(name);
+    return found != parameters.end() && found->second.given() ? found->second.scalar() : otherwise;
   }
 
   void lay() {

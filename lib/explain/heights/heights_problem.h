@@ -12,14 +12,15 @@
 
 #include "explain/problem.h"
 #include "io/height_map.h"
-#include "manifest/sections/mechanism_use.h"
+#include "manifest/parameter.h"
+#include "manifest/sections/forward.h"
 
 namespace gonio::explain {
 
 struct HeightsInput {
   std::string table, surface, place;  // names in "tables" and "surfaces"; for messages
   io::HeightMap map;
-  manifest::MechanismUse ridges, lay;  // what the manifest has switched on: surface.micro-ridges, surface.anisotropy
+  manifest::Parameters ridges, lay;  // as the manifest has switched on: surface.micro-ridges, surface.anisotropy
   bool has_ridges = false, has_lay = false;
 };
 
