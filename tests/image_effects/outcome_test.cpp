@@ -8,7 +8,6 @@
 #include "effect_world.h"
 #include "io/picture.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 
 namespace gonio::tests {
 namespace {

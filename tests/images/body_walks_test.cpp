@@ -11,7 +11,6 @@
 #include "base/random.h"
 #include "explain/images/images_problem.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 
 namespace gonio::explain {
 namespace {

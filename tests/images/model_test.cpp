@@ -10,7 +10,6 @@
 #include "explain/engine.h"
 #include "explain/images/images_problem.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 
 namespace gonio::explain {
 namespace {

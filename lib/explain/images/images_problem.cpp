@@ -11,7 +11,6 @@
 #include "explain/images/repeats.h"
 #include "explain/images/uses.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "scene/scene.h"
 
 namespace gonio::explain::images {
