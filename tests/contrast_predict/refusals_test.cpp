@@ -7,6 +7,7 @@
 #include "cli/program.h"
 #include "contrast/predict_call.h"
 #include "data.h"
+#include "manifest/sections/contrast.h"
 #include "samples.h"
 
 namespace gonio::tests {

@@ -7,6 +7,7 @@
 #include "explain/engine.h"
 #include "explain/robot/robot_chain.h"
 #include "explain/robot_world.h"
+#include "manifest/document.h"
 
 namespace gonio::explain::tests {
 namespace {

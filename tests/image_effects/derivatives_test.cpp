@@ -7,6 +7,7 @@
 #include <set>
 
 #include "effect_world.h"
+#include "manifest/document.h"
 
 namespace gonio::tests {
 namespace {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "effect_world.h"
+#include "manifest/document.h"
 
 namespace gonio::tests {
 namespace {

@@ -9,6 +9,7 @@
 #include "ball_world.h"
 #include "explain/images/images_problem.h"
 #include "explain/images/uses.h"
+#include "manifest/document.h"
 
 namespace gonio::explain {
 namespace {

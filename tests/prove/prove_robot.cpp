@@ -11,6 +11,7 @@
 #include "explain/engine.h"
 #include "explain/robot/robot_problem.h"
 #include "explain/robot_world.h"
+#include "manifest/document.h"
 #include "stats/intervals.h"
 
 namespace gonio::prove {

@@ -6,6 +6,7 @@
 #include "data.h"
 #include "explain/engine.h"
 #include "explain/stacks/photometric_problem.h"
+#include "manifest/document.h"
 #include "stacks/stack_world.h"
 
 namespace gonio::explain::stacks {
