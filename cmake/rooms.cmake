@@ -134,4 +134,5 @@ ${entries}  };
   add_executable(gonio-describe ${CMAKE_SOURCE_DIR}/man/gonio_describe.cpp)
   target_link_libraries(gonio-describe PRIVATE gonio_programs gonio)
   set(GONIO_TOOL_NAMES ${names} CACHE INTERNAL "")
+  add_custom_target(programs DEPENDS ${names})  # what users run: no tests, nothing that only prints documents
 endfunction()

@@ -39,7 +39,8 @@ sub tokens_of {
     pos($text) -= length $& if defined $& && $& eq '.' && substr($text, pos($text) - 1, 1) eq '.';
     if ($text =~ /\G(::|->|\[\[|\]\]|.)/gcs) { push @tokens, $1; next }
   }
-  return { tokens => \@tokens, includes => \@includes, macros => \@macros, lines => $count };
+  my $heavy = $text =~ /^[ \t]*#[ \t]*include[ \t]*<(?:Eigen|opencv2|CLI)\//m;
+  return { tokens => \@tokens, includes => \@includes, macros => \@macros, lines => $count, heavy => $heavy };
 }
 
 # Names that one statement at namespace level declares -> how (the text of an alias: the same alias twice is no collision).
@@ -230,6 +231,16 @@ sub together {
   return $together{"$a $b"} //= !(disturbs($a, $b) || disturbs($b, $a) || surprises($a, $b) || surprises($b, $a));
 }
 
+# Seconds of processor time that a unit takes to compile, fitted to the units of one day (GCC 12, -O2): for progress and
+# estimates alone.
+sub seconds {
+  my (@sources) = @_;
+  my $heavy = grep { my $s = $_; scanned($s)->{heavy} || grep { scanned($_)->{heavy} } keys %{ closure($s) } } @sources;
+  my $lines = 0;
+  $lines += scanned($_)->{lines} for @sources;
+  return sprintf '%.1f', 0.9 + 0.0022 * $lines + ($heavy ? 1.2 + 0.9 * $heavy : 0);
+}
+
 sub write_unit {
   my ($path, @sources) = @_;
   my (%seen, @headers);
@@ -246,6 +257,7 @@ sub write_unit {
   close $new or die "units.pl: $path: $!\n";
 }
 
+my $costs = '';
 while (my $group = <STDIN>) {
   my ($name, @sources) = split ' ', $group;
   my @units;
@@ -261,6 +273,15 @@ while (my $group = <STDIN>) {
   }
   system 'mkdir', '-p', "$out/$name";
   my $n = 0;
-  my @paths = map { my $path = sprintf '%s/%s/unit_%02d.cpp', $out, $name, $n++; write_unit($path, @{ $_->{sources} }); $path } @units;
+  my @paths = map {
+    my $path = sprintf '%s/%s/unit_%02d.cpp', $out, $name, $n++;
+    write_unit($path, @{ $_->{sources} });
+    (my $step = $path) =~ s{^.*?/(units/)}{$1};
+    $costs .= $step . ' ' . seconds(@{ $_->{sources} }) . "\n";
+    $path
+  } @units;
   print "$name;", join(';', @paths), "\n";
 }
+open my $file, '>', "$out.costs" or die "units.pl: $out.costs: $!\n";
+print $file $costs;
+close $file or die "units.pl: $out.costs: $!\n";

@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "base/text.h"
+#include "manifest/sections/surface.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::goniometry {
 namespace {

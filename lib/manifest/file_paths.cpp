@@ -1,6 +1,8 @@
 // See file_paths.h.
 #include "manifest/file_paths.h"
 
+#include "manifest/sections/file.h"
+
 namespace gonio::manifest {
 namespace {
 

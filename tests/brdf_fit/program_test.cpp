@@ -12,6 +12,7 @@
 #include "manifest/document.h"
 #include "manifest/sections/surface.h"
 #include "manifest/sections/surface_fit.h"
+#include "manifest/sections/table.h"
 #include "process.h"
 
 namespace gonio {

@@ -15,6 +15,7 @@
 #include "goniometry/tables_text.h"
 #include "io/merl.h"
 #include "manifest/document.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::goniometry {
 namespace {

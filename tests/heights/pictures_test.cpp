@@ -11,6 +11,7 @@
 #include "explain/heights/heights_problem.h"
 #include "explain/tables/quick_table.h"
 #include "io/exr.h"
+#include "manifest/document.h"
 
 namespace gonio::explain::tests {
 namespace {

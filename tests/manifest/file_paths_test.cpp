@@ -8,6 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "data.h"
+#include "manifest/sections/file.h"
 
 namespace gonio::manifest {
 namespace {

@@ -8,6 +8,7 @@
 #include "data.h"
 #include "explain/tables/quick_table.h"
 #include "explain/tables/read_table.h"
+#include "manifest/document.h"
 
 namespace gonio::explain::tables::tests {
 namespace {

@@ -5,6 +5,7 @@
 #include "explain/heights/heights_problem.h"
 #include "manifest/document.h"
 #include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/relief.h"
 #include "manifest/sections/table.h"
 #include "relief/document.h"
 

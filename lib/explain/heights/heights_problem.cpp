@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "explain/explanation.h"
 #include "explain/heights/heights_outcome.h"
+#include "manifest/document.h"
 
 namespace gonio::explain {
 namespace {

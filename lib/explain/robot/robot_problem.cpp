@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "explain/robot/robot_findings.h"
+#include "manifest/document.h"
 
 namespace gonio::explain {
 namespace {

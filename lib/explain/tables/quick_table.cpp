@@ -14,6 +14,7 @@
 #include "io/height_map.h"
 #include "manifest/document.h"
 #include "manifest/fields.h"
+#include "manifest/sections/relief.h"
 #include "manifest/sections/surface.h"
 #include "manifest/sections/table.h"
 #include "relief/document.h"
