@@ -14,9 +14,10 @@
 namespace gonio::camera {
 namespace {
 
-constexpr double reach_share = 0.42;  // of a square, along the edges
+constexpr double reach_share = 0.42;  // of a square, along each edge its own side
 constexpr double least_reach_px = 2.5, largest_reach_px = 12;
 constexpr double least_band_px = 1.5, largest_band_px = 4.5;  // across the edges, to either side
+constexpr double reach_blurs = 4, band_blurs = 2.5;           // both are at least so many blurs, where squares allow
 constexpr double print_blur_px = 0.5;                         // that other ink may come nearer by
 constexpr double largest_move = 0.25;                         // of a square
 constexpr double largest_turn = 0.35;                         // rad, of an edge against its prediction
@@ -69,19 +70,53 @@ struct Window {  // what the fit looks at
   std::vector<Sample> samples;
 };
 
+// A parallelogram of samples along both edges. Its two sides follow the board's own: a tilted board's squares are
+// several times as long as they are high, and what their short sides allow would leave the long edges unread.
+struct Extent {
+  double sine = 1;                                     // between the edges
+  double reach_columns = 0, reach_rows = 0;            // along the edges, px
+  double inked_columns = 0, inked_rows = 0, bare = 0;  // across the edges, px; bare: towards no other ink
+};
+
+Extent extent_of(const Prediction& p, double clear_share, double blur_px, const DetectionOptions& options) {
+  const double u_px = cv::norm(p.along_columns), v_px = cv::norm(p.along_rows);
+  Extent e;
+  e.sine = std::abs(p.along_columns.cross(p.along_rows)) / (u_px * v_px);
+  const double most = std::max(largest_reach_px, reach_blurs * blur_px);
+  const auto reach = [&](double side) {
+    return options.window_px > 0 ? options.window_px : std::clamp(reach_share * side, least_reach_px, most);
+  };
+  e.reach_columns = reach(u_px);
+  e.reach_rows = reach(v_px);
+  e.bare = std::max(largest_band_px, band_blurs * blur_px);
+  const auto inked = [&](double side) {
+    return std::clamp(clear_share * side * e.sine - print_blur_px, least_band_px, e.bare);
+  };
+  e.inked_columns = inked(v_px);
+  e.inked_rows = inked(u_px);
+  return e;
+}
+
 template <class Value>
-void collect(const cv::Mat& values, const Prediction& p, double reach, double band_inked, Window& window) {
+void collect(const cv::Mat& values, const Prediction& p, const Extent& e, Window& window) {
+  window.samples.clear();
   const cv::Point2d &u = p.along_columns, &v = p.along_rows;
-  const double area = u.cross(v), u_px = cv::norm(u), v_px = cv::norm(v), sine = std::abs(area) / (u_px * v_px);
+  const double area = u.cross(v), u_px = cv::norm(u), v_px = cv::norm(v);
   const int left = static_cast<int>(std::lround(window.middle.x)), top = static_cast<int>(std::lround(window.middle.y));
-  const int half = static_cast<int>(std::ceil(1.5 * reach));
-  for (int row = std::max(0, top - half); row <= std::min(values.rows - 1, top + half); ++row) {
+  const auto half = [&](double ux, double vx) {  // of the parallelogram's bounding box
+    return static_cast<int>(std::ceil(e.reach_columns * std::abs(ux) / u_px + e.reach_rows * std::abs(vx) / v_px)) + 1;
+  };
+  const int half_x = half(u.x, v.x), half_y = half(u.y, v.y);
+  for (int row = std::max(0, top - half_y); row <= std::min(values.rows - 1, top + half_y); ++row) {
     const Value* line = values.ptr<Value>(row);
-    for (int column = std::max(0, left - half); column <= std::min(values.cols - 1, left + half); ++column) {
+    for (int column = std::max(0, left - half_x); column <= std::min(values.cols - 1, left + half_x); ++column) {
       const cv::Point2d d(column - window.middle.x, row - window.middle.y);
       const double s = d.cross(v) / area * u_px, t = u.cross(d) / area * v_px;  // oblique, in pixels along the edges
-      const double band = p.bare * s * t >= 0 ? largest_band_px : band_inked;
-      if (std::max(std::abs(s), std::abs(t)) > reach || std::min(std::abs(s), std::abs(t)) * sine > band) continue;
+      const bool inked = p.bare * s * t < 0;
+      const double off_columns = std::abs(t) * e.sine, off_rows = std::abs(s) * e.sine;
+      if (std::abs(s) > e.reach_columns || std::abs(t) > e.reach_rows ||
+          (off_columns > (inked ? e.inked_columns : e.bare) && off_rows > (inked ? e.inked_rows : e.bare)))
+        continue;
       window.samples.push_back({d.x, d.y, static_cast<double>(line[column])});
     }
   }
@@ -201,36 +236,48 @@ struct Refined {
   double misfit = 0;
 };
 
+void collect_any(const cv::Mat& values, const Prediction& p, const Extent& e, Window& window) {
+  if (values.depth() == CV_8U)
+    collect<unsigned char>(values, p, e, window);
+  else
+    collect<float>(values, p, e, window);
+}
+
+bool has_turned(const Vector& q, const Prediction& p) {
+  return turn_between(q[turn1], std::atan2(p.along_columns.y, p.along_columns.x)) > largest_turn ||
+         turn_between(q[turn2], std::atan2(p.along_rows.y, p.along_rows.x)) > largest_turn;
+}
+
 std::optional<Refined> refine_one(const cv::Mat& values, const Prediction& p, double clear_share,
                                   const DetectionOptions& options) {
   const double side = p.square_px();
-  const double reach =
-      options.window_px > 0 ? options.window_px : std::clamp(reach_share * side, least_reach_px, largest_reach_px);
-  const double band = std::clamp(clear_share * side - print_blur_px, least_band_px, largest_band_px);
-  const double margin = reach + 1;
+  Extent extent = extent_of(p, clear_share, 0, options);
+  const double margin = std::max(extent.reach_columns, extent.reach_rows) + 1;
   const auto inside = [&](const cv::Point2d& at) {
     return at.x >= margin && at.y >= margin && at.x <= values.cols - 1 - margin && at.y <= values.rows - 1 - margin;
   };
   if (!inside(p.pixel)) return {};
-  Window window{rough_place(values, p.pixel, std::min(reach, std::max(2.0, 0.9 * clear_share * side))), {}};
+  const double rough = std::min({extent.reach_columns, extent.reach_rows, std::max(2.0, 0.9 * clear_share * side)});
+  Window window{rough_place(values, p.pixel, rough), {}};
   if (cv::norm(window.middle - p.pixel) > largest_move * side) window.middle = p.pixel;
   if (!inside(window.middle)) return {};
-  if (values.depth() == CV_8U)
-    collect<unsigned char>(values, p, reach, band, window);
-  else
-    collect<float>(values, p, reach, band, window);
-  if (window.samples.size() < 2 * parameters) return {};
-  Saddle saddle(window, p);
-  if (!saddle.fit() || saddle.misfit() > largest_misfit) return {};
-  const Vector& q = saddle.parameters_found();
-  const cv::Point2d at = window.middle + cv::Point2d(q[x], q[y]);
-  if (cv::norm(at - p.pixel) > largest_move * side) return {};
-  if (turn_between(q[turn1], std::atan2(p.along_columns.y, p.along_columns.x)) > largest_turn ||
-      turn_between(q[turn2], std::atan2(p.along_rows.y, p.along_rows.x)) > largest_turn ||
-      std::max(q[blur1], q[blur2]) > std::max(1.0, largest_blur * side)) {
-    return {};
+  std::optional<Saddle> saddle;
+  const auto fitted = [&] {
+    collect_any(values, p, extent, window);
+    return window.samples.size() >= 2 * parameters && saddle.emplace(window, p).fit();
+  };
+  if (!fitted()) return {};
+  const double blur = std::max(saddle->parameters_found()[blur1], saddle->parameters_found()[blur2]);
+  if (blur * band_blurs > largest_band_px && blur <= largest_blur * side) {  // out of focus: the edges are wider
+    extent = extent_of(p, clear_share, blur, options);
+    if (!fitted()) return {};
   }
-  return Refined{{p.id, {at.x, at.y}, saddle.sigma_px()}, saddle.misfit()};
+  const Vector& q = saddle->parameters_found();
+  const cv::Point2d at = window.middle + cv::Point2d(q[x], q[y]);
+  if (saddle->misfit() > largest_misfit || cv::norm(at - p.pixel) > largest_move * side || has_turned(q, p) ||
+      std::max(q[blur1], q[blur2]) > std::max(1.0, largest_blur * side))
+    return {};
+  return Refined{{p.id, {at.x, at.y}, saddle->sigma_px()}, saddle->misfit()};
 }
 
 }  // namespace

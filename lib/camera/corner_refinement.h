@@ -4,13 +4,14 @@
 //   I(p) = m + g . p + c E(n1 . (p - x) / s1) E(n2 . (p - x) / s2),   E(z) = erf(z / sqrt 2),
 // with the corner x, the edges' directions n1, n2 and blurs s1, s2 (which may differ: motion), the contrast c and a
 // plane of illumination (m, g). Its ten parameters are fitted by Levenberg-Marquardt to the pixels along both edges
-// that stay clear of anything else printed near by. All pixels count alike, and lines keep their places where the
-// brightness scale is bent, because the pattern is symmetric about x: a photograph need not be linearised. The fit also
-// says how well it knows x. cv::cornerSubPix makes the start; its own result scatters more, and by 0.05 px and more at
-// sharp edges.
+// that stay clear of anything else printed near by: along each edge as far as its own side of a square allows, across
+// it as far as the blur has spread it, which a first fit tells. All pixels count alike, and lines keep their places
+// where the brightness scale is bent, because the pattern is symmetric about x: a photograph need not be linearised.
+// The fit also says how well it knows x. cv::cornerSubPix makes the start; its own result scatters more, and by 0.05 px
+// and more at sharp edges.
 //
-// Does not know lenses: edges are straight within the reach, at most 12 px, over which a lens bends them by hundredths
-// of a pixel.
+// Does not know lenses: edges are straight within the reach, at most 12 px or four blurs, over which a lens bends them
+// by hundredths of a pixel.
 #pragma once
 #include <opencv2/core.hpp>
 #include <vector>
