@@ -1,6 +1,7 @@
 // Folds by shots, residuals of held-out views, and the choice.
 #include "camera/model_choice.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -17,6 +18,7 @@ namespace {
 constexpr std::size_t most_folds = 5, least_views = 6;
 constexpr double outlier_sigmas = 6;  // a corner counts no more than this
 constexpr std::size_t least_corners = 6;
+constexpr double replaceable = 0.999, supporting = 0.99;  // multiple correlations
 
 // The lenses fitted without the held-out shots, held for these; every held-out view keeps a pose of its own.
 CalibrationSetup held(const CalibrationSetup& setup, const Calibration& fit) {
@@ -101,6 +103,63 @@ double typical_px(const std::vector<Fold>& folds) {
   return stats::median(sizes) / std::sqrt(2 * std::log(2.0));
 }
 
+double value_of(const Calibration& fit, const SharedParameter& parameter) {
+  if (parameter.name == "sag_x_m") return fit.boards[parameter.of].warp.sag_x_m;
+  if (parameter.name == "sag_y_m") return fit.boards[parameter.of].warp.sag_y_m;
+  const auto place = std::ranges::find(distortion_names, parameter.name);
+  if (place == distortion_names.end()) return HUGE_VAL;  // focal lengths, principal points and poses are always there
+  return fit.cameras[parameter.of].lens.distortion[static_cast<std::size_t>(place - distortion_names.begin())];
+}
+
+// Terms of one polynomial correlate by nature, and are no less harmless for it: 1 numerator, 2 denominator, 0 none.
+int polynomial_of(const Calibration& fit, const SharedParameter& parameter) {
+  const std::string& name = parameter.name;
+  if (name == "k1" || name == "k2" || name == "k3") return 1;
+  if (name != "k4" && name != "k5" && name != "k6") return 0;
+  return fit.cameras[parameter.of].lens.distortion[LensTerm::fisheye] != 0 ? 1 : 2;
+}
+
+// R^2 = 1 - 1 / (C_ii (C^-1)_ii): the share of what the views say of parameter i that others can take over; C without
+// the rest of i's own polynomial.
+double replaced_share(const Calibration& fit, const Eigen::MatrixXd& correlation, Eigen::Index i) {
+  const auto of = [&](Eigen::Index k) { return fit.shared[static_cast<std::size_t>(k)]; };
+  const int own = polynomial_of(fit, of(i));
+  std::vector<Eigen::Index> kept{i};
+  for (Eigen::Index k = 0; k < correlation.rows(); ++k) {
+    const bool same = own > 0 && polynomial_of(fit, of(k)) == own && of(k).of == of(i).of;
+    if (k != i && !same) kept.push_back(k);
+  }
+  const Eigen::MatrixXd inverse = correlation(kept, kept).inverse();
+  return 1 - 1 / inverse(0, 0);
+}
+
+// Names of terms that others can stand in for, where no term among those that hold each other up exceeds its own sigma.
+std::string undetermined(const Calibration& fit) {
+  const auto k = static_cast<Eigen::Index>(fit.shared.size());
+  const Eigen::Map<const Eigen::MatrixXd> covariance(fit.covariance.data(), k, k);
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+  std::string names;
+  for (Eigen::Index i = 0; i < k; ++i) {
+    const SharedParameter& parameter = fit.shared[static_cast<std::size_t>(i)];
+    const double value = std::abs(value_of(fit, parameter));
+    if (std::isinf(value)) continue;
+    const double share = replaced_share(fit, correlation, i);
+    if (share < supporting * supporting) continue;
+    if (value * scale(i) > 1) return {};
+    if (share > replaceable * replaceable) names += (names.empty() ? "" : ", ") + parameter.name;
+  }
+  return names;
+}
+
+// Why the model may not be chosen, from its fit to all views; empty where it may.
+std::string unfitness(const Calibration& fit) {
+  if (!fit.converged) return "its fit to all views does not converge";
+  if (fit.covariance.empty()) return "the views do not determine it";
+  const std::string names = undetermined(fit);
+  return names.empty() ? "" : "the views do not determine " + names;
+}
+
 std::string called(const ModelScore& score) {
   return score.model + (score.warp ? " with board warp" : "");
 }
@@ -110,6 +169,7 @@ std::string sentence(const ModelChoice& choice, std::size_t i) {
   const std::string head = called(own) + ": ";
   if (own.failed) return head + "could not be fitted to every part of the views";
   const std::string reach = head + format("%.3f px on held-out views", own.held_out_px);
+  if (!own.unfit.empty()) return reach + "; cannot be chosen: " + own.unfit;
   if (i == choice.chosen && i == choice.best) return reach + "; chosen, because it predicts best";
   if (i == choice.chosen)
     return reach + "; chosen, as the simplest within one standard error of the best (" + called(best) + ")";
@@ -127,7 +187,7 @@ std::vector<ModelScore> hypotheses(const CalibrationSetup& setup) {
       int terms = 4 + (warp ? 2 : 0);
       for (std::size_t t = 0; t < distortion_terms; ++t) terms += camera_model_info(model, "").fitted.has(t);
       terms += camera_model_info(model, "").fisheye > 0;  // the projection itself is chosen
-      list.push_back({model, warp, terms, 0, 0, 0, false});
+      list.push_back({.model = model, .warp = warp, .parameters = terms});
     }
   }
   std::ranges::stable_sort(list, {}, &ModelScore::parameters);
@@ -163,9 +223,13 @@ ModelChoice score_models(const std::vector<View>& views, const CalibrationSetup&
   ModelChoice choice;
   choice.scores = hypotheses(setup);
   std::vector<std::vector<Fold>> all(choice.scores.size(), std::vector<Fold>(folds));
-  parallel_for(0, all.size() * folds, [&](std::size_t i) {
-    const std::size_t h = i / folds, fold = i % folds;
-    all[h][fold] = judged(usable, setup_of(setup, choice.scores[h]), fold_of, fold);
+  parallel_for(0, all.size() * (folds + 1), [&](std::size_t i) {
+    const std::size_t h = i / (folds + 1), fold = i % (folds + 1);
+    const CalibrationSetup own = setup_of(setup, choice.scores[h]);
+    if (fold == folds)
+      choice.scores[h].unfit = unfitness(calibrate(usable, own));
+    else
+      all[h][fold] = judged(usable, own, fold_of, fold);
   });
   double noise = HUGE_VAL;
   for (const auto& own : all) noise = std::min(noise, typical_px(own));
@@ -176,12 +240,16 @@ ModelChoice score_models(const std::vector<View>& views, const CalibrationSetup&
     scores.push_back(scores_of(all[h], outlier_sigmas * noise));
     own.held_out_px = std::sqrt(mean(scores.back()));
     const ModelScore& best = choice.scores[choice.best];
-    if (!own.failed && (best.failed || own.held_out_px < best.held_out_px)) choice.best = h;
+    if (own.eligible() && (!best.eligible() || own.held_out_px < best.held_out_px)) choice.best = h;
+  }
+  if (!choice.scores[choice.best].eligible()) {
+    throw Error(Exit::data, "--model auto", "these views determine no lens model: " + sentence(choice, choice.best),
+                "tilt the board by 20 to 45 degrees about both axes, or name a model");
   }
   choice.chosen = choice.best;
   for (std::size_t h = all.size(); h-- > 0;) {
     ModelScore& own = choice.scores[h];
-    if (own.failed) continue;
+    if (!own.eligible()) continue;
     double sum = 0, squares = 0;
     for (const auto& [shot, score] : scores[h]) {
       const double d = score - scores[choice.best].at(shot);

@@ -5,6 +5,10 @@
 // model that bends the lens to fit noise, or to fit the board's own bulge, pays for it there. The simplest model within
 // one standard error of the best wins (Breiman et al., "Classification and regression trees", 1984, section 3.4.3),
 // with and without the board's warp.
+//
+// Whatever it predicts, a model cannot be chosen whose fit to all views does not converge, or is not determined by
+// them: terms that others can stand in for all but wholly (multiple correlation above 0.999, own polynomial apart),
+// with no term among those that hold each other up that exceeds its own standard uncertainty.
 #pragma once
 #include <string>
 #include <vector>
@@ -20,6 +24,8 @@ struct ModelScore {
   double held_out_px = 0;         // root mean square of a corner's distance
   double gap = 0, gap_sigma = 0;  // of the robust score above the best one's, and its standard error over shots
   bool failed = false;            // some fold could not be fitted
+  std::string unfit{};            // why it cannot be chosen although it was scored; empty: it can
+  bool eligible() const { return !failed && unfit.empty(); }
 };
 struct ModelChoice {
   std::vector<ModelScore> scores;  // simplest first
@@ -27,7 +33,7 @@ struct ModelChoice {
   std::vector<std::string> sentences;  // one per model
 };
 
-// Scores all calibrated models; `setup.boards` whose warp is free keep it so.
+// Scores all calibrated models; `setup.boards` whose warp is free keep it so. Error(data) where none can be chosen.
 ModelChoice score_models(const std::vector<View>& views, const CalibrationSetup& setup);
 
 // Sets the model of all cameras and the boards' warp, and says why (log).
