@@ -9,8 +9,13 @@
 #include "base/error.h"
 #include "nrsfm/low_rank.h"
 #include "nrsfm/rigid_motion.h"
+#include "nrsfm/shape_count.h"
 
 namespace gonio::nrsfm {
+
+namespace {
+constexpr Eigen::Index kMostShapes = 12;
+}
 
 SolverParameter free_scales_parameter() {
   const char* meaning = "1: a scale per frame; 0: one for all; -1: free where the camera is perspective";
@@ -22,8 +27,8 @@ bool free_scales_of(const SolverInfo& info, const Sequence& sequence, const Solv
   return value < 0 ? sequence.projection == Projection::perspective : value > 0;
 }
 
-SolverParameter rank_parameter(const std::string& meaning) {
-  return {"rank", 0, 0, 100, true, meaning + "; 0: from the singular values of the tracks"};
+SolverParameter rank_parameter(const std::string& meaning, const std::string& chosen) {
+  return {"rank", 0, 0, 100, true, meaning + "; 0: " + chosen};
 }
 
 Eigen::Index terms_from_tracks(const Sequence& sequence, double share, Eigen::Index most) {
@@ -47,7 +52,7 @@ Eigen::Index dct_terms_of(const SolverInfo& info, const Sequence& sequence, cons
                           Eigen::Index rank) {
   const Eigen::Index frames = sequence.frames();
   const Eigen::Index given = static_cast<Eigen::Index>(values_in_force(info, options.values).at("dct_terms"));
-  if (given == 0) return std::min(frames, std::max((frames + 5) / 10, 2 * rank));
+  if (given == 0) return usual_cosines(frames, rank);
   if (given >= rank && given <= frames) return given;
   throw Error(Exit::data, "tracks",
               "dct_terms=" + std::to_string(given) + " with rank " + std::to_string(rank) + " and " +
@@ -199,9 +204,14 @@ Eigen::Index shapes_from_tracks(const Sequence& sequence) {
 
 Eigen::Index shapes_of_model(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options) {
   const Eigen::Index given = static_cast<Eigen::Index>(values_in_force(info, options.values).at("rank"));
-  const Eigen::Index rank = given > 0 ? given : shapes_from_tracks(sequence);
-  require_rank(sequence, rank);
-  return rank;
+  if (given > 0) {
+    require_rank(sequence, given);
+    return given;
+  }
+  const Eigen::Index reproject = shapes_from_tracks(sequence);
+  require_rank(sequence, reproject);
+  Solution unused;
+  return determined_shapes(sequence, start_for(info, sequence, options, reproject, unused), kMostShapes, reproject);
 }
 
 void require_rank(const Sequence& sequence, Eigen::Index terms) {

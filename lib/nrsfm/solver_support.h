@@ -10,8 +10,9 @@ namespace gonio::nrsfm {
 SolverParameter free_scales_parameter();
 bool free_scales_of(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options);
 
-// "rank": shapes of the basis; 0: from the singular values of the tracks.
-SolverParameter rank_parameter(const std::string& meaning);
+// "rank": shapes of the basis; 0: as many as the tracks determine (shape_count.h), unless `chosen` says otherwise.
+SolverParameter rank_parameter(const std::string& meaning,
+                               const std::string& chosen = "as many as halves of the points agree on");
 // The value of `name` where it is set, else the least K that leaves `share` of the tracks' root mean square, no more
 // than `most`.
 Eigen::Index terms_of(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options,
@@ -37,9 +38,10 @@ ShapeTrajectoryProblem linear_problem(const Sequence& sequence, const Start& sta
 // Shapes, rotations and convergence of a fit.
 void fill(const Start& start, const ShapeTrajectory& fit, Solution& solution);
 
-// One shape more than leaves 1 % of the tracks: smooth weights need not contain a constant.
+// One shape more than leaves 1 % of the tracks: smooth weights need not contain a constant. So many reproject; how many
+// are determined is another question.
 Eigen::Index shapes_from_tracks(const Sequence& sequence);
-// "rank" where it is set, else that.
+// "rank" where it is set, else as many as the tracks determine with the cameras that suit shapes_from_tracks().
 Eigen::Index shapes_of_model(const SolverInfo& info, const Sequence& sequence, const SolverOptions& options);
 
 // Error(data, "tracks") where 3 K exceeds the rank that P points less their mean in F frames can have.

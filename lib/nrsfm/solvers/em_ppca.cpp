@@ -242,7 +242,7 @@ class EmPpca : public Solver {
         true,
         true,
         false,
-        {rank_parameter("deformations besides the mean shape, K"),
+        {rank_parameter("deformations besides the mean shape, K", "from the singular values of the tracks"),
          {"extrapolate", 0, 0, 1, true, "1: faster turns, up to the greatest likelihood; 0: 150 plain turns at most"},
          camera_rank_parameter(),
          free_scales_parameter()}};
