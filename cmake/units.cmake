@@ -22,7 +22,8 @@ function(gonio_make_units tree lines)
     endif()
   endforeach()
   file(WRITE ${CMAKE_BINARY_DIR}/units/${tree}.request "${request}")
-  execute_process(COMMAND ${PERL} ${CMAKE_SOURCE_DIR}/cmake/units.pl ${CMAKE_BINARY_DIR}/units/${tree} ${CMAKE_SOURCE_DIR}/lib ${lines}
+  execute_process(COMMAND ${PERL} ${CMAKE_SOURCE_DIR}/cmake/units.pl ${CMAKE_BINARY_DIR}/units/${tree}
+                          ${CMAKE_SOURCE_DIR}/${tree} ${CMAKE_SOURCE_DIR}/lib ${lines}
                   INPUT_FILE ${CMAKE_BINARY_DIR}/units/${tree}.request OUTPUT_VARIABLE answer COMMAND_ERROR_IS_FATAL ANY)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/units.pl)
   string(STRIP "${answer}" answer)

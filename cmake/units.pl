@@ -1,9 +1,9 @@
 #!/usr/bin/perl
 # Groups sources into units that compile as one: most of a source's compile time goes into headers and templates that its
-# neighbours need as well. `perl units.pl OUT LIB LINES < GROUPS` reads one group a line (NAME SOURCE...), writes
+# neighbours need as well. `perl units.pl OUT TREE LIB LINES < GROUPS` reads one group a line (NAME SOURCE...), writes
 # OUT/NAME/unit_N.cpp, each an #include of sources of that group with about LINES lines in all, and prints a line a group:
-# NAME and its units, separated by ';'. Units that stay the same are not touched. LIB is the folder that quoted includes
-# start from (the source's own folder is tried first).
+# NAME and its units, separated by ';'. Units that stay the same are not touched. Quoted includes start
+# from LIB or from TREE, where the sources are (a source's own folder is tried first).
 #
 # A unit must mean what its sources mean alone. Private names (anonymous namespaces, aliases, macros) of a source are seen
 # by the sources behind it, so two sources share a unit only where neither mentions a private name of the other, and where
@@ -13,7 +13,7 @@
 use strict;
 use warnings;
 
-my ($out, $lib, $lines_wanted) = @ARGV;
+my ($out, $tree, $lib, $lines_wanted) = @ARGV;
 my %keyword = map { $_ => 1 } qw(const constexpr static inline extern struct class union enum typename auto void double float
   int bool char unsigned long short final noexcept override default delete operator return);
 
@@ -158,7 +158,7 @@ sub scanned { my ($path) = @_; return $scanned{$path} //= scan($path) }
 sub resolved {
   my ($from, $name) = @_;
   (my $folder = $from) =~ s{/[^/]*$}{};
-  for my $candidate ("$folder/$name", "$lib/$name") { return $candidate if -e $candidate }
+  for my $candidate ("$folder/$name", "$lib/$name", "$tree/$name") { return $candidate if -e $candidate }
   return ();
 }
 
@@ -250,7 +250,12 @@ sub write_unit {
       push @headers, $header if defined $header && !$seen{$header}++;
     }
   }
-  my $text = "// Written by cmake/units.pl; do not edit.\n" . join '', map { "#include \"$_\"\n" } @headers, @sources;
+  # By names below the include folders, so that the text, and what a compiler cache makes of it, is the same in any checkout.
+  my $text = "// Written by cmake/units.pl; do not edit.\n";
+  for my $file (@headers, @sources) {
+    (my $name = $file) =~ s{^(?:\Q$lib\E|\Q$tree\E)/}{};
+    $text .= "#include \"$name\"\n";
+  }
   if (open my $old, '<', $path) { local $/; return if <$old> eq $text }
   open my $new, '>', $path or die "units.pl: $path: $!\n";
   print $new $text;

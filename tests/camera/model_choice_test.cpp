@@ -130,7 +130,9 @@ TEST(ModelChoice, WhatTheViewsDoNotDetermineIsNeverChosen) {
     if (score.eligible()) {
       EXPECT_TRUE(fit.converged) << score.model;
       ASSERT_FALSE(fit.covariance.empty()) << score.model;
-      if (score.model == "rational") EXPECT_GT(denominator_sigmas(fit), 1) << score.warp;
+      if (score.model == "rational") {
+        EXPECT_GT(denominator_sigmas(fit), 1) << score.warp;
+      }
     } else {
       ++left_out;
       EXPECT_THAT(choice.sentences[h], testing::AnyOf(testing::HasSubstr("cannot be chosen: the views do not"),

@@ -13,6 +13,7 @@
 #include "manifest/reference.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/surface.h"
+#include "manifest/sections/surface_fit.h"
 #include "manifest/sections/table.h"
 #include "scene/mechanisms.h"
 
