@@ -46,7 +46,8 @@ struct Bounds {
 // Of the plane z = 1: the largest rectangle within the border's image (valid), or the smallest around it.
 Bounds bounds_of(const CameraModel& lens, const PinholeChoice& choice) {
   const bool valid = choice.keep == Keep::valid;
-  const double margin = valid ? kernel_radius(choice.kernel) * std::max(1.0, 1 / choice.scale) - 1 + spare_px : 0;
+  const double reach = kernel_radius(choice.kernel) * std::max(1.0, 1 / choice.scale) - 1;  // on a filter's lattice
+  const double margin = valid ? choice.pitch * reach + choice.pitch - 1 + spare_px : 0;
   const double x0 = margin, x1 = lens.width_px() - 1 - margin, y0 = margin, y1 = lens.height_px() - 1 - margin;
   const Vec2 centre = lens.principal_point_px();
   const Vec2 inside{std::clamp(centre.x, x0, std::max(x0, x1)), std::clamp(centre.y, y0, std::max(y0, y1))};
@@ -116,9 +117,11 @@ class Footprint {
       : source_(source), good_(good), resampling_(resampling), channels_(source.channels.size()) {
     for (const std::string& name : source.channels) variance_.push_back(name.starts_with("variance."));
   }
-  // Writes the channels to `out`; true where the pixel is valid.
-  bool sum(Vec2 at, float* out) const {
-    const Taps x = taps_at(at.x, resampling_), y = taps_at(at.y, resampling_);
+  // Writes the channels to `out`; true where the pixel is valid. `phase_x`, `phase_y`: which filter it stands behind.
+  bool sum(Vec2 at, int phase_x, int phase_y, float* out) const {
+    const int pitch = resampling_.pitch;
+    const Taps x = taps_at((at.x - phase_x) / pitch, resampling_), y = taps_at((at.y - phase_y) / pitch, resampling_);
+    const int last_x = (source_.width - 1 - phase_x) / pitch, last_y = (source_.height - 1 - phase_y) / pitch;
     std::array<double, most_channels> sums{}, low{}, high{};
     low.fill(std::numeric_limits<double>::infinity());
     high.fill(-std::numeric_limits<double>::infinity());
@@ -128,8 +131,8 @@ class Footprint {
         const double w = x.weights[static_cast<std::size_t>(i)] * y.weights[static_cast<std::size_t>(j)];
         if (w == 0) continue;
         const int px = x.first + i, py = y.first + j;
-        const int cx = std::clamp(px, 0, source_.width - 1), cy = std::clamp(py, 0, source_.height - 1);
-        const std::size_t pixel = source_.index(cx, cy, 0);
+        const int cx = std::clamp(px, 0, last_x), cy = std::clamp(py, 0, last_y);
+        const std::size_t pixel = source_.index(phase_x + pitch * cx, phase_y + pitch * cy, 0);
         valid = valid && px == cx && py == cy && (good_.empty() || good_[pixel / channels_] != 0);
         for (std::size_t c = 0; c < channels_; ++c) {
           const double v = source_.data[pixel + c];
@@ -180,6 +183,7 @@ manifest::Camera pinhole_for(const manifest::Camera& camera, const PinholeChoice
   const bool plain = camera.model == "pinhole" && numbers.fx_px == numbers.fy_px;
   manifest::Camera result;
   result.model = "pinhole";
+  if (choice.pitch > 1) result.mosaic = camera.mosaic;
   result.width_px = camera.width_px;
   result.height_px = camera.height_px;
   result.fx_px = numbers.fx_px * choice.scale;
@@ -215,6 +219,8 @@ manifest::Camera pinhole_for(const manifest::Camera& camera, const PinholeChoice
 Undistorted undistort(const io::Image& source, const std::vector<std::uint8_t>& good, const CameraModel& from,
                       const CameraModel& to, const Resampling& resampling) {
   if (source.channels.size() > most_channels) throw Error(Exit::data, "picture", "has more than 16 channels");
+  if (source.width < resampling.pitch || source.height < resampling.pitch)
+    throw Error(Exit::data, "picture", "is smaller than its mosaic of filters");
   Undistorted result;
   result.picture = io::Image(to.width_px(), to.height_px(), source.channels);
   result.valid.assign(result.picture.pixels(), 0);
@@ -229,7 +235,9 @@ Undistorted undistort(const io::Image& source, const std::vector<std::uint8_t>& 
               at && at->x >= -0.5 && at->y >= -0.5 && at->x <= source.width - 0.5 && at->y <= source.height - 0.5;
           if (!meets) continue;
           const std::size_t pixel = y * width + x;
-          result.valid[pixel] = footprint.sum(*at, &result.picture.data[pixel * source.channels.size()]) ? 1 : 0;
+          float* out = &result.picture.data[pixel * source.channels.size()];
+          const int phase_x = static_cast<int>(x) % resampling.pitch, phase_y = static_cast<int>(y) % resampling.pitch;
+          result.valid[pixel] = footprint.sum(*at, phase_x, phase_y, out) ? 1 : 0;
         }
       },
       8);

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "camera/mosaic.h"
 #include "io/codes.h"
 #include "io/picture.h"
 #include "manifest/document.h"
@@ -30,10 +32,9 @@ std::string camera_name(const manifest::Document& document, std::size_t index) {
 struct Work {
   std::string camera, place;
   std::filesystem::path path;
-  manifest::Camera pinhole;
 };
 
-Work work_of(const manifest::Document& document, std::size_t index, const UndistortRequest& request) {
+Work work_of(const manifest::Document& document, std::size_t index) {
   const manifest::ImageEntry& image = document.images[index];
   Work work;
   work.camera = camera_name(document, index);
@@ -42,8 +43,36 @@ Work work_of(const manifest::Document& document, std::size_t index, const Undist
   if (image.file.empty())
     throw Error(Exit::data, manifest::place(document, pointer_of(index) + "/file"), "missing", "name the photograph");
   work.path = manifest::resolve(document, image.file, pointer_of(index) + "/file");
-  work.pinhole = pinhole_for(document.cameras.at(work.camera), request.choice, work.place);
   return work;
+}
+
+// Are the three colours of every pixel one reading? Grey pictures are stored so, too.
+bool in_triplicate(const io::Image& raw) {
+  const int r = raw.channel("R"), g = raw.channel("G"), b = raw.channel("B");
+  for (std::size_t i = 0; i < raw.pixels(); ++i) {
+    const float* v = &raw.data[i * raw.channels.size()];
+    if (v[r] != v[g] || v[g] != v[b]) return false;
+  }
+  return true;
+}
+
+// Pixels from one to the next behind the same filter. One reading a pixel is the mosaic itself; three colours of a
+// colour mosaic were interpolated before, and Stokes planes stand for light before any filter. Three colours behind
+// polarizers may be either.
+int pitch_of(const io::Image& raw, const manifest::Camera& camera, const Work& work) {
+  const int pitch = filter_pitch(camera.mosaic, work.place + "/mosaic");
+  if (pitch == 1 || raw.channel("R") < 0 || raw.channel("G") < 0 || raw.channel("B") < 0 || in_triplicate(raw))
+    return pitch;
+  if (is_bayer(camera.mosaic) || raw.channel("s1.R") >= 0) return 1;
+  throw Error(Exit::data, work.path.string(),
+              "has three colours of a camera with polarizers: filtered light or not, it does not say",
+              "give one channel Y for the mosaic, or a camera without \"mosaic\" for light before the polarizers");
+}
+
+PinholeChoice choice_of(const UndistortRequest& request, int pitch) {
+  PinholeChoice choice = request.choice;
+  choice.pitch = pitch;
+  return choice;
 }
 
 // Colour and its variances; other channels of an EXR (ids, positions) mean nothing between pixels.
@@ -123,12 +152,15 @@ int bits_for(PictureFormat format, int source_bits) {
 
 void undistort_image(manifest::Document& document, std::size_t index, const UndistortRequest& request,
                      const std::filesystem::path& picture_path, const std::filesystem::path& mask_path, int bits) {
-  const Work work = work_of(document, index, request);
+  const Work work = work_of(document, index);
   manifest::ImageEntry& image = document.images[index];
   const manifest::Camera& camera = document.cameras.at(work.camera);
   const std::string place = manifest::place(document, pointer_of(index));
   const int source_bits = io::code_bits(work.path);
-  io::Image stored = colour_of(io::read_picture(work.path), work.path.string());
+  const io::Image raw = io::read_picture(work.path);
+  const int pitch = pitch_of(raw, camera, work);
+  const manifest::Camera pinhole = pinhole_for(camera, choice_of(request, pitch), work.place);
+  io::Image stored = colour_of(raw, work.path.string());
   check_size(stored, camera, work);
   request.note_input(work.path);
   const auto mask = image.mask.empty() ? std::filesystem::path()
@@ -140,15 +172,16 @@ void undistort_image(manifest::Document& document, std::size_t index, const Undi
   const Transfer transfer = request.transfer(image.response, place, bits != 0);
   for (std::size_t i = 0; i < stored.data.size(); ++i)
     if (!is_variance(stored, i)) stored.data[i] = transfer.linear(stored.data[i]);
-  const Resampling resampling{request.choice.kernel, std::max(1.0, 1 / request.choice.scale), request.limit_overshoot};
+  const Resampling resampling{request.choice.kernel, std::max(1.0, 1 / request.choice.scale), request.limit_overshoot,
+                              pitch};
   Undistorted result =
-      undistort(stored, good, CameraModel(camera, work.place), CameraModel(work.pinhole, work.place), resampling);
+      undistort(stored, good, CameraModel(camera, work.place), CameraModel(pinhole, work.place), resampling);
   write(picture_path, result.picture, result.valid, transfer, bits);
   io::Image counts(result.picture.width, result.picture.height, {"Y"});
   std::ranges::transform(result.valid, counts.data.begin(), [](std::uint8_t v) { return static_cast<float>(v); });
   io::write_png(mask_path, counts, 8);
   image.camera = work.camera + "-undistorted";
-  document.cameras[image.camera] = work.pinhole;
+  document.cameras[image.camera] = pinhole;
   image.file = manifest::add_file(document, picture_path, image.id + "-undistorted");
   image.mask = manifest::add_file(document, mask_path, image.id + "-mask");
   image.noise.reset();
@@ -161,9 +194,18 @@ void undistort_image(manifest::Document& document, std::size_t index, const Undi
 void check_undistortion(const manifest::Document& document, const UndistortRequest& request) {
   if (request.images.empty())
     throw Error(Exit::data, manifest::place(document, "/images"), "has no image with a file", "name photographs");
+  std::map<std::string, int> pitch_of_camera;
   for (const std::size_t index : request.images) {
-    const Work work = work_of(document, index, request);
+    const Work work = work_of(document, index);
     const manifest::ImageEntry& image = document.images[index];
+    const manifest::Camera& camera = document.cameras.at(work.camera);
+    const int pitch = camera.mosaic.empty() ? 1 : pitch_of(io::read_picture(work.path), camera, work);
+    if (pitch_of_camera.try_emplace(work.camera, pitch).first->second != pitch)
+      throw Error(Exit::data, work.path.string(),
+                  pitch == 1 ? "has three colours a pixel, other pictures of its camera are mosaics"
+                             : "is a mosaic, other pictures of its camera have three colours a pixel",
+                  "give the two kinds cameras of their own");
+    pinhole_for(camera, choice_of(request, pitch), work.place);
     const int source_bits = io::code_bits(work.path), bits = bits_for(request.format, source_bits);
     const std::string place = manifest::place(document, pointer_of(index));
     if (bits == 0 && source_bits != 0 && image.response.is_null())
@@ -182,7 +224,7 @@ void undistort_document(manifest::Document& document, const UndistortRequest& re
   std::vector<Paths> paths;  // asked for before the work begins: an existing file is an error at once
   for (const std::size_t index : request.images) {
     const std::string stem = file_stem(document.images[index].id);
-    const int bits = bits_for(request.format, io::code_bits(work_of(document, index, request).path));
+    const int bits = bits_for(request.format, io::code_bits(work_of(document, index).path));
     paths.push_back(
         {request.output_path(stem + (bits == 0 ? ".exr" : ".png")), request.output_path(stem + "-mask.png"), bits});
   }

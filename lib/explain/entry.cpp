@@ -179,6 +179,14 @@ Value outside(const Outside& o) {
   return entry;
 }
 
+Value misplaced(const Misplaced& m) {
+  Value list = Value::array();
+  for (const Misplaced::File& f : m.files)
+    list.push_back(Value::object(
+        {{"group", f.group}, {"shows", f.shows}, {"error", number(f.own)}, {"error_there", number(f.other)}}));
+  return list;
+}
+
 Value next_measurement(const Problem& problem, const Explanation& e) {
   Value next = Value::object();
   if (!e.next_measurement.empty()) next["sentence"] = e.next_measurement;
@@ -209,6 +217,7 @@ Value entry_of(const Problem& problem, const Explanation& e, const Illustration&
     apart.push_back(Value(Value::Array{ids_of(e.named), ids_of(set)}));
   for (const std::size_t g : e.test_groups) tests.push_back(problem.observations().group[g]);
   Value entry = Value::object({{"domain", problem.domain()}, {"verdict", verdict_name(e.verdict)}});
+  if (!e.misplaced.files.empty()) entry["misplaced"] = misplaced(e.misplaced);
   entry["named"] = named;
   entry["not_told_apart"] = apart;
   entry["outside"] = e.outside ? outside(*e.outside) : Value();

@@ -105,6 +105,17 @@ struct Outside {
   std::vector<double> per_row{};  // what the law says of every row, in the residual's unit; empty without terms
 };
 
+// Recordings that are not what the document takes them for: the file of `group` fits what `shows` should show. `own`,
+// `other`: its errors against the two predictions, 0 .. 1. Where there are any no physics is asked.
+struct Misplaced {
+  struct File {
+    std::string group, shows;
+    double own = 0, other = 0;
+  };
+  std::vector<File> files;
+  std::string sentence;
+};
+
 struct PlannedMeasurement {
   std::string sentence;
   manifest::Value setup;               // Proposal::setup
@@ -114,6 +125,7 @@ struct PlannedMeasurement {
 
 struct Explanation {
   Verdict verdict = Verdict::null;
+  Misplaced misplaced;             // said before anything else; the verdict is then `unknown`
   std::vector<std::size_t> named;  // candidates, the most important first
   std::vector<std::vector<std::size_t>>
       not_told_apart;  // sets of candidates: the first is named, each of the others could stand in its place

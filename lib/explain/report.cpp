@@ -26,6 +26,7 @@ std::pair<std::string, std::string> first_sentence(const std::string& text) {
 // "board.warp is left out", for pages about several kinds of recordings.
 std::string short_answer(const ReportPart& part) {
   const Explanation& e = *part.explanation;
+  if (!e.misplaced.files.empty()) return "files that belong to other pictures";
   if (e.verdict == Verdict::unknown) return "a mismatch that nothing in the library repairs";
   if (e.named.empty()) return "nothing that matters is left out";
   std::string ids;
@@ -39,6 +40,7 @@ void tell_part(report::Page& page, const ReportPart& part, bool alone) {
     page.section("What was found: " + part.problem->domain());
     page.paragraph(part.explanation->sentence);
   }
+  tell_misplaced(page, part);
   const bool law_first = part.explanation->verdict == Verdict::unknown;
   tell_where(page, part);
   tell_curve(page, part);

@@ -5,6 +5,7 @@
 
 namespace gonio::explain {
 
+void tell_misplaced(report::Page& page, const ReportPart& part);  // files of other pictures; nothing without any
 void tell_where(report::Page& page, const ReportPart& part);  // pictures, shares of the groups
 void tell_curve(report::Page& page, const ReportPart& part);  // residuals over the telling conditions
 void tell_law(report::Page& page, const ReportPart& part);   // what is outside the library; nothing where there is none

@@ -11,6 +11,8 @@ namespace {
 using report::Tone;
 
 std::string verdict_in_words(const Problem& problem, const Explanation& e) {
+  if (!e.misplaced.files.empty())
+    return "Verdict: unknown. Files do not show what the manifest takes them for, and no physics was asked of them.";
   switch (e.verdict) {
     case Verdict::null:
       return e.significant

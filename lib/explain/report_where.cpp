@@ -96,6 +96,20 @@ report::Plot curve_plot(const Curve& curve, const std::string& after_name) {
 
 }  // namespace
 
+void tell_misplaced(report::Page& page, const ReportPart& part) {
+  const Misplaced& m = part.explanation->misplaced;
+  if (m.files.empty()) return;
+  page.section("Which files belong elsewhere");
+  report::TableText table{
+      "Root mean square difference of the logarithms after one factor for exposure and each surface; a pixel counts "
+      "100 % at most.",
+      {{"file of", "", false}, {"fits what should show", "", false}, {"error there", ""}, {"in its own place", ""}},
+      {}};
+  for (const Misplaced::File& f : m.files)
+    table.rows.push_back({f.group, f.shows, share_in_words(f.other), share_in_words(f.own)});
+  page.table(table);
+}
+
 void tell_where(report::Page& page, const ReportPart& part) {
   page.section("Where");
   const Explanation& e = *part.explanation;

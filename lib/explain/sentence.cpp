@@ -10,7 +10,8 @@
 namespace gonio::explain {
 namespace {
 
-constexpr double least_share = 0.05;  // of the excess, for a place to be worth a word
+constexpr double least_share = 0.05;     // of the excess, for a place to be worth a word
+constexpr double most_over_noise = 1.5;  // residuals over the stated noise that are called noise
 
 std::string located_in(const Explanation& e) {
   if (e.conditions.empty() || e.conditions[0].share < least_share) return "";
@@ -58,6 +59,20 @@ std::string named_sentence(const Problem& problem, const Explanation& e) {
   return text;
 }
 
+// Residuals of the base model over the noise that they were weighed by, root mean square per degree of freedom. The
+// null test asks blocks for structure, whatever they scatter by; this is the other question.
+double misfit_over_noise(const Problem& problem, const Explanation& e) {
+  const Observations& o = problem.observations();
+  double squares = 0, rows = 0;
+  for (std::size_t i = 0; i < std::min(o.rows(), e.residual_before.size()); ++i) {
+    const double z = e.residual_before[i] / (o.sigma[i] * e.noise_factor);
+    squares += z * z;
+    rows += 1;
+  }
+  const double freedom = std::max(1.0, rows - static_cast<double>(problem.base().size()));
+  return rows > 0 ? std::sqrt(squares / freedom) : 0;
+}
+
 std::string plain_sentence(const Problem& problem, const Explanation& e) {
   const std::string score = problem.score_name() + " " + score_in_words(e.held_out_before, problem.unit());
   if (e.verdict == Verdict::unknown) {
@@ -76,7 +91,12 @@ std::string plain_sentence(const Problem& problem, const Explanation& e) {
   if (e.significant)
     return "A mismatch beyond noise is there, but nothing that would repair it matters (under " +
            printed(100 * e.matters) + " %); no physics is named (" + score + ").";
-  return "No mismatch beyond noise (p = " + printed(e.global_p, 2) + "); no physics is named (" + score + ").";
+  const std::string p = "(p = " + printed(e.global_p, 2) + ")";
+  const double times = misfit_over_noise(problem, e);
+  if (times <= most_over_noise) return "No mismatch beyond noise " + p + "; no physics is named (" + score + ").";
+  return "No structure is told from scatter " + p + ", so no physics is named; but the residuals scatter " +
+         printed(times, 2) + " times as much as the noise that was taken for them: that may be larger, or these are " +
+         "too few " + problem.group_noun() + "s to show more (" + score + ").";
 }
 
 std::string minor_sentence(const Problem& problem, const Explanation& e) {
@@ -164,6 +184,14 @@ std::string measurement(const Problem& problem, const Explanation& e) {
 }  // namespace
 
 void write_sentence(const Problem& problem, Explanation& e) {
+  if (!e.misplaced.files.empty()) {
+    e.sentence = e.misplaced.sentence + " No physics is asked before that is settled (" + problem.score_name() + " " +
+                 score_in_words(e.held_out_before, problem.unit()) + ").";
+    e.next_measurement =
+        "Put the files in their places, or look whether the manifest has the right pose, camera and "
+        "light for these pictures; then explain again.";
+    return;
+  }
   e.sentence = e.named.empty() ? plain_sentence(problem, e) : named_sentence(problem, e);
   e.sentence += minor_sentence(problem, e) + unused_sentence(problem);
   if (const std::string remarks = problem.remarks(e); !remarks.empty()) e.sentence += " " + remarks;

@@ -308,6 +308,8 @@ Exit fit_brdf(cli::Invocation& call) {
     write_outputs(call, outcome);
     const Verdict verdict = verdict_of(outcome);
     log(verdict.exit == Exit::done ? LogLevel::info : LogLevel::warning, verdict.sentence);
+    if (!outcome.reconstruction && !outcome.fits.untold.empty())
+      log(LogLevel::info, outcome.name + ": not asked: " + outcome.fits.untold);
     if (verdict.exit == Exit::negative || worst == Exit::done) worst = verdict.exit;
   }
   return worst;

@@ -16,6 +16,7 @@
 #include "goniometry/limits.h"
 #include "goniometry/selection.h"
 #include "goniometry/start.h"
+#include "goniometry/telling.h"
 #include "goniometry/uncertainty.h"
 
 namespace gonio::goniometry {
@@ -65,6 +66,12 @@ Trial trial_of(const Few& few, const Candidate& candidate, const std::vector<Tri
     if (trial.best.size() < 2 && (trial.best.empty() || solution.at.cost >= 1.001 * trial.best.back().at.cost))
       trial.best.push_back(std::move(solution));
   return trial;
+}
+
+// Numbers of the candidate's variant that these directions cannot tell, whatever was measured there.
+std::string untold_of(const Few& few, const Candidate& candidate, const FitOptions& options) {
+  return untold_numbers(
+      telling(few.problem, candidate, starts(candidate, few.guess, few.bands.size(), 0, options.seed)));
 }
 
 // Colours of a band begin where those of the nearest tried one ended.
@@ -238,13 +245,17 @@ Fits fit_surfaces(const Samples& given, const FitOptions& options) {
   out.least_alpha = least_alpha(samples);
   const bool turns = turns_about_normal(samples);
   if (options.anisotropic == true && !turns)
-    out.notes.push_back("half vectors stay in one plane: a direction of the sample shows little there");
+    out.notes.push_back("asked for in spite of the directions: " + untold_direction(samples));
+  if (!options.anisotropic && !turns)
+    out.untold = untold_direction(samples), out.refusals.push_back({"every surface", "anisotropic", out.untold});
   const Few few(problem);
   std::vector<Trial> trials;
   for (const Candidate& c :
        candidates(options, options.anisotropic.value_or(turns), out.least_alpha, samples.name, out.refusals)) {
     if (c.unknowns(problem.bands()) >= problem.rows().size() * problem.bands())
       out.refusals.push_back({c.model->info().id, c.variant, "more numbers than samples"});
+    else if (const std::string untold = untold_of(few, c, options); !untold.empty())
+      out.refusals.push_back({c.model->info().id, c.variant, untold});
     else
       trials.push_back(trial_of(few, c, trials, options));
   }

@@ -89,6 +89,7 @@ struct Fits {
   std::size_t chosen = whole_sample;  // of candidates; whole_sample where all were refused
   std::vector<Refusal> refusals;
   double least_alpha = 0;  // roughness below which these directions tell nothing: goniometry/limits.h
+  std::string untold;      // of every surface, what these directions cannot tell, and what to measure; empty: nothing
   std::vector<std::string> notes;
 };
 

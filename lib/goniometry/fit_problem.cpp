@@ -148,6 +148,29 @@ void Problem::gather(const Candidate& candidate, const std::vector<surface::Valu
   }
 }
 
+Eigen::MatrixXd Problem::slopes(const Candidate& candidate, const std::vector<double>& x) const {
+  const std::size_t s = candidate.shared.size(), c = candidate.colours.size(), b = bands();
+  const auto triples = candidate.triples(x, b);
+  std::vector<Rgb> by_parameter(candidate.model->info().parameters.size());
+  const auto unknowns = static_cast<Eigen::Index>(candidate.unknowns(b));
+  Eigen::MatrixXd j = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows_.size() * b), unknowns);
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+    for (std::size_t band = 0; band < b; ++band) {
+      const std::size_t row = rows_[k];
+      if (!used(row, band)) continue;
+      const Rgb f =
+          candidate.model->evaluate_with_slopes(triples[band / 3], samples_->wo[row], samples_->wi[row], by_parameter);
+      const int i = static_cast<int>(band % 3);
+      const double by = slope(row, band, f[i]);
+      const auto at = static_cast<Eigen::Index>(k * b + band);
+      for (std::size_t p = 0; p < s; ++p)
+        j(at, static_cast<Eigen::Index>(p)) = by * by_parameter[candidate.shared[p].parameter][i];
+      for (std::size_t p = 0; p < c; ++p)
+        j(at, static_cast<Eigen::Index>(s + band * c + p)) = by * by_parameter[candidate.colours[p].parameter][i];
+    }
+  return j;
+}
+
 Normal Problem::normal(const Candidate& candidate, const std::vector<double>& x, const Rows& rows) const {
   const std::size_t s = candidate.shared.size(), c = candidate.colours.size(), b = bands(), w = s + c;
   const auto triples = candidate.triples(x, b);

@@ -60,6 +60,8 @@ class Problem {
   double model_error() const { return model_error_; }
 
   Normal normal(const Candidate& candidate, const std::vector<double>& x, const Rows& rows) const;
+  // That J: a row for each of rows() and bands, zero where it takes no part.
+  Eigen::MatrixXd slopes(const Candidate& candidate, const std::vector<double>& x) const;
   // Residual of the fit's scale; prediction m.
   double residual(std::size_t row, std::size_t band, double m) const;
   // Predictions of every band of a row.

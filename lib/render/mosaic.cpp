@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "camera/mosaic.h"
 #include "geom/vector.h"
 
 namespace gonio::render {
@@ -25,12 +26,8 @@ std::array<int, 3> colours_of(const io::Image& picture) {
 
 }  // namespace
 
-bool is_bayer(const std::string& mosaic) {
-  return mosaic == "RGGB" || mosaic == "GRBG" || mosaic == "GBRG" || mosaic == "BGGR";
-}
-
 io::Image bayer_mosaic(const io::Image& picture, const std::string& mosaic) {
-  if (!is_bayer(mosaic))
+  if (!camera::is_bayer(mosaic))
     throw Error(Exit::data, "mosaic", "\"" + mosaic + "\" is no colour filter array", "RGGB, GRBG, GBRG or BGGR");
   const auto from = colours_of(picture);
   io::Image result(picture.width, picture.height, {"Y"});

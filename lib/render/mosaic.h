@@ -10,10 +10,7 @@
 
 namespace gonio::render {
 
-// "RGGB", "GRBG", "GBRG" or "BGGR".
-bool is_bayer(const std::string& mosaic);
-
-// One channel Y: of each pixel's R, G, B that which its filter passes. Error(data) for other names than the above, and
+// One channel Y: of each pixel's R, G, B that which its filter passes. Error(data) for other names than the four, and
 // for pictures without R, G, B.
 io::Image bayer_mosaic(const io::Image& picture, const std::string& mosaic);
 

@@ -137,6 +137,47 @@ TEST_F(Develop, ReadsTiffAndJpegAndRefusesWhatItCannotUse) {
   EXPECT_THAT(small.err, HasSubstr("50 x 40"));
 }
 
+// Four readings behind four filters are the same four afterwards, each behind its own; three interpolated colours are
+// developed as colours; what cannot be known is refused.
+TEST_F(Develop, AMosaicStaysAMosaic) {
+  const auto camera = [](const std::string& mosaic) {
+    std::string text = barrel;
+    text.insert(text.find("\"width_px\""), "\"mosaic\": \"" + mosaic + "\", ");
+    return text;
+  };
+  write_file(folder_ / "bayer.json", camera("GRBG"));
+  write_file(folder_ / "polarized.json", camera("polarizers"));
+  io::Image raw(96, 64, {"Y"}), thrice(96, 64, {"R", "G", "B"});
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 96; ++x) {
+      const float v = static_cast<float>(40 + 50 * (2 * (y % 2) + x % 2)) / 255;
+      raw.at(x, y, 0) = v;
+      for (int c = 0; c < 3; ++c) thrice.at(x, y, c) = v;
+    }
+  io::write_png(folder_ / "raw.png", raw, 8);
+  io::write_png(folder_ / "thrice.png", thrice, 8);
+  for (const char* manifest : {"bayer.json", "polarized.json"})
+    for (const char* file : {"raw", "thrice"}) {
+      SCOPED_TRACE(std::string(manifest) + " " + file);
+      const Ended ended = develop({"-i", manifest, "--force", "--out", "d", std::string(file) + ".png"});
+      ASSERT_EQ(ended.status, 0) << ended.err;
+      EXPECT_EQ(document(ended).cameras.at("c-undistorted").mosaic, manifest[0] == 'b' ? "GRBG" : "polarizers");
+      const io::Image out = picture(("d/" + std::string(file) + ".png").c_str());
+      for (int y = 0; y < out.height; ++y)
+        for (int x = 0; x < out.width; ++x) ASSERT_EQ(out.at(x, y, 0), raw.at(x % 2, y % 2, 0)) << x << " " << y;
+      for (const float v : picture(("d/" + std::string(file) + "-mask.png").c_str()).data) ASSERT_EQ(v, 1);
+    }
+  const Ended colours = develop({"-i", "bayer.json", "--out", "e", "flat.png"});
+  ASSERT_EQ(colours.status, 0) << colours.err;
+  EXPECT_EQ(document(colours).cameras.at("c-undistorted").mosaic, "");
+  const Ended either = develop({"-i", "polarized.json", "--out", "e", "flat.png"});
+  EXPECT_EQ(either.status, 65);
+  EXPECT_THAT(either.err, HasSubstr("flat.png: has three colours of a camera with polarizers"));
+  const Ended both = develop({"-i", "bayer.json", "--out", "f", "raw.png", "flat.png"});
+  EXPECT_EQ(both.status, 65);
+  EXPECT_THAT(both.err, HasSubstr("flat.png: has three colours a pixel, other pictures of its camera are mosaics"));
+}
+
 struct Part {
   int left, right, top, bottom;
 };

@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "explain/explanation.h"
 #include "explain/images/conditions.h"
+#include "explain/images/misplaced.h"
 #include "explain/images/repeats.h"
 #include "explain/images/uses.h"
 #include "manifest/document.h"
@@ -76,6 +77,8 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
   model_ = std::make_unique<ImageModel>(recordings_, layout_, *monomials_, std::move(caches));
   bind(document);
   fill_rows(document);
+  misplaced_ = misplaced_files(recordings_, *model_, picked_);
+  if (!misplaced_.files.empty()) candidates_.clear();  // no physics is fitted to pictures of something else
 }
 
 void ImagesProblem::bind(const manifest::Document& document) {
@@ -331,7 +334,19 @@ void ImagesProblem::jacobian(std::span<const double> values, std::size_t group, 
   }
 }
 
+void ImagesProblem::conclude(Explanation& explanation) const {
+  if (misplaced_.files.empty()) return;
+  explanation.misplaced = misplaced_;
+  explanation.verdict = Verdict::unknown;
+  explanation.important = true;
+  explanation.stage = "recording";
+  explanation.outside.reset();
+  explanation.plan.clear();
+}
+
+// A fit to files in the wrong places says nothing about the scene: it stays as it was given.
 void ImagesProblem::apply(const Explanation& explanation, manifest::Document& document) const {
+  if (!misplaced_.files.empty()) return;
   write_back(bindings_, model_->uses(), explanation, document);
 }
 

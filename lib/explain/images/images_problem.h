@@ -10,6 +10,7 @@
 #include "explain/images/bindings.h"
 #include "explain/images/image_model.h"
 #include "explain/images/recordings.h"
+#include "explain/own_tests.h"
 #include "explain/problem.h"
 #include "render/ray_caster.h"
 
@@ -21,7 +22,7 @@ struct Options {
   CacheOptions cache;
 };
 
-class ImagesProblem final : public Problem {
+class ImagesProblem final : public Problem, public OwnTests {
  public:
   explicit ImagesProblem(const manifest::Document& document, const Options& options = {});
   ~ImagesProblem() override;
@@ -41,6 +42,10 @@ class ImagesProblem final : public Problem {
   void apply(const Explanation& explanation, manifest::Document& document) const override;
   Illustration illustrate(const Explanation& explanation, const std::filesystem::path& out,
                           manifest::Document& document) const override;
+
+  // Files that belong to other pictures: found before anything is fitted.
+  std::vector<std::size_t> tested() const override { return {}; }
+  void conclude(Explanation& explanation) const override;
 
   const Recordings& recordings() const { return recordings_; }
   const Bindings& bindings() const { return bindings_; }
@@ -64,6 +69,7 @@ class ImagesProblem final : public Problem {
   std::unique_ptr<render::RayCaster> caster_;
   std::unique_ptr<ImageModel> model_;
   std::vector<std::vector<std::uint32_t>> picked_;  // per image: places in its view's cache, ascending
+  Misplaced misplaced_;
 };
 
 }  // namespace gonio::explain::images

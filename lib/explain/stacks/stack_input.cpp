@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "camera/intrinsics.h"
+#include "camera/mosaic.h"
 #include "io/codes.h"
 #include "io/picture.h"
 #include "manifest/document.h"
@@ -176,7 +177,8 @@ Stack read_stack(const Document& document, const std::vector<std::size_t>& entri
   Stack stack;
   stack.camera = document.images[entries[0]].camera;
   if (has_entry(document, "cameras", stack.camera))
-    stack.step = camera::mosaic_of(document, stack.camera).empty() ? 1 : 2;
+    stack.step = camera::filter_pitch(camera::mosaic_of(document, stack.camera),
+                                      manifest::place(document, "/cameras/" + stack.camera + "/mosaic"));
   for (const std::size_t i : entries) {
     const ImageEntry& e = document.images[i];
     StackImage image;
