@@ -231,7 +231,7 @@ Reconstruction reconstruct(const Basis& basis, const Samples& given, const Recon
       throw Error(Exit::data, samples.name, "leaves no usable sample in band \"" + samples.band_name[band] + "\"",
                   "directions above the horizon with finite reflectances are needed");
     const Prior prior = standard_prior(basis.components());
-    const Scales scales = likely_scales(o, prior, o.y);
+    const PriorScales scales = likely_scales(o, prior, o.y);
     const Estimator e = estimator(scaled(o, scales), scaled(prior, scales), options, basis.samples());
     const Eigen::VectorXd c = e.gain * o.y;
     ChannelFit& fit = out.channels[band];

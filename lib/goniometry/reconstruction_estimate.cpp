@@ -146,13 +146,13 @@ class Evidence {
     }
     left_ = std::max(left_, 0.0);
   }
-  double chi2(const Scales& s) const {
+  double chi2(const PriorScales& s) const {
     double sum = left_ / s.noise;
     for (std::size_t i = 0; i < gains_.size(); ++i) sum += squares_[i] / (s.prior * gains_[i] + s.noise);
     return sum;
   }
   // -2 ln of the density of y, with ln of either scale normal of the width ln 4.
-  double cost(const Scales& s) const {
+  double cost(const PriorScales& s) const {
     constexpr double width = 1.386;
     const double a = std::log(s.prior) / width, b = std::log(s.noise) / width;
     double sum = chi2(s) + freedom_ * std::log(s.noise) + a * a + b * b;
@@ -169,22 +169,22 @@ double chi2_of(const Observed& observed, const Prior& prior, const Eigen::Vector
   return Evidence(observed, prior, y).chi2({});
 }
 
-Scales likely_scales(const Observed& observed, const Prior& prior, const Eigen::VectorXd& y) {
+PriorScales likely_scales(const Observed& observed, const Prior& prior, const Eigen::VectorXd& y) {
   const Evidence evidence(observed, prior, y);
-  Scales best;
+  PriorScales best;
   double least = evidence.cost(best);
   for (int a = 0; a <= 12; ++a)
     for (int b = 0; b <= 40; ++b) {
-      const Scales s{std::pow(2.0, a / 2.0), std::pow(2.0, b / 2.0)};
+      const PriorScales s{std::pow(2.0, a / 2.0), std::pow(2.0, b / 2.0)};
       if (const double cost = evidence.cost(s); cost < least) best = s, least = cost;
     }
   return best;
 }
 
-Observed scaled(const Observed& observed, const Scales& scales) {
+Observed scaled(const Observed& observed, const PriorScales& scales) {
   return {observed.q, observed.y, observed.noise * scales.noise, observed.own, observed.blend};
 }
-Prior scaled(const Prior& prior, const Scales& scales) {
+Prior scaled(const Prior& prior, const PriorScales& scales) {
   return {prior.mean, prior.factor * std::sqrt(scales.prior)};
 }
 
@@ -234,7 +234,7 @@ class LeftOut {
       if (basis_.class_of(s) != left_out) continue;
       Random random(17, s + 1);
       const Eigen::VectorXd y = simulated(s, random);
-      const Scales scales = likely_scales(seen, prior, y);
+      const PriorScales scales = likely_scales(seen, prior, y);
       const Estimator e = estimator(scaled(seen, scales), scaled(prior, scales), options_, basis_.samples());
       const Eigen::ArrayXd sigma =
           ((e.factor.transpose() * cells_.q).colwise().squaredNorm().transpose().array() + scales.noise * rest.square())

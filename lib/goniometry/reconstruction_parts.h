@@ -40,12 +40,12 @@ Estimator estimator(const Observed& observed, const Prior& prior, const Reconstr
 // y' (Q' L L' Q'' + 1 / W)^-1 y.
 double chi2_of(const Observed& observed, const Prior& prior, const Eigen::VectorXd& y);
 // By what the variances of the components and of noise and rest are multiplied; at least 1 each.
-struct Scales {
+struct PriorScales {
   double prior = 1, noise = 1;
 };
-Scales likely_scales(const Observed& observed, const Prior& prior, const Eigen::VectorXd& y);
-Observed scaled(const Observed& observed, const Scales& scales);
-Prior scaled(const Prior& prior, const Scales& scales);
+PriorScales likely_scales(const Observed& observed, const Prior& prior, const Eigen::VectorXd& y);
+Observed scaled(const Observed& observed, const PriorScales& scales);
+Prior scaled(const Prior& prior, const PriorScales& scales);
 
 struct Calibration {
   Widening widening;

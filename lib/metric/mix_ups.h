@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "manifest/sections.h"
+#include "manifest/noise.h"
 
 namespace gonio::metric {
 

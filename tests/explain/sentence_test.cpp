@@ -50,7 +50,9 @@ TEST(Sentence, NoNullSaysThatTheMisfitExceedsItsNoise) {
         for (double& r : e.residual_before) r *= times;
         e.held_out_before *= times;
         write_sentence(problem, e);
-        if (times > 1.6) EXPECT_THAT(e.sentence, Not(HasSubstr("No mismatch beyond noise")));
+        if (times > 1.6) {
+          EXPECT_THAT(e.sentence, Not(HasSubstr("No mismatch beyond noise")));
+        }
         EXPECT_THAT(e.sentence, Not(HasSubstr("times its noise")));
         const bool quiet = verdict == Verdict::null && !significant;
         EXPECT_EQ(e.sentence.starts_with("No structure is told from scatter"), quiet && times > 1.6) << e.sentence;

@@ -6,6 +6,9 @@
 #include "explain/explain_document.h"
 #include "explain/images/images_problem.h"
 #include "io/picture.h"
+#include "manifest/document.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/surface.h"
 
 namespace gonio::tests {
 namespace {

@@ -1,5 +1,6 @@
 // Links of frames that contradict each other are refused, those that agree within what they state are taken.
 #include "manifest/frame_loops.h"
+#include "manifest/sections/frame_link.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
