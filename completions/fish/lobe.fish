@@ -16,7 +16,7 @@ complete -c lobe -l s-filter -x -d 'Nesting index of the S-filter, which smooths
 complete -c lobe -l l-filter -x -d 'Nesting index of the L-filter, which takes longer waves away. Default: none.'
 complete -c lobe -l step -x -d 'Distance of neighbouring points, where an OpenEXR or TIFF does not say it.'
 complete -c lobe -l step-y -x -d 'That along columns, where it is another.'
-complete -c lobe -l unit -x -d 'What a height of 1 means in an OpenEXR (default: 1 m) or TIFF.'
+complete -c lobe -l unit -x -d 'What a height of 1 means in an OpenEXR (default: 1 m) or TIFF: um, 25nm.'
 complete -c lobe -l channel -x -d 'Channel of an OpenEXR that holds the heights, where it has several and none named Z.'
 complete -c lobe -l input -s i -r -d 'Manifest to read; - is standard input.'
 complete -c lobe -l output -s o -r -d 'Where the manifest goes instead of standard output; written whole or not at all.'

@@ -22,14 +22,18 @@ constexpr int any = Eigen::Dynamic;
   template Eigen::Matrix<double, N, C> ldlt_solution(const Eigen::Matrix<double, N, N>&, const Eigen::Matrix<double, N, C>&)
 GONIO_LDLT(any, 1);
 GONIO_LDLT(any, any);
+GONIO_LDLT(any, 2);
 GONIO_LDLT(2, 1);
 GONIO_LDLT(3, 1);
 GONIO_LDLT(3, 2);
+GONIO_LDLT(3, any);
 GONIO_LDLT(4, 1);
 GONIO_LDLT(6, 1);
 GONIO_LDLT(6, 6);
 GONIO_LDLT(6, 12);
+GONIO_LDLT(6, 21);
 GONIO_LDLT(6, any);
+GONIO_LDLT(7, 1);
 GONIO_LDLT(8, 1);
 GONIO_LDLT(12, 1);
 GONIO_LDLT(12, 12);

@@ -9,6 +9,9 @@
 #include "explain/tables/quick_table.h"
 #include "explain/tables/read_table.h"
 #include "manifest/document.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/surface.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::explain::tables::tests {
 namespace {
