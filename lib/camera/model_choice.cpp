@@ -201,21 +201,33 @@ CalibrationSetup setup_of(const CalibrationSetup& setup, const ModelScore& hypot
   return result;
 }
 
-}  // namespace
-
-ModelChoice score_models(const std::vector<View>& views, const CalibrationSetup& setup) {
+// The shots that show the board, dealt into folds that are held out one after the other.
+struct Deal {
   std::map<std::size_t, std::size_t> fold_of;
+  std::size_t folds = 0;
+};
+Deal deal(const std::vector<View>& views) {
+  Deal d;
   for (const View& view : views) {
-    if (view.corners.size() >= least_corners) fold_of.emplace(view.shot, fold_of.size());
+    if (view.corners.size() >= least_corners) d.fold_of.emplace(view.shot, d.fold_of.size());
   }
-  if (fold_of.size() < least_views) {
+  if (d.fold_of.size() < least_views) {
     throw Error(Exit::data, "--model auto",
-                std::to_string(fold_of.size()) + " views show the board (at least " + std::to_string(least_views) +
+                std::to_string(d.fold_of.size()) + " views show the board (at least " + std::to_string(least_views) +
                     " are needed to hold some out)",
                 "photograph it from more directions, or name a model");
   }
-  const std::size_t folds = std::min(most_folds, fold_of.size());
-  for (auto& [shot, fold] : fold_of) fold %= folds;
+  d.folds = std::min(most_folds, d.fold_of.size());
+  for (auto& [shot, fold] : d.fold_of) fold %= d.folds;
+  return d;
+}
+
+}  // namespace
+
+ModelChoice score_models(const std::vector<View>& views, const CalibrationSetup& setup) {
+  const Deal dealt = deal(views);
+  const std::map<std::size_t, std::size_t>& fold_of = dealt.fold_of;
+  const std::size_t folds = dealt.folds;
   std::vector<View> usable;
   for (const View& view : views) {
     if (view.corners.size() >= least_corners) usable.push_back(view);

@@ -177,7 +177,8 @@ SamplePose pose_of(const Problem& problem, const Solved& solved) {
   pose.degrees = 2 * pose.marks - 6;
   const double widening = pose.degrees > 0 ? std::max(1.0, solved.chi2 / pose.degrees) : 1;
   const Eigen::MatrixXd covariance =
-      linear::solve_ldlt(solved.normal, Eigen::MatrixXd::Identity(solved.normal.rows(), solved.normal.cols())) * widening;
+      linear::solve_ldlt(solved.normal, Eigen::MatrixXd::Identity(solved.normal.rows(), solved.normal.cols())) *
+      widening;
   for (Eigen::Index i = 0; i < 6; ++i)
     for (Eigen::Index k = 0; k < 6; ++k) pose.covariance[static_cast<std::size_t>(6 * i + k)] = covariance(i, k);
   const Eigen::VectorXd r = residuals(problem, solved.state);

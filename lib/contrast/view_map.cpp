@@ -111,7 +111,8 @@ Mat3 homography(const std::array<Vec2, 4>& from, const std::array<Vec2, 4>& to) 
     system.row(2 * k) << p.x, p.y, 1, 0, 0, 0, -q.x * p.x, -q.x * p.y, -q.x;
     system.row(2 * k + 1) << 0, 0, 0, p.x, p.y, 1, -q.y * p.x, -q.y * p.y, -q.y;
   }
-  const Eigen::Matrix<double, 9, 1> h = linear::JacobiSvd<Eigen::MatrixXd>(system, Eigen::ComputeFullV).matrixV().col(8);
+  const Eigen::Matrix<double, 9, 1> h =
+      linear::JacobiSvd<Eigen::MatrixXd>(system, Eigen::ComputeFullV).matrixV().col(8);
   Mat3 inner, enter, leave;
   for (int k = 0; k < 9; ++k) inner.m[static_cast<std::size_t>(k)] = h(k);
   enter.m = {1 / sa, 0, -a.x / sa, 0, 1 / sa, -a.y / sa, 0, 0, 1};

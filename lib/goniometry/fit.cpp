@@ -68,10 +68,15 @@ Trial trial_of(const Few& few, const Candidate& candidate, const std::vector<Tri
   return trial;
 }
 
-// Numbers of the candidate's variant that these directions cannot tell, whatever was measured there.
-std::string untold_of(const Few& few, const Candidate& candidate, const FitOptions& options) {
-  return untold_numbers(
-      telling(few.problem, candidate, starts(candidate, few.guess, few.bands.size(), 0, options.seed)));
+// Numbers of the candidate's variant that these directions cannot tell, whatever was measured there. `in_plane`: no
+// function of the half vector's azimuth shows, so that what a slope at some start still says of a direction is the
+// shape of this model's lobe.
+std::string untold_of(const Few& few, const Candidate& candidate, const FitOptions& options, bool in_plane) {
+  std::vector<Telling> told =
+      telling(few.problem, candidate, starts(candidate, few.guess, few.bands.size(), 0, options.seed));
+  for (Telling& t : told)
+    if (in_plane && t.number.starts_with("anisotropy")) t.share = 0;
+  return untold_numbers(told);
 }
 
 // Colours of a band begin where those of the nearest tried one ended.
@@ -243,7 +248,7 @@ Fits fit_surfaces(const Samples& given, const FitOptions& options) {
   if (problem.rows().empty()) throw Error(Exit::data, samples.name, "no sample above the horizon has a number to fit");
   if (problem.scale() == Scale::noise) problem.set_model_error(first_allowance, samples.f);
   out.least_alpha = least_alpha(samples);
-  const bool turns = turns_about_normal(samples);
+  const bool turns = turns_about_normal(samples), in_plane = told_direction(samples) < 1e-3;
   if (options.anisotropic == true && !turns)
     out.notes.push_back("asked for in spite of the directions: " + untold_direction(samples));
   if (!options.anisotropic && !turns)
@@ -254,7 +259,7 @@ Fits fit_surfaces(const Samples& given, const FitOptions& options) {
        candidates(options, options.anisotropic.value_or(turns), out.least_alpha, samples.name, out.refusals)) {
     if (c.unknowns(problem.bands()) >= problem.rows().size() * problem.bands())
       out.refusals.push_back({c.model->info().id, c.variant, "more numbers than samples"});
-    else if (const std::string untold = untold_of(few, c, options); !untold.empty())
+    else if (const std::string untold = untold_of(few, c, options, in_plane); !untold.empty())
       out.refusals.push_back({c.model->info().id, c.variant, untold});
     else
       trials.push_back(trial_of(few, c, trials, options));

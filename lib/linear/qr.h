@@ -10,7 +10,7 @@ class HouseholderQr {
  public:
   HouseholderQr() = default;
   explicit HouseholderQr(const Eigen::MatrixXd& a);
-  const Eigen::MatrixXd& thin_q() const { return q_; }    // rows x columns, orthonormal columns
+  const Eigen::MatrixXd& thin_q() const { return q_; }     // rows x columns, orthonormal columns
   const Eigen::MatrixXd& upper() const { return upper_; }  // columns x columns, zero below the diagonal
 
  private:
@@ -25,8 +25,10 @@ class PivotedQr {
   // rows of b x 1, or rows x columns of b.
   template <class B>
   auto solve(const Eigen::MatrixBase<B>& b) const {
-    if constexpr (B::ColsAtCompileTime == 1) return solve_one(b);
-    else return solve_all(b);
+    if constexpr (B::ColsAtCompileTime == 1)
+      return solve_one(b);
+    else
+      return solve_all(b);
   }
   Eigen::MatrixXd orthonormal(Eigen::Index columns) const;  // the first columns of Q
   Eigen::VectorXd turned(const Eigen::VectorXd& v) const;   // Q' v
@@ -46,8 +48,10 @@ class LeastNorm {
   // rows of b x 1, or rows x columns of b.
   template <class B>
   auto solve(const Eigen::MatrixBase<B>& b) const {
-    if constexpr (B::ColsAtCompileTime == 1) return solve_one(b);
-    else return solve_all(b);
+    if constexpr (B::ColsAtCompileTime == 1)
+      return solve_one(b);
+    else
+      return solve_all(b);
   }
   Eigen::MatrixXd pseudo_inverse() const;
 

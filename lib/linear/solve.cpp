@@ -18,8 +18,9 @@ Eigen::Matrix<double, N, N> inverse(const Eigen::Matrix<double, N, N>& a) {
 }
 
 constexpr int any = Eigen::Dynamic;
-#define GONIO_LDLT(N, C) \
-  template Eigen::Matrix<double, N, C> ldlt_solution(const Eigen::Matrix<double, N, N>&, const Eigen::Matrix<double, N, C>&)
+#define GONIO_LDLT(N, C)                                                                 \
+  template Eigen::Matrix<double, N, C> ldlt_solution(const Eigen::Matrix<double, N, N>&, \
+                                                     const Eigen::Matrix<double, N, C>&)
 GONIO_LDLT(any, 1);
 GONIO_LDLT(any, any);
 GONIO_LDLT(any, 2);

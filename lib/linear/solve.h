@@ -18,8 +18,8 @@ constexpr int size_of() {
 }
 }  // namespace compiled
 
-// x with A x = b for symmetric A, positive or negative semidefinite, by robust Cholesky (L D L' with pivoting): directions
-// whose pivot is zero get no step. Only the lower triangle of A is read.
+// x with A x = b for symmetric A, positive or negative semidefinite, by robust Cholesky (L D L' with pivoting):
+// directions whose pivot is zero get no step. Only the lower triangle of A is read.
 template <class A, class B>
 Eigen::Matrix<double, compiled::size_of<A>(), B::ColsAtCompileTime> solve_ldlt(const Eigen::MatrixBase<A>& a,
                                                                                const Eigen::MatrixBase<B>& b) {
@@ -39,8 +39,10 @@ class Ldlt {
   explicit Ldlt(const Eigen::MatrixXd& a);
   template <class B>
   auto solve(const Eigen::MatrixBase<B>& b) const {
-    if constexpr (B::ColsAtCompileTime == 1) return solve_one(b);
-    else return solve_all(b);
+    if constexpr (B::ColsAtCompileTime == 1)
+      return solve_one(b);
+    else
+      return solve_all(b);
   }
   Eigen::ComputationInfo info() const;
   Eigen::MatrixXd root() const;  // R with R R' = A, where negative pivots count as zero
@@ -59,17 +61,21 @@ class Llt {
   explicit Llt(const Eigen::MatrixXd& a);
   template <class B>
   auto solve(const Eigen::MatrixBase<B>& b) const {
-    if constexpr (B::ColsAtCompileTime == 1) return solve_one(b);
-    else return solve_all(b);
+    if constexpr (B::ColsAtCompileTime == 1)
+      return solve_one(b);
+    else
+      return solve_all(b);
   }
   template <class B>
   auto solve_lower(const Eigen::MatrixBase<B>& b) const {  // L^-1 b
-    if constexpr (B::ColsAtCompileTime == 1) return lower_one(b);
-    else return lower_all(b);
+    if constexpr (B::ColsAtCompileTime == 1)
+      return lower_one(b);
+    else
+      return lower_all(b);
   }
-  Eigen::MatrixXd lower() const;                                // L
-  Eigen::VectorXd diagonal() const;                             // of L: the root of the determinant is its product
-  Eigen::ComputationInfo info() const;                          // Success: A is positive definite
+  Eigen::MatrixXd lower() const;        // L
+  Eigen::VectorXd diagonal() const;     // of L: the root of the determinant is its product
+  Eigen::ComputationInfo info() const;  // Success: A is positive definite
 
  private:
   struct Factors;

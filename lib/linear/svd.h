@@ -1,7 +1,7 @@
-// Singular value decompositions A = U diag(s) V', s descending; options as Eigen names them (ComputeThinU, ComputeFullV, ...;
-// what was not asked for stays empty). JacobiSvd: two-sided Jacobi, the most accurate and right for small matrices;
-// DividedSvd: divide and conquer, for large ones. Eigen's JacobiSVD and BDCSVD (8 and 27 seconds to compile in every source
-// that names them), compiled once.
+// Singular value decompositions A = U diag(s) V', s descending; options as Eigen names them (ComputeThinU,
+// ComputeFullV, ...; what was not asked for stays empty). JacobiSvd: two-sided Jacobi, the most accurate and right for
+// small matrices; DividedSvd: divide and conquer, for large ones. Eigen's JacobiSVD and BDCSVD (8 and 27 seconds to
+// compile in every source that names them), compiled once.
 //
 // JacobiSvd: Eigen::MatrixXd or Eigen::Matrix<double, N, N> with N = 2, 3, 9 (svd.cpp lists them).
 #pragma once

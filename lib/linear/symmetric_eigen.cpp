@@ -8,7 +8,8 @@ namespace gonio::linear {
 template <class Matrix>
 SymmetricEigen<Matrix>::SymmetricEigen(const Matrix& a, int what) {
   // Two and three rows have ways of their own; between the others the size makes no difference worth compiling.
-  using Solved = std::conditional_t<Matrix::RowsAtCompileTime == 2 || Matrix::RowsAtCompileTime == 3, Matrix, Eigen::MatrixXd>;
+  using Solved =
+      std::conditional_t<Matrix::RowsAtCompileTime == 2 || Matrix::RowsAtCompileTime == 3, Matrix, Eigen::MatrixXd>;
   const Eigen::SelfAdjointEigenSolver<Solved> solver(a, what);
   info_ = solver.info();
   values_ = solver.eigenvalues();

@@ -2,8 +2,8 @@
 // lower triangle of A is read. Eigen's SelfAdjointEigenSolver (implicit symmetric QR, Golub & Van Loan, Matrix
 // Computations, 8.3), which takes six seconds to compile in every source that names it, compiled once.
 //
-// Matrix is Eigen::MatrixXd or Eigen::Matrix<double, N, N> with N = 2, 3, 4, 6, 8, 9, 12 (symmetric_eigen.cpp lists them;
-// another size is one line there, until then the linker misses it).
+// Matrix is Eigen::MatrixXd or Eigen::Matrix<double, N, N> with N = 2, 3, 4, 6, 8, 9, 12 (symmetric_eigen.cpp lists
+// them; another size is one line there, until then the linker misses it).
 #pragma once
 #include <Eigen/Core>
 

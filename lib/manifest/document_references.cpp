@@ -76,8 +76,9 @@ void check_table(const Table& table, const std::string& at) {
     check_column_unit(name, unit, at + "/columns/" + name);
     names.push_back(name);
   }
+  const bool by_its_file = names.empty() && !table.file.empty();  // whose headings are its columns
   for (const auto& name : table.observed)
-    if (std::ranges::find(names, name) == names.end())
+    if (!by_its_file && std::ranges::find(names, name) == names.end())
       throw Error(Exit::data, at + "/observed", "names column \"" + name + "\", which is not in columns",
                   remedy_for(name, names));
   if (table.rows.is_null()) return;

@@ -88,7 +88,8 @@ void RobustTracks::truncate() {
   const linear::HouseholderQr of_a(a_), of_c(c_.transpose());
   const Eigen::Index q = a_.cols();
   const Eigen::MatrixXd &qa = of_a.thin_q(), &qc = of_c.thin_q();
-  const linear::JacobiSvd<Eigen::MatrixXd> svd(qa.transpose() * a_ * c_ * qc, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const linear::JacobiSvd<Eigen::MatrixXd> svd(qa.transpose() * a_ * c_ * qc,
+                                               Eigen::ComputeThinU | Eigen::ComputeThinV);
   Eigen::Index kept = 0;
   while (kept < q && svd.singularValues()(kept) > least_component * typical()) ++kept;
   const Eigen::VectorXd roots = svd.singularValues().head(kept).cwiseSqrt();

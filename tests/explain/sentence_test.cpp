@@ -20,10 +20,19 @@ Explanation explained(const ToyProblem& problem) {
   return explain(problem, options);
 }
 
+// Noise five times as large as it is stated.
+class UnderstatedNoise : public ToyProblem {
+ public:
+  explicit UnderstatedNoise(std::uint64_t seed) : ToyProblem(three_effects(), {{}, {}, 0.1, 0.02}, seed) {
+    for (double& sigma : observations_.sigma) sigma *= 0.2;
+  }
+};
+
 // Blocks that scatter by five times the stated noise hold no structure: signs of whole blocks do not know how large
 // the noise is, the sentence has to.
 TEST(Sentence, ScatterWithoutStructureIsNotCalledNoise) {
-  const ToyProblem calm(three_effects(), {{}, {}, 0.1, 0.02}, 3), rough(three_effects(), {{}, {}, 0.1, 0.5}, 3);
+  const ToyProblem calm(three_effects(), {{}, {}, 0.1, 0.02}, 3);
+  const UnderstatedNoise rough(3);
   const Explanation quiet = explained(calm), loud = explained(rough);
   ASSERT_EQ(quiet.verdict, Verdict::null);
   ASSERT_EQ(loud.verdict, Verdict::null);

@@ -96,7 +96,9 @@ TEST_F(CalibCharuco, FilesThatAreNoPictures) {
   expect_pictures_refused({"folder.png"}, 66, "folder.png");
   expect_pictures_refused({"none.png"}, 66, "none.png");
   write_file(path("v.bmp"), "BM");
-  expect_pictures_refused({"v.bmp"}, 65, "'.bmp' is not a picture");
+  expect_pictures_refused({"v.bmp"}, 65, "v.bmp: is neither PNG");
+  write_file(path("v.gif"), "GIF89a");
+  expect_pictures_refused({"v.gif"}, 65, "'.gif' is not a picture");
 }
 
 TEST_F(CalibCharuco, BoardsThatCannotBeOrAreOthers) {

@@ -12,7 +12,8 @@
 namespace gonio::explain {
 namespace {
 
-constexpr double outlier_level = 1e-6;  // of a view's six numbers by chance
+constexpr double outlier_level = 1e-6;      // of a view's six numbers by chance
+constexpr double least_information = 1e-8;  // lengths of links and mountings that imitate each other
 
 }  // namespace
 
@@ -24,7 +25,7 @@ RobotNoise robot_noise(const std::vector<NoisyView>& views, const Eigen::VectorX
     std::vector<robot::handeye::NoisyPose> poses;
     for (std::size_t v = 0; v < views.size(); ++v)
       if (!noise.outlier[v]) poses.push_back(views[v].pose());
-    const robot::handeye::NoiseStep step = estimate_noise(poses, prior_precision, noise.sizes);
+    const robot::handeye::NoiseStep step = estimate_noise(poses, prior_precision, noise.sizes, least_information);
     noise.estimate = step.change;
     noise.covariance = step.covariance;
     double worst = 0;

@@ -18,10 +18,10 @@ constexpr double board_turn_share = 0.3;  // of the robot's turn, to begin with
 constexpr int most_updates = 400;
 
 // Symmetric inverse under unit diagonal; directions without information are left out.
-Eigen::MatrixXd inverse_of_information(const Eigen::MatrixXd& n) {
+Eigen::MatrixXd inverse_of_information(const Eigen::MatrixXd& n, double least) {
   const Eigen::VectorXd scale = n.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const linear::SymmetricEigen<Eigen::MatrixXd> e(scale.asDiagonal() * n * scale.asDiagonal());
-  const Eigen::VectorXd inverse = e.eigenvalues().unaryExpr([](double v) { return v > 1e-12 ? 1 / v : 0.0; });
+  const Eigen::VectorXd inverse = e.eigenvalues().unaryExpr([least](double v) { return v > least ? 1 / v : 0.0; });
   const Eigen::MatrixXd root = scale.asDiagonal() * e.eigenvectors();
   return root * inverse.asDiagonal() * root.transpose();
 }
@@ -35,7 +35,8 @@ Matrix6 NoisyPose::covariance(const Noise& noise) const {
 }
 
 // At a fixed linearisation: v <- v (y' G G' y) / trace(G' P G), y = P e, with G the columns through which each acts.
-NoiseStep update_noise(const std::vector<NoisyPose>& poses, const Eigen::VectorXd& prior_precision, Noise& noise) {
+NoiseStep update_noise(const std::vector<NoisyPose>& poses, const Eigen::VectorXd& prior_precision, Noise& noise,
+                       double least_information) {
   if (poses.empty()) return {};
   const Eigen::Index n = poses[0].jacobian.cols();
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
@@ -46,7 +47,7 @@ NoiseStep update_noise(const std::vector<NoisyPose>& poses, const Eigen::VectorX
     information.noalias() += pose.jacobian.transpose() * weighted;
     gradient.noalias() += weighted.transpose() * pose.residual;
   }
-  NoiseStep step{{}, inverse_of_information(information), 0};
+  NoiseStep step{{}, inverse_of_information(information, least_information), 0};
   step.change = -step.covariance * gradient;
   std::array<double, 3> squares{}, trace{};
   for (const NoisyPose& pose : poses) {
@@ -92,11 +93,12 @@ void begin_noise(const std::vector<NoisyPose>& poses, Noise& noise) {
   noise.board_rad = board_turn_share * noise.robot_rad;
 }
 
-NoiseStep estimate_noise(const std::vector<NoisyPose>& poses, const Eigen::VectorXd& prior_precision, Noise& noise) {
+NoiseStep estimate_noise(const std::vector<NoisyPose>& poses, const Eigen::VectorXd& prior_precision, Noise& noise,
+                         double least_information) {
   begin_noise(poses, noise);
   NoiseStep step;
   for (int k = 0; k < most_updates; ++k) {
-    step = update_noise(poses, prior_precision, noise);
+    step = update_noise(poses, prior_precision, noise, least_information);
     if (step.moved < 1e-7) break;
   }
   return step;

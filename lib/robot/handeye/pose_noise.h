@@ -32,10 +32,12 @@ struct NoiseStep {
 void begin_noise(const std::vector<NoisyPose>& poses, Noise& noise);
 
 // One update of all components but `corner`. `prior_precision`: of each parameter about where it stands, 1 / sigma^2;
-// empty or zero: free. Directions without information stay where they are.
-NoiseStep update_noise(const std::vector<NoisyPose>& poses, const Eigen::VectorXd& prior_precision, Noise& noise);
+// empty or zero: free. Directions with less than `least_information`, of columns of unit length, stay where they are.
+NoiseStep update_noise(const std::vector<NoisyPose>& poses, const Eigen::VectorXd& prior_precision, Noise& noise,
+                       double least_information = 1e-12);
 
 // begin_noise(), then updates until nothing moves.
-NoiseStep estimate_noise(const std::vector<NoisyPose>& poses, const Eigen::VectorXd& prior_precision, Noise& noise);
+NoiseStep estimate_noise(const std::vector<NoisyPose>& poses, const Eigen::VectorXd& prior_precision, Noise& noise,
+                         double least_information = 1e-12);
 
 }  // namespace gonio::robot::handeye
