@@ -45,8 +45,8 @@ TEST(ExplainRobot, TheChainIsThatOfAnArmBuiltOtherwise) {
     const auto own = robot::flange(work.input.links, view.joints_rad);
     EXPECT_LT(norm(own.translation_m - view.base_from_tool.translation_m), 1e-9);
   }
-  EXPECT_LT(work.noise.sizes.robot_m, 1e-6);
-  EXPECT_LT(work.noise.sizes.robot_rad, 1e-6);
+  EXPECT_LT(work.noise.shift_m, 1e-6);
+  EXPECT_LT(work.noise.rotation_rad, 1e-6);
 }
 
 // Without noise every hypothesis finds its own truth, all others being free beside it, but for what one Gauss-Newton
@@ -135,8 +135,8 @@ TEST(ExplainRobot, TheRobotsNoiseIsEstimatedWithoutBias) {
   constexpr int sets = 12;
   for (int seed = 0; seed < sets; ++seed) {
     const RobotNoise noise = settled(truth, 30, 100 + static_cast<std::uint64_t>(seed)).noise;
-    shift += noise.sizes.robot_m * noise.sizes.robot_m / sets;
-    turn += noise.sizes.robot_rad * noise.sizes.robot_rad / sets;
+    shift += noise.shift_m * noise.shift_m / sets;
+    turn += noise.rotation_rad * noise.rotation_rad / sets;
   }
   EXPECT_NEAR(std::sqrt(shift), truth.robot_shift_m, 0.06 * truth.robot_shift_m);  // three standard errors of the mean
   EXPECT_NEAR(std::sqrt(turn), truth.robot_turn_rad, 0.06 * truth.robot_turn_rad);
@@ -151,7 +151,7 @@ TEST(ExplainRobot, APoseBeyondAnyNoiseIsLeftOutAndNamed) {
   settle(work);
   EXPECT_THAT(work.outliers, testing::ElementsAre("view5"));
   EXPECT_EQ(work.input.views.size(), 19u);
-  EXPECT_LT(work.noise.sizes.robot_m, 1.5e-4);
+  EXPECT_LT(work.noise.shift_m, 1.5e-4);
 }
 
 TEST(ExplainRobot, WhatTheRecordingsLackIsNoHypothesis) {

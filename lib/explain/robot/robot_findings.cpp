@@ -87,8 +87,7 @@ double shift_m2(const RobotWork& work, const std::vector<PoseMatrix>& whitener, 
   return sum / static_cast<double>(whitener.size());
 }
 
-// The noise under the model that stands: what was not named is the robot's. Where nothing is named that is the
-// mountings alone, and the noise the one that handeye states.
+// The noise under the model that stands: what was not named is the robot's.
 struct FinalNoise {
   std::vector<NoisyView> views;  // with the columns of that model alone
   Eigen::VectorXd prior;
@@ -96,9 +95,7 @@ struct FinalNoise {
 };
 FinalNoise final_noise(const RobotWork& work, const Explanation& e) {
   std::vector<Eigen::Index> columns;
-  const std::size_t mounting = 12;  // the first of the base model's
-  for (const std::size_t p : work.parameters.base)
-    if (columns.size() < mounting || !e.estimates.empty()) columns.push_back(static_cast<Eigen::Index>(p));
+  for (const std::size_t p : work.parameters.base) columns.push_back(static_cast<Eigen::Index>(p));
   for (const Estimate& estimate : e.estimates) columns.push_back(static_cast<Eigen::Index>(estimate.parameter));
   FinalNoise result{work.noisy, prior_precision(work.parameters)(columns), {}};
   for (NoisyView& view : result.views) view.jacobian = Eigen::MatrixXd(view.jacobian(Eigen::all, columns));
@@ -113,7 +110,7 @@ std::array<double, 2> noise_m2(const RobotWork& work, const FinalNoise& f) {
   Eigen::MatrixXd normal = f.prior.asDiagonal();
   std::vector<PoseMatrix> weight;
   for (const NoisyView& view : f.views) {
-    weight.push_back(view.covariance(f.noise.sizes).inverse());
+    weight.push_back(view.covariance(f.noise.rotation_rad, f.noise.shift_m).inverse());
     normal += view.jacobian.transpose() * weight.back() * view.jacobian;
   }
   const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
@@ -127,10 +124,8 @@ std::array<double, 2> noise_m2(const RobotWork& work, const FinalNoise& f) {
       PoseMatrix m = -f.views[i].jacobian * inverse * f.views[j].jacobian.transpose() * weight[j];
       if (i == j) m += PoseMatrix::Identity();
       const ShiftMatrix rows = of_middle(work, i) * m;
-      robot::handeye::Noise of_robot = f.noise.sizes;
-      of_robot.board_rad = 0;  // lens and board turn it: the camera's part
-      const PoseMatrix robot = f.views[j].covariance(of_robot) - f.views[j].measured;
-      const PoseMatrix measured = f.views[j].covariance(f.noise.sizes) - robot;
+      const PoseMatrix& measured = f.views[j].measured;
+      const PoseMatrix robot = f.views[j].covariance(f.noise.rotation_rad, f.noise.shift_m) - measured;
       sums[0] += (rows * robot * rows.transpose()).trace() / static_cast<double>(f.views.size());
       sums[1] += (rows * measured * rows.transpose()).trace() / static_cast<double>(f.views.size());
     }
@@ -195,21 +190,14 @@ std::string millimetres(double m) {
   return printed(1e3 * m, 2) + " mm";
 }
 
-std::string degrees(double rad) {
-  const double value = rad * 180 / pi;
-  return (value < 5e-4 ? std::string("less than 0.001") : printed(value, 2)) + " degrees";
-}
-
 std::string words_of(const RobotWork& work, const RobotFindings& f) {
   std::string text = "The board's position scatters by " + millimetres(f.scatter_m) +
                      ": the robot's poses account for " + millimetres(*f.parts.robot_m) + ", corners and camera for " +
                      millimetres(*f.parts.camera_m) + ", the board's shape for " + millimetres(*f.parts.board_m) +
                      ", and " + millimetres(*f.parts.unexplained_m) +
                      " remains unexplained (root mean squares; their squares add).";
-  text += std::string(" The noise of the robot's poses") +
-          (f.with_named ? ", once what is named is put in," : ", about the mountings as handeye states it,") + " is " +
-          millimetres(f.robot_m) + " a coordinate and " + degrees(f.robot_rad) +
-          " an axis; the board is seen turned by " + degrees(f.board_rad) + " an axis beyond its corners' noise.";
+  text += " The robot's noise is " + millimetres(f.robot_m) + " a coordinate and " +
+          printed(f.robot_rad * 180 / pi, 2) + " degrees an axis.";
   if (work.input.links.empty() || work.input.views[0].joints_rad.empty())
     text += " Without joint angles and a known arm its kinematics cannot be examined.";
   return text;
@@ -217,24 +205,13 @@ std::string words_of(const RobotWork& work, const RobotFindings& f) {
 
 }  // namespace
 
-double place_noise2(const RobotWork& work) {
-  double sum = 0;
-  for (std::size_t v = 0; v < work.noisy.size(); ++v) {
-    const ShiftMatrix middle = of_middle(work, v);
-    sum += (middle * work.noisy[v].covariance(work.noise.sizes) * middle.transpose()).trace();
-  }
-  return std::max(1e-24, sum / static_cast<double>(work.noisy.size()));
-}
-
 RobotFindings findings_of(const RobotWork& work, const std::vector<PoseMatrix>& whitener, const Explanation& e) {
   RobotFindings f;
   const double scatter = shift_m2(work, whitener, e.residual_before);
   const FinalNoise final = final_noise(work, e);
   f.scatter_m = std::sqrt(scatter);
-  f.robot_m = final.noise.sizes.robot_m;
-  f.robot_rad = final.noise.sizes.robot_rad;
-  f.board_rad = final.noise.sizes.board_rad;
-  f.with_named = !e.estimates.empty();
+  f.robot_m = final.noise.shift_m;
+  f.robot_rad = final.noise.rotation_rad;
   f.parts = parts_of(work, whitener, e, final, scatter);
   find_entangled(work, whitener, f);
   f.sentence = words_of(work, f);

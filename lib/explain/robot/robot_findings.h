@@ -41,10 +41,6 @@ std::vector<Condition> robot_conditions(const RobotWork& work);
 void append_robot_conditions(const RobotWork& work, std::size_t view, const PoseMatrix& whitener,
                              std::vector<Condition>& conditions);
 
-// Mean square of the shift of the board's middle by one pose's noise, m^2: what one noise width of a whitened residual
-// is worth.
-double place_noise2(const RobotWork& work);
-
 RobotFindings findings_of(const RobotWork& work, const std::vector<PoseMatrix>& whitener, const Explanation& e);
 void upgrade_robot(const RobotWork& work, const Problem& problem, const RobotFindings& findings, const Explanation& e,
                    manifest::Document& document);

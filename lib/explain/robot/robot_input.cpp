@@ -27,8 +27,7 @@ bool belongs(const manifest::ImageEntry& image, const manifest::Mounting& m) {
   const auto same = [](const std::string& a, const std::string& b) { return a.empty() || b.empty() || a == b; };
   return same(image.camera, m.camera) && same(image.board, m.board) && same(image.robot, m.robot) &&
          image.camera_from_board && (image.base_from_tool || !image.joints_rad.empty()) &&
-         !(image.weight && *image.weight == 0) &&
-         std::find(m.outliers.begin(), m.outliers.end(), image.id) == m.outliers.end();  // what handeye left out
+         !(image.weight && *image.weight == 0);
 }
 
 std::vector<const manifest::ImageEntry*> images_of(const manifest::Document& document, const manifest::Mounting& m) {

@@ -1,25 +1,25 @@
-// The robot's own noise, from residuals of whole poses: robot/handeye/pose_noise.h, the estimate that handeye states,
-// with other parameters beside the mountings where hypotheses are asked; and the poses beyond any noise. Private to
-// robot/.
+// The robot's own noise, from residuals of whole poses: restricted maximum likelihood of two variance components
+// (Patterson & Thompson 1971) under residual = J x + e, cov(e) = C_v + rotation^2 R_v + shift^2 S_v per view, by Fisher
+// scoring. Private to robot/.
 #pragma once
 #include <vector>
 
 #include "explain/robot/robot_chain.h"
-#include "robot/handeye/pose_noise.h"
 
 namespace gonio::explain {
 
 struct NoisyView {
   PoseChange residual;
-  Eigen::MatrixXd jacobian;  // 6 x parameters: residual = J x + noise
+  Eigen::MatrixXd jacobian;  // 6 x parameters
   PoseMatrix measured;       // covariance of the measurement
-  // What a turn and a shift of the tool, and a turn of the seen board about its middle, do to the residual.
-  robot::handeye::NoisyPose::Effect by_turn, by_shift, by_board;
-  robot::handeye::NoisyPose pose() const { return {residual, -jacobian, measured, by_turn, by_shift, by_board}; }
-  PoseMatrix covariance(const robot::handeye::Noise& noise) const { return pose().covariance(noise); }
+  PoseMatrix by_rotation,
+      by_shift;  // covariance per unit variance of the robot's rotation (one axis) and position (one coordinate)
+  PoseMatrix covariance(double rotation_rad, double shift_m) const {
+    return measured + rotation_rad * rotation_rad * by_rotation + shift_m * shift_m * by_shift;
+  }
 };
 struct RobotNoise {
-  robot::handeye::Noise sizes;
+  double rotation_rad = 0, shift_m = 0;
   Eigen::VectorXd estimate;    // of the parameters
   Eigen::MatrixXd covariance;  // of the estimate
   std::vector<bool> outlier;   // views beyond any noise, left out

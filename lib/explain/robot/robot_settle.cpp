@@ -11,13 +11,9 @@ namespace {
 
 constexpr int pose_iterations = 4;
 
-// Of the board's pose, by a turn about its middle: the origin follows.
-robot::handeye::NoisyPose::Effect by_board_turn(const RobotWork& work, std::size_t view) {
-  const camera::BoardExtent& extent = work.input.extent;
-  const Vec3 arm = work.reference[view].rotate({extent.middle_m.x, extent.middle_m.y, 0});
-  robot::handeye::NoisyPose::Effect effect;
-  effect << 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, -arm.z, arm.y, arm.z, 0, -arm.x, -arm.y, arm.x, 0;
-  return effect;
+PoseMatrix part_covariance(const PoseMatrix& by_tool, Eigen::Index first) {
+  const auto columns = by_tool.middleCols<3>(first);
+  return columns * columns.transpose();
 }
 
 // Derivatives of pose_difference() by all parameters.
@@ -37,12 +33,8 @@ NoisyView noisy_view(const RobotWork& work, std::size_t view, const std::vector<
                      const PoseMatrix& measured) {
   const RobotState state = state_of(work.input, work.parameters, values);
   const PoseMatrix by = by_tool(work.input, work.input.views[view], state);
-  return {-pose_difference(work, view, state),
-          differences(work, view, values),
-          measured,
-          by.leftCols<3>(),
-          by.rightCols<3>(),
-          by_board_turn(work, view)};
+  return {-pose_difference(work, view, state), differences(work, view, values), measured, part_covariance(by, 0),
+          part_covariance(by, 3)};
 }
 
 // Gauss-Newton on the two mountings alone. Poses weigh by a plain 1 mrad and 1 mm, with Huber's loss so that single bad

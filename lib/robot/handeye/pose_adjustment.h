@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "robot/handeye/corner_information.h"
-#include "robot/handeye/pose_noise.h"
 #include "robot/handeye/refinement.h"
 
 namespace gonio::robot::handeye {

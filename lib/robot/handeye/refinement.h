@@ -19,11 +19,15 @@
 #include <array>
 #include <vector>
 
-#include "robot/handeye/noise.h"
 #include "robot/handeye/views.h"
 
 namespace gonio::robot::handeye {
 
+struct Noise {
+  double corner = 1;                  // factor on sigma_px
+  double robot_m = 0, robot_rad = 0;  // one coordinate, one axis
+  double board_rad = 0;               // one axis
+};
 // Where the robot seems to have been in a view, by the camera and the solution, against what its controller said: shift
 // of the tool's origin and turn about it, in the base's axes.
 struct Mismatch {
