@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "explain/problem.h"
+#include "explain/engine.h"
 
 namespace gonio::explain {
 

@@ -1,34 +1,11 @@
-// The engine of `explain`: from a problem to an explanation, by the steps noise, fair refit, isolability, null test,
-// location, naming on held-out groups, equivalents, final judgement on groups that were never opened.
-//
-// It knows no physics. Rules it keeps: nothing is named without a significant mismatch; nothing below `matters`; no
-// name for what a dummy does as well, what sits at its bound, what helps no unseen group; equals are reported as
-// equals.
+// The engine below, by the names that the domains use: a domain is a Problem, and what comes of it an Explanation.
 #pragma once
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include "explain/explanation.h"
+#include "inference/engine.h"
+#include "inference/problem.h"
 
 namespace gonio::explain {
 
-struct Options {
-  double matters = 0.01;                // smallest effect worth a name, see Importance
-  double level = 0.01;                  // false alarms allowed to the null test, and to every name
-  std::vector<std::string> hypotheses;  // mechanism ids to consider; empty: all candidates of the problem
-  std::vector<std::string> protect;     // names of parameters, or of what stands before a '/', that keep their values
-  int draws = 1999;                     // of the null distribution
-  std::size_t dummies = 24;
-  std::uint64_t seed = 1;
-  double budget_s = 0;  // 0: none; see ProblemOptions::budget_s
-};
-
-Explanation explain(const Problem& problem, const Options& options);
-
-// The first steps alone, noise, fair refit and the null test, exactly as explain() takes them: the chance of such
-// structure in the residuals of the base model where nothing was left out. A mismatch is there at the level alpha where
-// it is at most alpha.
-double null_test(const Problem& problem, const Options& options);
+using namespace inference;
+using inference::explain;  // beside the namespace of that name
 
 }  // namespace gonio::explain

@@ -10,9 +10,9 @@
 #include "base/atomic_file.h"
 #include "base/progress.h"
 #include "explain/domains.h"
-#include "explain/entry.h"
-#include "explain/evidence.h"
-#include "explain/report.h"
+#include "inference/entry.h"
+#include "inference/evidence.h"
+#include "inference/report.h"
 #include "manifest/document.h"
 #include "mechanism/listing.h"
 

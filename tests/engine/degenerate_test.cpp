@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "explain/blocks.h"
+#include "linear/blocks.h"
 #include "explain/engine.h"
 #include "explain/toy_problem.h"
 
@@ -90,18 +90,18 @@ TEST(Blocks, ProductsAndDecompositionsOfNothing) {
     for (const int columns : {0, 1, 5, 60, 300}) {
       if (rows * columns > 30000) continue;
       const Eigen::MatrixXd a = Eigen::MatrixXd::Random(rows, columns);
-      EXPECT_LT((gram_of(a) - a.transpose() * a).squaredNorm(), 1e-18);
-      EXPECT_EQ(basis_of(a).cols(), std::min(rows, columns));
-      EXPECT_EQ(basis_of(a).rows(), rows);
-      const Eigen::VectorXd outside = lengths_outside(a, Eigen::MatrixXd::Ones(rows, 2));
+      EXPECT_LT((linear::gram_of(a) - a.transpose() * a).squaredNorm(), 1e-18);
+      EXPECT_EQ(linear::basis_of(a).cols(), std::min(rows, columns));
+      EXPECT_EQ(linear::basis_of(a).rows(), rows);
+      const Eigen::VectorXd outside = linear::lengths_outside(a, Eigen::MatrixXd::Ones(rows, 2));
       ASSERT_EQ(outside.size(), 2);
       EXPECT_NEAR(outside[1],
                   rows <= columns ? 0
                                   : (Eigen::VectorXd::Ones(rows) -
-                                     basis_of(a) * (basis_of(a).transpose() * Eigen::VectorXd::Ones(rows)))
+                                     linear::basis_of(a) * (linear::basis_of(a).transpose() * Eigen::VectorXd::Ones(rows)))
                                         .norm(),
                   1e-9);
-      const SymmetricEigen eigen = eigen_of(gram_of(a));
+      const linear::EigenPairs eigen = linear::eigen_of(linear::gram_of(a));
       EXPECT_EQ(eigen.values.size(), columns);
       EXPECT_NEAR(eigen.values.sum(), a.squaredNorm(), 1e-9 * (1 + a.squaredNorm()));
       EXPECT_EQ(eigen.largest() > 0, a.size() > 0);

@@ -1,11 +1,11 @@
 // The linear algebra under the race: folds of all hypotheses at once against one at a time, chords against tangents.
-#include "explain/folds.h"
+#include "inference/folds.h"
 
 #include <gtest/gtest.h>
 
 #include "engine/nonlinear_toy.h"
-#include "explain/race.h"
-#include "explain/screening.h"
+#include "inference/race.h"
+#include "inference/screening.h"
 
 namespace gonio::explain::tests {
 namespace {

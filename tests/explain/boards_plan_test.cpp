@@ -6,8 +6,8 @@
 #include "explain/board_world.h"
 #include "explain/boards/boards_problem.h"
 #include "explain/engine.h"
-#include "explain/plan.h"
-#include "explain/sentence.h"
+#include "inference/plan.h"
+#include "inference/sentence.h"
 #include "manifest/document.h"
 
 namespace gonio::explain::tests {

@@ -3,7 +3,7 @@
 // the full runs.
 #include <gtest/gtest.h>
 
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/residual_cases.h"
 
 namespace gonio::prove {

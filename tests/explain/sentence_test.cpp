@@ -1,6 +1,6 @@
 // Sentences agree with their figures: what says "no mismatch beyond noise" has residuals as large as the noise, and
 // what scatters more than its stated noise without structure is told as that, in every verdict.
-#include "explain/sentence.h"
+#include "inference/sentence.h"
 
 #include <gmock/gmock.h>
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/random.h"
-#include "explain/explanation.h"
-#include "explain/problem.h"
+#include "inference/explanation.h"
+#include "inference/problem.h"
 
 namespace gonio::explain::tests {
 

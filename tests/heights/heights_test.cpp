@@ -8,7 +8,7 @@
 #include "base/random.h"
 #include "data.h"
 #include "explain/engine.h"
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/heights/heights_problem.h"
 #include "explain/heights/tile_spectra.h"
 #include "geom/vector.h"

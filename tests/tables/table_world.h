@@ -7,7 +7,7 @@
 #include "base/random.h"
 #include "base/text.h"
 #include "explain/engine.h"
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/tables/tables_problem.h"
 #include "manifest/document.h"
 

@@ -1,12 +1,12 @@
 // Laws outside the library on problems whose truth is known; fixed seeds.
-#include "explain/law.h"
+#include "inference/law.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "explain/engine.h"
-#include "explain/fit.h"
+#include "inference/fit.h"
 #include "telling/law_world.h"
 
 namespace gonio::explain::tests {

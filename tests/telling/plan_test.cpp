@@ -1,5 +1,5 @@
 // Plans on a problem where two effects are the same at the one setting that was recorded: p x^2 and q x^2 t at t = 1.
-#include "explain/plan.h"
+#include "inference/plan.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 
 #include "base/random.h"
 #include "explain/engine.h"
-#include "explain/evidence.h"
-#include "explain/wording.h"
+#include "inference/evidence.h"
+#include "inference/wording.h"
 
 namespace gonio::explain::tests {
 namespace {

@@ -1,6 +1,6 @@
 // The page and the entry of an explanation, from a problem whose answer is known: what is there, in which order, and
 // what is folded away.
-#include "explain/report.h"
+#include "inference/report.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include "base/atomic_file.h"
 #include "data.h"
 #include "explain/engine.h"
-#include "explain/entry.h"
-#include "explain/evidence.h"
+#include "inference/entry.h"
+#include "inference/evidence.h"
 #include "manifest/document.h"
 #include "manifest/sections/file.h"
 #include "telling/law_world.h"

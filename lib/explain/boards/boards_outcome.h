@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "explain/boards/boards_problem.h"
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 
 namespace gonio::explain {
 

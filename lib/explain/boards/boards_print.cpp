@@ -7,7 +7,7 @@
 #include <map>
 
 #include "explain/boards/boards_outcome.h"
-#include "explain/sentence.h"
+#include "inference/sentence.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "camera/corner_model.h"
-#include "explain/problem.h"
+#include "explain/engine.h"
 
 namespace gonio::explain {
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/heights/heights_problem.h"
 #include "explain/heights/spectrum_model.h"
 

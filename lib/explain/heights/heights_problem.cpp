@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/heights/heights_outcome.h"
 #include "manifest/document.h"
 

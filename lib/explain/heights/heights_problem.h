@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "explain/problem.h"
+#include "explain/engine.h"
 #include "io/height_map.h"
 #include "manifest/parameter.h"
 #include "manifest/sections/forward.h"

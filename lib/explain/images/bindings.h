@@ -6,7 +6,7 @@
 
 #include "explain/images/scene_state.h"
 #include "explain/images/term.h"
-#include "explain/problem.h"
+#include "explain/engine.h"
 #include "manifest/sections/forward.h"
 
 namespace gonio::explain::images {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "explain/images/image_model.h"
-#include "explain/problem.h"
+#include "explain/engine.h"
 
 namespace gonio::explain::images {
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "base/atomic_file.h"
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/images/images_problem.h"
 #include "explain/images/pictures.h"
 #include "io/picture.h"

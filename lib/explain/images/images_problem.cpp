@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/images/conditions.h"
 #include "explain/images/misplaced.h"
 #include "explain/images/repeats.h"

@@ -10,8 +10,7 @@
 #include "explain/images/bindings.h"
 #include "explain/images/image_model.h"
 #include "explain/images/recordings.h"
-#include "explain/own_tests.h"
-#include "explain/problem.h"
+#include "explain/engine.h"
 #include "render/ray_caster.h"
 
 namespace gonio::explain::images {
@@ -22,7 +21,7 @@ struct Options {
   CacheOptions cache;
 };
 
-class ImagesProblem final : public Problem, public OwnTests {
+class ImagesProblem final : public Problem {
  public:
   explicit ImagesProblem(const manifest::Document& document, const Options& options = {});
   ~ImagesProblem() override;
@@ -44,7 +43,6 @@ class ImagesProblem final : public Problem, public OwnTests {
                           manifest::Document& document) const override;
 
   // Files that belong to other pictures: found before anything is fitted.
-  std::vector<std::size_t> tested() const override { return {}; }
   void conclude(Explanation& explanation) const override;
 
   const Recordings& recordings() const { return recordings_; }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/images/image_model.h"
 
 namespace gonio::explain::images {

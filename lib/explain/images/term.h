@@ -21,7 +21,7 @@
 
 #include "explain/images/recordings.h"
 #include "explain/images/scene_state.h"
-#include "explain/problem.h"
+#include "explain/engine.h"
 #include "mechanism/mechanism.h"
 #include "render/ray_caster.h"
 #include "scene/scene.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/images/bindings.h"
 #include "manifest/document.h"
 #include "manifest/sections/image.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "explain/wording.h"
+#include "inference/wording.h"
 #include "manifest/document.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/mechanism_use.h"

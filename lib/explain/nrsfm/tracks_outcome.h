@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/nrsfm/tracks_problem.h"
 
 namespace gonio::explain {

@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/nrsfm/tracks_outcome.h"
-#include "explain/own_tests.h"
 
 namespace gonio::explain {
 namespace {
@@ -26,7 +25,7 @@ const mechanism::Mechanism& declared(const char* id) {
   return *m;
 }
 
-class TracksProblem final : public Problem, public OwnTests {
+class TracksProblem final : public Problem {
  public:
   explicit TracksProblem(Followed followed)
       : followed_(std::move(followed)),
@@ -68,13 +67,13 @@ class TracksProblem final : public Problem, public OwnTests {
   std::string remarks(const Explanation& e) const override { return tracks_remarks(view(), e); }
   void apply(const Explanation& e, manifest::Document& document) const override { upgrade_tracks(view(), e, document); }
   // Where shapes are lacking nothing is raced: see conclude_shapes().
-  std::vector<std::size_t> tested() const override {
+  std::vector<std::size_t> tested_apart() const override {
     std::vector<std::size_t> places;
     for (std::size_t c = 0; c < candidates_.size(); ++c)
       if (lacking_ || (c + 1 == candidates_.size() && !outlying_.runs.empty())) places.push_back(c);
     return places;
   }
-  double tolerance() const override { return lacking_ ? 1e-3 : OwnTests::tolerance(); }
+  double fit_tolerance() const override { return lacking_ ? 1e-3 : Problem::fit_tolerance(); }
   void conclude(Explanation& e) const override {
     std::optional<std::size_t> perspective;
     for (std::size_t c = 0; c < candidates_.size(); ++c)

@@ -12,7 +12,7 @@
 #include <memory>
 #include <vector>
 
-#include "explain/problem.h"
+#include "explain/engine.h"
 #include "nrsfm/followed.h"
 
 namespace gonio::explain {

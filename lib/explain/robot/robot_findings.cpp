@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "explain/sentence.h"
+#include "inference/sentence.h"
 #include "linear/qr.h"
 #include "manifest/sections/mounting.h"
 

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "explain/blocks.h"
+#include "linear/blocks.h"
 #include "linear/solve.h"
 #include "stats/distributions.h"
 
@@ -28,7 +28,7 @@ struct Sums {
 // H^-1 on the range of H, columns scaled to unit length.
 Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& h) {
   const Eigen::VectorXd scale = h.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
-  const SymmetricEigen eigen = eigen_of(scale.asDiagonal() * h * scale.asDiagonal());
+  const linear::EigenPairs eigen = linear::eigen_of(scale.asDiagonal() * h * scale.asDiagonal());
   const Eigen::VectorXd inverse = eigen.values.unaryExpr([](double v) { return v > 1e-8 ? 1 / v : 0.0; });
   const Eigen::MatrixXd half = scale.asDiagonal() * eigen.vectors;
   return half * inverse.asDiagonal() * half.transpose();

@@ -23,8 +23,8 @@
 #include <vector>
 
 #include "camera/board_projection.h"
-#include "explain/explanation.h"
-#include "explain/problem.h"
+#include "inference/explanation.h"
+#include "explain/engine.h"
 #include "manifest/sections/mounting.h"
 #include "robot/kinematics.h"
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "explain/explanation.h"
-#include "explain/sentence.h"
+#include "inference/explanation.h"
+#include "inference/sentence.h"
 #include "explain/stacks/exposures_problem.h"
 #include "explain/stacks/stack_manifest.h"
 #include "explain/stacks/stack_pictures.h"

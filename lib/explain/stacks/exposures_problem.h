@@ -10,7 +10,7 @@
 #include <memory>
 #include <tuple>
 
-#include "explain/problem.h"
+#include "explain/engine.h"
 #include "explain/stacks/reading_chain.h"
 #include "explain/stacks/stack_sites.h"
 

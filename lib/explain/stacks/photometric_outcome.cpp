@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "explain/explanation.h"
-#include "explain/sentence.h"
+#include "inference/explanation.h"
+#include "inference/sentence.h"
 #include "explain/stacks/photometric_problem.h"
 #include "explain/stacks/stack_manifest.h"
 #include "explain/stacks/stack_pictures.h"

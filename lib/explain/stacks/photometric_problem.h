@@ -12,7 +12,7 @@
 #pragma once
 #include <memory>
 
-#include "explain/problem.h"
+#include "explain/engine.h"
 #include "explain/stacks/photometric_model.h"
 #include "explain/stacks/stack_sites.h"
 

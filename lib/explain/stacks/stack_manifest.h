@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/stacks/stack_input.h"
 #include "mechanism/mechanism.h"
 #include "render/tone_curve.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/stacks/reading_chain.h"
 #include "explain/stacks/stack_sites.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "explain/problem.h"
+#include "explain/engine.h"
 #include "explain/tables/table_model.h"
 #include "scene/mechanisms.h"
 

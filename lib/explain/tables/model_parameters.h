@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "explain/problem.h"
+#include "explain/engine.h"
 
 namespace gonio::explain::tables {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "explain/explanation.h"
+#include "inference/explanation.h"
 #include "explain/tables/tables_problem.h"
 #include "manifest/document.h"
 #include "manifest/sections/mechanism_use.h"

@@ -1,0 +1,249 @@
+// See race.h: single models and the conditions of a name.
+#include "inference/race.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "stats/distributions.h"
+#include "stats/intervals.h"
+
+namespace gonio::inference {
+namespace {
+
+constexpr int chords = 25;                            // steps of a fit with kept slopes
+constexpr int turns = 3;                              // how often the slopes may be taken anew
+constexpr double small_gain = 0.005, small_cost = 4;  // of the sum of whitened squares: not worth new slopes
+
+std::string family_of(const Candidate& c) {
+  if (!c.family.empty()) return c.family;
+  std::string family = c.id();
+  for (const std::string& on : c.on) family += "/" + on;
+  return family;
+}
+
+bool has_numbers_of_groups(const System& system, const std::vector<std::size_t>& candidates) {
+  return std::any_of(candidates.begin(), candidates.end(), [&](std::size_t c) {
+    const std::vector<std::size_t>& own = system.problem().candidates()[c].parameters;
+    return std::all_of(own.begin(), own.end(),
+                       [&](std::size_t p) { return system.problem().parameters()[p].groups.size() == 1; });
+  });
+}
+
+bool is_protected(const std::string& name, const std::vector<std::string>& protect) {
+  return std::any_of(protect.begin(), protect.end(),
+                     [&](const std::string& p) { return name == p || name.starts_with(p + "/"); });
+}
+
+}  // namespace
+
+Race::Race(const System& system, const Options& options) : system_(system), options_(options) {
+  const Problem& problem = system.problem();
+  const std::vector<std::size_t> apart = problem.tested_apart();
+  for (std::size_t c = 0; c < problem.candidates().size(); ++c) {
+    if (std::ranges::find(apart, c) != apart.end()) continue;
+    const std::string& id = problem.candidates()[c].id();
+    if (options.hypotheses.empty() ||
+        std::find(options.hypotheses.begin(), options.hypotheses.end(), id) != options.hypotheses.end())
+      allowed_.push_back(c);
+  }
+  for (const std::size_t p : problem.base())
+    if (!is_protected(problem.parameters()[p].name, options.protect)) free_.push_back(p);
+}
+
+Model Race::base(const std::vector<double>& start) const {
+  Model m;
+  m.fit = fit(system_, start, free_);
+  m.held_out = held_out_by_step(system_, m.fit);
+  return m;
+}
+
+Model Race::changed(const Model& from, std::vector<std::size_t> candidates, const Slopes* kept) const {
+  const Problem& problem = system_.problem();
+  std::vector<double> start;
+  for (const std::size_t c : candidates) {
+    const bool known = std::find(from.candidates.begin(), from.candidates.end(), c) != from.candidates.end();
+    for (const std::size_t p : problem.candidates()[c].parameters)
+      start.push_back(known ? from.fit.values[p] : problem.parameters()[p].start);
+  }
+  return started(from, std::move(candidates), start, kept);
+}
+
+std::pair<std::vector<double>, std::vector<std::size_t>> Race::beginning(const Model& from,
+                                                                         const std::vector<std::size_t>& candidates,
+                                                                         const std::vector<double>& start) const {
+  const Problem& problem = system_.problem();
+  std::vector<double> values = from.fit.values;
+  std::vector<std::size_t> active = free_;
+  for (const std::size_t c : from.candidates)
+    for (const std::size_t p : problem.candidates()[c].parameters) values[p] = problem.parameters()[p].neutral;
+  std::size_t place = 0;
+  for (const std::size_t c : candidates)
+    for (const std::size_t p : problem.candidates()[c].parameters) {
+      values[p] = start[place++];
+      active.push_back(p);
+    }
+  return {std::move(values), std::move(active)};
+}
+
+double Race::promised_cost(const Model& from, const std::vector<std::size_t>& candidates,
+                           const std::vector<double>& start, const Slopes& kept) const {
+  const auto [values, active] = beginning(from, candidates, start);
+  const Fit there = fit(system_, values, active, 0);
+  return there.cost - decrement(system_, there, kept);
+}
+
+Model Race::started(const Model& from, std::vector<std::size_t> candidates, const std::vector<double>& start,
+                    const Slopes* kept, double promise) const {
+  auto [values, active] = beginning(from, candidates, start);
+  Model m{std::move(candidates), {}, {}};
+  if (kept == nullptr) {
+    m.fit = fit(system_, std::move(values), active);
+    m.held_out = held_out_by_step(system_, m.fit);
+    return m;
+  }
+  std::optional<Slopes> turned = along_chords(from, values, active, *kept, m.fit);
+  if (from.fit.cost - m.fit.cost < 0.5 * promise) {
+    Fit anew = fit(system_, std::move(values), active);
+    if (anew.cost < m.fit.cost) {
+      m.fit = std::move(anew);
+      turned = slopes(system_, m.fit.values, active);
+    }
+  }
+  m.held_out = held_out_by_step(system_, m.fit, turned ? &*turned : kept);
+  return m;
+}
+
+// Where tangents promise more than a small part of what the chords have gained, they take the chords' place.
+std::optional<Slopes> Race::along_chords(const Model& from, std::vector<double> values,
+                                         const std::vector<std::size_t>& active, const Slopes& kept,
+                                         Fit& result) const {
+  std::optional<Slopes> turned;
+  for (int turn = 0;; ++turn) {
+    result = fit(system_, std::move(values), active, chords, turned ? &*turned : &kept);
+    if (turn == turns) return turned;
+    Slopes fresh = slopes(system_, result.values, active);
+    const double promised = decrement(system_, result, fresh);
+    if (promised < small_gain * std::max(0.0, from.fit.cost - result.cost) + small_cost) return turned;
+    values = result.values;
+    turned = std::move(fresh);
+  }
+}
+
+Slopes Race::slopes_at(const Model& model) const {
+  std::vector<std::size_t> parameters = free_;
+  for (const std::size_t c : model.candidates) {
+    const std::vector<std::size_t>& own = system_.problem().candidates()[c].parameters;
+    parameters.insert(parameters.end(), own.begin(), own.end());
+  }
+  return slopes(system_, model.fit.values, std::move(parameters));
+}
+
+std::vector<std::size_t> Race::open_to(const Model& model) const {
+  std::vector<std::size_t> result;
+  for (const std::size_t c : allowed_) {
+    const auto relative = [&](std::size_t other) { return relatives(other, c); };
+    if (std::none_of(model.candidates.begin(), model.candidates.end(), relative)) result.push_back(c);
+  }
+  return result;
+}
+
+bool Race::relatives(std::size_t a, std::size_t b) const {
+  const std::vector<Candidate>& all = system_.problem().candidates();
+  return family_of(all[a]) == family_of(all[b]);
+}
+
+std::string Race::name_of(const std::vector<std::size_t>& candidates) const {
+  std::string name;
+  for (const std::size_t c : candidates) {
+    const Candidate& candidate = system_.problem().candidates()[c];
+    name += (name.empty() ? "" : " + ") + candidate.id();
+    if (candidate.on.empty()) continue;
+    name += " (";
+    for (std::size_t k = 0; k < candidate.on.size(); ++k) name += (k == 0 ? "" : ", ") + candidate.on[k];
+    name += ")";
+  }
+  return name;
+}
+
+double Race::effect(const Model& before, const Model& after) const {
+  if (system_.problem().importance() == Importance::share_of_residual) {
+    const double score = before.held_out.score();
+    return score > 0 ? 1 - after.held_out.score() / score : 0;
+  }
+  const Observations& o = system_.observations();
+  std::vector<double> moved(system_.groups.size()), norm(system_.groups.size());
+  parallel_for(0, moved.size(), [&](std::size_t k) {
+    const std::size_t group = system_.groups[k], first = o.first[group];
+    const Eigen::VectorXd change =
+        system_.residual(before.fit.values, group) - system_.residual(after.fit.values, group);
+    for (std::size_t i = first; i < o.first[group + 1]; ++i) {
+      if (!(system_.weight(i) > 0)) continue;
+      const double raw = change[static_cast<Eigen::Index>(i - first)] / system_.weight(i);
+      moved[k] += raw * raw;
+      norm[k] += o.norm[i];
+    }
+  });
+  double sum = 0, total = 0;
+  for (std::size_t k = 0; k < moved.size(); ++k) sum += moved[k], total += norm[k];
+  return total > 0 ? std::sqrt(sum / total) : 0;
+}
+
+Hypothesis Race::judged(const Model& before, const Model& after, const std::vector<std::size_t>& added,
+                        const std::vector<Hypothesis>& dummies, std::size_t looks, const Slopes* kept) const {
+  Hypothesis h;
+  h.kind = Hypothesis::Kind::mechanisms;
+  h.candidates = added;
+  h.name = name_of(added);
+  h.held_out = after.held_out.score();
+  const Gain g = gain(before.held_out, after.held_out);
+  h.gain = g.mean;
+  h.gain_sigma = g.sigma;
+  h.effect = effect(before, after);
+  std::vector<std::size_t> parameters;
+  for (const std::size_t c : added) {
+    const std::vector<std::size_t>& own = system_.problem().candidates()[c].parameters;
+    parameters.insert(parameters.end(), own.begin(), own.end());
+  }
+  const Uncertainty u = uncertainty(system_, after.fit, kept);
+  h.parameters = estimates(system_, after.fit, u, parameters);
+  // The least certain of several added mechanisms decides. Groups that disagree about the size of an effect do not say
+  // that there is none where they agree that it helps: there blocks alone speak.
+  const bool helps = added.size() == 1 && g.mean > 2 * g.sigma;
+  h.wald_p = 0;
+  for (const std::size_t c : added)
+    h.wald_p =
+        std::max(h.wald_p, neutral_p(system_, after.fit, u, system_.problem().candidates()[c].parameters, helps));
+  // A free hand in every group beats physics that all groups share: dummies are held against mechanisms of their own
+  // kind.
+  const bool grouped = has_numbers_of_groups(system_, added);
+  std::ptrdiff_t peers = 0, rivals = 0;
+  for (const Hypothesis& dummy : dummies) {
+    if (has_numbers_of_groups(system_, dummy.candidates) != grouped) continue;
+    ++peers;
+    rivals += dummy.gain > h.gain + h.gain_sigma;
+  }
+  const auto at_bound =
+      std::find_if(h.parameters.begin(), h.parameters.end(), [](const Estimate& e) { return e.at_bound; });
+  // Numbers of single groups soak up any misfit, so that their being away from neutral proves nothing: held-out groups
+  // alone speak.
+  const double freedom = static_cast<double>(system_.groups.size()) - 1;
+  const bool by_chance =
+      grouped && !(h.gain_sigma > 0 && stats::student_upper(h.gain / h.gain_sigma, freedom) <= options_.level);
+  if (!(h.gain > h.gain_sigma))
+    h.refused = "does not lower the held-out score beyond its standard error";
+  else if (by_chance)
+    h.refused =
+        "has a number for every " + system_.problem().group_noun() + ", and too few of them agree that it helps";
+  else if (10 * rivals > peers)
+    h.refused = "dummies without physics do better";
+  else if (stats::sidak(h.wald_p, static_cast<double>(looks)) > options_.level)
+    h.refused = "its parameters cannot be told from neutral";
+  else if (at_bound != h.parameters.end())
+    h.refused = system_.problem().parameters()[at_bound->parameter].name + " ends at the limit of what is plausible";
+  else if (h.effect < options_.matters)
+    h.refused = "smaller than what matters";
+  return h;
+}
+
+}  // namespace gonio::inference

@@ -1,0 +1,146 @@
+// The race of hypotheses: every model is a set of candidates switched on together with the free parameters, fitted on
+// the groups in play and scored on held-out groups; dummies and free curves run against them.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inference/crossing.h"
+#include "inference/engine.h"
+#include "inference/fit.h"
+#include "inference/folds.h"
+#include "inference/signature.h"
+#include "inference/trail.h"
+
+namespace gonio::inference {
+
+struct Model {
+  std::vector<std::size_t> candidates;
+  Fit fit;
+  HeldOut held_out;
+};
+
+class Race {
+ public:
+  Race(const System& system, const Options& options);
+
+  const System& system() const { return system_; }
+  const std::vector<std::size_t>& allowed() const { return allowed_; }  // candidates that may be named
+  const std::vector<std::size_t>& free() const { return free_; }        // base parameters that are not protected
+
+  Model base(const std::vector<double>& start) const;
+  // `from` with other candidates; fitted from its values, new candidates from their starting points. `kept`: along the
+  // chords of these slopes (inference/system.h), which is what most hypotheses are worth.
+  Model changed(const Model& from, std::vector<std::size_t> candidates, const Slopes* kept = nullptr) const;
+  // The same, the candidates' parameters beginning at `start` (all of them, in order). `promise`: fall of the sum of
+  // squares that their linear form has; where the chords reach less than half of it, the fit begins anew with tangents.
+  Model started(const Model& from, std::vector<std::size_t> candidates, const std::vector<double>& start,
+                const Slopes* kept, double promise = 0) const;
+  // The cost that one step from there promises.
+  double promised_cost(const Model& from, const std::vector<std::size_t>& candidates, const std::vector<double>& start,
+                       const Slopes& kept) const;
+  // Derivatives of the free parameters and of the model's candidates where the model stands.
+  Slopes slopes_at(const Model& model) const;
+  // Candidates that may join: allowed, not in the model, no relative in it.
+  std::vector<std::size_t> open_to(const Model& model) const;
+  bool relatives(std::size_t a, std::size_t b) const;  // of one family: at most one of them is named
+
+  // The step from `before` to `after` as one line of the scoreboard; `refused` says which condition of a name it fails.
+  // `dummies`: what those achieved on the same model; more than a tenth of them better by its standard
+  // error, and it is no better than chance.
+  // `looks`: hypotheses tried beside it.
+  Hypothesis judged(const Model& before, const Model& after, const std::vector<std::size_t>& added,
+                    const std::vector<Hypothesis>& dummies, std::size_t looks, const Slopes* kept = nullptr) const;
+  double effect(const Model& before, const Model& after) const;
+  std::string name_of(const std::vector<std::size_t>& candidates) const;
+
+ private:
+  // Values and free parameters of `from` with these candidates instead of its own.
+  std::pair<std::vector<double>, std::vector<std::size_t>> beginning(const Model& from,
+                                                                     const std::vector<std::size_t>& candidates,
+                                                                     const std::vector<double>& start) const;
+  std::optional<Slopes> along_chords(const Model& from, std::vector<double> values,
+                                     const std::vector<std::size_t>& active, const Slopes& kept, Fit& result) const;
+  const System& system_;
+  const Options& options_;
+  std::vector<std::size_t> allowed_, free_;
+};
+
+// What the recordings say about one model, before anything else is fitted.
+struct Evidence {
+  Structures structures;
+  Projection projection;
+  BlockScores scores;
+  std::unique_ptr<Folds> folds;
+};
+// A free curve over one condition: "unknown" competes too.
+struct Competitor {
+  Hypothesis hypothesis;
+  std::size_t condition = 0;
+  HeldOut held_out;  // linear
+};
+
+// The state of knowledge about one model: what structure its residuals still hold, and what free curves and dummies
+// could repair.
+struct Remainder {
+  double global_p = 1;
+  std::vector<LocatedCondition> conditions;  // the most telling first
+  std::vector<Isolability> isolability;
+  std::vector<double> inflation;     // see signature.h
+  std::vector<Competitor> curves;    // largest gain first
+  std::vector<Hypothesis> dummies;   // largest gain first
+  double false_alarm = 0;            // share of dummies that would have been named
+  std::optional<Trail> trail;        // structure that no smooth curve follows
+  std::optional<Crossing> crossing;  // structure in a product of conditions; asked where nothing else is found
+  std::shared_ptr<const Evidence> evidence;
+};
+Remainder remainder(const Race& race, const Model& model, const Options& options);
+
+// How much may be tried: a number of fits and of pairs, never a time.
+struct Effort {
+  std::size_t fits = 14;       // hypotheses fitted in a round
+  std::size_t least = 4;       // of them whatever the screening says
+  std::size_t pairs = 20000;   // screened in a round
+  std::size_t effects = 5;     // at once
+  std::size_t runners_up = 4;  // tried where the last judgement refuses the first choice
+  std::string shortened;       // what a budget has cost, in a sentence
+};
+Effort effort_for(const Race& race, const Options& options);
+
+// A set of candidates that won its race and that the last judgement refused.
+struct PutAside {
+  std::vector<std::size_t> candidates;
+  std::string why;
+};
+struct Selection {
+  Model base, model;
+  Remainder before, after;
+  std::vector<Hypothesis> scoreboard;
+  std::vector<std::size_t> minor;  // places in `scoreboard`
+  std::vector<std::vector<std::size_t>> not_told_apart;
+  std::vector<std::vector<std::size_t>> instead;  // whole sets that do as well as all of the model's candidates
+  std::vector<PutAside> put_aside;
+  std::string shortened;
+};
+// Selection and judgement are one search: where objection() (judgement.h) refuses what forward selection has come to,
+// the choice of one round is changed for the next that passes there, and selection goes on from it: first the one that
+// falls least short of what was chosen, in whichever round, and a bounded number of them (limited discrepancy search,
+// Harvey & Ginsberg, IJCAI 1995). One that judges well wins, unless what was refused repairs clearly more; where none
+// does, the first choice stands, refused.
+// `mismatch_p`: of the null test on the base model, where it was asked of more groups than these; above the level
+// nothing is added to it.
+Selection select(const Race& race, const Options& options, const std::vector<double>& start,
+                 std::optional<double> mismatch_p);
+
+// For each named effect, what could stand in its place: within two standard errors of the winner. For several together
+// also other sets, no larger, that have none of them and judge as well.
+void find_equals(const Race& race, const Options& options, const Effort& effort, Selection& selection);
+// Is `other` as good as `best`, both extending `before`? Within `errors` standard errors of the paired difference over
+// groups, not beyond what the noise of single blocks could do, and with at least `share` of what the best one gained.
+bool as_good(const Model& before, const Model& best, const Model& other, double errors, double share);
+// Does `other` gain all but a hundredth of what `best` does? Two forms of one thing are not parted by what is left,
+// however surely the noise would show it: neither need be the form of the thing itself.
+bool nearly_all(const Model& before, const Model& best, const Model& other);
+
+}  // namespace gonio::inference

@@ -1,0 +1,114 @@
+// See report_parts.h: how sure, and what to measure next.
+#include <algorithm>
+#include <cmath>
+
+#include "inference/report_parts.h"
+#include "inference/wording.h"
+
+namespace gonio::inference {
+namespace {
+
+using report::Tone;
+
+std::string verdict_in_words(const Problem& problem, const Explanation& e) {
+  if (!e.misplaced.files.empty())
+    return "Verdict: unknown. Files do not show what the manifest takes them for, and no physics was asked of them.";
+  switch (e.verdict) {
+    case Verdict::null:
+      return e.significant
+                 ? "Verdict: nothing that matters. A mismatch beyond noise is there, but too small for a name."
+                 : "Verdict: nothing is left out, as far as these recordings can show.";
+    case Verdict::named: return "Verdict: named. No other hypothesis explains the held-out data as well.";
+    case Verdict::ambiguous: return "Verdict: ambiguous. Several hypotheses explain the held-out data equally well.";
+    case Verdict::unknown:
+      return "Verdict: unknown. Something matters here, and nothing in the library repairs it on unseen " +
+             problem.group_noun() + "s.";
+  }
+  return "";
+}
+
+void scores(report::Page& page, const Problem& problem, const Explanation& e) {
+  const auto bar = [&](const std::string& label, double score, Tone tone) {
+    return report::ScoreBar{label, score_in_words(score, problem.unit()), score, tone};
+  };
+  std::vector<report::ScoreBar> bars = {bar("base model", e.held_out_before, Tone::bad)};
+  if (!e.named.empty()) bars.push_back(bar("with the named physics", e.held_out_after, Tone::good));
+  const auto best_of = [&](Hypothesis::Kind kind) {
+    return std::find_if(e.scoreboard.begin(), e.scoreboard.end(), [&](const Hypothesis& h) { return h.kind == kind; });
+  };
+  if (const auto h = best_of(Hypothesis::Kind::free_curve); h != e.scoreboard.end() && e.significant)
+    bars.push_back(bar(h->name, h->held_out, Tone::neutral));
+  if (const auto h = best_of(Hypothesis::Kind::dummy); h != e.scoreboard.end() && e.significant)
+    bars.push_back(
+        bar("best of " + std::to_string(e.dummies) + " dummies without physics", h->held_out, Tone::neutral));
+  page.score_bars(bars);
+  page.note(problem.score_name() + " on " + problem.group_noun() + "s that the fit did not see (" +
+            (e.test_groups.empty() ? "each left out in turn"
+                                   : std::to_string(e.test_groups.size()) + " opened once at the end") +
+            "). The chance of such residuals without a mismatch is " +
+            (e.global_p < 1e-6 ? "below one in a million" : printed(e.global_p, 2)) + "; " +
+            (e.false_alarm > 0 ? share_in_words(e.false_alarm) + " of the dummies would have passed for physics."
+                               : std::string("no dummy would have passed for physics.")));
+}
+
+void parameters(report::Page& page, const Problem& problem, const Explanation& e) {
+  if (e.estimates.empty()) return;
+  constexpr std::size_t most = 12;
+  report::TableText table{"", {{"parameter", "", false}, {"value", "", false}, {"95 % interval", "", false}}, {}};
+  for (std::size_t k = 0; k < std::min(most, e.estimates.size()); ++k) {
+    const Estimate& x = e.estimates[k];
+    const Parameter& p = problem.parameters()[x.parameter];
+    const Shown shown = shown_in(p.unit, std::max(std::abs(x.value), x.sigma));
+    table.rows.push_back({p.name, estimate_in_words(x.value, x.sigma, p.unit),
+                          printed(x.lower_95 * shown.factor) + " to " + printed(x.upper_95 * shown.factor) +
+                              (shown.unit.empty() ? "" : " " + shown.unit)});
+  }
+  if (e.estimates.size() > most)
+    table.caption = "The first " + std::to_string(most) + " of " + std::to_string(e.estimates.size()) + " numbers.";
+  page.table(table);
+}
+
+}  // namespace
+
+void tell_sure(report::Page& page, const ReportPart& part) {
+  const Problem& problem = *part.problem;
+  const Explanation& e = *part.explanation;
+  page.section("How sure");
+  page.paragraph(verdict_in_words(problem, e));
+  scores(page, problem, e);
+  parameters(page, problem, e);
+  const auto words = [&](const std::vector<std::size_t>& set, const char* between) {
+    std::string ids;
+    for (const std::size_t c : set) ids += (ids.empty() ? "" : between) + mechanism_in_words(problem, c);
+    return ids;
+  };
+  std::vector<std::string> sets;
+  for (const std::vector<std::size_t>& set : e.not_told_apart)
+    sets.push_back("Not told apart: " + words(set, ", ") + ".");
+  for (const std::vector<std::size_t>& set : e.instead)
+    sets.push_back("As good in the place of all that is named: " + words(set, " with ") + ".");
+  if (!sets.empty()) page.list(sets);
+  if (!e.converged) page.note("The final fit did not converge: take the numbers with care.");
+}
+
+void tell_next(report::Page& page, const ReportPart& part) {
+  const Problem& problem = *part.problem;
+  const Explanation& e = *part.explanation;
+  if (e.next_measurement.empty() && e.plan.empty()) return;
+  page.section("What to measure next");
+  if (!e.next_measurement.empty()) page.paragraph(e.next_measurement);
+  if (e.plan.empty()) return;
+  report::TableText table{
+      "Measurements that were predicted under the hypotheses, each refitted: by how many standard errors they would "
+      "part them.",
+      {{"measurement", "", false}, {"separates", "", false}, {"standard errors", ""}},
+      {}};
+  for (const PlannedMeasurement& p : e.plan) {
+    std::string ids = problem.candidates()[p.separates[0]].id();
+    ids += p.separates.size() > 1 ? " from " + problem.candidates()[p.separates[1]].id() : " from nothing";
+    table.rows.push_back({p.sentence, ids, plain_number(p.z)});
+  }
+  page.table(table);
+}
+
+}  // namespace gonio::inference

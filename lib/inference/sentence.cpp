@@ -1,0 +1,202 @@
+// See sentence.h.
+#include "inference/sentence.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "inference/compensation.h"
+
+namespace gonio::inference {
+namespace {
+
+constexpr double least_share = 0.05;     // of the excess, for a place to be worth a word
+constexpr double most_over_noise = 1.5;  // residuals over the stated noise that are called noise
+
+std::string located_in(const Explanation& e) {
+  if (e.conditions.empty() || e.conditions[0].share < least_share) return "";
+  const LocatedCondition& c = e.conditions[0];
+  const std::string range = range_in_words(c);
+  if (range.empty()) return ", seen over the whole range of the " + condition_in_words(c.name);
+  return ", seen where the " + condition_in_words(c.name) + " is " + range;
+}
+
+std::string law_sentence(const Problem& problem, const Outside& o) {
+  if (o.terms.empty()) return "";
+  return " Outside the library, a law describes it: " + o.law + ". Fitted on the other side it lowers the " +
+         problem.score_name() + " for " + o.extrapolated + " from " +
+         score_in_words(o.held_out_before, problem.unit()) + " to " + score_in_words(o.held_out_after, problem.unit()) +
+         ".";
+}
+
+std::string listed(const Problem& problem, const std::vector<std::size_t>& candidates, std::size_t first,
+                   const char* last) {
+  std::string text;
+  for (std::size_t k = first; k < candidates.size(); ++k)
+    text += (k == first ? "" : k + 1 == candidates.size() ? last : ", ") + problem.candidates()[candidates[k]].id();
+  return text;
+}
+
+std::string named_sentence(const Problem& problem, const Explanation& e) {
+  std::string text = "The recordings show ";
+  for (std::size_t k = 0; k < e.named.size(); ++k) {
+    text += (k == 0 ? "" : k + 1 == e.named.size() ? " and " : ", ") + mechanism_in_words(problem, e.named[k]);
+    if (const std::string own = parameters_in_words(problem, e, e.named[k]); !own.empty()) text += " (" + own + ")";
+  }
+  text += located_in(e) + ": with " + (e.named.size() == 1 ? "it" : "them") + " the " + problem.score_name() + " on " +
+          (e.test_groups.empty() ? "left-out " : "unseen ") + problem.group_noun() + "s falls from " +
+          score_in_words(e.held_out_before, problem.unit()) + " to " +
+          score_in_words(e.held_out_after, problem.unit()) + ".";
+  for (const std::vector<std::size_t>& set : e.not_told_apart)
+    text += " As good an explanation as " + problem.candidates()[set[0]].id() + " is " +
+            listed(problem, set, 1, " or ") + ": these recordings cannot tell them apart.";
+  for (const std::vector<std::size_t>& set : e.instead)
+    text += " As good an explanation as " + listed(problem, e.named, 0, " and ") + " is " +
+            listed(problem, set, 0, " with ") + ", in the place of both.";
+  if (e.outside)
+    text += " Structure over the " + condition_in_words(e.outside->condition) +
+            " remains that nothing in the library repairs." + law_sentence(problem, *e.outside);
+  return text;
+}
+
+// Residuals of the base model over the noise that they were weighed by, root mean square per degree of freedom. The
+// null test asks blocks for structure, whatever they scatter by; this is the other question.
+double misfit_over_noise(const Problem& problem, const Explanation& e) {
+  const Observations& o = problem.observations();
+  double squares = 0, rows = 0;
+  for (std::size_t i = 0; i < std::min(o.rows(), e.residual_before.size()); ++i) {
+    const double z = e.residual_before[i] / (o.sigma[i] * e.noise_factor);
+    squares += z * z;
+    rows += 1;
+  }
+  const double freedom = std::max(1.0, rows - static_cast<double>(problem.base().size()));
+  return rows > 0 ? std::sqrt(squares / freedom) : 0;
+}
+
+std::string plain_sentence(const Problem& problem, const Explanation& e) {
+  const std::string score = problem.score_name() + " " + score_in_words(e.held_out_before, problem.unit());
+  if (e.verdict == Verdict::unknown) {
+    const std::string where = e.outside ? e.outside->condition : e.conditions.empty() ? "" : e.conditions[0].name;
+    std::string text = "There is a mismatch that matters";
+    if (!where.empty()) {
+      const auto located = std::find_if(e.conditions.begin(), e.conditions.end(),
+                                        [&](const LocatedCondition& c) { return c.name == where; });
+      text += ", structured over the " + condition_in_words(where);
+      const std::string range = located == e.conditions.end() ? "" : range_in_words(*located);
+      if (!range.empty()) text += " (most of it " + range + ")";
+    }
+    text += ", and no physics in the library repairs it on unseen " + problem.group_noun() + "s (" + score + ").";
+    return e.outside ? text + law_sentence(problem, *e.outside) : text;
+  }
+  if (e.significant)
+    return "A mismatch beyond noise is there, but nothing that would repair it matters (under " +
+           printed(100 * e.matters) + " %); no physics is named (" + score + ").";
+  const std::string p = "(p = " + printed(e.global_p, 2) + ")";
+  const double times = misfit_over_noise(problem, e);
+  if (times <= most_over_noise) return "No mismatch beyond noise " + p + "; no physics is named (" + score + ").";
+  return "No structure is told from scatter " + p + ", so no physics is named; but the residuals scatter " +
+         printed(times, 2) + " times as much as the noise that was taken for them: that may be larger, or these are " +
+         "too few " + problem.group_noun() + "s to show more (" + score + ").";
+}
+
+std::string minor_sentence(const Problem& problem, const Explanation& e) {
+  std::string names;
+  for (const std::string& id : minor_mechanisms(problem, e)) names += (names.empty() ? "" : ", ") + id;
+  return names.empty() ? "" : " Also there, but smaller than what matters: " + names + ".";
+}
+
+// Groups of which no observation counts took no part.
+std::string unused_sentence(const Problem& problem) {
+  constexpr std::size_t most_names = 4;
+  const Observations& o = problem.observations();
+  std::vector<std::string> names;
+  for (std::size_t g = 0; g < o.groups(); ++g)
+    if (o.first[g + 1] == o.first[g]) names.push_back(o.group[g]);
+  if (names.empty()) return "";
+  const std::size_t more = names.size() > most_names ? names.size() - most_names : 0;
+  std::string text = " " + problem.group_noun() + (names.size() == 1 ? " " : "s ");
+  for (std::size_t k = 0; k + more < names.size(); ++k)
+    text += (k == 0 ? "" : more == 0 && k + 1 == names.size() ? " and " : ", ") + names[k];
+  if (more > 0) text += " and " + std::to_string(more) + " more";
+  text[1] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[1])));
+  return text + (names.size() == 1 ? " takes no part: all that it shows" : " take no part: all that they show") +
+         " is masked, clipped or missing.";
+}
+
+// The measurement that tells two mechanisms apart, from either one's declaration.
+std::string told_apart(const mechanism::Mechanism& a, const std::string& b) {
+  for (const mechanism::Confusion& c : a.mistaken_for)
+    if (c.with == b) return c.told_apart;
+  return "";
+}
+
+std::string from_declarations(const mechanism::Mechanism& a, const mechanism::Mechanism& b) {
+  std::string how = told_apart(a, b.id);
+  if (how.empty()) how = told_apart(b, a.id);
+  if (how.empty() && !a.mistaken_for.empty()) how = a.mistaken_for[0].told_apart;
+  return "To tell " + a.id + " from " + b.id + ": " + (how.empty() ? "record under other conditions" : how) + ".";
+}
+
+std::string planned(const Problem& problem, const PlannedMeasurement& p) {
+  const std::string first = problem.candidates()[p.separates[0]].id();
+  const std::string part = p.separates.size() > 1
+                               ? "To tell " + first + " from " + problem.candidates()[p.separates[1]].id()
+                               : "To see whether " + first + " is there";
+  return part + ": " + p.sentence + " (expected: " + plain_number(p.z) + " standard errors).";
+}
+
+std::string unseen(const Problem& problem, const Explanation& e) {
+  std::string ids;
+  std::size_t count = 0;
+  for (const Isolability& i : e.isolability) {
+    if (i.visible) continue;
+    const mechanism::Mechanism& m = *problem.candidates()[i.candidate].mechanism;
+    if (++count > 4) continue;
+    ids += (ids.empty() ? "" : ", ") + m.id;
+    if (!m.conditions.empty()) ids += " (vary the " + condition_in_words(m.conditions[0]) + ")";
+  }
+  if (count == 0) return "";
+  if (count > 4) ids += " and " + std::to_string(count - 4) + " more";
+  return "These recordings cannot show " + ids + ".";
+}
+
+std::string measurement(const Problem& problem, const Explanation& e) {
+  for (const std::vector<std::size_t>& set : e.not_told_apart)
+    for (std::size_t k = 1; k < set.size(); ++k) {
+      for (const PlannedMeasurement& p : e.plan)
+        if (p.separates == std::vector<std::size_t>{set[0], set[k]}) return planned(problem, p);
+      return from_declarations(*problem.candidates()[set[0]].mechanism, *problem.candidates()[set[k]].mechanism);
+    }
+  if (!e.named.empty()) {
+    const mechanism::Mechanism& m = *problem.candidates()[e.named[0]].mechanism;
+    if (!m.mistaken_for.empty())
+      return "To confirm " + m.id + " against " + m.mistaken_for[0].with + ": " + m.mistaken_for[0].told_apart + ".";
+  }
+  if (e.verdict == Verdict::unknown && !e.conditions.empty())
+    return "Record more " + problem.group_noun() + "s that vary the " +
+           condition_in_words(e.outside ? e.outside->condition : e.conditions[0].name) + ".";
+  if (!e.named.empty()) return "";
+  const std::string blind = unseen(problem, e);
+  for (const PlannedMeasurement& p : e.plan) return blind + " " + planned(problem, p);
+  return blind;
+}
+
+}  // namespace
+
+void write_sentence(const Problem& problem, Explanation& e) {
+  if (!e.misplaced.files.empty()) {
+    e.sentence = e.misplaced.sentence + " No physics is asked before that is settled (" + problem.score_name() + " " +
+                 score_in_words(e.held_out_before, problem.unit()) + ").";
+    e.next_measurement =
+        "Put the files in their places, or look whether the manifest has the right pose, camera and "
+        "light for these pictures; then explain again.";
+    return;
+  }
+  e.sentence = e.named.empty() ? plain_sentence(problem, e) : named_sentence(problem, e);
+  e.sentence += minor_sentence(problem, e) + unused_sentence(problem);
+  if (const std::string remarks = problem.remarks(e); !remarks.empty()) e.sentence += " " + remarks;
+  if (!e.shortened.empty()) e.sentence += " " + e.shortened;
+  e.next_measurement = measurement(problem, e);
+}
+
+}  // namespace gonio::inference

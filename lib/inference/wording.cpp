@@ -1,0 +1,148 @@
+// See wording.h.
+#include "inference/wording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "report/number_text.h"
+
+namespace gonio::inference {
+namespace {
+
+constexpr std::size_t most_parameters = 2;
+constexpr std::size_t numbers_of_a_list = 16;  // more are a list with no number that stands out
+
+// "lights/lamp/radius_m" -> "radius"; the unit goes with the value.
+std::string short_name(const std::string& full) {
+  std::string name = full.substr(full.find_last_of("./") == std::string::npos ? 0 : full.find_last_of("./") + 1);
+  for (const char* unit : {"_per_px", "_m", "_rad", "_px", "_s", "_K", "_1", "_per_m", "_m_per_s"})
+    if (name.size() > std::string(unit).size() && name.ends_with(unit)) {
+      name.resize(name.size() - std::string(unit).size());
+      break;
+    }
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::string joined(const std::string& number, const Shown& shown) {
+  return shown.unit.empty() ? number : number + " " + shown.unit;
+}
+
+}  // namespace
+
+std::string printed(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+std::string plain_number(double value, int digits) {
+  return std::abs(value) >= 99.5 && std::abs(value) < 1e9 ? std::to_string(std::lround(value)) : printed(value, digits);
+}
+
+Shown shown_in(const std::string& unit, double size) {
+  size = std::abs(size);
+  if (unit == "rad") return {180 / std::numbers::pi, "degrees"};
+  if (unit == "m" && size > 0 && size < 0.0995) return size < 99.5e-6 ? Shown{1e6, "µm"} : Shown{1e3, "mm"};
+  if (unit == "s" && size > 0 && size < 0.0995) return {1e3, "ms"};
+  if (unit.empty() || unit == "1") return {1, ""};
+  if (unit.starts_with("half ")) return {1, "of the " + unit};
+  return {1, unit};
+}
+
+std::string quantity(double value, const std::string& unit, int digits) {
+  const Shown shown = shown_in(unit, value);
+  return joined(printed(value * shown.factor, digits), shown);
+}
+
+std::string share_in_words(double share) {
+  if (std::abs(share) < 1e-4) return share == 0 ? "0 %" : "< 0.01 %";
+  return printed(100 * share, std::abs(share) >= 0.995 ? 3 : 2) + " %";
+}
+
+std::string score_in_words(double score, const std::string& unit) {
+  return unit.empty() || unit == "1" ? share_in_words(score) : quantity(score, unit, 3);
+}
+
+std::string estimate_in_words(double value, double sigma, const std::string& unit) {
+  const Shown shown = shown_in(unit, std::max(std::abs(value), sigma));
+  value *= shown.factor, sigma *= shown.factor;
+  // Below its sigma a value has no digits of its own.
+  if (std::abs(value) < sigma && sigma >= 1e-6 && sigma < 1e6) {
+    const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(sigma))));
+    char text[96];
+    std::snprintf(text, sizeof text, "%.*f ± %.*f", decimals, value, decimals, sigma);
+    return joined(text, shown);
+  }
+  return joined(report::with_sigma(value, sigma), shown);
+}
+
+std::string condition_in_words(const std::string& name) {
+  std::string words = name.substr(name.find('.') == std::string::npos ? 0 : name.find('.') + 1);
+  for (const char* unit : {"_s", "_m", "_K", "_rad"})
+    if (words.size() > 2 && words.ends_with(unit)) words.resize(words.size() - std::string(unit).size());
+  std::replace(words.begin(), words.end(), '-', ' ');
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+std::string range_in_words(const LocatedCondition& c) {
+  if (c.curve.centre.empty()) return "";
+  const bool from_start = c.lower <= c.curve.centre.front(), to_end = c.upper >= c.curve.centre.back();
+  if (from_start && to_end) return "";
+  if (from_start) return "below " + quantity(c.upper, c.unit);
+  if (to_end) return "above " + quantity(c.lower, c.unit);
+  const Shown shown = shown_in(c.unit, std::max(std::abs(c.lower), std::abs(c.upper)));
+  return "between " + printed(c.lower * shown.factor, 2) + " and " + joined(printed(c.upper * shown.factor, 2), shown);
+}
+
+std::string mechanism_in_words(const Problem& problem, std::size_t candidate) {
+  const Candidate& c = problem.candidates()[candidate];
+  std::string text = c.id();
+  for (std::size_t k = 0; k < c.on.size(); ++k)
+    text += (k == 0 ? " on " : k + 1 == c.on.size() ? " and " : ", ") + c.on[k];
+  return text;
+}
+
+std::vector<std::string> minor_mechanisms(const Problem& problem, const Explanation& e) {
+  std::vector<std::string> ids;
+  for (const std::size_t place : e.minor) {
+    if (place >= e.scoreboard.size()) continue;
+    for (const std::size_t c : e.scoreboard[place].candidates) {
+      const std::string& id = problem.candidates()[c].id();
+      const auto same = [&](std::size_t named) { return problem.candidates()[named].id() == id; };
+      if (std::find(ids.begin(), ids.end(), id) == ids.end() && std::none_of(e.named.begin(), e.named.end(), same))
+        ids.push_back(id);
+    }
+  }
+  return ids;
+}
+
+std::string parameters_in_words(const Problem& problem, const Explanation& e, std::size_t candidate) {
+  const std::vector<std::size_t>& own = problem.candidates()[candidate].parameters;
+  if (own.size() > numbers_of_a_list) return "";
+  std::vector<const Estimate*> clear;  // of neutral, the clearest first
+  const auto distance = [&](const Estimate* x) {
+    return x->sigma > 0 ? std::abs(x->value - problem.parameters()[x->parameter].neutral) / x->sigma : 0;
+  };
+  for (const Estimate& x : e.estimates) {
+    if (std::find(own.begin(), own.end(), x.parameter) == own.end()) continue;
+    const Parameter& p = problem.parameters()[x.parameter];
+    if (p.groups.size() == 1 && problem.observations().groups() > 1) return "";  // a number for every group
+    if (distance(&x) > 2) clear.push_back(&x);
+  }
+  std::stable_sort(clear.begin(), clear.end(),
+                   [&](const Estimate* a, const Estimate* b) { return distance(a) > distance(b); });
+  if (clear.size() > most_parameters) clear.resize(most_parameters);
+  std::sort(clear.begin(), clear.end());  // in the order of the declaration
+  std::string text;
+  for (const Estimate* x : clear) {
+    const Parameter& p = problem.parameters()[x->parameter];
+    text += (text.empty() ? "" : ", ") + short_name(p.name) + " " + estimate_in_words(x->value, x->sigma, p.unit);
+  }
+  return text;
+}
+
+}  // namespace gonio::inference
