@@ -1,6 +1,7 @@
 // gonio-describe: prints everything that is printed from descriptions: man pages, JSON Schema, shell completions. Not
 // installed; scripts/regenerate calls it:  gonio-describe SOURCE_ROOT  writes man/*.[157], schemas/ and completions/
 // below SOURCE_ROOT.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -11,6 +12,7 @@
 #include "cli/roff.h"
 #include "manifest/reference.h"
 #include "mechanism/listing.h"
+#include "mechanism/reference.h"
 #include "nrsfm/listing.h"
 
 namespace {
@@ -22,15 +24,16 @@ std::string prose(const fs::path& root, const std::string& name) {
   return read_file(root / "man" / "prose" / (name + ".md"));
 }
 
-// A page whose prose stands alone; "# NAME" holds its one sentence.
+// A page whose prose stands alone; "# NAME" holds its one sentence. What is generated stands before SEE ALSO, and a
+// page of many parts starts with its contents.
 std::string page(const fs::path& root, const std::string& name, int section, const std::string& generated = {}) {
   const std::string text = prose(root, name);
   std::string sentence = cli::section_of(text, "NAME");
   while (!sentence.empty() && (sentence.back() == '\n' || sentence.back() == ' ')) sentence.pop_back();
   const auto first = text.find("\n# ");
-  return cli::man_header(name, section, sentence) +
-         cli::roff_from_markdown(text.substr(first == std::string::npos ? 0 : first + 1)) +
-         cli::roff_from_markdown(generated);
+  std::string all = text.substr(first == std::string::npos ? 0 : first + 1);
+  all.insert(std::min(all.find("# SEE ALSO"), all.size()), generated);
+  return cli::man_header(name, section, sentence) + cli::roff_from_markdown(cli::contents_of(all) + all);
 }
 
 void write_all(const fs::path& root) {
@@ -44,9 +47,11 @@ void write_all(const fs::path& root) {
              page(root, "gonio-manifest", 5, "# SECTIONS\n" + manifest::manifest_fields_text()));
   write_file(root / "man" / "gonio-mechanisms.7", page(root, "gonio-mechanisms", 7, mechanism::markdown()));
   write_file(root / "man" / "gonio-nrsfm.7", page(root, "gonio-nrsfm", 7, nrsfm::markdown()));
-  for (const char* name : {"gonio", "gonio-conventions", "gonio-surfaces"})
+  write_file(root / "man" / "gonio-surfaces.7", page(root, "gonio-surfaces", 7, manifest::surface_models_text()));
+  for (const char* name : {"gonio", "gonio-conventions"})
     write_file(root / "man" / (std::string(name) + ".7"), page(root, name, 7));
-  write_file(root / "schemas" / "manifest-1.schema.json", manifest::print_json(manifest::manifest_schema()) + "\n");
+  write_file(root / "schemas" / "manifest-1.schema.json",
+             manifest::schema_text(manifest::manifest_schema(mechanism::uses_schema())));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 // Tingleff, "Methods for non-linear least squares problems", 2004, algorithm 3.16).
 #include "camera/bundle_adjustment.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -41,7 +40,7 @@ Step damped_step(const NormalEquations& n, double damping) {
     if (!(n.c[p](0, 0) > 0)) continue;
     Eigen::Matrix<double, 6, 6> c = n.c[p];
     c.diagonal() *= 1 + damping;
-    const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(c);
+    const linear::Ldlt solver(c);
     own[p] = solver.solve(n.h[p]);
     reduced[p] = solver.solve(n.b[p].transpose());
     s.noalias() -= n.b[p] * reduced[p];

@@ -9,13 +9,13 @@
 // noise explains (Birge's ratio with shots as the witnesses; Birge, Phys. Rev. 40, 1932; Liang & Zeger, Biometrika 73,
 // 1986). cov(shared) is multiplied by f where it exceeds 1. Parameters are scaled to unit diagonal of A, so
 // that the smallest eigenvalue of the scaled S says which share of some direction's information the poses leave.
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "camera/bundle_adjustment.h"
+#include "linear/solve.h"
 #include "linear/symmetric_eigen.h"
 
 namespace gonio::camera {
@@ -116,7 +116,7 @@ Score score_of(const std::vector<View>& views, const CalibrationSetup& setup, co
   Score score{n.g, n.a};
   for (std::size_t p = 0; p < n.c.size(); ++p) {
     if (!(n.c[p](0, 0) > 0)) continue;
-    const Eigen::LDLT<Pose6> solver(n.c[p]);
+    const linear::Ldlt solver(n.c[p]);
     score.g.noalias() -= n.b[p] * solver.solve(n.h[p]);
     score.s.noalias() -= n.b[p] * solver.solve(n.b[p].transpose());
   }
@@ -187,7 +187,7 @@ void estimate_covariance(const std::vector<View>& views, const CalibrationSetup&
   std::vector<Pose6> own(n.c.size(), Pose6::Zero());
   for (std::size_t p = 0; p < n.c.size(); ++p) {
     if (!(n.c[p](0, 0) > 0)) continue;
-    const Eigen::LDLT<Pose6> solver(n.c[p]);
+    const linear::Ldlt solver(n.c[p]);
     slopes[p] = -solver.solve(n.b[p].transpose());
     own[p] = variance * solver.solve(Pose6::Identity());
     Placement& placement = result.placements[p];

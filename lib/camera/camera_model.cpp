@@ -29,14 +29,19 @@ void read_orthographic(const manifest::Camera& camera, const std::string& place,
   lens.cy_px = camera.cy_px.given() ? camera.cy_px.scalar() : 0.5 * (camera.height_px - 1);
 }
 
-// r with r R(r) = target on the growing branch below `limit`, by bisection; nothing where the branch ends earlier.
+// r with r R(r) = target on the growing branch below `limit`, to a millionth, by Newton's method within brackets;
+// nothing where the branch ends earlier.
 std::optional<double> radial_inverse(const Intrinsics& lens, double target, double limit) {
   const double* c = lens.distortion.data();
-  const auto radius = [&](double r) {  // the radial part alone
-    const double w = r * r, f = c[LensTerm::fisheye];
-    const double above =
-        1 + w * (c[LensTerm::k1] + w * (c[LensTerm::k2] + w * (c[LensTerm::k3] + w * f * c[LensTerm::k4])));
-    const double below = 1 + (1 - f) * w * (c[LensTerm::k4] + w * (c[LensTerm::k5] + w * c[LensTerm::k6]));
+  const double f = c[LensTerm::fisheye];
+  double slope = 1;
+  const auto radius = [&](double r) {  // the radial part alone, and its slope
+    const double w = r * r, k4 = f * c[LensTerm::k4], k5 = (1 - f) * c[LensTerm::k5], k6 = (1 - f) * c[LensTerm::k6];
+    const double above = 1 + w * (c[LensTerm::k1] + w * (c[LensTerm::k2] + w * (c[LensTerm::k3] + w * k4)));
+    const double below = 1 + w * ((1 - f) * c[LensTerm::k4] + w * (k5 + w * k6));
+    const double above_by_w = c[LensTerm::k1] + w * (2 * c[LensTerm::k2] + w * (3 * c[LensTerm::k3] + w * 4 * k4));
+    const double below_by_w = (1 - f) * c[LensTerm::k4] + w * (2 * k5 + w * 3 * k6);
+    slope = (above + 2 * w * (above_by_w - above * below_by_w / below)) / below;
     return r * above / below;
   };
   double low = 0, high = std::min(limit, std::max(1.0, target));
@@ -44,11 +49,15 @@ std::optional<double> radial_inverse(const Intrinsics& lens, double target, doub
     if (high >= limit || high > 1e6) return std::nullopt;
     high = std::min(limit, 2 * high);
   }
+  double r = std::min(target, high);
   for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    (radius(middle) < target ? low : high) = middle;
+    const double missing = target - radius(r);
+    if (std::abs(missing) <= 1e-6 * target) break;
+    (missing > 0 ? low : high) = r;
+    const double next = r + missing / slope;
+    r = next > low && next < high ? next : 0.5 * (low + high);
   }
-  return 0.5 * (low + high);
+  return r;
 }
 
 }  // namespace

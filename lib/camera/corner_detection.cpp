@@ -7,7 +7,6 @@
 #include "camera/corner_detection.h"
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -15,6 +14,7 @@
 
 #include "camera/board_detectors.h"
 #include "camera/grey_picture.h"
+#include "linear/qr.h"
 #include "stats/intervals.h"
 
 namespace gonio::camera {
@@ -71,7 +71,7 @@ double noise_of(const Field& field, const Board& board) {
     }
     b.row(row++) << deviation.x, deviation.y;
   }
-  const auto solver = a.colPivHouseholderQr();
+  const linear::PivotedQr solver(a);
   const Eigen::MatrixXd left = b - a * solver.solve(b);
   std::vector<double> sizes;
   for (const double v : left.reshaped()) sizes.push_back(std::abs(v));
@@ -96,7 +96,7 @@ double misfit(const Field& field, const Board& board, int id) {
     }
   }
   if (n < 10) return 0;
-  const auto solver = a.topRows(n).colPivHouseholderQr();
+  const linear::PivotedQr solver(a.topRows(n));
   if (solver.rank() < 6) return 0;
   const Eigen::Matrix<double, 1, 2> expected = solver.solve(b.topRows(n)).row(0);
   const Vec2 here = field.at(id);

@@ -1,7 +1,7 @@
 // Folds by shots, residuals of held-out views, and the choice.
 #include "camera/model_choice.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "linear/solve.h"
 #include "stats/intervals.h"
 
 namespace gonio::camera {
@@ -129,7 +130,7 @@ double replaced_share(const Calibration& fit, const Eigen::MatrixXd& correlation
     const bool same = own > 0 && polynomial_of(fit, of(k)) == own && of(k).of == of(i).of;
     if (k != i && !same) kept.push_back(k);
   }
-  const Eigen::MatrixXd inverse = correlation(kept, kept).inverse();
+  const Eigen::MatrixXd inverse = linear::inverse(correlation(kept, kept));
   return 1 - 1 / inverse(0, 0);
 }
 

@@ -5,13 +5,46 @@
 namespace gonio::cli {
 namespace {
 
-void escape(char c, std::string& out) {
-  if (c == '\\')
-    out += "\\e";
-  else if (c == '-')
-    out += "\\-";
-  else
-    out += c;
+// As it stands, also where a terminal has typographic signs for ^ ~ -; in `code`, for quotes as well.
+void escape(char c, bool code, std::string& out) {
+  switch (c) {
+    case '\\': out += "\\(rs"; break;
+    case '-': out += "\\-"; break;
+    case '^': out += "\\(ha"; break;
+    case '~': out += "\\(ti"; break;
+    case '\'': out += code ? "\\(aq" : "'"; break;
+    case '`': out += code ? "\\(ga" : "`"; break;
+    default: out += c;
+  }
+}
+
+bool is_word(char c) {
+  return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c & 0x80) != 0;
+}
+
+// Does `mark` ("*", "**") at `at` open what a later one closes? It stands before a word and not behind one; what closes
+// stands behind something and not before a word. Every other star is a product, a pattern, ...
+bool opens(std::string_view text, std::size_t at, std::string_view mark) {
+  const std::size_t first = at + mark.size();
+  if (text.substr(at, mark.size()) != mark || first >= text.size()) return false;
+  if (at > 0 && (is_word(text[at - 1]) || text[at - 1] == '*')) return false;
+  if (mark.size() == 1 ? !is_word(text[first]) : text[first] == ' ') return false;
+  for (std::size_t end = text.find(mark, first); end != std::string_view::npos; end = text.find(mark, end + 1)) {
+    const std::size_t behind = end + mark.size();
+    if (end > first && text[end - 1] != ' ' && (behind == text.size() || !is_word(text[behind]))) return true;
+  }
+  return false;
+}
+
+// As the argument of .SH or .SS.
+std::string argument(std::string_view heading) {
+  std::string out = "\"";
+  for (const char c : heading)
+    if (c == '"')
+      out += "\\(dq";
+    else
+      escape(c, true, out);
+  return out + "\"";
 }
 
 // Split at "|"; "\\|" is a bar within a cell.
@@ -71,15 +104,15 @@ std::string roff_text(std::string_view text) {
     if (text[i] == '`') {
       code = !code;
       out += code ? "\\fB" : "\\fR";
-    } else if (!code && text.substr(i, 2) == "**") {
+    } else if (!code && (bold ? text.substr(i, 2) == "**" : opens(text, i, "**"))) {
       bold = !bold;
       out += bold ? "\\fB" : "\\fR";
       ++i;
-    } else if (!code && text[i] == '*' && (emphasis || (i + 1 < text.size() && text[i + 1] != ' '))) {
+    } else if (!code && (emphasis ? text[i] == '*' && text[i - 1] != ' ' : opens(text, i, "*"))) {
       emphasis = !emphasis;
       out += emphasis ? "\\fI" : "\\fR";
     } else {
-      escape(text[i], out);
+      escape(text[i], code, out);
     }
   }
   return out;
@@ -98,8 +131,8 @@ std::string roff_from_markdown(std::string_view text) {
       continue;
     }
     if (code) {
-      if (line.starts_with('.') || line.starts_with('\'')) out += "\\&";
-      for (const char c : line) escape(c, out);
+      if (line.starts_with('.')) out += "\\&";
+      for (const char c : line) escape(c, true, out);
       out += '\n';
       continue;
     }
@@ -112,10 +145,10 @@ std::string roff_from_markdown(std::string_view text) {
     if (line.empty()) {
       paragraph = false;
     } else if (line.starts_with("# ")) {
-      out += ".SH \"" + line.substr(2) + "\"\n";
+      out += ".SH " + argument(line.substr(2)) + "\n";
       paragraph = true;
     } else if (line.starts_with("## ")) {
-      out += ".SS \"" + line.substr(3) + "\"\n";
+      out += ".SS " + argument(line.substr(3)) + "\n";
       paragraph = true;
     } else if (line.starts_with("- ")) {
       out += ".IP \\(bu 2\n" + roff_text(line.substr(2)) + "\n";
@@ -148,6 +181,23 @@ std::vector<std::string> headings_of(std::string_view text) {
     if (heading) names.push_back(line.substr(2));
   });
   return names;
+}
+
+std::string contents_of(std::string_view text, std::size_t fewest) {
+  std::string out;
+  std::size_t parts = 0;
+  bool first = true;
+  each_line(text, [&](const std::string& line, bool heading) {
+    if (heading) {
+      out += "\n- **" + line.substr(2) + "**";
+      first = true;
+    } else if (line.starts_with("## ")) {
+      out += (first ? ": " : ", ") + line.substr(3);
+      first = false;
+      ++parts;
+    }
+  });
+  return parts < fewest ? "" : "# CONTENTS" + out + "\n\n";
 }
 
 }  // namespace gonio::cli

@@ -1,6 +1,6 @@
 // A little Markdown to roff, for the hand-written prose of man pages: "# HEADING", paragraphs, "- item" lists, fenced
-// code, `code`,
-// **bold**, *emphasis*, and "| a | b |" tables, with "\|" for a bar within a cell.
+// code, `code`, **bold**, *emphasis* (a star that opens neither is a star), and "| a | b |" tables, with "\|"
+// for a bar within a cell.
 #pragma once
 #include <string>
 #include <string_view>
@@ -14,5 +14,8 @@ std::string roff_from_markdown(std::string_view text);
 std::string section_of(std::string_view text, std::string_view name);
 // The names of the "# NAME" headings, in their order.
 std::vector<std::string> headings_of(std::string_view text);
+// A section "# CONTENTS" that names the headings of `text` and the "## parts" under each; empty where there are fewer
+// parts than that.
+std::string contents_of(std::string_view text, std::size_t fewest = 12);
 
 }  // namespace gonio::cli

@@ -1,13 +1,13 @@
 // See limits.h.
 #include "goniometry/limits.h"
 
-#include <Eigen/QR>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <vector>
 
+#include "linear/qr.h"
 #include "surface/microfacet.h"
 
 namespace gonio::goniometry {
@@ -91,9 +91,8 @@ double told_direction(const Samples& samples) {
     norm += 0.5 * weight[r] * weight[r];
   }
   if (!(norm > 0)) return 0;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(smooth);
-  qr.setThreshold(1e-8);
-  const Eigen::MatrixXd rotated = qr.householderQ().transpose() * turns;
+  const linear::PivotedQr qr(smooth, 1e-8);
+  const Eigen::MatrixXd rotated = qr.turned(turns);
   const Eigen::MatrixXd left = rotated.bottomRows(n - qr.rank());
   if (left.rows() == 0) return 0;
   norm *= static_cast<double>(left.rows()) / static_cast<double>(n);  // what chance would leave of many functions

@@ -1,11 +1,12 @@
 // See telling.h.
 #include "goniometry/telling.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstdio>
 
 #include "goniometry/limits.h"
+#include "linear/qr.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -24,9 +25,8 @@ double share_of(const Eigen::MatrixXd& slopes, Eigen::Index own) {
   others << slopes.leftCols(own), slopes.rightCols(slopes.cols() - own - 1);
   for (Eigen::Index c = 0; c < others.cols(); ++c)
     if (const double other = others.col(c).norm(); other > 0) others.col(c) /= other;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(others);
-  qr.setThreshold(rank);
-  const Eigen::VectorXd turned = qr.householderQ().transpose() * (slopes.col(own) / length);
+  const linear::PivotedQr qr(others, rank);
+  const Eigen::VectorXd turned = qr.turned(slopes.col(own) / length);
   return turned.tail(turned.size() - qr.rank()).norm();
 }
 

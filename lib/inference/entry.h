@@ -5,6 +5,7 @@
 
 namespace gonio::inference {
 
+// Written by the field table that readers check it against (manifest/sections/explanation.h).
 manifest::Value entry_of(const Problem& problem, const Explanation& explanation, const Illustration& illustration);
 
 }  // namespace gonio::inference

@@ -15,6 +15,11 @@ struct PivotedQr::Factors {
 };
 PivotedQr::PivotedQr(const Eigen::MatrixXd& a)
     : factors_(std::make_shared<const Factors>(Factors{Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(a)})) {}
+PivotedQr::PivotedQr(const Eigen::MatrixXd& a, double threshold) {
+  Factors factors{Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(a)};
+  factors.qr.setThreshold(threshold);
+  factors_ = std::make_shared<const Factors>(std::move(factors));
+}
 Eigen::Index PivotedQr::rank() const {
   return factors_->qr.rank();
 }
@@ -27,7 +32,7 @@ Eigen::VectorXd PivotedQr::solve_one(const Eigen::VectorXd& b) const {
 Eigen::MatrixXd PivotedQr::orthonormal(Eigen::Index columns) const {
   return factors_->qr.householderQ() * Eigen::MatrixXd::Identity(factors_->qr.rows(), columns);
 }
-Eigen::VectorXd PivotedQr::turned(const Eigen::VectorXd& v) const {
+Eigen::MatrixXd PivotedQr::all_turned(const Eigen::MatrixXd& v) const {
   return factors_->qr.householderQ().adjoint() * v;
 }
 

@@ -21,6 +21,8 @@ class HouseholderQr {
 class PivotedQr {
  public:
   explicit PivotedQr(const Eigen::MatrixXd& a);
+  // Columns count towards the rank whose pivot exceeds `threshold` times the largest.
+  PivotedQr(const Eigen::MatrixXd& a, double threshold);
   Eigen::Index rank() const;
   // rows of b x 1, or rows x columns of b.
   template <class B>
@@ -31,12 +33,16 @@ class PivotedQr {
       return solve_all(b);
   }
   Eigen::MatrixXd orthonormal(Eigen::Index columns) const;  // the first columns of Q
-  Eigen::VectorXd turned(const Eigen::VectorXd& v) const;   // Q' v
+  template <class V>
+  Eigen::Matrix<double, Eigen::Dynamic, V::ColsAtCompileTime> turned(const Eigen::MatrixBase<V>& v) const {  // Q' v
+    return all_turned(v);
+  }
 
  private:
   struct Factors;
   Eigen::MatrixXd solve_all(const Eigen::MatrixXd& b) const;
   Eigen::VectorXd solve_one(const Eigen::VectorXd& b) const;
+  Eigen::MatrixXd all_turned(const Eigen::MatrixXd& v) const;
   std::shared_ptr<const Factors> factors_;
 };
 

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "manifest/document_references.h"
+#include "manifest/explanation_tables.h"
 #include "manifest/file_paths.h"
 #include "manifest/frame_loops.h"
 #include "manifest/section_tables.h"
@@ -20,6 +21,7 @@
 #include "manifest/sections/comparison.h"
 #include "manifest/sections/contrast.h"
 #include "manifest/sections/evaluation.h"
+#include "manifest/sections/explanation.h"
 #include "manifest/sections/file.h"
 #include "manifest/sections/flat_patch.h"
 #include "manifest/sections/frame_link.h"
@@ -34,6 +36,7 @@
 #include "manifest/sections/pattern.h"
 #include "manifest/sections/reconstruction.h"
 #include "manifest/sections/relief.h"
+#include "manifest/sections/provenance.h"
 #include "manifest/sections/rendering.h"
 #include "manifest/sections/rig.h"
 #include "manifest/sections/robot.h"
@@ -221,8 +224,10 @@ Document parse_document(std::string_view text, const std::string& name, const fs
   for_each_section(d, [&d](const char* key, auto& section) {
     if (const Value* v = d.original.find(key)) read_section(section, *v, place(d, std::string("/") + key));
   });
+  for (std::size_t i = 0; i < d.explanations.size(); ++i)
+    Codec<ExplanationEntry>::read(d.explanations[i], item(place(d, "/explanations"), i));
   if (const Value* v = d.original.find("provenance")) {
-    expect_object(*v, place(d, "/provenance"));
+    Codec<Provenance>::read(*v, place(d, "/provenance"));  // refuses what is none
     d.provenance = *v;
   }
   check_references(d);

@@ -3,7 +3,6 @@
 #include <functional>
 #include <string>
 
-#include "base/error.h"
 #include "manifest/section_tables.h"
 
 namespace gonio::manifest {
@@ -17,7 +16,7 @@ namespace gonio::manifest {
     return write_record(member, TABLE());                                \
   }                                                                      \
   Value Codec<TYPE>::schema() {                                          \
-    return record_schema(TABLE());                                       \
+    return defined(record_name(#TABLE));                                 \
   }                                                                      \
   static_assert(true)  // so that a semicolon follows
 
@@ -35,29 +34,12 @@ Field<Record> custom(std::string name, std::string unit, std::string sentence, V
   return f;
 }
 
-// A number stands for a list of one in "sigma": {"fx_px": 0.6}.
 template <class Record>
 Field<Record> sigma_field(Sigmas Record::*member) {
   return custom<Record>(
-      "sigma", "", "one standard deviation beside each fitted value, under the same key", Codec<Value>::schema(),
-      [member](Record& r, const Value& v, const std::string& place) {
-        expect_object(v, place);
-        for (const auto& [key, value] : v.as_object()) {
-          const std::string at = place + "/" + key;
-          const auto numbers = value.is_number() ? std::vector<double>{Codec<double>::read(value, at)}
-                                                 : Codec<std::vector<double>>::read(value, at);
-          for (const double s : numbers)
-            if (s < 0) throw Error(Exit::data, at, "is negative", "a standard deviation is 0 or more");
-          (r.*member)[key] = numbers;
-        }
-      },
-      [member](const Record& r) {
-        if ((r.*member).empty()) return Value();
-        Value out = Value::object();
-        for (const auto& [key, numbers] : r.*member)
-          out[key] = numbers.size() == 1 ? Value(numbers[0]) : Value(numbers);
-        return out;
-      });
+      "sigma", "", "one standard deviation beside each fitted value, under the same key", defined("sigmas"),
+      [member](Record& r, const Value& v, const std::string& place) { r.*member = read_sigmas(v, place); },
+      [member](const Record& r) { return write_sigmas(r.*member); });
 }
 
 }  // namespace gonio::manifest

@@ -20,11 +20,10 @@ std::string_view stem(std::string_view word) {
   return word.substr(0, word.rfind('_'));
 }
 
-std::string number_text(double v) {
-  std::ostringstream out;
-  out.precision(6);
-  out << v;
-  return out.str();
+// "number", "integer", or one of both beside "null".
+bool speaks_of_numbers(const Value& type) {
+  if (type.is_string()) return type.as_string() == "number" || type.as_string() == "integer";
+  return type.is_array() && std::ranges::any_of(type.as_array(), speaks_of_numbers);
 }
 
 }  // namespace
@@ -39,6 +38,21 @@ std::string remedy_for(const std::string& word, const std::vector<std::string>& 
   return "there is " + listed(known);
 }
 
+std::string shown_number(double v) {
+  std::ostringstream out;
+  out.precision(6);
+  out << v;
+  return out.str();
+}
+
+std::string bounds_text(double lower, double upper) {
+  if (lower > -infinite && upper < infinite)
+    return shown_number(lower == tiny ? 0 : lower) + " to " + shown_number(upper);
+  if (upper < infinite) return "at most " + shown_number(upper);
+  if (lower == tiny) return "more than 0";
+  return lower > -infinite ? shown_number(lower) + " or more" : "";
+}
+
 void check_range(const Value& value, double lower, double upper, const std::string& unit, const std::string& place) {
   if (lower == -infinite && upper == infinite) return;
   if (value.is_array()) {
@@ -48,12 +62,9 @@ void check_range(const Value& value, double lower, double upper, const std::stri
     check_range(*value.find("value"), lower, upper, unit, place + "/value");
   } else if (value.is_number() && !(value.as_number() >= lower && value.as_number() <= upper)) {
     const std::string with_unit = unit.empty() || unit == "1" ? "" : " " + unit;
-    const std::string limit = lower == tiny && upper == infinite ? "more than 0"
-                              : upper == infinite
-                                  ? number_text(lower) + " or more"
-                                  : number_text(lower == tiny ? 0 : lower) + " to " + number_text(upper);
     throw Error(Exit::data, place,
-                "is " + number_text(value.as_number()) + with_unit + ", " + limit + with_unit + " is needed");
+                "is " + shown_number(value.as_number()) + with_unit + ", " + bounds_text(lower, upper) + with_unit +
+                    " is needed");
   }
 }
 
@@ -65,6 +76,36 @@ void check_choice(const Value& value, const std::vector<std::string>& choices, c
 void unknown_key(const std::string& key, const std::vector<std::string>& known, const std::string& place) {
   throw Error(Exit::data, place + "/" + key, "is not a key that gonio knows",
               remedy_for(key, known) + " (own keys start with x-)");
+}
+
+Value field_schema(Value schema, const std::vector<std::string>& choices, double lower, double upper, bool or_null) {
+  if (!choices.empty()) schema["enum"] = Value(choices);
+  const Value* type = schema.find("type");
+  if (type != nullptr && type->is_string() && type->as_string() == "array" && schema.find("items") != nullptr) {
+    schema["items"] = field_schema(*schema.find("items"), {}, lower, upper, false);
+  } else if (type != nullptr && speaks_of_numbers(*type)) {
+    if (lower == tiny)
+      schema["exclusiveMinimum"] = 0;
+    else if (lower > -infinite)
+      schema["minimum"] = lower;
+    if (upper < infinite) schema["maximum"] = upper;
+  }
+  type = schema.find("type");
+  if (!or_null || (type != nullptr && type->is_array())) return schema;  // which has null among its types
+  return Value::object({{"oneOf", Value(Value::Array{std::move(schema), Value::object({{"type", "null"}})})}});
+}
+
+Value object_schema(Value properties, const std::vector<std::string>& required) {
+  Value out = Value::object({{"type", "object"}, {"properties", std::move(properties)}});
+  if (!required.empty()) out["required"] = Value(required);
+  out["patternProperties"]["^x-"] = Value::object();
+  out["additionalProperties"] = false;
+  return out;
+}
+
+std::string record_name(std::string table) {
+  std::ranges::replace(table, '_', '-');
+  return table.substr(0, table.rfind('-'));
 }
 
 void missing_key(const std::string& key, const std::string& sentence, const std::string& place) {

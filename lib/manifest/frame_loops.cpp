@@ -12,7 +12,8 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "geom/vector.h"
+#include "geom/rigid.h"
+#include "manifest/sections/frame_link.h"
 
 namespace gonio::manifest {
 namespace {

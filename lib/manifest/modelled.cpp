@@ -1,5 +1,5 @@
 // Sections whose members a registry declares: surfaces, lights, laws and mechanisms. What a model's description says
-// (manifest/model.h) is what is read, checked, written and put into the schema.
+// (manifest/model.h) is what is read, checked, written and put into the schema; a table has the keys beside it.
 #include <algorithm>
 
 #include "base/error.h"
@@ -23,25 +23,19 @@ void check_parameter(const ParameterInfo& info, const Value& raw, const Paramete
   check_range(raw, info.lower, info.upper, info.unit, place);
 }
 
-using Names = std::map<std::string, std::string>;
+const ModelInfo& known_model(Family family, const std::string& id, const std::string& place) {
+  if (const ModelInfo* info = find_model(family, id)) return *info;
+  std::vector<std::string> known;
+  for (const ModelInfo* m : models(family)) known.push_back(m->id);
+  check_choice(Value(id), known, place);
+  throw Error(Exit::data, place,
+              "is \"" + id + "\", which no " + (family == Family::law ? "law" : "model") + " of this build is called");
+}
 
-// The members of a surface beside its model's parameters. False: `key` is none of them.
-bool read_variation(Surface& out, const std::string& key, const Value& member, const ModelInfo& info,
-                    const std::string& at) {
-  if (key == "textures")
-    out.textures = Codec<Names>::read(member, at);
-  else if (key == "spectra")
-    out.spectra = Codec<Names>::read(member, at);
-  else if (key == "vertices")
-    out.vertices = Codec<Names>::read(member, at);
-  else if (key == "labels")
-    out.labels = Codec<std::map<std::string, Parameters>>::read(member, at);
-  else if (key == "laws")
-    out.laws = Codec<std::map<std::string, LawUse>>::read(member, at);
-  else if (key == "base" && info.takes_base)
-    out.base = Codec<std::string>::read(member, at);
-  else
-    return false;
+// Has this model the member `key` of the table?
+bool takes(const ModelInfo& info, const std::string& key) {
+  if (key == "file") return info.attachment != Attachment::none;
+  if (key == "base") return info.takes_base;
   return true;
 }
 
@@ -51,46 +45,32 @@ bool varying(const Surface& s, const std::string& parameter) {
          s.labels.contains(parameter) || s.laws.contains(parameter);
 }
 
-}  // namespace
-
+// `id` is the member that the table's first field names: which model, which law.
 template <class Record>
-Record read_modelled(Family family, const Value& v, const std::string& place) {
+Record read_modelled(Family family, std::string Record::*id, const std::vector<Field<Record>>& fields, const Value& v,
+                     const std::string& place) {
   expect_object(v, place);
   Record out;
-  if (const Value* model = v.find("model")) out.model = Codec<std::string>::read(*model, place + "/model");
-  const ModelInfo* info = find_model(family, out.model);
-  if (info == nullptr) {
-    std::vector<std::string> known;
-    for (const ModelInfo* m : models(family)) known.push_back(m->id);
-    check_choice(Value(out.model), known, place + "/model");
-    throw Error(Exit::data, place + "/model", "is \"" + out.model + "\", which no model of this build is called");
-  }
-  for (const auto& [key, member] : v.as_object()) {
-    const std::string at = place + "/" + key;
-    if (key == "model" || key.starts_with("x-")) continue;
-    if (key == "sigma") {
-      expect_object(member, at);
-      for (const auto& [name, value] : member.as_object())
-        out.sigma[name] = value.is_number() ? std::vector<double>{value.as_number()}
-                                            : Codec<std::vector<double>>::read(value, at + "/" + name);
-      continue;
-    }
-    if constexpr (std::is_same_v<Record, Surface>)
-      if (read_variation(out, key, member, *info, at)) continue;
-    if (key == "file" && info->attachment != Attachment::none) {
-      out.file = Codec<std::string>::read(member, at);
-      continue;
-    }
-    const auto found = std::ranges::find(info->parameters, key, &ParameterInfo::name);
-    if (found == info->parameters.end()) {
-      std::vector<std::string> known{"model", "sigma"};
-      for (const auto& p : info->parameters) known.push_back(p.name);
-      unknown_key(key, known, place);
-    }
-    out.parameters[key] = Codec<Parameter>::read(member, at);
-    check_parameter(*found, member, out.parameters[key], at);
-  }
-  for (const auto& p : info->parameters) {
+  const Field<Record>& first = fields.front();
+  if (const Value* named = v.find(first.name))
+    first.read(out, *named, place + "/" + first.name);
+  else if (first.required)
+    missing_key(first.name, first.sentence, place);
+  const ModelInfo& info = known_model(family, out.*id, place + "/" + first.name);
+  std::vector<std::string> known;
+  for (const auto& f : fields)
+    if (takes(info, f.name)) known.push_back(f.name);
+  for (const auto& p : info.parameters) known.push_back(p.name);
+  for (const auto& [key, member] : v.as_object())
+    if (!key.starts_with("x-") && std::ranges::find(known, key) == known.end()) unknown_key(key, known, place);
+  read_fields(out, v, fields, place,
+              [&info](Record& record, const std::string& key, const Value& member, const std::string& at) {
+                record.parameters[key] = Codec<Parameter>::read(member, at);
+                check_parameter(*std::ranges::find(info.parameters, key, &ParameterInfo::name), member,
+                                record.parameters[key], at);
+              });
+  if (family == Family::law) return out;  // whose parameters are asked for where it is applied (values_of)
+  for (const auto& p : info.parameters) {
     bool varies = false;
     if constexpr (std::is_same_v<Record, Surface>) varies = varying(out, p.name);
     if (!p.preset && !out.parameters.contains(p.name) && !varies) missing_key(p.name, p.meaning, place);
@@ -98,156 +78,166 @@ Record read_modelled(Family family, const Value& v, const std::string& place) {
   return out;
 }
 
-Surface Codec<Surface>::read(const Value& v, const std::string& place) {
-  return read_modelled<Surface>(Family::surface, v, place);
-}
-Light Codec<Light>::read(const Value& v, const std::string& place) {
-  return read_modelled<Light>(Family::light, v, place);
-}
-
-namespace {
-void write_parameters(const Parameters& parameters, const Sigmas& sigma, Value& out) {
-  for (const auto& [name, p] : parameters)
-    if (p.given()) out[name] = Codec<Parameter>::write(p);
-  for (const auto& [name, numbers] : sigma)
-    out["sigma"][name] = numbers.size() == 1 ? Value(numbers[0]) : Value(numbers);
-}
-}  // namespace
-
-Value Codec<Surface>::write(const Surface& m) {
-  Value out = Value::object({{"model", m.model}});
-  write_parameters(m.parameters, m.sigma, out);
-  if (!m.file.empty()) out["file"] = m.file;
-  if (!m.base.empty()) out["base"] = m.base;
-  const auto write = [&out]<class Map>(const char* key, const Map& map) {
-    if (!map.empty()) out[key] = Codec<Map>::write(map);
+// The table's members with the parameters before "sigma", which speaks of them.
+template <class Record>
+Value write_modelled(const Record& record, const std::vector<Field<Record>>& fields) {
+  Value out = Value::object();
+  const auto write_parameters = [&] {
+    for (const auto& [name, p] : record.parameters)
+      if (p.given()) out[name] = Codec<Parameter>::write(p);
   };
-  write("textures", m.textures);
-  write("spectra", m.spectra);
-  write("vertices", m.vertices);
-  write("labels", m.labels);
-  write("laws", m.laws);
-  return out;
-}
-Value Codec<Light>::write(const Light& m) {
-  Value out = Value::object({{"model", m.model}});
-  if (!m.file.empty()) out["file"] = m.file;
-  write_parameters(m.parameters, m.sigma, out);
+  for (const auto& f : fields) {
+    if (f.name == "sigma") write_parameters();
+    if (Value v = f.write(record); !v.is_null()) out[f.name] = std::move(v);
+  }
+  write_parameters();  // which stay where they are
   return out;
 }
 
-namespace {
-Value modelled_schema(Family family) {
+// What a parameter is all say alike (open_definition); of its own it has words.
+Value parameter_schema(const ParameterInfo& p) {
+  Value schema = Value::object();
+  const std::string unit = p.unit.empty() || p.unit == "1" ? "" : " [" + p.unit + "]",
+                    bounds = bounds_text(p.lower, p.upper);
+  schema["description"] = p.meaning + unit + (bounds.empty() ? "" : "; " + bounds);
+  if (p.preset) schema["default"] = *p.preset;
+  return schema;
+}
+
+// The table's members and, under any other name, parameters.
+template <class Record>
+Value open_definition(const std::vector<Field<Record>>& fields) {
+  Value out = object_schema(properties_of(fields), {});
+  out["additionalProperties"] = Codec<Parameter>::schema();
+  return out;
+}
+
+// The alternatives say which names each model has.
+template <class Record>
+Value modelled_definition(Family family, std::string Record::*id, const std::vector<Field<Record>>& fields) {
   Value alternatives = Value::array();
   for (const ModelInfo* model : models(family)) {
-    Value properties = Value::object({{"model", Value::object({{"const", model->id}})}});
-    Value required = Value(Value::Array{"model"});
+    Value properties = Value::object({{fields.front().name, Value::object({{"const", model->id}})}});
+    std::vector<std::string> required;
+    if (model->id != Record().*id) required.push_back(fields.front().name);
     for (const auto& p : model->parameters) {
-      Value s = Codec<Parameter>::schema();
-      s["description"] = p.meaning + (p.unit.empty() || p.unit == "1" ? "" : " [" + p.unit + "]");
-      properties[p.name] = std::move(s);
+      properties[p.name] = parameter_schema(p);
+      if (family == Family::light && !p.preset) required.push_back(p.name);
     }
-    properties["sigma"] = Value::object();
-    if (family == Family::surface) {
-      for (const char* key : {"textures", "spectra", "vertices"}) properties[key] = Codec<Names>::schema();
-      properties["labels"] = Codec<std::map<std::string, Parameters>>::schema();
-      properties["laws"] = Codec<std::map<std::string, LawUse>>::schema();
-    }
-    if (model->attachment != Attachment::none) properties["file"] = Codec<std::string>::schema();
-    if (model->takes_base) properties["base"] = Codec<std::string>::schema();
-    alternatives.push_back(Value::object({{"title", model->id},
-                                          {"description", model->sentence},
-                                          {"type", "object"},
-                                          {"properties", std::move(properties)},
-                                          {"patternProperties", Value::object({{"^x-", Value::object()}})},
-                                          {"required", std::move(required)},
-                                          {"additionalProperties", false}}));
+    for (const auto& f : fields)
+      if (f.name != fields.front().name && takes(*model, f.name)) properties[f.name] = Value::object();
+    Value alternative = object_schema(std::move(properties), required);
+    alternative["title"] = model->id;
+    alternative["description"] = model->sentence;
+    alternatives.push_back(std::move(alternative));
   }
-  return Value::object({{"oneOf", std::move(alternatives)}});
+  Value out = open_definition(fields);
+  out["oneOf"] = std::move(alternatives);
+  return out;
 }
+
 }  // namespace
+
+const std::vector<Field<Surface>>& surface_fields() {
+  static const std::vector<Field<Surface>> table{
+      field("model", &Surface::model, "", "how it reflects: a name of gonio-surfaces(7)"),
+      sigma_field(&Surface::sigma),
+      field("file", &Surface::file, "", "of a model that reads a table: its file id"),
+      field("base", &Surface::base, "", "of a model that lies on another surface: its name"),
+      field("textures", &Surface::textures, "", "parameters that a picture has: its file id"),
+      field("spectra", &Surface::spectra, "",
+            "parameters over wavelength: file id of a CSV or refractiveindex.info's YAML"),
+      field("vertices", &Surface::vertices, "", "parameters that the mesh's vertices have: their property"),
+      custom<Surface>(
+          "labels", "", "parameters by the label of the mesh's faces: a value for each", defined("labels"),
+          [](Surface& s, const Value& v, const std::string& place) {
+            s.labels = Codec<decltype(s.labels)>::read(v, place);
+          },
+          [](const Surface& s) { return Codec<decltype(s.labels)>::write(s.labels); }),
+      field("laws", &Surface::laws, "", "parameters that follow from the shape: a law and its own parameters")};
+  return table;
+}
+const std::vector<Field<Light>>& light_fields() {
+  static const std::vector<Field<Light>> table{
+      field("model", &Light::model, "", "how it shines: one of those below"),
+      field("file", &Light::file, "", "of a model that has a picture or table: its file id"),
+      sigma_field(&Light::sigma)};
+  return table;
+}
+const std::vector<Field<LawUse>>& law_use_fields() {
+  static const std::vector<Field<LawUse>> table{
+      field("law", &LawUse::law, "", "how the parameter varies: a name of gonio-surfaces(7)").needed()};
+  return table;
+}
+const std::vector<Field<MechanismUse>>& mechanism_use_fields() {
+  static const std::vector<Field<MechanismUse>> table{
+      custom<MechanismUse>(
+          "on", "", "name or names of the surfaces, lights, ... that it applies to; left out: all that it can apply to",
+          defined("names"),
+          [](MechanismUse& use, const Value& v, const std::string& place) { use.on = read_names(v, place); },
+          [](const MechanismUse& use) { return Codec<std::vector<std::string>>::write(use.on); }),
+      sigma_field(&MechanismUse::sigma)};
+  return table;
+}
+
+Surface Codec<Surface>::read(const Value& v, const std::string& place) {
+  return read_modelled(Family::surface, &Surface::model, surface_fields(), v, place);
+}
+Value Codec<Surface>::write(const Surface& m) {
+  return write_modelled(m, surface_fields());
+}
 Value Codec<Surface>::schema() {
-  return modelled_schema(Family::surface);
+  return defined("surface");
+}
+Value surface_definition() {
+  return modelled_definition(Family::surface, &Surface::model, surface_fields());
+}
+
+Light Codec<Light>::read(const Value& v, const std::string& place) {
+  return read_modelled(Family::light, &Light::model, light_fields(), v, place);
+}
+Value Codec<Light>::write(const Light& m) {
+  return write_modelled(m, light_fields());
 }
 Value Codec<Light>::schema() {
-  return modelled_schema(Family::light);
+  return defined("light");
+}
+Value light_definition() {
+  return modelled_definition(Family::light, &Light::model, light_fields());
 }
 
 // {"law": NAME, PARAMETER: NUMBER, ...}: the shape of a model whose id is called "law".
 LawUse Codec<LawUse>::read(const Value& v, const std::string& place) {
-  expect_object(v, place);
-  LawUse out;
-  const Value* name = v.find("law");
-  if (name == nullptr) missing_key("law", "the name of the law", place);
-  out.law = Codec<std::string>::read(*name, place + "/law");
-  const ModelInfo* info = find_model(Family::law, out.law);
-  if (info == nullptr) {
-    std::vector<std::string> known;
-    for (const ModelInfo* m : models(Family::law)) known.push_back(m->id);
-    check_choice(Value(out.law), known, place + "/law");
-    throw Error(Exit::data, place + "/law", "is \"" + out.law + "\", which no law of this build is called");
-  }
-  for (const auto& [key, member] : v.as_object()) {
-    if (key == "law" || key.starts_with("x-")) continue;
-    const auto found = std::ranges::find(info->parameters, key, &ParameterInfo::name);
-    if (found == info->parameters.end()) {
-      std::vector<std::string> known{"law"};
-      for (const auto& p : info->parameters) known.push_back(p.name);
-      unknown_key(key, known, place);
-    }
-    out.parameters[key] = Codec<Parameter>::read(member, place + "/" + key);
-    check_parameter(*found, member, out.parameters[key], place + "/" + key);
-  }
-  return out;
+  return read_modelled(Family::law, &LawUse::law, law_use_fields(), v, place);
 }
 Value Codec<LawUse>::write(const LawUse& m) {
-  Value out = Value::object({{"law", m.law}});
-  write_parameters(m.parameters, {}, out);
-  return out;
+  return write_modelled(m, law_use_fields());
 }
 Value Codec<LawUse>::schema() {
-  Value alternatives = Value::array();
-  for (const ModelInfo* law : models(Family::law)) {
-    Value properties = Value::object({{"law", Value::object({{"const", law->id}})}});
-    for (const auto& p : law->parameters) properties[p.name] = Codec<Parameter>::schema();
-    alternatives.push_back(Value::object({{"title", law->id},
-                                          {"description", law->sentence},
-                                          {"type", "object"},
-                                          {"properties", std::move(properties)},
-                                          {"patternProperties", Value::object({{"^x-", Value::object()}})},
-                                          {"required", Value(Value::Array{"law"})},
-                                          {"additionalProperties", false}}));
-  }
-  return models(Family::law).empty() ? Value::object() : Value::object({{"oneOf", std::move(alternatives)}});
+  return defined("law");
+}
+Value law_definition() {
+  return modelled_definition(Family::law, &LawUse::law, law_use_fields());
 }
 
+// Names and bounds of a mechanism's parameters are held against the registry where programs begin
+// (mechanism/validate.h).
 MechanismUse Codec<MechanismUse>::read(const Value& v, const std::string& place) {
-  expect_object(v, place);
   MechanismUse out;
-  for (const auto& [key, member] : v.as_object()) {
-    const std::string at = place + "/" + key;
-    if (key == "on")
-      out.on = member.is_string() ? std::vector<std::string>{member.as_string()}
-                                  : Codec<std::vector<std::string>>::read(member, at);
-    else if (key == "sigma") {
-      expect_object(member, at);
-      for (const auto& [name, value] : member.as_object())
-        out.sigma[name] = value.is_number() ? std::vector<double>{value.as_number()}
-                                            : Codec<std::vector<double>>::read(value, at + "/" + name);
-    } else if (!key.starts_with("x-")) {
-      out.parameters[key] = Codec<Parameter>::read(member, at);
-    }
-  }
+  read_fields(out, v, mechanism_use_fields(), place,
+              [](MechanismUse& use, const std::string& key, const Value& member, const std::string& at) {
+                use.parameters[key] = Codec<Parameter>::read(member, at);
+              });
   return out;
 }
 Value Codec<MechanismUse>::write(const MechanismUse& m) {
-  Value out = Value::object();
-  if (!m.on.empty()) out["on"] = m.on;
-  write_parameters(m.parameters, m.sigma, out);
-  return out;
+  return write_modelled(m, mechanism_use_fields());
 }
 Value Codec<MechanismUse>::schema() {
-  return Value::object({{"type", "object"}});
+  return defined("mechanism-use");
+}
+Value mechanism_use_definition() {
+  return open_definition(mechanism_use_fields());
 }
 
 }  // namespace gonio::manifest

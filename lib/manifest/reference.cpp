@@ -1,162 +1,300 @@
+// One list of what the manifest is made of yields the schema and the manual.
 #include "manifest/reference.h"
 
+#include "manifest/explanation_tables.h"
+#include "manifest/finite_makers.h"
 #include "manifest/model.h"
 #include "manifest/section_tables.h"
 
 namespace gonio::manifest {
 namespace {
 
-// A cell of a table, in which a bar would begin the next one.
+// A section, or a part of sections: how it stands in the schema, and what the manual says of it.
+struct Described {
+  std::string name;  // of the definition; empty: the schema needs none
+  Value definition;
+  std::string text;        // Markdown
+  std::string section{};   // of the document; empty: this is a part
+  Value section_schema{};  // of that section
+};
+
+template <class Record>
+std::string table_of(const std::vector<Field<Record>>& fields) {
+  std::string out = "| key | unit | meaning |\n| --- | --- | --- |\n";
+  for (const auto& f : fields)
+    out += "| " + f.name + (f.required ? " (needed)" : "") + " | " + f.unit + " | " + in_cell(f.sentence) + " |\n";
+  return out + "\n";
+}
+
+template <class Record>
+Described part(const std::string& heading, const std::string& what, const std::vector<Field<Record>>& fields) {
+  return {.name = definition_name(Codec<Record>::schema()),
+          .definition = record_schema(fields),
+          .text = "## " + heading + "\n" + what + "\n\n" + table_of(fields)};
+}
+
+template <class Record>
+Described keyed(const std::string& name, const std::string& what, const std::vector<Field<Record>>& fields) {
+  Described d = part(name, "Keyed by name. " + what, fields);
+  d.section = name;
+  d.section_schema = Codec<std::map<std::string, Record>>::schema();
+  return d;
+}
+
+template <class Record>
+Described listed(const std::string& name, const std::string& what, const std::vector<Field<Record>>& fields) {
+  Described d =
+      part(name, "A list" + std::string(what.starts_with("Written") ? ", w" + what.substr(1) : ". " + what), fields);
+  d.section = name;
+  d.section_schema = Codec<std::vector<Record>>::schema();
+  return d;
+}
+
+std::string parameters_of(const ModelInfo& model) {
+  if (model.parameters.empty()) return "";
+  std::string out = "| key | unit | numbers | default | bounds | meaning |\n| --- | --- | --- | --- | --- | --- |\n";
+  for (const ParameterInfo& p : model.parameters)
+    out += "| " + p.name + " | " + (p.unit == "1" ? "" : p.unit) + " | " + (p.rgb ? "1 or " : "") +
+           std::to_string(p.components) + " | " + (p.preset ? shown_number(*p.preset) : "needed") + " | " +
+           bounds_text(p.lower, p.upper) + " | " + in_cell(p.meaning) + " |\n";
+  return out + "\n";
+}
+
+std::string models_text(Family family, const std::string& level) {
+  std::string out;
+  for (const ModelInfo* model : models(family)) {
+    out += level + model->id + "\n" + model->sentence + (model->source.empty() ? "" : " (" + model->source + ")");
+    if (model->attachment != Attachment::none) out += " Its `file`: " + model->attachment_meaning + ".";
+    if (model->takes_base) out += " Lies on another surface, its `base`.";
+    out += "\n\n" + parameters_of(*model);
+  }
+  return out;
+}
+
+using List = std::vector<Described>;
+
+void add_scene(List& all) {
+  all.push_back(keyed("files", "Pixels, meshes and tables beside the document.", file_fields()));
+  all.push_back(
+      listed("frames", "Rigid motions between named frames: p_to = rotation * p_from + translation.", link_fields()));
+  all.push_back(keyed("boards", "Calibration targets.", board_fields()));
+  all.push_back(keyed("cameras", "How rays map to pixels.", camera_fields()));
+  all.push_back(
+      part("cameras: quality", "How well a calibration predicts, an object in a camera.", camera_quality_fields()));
+  all.push_back(keyed("rigs", "Cameras held together.", rig_fields()));
+  all.push_back(part("rigs: cameras", "The members of a rig.", rig_member_fields()));
+  all.push_back(keyed("robots", "Arms that hold cameras, boards or lights.", robot_fields()));
+  all.push_back(part("robots: dh", "Rows of a Denavit-Hartenberg table.", dh_row_fields()));
+  all.push_back(listed("images", "Recordings, or pictures to be simulated.", image_fields()));
+  all.push_back(part("images: boards", "Boards in an image that shows several.", seen_board_fields()));
+  all.push_back(keyed("meshes", "Exactly one of file, sphere, plane.", mesh_fields()));
+  all.push_back(keyed("surfaces", "A model, its parameters under their own names (gonio-surfaces(7) has both), and:",
+                      surface_fields()));
+  all.back().definition = surface_definition();
+  all.push_back({.name = definition_name(Codec<LawUse>::schema()), .definition = law_definition(), .text = ""});
+  all.push_back(keyed("lights", "A model, its parameters under their own names, and:", light_fields()));
+  all.back().definition = light_definition();
+  all.back().text += models_text(Family::light, "## lights: ");
+  all.push_back(listed("objects", "A mesh with a surface at a place.", object_fields()));
+  all.push_back(keyed("tables", "One row per observation.", table_fields()));
+  all.push_back(
+      {.name = definition_name(Codec<MechanismUse>::schema()),
+       .definition = mechanism_use_definition(),
+       .text = "## mechanisms\nKeyed by id, of gonio-mechanisms(7). Optional physics that is switched on: its "
+               "parameters under their own names, each one number or one for each name in `on`, and:\n\n" +
+               table_of(mechanism_use_fields()),
+       .section = "mechanisms",
+       .section_schema = {}});
+}
+
+void add_results(List& all) {
+  all.push_back(listed("renderings", "Written by render.", rendering_fields()));
+  all.push_back(listed("comparisons", "Written by compare.", comparison_fields()));
+  all.push_back(keyed("mountings", "Written by handeye. What is fixed to a robot's tool or stands in its world.",
+                      mounting_fields()));
+  all.push_back(part("mountings: held_out", "Errors on poses that the fit did not see.", held_out_fields()));
+  all.push_back(part("mountings: parts", "Standard deviations of the board's position.", scatter_parts_fields()));
+  all.push_back(
+      listed("light_positions", "Where a light was while its robot stood at a pose.", light_position_fields()));
+  all.push_back(listed("acceptance", "Written by vdi2634. Figures of an optical scanner.", acceptance_fields()));
+}
+
+void add_goniometry(List& all) {
+  all.push_back(keyed("goniometer", "Flat samples that goniometer images show, and white tiles beside them.",
+                      flat_patch_fields()));
+  all.push_back(keyed("surface_fits",
+                      "The name is the surface's. Written by brdf-fit: how it was told from measured reflectances.",
+                      surface_fit_fields()));
+  all.push_back(
+      part("surface_fits: alternatives", "Models that were fitted and not chosen.", alternative_fit_fields()));
+  all.push_back(part("surface_fits: dropped", "Rows that were left out.", dropped_rows_fields()));
+  all.push_back(keyed("patterns", "Flat samples whose cells form a binary pattern.", pattern_fields()));
+  all.push_back(part("patterns: placements", "How the sample lay before the camera.", pattern_placement_fields()));
+  all.push_back(
+      part("patterns: defects", "Cells that behave unlike their class, written by contrast.", pattern_defect_fields()));
+  all.push_back(listed("contrasts", "Written by contrast.", contrast_fields()));
+}
+
+void add_reliefs(List& all) {
+  all.push_back(
+      keyed("reliefs",
+            "Height maps, measured or made by relief, with what roughness and lobe say of them. Azimuths count "
+            "counter-clockwise from the direction of the rows.",
+            relief_map_fields()));
+  all.push_back(part("reliefs: treatment", "What was taken off the heights before.", relief_treatment_fields()));
+  all.push_back(part("reliefs: parameters", "Keyed by name, written by roughness.", roughness_figure_fields()));
+  all.push_back(
+      part("reliefs: normals", "Written by roughness. Distributions of microfacet theory.", normals_fit_fields()));
+  all.push_back(part("reliefs: lobes", "Written by lobe.", relief_lobe_fields()));
+  all.push_back(
+      keyed("ground_noises", "Written by relief. What a process adds to all that it makes.", ground_noise_fields()));
+  all.push_back(part("ground_noises: parts", "Sparse convolution noises.", ground_noise_part_fields()));
+}
+
+void add_tracks(List& all) {
+  all.push_back(keyed("sequences", "Points of shapes that deform, followed over frames.", track_sequence_fields()));
+  all.push_back(listed("reconstructions", "Shapes that a solver made of a sequence.", shape_reconstruction_fields()));
+  all.push_back(
+      listed("evaluations", "Written by nrsfm-eval. Reconstructions against the truth.", evaluation_fields()));
+  all.push_back(part("evaluations: errors", "One for each measure and alignment.", evaluated_error_fields()));
+  all.push_back(part("evaluations: flips", "Frames that are mirrored although most are not.", detected_flip_fields()));
+}
+
+void add_explanations(List& all) {
+  const std::string e = "explanations: ";
+  all.push_back(
+      listed("explanations",
+             "Written by explain, an entry for each domain that it found. A number that is not finite is null.",
+             explanation_fields()));
+  all.push_back(part(e + "misplaced", "Files that fit another recording.", misplaced_file_fields()));
+  all.push_back(part(e + "named", "What was left out.", named_mechanism_fields()));
+  all.push_back(
+      part(e + "outside", "A law of no known effect, or only where the structure is.", outside_library_fields()));
+  all.push_back(part(e + "outside/terms", "coefficient * product of condition^power * shape.", law_term_fields()));
+  all.push_back(part(e + "outside/terms/shape", "A function of a condition.", term_shape_fields()));
+  all.push_back(part(e + "located", "The most telling condition and what else is known of the place.",
+                     located_mismatch_fields()));
+  all.push_back(part(e + "located/conditions", "All conditions that carry it.", mismatch_condition_fields()));
+  all.push_back(part(e + "located/groups", "What each group holds of it.", mismatch_group_fields()));
+  all.push_back(part(e + "located/boxes", "Parts of pictures.", mismatch_box_fields()));
+  all.push_back(part(e + "held_out", "The proof.", held_out_score_fields()));
+  all.push_back(part(e + "fitted", "Also of outside.", before_after_fields()));
+  all.push_back(part(e + "null_test", "Is there a mismatch?", null_test_fields()));
+  all.push_back(part(e + "noise", "Against what was stated.", explained_noise_fields()));
+  all.push_back(part(e + "dummies", "Mechanisms without physics.", negative_controls_fields()));
+  all.push_back(part(e + "scoreboard", "One for each hypothesis.", scored_hypothesis_fields()));
+  all.push_back(part(e + "isolability", "One for each mechanism that applies.", mechanism_visibility_fields()));
+  all.push_back(part(e + "isolability/looks_like", "Mechanisms that are hard to tell apart.", look_alike_fields()));
+  all.push_back(part(e + "compensation", "One for each free parameter.", shifted_parameter_fields()));
+  all.push_back(part(e + "compensation/calibrated", "Its value from elsewhere.", independent_value_fields()));
+  all.push_back(part(e + "next_measurement", "A proposal.", next_measurement_fields()));
+  all.push_back(part(e + "next_measurement/plan", "One for each measurement.", planned_measurement_fields()));
+  all.push_back(part(e + "next_measurement/plan/setup/images", "Views to take.", planned_view_fields()));
+}
+
+void add_shared(List& all) {
+  all.push_back(
+      {.name = definition_name(Codec<Parameter>::schema()),
+       .definition = parameter_definition(),
+       .text = "## any parameter\nOne number, a list of numbers, or an object:\n\n" + table_of(parameter_fields())});
+  all.push_back(part("any rigid motion", "What is called a_from_b takes b to a coordinates.", rigid_motion_fields()));
+  all.push_back(part("any rigid motion: sigma", "Beside it.", pose_sigma_fields()));
+  all.push_back(part("any noise", "Of a camera's pixels.", noise_fields()));
+  const auto shapes = [&all](const char* name, Value schema) { all.push_back({name, std::move(schema), ""}); };
+  const Value text = Codec<std::string>::schema(), number = Value::object({{"type", "number"}, {"minimum", 0}});
+  const auto either = [](Value one, Value list) {
+    return Value::object({{"oneOf", Value(Value::Array{std::move(one), std::move(list)})}});
+  };
+  shapes("names", either(text, Codec<std::vector<std::string>>::schema()));
+  shapes("texts", by_name(text));
+  shapes("sigmas", by_name(either(number, Value::object({{"type", "array"}, {"items", number}}))));
+  shapes("labels", by_name(Codec<Parameters>::schema()));
+  shapes("lists", by_name(Codec<std::vector<double>>::schema()));
+  shapes("axes", axes_definition());
+  shapes("one-or-more", one_or_more_definition());
+  shapes("numbers-by-name", named_numbers_definition());
+}
+
+List all_described() {
+  List all;
+  add_scene(all);
+  add_results(all);
+  add_goniometry(all);
+  add_reliefs(all);
+  add_tracks(all);
+  add_explanations(all);
+  Described provenance = part("provenance", "Written by the programs alone: which of them made the document, of what.",
+                              provenance_fields());
+  provenance.section = "provenance";
+  provenance.section_schema = Codec<Provenance>::schema();
+  all.push_back(std::move(provenance));
+  all.push_back(part("provenance: steps", "Keyed by a hash of its content.", provenance_step_fields()));
+  all.push_back(part("provenance: runs", "Keyed by the step.", provenance_run_fields()));
+  add_shared(all);
+  return all;
+}
+
+}  // namespace
+
 std::string in_cell(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
   return out;
 }
 
-template <class Record>
-std::string rows(const std::string& heading, const std::string& what, const std::vector<Field<Record>>& fields) {
-  std::string out = "## " + heading + "\n" + what + "\n\n| key | unit | meaning |\n| --- | --- | --- |\n";
-  for (const auto& f : fields)
-    out += "| " + f.name + (f.required ? " (needed)" : "") + " | " + f.unit + " | " + in_cell(f.sentence) + " |\n";
-  return out + "\n";
-}
-
-std::string model_rows(const std::string& heading, const std::string& what, Family family) {
-  std::string out = "## " + heading + "\n" + what + "\n\n";
-  for (const ModelInfo* model : models(family)) {
-    out += "**" + model->id + "**: " + model->sentence + (model->source.empty() ? "" : " (" + model->source + ")") +
-           "\n\n";
-    out += "| key | unit | meaning |\n| --- | --- | --- |\n";
-    for (const auto& p : model->parameters)
-      out += "| " + p.name + (p.preset ? "" : " (needed)") + " | " + (p.unit == "1" ? "" : p.unit) + " | " +
-             in_cell(p.meaning) + " |\n";
-    out += "\n";
+Value manifest_schema(const Value& mechanisms) {
+  Value properties = Value::object({{"gonio", Value::object({{"const", 1}})}}), definitions = Value::object();
+  for (Described& d : all_described()) {
+    if (!d.section.empty())
+      properties[d.section] = d.section == "mechanisms" ? mechanisms : std::move(d.section_schema);
+    if (!d.name.empty()) definitions[d.name] = std::move(d.definition);
   }
-  return out;
+  Value schema =
+      Value::object({{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "gonio manifest, version 1"}});
+  Value document = object_schema(std::move(properties), {"gonio"});
+  for (auto& [key, member] : document.as_object()) schema[key] = std::move(member);
+  schema["$defs"] = std::move(definitions);
+  return schema;
 }
 
-template <class T>
-Value keyed() {
-  return Codec<std::map<std::string, T>>::schema();
+namespace {
+// `head` stands before it in its first line, one comma may follow.
+std::string text_at(const Value& v, const std::string& head, std::size_t depth) {
+  constexpr std::size_t width = 120;
+  const bool object = v.is_object();
+  if (!object && !v.is_array()) return head + print_json(v, -1);
+  std::vector<std::string> lines;
+  std::size_t length = depth + head.size() + 3;
+  const auto add = [&](const std::string& key, const Value& member) {
+    lines.push_back(text_at(member, key, depth + 1));
+    length += lines.back().find('\n') == std::string::npos ? lines.back().size() + 2 : width;
+  };
+  if (object)
+    for (const auto& [key, member] : v.as_object()) add(print_json(Value(key), -1) + ": ", member);
+  else
+    for (const Value& member : v.as_array()) add("", member);
+  const bool one = length <= width;
+  std::string out = head + (object ? "{" : "[");
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    out += std::string(i == 0 ? "" : one ? ", " : ",") + (one ? "" : "\n" + std::string(depth + 1, ' ')) + lines[i];
+  return out + (one ? "" : "\n" + std::string(depth, ' ')) + (object ? "}" : "]");
 }
-template <class T>
-Value listed() {
-  return Codec<std::vector<T>>::schema();
-}
-
-std::string goniometry_text() {
-  return rows("goniometer", "Keyed by name. Flat samples that goniometer images show, and white tiles beside them.",
-              flat_patch_fields()) +
-         rows("surface_fits",
-              "Keyed by the name of the surface, written by brdf-fit. How it was told from measured reflectances.",
-              surface_fit_fields()) +
-         rows("surface_fits: alternatives", "Models that were fitted and not chosen.", alternative_fit_fields()) +
-         rows("surface_fits: dropped", "Rows that were left out.", dropped_rows_fields()) +
-         rows("patterns", "Keyed by name. Flat samples whose cells form a binary pattern.", pattern_fields()) +
-         rows("patterns: placements", "How the sample lay before the camera.", pattern_placement_fields()) +
-         rows("patterns: defects", "Cells that behave unlike their class, written by contrast.",
-              pattern_defect_fields()) +
-         rows("contrasts", "A list, written by contrast.", contrast_fields());
-}
-
-std::string nrsfm_text() {
-  return rows("sequences", "Keyed by name. Points of shapes that deform, followed over frames.",
-              track_sequence_fields()) +
-         rows("reconstructions", "A list. Shapes that a solver made of a sequence.", shape_reconstruction_fields()) +
-         rows("evaluations", "A list, written by nrsfm-eval. Reconstructions against the truth.", evaluation_fields()) +
-         rows("evaluations: errors", "One for each measure and alignment.", evaluated_error_fields()) +
-         rows("evaluations: flips", "Frames that are mirrored although most are not.", detected_flip_fields());
-}
-
-std::string relief_text() {
-  return rows("reliefs",
-              "Keyed by name. Height maps, measured or made by relief, with what roughness and lobe say of them. "
-              "Azimuths "
-              "count counter-clockwise from the direction of the rows.",
-              relief_map_fields()) +
-         rows("reliefs: treatment", "What was taken off the heights before.", relief_treatment_fields()) +
-         rows("reliefs: parameters", "Keyed by name, written by roughness.", roughness_figure_fields()) +
-         rows("reliefs: normals", "Written by roughness. Distributions of microfacet theory.", normals_fit_fields()) +
-         rows("reliefs: lobes", "Written by lobe.", relief_lobe_fields()) +
-         rows("ground_noises", "Keyed by name, written by relief. What a process adds to all that it makes.",
-              ground_noise_fields()) +
-         rows("ground_noises: parts", "Sparse convolution noises.", ground_noise_part_fields());
-}
-
 }  // namespace
 
-Value manifest_schema() {
-  Value properties = Value::object(
-      {{"gonio", Value::object({{"const", 1}})},
-       {"files", keyed<File>()},
-       {"frames", listed<Link>()},
-       {"boards", keyed<Board>()},
-       {"cameras", keyed<Camera>()},
-       {"rigs", keyed<Rig>()},
-       {"robots", keyed<Robot>()},
-       {"images", listed<ImageEntry>()},
-       {"meshes", keyed<Mesh>()},
-       {"surfaces", keyed<Surface>()},
-       {"lights", keyed<Light>()},
-       {"objects", listed<Object>()},
-       {"tables", keyed<Table>()},
-       {"mechanisms", keyed<MechanismUse>()},
-       {"renderings", listed<Rendering>()},
-       {"comparisons", listed<Comparison>()},
-       {"mountings", keyed<Mounting>()},
-       {"light_positions", listed<LightPosition>()},
-       {"acceptance", listed<AcceptanceResult>()},
-       {"goniometer", keyed<FlatPatch>()},
-       {"surface_fits", keyed<SurfaceFit>()},
-       {"patterns", keyed<Pattern>()},
-       {"contrasts", listed<Contrast>()},
-       {"reliefs", keyed<ReliefMap>()},
-       {"ground_noises", keyed<GroundNoiseFit>()},
-       {"sequences", keyed<TrackSequence>()},
-       {"reconstructions", listed<ShapeReconstruction>()},
-       {"evaluations", listed<Evaluation>()},
-       {"explanations", Value::object({{"type", "array"}, {"items", Value::object({{"type", "object"}})}})},
-       {"provenance", Value::object({{"type", "object"}})}});
-  return Value::object({{"$schema", "http://json-schema.org/draft-07/schema#"},
-                        {"title", "gonio manifest, version 1"},
-                        {"type", "object"},
-                        {"required", Value(Value::Array{"gonio"})},
-                        {"properties", std::move(properties)},
-                        {"patternProperties", Value::object({{"^x-", Value::object()}})},
-                        {"additionalProperties", false}});
+std::string schema_text(const Value& schema) {
+  return text_at(schema, "", 0) + "\n";
 }
 
 std::string manifest_fields_text() {
-  return rows("files", "Keyed by id. Pixels, meshes and tables beside the document.", file_fields()) +
-         rows("frames", "A list. Rigid motions between named frames: p_to = rotation * p_from + translation.",
-              link_fields()) +
-         rows("boards", "Keyed by name. Calibration targets.", board_fields()) +
-         rows("cameras", "Keyed by name. How rays map to pixels.", camera_fields()) +
-         rows("cameras: quality", "How well a calibration predicts, an object in a camera.", camera_quality_fields()) +
-         rows("rigs", "Keyed by name. Cameras held together.", rig_fields()) +
-         rows("rigs: cameras", "The members of a rig.", rig_member_fields()) +
-         rows("robots", "Keyed by name. Arms that hold cameras, boards or lights.", robot_fields()) +
-         rows("robots: dh", "Rows of a Denavit-Hartenberg table.", dh_row_fields()) +
-         rows("images", "A list. Recordings, or pictures to be simulated.", image_fields()) +
-         rows("images: boards", "Boards in an image that shows several.", seen_board_fields()) +
-         rows("meshes", "Keyed by name. Exactly one of file, sphere, plane.", mesh_fields()) +
-         model_rows("surfaces",
-                    "Keyed by name. `model` and its parameters; `textures` maps a parameter to a file id; `sigma` "
-                    "holds uncertainties.",
-                    Family::surface) +
-         model_rows("lights", "Keyed by name. `model` and its parameters.", Family::light) +
-         rows("objects", "A list. A mesh with a surface at a place.", object_fields()) +
-         rows("tables", "Keyed by name. One row per observation.", table_fields()) +
-         rows("renderings", "A list, written by render.", rendering_fields()) +
-         rows("comparisons", "A list, written by compare.", comparison_fields()) +
-         rows("mountings", "Keyed by name, written by handeye. What is fixed to a robot's tool or stands in its world.",
-              mounting_fields()) +
-         rows("mountings: held_out", "Errors on poses that the fit did not see.", held_out_fields()) +
-         rows("mountings: parts", "Standard deviations of the board's position.", scatter_parts_fields()) +
-         rows("light_positions", "A list. Where a light was while its robot stood at a pose.",
-              light_position_fields()) +
-         rows("acceptance", "A list, written by vdi2634. Figures of an optical scanner.", acceptance_fields()) +
-         goniometry_text() + relief_text() + nrsfm_text();
+  std::string text;
+  for (const Described& d : all_described()) text += d.text;
+  return text;
+}
+
+std::string surface_models_text() {
+  return "# MODELS\n" + models_text(Family::surface, "## ") +
+         "# LAWS\nWhat a parameter may follow under `laws`: `{\"law\": NAME, ...}` with\n\n" +
+         models_text(Family::law, "## ");
 }
 
 }  // namespace gonio::manifest

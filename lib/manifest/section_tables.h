@@ -8,102 +8,73 @@
 
 namespace gonio::manifest {
 
-const std::vector<Field<File>>& file_fields();
-const std::vector<Field<Link>>& link_fields();
-const std::vector<Field<Board>>& board_fields();
-const std::vector<Field<Camera>>& camera_fields();
-const std::vector<Field<ImageEntry>>& image_fields();
-const std::vector<Field<Mesh>>& mesh_fields();
-const std::vector<Field<Object>>& object_fields();
-const std::vector<Field<Table>>& table_fields();
-const std::vector<Field<Rendering>>& rendering_fields();
-const std::vector<Field<Comparison>>& comparison_fields();
-const std::vector<Field<SeenBoard>>& seen_board_fields();
-const std::vector<Field<CameraQuality>>& camera_quality_fields();
-const std::vector<Field<RigMember>>& rig_member_fields();
-const std::vector<Field<Rig>>& rig_fields();
-const std::vector<Field<DhRow>>& dh_row_fields();
-const std::vector<Field<Robot>>& robot_fields();
-const std::vector<Field<HeldOut>>& held_out_fields();
-const std::vector<Field<ScatterParts>>& scatter_parts_fields();
-const std::vector<Field<Mounting>>& mounting_fields();
-const std::vector<Field<LightPosition>>& light_position_fields();
-const std::vector<Field<AcceptanceResult>>& acceptance_fields();
-const std::vector<Field<FlatPatch>>& flat_patch_fields();
-const std::vector<Field<AlternativeFit>>& alternative_fit_fields();
-const std::vector<Field<DroppedRows>>& dropped_rows_fields();
-const std::vector<Field<SurfaceFit>>& surface_fit_fields();
-const std::vector<Field<PatternPlacement>>& pattern_placement_fields();
-const std::vector<Field<PatternDefect>>& pattern_defect_fields();
-const std::vector<Field<Pattern>>& pattern_fields();
-const std::vector<Field<Contrast>>& contrast_fields();
-const std::vector<Field<ReliefTreatment>>& relief_treatment_fields();
-const std::vector<Field<RoughnessFigure>>& roughness_figure_fields();
-const std::vector<Field<NormalsFit>>& normals_fit_fields();
-const std::vector<Field<ReliefLobe>>& relief_lobe_fields();
-const std::vector<Field<ReliefMap>>& relief_map_fields();
-const std::vector<Field<GroundNoisePart>>& ground_noise_part_fields();
-const std::vector<Field<GroundNoiseFit>>& ground_noise_fields();
-const std::vector<Field<TrackSequence>>& track_sequence_fields();
-const std::vector<Field<ShapeReconstruction>>& shape_reconstruction_fields();
-const std::vector<Field<EvaluatedError>>& evaluated_error_fields();
-const std::vector<Field<DetectedFlip>>& detected_flip_fields();
-const std::vector<Field<Evaluation>>& evaluation_fields();
+struct Provenance;  // sections/provenance.h; nobody passes them on
+struct ProvenanceRun;
+struct ProvenanceStep;
 
-// Defined beside the tables (GONIO_RECORD in field_makers.h); of surfaces, lights, laws and mechanisms, which are read
-// against the registries instead of a table, in modelled.cpp. No section is complete here.
-#define GONIO_SECTION_CODEC(TYPE)                                   \
-  template <>                                                       \
-  struct Codec<TYPE> {                                              \
-    static TYPE read(const Value& value, const std::string& place); \
-    static Value write(const TYPE& member);                         \
-    static Value schema();                                          \
-  }
-GONIO_SECTION_CODEC(File);
-GONIO_SECTION_CODEC(Link);
-GONIO_SECTION_CODEC(Board);
-GONIO_SECTION_CODEC(CameraQuality);
-GONIO_SECTION_CODEC(Camera);
-GONIO_SECTION_CODEC(SeenBoard);
-GONIO_SECTION_CODEC(ImageEntry);
-GONIO_SECTION_CODEC(Mesh);
-GONIO_SECTION_CODEC(Object);
-GONIO_SECTION_CODEC(Table);
-GONIO_SECTION_CODEC(Rendering);
-GONIO_SECTION_CODEC(Comparison);
-GONIO_SECTION_CODEC(RigMember);
-GONIO_SECTION_CODEC(Rig);
-GONIO_SECTION_CODEC(DhRow);
-GONIO_SECTION_CODEC(Robot);
-GONIO_SECTION_CODEC(HeldOut);
-GONIO_SECTION_CODEC(ScatterParts);
-GONIO_SECTION_CODEC(Mounting);
-GONIO_SECTION_CODEC(LightPosition);
-GONIO_SECTION_CODEC(AcceptanceResult);
-GONIO_SECTION_CODEC(FlatPatch);
-GONIO_SECTION_CODEC(AlternativeFit);
-GONIO_SECTION_CODEC(DroppedRows);
-GONIO_SECTION_CODEC(SurfaceFit);
-GONIO_SECTION_CODEC(PatternPlacement);
-GONIO_SECTION_CODEC(PatternDefect);
-GONIO_SECTION_CODEC(Pattern);
-GONIO_SECTION_CODEC(Contrast);
-GONIO_SECTION_CODEC(ReliefTreatment);
-GONIO_SECTION_CODEC(RoughnessFigure);
-GONIO_SECTION_CODEC(NormalsFit);
-GONIO_SECTION_CODEC(ReliefLobe);
-GONIO_SECTION_CODEC(ReliefMap);
-GONIO_SECTION_CODEC(GroundNoisePart);
-GONIO_SECTION_CODEC(GroundNoiseFit);
-GONIO_SECTION_CODEC(TrackSequence);
-GONIO_SECTION_CODEC(ShapeReconstruction);
-GONIO_SECTION_CODEC(EvaluatedError);
-GONIO_SECTION_CODEC(DetectedFlip);
-GONIO_SECTION_CODEC(Evaluation);
-GONIO_SECTION_CODEC(LawUse);
-GONIO_SECTION_CODEC(Surface);
-GONIO_SECTION_CODEC(Light);
-GONIO_SECTION_CODEC(MechanismUse);
-#undef GONIO_SECTION_CODEC
+// The codecs are defined beside the tables (GONIO_RECORD in field_makers.h); those of surfaces, lights, laws and
+// mechanisms, which have parameters of a registry beside their table, in modelled.cpp. No section is complete here.
+GONIO_TABLE(File, file_fields);
+GONIO_TABLE(Link, link_fields);
+GONIO_TABLE(Board, board_fields);
+GONIO_TABLE(Camera, camera_fields);
+GONIO_TABLE(ImageEntry, image_fields);
+GONIO_TABLE(Mesh, mesh_fields);
+GONIO_TABLE(Object, object_fields);
+GONIO_TABLE(Table, table_fields);
+GONIO_TABLE(Rendering, rendering_fields);
+GONIO_TABLE(Comparison, comparison_fields);
+GONIO_TABLE(SeenBoard, seen_board_fields);
+GONIO_TABLE(CameraQuality, camera_quality_fields);
+GONIO_TABLE(RigMember, rig_member_fields);
+GONIO_TABLE(Rig, rig_fields);
+GONIO_TABLE(DhRow, dh_row_fields);
+GONIO_TABLE(Robot, robot_fields);
+GONIO_TABLE(HeldOut, held_out_fields);
+GONIO_TABLE(ScatterParts, scatter_parts_fields);
+GONIO_TABLE(Mounting, mounting_fields);
+GONIO_TABLE(LightPosition, light_position_fields);
+GONIO_TABLE(AcceptanceResult, acceptance_fields);
+GONIO_TABLE(FlatPatch, flat_patch_fields);
+GONIO_TABLE(AlternativeFit, alternative_fit_fields);
+GONIO_TABLE(DroppedRows, dropped_rows_fields);
+GONIO_TABLE(SurfaceFit, surface_fit_fields);
+GONIO_TABLE(PatternPlacement, pattern_placement_fields);
+GONIO_TABLE(PatternDefect, pattern_defect_fields);
+GONIO_TABLE(Pattern, pattern_fields);
+GONIO_TABLE(Contrast, contrast_fields);
+GONIO_TABLE(ReliefTreatment, relief_treatment_fields);
+GONIO_TABLE(RoughnessFigure, roughness_figure_fields);
+GONIO_TABLE(NormalsFit, normals_fit_fields);
+GONIO_TABLE(ReliefLobe, relief_lobe_fields);
+GONIO_TABLE(ReliefMap, relief_map_fields);
+GONIO_TABLE(GroundNoisePart, ground_noise_part_fields);
+GONIO_TABLE(GroundNoiseFit, ground_noise_fields);
+GONIO_TABLE(TrackSequence, track_sequence_fields);
+GONIO_TABLE(ShapeReconstruction, shape_reconstruction_fields);
+GONIO_TABLE(EvaluatedError, evaluated_error_fields);
+GONIO_TABLE(DetectedFlip, detected_flip_fields);
+GONIO_TABLE(Evaluation, evaluation_fields);
+GONIO_TABLE(LawUse, law_use_fields);
+GONIO_TABLE(Surface, surface_fields);
+GONIO_TABLE(Light, light_fields);
+GONIO_TABLE(MechanismUse, mechanism_use_fields);
+GONIO_TABLE(ProvenanceStep, provenance_step_fields);
+GONIO_TABLE(ProvenanceRun, provenance_run_fields);
+GONIO_TABLE(Provenance, provenance_fields);
+
+// What stands once in the schema without being a record of one table: a number or such a record, one of several models.
+Value parameter_definition();
+Value axes_definition();  // one number, or three
+Value surface_definition();
+Value light_definition();
+Value law_definition();
+Value mechanism_use_definition();
+
+// Of what sections share (shared_tables.cpp); their codecs are declared in codec.h.
+const std::vector<Field<Parameter>>& parameter_fields();
+const std::vector<Field<PoseSigma>>& pose_sigma_fields();
+const std::vector<Field<Noise>>& noise_fields();
+const std::vector<Field<RigidFields>>& rigid_motion_fields();
 
 }  // namespace gonio::manifest

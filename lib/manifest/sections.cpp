@@ -19,10 +19,7 @@ namespace gonio::manifest {
 namespace {
 
 Value shape_schema(const char* key, Value schema) {
-  return Value::object({{"type", "object"},
-                        {"properties", Value::object({{key, std::move(schema)}})},
-                        {"required", Value(Value::Array{key})},
-                        {"additionalProperties", false}});
+  return object_schema(Value::object({{key, std::move(schema)}}), {key});
 }
 
 }  // namespace
@@ -122,11 +119,8 @@ const std::vector<Field<ImageEntry>>& image_fields() {
       field("world_from_camera", &ImageEntry::world_from_camera, "",
             "takes camera to world coordinates; left out: identity"),
       custom<ImageEntry>(
-          "light", "", "name or names of the lights that are on; left out: all of the scene", Codec<Value>::schema(),
-          [](ImageEntry& r, const Value& v, const std::string& place) {
-            r.light = v.is_string() ? std::vector<std::string>{v.as_string()}
-                                    : Codec<std::vector<std::string>>::read(v, place);
-          },
+          "light", "", "name or names of the lights that are on; left out: all of the scene", defined("names"),
+          [](ImageEntry& r, const Value& v, const std::string& place) { r.light = read_names(v, place); },
           [](const ImageEntry& r) {
             return r.light.empty() ? Value() : r.light.size() == 1 ? Value(r.light[0]) : Value(r.light);
           }),

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <sstream>
 #include <utility>
+
+#include "manifest/reference.h"
 
 namespace gonio::mechanism {
 namespace {
@@ -54,6 +57,21 @@ std::string wrapped(const std::string& head, const std::string& words, std::size
     at = end + 1;
   }
   return result + line + "\n";
+}
+
+// An equation as lines that fit a terminal of 80 columns beside the margin of a page.
+std::string folded(const std::string& equation) {
+  constexpr std::size_t page_width = 64;
+  std::string lines, line;
+  std::istringstream words(equation);
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > page_width) {
+      lines += line + "\n";
+      line = " ";
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return lines + line + "\n";
 }
 
 std::string parameter_in_words(const Parameter& p) {
@@ -117,10 +135,10 @@ std::string markdown() {
     for (const Mechanism* m : stage.mechanisms) {
       result += "## " + m->id + "\n" + m->sentence;
       if (!m->typical.empty()) result += " Typical size: " + m->typical + ".";
-      result += "\n\n" + m->equation + "\n\n| parameter | unit | neutral | bounds | meaning |\n";
+      result += "\n\n```\n" + folded(m->equation) + "```\n\n| parameter | unit | neutral | bounds | meaning |\n";
       for (const Parameter& p : m->parameters)
         result += "| " + p.name + " | " + p.unit + " | " + number(p.neutral) + " | " + number(p.lower) + " to " +
-                  number(p.upper) + " | " + p.meaning + " |\n";
+                  number(p.upper) + " | " + manifest::in_cell(p.meaning) + " |\n";
       result += "\nHypothesis for: " + domains_in_words(*m) + ". Shows in: " + joined(m->conditions) + ".\n";
       for (const Confusion& c : m->mistaken_for)
         result += "- mistaken for **" + c.with + "**; told apart by: " + c.told_apart + "\n";

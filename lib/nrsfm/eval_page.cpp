@@ -49,7 +49,7 @@ std::vector<Kind> kinds_of(const std::vector<Evaluation>& evaluations) {
     }
   for (std::size_t k = 0; k < kinds.size(); ++k)
     if (kinds[k].unit == "m" && largest[k] < 1) kinds[k].unit = "mm", kinds[k].factor = 1000;
-  std::ranges::stable_partition(kinds, with_scale);
+  std::stable_partition(kinds.begin(), kinds.end(), with_scale);
   return kinds;
 }
 

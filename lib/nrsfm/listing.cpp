@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "base/text.h"
+#include "manifest/reference.h"
 #include "nrsfm/animatronic.h"
 #include "nrsfm/solver.h"
 
@@ -44,7 +45,7 @@ std::string markdown() {
             cameras_taken(info) + ".\n\n| parameter | preset | bounds | meaning |\n";
     for (const SolverParameter& p : info.parameters)
       text += "| " + p.name + " | " + shortest_text(p.preset) + " | " + shortest_text(p.lower) + " to " +
-              shortest_text(p.upper) + " | " + p.meaning + " |\n";
+              shortest_text(p.upper) + " | " + manifest::in_cell(p.meaning) + " |\n";
     text += "\nSource: " + info.source + "\n\n";
   }
   text += "# ANIMATRONICS\n";

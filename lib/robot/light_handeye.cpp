@@ -150,7 +150,7 @@ Matrix9 pseudo_inverse(const Matrix9& n) {
   return root * inverse.asDiagonal() * root.transpose();
 }
 
-// Gauss-Newton with the robot's noise estimated between the steps (Fellner 1986, as in handeye/refinement.h).
+// Gauss-Newton with the robot's noise estimated between the steps (Fellner, Biometrics 42, 1986).
 void refine(const std::vector<LightSample>& samples, State& state, double& robot_m) {
   robot_m = std::max(
       1e-9, std::sqrt(misfit(samples, state) / (9 * static_cast<double>(samples.size()))) * norm(samples[0].sigma_m));

@@ -12,6 +12,9 @@
 #include "cli/reference.h"
 #include "cli/roff.h"
 #include "data.h"
+#include "manifest/fields.h"
+#include "manifest/model.h"
+#include "mechanism/mechanism.h"
 #include "process.h"
 
 namespace gonio::tests {
@@ -23,7 +26,35 @@ using testing::HasSubstr;
 
 std::string unquoted(std::string name) {
   std::erase(name, '"');
+  for (std::size_t at = 0; (at = name.find("\\-", at)) != std::string::npos;) name.erase(at, 1);
   return name;
+}
+
+std::vector<fs::path> all_pages() {
+  std::vector<fs::path> pages;
+  for (const auto& entry : fs::directory_iterator(fs::path(GONIO_SOURCE) / "man")) {
+    const std::string kind = entry.path().extension();
+    if (kind == ".1" || kind == ".5" || kind == ".7") pages.push_back(entry.path());
+  }
+  std::ranges::sort(pages);
+  return pages;
+}
+
+// As a terminal shows it, without bold and underlines; every stretch of blanks is one.
+std::string shown(const fs::path& page, Ended& set) {
+  set = run({"groff", "-ww", "-Wbreak", "-t", "-man", "-Tutf8", "-P-c", "-P-b", "-P-u", page.string()});
+  std::string text;
+  for (std::size_t i = 0; i < set.out.size(); ++i) {
+    if (set.out.compare(i, 3, "\u2212") == 0 || set.out.compare(i, 3, "\u2010") == 0) {
+      text += '-';  // how minus and hyphen are drawn
+      i += 2;
+    } else if (set.out[i] != ' ' && set.out[i] != '\n') {
+      text += set.out[i];
+    } else if (!text.ends_with(' ')) {
+      text += ' ';
+    }
+  }
+  return text;
 }
 
 // Of a page: what stands behind .SH and .SS.
@@ -49,6 +80,13 @@ std::vector<std::string> headings_of_prose(const std::string& prose) {
     }
   }
   return found;
+}
+
+std::string one_blank(const std::string& line) {
+  std::istringstream words(line);
+  std::string out;
+  for (std::string word; words >> word;) out += (out.empty() ? "" : " ") + word;
+  return out;
 }
 
 fs::path page_of(const std::string& name) {
@@ -108,14 +146,87 @@ TEST(Manual, ABarWithinACellDoesNotEndIt) {
   EXPECT_THAT(page, HasSubstr("T{\nmean of |x|\nT}\tT{\nm\nT}"));
 }
 
-// Lines that do not fill a narrow column of a table ("cannot adjust line") are no fault of the text.
-TEST(Manual, PagesOfProgramsAreSetWithoutWarnings) {
-  for (const auto* program : cli::all_programs()) {
-    const Ended set = run({"groff", "-ww", "-Wbreak", "-t", "-man", "-Tutf8", page_of(program->name)});
-    if (set.status == 127) GTEST_SKIP() << "groff is not installed";
-    EXPECT_EQ(set.err, "") << program->name;
-    EXPECT_GT(set.out.size(), 2000u) << program->name;
+// A star opens what a later one closes, before a word and not behind one; products, patterns and assignments stay.
+TEST(Manual, StarsThatOpenNothingAreStars) {
+  for (const char* text : {"pixel value *= 1", "a*cos(theta)+b *2* c*d", "left*.jpg right*.jpg",
+                           "E *= (D / d)^2, a *= b", "2 * 3 * 4", "a**b and c**d", "*.png"}) {
+    std::string printed = cli::roff_text(text);
+    EXPECT_EQ(std::ranges::count(printed, '*'),
+              std::ranges::count(std::string(text), '*') - 2 * (std::string(text).find("*2*") != std::string::npos))
+        << printed;
   }
+  EXPECT_EQ(cli::roff_text("*first*, **second**: `a*b` x*y"), "\\fIfirst\\fR, \\fBsecond\\fR: \\fBa*b\\fR x*y");
+  EXPECT_EQ(cli::roff_text("`x' = r^2 ~ -1`"), "\\fBx\\(aq = r\\(ha2 \\(ti \\-1\\fR");
+  EXPECT_THAT(cli::roff_from_markdown("```\n'a' \\ *= `b`\n```\n"), HasSubstr("\n\\(aqa\\(aq \\(rs *= \\(gab\\(ga\n"));
+}
+
+// Lines that do not fill a narrow column of a table ("cannot adjust line") are no fault of the text.
+TEST(Manual, EveryPageIsSetWithoutWarnings) {
+  for (const auto* program : cli::all_programs()) EXPECT_FALSE(page_of(program->name).empty()) << program->name;
+  for (const fs::path& page : all_pages()) {
+    Ended set;
+    const std::string text = shown(page, set);
+    if (set.status == 127) GTEST_SKIP() << "groff is not installed";
+    EXPECT_EQ(set.err, "") << page.filename();
+    EXPECT_GT(text.size(), 2000u) << page.filename();
+  }
+}
+
+TEST(Manual, EquationsStandAsTheRegistryHasThem) {
+  Ended set;
+  const std::string text = shown(page_of("gonio-mechanisms"), set);
+  if (set.status == 127) GTEST_SKIP() << "groff is not installed";
+  EXPECT_GT(mechanism::all_mechanisms().size(), 60u);
+  for (const auto* m : mechanism::all_mechanisms())
+    EXPECT_THAT(text, HasSubstr(" " + one_blank(m->equation) + " ")) << m->id;
+}
+
+// Formulas of the prose are fenced code.
+TEST(Manual, FencedLinesStandAsTheyAreWritten) {
+  for (const char* name : {"gonio-surfaces", "gonio-mechanisms", "gonio-conventions", "gonio-nrsfm"}) {
+    Ended set;
+    const std::string text = shown(page_of(name), set);
+    if (set.status == 127) GTEST_SKIP() << "groff is not installed";
+    std::istringstream prose(read_file(fs::path(GONIO_SOURCE) / "man" / "prose" / (std::string(name) + ".md")));
+    bool code = false;
+    for (std::string line; std::getline(prose, line);) {
+      if (line.starts_with("```")) {
+        code = !code;
+      } else if (code) {
+        EXPECT_THAT(text, HasSubstr(one_blank(line))) << name;
+      }
+    }
+  }
+}
+
+TEST(Manual, LongPagesStartWithTheirContents) {
+  int long_pages = 0;
+  for (const fs::path& page : all_pages()) {
+    const std::string text = read_file(page);
+    if (std::ranges::count(text, '\n') < 500) continue;
+    ++long_pages;
+    const std::vector<std::string> headings = headings_of_page(text, false);
+    ASSERT_GT(headings.size(), 1u);
+    EXPECT_EQ(headings[1], "CONTENTS") << page.filename();
+    const std::string contents = text.substr(0, text.find(".SH \"DESCRIPTION\""));
+    for (const std::string& heading : headings_of_page(text, true))
+      if (heading != "NAME" && heading != "CONTENTS") {
+        EXPECT_THAT(unquoted(contents), HasSubstr(heading)) << page.filename();
+      }
+  }
+  EXPECT_GE(long_pages, 4);
+}
+
+TEST(Manual, SurfacesHaveTheirDefaultsAndBounds) {
+  const std::string page = read_file(page_of("gonio-surfaces"));
+  for (const auto family : {manifest::Family::surface, manifest::Family::law})
+    for (const auto* model : manifest::models(family))
+      for (const auto& p : model->parameters)
+        EXPECT_THAT(page,
+                    HasSubstr("\nT}\tT{\n" + (p.preset ? cli::roff_text(manifest::shown_number(*p.preset)) : "needed") +
+                              "\nT}\tT{\n" + cli::roff_text(manifest::bounds_text(p.lower, p.upper)) + "\nT}\tT{\n" +
+                              cli::roff_text(p.meaning) + "\nT}"))
+            << model->id << "." << p.name;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "explain/engine.h"
 #include "manifest/value.h"
 #include "process.h"
+#include "schema_check.h"
 
 namespace gonio::explain::tests {
 namespace {
@@ -48,6 +49,7 @@ TEST(ExplainBoards, ABoardThatIsNotFlatIsNamedOnHeldOutViews) {
   ASSERT_TRUE(calibrated.status == 0 || calibrated.status == 2) << calibrated.err;
   const auto ended = run({"explain", "--allow-outside"}, folder.path(), calibrated.out);
   ASSERT_EQ(ended.status, 0) << ended.err;
+  gonio::tests::expect_described(ended.out);
   const Value document = manifest::parse_json(ended.out, "explain");
   const Value& entry = at(document, "explanations").as_array().at(0);
   EXPECT_EQ(names(document), std::vector<std::string>{"board.warp"}) << at(entry, "sentence").as_string();

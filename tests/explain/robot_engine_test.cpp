@@ -11,6 +11,8 @@
 #include "geom/angle.h"
 #include "manifest/document.h"
 #include "manifest/sections/mounting.h"
+#include "robot/handeye/consensus.h"
+#include "robot/handeye_document.h"
 
 namespace gonio::explain::tests {
 namespace {
@@ -134,6 +136,36 @@ TEST(ExplainRobotEngine, WhatIsNamedIsModelledInTheManifest) {
   EXPECT_GT(document.mountings["hand"].tool_from_camera->sigma->translation_m.at(0), 0);
   const auto again = robot_problem(robot_inputs(document).at(0));
   EXPECT_TRUE(explain(*again, {}).named.empty());
+}
+
+robot::handeye::Noise noise_by_handeye(const manifest::Document& document) {
+  const robot::HandEyeInput input = robot::handeye_input(document, {});
+  return robot::handeye::find_consensus(input.setup, input.views).refined.noise;
+}
+
+// The same figure where nothing is named, whatever was asked meanwhile; and where the arm is put right, the figure is
+// the one that handeye states of the manifest that goes on.
+TEST(ExplainRobotEngine, TheNoiseIsTheOneThatHandeyeStates) {
+  CellTruth truth;
+  truth.robot_shift_m = 2e-4;
+  truth.robot_turn_rad = 4e-4;
+  for (const double off : {0.0, 4e-3}) {
+    truth.joint_offset_rad = {0, off, -off, off, -off, 0};
+    manifest::Document document = robot_cell(truth, 24, 12);
+    const auto problem = robot_problem(robot_inputs(document).at(0));
+    const Explanation e = explain(*problem, {});
+    ASSERT_EQ(e.verdict == Verdict::named, off > 0) << e.sentence;
+    EXPECT_THAT(e.sentence, testing::HasSubstr(off > 0 ? "once what is named is put in" : "as handeye states it"));
+    if (off > 0) {
+      EXPECT_GT(noise_by_handeye(document).robot_rad, 2 * truth.robot_turn_rad);
+    }
+    problem->apply(e, document);
+    const manifest::Mounting& mounting = document.mountings["hand"];
+    const robot::handeye::Noise noise = noise_by_handeye(document);
+    EXPECT_NEAR(*mounting.robot_m, noise.robot_m, (off > 0 ? 0.15 : 0.03) * noise.robot_m);
+    EXPECT_NEAR(*mounting.robot_rad, noise.robot_rad, (off > 0 ? 0.15 : 0.03) * noise.robot_rad);
+    EXPECT_NEAR(noise.robot_m, truth.robot_shift_m, 0.3 * truth.robot_shift_m);
+  }
 }
 
 TEST(ExplainRobotEngine, ManifestsWithMountingsOfferTheDomain) {

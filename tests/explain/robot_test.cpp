@@ -45,8 +45,8 @@ TEST(ExplainRobot, TheChainIsThatOfAnArmBuiltOtherwise) {
     const auto own = robot::flange(work.input.links, view.joints_rad);
     EXPECT_LT(norm(own.translation_m - view.base_from_tool.translation_m), 1e-9);
   }
-  EXPECT_LT(work.noise.shift_m, 1e-6);
-  EXPECT_LT(work.noise.rotation_rad, 1e-6);
+  EXPECT_LT(work.noise.sizes.robot_m, 1e-6);
+  EXPECT_LT(work.noise.sizes.robot_rad, 1e-6);
 }
 
 // Without noise every hypothesis finds its own truth, all others being free beside it, but for what one Gauss-Newton
@@ -135,8 +135,8 @@ TEST(ExplainRobot, TheRobotsNoiseIsEstimatedWithoutBias) {
   constexpr int sets = 12;
   for (int seed = 0; seed < sets; ++seed) {
     const RobotNoise noise = settled(truth, 30, 100 + static_cast<std::uint64_t>(seed)).noise;
-    shift += noise.shift_m * noise.shift_m / sets;
-    turn += noise.rotation_rad * noise.rotation_rad / sets;
+    shift += noise.sizes.robot_m * noise.sizes.robot_m / sets;
+    turn += noise.sizes.robot_rad * noise.sizes.robot_rad / sets;
   }
   EXPECT_NEAR(std::sqrt(shift), truth.robot_shift_m, 0.06 * truth.robot_shift_m);  // three standard errors of the mean
   EXPECT_NEAR(std::sqrt(turn), truth.robot_turn_rad, 0.06 * truth.robot_turn_rad);
@@ -151,7 +151,20 @@ TEST(ExplainRobot, APoseBeyondAnyNoiseIsLeftOutAndNamed) {
   settle(work);
   EXPECT_THAT(work.outliers, testing::ElementsAre("view5"));
   EXPECT_EQ(work.input.views.size(), 19u);
-  EXPECT_LT(work.noise.shift_m, 1.5e-4);
+  EXPECT_LT(work.noise.sizes.robot_m, 1.5e-4);
+}
+
+// What handeye left out is left out, but the arm went through it.
+TEST(ExplainRobot, PosesThatHandeyeLeftOutAreLeftOut) {
+  manifest::Document document = robot_cell({}, 12, 8);
+  const RobotInput whole = robot_inputs(document).at(0);
+  document.mountings["hand"].outliers = {"view5"};
+  const RobotInput input = robot_inputs(document).at(0);
+  ASSERT_EQ(input.views.size(), 11u);
+  for (const RobotInput::View& view : input.views) EXPECT_NE(view.image, "view5");
+  EXPECT_EQ(input.views[5].approach, whole.views[6].approach);
+  document.mountings["hand"].outliers = {"view0", "view1", "view2", "view3", "view4", "view5", "view6"};
+  EXPECT_FALSE(has_hand_eye(document));
 }
 
 TEST(ExplainRobot, WhatTheRecordingsLackIsNoHypothesis) {

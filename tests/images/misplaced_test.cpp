@@ -9,6 +9,7 @@
 #include "manifest/document.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/surface.h"
+#include "schema_check.h"
 
 namespace gonio::tests {
 namespace {
@@ -60,6 +61,7 @@ TEST_F(Misplaced, TwoViewsSwapped) {
   manifest::Document document = with({{"00", "10"}, {"10", "00"}});
   const auto before = document.surfaces.at("ball").parameters.at("albedo");
   EXPECT_EQ(explain_document(document, request()), Exit::negative);
+  expect_described(manifest::print_document(document, document.folder));
   manifest::Value entry = document.explanations.at(0);
   EXPECT_EQ(entry["verdict"].as_string(), "unknown");
   ASSERT_EQ(entry["misplaced"].as_array().size(), 2u);

@@ -27,7 +27,7 @@ std::vector<double> neutral_values(const Problem& problem) {
 double mean_square(const std::string& mechanisms) {
   const tests::ScratchFolder folder;
   std::vector<io::Image> renderings;
-  const images::ImagesProblem problem(record_ball(folder, mechanisms, mechanisms, 1024, 5, &renderings));
+  const images::ImagesProblem problem(record_ball(folder, mechanisms, mechanisms, 512, 5, &renderings));
   const Observations& o = problem.observations();
   double sum = 0;
   for (std::size_t g = 0; g < o.groups(); ++g) {
@@ -81,7 +81,8 @@ class ImagesInjected : public testing::TestWithParam<Injected> {};
 
 TEST_P(ImagesInjected, IsNamed) {
   const tests::ScratchFolder folder;
-  const images::ImagesProblem problem(record_ball(folder, GetParam().truth, GetParam().believed, 256, 7));
+  const images::ImagesProblem problem(record_ball(folder, GetParam().truth, GetParam().believed, 256, 7),
+                                      {.pixels = 3000});
   const Explanation e = explain(problem, Options{});
   ASSERT_FALSE(e.named.empty()) << verdict_name(e.verdict) << ": " << e.sentence;
   EXPECT_EQ(problem.candidates()[e.named[0]].id(), GetParam().id) << e.sentence;
@@ -106,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ImagesModel, NothingInjectedNothingNamed) {
   for (const std::uint64_t seed : {11, 12, 13}) {
     const tests::ScratchFolder folder;
-    const images::ImagesProblem problem(record_ball(folder, "", "", 256, seed));
+    const images::ImagesProblem problem(record_ball(folder, "", "", 256, seed), {.pixels = 3000});
     EXPECT_TRUE(explain(problem, Options{}).named.empty());
   }
 }

@@ -18,7 +18,8 @@ struct Outcome {
   images::ImagesProblem problem;
   Explanation explanation;
   explicit Outcome(const std::string& file)
-      : problem(manifest::read_document(tests::data("recordings") / file)), explanation(explain(problem, Options{})) {}
+      : problem(manifest::read_document(tests::data("recordings") / file), {.pixels = 4500}),
+        explanation(explain(problem, Options{})) {}
   std::string first() const { return explanation.named.empty() ? "" : problem.candidates()[explanation.named[0]].id(); }
   double fitted(std::size_t k) const { return explanation.estimates.at(k).value; }
   // Share of what the noise leaves room for: pixels' noise over signal is the least that any model can reach.

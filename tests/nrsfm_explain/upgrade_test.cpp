@@ -10,6 +10,7 @@
 #include "nrsfm/errors.h"
 #include "nrsfm/files.h"
 #include "nrsfm/manifest_sequences.h"
+#include "schema_check.h"
 #include "tracks_world.h"
 
 namespace gonio::explain {
@@ -52,6 +53,7 @@ class Upgrade : public ::testing::Test {
     request.options = testing::quick();
     explain_document(document_, request);
     std::vector<std::string> named;
+    gonio::tests::expect_described(manifest::print_document(document_, document_.folder));
     const manifest::Value& entry = document_.explanations.back();
     for (const manifest::Value& n : entry.find("named")->as_array()) named.push_back(n.find("mechanism")->as_string());
     sentence_ = entry.find("sentence")->as_string();

@@ -16,6 +16,7 @@
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/table.h"
 #include "process.h"
+#include "schema_check.h"
 
 namespace gonio::tests {
 namespace {
@@ -41,7 +42,9 @@ class ExplainTables : public testing::Test {
   void write(const std::string& name, const std::string& text) const { write_file(folder_ / name, text); }
   Ended explain(std::vector<std::string> words, const std::string& input = {}) const {
     words.insert(words.begin(), "explain");
-    return run(words, folder_.path(), input);
+    Ended ended = run(words, folder_.path(), input);
+    if (ended.out.starts_with("{")) expect_described(ended.out);
+    return ended;
   }
   std::string verdict(const std::string& out) const {
     const manifest::Document d = manifest::parse_document(out, "o", folder_.path(), {.allow_outside = true});

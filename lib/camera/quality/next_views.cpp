@@ -1,7 +1,6 @@
 // See next_views.h.
 #include "camera/quality/next_views.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -104,7 +103,7 @@ void fill_information(const CameraResult& camera, std::size_t place, const std::
   if (static_cast<double>(points.size()) < std::max(6.0, needed * board.corners())) return;
   const std::vector<double> weights(points.size(), 1 / (camera.noise_px() * camera.noise_px()));
   const ViewEquations e = view_equations(camera.lens(), candidate.pose, board, warp, columns, points, weights);
-  const Eigen::LDLT<Matrix6> own(e.c);
+  const linear::Ldlt own(e.c);
   const AlignmentPart part = alignment_part(board, candidate.pose, warp, points);
   candidate.information = e.a - e.b * own.solve(e.b.transpose());
   candidate.by_shared = -part.by_pose * own.solve(e.b.transpose());
@@ -167,7 +166,7 @@ LinearLaw with(const LinearLaw& law, const CandidateView& v) {
   LinearLaw result = law;
   result.shared = updated(law.shared, v.information);
   result.normal = law.normal + v.normal;
-  const Eigen::LDLT<Matrix6> normal(result.normal);
+  const linear::Ldlt normal(result.normal);
   result.drift = normal.solve(law.normal * law.drift + v.by_shared);
   const Matrix6 by_noise = law.normal * law.scatter * law.normal + v.by_noise;
   result.scatter = normal.solve(Matrix6(normal.solve(by_noise).transpose()));

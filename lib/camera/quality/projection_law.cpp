@@ -1,12 +1,12 @@
 // See projection_law.h.
 #include "camera/quality/projection_law.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "camera/quality/linear_law.h"
+#include "linear/solve.h"
 #include "stats/distributions.h"
 
 namespace gonio::camera {
@@ -195,7 +195,7 @@ ProjectionLaw::ProjectionLaw(const CameraResult& camera) : lens_(camera.lens()) 
     by_noise += part.by_pose * pose.own * part.by_pose.transpose();
     add_warp(c.shared, camera.views[i].board, part, by_shared);
   }
-  const Eigen::LDLT<Matrix6> normal(law.normal);
+  const linear::Ldlt normal(law.normal);
   law.drift = normal.solve(by_shared);
   law.scatter = normal.solve(Matrix6(normal.solve(by_noise).transpose()));
   linear_ = std::make_shared<const LinearLaw>(std::move(law));

@@ -112,7 +112,7 @@ PoseMatrix by_tool(const RobotInput& input, const RobotInput::View& view, const 
 
 MeasuredPose measured_pose(const RobotInput::View& view, const RobotInput& input, const RobotState& state,
                            const camera::BoardPose& start, int iterations) {
-  MeasuredPose result{start, PoseMatrix::Zero(), 0};
+  MeasuredPose result{start, PoseMatrix::Zero()};
   if (view.corners.empty()) {
     result.covariance.diagonal().head<3>().setConstant(view.rotation_sigma_rad * view.rotation_sigma_rad);
     result.covariance.diagonal().tail<3>().setConstant(view.shift_sigma_m * view.shift_sigma_m);
@@ -121,7 +121,7 @@ MeasuredPose measured_pose(const RobotInput::View& view, const RobotInput& input
   for (int i = 0; i <= iterations; ++i) {
     PoseMatrix normal = PoseMatrix::Zero();
     PoseChange gradient = PoseChange::Zero();
-    double squares = 0, rows = 0, pixels = 0;
+    double squares = 0, rows = 0;
     for (const RobotInput::Corner& c : view.corners) {
       Vec2 pixel;
       std::array<std::array<double, camera::BoardColumn::count>, 2> jacobian{};
@@ -134,7 +134,6 @@ MeasuredPose measured_pose(const RobotInput::View& view, const RobotInput& input
         normal += row * row.transpose() / (c.sigma_px * c.sigma_px);
         gradient += row * (error[r] / (c.sigma_px * c.sigma_px));
         squares += error[r] * error[r] / (c.sigma_px * c.sigma_px);
-        pixels += error[r] * error[r];
         rows += 1;
       }
     }
@@ -147,8 +146,9 @@ MeasuredPose measured_pose(const RobotInput::View& view, const RobotInput& input
       if (step.norm() < 1e-10) iterations = i + 1;
       continue;
     }
-    result.rms_px = std::sqrt(pixels / std::max(1.0, rows / 2));
-    result.covariance = factor.solve(PoseMatrix::Identity()) * (rows > 12 ? squares / (rows - 6) : 1.0);
+    result.covariance = factor.solve(PoseMatrix::Identity());
+    result.squares = squares;
+    result.freedom = rows - 6;
   }
   return result;
 }

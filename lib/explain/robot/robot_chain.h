@@ -45,8 +45,8 @@ PoseMatrix by_tool(const RobotInput& input, const RobotInput::View& view, const 
 
 struct MeasuredPose {
   camera::BoardPose camera_from_board;
-  PoseMatrix covariance;  // from the corners' stated noise, scaled by their reprojection residuals
-  double rms_px = 0;
+  PoseMatrix covariance;            // from the corners' stated noise
+  double squares = 0, freedom = 0;  // of the corners' residuals in units of that noise; numbers beyond the pose's six
 };
 // Least squares over the view's corners (Gauss-Newton), from `start`; views without corners keep their pose.
 MeasuredPose measured_pose(const RobotInput::View& view, const RobotInput& input, const RobotState& state,

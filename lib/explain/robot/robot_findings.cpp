@@ -14,7 +14,8 @@ namespace gonio::explain {
 namespace {
 
 using Part = RobotRole::Part;
-constexpr double entangled_beyond = 0.95;  // correlation with the mounting
+constexpr double entangled_beyond = 0.95;     // correlation with the mounting
+constexpr std::size_t mounting_numbers = 12;  // the first of the base model's
 
 Eigen::MatrixXd stacked(const RobotWork& work, const std::vector<PoseMatrix>& whitener,
                         const std::vector<std::size_t>& columns) {
@@ -29,7 +30,8 @@ Eigen::MatrixXd stacked(const RobotWork& work, const std::vector<PoseMatrix>& wh
 // What is left of the columns when the mounting has taken what it can.
 Eigen::MatrixXd beyond_mounting(const RobotWork& work, const std::vector<PoseMatrix>& whitener,
                                 const Eigen::MatrixXd& columns) {
-  const std::vector<std::size_t> mounting(work.parameters.base.begin(), work.parameters.base.begin() + 12);
+  const std::vector<std::size_t> mounting(work.parameters.base.begin(),
+                                          work.parameters.base.begin() + mounting_numbers);
   Eigen::MatrixXd m = stacked(work, whitener, mounting);
   m.colwise().normalize();
   return columns - m * linear::LeastNorm(m).solve(columns);
@@ -87,19 +89,22 @@ double shift_m2(const RobotWork& work, const std::vector<PoseMatrix>& whitener, 
   return sum / static_cast<double>(whitener.size());
 }
 
-// The noise under the model that stands: what was not named is the robot's.
+// The noise under the model that stands, the mountings and what is named: what was not named is the robot's. Where
+// nothing is named it is the noise that handeye states; lenses that may move within their sigma are none of its
+// business.
 struct FinalNoise {
   std::vector<NoisyView> views;  // with the columns of that model alone
   Eigen::VectorXd prior;
-  RobotNoise noise;
+  robot::handeye::Noise noise;
 };
 FinalNoise final_noise(const RobotWork& work, const Explanation& e) {
   std::vector<Eigen::Index> columns;
-  for (const std::size_t p : work.parameters.base) columns.push_back(static_cast<Eigen::Index>(p));
+  for (std::size_t k = 0; k < mounting_numbers; ++k)
+    columns.push_back(static_cast<Eigen::Index>(work.parameters.base[k]));
   for (const Estimate& estimate : e.estimates) columns.push_back(static_cast<Eigen::Index>(estimate.parameter));
   FinalNoise result{work.noisy, prior_precision(work.parameters)(columns), {}};
   for (NoisyView& view : result.views) view.jacobian = Eigen::MatrixXd(view.jacobian(Eigen::all, columns));
-  result.noise = robot_noise(result.views, result.prior);
+  result.noise = noise_of(result.views, result.prior);
   return result;
 }
 
@@ -107,25 +112,26 @@ FinalNoise final_noise(const RobotWork& work, const Explanation& e) {
 // part by part.
 std::array<double, 2> noise_m2(const RobotWork& work, const FinalNoise& f) {
   const Eigen::Index n = f.prior.size();
+  robot::handeye::Noise of_camera;
+  of_camera.board_rad = f.noise.board_rad;  // lens and board turn it
   Eigen::MatrixXd normal = f.prior.asDiagonal();
   std::vector<PoseMatrix> weight;
   for (const NoisyView& view : f.views) {
-    weight.push_back(view.covariance(f.noise.rotation_rad, f.noise.shift_m).inverse());
+    weight.push_back(view.covariance(f.noise).inverse());
     normal += view.jacobian.transpose() * weight.back() * view.jacobian;
   }
   const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-  const Eigen::MatrixXd inverse = scale.asDiagonal() *
-                                  linear::LeastNorm(scaled).solve(Eigen::MatrixXd::Identity(n, n)) *
-                                  scale.asDiagonal();
+  const Eigen::MatrixXd inverse =
+      scale.asDiagonal() * linear::LeastNorm(scaled).solve(Eigen::MatrixXd::Identity(n, n)) * scale.asDiagonal();
   std::array<double, 2> sums{};
   for (std::size_t i = 0; i < f.views.size(); ++i)
     for (std::size_t j = 0; j < f.views.size(); ++j) {
       PoseMatrix m = -f.views[i].jacobian * inverse * f.views[j].jacobian.transpose() * weight[j];
       if (i == j) m += PoseMatrix::Identity();
       const ShiftMatrix rows = of_middle(work, i) * m;
-      const PoseMatrix& measured = f.views[j].measured;
-      const PoseMatrix robot = f.views[j].covariance(f.noise.rotation_rad, f.noise.shift_m) - measured;
+      const PoseMatrix robot = f.views[j].covariance(f.noise) - f.views[j].covariance(of_camera);
+      const PoseMatrix measured = f.views[j].covariance(of_camera);
       sums[0] += (rows * robot * rows.transpose()).trace() / static_cast<double>(f.views.size());
       sums[1] += (rows * measured * rows.transpose()).trace() / static_cast<double>(f.views.size());
     }
@@ -190,14 +196,29 @@ std::string millimetres(double m) {
   return printed(1e3 * m, 2) + " mm";
 }
 
+std::string degrees(double rad) {
+  const double value = rad * 180 / pi;
+  return (value < 5e-4 ? std::string("less than 0.001") : printed(value, 2)) + " degrees";
+}
+
+// Which noise it is: handeye states that of all poses that it kept, about the mountings alone.
+std::string about(const RobotWork& work, const RobotFindings& f) {
+  if (f.with_named) return "once what is named is put in";
+  if (work.outliers.empty()) return "about the mountings as handeye states it";
+  std::string names;
+  for (const std::string& image : work.outliers) names += (names.empty() ? "" : ", ") + image;
+  return "about the mountings without " + names + ", beyond any noise";
+}
+
 std::string words_of(const RobotWork& work, const RobotFindings& f) {
   std::string text = "The board's position scatters by " + millimetres(f.scatter_m) +
                      ": the robot's poses account for " + millimetres(*f.parts.robot_m) + ", corners and camera for " +
                      millimetres(*f.parts.camera_m) + ", the board's shape for " + millimetres(*f.parts.board_m) +
                      ", and " + millimetres(*f.parts.unexplained_m) +
                      " remains unexplained (root mean squares; their squares add).";
-  text += " The robot's noise is " + millimetres(f.robot_m) + " a coordinate and " +
-          printed(f.robot_rad * 180 / pi, 2) + " degrees an axis.";
+  text += " The noise of the robot's poses, " + about(work, f) + ", is " + millimetres(f.robot_m) +
+          " a coordinate and " + degrees(f.robot_rad) + " an axis; the board is seen turned by " +
+          degrees(f.board_rad) + " an axis beyond its corners' noise.";
   if (work.input.links.empty() || work.input.views[0].joints_rad.empty())
     text += " Without joint angles and a known arm its kinematics cannot be examined.";
   return text;
@@ -205,13 +226,24 @@ std::string words_of(const RobotWork& work, const RobotFindings& f) {
 
 }  // namespace
 
+double place_noise2(const RobotWork& work) {
+  double sum = 0;
+  for (std::size_t v = 0; v < work.noisy.size(); ++v) {
+    const ShiftMatrix middle = of_middle(work, v);
+    sum += (middle * work.noisy[v].covariance(work.noise.sizes) * middle.transpose()).trace();
+  }
+  return std::max(1e-24, sum / static_cast<double>(work.noisy.size()));
+}
+
 RobotFindings findings_of(const RobotWork& work, const std::vector<PoseMatrix>& whitener, const Explanation& e) {
   RobotFindings f;
   const double scatter = shift_m2(work, whitener, e.residual_before);
   const FinalNoise final = final_noise(work, e);
   f.scatter_m = std::sqrt(scatter);
-  f.robot_m = final.noise.shift_m;
-  f.robot_rad = final.noise.rotation_rad;
+  f.robot_m = final.noise.robot_m;
+  f.robot_rad = final.noise.robot_rad;
+  f.board_rad = final.noise.board_rad;
+  f.with_named = !e.estimates.empty();
   f.parts = parts_of(work, whitener, e, final, scatter);
   find_entangled(work, whitener, f);
   f.sentence = words_of(work, f);

@@ -17,7 +17,6 @@ struct RobotWork {
   std::vector<double> aligned;               // values of all parameters: mounting aligned, hypotheses neutral
   RobotNoise noise;
   std::vector<std::string> outliers;  // images left out
-  double rms_px = 0;                  // of the corners about their own poses
 };
 
 // Solves the measured poses, aligns the mounting, estimates the noise with all hypotheses free (within their plausible
@@ -40,6 +39,10 @@ Eigen::MatrixXd pose_slopes(const RobotWork& work, std::size_t view, const Robot
 std::vector<Condition> robot_conditions(const RobotWork& work);
 void append_robot_conditions(const RobotWork& work, std::size_t view, const PoseMatrix& whitener,
                              std::vector<Condition>& conditions);
+
+// Mean square of the shift of the board's middle by one pose's noise, m^2: what one noise width of a whitened residual
+// is worth.
+double place_noise2(const RobotWork& work);
 
 RobotFindings findings_of(const RobotWork& work, const std::vector<PoseMatrix>& whitener, const Explanation& e);
 void upgrade_robot(const RobotWork& work, const Problem& problem, const RobotFindings& findings, const Explanation& e,

@@ -16,7 +16,8 @@
 namespace gonio::explain {
 namespace {
 
-constexpr std::size_t fewest_images = 6, fewest_corners = 6;
+constexpr std::ptrdiff_t fewest_images = 6;
+constexpr std::size_t fewest_corners = 6;
 
 bool is_complete(const manifest::Mounting& m) {
   return (m.kind == "eye-in-hand" && m.tool_from_camera && m.base_from_board) ||
@@ -35,6 +36,16 @@ std::vector<const manifest::ImageEntry*> images_of(const manifest::Document& doc
   for (const manifest::ImageEntry& image : document.images)
     if (belongs(image, m)) images.push_back(&image);
   return images;
+}
+
+// What handeye left out is left out here.
+bool is_left_out(const std::string& image, const manifest::Mounting& m) {
+  return std::find(m.outliers.begin(), m.outliers.end(), image) != m.outliers.end();
+}
+
+bool is_enough(const manifest::Document& document, const manifest::Mounting& m) {
+  const auto counts = [&](const manifest::ImageEntry* image) { return !is_left_out(image->id, m); };
+  return is_complete(m) && std::ranges::count_if(images_of(document, m), counts) >= fewest_images;
 }
 
 template <class Pose>
@@ -146,7 +157,8 @@ RobotInput input_of(const manifest::Document& document, const std::string& name,
   read_camera(document, input);
   read_board(document, input);
   for (const manifest::ImageEntry* image : images) input.views.push_back(view_of(document, *image, input));
-  find_passage(input);
+  find_passage(input);  // by all poses: the arm went through those that are left out, too
+  std::erase_if(input.views, [&](const RobotInput::View& v) { return is_left_out(v.image, m); });
   read_corners(document, input);
   even_out(document, input);
   return input;
@@ -155,16 +167,14 @@ RobotInput input_of(const manifest::Document& document, const std::string& name,
 }  // namespace
 
 bool has_hand_eye(const manifest::Document& document) {
-  return std::any_of(document.mountings.begin(), document.mountings.end(), [&](const auto& m) {
-    return is_complete(m.second) && images_of(document, m.second).size() >= fewest_images;
-  });
+  return std::any_of(document.mountings.begin(), document.mountings.end(),
+                     [&](const auto& m) { return is_enough(document, m.second); });
 }
 
 std::vector<RobotInput> robot_inputs(const manifest::Document& document) {
   std::vector<RobotInput> inputs;
   for (const auto& [name, mounting] : document.mountings)
-    if (is_complete(mounting) && images_of(document, mounting).size() >= fewest_images)
-      inputs.push_back(input_of(document, name, mounting));
+    if (is_enough(document, mounting)) inputs.push_back(input_of(document, name, mounting));
   return inputs;
 }
 

@@ -18,7 +18,7 @@ constexpr double estimable =
 
 class HandEyeProblem final : public RobotProblem {
  public:
-  explicit HandEyeProblem(RobotInput input) : work_{std::move(input), {}, {}, {}, {}, {}, {}, {}} {
+  explicit HandEyeProblem(RobotInput input) : work_{std::move(input), {}, {}, {}, {}, {}, {}} {
     work_.parameters = robot_parameters(work_.input);
     settle(work_);
     if (work_.input.views.size() < fewest_views)
@@ -55,8 +55,8 @@ class HandEyeProblem final : public RobotProblem {
   }
 
   std::string domain() const override { return "robot"; }
-  std::string unit() const override { return "times its noise"; }
-  std::string score_name() const override { return "error of the board's pose"; }
+  std::string unit() const override { return "m"; }
+  std::string score_name() const override { return "error of the board's place"; }
   std::string group_noun() const override { return "pose"; }
   Importance importance() const override { return Importance::share_of_residual; }
   bool sets_outliers_aside() const override { return false; }  // those are left out before: settle()
@@ -73,7 +73,7 @@ class HandEyeProblem final : public RobotProblem {
  private:
   void whiten() {
     for (const NoisyView& view : work_.noisy) {
-      const PoseMatrix covariance = view.covariance(work_.noise.rotation_rad, work_.noise.shift_m);
+      const PoseMatrix covariance = view.covariance(work_.noise.sizes);
       whitener_.push_back(covariance.llt().matrixL().solve(PoseMatrix::Identity()));
     }
   }
@@ -115,12 +115,13 @@ class HandEyeProblem final : public RobotProblem {
     Observations& o = observations_;
     o.first.push_back(0);
     o.conditions = robot_conditions(work_);
+    const double place2 = place_noise2(work_);
     for (std::size_t v = 0; v < work_.input.views.size(); ++v) {
       o.group.push_back(work_.input.views[v].image);
       for (int i = 0; i < 6; ++i) {
         o.value.push_back(0);
         o.sigma.push_back(1);
-        o.norm.push_back(1);
+        o.norm.push_back(1 / place2);
         o.block.push_back(static_cast<std::uint32_t>(6 * v) + static_cast<std::uint32_t>(i));
       }
       append_robot_conditions(work_, v, whitener_[v], o.conditions);

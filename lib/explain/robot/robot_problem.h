@@ -5,7 +5,8 @@
 // whitened by the Cholesky factor of their covariance: the corners' noise through the pose estimate, plus the robot's
 // own noise (one standard deviation of position, one of rotation, about the tool), which is estimated from these very
 // recordings. One group per view; its six numbers, once
-// whitened, are independent witnesses. Score: root mean square in units of that noise.
+// whitened, are independent witnesses. Score: their root mean square times what one width of that noise moves the
+// board's middle by, in metres: the noise was estimated with every hypothesis free, and is no measure of a misfit.
 //
 // Free in the base model: the two mountings, and focal lengths and principal point where the camera states their sigma
 // (as priors). Hypotheses: robot.joint-offset, robot.link-length, robot.sag (they need joints_rad and a known arm),
@@ -80,7 +81,10 @@ void find_passage(RobotInput& input);
 struct RobotFindings {
   manifest::ScatterParts parts;
   double scatter_m = 0;
-  double robot_m = 0, robot_rad = 0;  // estimated noise: one coordinate, one axis
+  // Noise under the model that stands (robot/handeye/pose_noise.h): one coordinate, one axis; the mountings alone, as
+  // handeye has it, unless physics is named.
+  double robot_m = 0, robot_rad = 0, board_rad = 0;
+  bool with_named = false;
   std::vector<std::string> entangled, next;
   std::string sentence;
 };

@@ -11,9 +11,19 @@ namespace {
 
 constexpr int pose_iterations = 4;
 
-PoseMatrix part_covariance(const PoseMatrix& by_tool, Eigen::Index first) {
-  const auto columns = by_tool.middleCols<3>(first);
-  return columns * columns.transpose();
+// A turn of the tool, a shift of it, and a turn of the seen board about its middle, by which its origin follows.
+robot::handeye::PoseScatter scatter_of(const RobotWork& work, std::size_t view, const RobotState& state,
+                                       const PoseMatrix& measured) {
+  const PoseMatrix by = by_tool(work.input, work.input.views[view], state);
+  const Vec3 arm = work.reference[view].rotate({work.input.extent.middle_m.x, work.input.extent.middle_m.y, 0});
+  Eigen::Matrix<double, 6, 3> by_board;
+  by_board << 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, -arm.z, arm.y, arm.z, 0, -arm.x, -arm.y, arm.x, 0;
+  robot::handeye::PoseScatter s;
+  std::ranges::copy(measured.reshaped(), s.measured.begin());
+  std::ranges::copy(by.leftCols<3>().reshaped(), s.by_turn.begin());
+  std::ranges::copy(by.rightCols<3>().reshaped(), s.by_shift.begin());
+  std::ranges::copy(by_board.reshaped(), s.by_board.begin());
+  return s;
 }
 
 // Derivatives of pose_difference() by all parameters.
@@ -32,9 +42,8 @@ Eigen::MatrixXd differences(const RobotWork& work, std::size_t view, const std::
 NoisyView noisy_view(const RobotWork& work, std::size_t view, const std::vector<double>& values,
                      const PoseMatrix& measured) {
   const RobotState state = state_of(work.input, work.parameters, values);
-  const PoseMatrix by = by_tool(work.input, work.input.views[view], state);
-  return {-pose_difference(work, view, state), differences(work, view, values), measured, part_covariance(by, 0),
-          part_covariance(by, 3)};
+  return {-pose_difference(work, view, state), differences(work, view, values),
+          scatter_of(work, view, state, measured)};
 }
 
 // Gauss-Newton on the two mountings alone. Poses weigh by a plain 1 mrad and 1 mm, with Huber's loss so that single bad
@@ -149,14 +158,17 @@ void settle(RobotWork& work) {
   for (const Parameter& p : work.parameters.parameters) work.aligned.push_back(p.neutral);
   const RobotState base = state_of(work.input, work.parameters, work.aligned);
   std::vector<PoseMatrix> covariances;
-  double squares = 0;
+  double squares = 0, freedom = 0;
   for (const RobotInput::View& view : work.input.views) {
     const MeasuredPose m = measured_pose(view, work.input, base, view.camera_from_board, 20);
     work.reference.push_back(m.camera_from_board);
     covariances.push_back(m.covariance);
-    squares += m.rms_px * m.rms_px;
+    squares += m.squares;
+    freedom += m.freedom;
   }
-  work.rms_px = std::sqrt(squares / static_cast<double>(work.input.views.size()));
+  // Corners scatter as they do about the poses of all views, whatever was stated: a view's own are too few to say.
+  if (freedom >= 1)
+    for (PoseMatrix& covariance : covariances) covariance *= squares / freedom;
   align(work);
   for (std::size_t v = 0; v < work.input.views.size(); ++v)
     work.noisy.push_back(noisy_view(work, v, work.aligned, covariances[v]));

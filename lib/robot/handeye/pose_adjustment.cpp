@@ -7,19 +7,16 @@
 // group.
 #include "robot/handeye/pose_adjustment.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
-#include "linear/solve.h"
-#include "linear/symmetric_eigen.h"
+#include "robot/handeye/pose_noise.h"
 
 namespace gonio::robot::handeye {
 namespace {
 
 constexpr int most_steps = 60, noise_steps = 12;
-constexpr double least_m = 1e-9, least_rad = 1e-9;
-constexpr double board_turn_share = 0.3;  // of the robot's turn, to begin with
 
 Matrix3 inverse_left_jacobian(const Vector3& v) {
   const Matrix3 k = cross_matrix(v);
@@ -34,86 +31,26 @@ Rigid<To, From> moved(const Rigid<To, From>& pose, const Eigen::Ref<const Vector
           pose.translation_m + Vec3{change(3), change(4), change(5)}};
 }
 
-struct Linearised {
-  Vector6 e;
-  Matrix6x12 j;
-  Matrix6 camera;  // covariance that the corners bring
-  Eigen::Matrix<double, 6, 3> turn;
-};
+// How a deviation scatters: the robot's part acts on it as it is.
+PoseScatter scatter_of(const Deviation& d, const ObservedPose& observed) {
+  PoseScatter s;
+  Eigen::Map<Matrix6>(s.measured.data()) = d.by_pose * observed.covariance * d.by_pose.transpose();
+  for (std::size_t k = 0; k < 3; ++k) s.by_turn[7 * k] = s.by_shift[7 * k + 3] = 1;
+  Eigen::Map<Eigen::Matrix<double, 6, 3>>(s.by_board.data()) = d.by_board_turn;
+  return s;
+}
 
-std::vector<Linearised> linearise(Kind kind, const std::vector<ObservedPose>& observed, const Solution& solution) {
-  std::vector<Linearised> rows;
+std::vector<NoisyPose> linearise(Kind kind, const std::vector<ObservedPose>& observed, const Solution& solution) {
+  std::vector<NoisyPose> rows;
   for (const ObservedPose& o : observed) {
     if (!o.counts) continue;
     const Deviation d = deviation(kind, o, solution);
-    rows.push_back({d.value, d.by_mountings, d.by_pose * o.covariance * d.by_pose.transpose(), d.by_board_turn});
+    NoisyPose row{{}, std::vector<double>(72), scatter_of(d, o)};
+    Eigen::Map<Vector6>(row.residual.data()) = d.value;
+    Eigen::Map<Matrix6x12>(row.jacobian.data()) = d.by_mountings;
+    rows.push_back(std::move(row));
   }
   return rows;
-}
-
-Matrix6 covariance_of(const Matrix6& camera, const Eigen::Matrix<double, 6, 3>& turn, const Noise& noise) {
-  Matrix6 v = camera + noise.board_rad * noise.board_rad * turn * turn.transpose();
-  v.diagonal().head<3>().array() += noise.robot_rad * noise.robot_rad;
-  v.diagonal().tail<3>().array() += noise.robot_m * noise.robot_m;
-  return v;
-}
-
-struct Normal {
-  Matrix12 information = Matrix12::Zero();
-  Vector12 gradient = Vector12::Zero();
-};
-Normal normal_equations(const std::vector<Linearised>& rows, const Noise& noise) {
-  Normal n;
-  for (const Linearised& row : rows) {
-    const Matrix6x12 weighted = linear::solve_ldlt(covariance_of(row.camera, row.turn, noise), row.j);
-    n.information.noalias() += row.j.transpose() * weighted;
-    n.gradient.noalias() += weighted.transpose() * row.e;
-  }
-  return n;
-}
-
-// Symmetric solve under unit diagonal; directions without information stay where they are.
-Matrix12 pseudo_inverse(const Matrix12& n) {
-  const Vector12 scale = n.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const linear::SymmetricEigen<Matrix12> e(scale.asDiagonal() * n * scale.asDiagonal());
-  Vector12 inverse = Vector12::Zero();
-  for (int i = 0; i < 12; ++i) inverse(i) = e.eigenvalues()(i) > 1e-12 ? 1 / e.eigenvalues()(i) : 0;
-  const Matrix12 root = scale.asDiagonal() * e.eigenvectors();
-  return root * inverse.asDiagonal() * root.transpose();
-}
-
-// One update of the variances at a fixed linearisation: v <- v (y' G G' y) / trace(G' P G), y = P e, with G the rows or
-// the columns through which each of them acts.
-double update_noise(const std::vector<Linearised>& rows, Noise& noise) {
-  const Normal n = normal_equations(rows, noise);
-  const Matrix12 inverse = pseudo_inverse(n.information);
-  const Vector12 change = -inverse * n.gradient;
-  double squares_r = 0, squares_t = 0, squares_b = 0, trace_r = 0, trace_t = 0, trace_b = 0;
-  for (const Linearised& row : rows) {
-    const auto solver = covariance_of(row.camera, row.turn, noise).ldlt();
-    const Vector6 y = solver.solve(row.e + row.j * change);
-    const Matrix6x12 weighted = solver.solve(row.j);
-    const Matrix6 p = Matrix6(solver.solve(Matrix6::Identity())) - weighted * inverse * weighted.transpose();
-    squares_r += y.head<3>().squaredNorm();
-    squares_t += y.tail<3>().squaredNorm();
-    trace_r += p.diagonal().head<3>().sum();
-    trace_t += p.diagonal().tail<3>().sum();
-    squares_b += (row.turn.transpose() * y).squaredNorm();
-    trace_b += (row.turn.transpose() * p * row.turn).trace();
-  }
-  const auto updated = [](double sigma, double squares, double trace, double least) {
-    if (!(trace > 0)) return sigma;
-    return std::max(least, sigma * std::sqrt(std::clamp(squares / trace, 1e-2, 1e2)));
-  };
-  const Noise before = noise;
-  noise.robot_rad = updated(noise.robot_rad, squares_r, trace_r, least_rad);
-  noise.robot_m = updated(noise.robot_m, squares_t, trace_t, least_m);
-  noise.board_rad = updated(noise.board_rad, squares_b, trace_b, least_rad);
-  // A variance on its way to zero takes long and matters little: changes count by their share of what they join.
-  const double board_share = std::min(1.0, noise.board_rad / noise.robot_rad);
-  return std::max({std::abs(std::log(noise.robot_rad / before.robot_rad)),
-                   std::abs(std::log(noise.robot_m / before.robot_m)),
-                   board_share * board_share * std::abs(std::log(noise.board_rad / before.board_rad))});
 }
 
 }  // namespace
@@ -156,33 +93,24 @@ Solution moved_by(const Solution& s, const Vector12& change) {
 }
 
 Matrix6 deviation_covariance(const Deviation& d, const ObservedPose& observed, const Noise& noise) {
-  return covariance_of(d.by_pose * observed.covariance * d.by_pose.transpose(), d.by_board_turn, noise);
+  return Eigen::Map<const Matrix6>(scatter_of(d, observed).covariance(noise).data());
 }
 
 Matrix12 information(Kind kind, const std::vector<ObservedPose>& observed, const Solution& solution,
                      const Noise& noise) {
-  return normal_equations(linearise(kind, observed, solution), noise).information;
+  return Eigen::Map<const Matrix12>(fit_poses(linearise(kind, observed, solution), noise).information.data());
 }
 
 PoseAdjustment adjust_poses(Kind kind, const std::vector<ObservedPose>& observed, const Solution& start,
                             const Noise& noise) {
   PoseAdjustment result{start, noise};
   auto rows = linearise(kind, observed, result.solution);
-  if (!(noise.robot_m > 0) || !(noise.robot_rad > 0)) {
-    double turn = 0, shift = 0;
-    for (const Linearised& row : rows) {
-      turn += row.e.head<3>().squaredNorm();
-      shift += row.e.tail<3>().squaredNorm();
-    }
-    const double coordinates = 3 * std::max<double>(1, static_cast<double>(rows.size()));
-    result.noise.robot_rad = std::max(least_rad, std::sqrt(turn / coordinates));
-    result.noise.robot_m = std::max(least_m, std::sqrt(shift / coordinates));
-    result.noise.board_rad = board_turn_share * result.noise.robot_rad;
-  }
+  begin_noise(rows, result.noise);
   for (int step = 0; step < most_steps; ++step) {
-    const Normal n = normal_equations(rows, result.noise);
-    const Vector12 change = -pseudo_inverse(n.information) * n.gradient;
-    const double sigmas = std::sqrt(std::max(0.0, change.dot(n.information * change)));
+    const PoseFit fit = fit_poses(rows, result.noise);
+    const Eigen::Map<const Vector12> change(fit.change.data());
+    const Eigen::Map<const Matrix12> information(fit.information.data());
+    const double sigmas = std::sqrt(std::max(0.0, change.dot(information * change)));
     result.solution = moved_by(result.solution, change);
     rows = linearise(kind, observed, result.solution);
     double moved_noise = 0;

@@ -9,8 +9,7 @@
 // quite calibrated and boards that are not quite flat produce. A pure reprojection error has robot_m = robot_rad = 0
 // and pulls the camera after the robot's errors; a pure pose error forgets that a camera knows some directions ten
 // times better than others. Here the noises themselves weigh them: s from the corners' residuals at poses fitted to
-// each view alone, the others by restricted maximum likelihood (Patterson & Thompson, Biometrika 58, 1971), iterated as
-// by Fellner (Biometrics 42, 1986).
+// each view alone, the others by restricted maximum likelihood (pose_noise.h).
 //
 // The board's pose in a view is eliminated (Schur complement over views): what the corners say of it is a pose with a
 // covariance, re-linearised at the joint estimate, so that the minimum is that of the sum above. Deviations that are
@@ -19,15 +18,11 @@
 #include <array>
 #include <vector>
 
+#include "robot/handeye/noise.h"
 #include "robot/handeye/views.h"
 
 namespace gonio::robot::handeye {
 
-struct Noise {
-  double corner = 1;                  // factor on sigma_px
-  double robot_m = 0, robot_rad = 0;  // one coordinate, one axis
-  double board_rad = 0;               // one axis
-};
 // Where the robot seems to have been in a view, by the camera and the solution, against what its controller said: shift
 // of the tool's origin and turn about it, in the base's axes.
 struct Mismatch {
