@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "linear/blocks.h"
 #include "inference/scaling.h"
 #include "inference/signature.h"
+#include "linear/blocks.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
 

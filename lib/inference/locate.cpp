@@ -5,9 +5,9 @@
 #include <map>
 #include <numeric>
 
-#include "linear/blocks.h"
 #include "inference/scaling.h"
 #include "inference/signature.h"
+#include "linear/blocks.h"
 #include "stats/intervals.h"
 
 namespace gonio::inference {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "linear/blocks.h"
 #include "inference/fit.h"
+#include "linear/blocks.h"
 #include "linear/solve.h"
 
 namespace gonio::inference {

@@ -140,8 +140,8 @@ class Problem {
   virtual std::optional<Calibration> calibration(std::size_t parameter) const;
 
   // Tests that a problem makes on its own, of single observations, which no held-out group can speak for: places in
-  // candidates() of what it tests. These do not run in the race; what is found is named at the false-alarm rate that the
-  // problem states, and the engine works on what is left.
+  // candidates() of what it tests. These do not run in the race; what is found is named at the false-alarm rate that
+  // the problem states, and the engine works on what is left.
   virtual std::vector<std::size_t> tested_apart() const { return {}; }
   // Adds to a finished explanation what these tests have found; its sentence is written afterwards.
   virtual void conclude(Explanation&) const {}

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "base/parallel.h"
-#include "linear/blocks.h"
 #include "inference/fit.h"
 #include "inference/scaling.h"
+#include "linear/blocks.h"
 #include "linear/solve.h"
 #include "stats/distributions.h"
 

@@ -30,8 +30,7 @@ Eigen::VectorXd lengths_outside(const Eigen::MatrixXd& a, const Eigen::MatrixXd&
   if (a.size() == 0 || v.size() == 0) return v.colwise().norm().transpose();
   const PivotedQr qr(a);
   Eigen::VectorXd lengths(v.cols());
-  for (Eigen::Index k = 0; k < v.cols(); ++k)
-    lengths[k] = qr.turned(v.col(k)).tail(v.rows() - qr.rank()).norm();
+  for (Eigen::Index k = 0; k < v.cols(); ++k) lengths[k] = qr.turned(v.col(k)).tail(v.rows() - qr.rank()).norm();
   return lengths;
 }
 

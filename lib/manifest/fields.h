@@ -55,7 +55,7 @@ Field<Record> field(std::string name, Member Record::*member, std::string unit, 
   return f;
 }
 
-std::string shown_number(double v);                     // six digits
+std::string shown_number(double v);                   // six digits
 std::string bounds_text(double lower, double upper);  // "0 to 1", "more than 0", ...; empty: there are none
 // Checks the numbers of `value` (also within lists and free parameters) against [lower, upper].
 void check_range(const Value& value, double lower, double upper, const std::string& unit, const std::string& place);

@@ -1,12 +1,13 @@
-// Provenance: the field tables of its graph, and how it grows. A step's key is a hash of its canonical JSON: the graph is
-// keyed by content, so a change of any input changes every key downstream.
+// Provenance: the field tables of its graph, and how it grows. A step's key is a hash of its canonical JSON: the graph
+// is keyed by content, so a change of any input changes every key downstream.
+#include "manifest/sections/provenance.h"
+
 #include <set>
 
 #include "base/hash.h"
 #include "manifest/document.h"
 #include "manifest/field_makers.h"
 #include "manifest/section_tables.h"
-#include "manifest/sections/provenance.h"
 
 namespace gonio::manifest {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "base/error.h"
-#include "linear/blocks.h"
 #include "explain/engine.h"
 #include "explain/toy_problem.h"
+#include "linear/blocks.h"
 
 namespace gonio::explain::tests {
 namespace {
@@ -96,10 +96,11 @@ TEST(Blocks, ProductsAndDecompositionsOfNothing) {
       const Eigen::VectorXd outside = linear::lengths_outside(a, Eigen::MatrixXd::Ones(rows, 2));
       ASSERT_EQ(outside.size(), 2);
       EXPECT_NEAR(outside[1],
-                  rows <= columns ? 0
-                                  : (Eigen::VectorXd::Ones(rows) -
-                                     linear::basis_of(a) * (linear::basis_of(a).transpose() * Eigen::VectorXd::Ones(rows)))
-                                        .norm(),
+                  rows <= columns
+                      ? 0
+                      : (Eigen::VectorXd::Ones(rows) -
+                         linear::basis_of(a) * (linear::basis_of(a).transpose() * Eigen::VectorXd::Ones(rows)))
+                            .norm(),
                   1e-9);
       const linear::EigenPairs eigen = linear::eigen_of(linear::gram_of(a));
       EXPECT_EQ(eigen.values.size(), columns);

@@ -3,8 +3,8 @@
 // the full runs.
 #include <gtest/gtest.h>
 
-#include "inference/explanation.h"
 #include "explain/residual_cases.h"
+#include "inference/explanation.h"
 
 namespace gonio::prove {
 namespace {

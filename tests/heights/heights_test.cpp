@@ -8,10 +8,10 @@
 #include "base/random.h"
 #include "data.h"
 #include "explain/engine.h"
-#include "inference/explanation.h"
 #include "explain/heights/heights_problem.h"
 #include "explain/heights/tile_spectra.h"
 #include "geom/vector.h"
+#include "inference/explanation.h"
 
 namespace gonio::explain::tests {
 namespace {

@@ -7,8 +7,8 @@
 #include "base/random.h"
 #include "base/text.h"
 #include "explain/engine.h"
-#include "inference/explanation.h"
 #include "explain/tables/tables_problem.h"
+#include "inference/explanation.h"
 #include "manifest/document.h"
 
 namespace gonio::explain::tables::tests {

@@ -3,9 +3,9 @@
 #pragma once
 #include <string>
 
-#include "inference/explanation.h"
 #include "explain/heights/heights_problem.h"
 #include "explain/heights/spectrum_model.h"
+#include "inference/explanation.h"
 
 namespace gonio::explain {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "inference/explanation.h"
 #include "explain/heights/heights_outcome.h"
+#include "inference/explanation.h"
 #include "manifest/document.h"
 
 namespace gonio::explain {

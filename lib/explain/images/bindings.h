@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "explain/engine.h"
 #include "explain/images/scene_state.h"
 #include "explain/images/term.h"
-#include "explain/engine.h"
 #include "manifest/sections/forward.h"
 
 namespace gonio::explain::images {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "explain/images/image_model.h"
 #include "explain/engine.h"
+#include "explain/images/image_model.h"
 
 namespace gonio::explain::images {
 

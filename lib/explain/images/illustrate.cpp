@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "base/atomic_file.h"
-#include "inference/explanation.h"
 #include "explain/images/images_problem.h"
 #include "explain/images/pictures.h"
+#include "inference/explanation.h"
 #include "io/picture.h"
 #include "manifest/document.h"
 

@@ -6,11 +6,11 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "inference/explanation.h"
 #include "explain/images/conditions.h"
 #include "explain/images/misplaced.h"
 #include "explain/images/repeats.h"
 #include "explain/images/uses.h"
+#include "inference/explanation.h"
 #include "manifest/document.h"
 #include "scene/scene.h"
 

@@ -7,16 +7,16 @@
 #pragma once
 #include <memory>
 
+#include "explain/engine.h"
 #include "explain/images/bindings.h"
 #include "explain/images/image_model.h"
 #include "explain/images/recordings.h"
-#include "explain/engine.h"
 #include "render/ray_caster.h"
 
 namespace gonio::explain::images {
 
 struct Options {
-  std::size_t pixels = 9000;                  // sampled over all images together
+  std::size_t pixels = 9000;                   // sampled over all images together
   std::vector<std::filesystem::path> repeats;  // further takes, from which noise is measured
   CacheOptions cache;
 };

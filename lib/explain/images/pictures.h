@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "inference/explanation.h"
 #include "explain/images/image_model.h"
+#include "inference/explanation.h"
 
 namespace gonio::explain::images {
 

@@ -19,9 +19,9 @@
 #include <string>
 #include <vector>
 
+#include "explain/engine.h"
 #include "explain/images/recordings.h"
 #include "explain/images/scene_state.h"
-#include "explain/engine.h"
 #include "mechanism/mechanism.h"
 #include "render/ray_caster.h"
 #include "scene/scene.h"

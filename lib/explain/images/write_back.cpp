@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
-#include "inference/explanation.h"
 #include "explain/images/bindings.h"
+#include "inference/explanation.h"
 #include "manifest/document.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "inference/explanation.h"
 #include "explain/nrsfm/tracks_problem.h"
+#include "inference/explanation.h"
 
 namespace gonio::explain {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "inference/explanation.h"
 #include "explain/nrsfm/tracks_outcome.h"
+#include "inference/explanation.h"
 
 namespace gonio::explain {
 namespace {

@@ -24,8 +24,8 @@
 #include <vector>
 
 #include "camera/board_projection.h"
-#include "inference/explanation.h"
 #include "explain/engine.h"
+#include "inference/explanation.h"
 #include "manifest/sections/mounting.h"
 #include "robot/kinematics.h"
 

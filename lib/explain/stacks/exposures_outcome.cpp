@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "inference/explanation.h"
-#include "inference/sentence.h"
 #include "explain/stacks/exposures_problem.h"
 #include "explain/stacks/stack_manifest.h"
 #include "explain/stacks/stack_pictures.h"
+#include "inference/explanation.h"
+#include "inference/sentence.h"
 
 namespace gonio::explain::stacks {
 std::string ExposuresProblem::remarks(const Explanation& e) const {

@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "inference/explanation.h"
-#include "inference/sentence.h"
 #include "explain/stacks/photometric_problem.h"
 #include "explain/stacks/stack_manifest.h"
 #include "explain/stacks/stack_pictures.h"
+#include "inference/explanation.h"
+#include "inference/sentence.h"
 #include "manifest/document.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "inference/explanation.h"
 #include "explain/stacks/stack_input.h"
+#include "inference/explanation.h"
 #include "mechanism/mechanism.h"
 #include "render/tone_curve.h"
 

@@ -49,9 +49,9 @@ class LampState {
   std::vector<Candidate> candidates_;
 };
 
-// light.second-source in a table, as declared: a point as far from the centre as the first lamp is (a directional one: parallel
-// light), so that its irradiance of a plane differs from that of even ambient light. Its direction is not found by
-// small steps: four quarters of the horizon are alternatives of one family.
+// light.second-source in a table, as declared: a point as far from the centre as the first lamp is (a directional one:
+// parallel light), so that its irradiance of a plane differs from that of even ambient light. Its direction is not
+// found by small steps: four quarters of the horizon are alternatives of one family.
 //
 // A lamp whose rays the base model believes to be parallel, at 1 / nearness_per_m from the centre instead, its
 // irradiance at the centre unchanged: E(p) = E cos D^2 / d^2 (light.inverse-square). Unchanged at nearness 0.

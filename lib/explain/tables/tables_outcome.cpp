@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "inference/explanation.h"
 #include "explain/tables/tables_problem.h"
+#include "inference/explanation.h"
 #include "manifest/document.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/table.h"
