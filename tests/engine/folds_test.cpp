@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/nonlinear_toy.h"
+#include "explain/engine.h"
 #include "inference/race.h"
 #include "inference/screening.h"
 

@@ -3,6 +3,7 @@
 // the full runs.
 #include <gtest/gtest.h>
 
+#include "explain/engine.h"
 #include "explain/residual_cases.h"
 #include "inference/explanation.h"
 

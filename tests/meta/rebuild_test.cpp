@@ -138,7 +138,7 @@ TEST(Rebuild, WhatManyIncludeSeesNoSection) {
   for (const char* path :
        {"lib/manifest/document.h", "lib/manifest/model.h", "lib/manifest/section_tables.h",
         "lib/manifest/field_makers.h", "lib/mechanism/mechanism.h", "lib/surface/surface.h", "lib/light/light.h",
-        "lib/camera/camera_model.h", "lib/scene/scene.h", "lib/cli/program.h", "lib/explain/problem.h"}) {
+        "lib/camera/camera_model.h", "lib/scene/scene.h", "lib/cli/program.h", "lib/inference/problem.h"}) {
     ASSERT_TRUE(tree().files().contains(path)) << path;
     for (const auto& seen : tree().seen_by(path)) EXPECT_FALSE(is_section(seen)) << path << " sees " << seen;
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "explain/engine.h"
 #include "inference/explanation.h"
 #include "inference/problem.h"
 
