@@ -1,11 +1,11 @@
 // develop: photographs as a camera without lens errors would have taken them (camera/undistort.h).
 #include <algorithm>
+#include <optional>
 
 #include "base/error.h"
-#include "camera/calibrate_document.h"
 #include "camera/undistort_document.h"
 #include "cli/program.h"
-#include "manifest/sections/image.h"
+#include "manifest/document.h"
 #include "metric/linear_picture.h"
 
 namespace gonio::tools::develop {
@@ -21,28 +21,15 @@ camera::Transfer transfer(const manifest::Value& stated, const std::string& plac
 
 // The photographs on the command line become images of the manifest; without any, all of its images are developed.
 std::vector<std::size_t> chosen_images(cli::Invocation& call) {
-  std::vector<std::size_t> chosen;
-  const std::size_t known = call.document.images.size();
-  if (call.given("PHOTOGRAPH")) {
-    const auto cameras = names_in(call.document, "cameras");
-    if (!call.given("camera") && cameras.size() != 1)
-      throw Error(Exit::usage, "--camera",
-                  "is missing, and the manifest has " + std::to_string(cameras.size()) + " cameras");
-    camera::enter_pictures(call.texts("PHOTOGRAPH"), "pinhole", call.document);
-    for (std::size_t i = known; i < call.document.images.size(); ++i) {
-      manifest::ImageEntry& image = call.document.images[i];
-      image.camera = call.given("camera") ? call.text("camera") : cameras.front();
-      image.board.clear();
-      if (call.given("response")) image.response = call.text("response");
-      chosen.push_back(i);
-    }
-    return chosen;
-  }
-  for (std::size_t i = 0; i < known; ++i) {
-    const manifest::ImageEntry& image = call.document.images[i];
-    if (!image.file.empty() && (!call.given("camera") || image.camera == call.text("camera"))) chosen.push_back(i);
-  }
-  return chosen;
+  std::optional<std::string> named;
+  if (call.given("camera")) named = call.text("camera");
+  if (!call.given("PHOTOGRAPH")) return camera::images_with_pictures(call.document, named);
+  const auto cameras = names_in(call.document, "cameras");
+  if (!named && cameras.size() != 1)
+    throw Error(Exit::usage, "--camera",
+                "is missing, and the manifest has " + std::to_string(cameras.size()) + " cameras");
+  const manifest::Value response = call.given("response") ? manifest::Value(call.text("response")) : manifest::Value();
+  return camera::enter_photographs(call.texts("PHOTOGRAPH"), named ? *named : cameras.front(), response, call.document);
 }
 
 template <class Enum>

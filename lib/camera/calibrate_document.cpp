@@ -12,6 +12,7 @@
 #include "camera/model_choice.h"
 #include "camera/quality/quality_page.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
@@ -161,10 +162,7 @@ void enter_picture(const std::string& path, const std::string& camera, const std
   }
   manifest::ImageEntry entry;
   entry.id = id;
-  for (int k = 2; std::ranges::find(document.images, entry.id, &manifest::ImageEntry::id) != document.images.end();
-       ++k) {
-    entry.id = id + "-" + std::to_string(k);
-  }
+  for (int k = 2; manifest::index_of_image(document, entry.id); ++k) entry.id = id + "-" + std::to_string(k);
   entry.file = manifest::add_file(document, path, entry.id);
   entry.camera = camera;
   entry.shot = shot;

@@ -13,6 +13,7 @@
 #include "io/grey.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/image.h"
 
@@ -256,7 +257,7 @@ std::vector<Session> sessions_of(const manifest::Document& document) {
                   "camera " + camera + " has another image of shot " + image.shot, "give every moment its own name");
     }
     Session& session = list[session_of.at(leader.at(camera))];
-    Picture picture{i, manifest::resolve(document, image.file, image_pointer(i) + "/file"), 0, 0, 0, 0, {}};
+    Picture picture{i, manifest::picture_path(document, i), 0, 0, 0, 0, {}};
     picture.camera = entered(session.cameras, camera);
     picture.shot =
         image.shot.empty() ? document.images.size() + i : shots.emplace(image.shot, shots.size()).first->second;

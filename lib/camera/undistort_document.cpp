@@ -7,10 +7,12 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "camera/calibrate_document.h"
 #include "camera/mosaic.h"
 #include "io/codes.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 
@@ -42,7 +44,7 @@ Work work_of(const manifest::Document& document, std::size_t index) {
   if (!document.cameras.contains(work.camera)) throw Error(Exit::data, work.place, "missing", "calibrate it first");
   if (image.file.empty())
     throw Error(Exit::data, manifest::place(document, pointer_of(index) + "/file"), "missing", "name the photograph");
-  work.path = manifest::resolve(document, image.file, pointer_of(index) + "/file");
+  work.path = manifest::picture_path(document, index);
   return work;
 }
 
@@ -163,8 +165,7 @@ void undistort_image(manifest::Document& document, std::size_t index, const Undi
   io::Image stored = colour_of(raw, work.path.string());
   check_size(stored, camera, work);
   request.note_input(work.path);
-  const auto mask = image.mask.empty() ? std::filesystem::path()
-                                       : manifest::resolve(document, image.mask, pointer_of(index) + "/mask");
+  const auto mask = manifest::mask_path(document, index);
   if (!mask.empty()) request.note_input(mask);
   const double highest_code = 1 - (source_bits == 16 ? 0.5 / 65535 : 0.5 / 255);
   const double saturation = request.saturation ? *request.saturation : source_bits == 0 ? INFINITY : highest_code;
@@ -190,6 +191,30 @@ void undistort_image(manifest::Document& document, std::size_t index, const Undi
 }
 
 }  // namespace
+
+std::vector<std::size_t> enter_photographs(const std::vector<std::string>& paths, const std::string& camera,
+                                           const manifest::Value& response, manifest::Document& document) {
+  std::vector<std::size_t> entered;
+  for (std::size_t k = 0; k < paths.size(); ++k) entered.push_back(document.images.size() + k);
+  enter_pictures(paths, "pinhole", document);
+  for (const std::size_t index : entered) {
+    manifest::ImageEntry& image = document.images[index];
+    image.camera = camera;
+    image.board.clear();
+    image.response = response;
+  }
+  return entered;
+}
+
+std::vector<std::size_t> images_with_pictures(const manifest::Document& document,
+                                              const std::optional<std::string>& camera) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < document.images.size(); ++i) {
+    const manifest::ImageEntry& image = document.images[i];
+    if (!image.file.empty() && (!camera || image.camera == *camera)) found.push_back(i);
+  }
+  return found;
+}
 
 void check_undistortion(const manifest::Document& document, const UndistortRequest& request) {
   if (request.images.empty())

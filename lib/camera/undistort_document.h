@@ -32,6 +32,13 @@ struct UndistortRequest {
   std::function<void(const std::filesystem::path&)> note_input;
 };
 
+// Photographs by `camera` become images of the manifest; `response` null: not known. Their places in document.images.
+std::vector<std::size_t> enter_photographs(const std::vector<std::string>& paths, const std::string& camera,
+                                           const manifest::Value& response, manifest::Document& document);
+// Places of the images that have a file; where a camera is named, of its own alone.
+std::vector<std::size_t> images_with_pictures(const manifest::Document& document,
+                                              const std::optional<std::string>& camera);
+
 // Images with a file that is there, whose camera has a lens: what undistort_document() would do, without the pixels.
 void check_undistortion(const manifest::Document& document, const UndistortRequest& request);
 

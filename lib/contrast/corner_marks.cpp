@@ -12,7 +12,7 @@
 #include "camera/intrinsics.h"
 #include "io/csv.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/table.h"
 
 namespace gonio::contrast {
@@ -39,8 +39,8 @@ Columns columns_of(const std::vector<std::string>& names, const std::string& pla
   return {needed("image"), needed("corner"), needed("u_px"), needed("v_px"), find("sigma_px")};
 }
 
-void check_in_picture(const CornerMark& mark, const manifest::ImageEntry& image, const manifest::Document& document) {
-  const auto [width, height] = camera::picture_size_px(document, image.camera);
+void check_in_picture(const CornerMark& mark, const std::string& camera, const manifest::Document& document) {
+  const auto [width, height] = camera::picture_size_px(document, camera);
   if (width == 0) return;
   if (mark.pixel.x < -0.5 || mark.pixel.y < -0.5 || mark.pixel.x > width - 0.5 || mark.pixel.y > height - 0.5)
     throw Error(Exit::data, mark.place,
@@ -54,10 +54,12 @@ CornerMark mark_of(const std::vector<std::string>& row, const Columns& columns, 
   CornerMark mark;
   mark.place = place;
   mark.image = row[columns.image];
-  const auto image = std::ranges::find(document.images, mark.image, &manifest::ImageEntry::id);
-  if (image == document.images.end())
+  const auto image = manifest::index_of_image(document, mark.image);
+  if (!image) {
+    const auto listed = names_in(document, "images");
     throw Error(Exit::data, place, "names the image \"" + mark.image + "\", which is not in the manifest",
-                document.images.empty() ? "" : "its first image is \"" + document.images.front().id + "\"");
+                listed.empty() ? "" : "its first image is \"" + listed.front() + "\"");
+  }
   const double corner = io::csv_number(row[columns.corner], place);
   if (corner != 0 && corner != 1 && corner != 2 && corner != 3)
     throw Error(Exit::data, place, "has the corner " + row[columns.corner],
@@ -69,7 +71,7 @@ CornerMark mark_of(const std::vector<std::string>& row, const Columns& columns, 
     if (!(mark.sigma_px > 0))
       throw Error(Exit::data, place, "has sigma_px = " + row[*columns.sigma], "a standard deviation is above 0 px");
   }
-  check_in_picture(mark, *image, document);
+  check_in_picture(mark, manifest::camera_of_image(document, *image), document);
   return mark;
 }
 

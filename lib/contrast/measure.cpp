@@ -13,7 +13,6 @@
 #include "contrast/measure_views.h"
 #include "contrast/view_shift.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "stats/distributions.h"
 
 namespace gonio::contrast {
@@ -77,7 +76,7 @@ Seen look(const manifest::Document& document, const MeasureOptions& options, Inp
     MeasuredView view;
     view.image = of.id;
     view.placement = of.placement;
-    view.lights = document.images[of.image].light;
+    view.lights = of.lights;
     read_cells(read_view(document, of, options), input, of, options, view);
     const auto counted = std::ranges::count_if(view.means.mean, [](double v) { return std::isfinite(v); });
     if (2 * static_cast<std::size_t>(counted) < input.pattern.cells()) {

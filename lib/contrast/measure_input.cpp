@@ -9,6 +9,7 @@
 #include "contrast/matrix_code.h"
 #include "contrast/sample_outline.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/pattern.h"
@@ -67,11 +68,11 @@ std::vector<std::size_t> images_of(const manifest::Document& document, const man
                                    const std::string& place) {
   std::vector<std::size_t> images;
   for (const std::string& id : placement.images) {
-    const auto found = std::ranges::find(document.images, id, &manifest::ImageEntry::id);
-    if (found == document.images.end())
+    const auto listed = manifest::index_of_image(document, id);
+    if (!listed)
       throw Error(Exit::data, place + "/images", "names \"" + id + "\", which is not in images",
                   document.images.empty() ? "" : "the first image is \"" + document.images.front().id + "\"");
-    images.push_back(static_cast<std::size_t>(found - document.images.begin()));
+    images.push_back(*listed);
   }
   if (placement.images.empty())
     for (std::size_t i = 0; i < document.images.size(); ++i)
@@ -127,6 +128,7 @@ InputView view_of(const manifest::Document& document, std::size_t image, int pla
   view.image = image;
   view.id = entry.id;
   view.place = manifest::place(document, "/images/" + std::to_string(image));
+  view.lights = entry.light;
   view.placement = placement;
   if (entry.file.empty())
     throw Error(Exit::data, view.place, "has no file: there is no picture \"" + entry.id + "\" to measure",
@@ -301,7 +303,7 @@ Input read_input(const manifest::Document& document, const std::string& name, co
 
 GreyView read_view(const manifest::Document& document, const InputView& view, const MeasureOptions& options) {
   const manifest::ImageEntry& entry = document.images[view.image];
-  const auto path = manifest::resolve(document, entry.file, "/images/" + std::to_string(view.image) + "/file");
+  const auto path = manifest::picture_path(document, view.image);
   if (options.note_input) options.note_input(path);
   const metric::LinearPicture picture = metric::read_linear(path, entry.response, view.place);
   const io::Image& colour = picture.colour;
@@ -326,9 +328,8 @@ GreyView read_view(const manifest::Document& document, const InputView& view, co
             static_cast<float>(std::max(0.0, double{v}) / entry.noise->gain + entry.noise->read * entry.noise->read);
       if (double{v} >= view.full_scale * (1 - 1e-6)) grey.saturated[i] = 1;
     }
-  if (!entry.mask.empty()) {
-    const metric::Mask mask =
-        metric::read_mask(manifest::resolve(document, entry.mask, "/images/" + std::to_string(view.image) + "/mask"));
+  if (const auto mask_file = manifest::mask_path(document, view.image); !mask_file.empty()) {
+    const metric::Mask mask = metric::read_mask(mask_file);
     if (mask.width != grey.width || mask.height != grey.height)
       throw Error(Exit::data, view.place + "/mask", "has another size than the picture",
                   "give a mask of the same size");

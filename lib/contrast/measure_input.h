@@ -12,6 +12,7 @@ namespace gonio::contrast {
 struct InputView {
   std::size_t image = 0;  // place in document.images
   std::string id, place;  // for messages
+  std::vector<std::string> lights;  // that were on
   int placement = 0;
   std::optional<camera::CameraModel> camera;
   std::optional<CameraPose> pose;  // with it the sample's pose places the pattern; else marks of this image do

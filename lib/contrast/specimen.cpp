@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "contrast/contrast_options.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
@@ -27,7 +27,7 @@ struct Specimen::State {
 namespace {
 
 manifest::Document on_a_plane(manifest::Document document, const std::string& surface) {
-  document.images.clear();
+  keep_images(document, {});
   document.cameras.clear();
   document.meshes = {{"sample", {}}};
   document.meshes["sample"].plane_size_m = std::vector<double>{1, 1};

@@ -3,8 +3,8 @@
 #include "camera/intrinsics.h"
 #include "goniometry/outputs.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/file.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
@@ -30,11 +30,8 @@ io::Image sphere_picture(const manifest::Document& document, const std::string& 
   sky.model = "uniform";
   sky.parameters = {{"radiance", 0.12}};
   camera::enter_pinhole(scene, "camera", pixels, pixels, 3.6 * pixels);
-  manifest::ImageEntry image;
-  image.id = "sphere", image.camera = "camera";
-  static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
-      render::looking_at({0, -0.41, 0.08}, {0, 0, 0});
-  scene.images.push_back(image);
+  const auto pose = render::looking_at({0, -0.41, 0.08}, {0, 0, 0});
+  manifest::enter_image(scene, {.id = "sphere", .camera = "camera", .world_from_camera = {pose, {}}});
   const scene::Scene built = scene::build_scene(scene);
   const render::RayCaster caster(built.instances);
   return render::render(built, 0, caster, {.spp = 64, .seed = 1, .geometry = false});

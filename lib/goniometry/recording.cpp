@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "goniometry/recording_setup.h"
 #include "goniometry/tile.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/image.h"
 #include "render/sensor_chain.h"
 #include "stats/intervals.h"
@@ -51,7 +52,7 @@ PictureReading read_picture(const Recording& recording, std::size_t number_of_vi
   const scene::View& seen = recording.scene.views[number_of_view];
   const manifest::ImageEntry& image = recording.image(number_of_view);
   const std::string place = recording.place(number_of_view);
-  const std::string pointer = "/images/" + std::to_string(recording.images[number_of_view]);
+  const std::size_t listed = recording.images[number_of_view];
   PictureReading result;
   const bool sample = recording.sample->in[number_of_view], tile = recording.tile && recording.tile->in[number_of_view];
   if (const std::string reason = left_out(image, seen); !reason.empty()) {
@@ -62,16 +63,16 @@ PictureReading read_picture(const Recording& recording, std::size_t number_of_vi
     return result;
   }
   const metric::LinearPicture picture =
-      metric::read_linear(manifest::resolve(*recording.document, image.file, pointer + "/file"), image.response, place);
+      metric::read_linear(manifest::picture_path(*recording.document, listed), image.response, place);
   check_size(picture.colour, seen.camera.width_px(), seen.camera.height_px(), "the picture", place);
   result.channels = picture.colour.channels.size();
   std::optional<metric::Mask> mask;
-  if (!image.mask.empty()) {
-    mask = metric::read_mask(manifest::resolve(*recording.document, image.mask, pointer + "/mask"));
+  if (const auto path = manifest::mask_path(*recording.document, listed); !path.empty()) {
+    mask = metric::read_mask(path);
     check_size(io::Image(mask->width, mask->height, {}), seen.camera.width_px(), seen.camera.height_px(), "the mask",
                place);
   }
-  const render::Sensor sensor = render::sensor_of(*recording.document, recording.images[number_of_view]);
+  const render::Sensor sensor = render::sensor_of(*recording.document, listed);
   PictureView view{.picture = &picture,
                    .mask = mask ? &*mask : nullptr,
                    .noise = image.noise,

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "manifest/codec.h"
 #include "manifest/fields.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/file.h"
@@ -94,7 +95,7 @@ void check_table(const Table& table, const std::string& at) {
 void check_goniometry(const Document& d) {
   const auto images_exist = [&d](const std::vector<std::string>& ids, const std::string& at) {
     for (const std::string& id : ids)
-      if (std::ranges::find(d.images, id, &ImageEntry::id) == d.images.end())
+      if (!index_of_image(d, id))
         throw Error(Exit::data, at + "/images", "names \"" + id + "\", which is not in images");
   };
   for (const auto& [name, patch] : d.goniometer) {

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/comparison.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/rendering.h"
@@ -15,21 +16,21 @@ std::vector<Entry> entries(const manifest::Document& document) {
   for (std::size_t k = 0; k < document.renderings.size(); ++k) {
     const manifest::Rendering& rendering = document.renderings[k];
     const std::string at = "/renderings/" + std::to_string(k);
-    const auto image = std::ranges::find(document.images, rendering.image, &manifest::ImageEntry::id);
-    if (image == document.images.end())
+    const auto listed = manifest::index_of_image(document, rendering.image);
+    if (!listed)
       throw Error(Exit::data, manifest::place(document, at + "/image"),
                   "names \"" + rendering.image + "\", which is not in images");
-    if (image->file.empty()) continue;
-    const std::string of_image = "/images/" + std::to_string(image - document.images.begin());
+    const manifest::ImageEntry& image = document.images[*listed];
+    if (image.file.empty()) continue;
     Entry entry;
-    entry.image = image->id;
-    entry.photograph = manifest::resolve(document, image->file, of_image + "/file");
+    entry.image = image.id;
+    entry.photograph = manifest::picture_path(document, *listed);
     entry.rendering = manifest::resolve(document, rendering.file, at + "/file");
-    if (!image->mask.empty()) entry.mask = manifest::resolve(document, image->mask, of_image + "/mask");
-    entry.response = image->response;
-    entry.photograph_place = manifest::place(document, of_image);
+    entry.mask = manifest::mask_path(document, *listed);
+    entry.response = image.response;
+    entry.photograph_place = manifest::place(document, "/images/" + std::to_string(*listed));
     entry.rendering_place = manifest::place(document, at);
-    entry.noise = image->noise;
+    entry.noise = image.noise;
     found.push_back(std::move(entry));
   }
   if (found.empty())

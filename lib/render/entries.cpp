@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/rendering.h"
@@ -26,12 +27,18 @@ std::vector<std::size_t> chosen_images(const manifest::Document& document, const
   if (images.empty())
     throw Error(Exit::data, manifest::place(document, "/images"), "no image to simulate", "add one, with its camera");
   for (const std::string& id : ids)
-    if (std::none_of(images.begin(), images.end(), [&](const auto& image) { return image.id == id; }))
+    if (!manifest::index_of_image(document, id))
       throw Error(Exit::usage, "--image", "there is no image \"" + id + "\"", "name one of `images`");
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < images.size(); ++i)
     if (ids.empty() || std::find(ids.begin(), ids.end(), images[i].id) != ids.end()) chosen.push_back(i);
   return chosen;
+}
+
+void check_recordable(const manifest::Document& document, std::size_t image) {
+  if (document.images[image].noise) return;
+  throw Error(Exit::data, manifest::place(document, "/images/" + std::to_string(image)),
+              "states no noise to record with", "add \"noise\": {\"gain\", \"read\"}");
 }
 
 void enter_rendering(manifest::Document& document, std::size_t image, const std::filesystem::path& path,

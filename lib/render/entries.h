@@ -15,6 +15,9 @@ namespace gonio::render {
 // Error(data) where nothing is left.
 std::vector<std::size_t> chosen_images(const manifest::Document& document, const std::vector<std::string>& ids);
 
+// Error(data) where the image states no noise to record with.
+void check_recordable(const manifest::Document& document, std::size_t image);
+
 // `path` becomes the image's rendering, in place of an earlier one. `beside`: further files by kind; with "sums" it may
 // be a share, and says of which samples.
 void enter_rendering(manifest::Document& document, std::size_t image, const std::filesystem::path& path,

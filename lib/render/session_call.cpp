@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "camera/intrinsics.h"
 #include "io/picture.h"
-#include "manifest/sections/image.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/mechanism_use.h"
 #include "render/entries.h"
 #include "render/mosaic.h"
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* polarizers = "polarizers";
 
 bool behind_polarizers(const manifest::Document& document, std::size_t image) {
-  return camera::mosaic_of(document, document.images[image].camera) == polarizers;
+  return camera::mosaic_of(document, manifest::camera_of_image(document, image)) == polarizers;
 }
 
 // The document with what --with switches on.
@@ -130,24 +130,21 @@ class Images {
   explicit Images(cli::Invocation& call) : call_(call), seen_(seen_by(call)), session_(session_of(call)) {}
 
   // False where the picture is noisier than was asked for.
-  bool make(std::size_t image, const Place& place) {
+  bool make(std::size_t image, const std::string& id, const Place& place) {
     std::optional<Facts> facts = session_.finished(image, place.picture);
-    if (!facts || !is_whole(place)) facts = render_anew(image, place);
+    if (!facts || !is_whole(place)) facts = render_anew(image, id, place);
     write_layers(place);
     if (call_.flag("record"))
       enter_recording(call_.document, image, place.picture);
     else
       enter_rendering(call_.document, image, place.picture, *facts, wavelengths(), place.beside);
-    return judge(call_, call_.document.images[image].id, *facts);
+    return judge(call_, id, *facts);
   }
 
  private:
-  Facts render_anew(std::size_t image, const Place& place) {
+  Facts render_anew(std::size_t image, const std::string& id, const Place& place) {
     Rendered rendered = session_.render(image, place.picture);
-    if (call_.flag("record")) {
-      const std::string& id = call_.document.images[image].id;
-      rendered.picture = recorded(rendered.picture, sensor_of(seen_, image), id, call_.seed);
-    }
+    if (call_.flag("record")) rendered.picture = recorded(rendered.picture, sensor_of(seen_, image), id, call_.seed);
     write(place, rendered);
     Session::remove_checkpoint(place.picture);
     return rendered.facts;
@@ -164,12 +161,6 @@ void check_merge(const cli::Invocation& call) {
     throw Error(Exit::usage, "--merge", "has nothing to join", "name shares: render --merge a.exr b.exr --out all");
 }
 
-std::optional<std::size_t> image_of(const manifest::Document& document, const std::string& id) {
-  for (std::size_t i = 0; i < document.images.size(); ++i)
-    if (document.images[i].id == id) return i;
-  return {};
-}
-
 }  // namespace
 
 void check_call(cli::Invocation& call) {
@@ -182,21 +173,20 @@ void check_call(cli::Invocation& call) {
   if (call.out.empty()) throw Error(Exit::usage, "--out", "is missing", "name the folder for the pictures");
   pass_range(options_of(call));
   for (const std::size_t i : chosen_images(call.document, call.texts("image")))
-    if (call.flag("record") && !call.document.images[i].noise)
-      throw Error(Exit::data, manifest::place(call.document, "/images/" + std::to_string(i)),
-                  "states no noise to record with", "add \"noise\": {\"gain\", \"read\"}");
+    if (call.flag("record")) check_recordable(call.document, i);
   if (call.flag("check")) session_of(call);
 }
 
 Exit render_images(cli::Invocation& call) {
   const auto images = chosen_images(call.document, call.texts("image"));
+  const auto ids = names_in(call.document, "images");
   std::vector<Place> places;  // asked for before the work begins: an existing file is an error at once
   const bool stokes = call.flag("stokes") && !call.flag("record");
   for (const std::size_t i : images)
-    places.push_back(place_of(call, call.document.images[i].id, stokes && behind_polarizers(call.document, i)));
+    places.push_back(place_of(call, ids[i], stokes && behind_polarizers(call.document, i)));
   Images work(call);
   bool good = true;
-  for (std::size_t k = 0; k < images.size(); ++k) good = work.make(images[k], places[k]) && good;
+  for (std::size_t k = 0; k < images.size(); ++k) good = work.make(images[k], ids[images[k]], places[k]) && good;
   if (call.flag("record")) forget_free_values(call.document);
   return good ? Exit::done : Exit::quality;
 }
@@ -210,7 +200,7 @@ Exit merge(cli::Invocation& call) {
   const auto by_image = shares_by_image(shares);
   std::map<std::string, Place> places;
   for (const auto& [image, paths] : by_image) {
-    const auto entry = image_of(call.document, image);
+    const auto entry = manifest::index_of_image(call.document, image);
     if (call.has_document && !entry)
       throw Error(Exit::data, image, "is an image of the shares that the manifest does not have",
                   "merge beside the manifest that was rendered");
@@ -222,7 +212,7 @@ Exit merge(cli::Invocation& call) {
     const Rendered rendered = merge_shares(paths);
     const Place& place = places[image];
     write(place, rendered);
-    if (const auto entry = image_of(call.document, image))
+    if (const auto entry = manifest::index_of_image(call.document, image))
       enter_rendering(call.document, *entry, place.picture, rendered.facts,
                       wavelengths_of(rendered.sums->identity().planes), place.beside);
     judge(call, image, rendered.facts);

@@ -13,13 +13,13 @@
 #include "camera/intrinsics.h"
 #include "io/ply.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
 #include "render/looking_at.h"
 #include "render/specimen_board.h"
+#include "render/specimen_camera.h"
 #include "render/specimen_glass.h"
 #include "render/specimen_goniometer.h"
 #include "render/specimen_matrix.h"
@@ -129,16 +129,10 @@ void add_images(manifest::Document& document) {
   camera::enter_pinhole(document, "camera", 160, 160, 420);
   const std::vector<Vec3> positions_m = {{0, -0.44, 0.26}, {0.32, -0.28, 0.24}, {-0.30, -0.26, 0.34}};
   for (std::size_t i = 0; i < positions_m.size(); ++i)
-    for (const auto& [lamp, unused] : document.lights) {
-      manifest::ImageEntry image;
-      image.id = "view-" + std::to_string(i) + "-" + lamp;
-      image.camera = "camera";
-      image.light = {lamp};
-      static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
-          looking_at(positions_m[i], {0, 0, 0.03});
-      image.noise = manifest::Noise{.gain = 16000, .read = 0.0005};
-      document.images.push_back(image);
-    }
+    for (const auto& [lamp, unused] : document.lights)
+      add_view(document, {.id = "view-" + std::to_string(i) + "-" + lamp,
+                          .world_from_camera = {looking_at(positions_m[i], {0, 0, 0.03}), {}},
+                          .light = {lamp}});
 }
 
 void add_spheres(manifest::Document& document, const std::filesystem::path&) {

@@ -8,11 +8,11 @@
 #include "manifest/document.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
+#include "render/specimen_camera.h"
 
 namespace gonio::render {
 namespace {
@@ -32,15 +32,11 @@ Rigid<frame::World, frame::Camera> view(double tilt_x_rad, double tilt_y_rad, do
 void add_views(manifest::Document& document) {
   for (int i = 0; i < 12; ++i) {
     const double turn = 2 * pi * i / 12;
-    manifest::ImageEntry image;
-    image.id = "board-" + std::string(i < 10 ? "0" : "") + std::to_string(i);
-    image.camera = "camera";
-    image.light = {"lamp"};
-    image.noise = manifest::Noise{.gain = 16000, .read = 0.0005};
-    static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
-        view(0.5 * std::cos(turn), 0.5 * std::sin(turn), 0.3 * std::sin(2 * turn),
-             {0.03 * std::cos(3 * turn), 0.03 * std::sin(5 * turn), 0});
-    document.images.push_back(image);
+    const auto pose = view(0.5 * std::cos(turn), 0.5 * std::sin(turn), 0.3 * std::sin(2 * turn),
+                           {0.03 * std::cos(3 * turn), 0.03 * std::sin(5 * turn), 0});
+    add_view(document, {.id = "board-" + std::string(i < 10 ? "0" : "") + std::to_string(i),
+                        .world_from_camera = {pose, {}},
+                        .light = {"lamp"}});
   }
 }
 

@@ -10,12 +10,12 @@
 #include "camera/intrinsics.h"
 #include "io/picture.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
 #include "render/looking_at.h"
+#include "render/specimen_camera.h"
 
 namespace gonio::render {
 namespace {
@@ -85,16 +85,6 @@ io::Image sky() {
   return picture;
 }
 
-manifest::ImageEntry view(const std::string& id, Vec3 position_m) {
-  manifest::ImageEntry image;
-  image.id = id;
-  image.camera = "camera";
-  static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
-      looking_at(position_m, {0, 0, 0.022});
-  image.noise = manifest::Noise{.gain = 16000, .read = 0.0005};
-  return image;
-}
-
 }  // namespace
 
 io::TriangleMesh bowl(double radius_m, double thickness_m, int sectors) {
@@ -149,7 +139,9 @@ manifest::Document glass_specimen(const std::filesystem::path& out) {
   add("cloth", "cloth", 0);
   add("bowl", "glass", 0.0005);  // on the cloth's threads, not in them
   camera::enter_pinhole(document, "camera", 320, 240, 560);
-  document.images = {view("front", {0.02, -0.30, 0.16}), view("side", {0.26, -0.12, 0.22})};
+  const Vec3 bowl_m{0, 0, 0.022};
+  add_view(document, {.id = "front", .world_from_camera = {looking_at({0.02, -0.30, 0.16}, bowl_m), {}}});
+  add_view(document, {.id = "side", .world_from_camera = {looking_at({0.26, -0.12, 0.22}, bowl_m), {}}});
   return document;
 }
 

@@ -7,12 +7,12 @@
 #include "geom/angle.h"
 #include "manifest/document.h"
 #include "manifest/sections/flat_patch.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
 #include "render/looking_at.h"
+#include "render/specimen_camera.h"
 
 namespace gonio::render {
 namespace {
@@ -82,14 +82,10 @@ manifest::Document goniometer_specimen(const Arc& arc) {
                                         {"watt_per_sr", std::vector<double>{1, 1, 1}}};
     for (const double inclination : arc_inclinations_rad(arc))
       for (const double azimuth : arc_azimuths_rad(arc)) {
-        manifest::ImageEntry image;
-        image.id = lamp + "_theta-" + text("%04.1f", inclination) + "_phi-" + text("%05.1f", azimuth);
-        image.camera = "camera";
-        image.light = {lamp};
-        image.noise = manifest::Noise{.gain = 16000, .read = 0.0005};
-        static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
-            looking_at(middle_m + direction(inclination, azimuth) * arc.camera_distance_m, middle_m);
-        document.images.push_back(image);
+        const Vec3 at_m = middle_m + direction(inclination, azimuth) * arc.camera_distance_m;
+        add_view(document, {.id = lamp + "_theta-" + text("%04.1f", inclination) + "_phi-" + text("%05.1f", azimuth),
+                            .world_from_camera = {looking_at(at_m, middle_m), {}},
+                            .light = {lamp}});
       }
   }
   return document;

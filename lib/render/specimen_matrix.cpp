@@ -12,12 +12,12 @@
 #include "geom/angle.h"
 #include "io/ply.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/pattern.h"
 #include "manifest/sections/surface.h"
+#include "render/specimen_camera.h"
 
 namespace gonio::render {
 namespace {
@@ -96,15 +96,10 @@ void add_placement(manifest::Document& document, const std::string& name, double
   static_cast<Rigid<frame::World, frame::Object>&>(placement.world_from_pattern.emplace()) =
       placed * plate_from_pattern;
   for (int k = -2; k <= 2; ++k) {
-    manifest::ImageEntry image;
-    image.id = name + "-" + std::to_string(k + 2);
-    image.camera = "camera";
-    image.group = name;
-    image.noise = manifest::Noise{.gain = 16000, .read = 0.0005};
-    static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
-        tilted(k * 10 * degree, middle_m);
-    image.world_from_camera->sigma = manifest::PoseSigma{{robot_rad}, {robot_m}};
-    document.images.push_back(image);
+    const auto pose = tilted(k * 10 * degree, middle_m);
+    add_view(document, {.id = name + "-" + std::to_string(k + 2),
+                        .world_from_camera = {pose, manifest::PoseSigma{{robot_rad}, {robot_m}}},
+                        .group = name});
   }
 }
 

@@ -30,7 +30,7 @@
 #include "io/picture.h"
 #include "io/ply.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
@@ -57,12 +57,9 @@ void add_object(Document& document, const std::string& id, const std::string& su
 
 void add_camera(Document& document, Vec3 position_m, Vec3 target_m, int width_px, int height_px, double focal_px) {
   camera::enter_pinhole(document, "camera", width_px, height_px, focal_px);
-  manifest::ImageEntry image;
-  image.id = "view";
-  image.camera = "camera";
-  static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
-      render::looking_at(position_m, target_m);
-  document.images = {image};
+  keep_images(document, {});
+  const auto pose = render::looking_at(position_m, target_m);
+  manifest::enter_image(document, {.id = "view", .camera = "camera", .world_from_camera = {pose, {}}});
 }
 
 void add_lamp(Document& document, double radius_m) {
@@ -145,7 +142,7 @@ void scenes(const fs::path& folder, const fs::path& mesh, const fs::path& sky) {
   add_lamp(race, 0.03);
   save(race, folder / "race-translucent.json");
   race = render::glass_specimen(folder);
-  race.images.resize(1);
+  keep_images(race, {"front"});
   race.lights.clear();
   add_sky(race, sky);
   save(race, folder / "race-bowl.json");

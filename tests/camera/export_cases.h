@@ -13,7 +13,7 @@
 #include "camera/camera_model.h"
 #include "camera/export/formats.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
+#include "manifest/image_list.h"
 
 namespace gonio::camera {
 
@@ -38,6 +38,12 @@ inline manifest::Camera far_off_centre(bool square) {
   return c;
 }
 
+inline Rigid<frame::World, frame::Camera> exported_pose(std::size_t image) {
+  const std::array turns{Vec3{0.3, -0.2, 0.5}, Vec3{-2.1, 0.7, 1.2}, Vec3{0.1, 2.6, -0.4}};
+  const std::array places{Vec3{0.1, -0.3, 0.2}, Vec3{3.5, 2, -1}, Vec3{-0.6, 0.4, 5}};
+  return {quaternion_of_rotation_vector(turns.at(image)), places.at(image)};
+}
+
 // One camera, two poses that are turned about all axes; a portrait format as the second camera.
 inline manifest::Document exported_document(bool square) {
   manifest::Document document;
@@ -49,24 +55,11 @@ inline manifest::Document exported_document(bool square) {
   tall.cx_px = 61.5;
   tall.cy_px = 512.25;
   document.cameras["tall"] = tall;
-  const std::array turns{Vec3{0.3, -0.2, 0.5}, Vec3{-2.1, 0.7, 1.2}, Vec3{0.1, 2.6, -0.4}};
-  const std::array places{Vec3{0.1, -0.3, 0.2}, Vec3{3.5, 2, -1}, Vec3{-0.6, 0.4, 5}};
-  for (std::size_t i = 0; i < 3; ++i) {
-    manifest::ImageEntry image;
-    image.id = std::string("v") + std::to_string(i);
-    image.camera = i == 1 ? "tall" : "wide";
-    image.world_from_camera.emplace();
-    image.world_from_camera->rotation = quaternion_of_rotation_vector(turns[i]);
-    image.world_from_camera->translation_m = places[i];
-    document.images.push_back(image);
-  }
+  for (std::size_t i = 0; i < 3; ++i)
+    manifest::enter_image(document, {.id = std::string("v") + std::to_string(i),
+                                     .camera = i == 1 ? "tall" : "wide",
+                                     .world_from_camera = {exported_pose(i)}});
   return document;
-}
-
-inline const manifest::ImageEntry& image_named(const manifest::Document& document, const std::string& id) {
-  for (const auto& image : document.images)
-    if (image.id == id) return image;
-  throw std::runtime_error("no image " + id);
 }
 
 inline std::string content_of(const std::vector<ExportedFile>& files, const std::string& name) {
@@ -75,16 +68,17 @@ inline std::string content_of(const std::vector<ExportedFile>& files, const std:
   throw std::runtime_error("no file " + name);
 }
 
-// `project` takes world coordinates to pixels, with pixel centres at integers, as the written file says.
+// For a document of exported_document(): `project` takes world coordinates to pixels, with pixel centres at integers,
+// as the written file says.
 template <class Project>
 void expect_same_pixels(const manifest::Document& document, const std::string& image, const Project& project,
                         double limit_px = 0.05) {
-  const manifest::ImageEntry& entry = image_named(document, image);
-  const CameraModel model(document.cameras.at(entry.camera), "t");
+  const std::size_t index = manifest::index_of_image(document, image).value();
+  const CameraModel model(document.cameras.at(manifest::camera_of_image(document, index)), "t");
   for (const Vec3& in_camera : letter_f()) {
     const auto expected = model.project(in_camera);
     ASSERT_TRUE(expected);
-    const Vec2 found = project(*entry.world_from_camera * in_camera);
+    const Vec2 found = project(exported_pose(index) * in_camera);
     EXPECT_NEAR(found.x, expected->x, limit_px) << image;
     EXPECT_NEAR(found.y, expected->y, limit_px) << image;
   }

@@ -4,7 +4,7 @@
 
 #include "export_cases.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
+#include "manifest/image_list.h"
 #include "manifest/value.h"
 
 namespace gonio::camera {
@@ -163,7 +163,7 @@ TEST(Export, RefusesWhatCannotBeExported) {
 
 TEST(Export, CameraWithoutPosesStandsAtTheOrigin) {
   manifest::Document document = exported_document(true);
-  document.images.clear();
+  keep_images(document, {});
   for (const char* format : {"mitsuba", "pbrt"}) EXPECT_EQ(export_cameras(document, {.format = format}).size(), 2u);
 }
 

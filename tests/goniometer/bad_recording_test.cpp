@@ -10,6 +10,7 @@
 #include "light/irradiance.h"
 #include "manifest/sections/file.h"
 #include "manifest/sections/flat_patch.h"
+#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"
 #include "recordings.h"

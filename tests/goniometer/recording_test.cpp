@@ -12,6 +12,7 @@
 #include "data.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/flat_patch.h"
+#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/mesh.h"

@@ -8,9 +8,10 @@
 #include "goniometry/recording.h"
 #include "io/picture.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
+#include "render/entries.h"
 #include "render/looking_at.h"
 #include "render/path_tracer.h"
+#include "render/specimen_camera.h"
 #include "render/virtual_sensor.h"
 #include "scene/scene.h"
 
@@ -27,14 +28,9 @@ struct Lighted {
 
 inline void add_image(manifest::Document& document, const std::string& id, const Lighted& view, double distance_m,
                       Vec3 target_m = {}) {
-  manifest::ImageEntry image;
-  image.id = id;
-  image.camera = "camera";
-  image.light = {view.light};
-  image.noise = manifest::Noise{.gain = 16000, .read = 0.0005};
-  static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
-      render::looking_at(target_m + direction(view.theta_rad, view.phi_rad) * distance_m, target_m);
-  document.images.push_back(image);
+  const Vec3 at_m = target_m + direction(view.theta_rad, view.phi_rad) * distance_m;
+  render::add_view(document,
+                   {.id = id, .world_from_camera = {render::looking_at(at_m, target_m)}, .light = {view.light}});
 }
 
 using Rendered = std::vector<io::Image>;  // radiance, per image of the document
@@ -53,13 +49,13 @@ inline void record(manifest::Document& document, const Rendered& rendered, const
                    std::uint64_t seed, const Spoil& spoil = {}) {
   document.folder = folder;
   document.name = "recording.json";
+  const auto ids = names_in(document, "images");
   for (std::size_t i = 0; i < rendered.size(); ++i) {
-    manifest::ImageEntry& image = document.images[i];
-    io::Image picture = render::recorded(rendered[i], render::sensor_of(document, i), image.id, seed);
+    io::Image picture = render::recorded(rendered[i], render::sensor_of(document, i), ids[i], seed);
     if (spoil) spoil(i, picture);
-    const auto path = folder / (image.id + ".exr");
+    const auto path = folder / (ids[i] + ".exr");
     io::write_picture(path, picture);
-    image.file = manifest::add_file(document, path, image.id);
+    render::enter_recording(document, i, path);
   }
 }
 

@@ -7,7 +7,6 @@
 #include "geom/vector.h"
 #include "io/picture.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "render/path_tracer.h"
 #include "render/ray_caster.h"
 #include "render/sensor_chain.h"
@@ -76,20 +75,21 @@ std::vector<io::Image> EffectWorld::render() const {
         scene, i, caster, {.spp = spp, .seed = seed, .geometry = false, .transport = {.stokes = stokes}});
     render::Sensor sensor = render::sensor_of(full, i);
     sensor.noise = {};
-    pictures.push_back(render::recorded(rendered, sensor, full.images[i].id, seed));
+    pictures.push_back(render::recorded(rendered, sensor, scene.views[i].image, seed));
   }
   return pictures;
 }
 
 manifest::Document EffectWorld::record(const ScratchFolder& folder) const {
   const manifest::Document believed_all = manifest::parse_document(manifest(believed), "believed", folder.path());
+  const auto ids = names_in(believed_all, "images");  // and of their files
   std::vector<io::Image> pictures = render();
   const std::size_t per_view = pictures.size() / static_cast<std::size_t>(views);
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     if (change) change(i, i / per_view, pictures[i]);
     Random random(noise_seed, i);
     for (float& value : pictures[i].data) value += static_cast<float>(noise * random.normal());
-    io::write_picture(folder / (believed_all.images[i].file + ".exr"), pictures[i]);
+    io::write_picture(folder / (ids[i] + ".exr"), pictures[i]);
   }
   return believed_all;
 }

@@ -3,7 +3,6 @@
 #include "base/random.h"
 #include "io/picture.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "render/path_tracer.h"
 #include "render/ray_caster.h"
 #include "render/sensor_chain.h"
@@ -59,10 +58,10 @@ manifest::Document record_ball(const ScratchFolder& folder, const std::string& t
     const io::Image rendered = render::render(scene, v, caster, options);
     render::Sensor sensor = render::sensor_of(full, v);
     sensor.noise = {};
-    io::Image picture = render::recorded(rendered, sensor, full.images[v].id, seed);
+    io::Image picture = render::recorded(rendered, sensor, scene.views[v].image, seed);
     Random random(seed, v);
     for (float& value : picture.data) value += static_cast<float>(noise * random.normal());
-    io::write_picture(folder / (full.images[v].file + ".exr"), picture);
+    io::write_picture(folder / (scene.views[v].image + ".exr"), picture);
     if (renderings) renderings->push_back(rendered);
   }
   return manifest::parse_document(ball_manifest(believed), "believed", folder.path());

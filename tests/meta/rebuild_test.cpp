@@ -20,14 +20,6 @@ namespace {
 
 constexpr double largest_share = 0.05;
 
-// Sections whose fields so many sources use that the share cannot hold: the most sources that may, today's count and a
-// little. Nothing may join without a reason, and what falls below the share leaves the list.
-const std::map<std::string, std::size_t>& excused() {
-  static const std::map<std::string, std::size_t> limits{
-      {"lib/manifest/sections/image.h", 78}};  // every program that looks at pictures reads id, file, camera and pose
-  return limits;
-}
-
 class Tree {
  public:
   Tree() {
@@ -116,21 +108,11 @@ std::string worst_of(const std::vector<std::string>& paths) {
 TEST(Rebuild, AChangeOfOneSectionMechanismOrModelTouchesOneSourceInTwenty) {
   const auto paths = edited_often();
   ASSERT_GT(paths.size(), 100U);
-  for (const auto& path : paths) {
-    const auto excuse = excused().find(path);
-    const std::size_t limit = excuse == excused().end() ? allowed() : excuse->second;
-    EXPECT_LE(tree().touched_by(path).size(), limit)
+  for (const auto& path : paths)
+    EXPECT_LE(tree().touched_by(path).size(), allowed())
         << path << ": too many of " << tree().sources() << " sources see it. Those that only pass a section on include "
-        << "manifest/sections/forward.h; names_in(), has_entry() (manifest/document.h) ask who is in it. The worst:"
-        << worst_of(paths);
-  }
-}
-
-TEST(Rebuild, NothingIsExcusedThatNeedsNoExcuse) {
-  for (const auto& [path, limit] : excused()) {
-    ASSERT_TRUE(tree().files().contains(path)) << path;
-    EXPECT_GT(tree().touched_by(path).size(), allowed()) << path;
-  }
+        << "manifest/sections/forward.h; names_in(), has_entry() (manifest/document.h) ask who is in it, and "
+        << "manifest/image_list.h has what most ask of images. The worst:" << worst_of(paths);
 }
 
 // Where one of these saw a section, that section's fields would be everybody's.

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "mechanism/mechanism.h"
 #include "render/path_tracer.h"
@@ -19,7 +18,7 @@ namespace {
 using mechanism::Mechanism;
 using mechanism::Target;
 
-manifest::Document document(const std::string& camera = "") {
+manifest::Document document(const std::string& camera = "", const std::string& image = "") {
   const std::string text =
       R"({"gonio": 1, "cameras": {"c": {"model": "pinhole", "width_px": 12, "height_px": 10, "fx_px": 12, "fy_px": 12,
                                         "cx_px": 5.5, "cy_px": 4.5)" +
@@ -33,7 +32,8 @@ manifest::Document document(const std::string& camera = "") {
                       "world_from_object": {"rotation": [1, 0, 0, 0], "translation_m": [0, 0, 0.5]}},
                      {"id": "floor", "mesh": "floor", "surface": "clay",
                       "world_from_object": {"rotation": [0, 1, 0, 0], "translation_m": [0, 0, 0.7]}}],
-         "images": [{"id": "i", "camera": "c", "exposure_s": 0.1, "time_s": 5},
+         "images": [{"id": "i", "camera": "c", "exposure_s": 0.1, "time_s": 5)" +
+      image + R"(},
                     {"id": "earlier", "camera": "c", "time_s": 3}]})";
   return manifest::parse_document(text, "s.json", {});
 }
@@ -105,11 +105,8 @@ TEST(NeutralMechanisms, NoiseAndMosaicAreOffUnlessStated) {
     for (int x = 0; x < ideal.width; ++x)
       for (int c = 0; c < 3; ++c)
         ASSERT_EQ(ideal.at(x, y, c), rendered.at(x, y, rendered.channel(std::string(1, "RGB"[c]))));
-  manifest::Document silent = plain, noisy = plain;
-  silent.images[0].noise = manifest::Noise{};
-  EXPECT_EQ(sensed(silent).data, ideal.data);
-  noisy.images[0].noise = manifest::Noise{.gain = 1000, .read = 0.01};
-  EXPECT_NE(sensed(noisy).data, ideal.data);
+  EXPECT_EQ(sensed(document("", R"(, "noise": {"gain": 0, "read": 0})")).data, ideal.data);
+  EXPECT_NE(sensed(document("", R"(, "noise": {"gain": 1000, "read": 0.01})")).data, ideal.data);
   for (const char* mosaic : {"RGGB", "polarizers"}) {
     const io::Image raw = sensed(document(std::string(R"(, "mosaic": ")") + mosaic + "\""));
     ASSERT_EQ(raw.channels, (std::vector<std::string>{"Y"})) << mosaic;

@@ -15,8 +15,9 @@
 #include "data.h"
 #include "io/picture.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
+#include "manifest/image_list.h"
 #include "render/path_tracer.h"
+#include "render/sensor_chain.h"
 #include "scene/scene.h"
 
 namespace gonio::tests {
@@ -36,8 +37,8 @@ class Practice {
       : document_(manifest::read_document(data(manifest))),
         scene_(scene::build_scene(document_)),
         caster_(scene_.instances) {
-    for (const auto& image : document_.images)
-      recorded_.push_back(io::read_picture(manifest::resolve(document_, image.file, "/images")));
+    for (std::size_t v = 0; v < scene_.views.size(); ++v)
+      recorded_.push_back(io::read_picture(manifest::picture_path(document_, v)));
   }
 
   std::vector<Block> blocks(const std::vector<std::size_t>& views, int spp, std::uint64_t seed) const {
@@ -45,7 +46,7 @@ class Practice {
     for (const std::size_t v : views) {
       const io::Image picture =
           render::render(scene_, v, caster_, {.spp = spp, .seed = seed, .transport = {.max_bounces = 9}});
-      const int visibility = picture.channel("visibility." + document_.images[v].light.at(0)),
+      const int visibility = picture.channel("visibility." + scene_.appearance.lights[scene_.views[v].lights.at(0)].id),
                 id = picture.channel("id");
       for (int y = 0; y + side <= picture.height; y += side)
         for (int x = 0; x + side <= picture.width; x += side)
@@ -94,7 +95,7 @@ class Practice {
   }
 
   Block means(std::size_t view, const io::Image& picture, int x0, int y0) const {
-    const manifest::Noise noise = document_.images[view].noise.value();
+    const manifest::Noise noise = render::sensor_of(document_, view).noise;
     Block block;
     constexpr double n = side * side;
     for (int c = 0; c < 3; ++c) {

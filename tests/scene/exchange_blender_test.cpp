@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "exchange_cases.h"
-#include "manifest/sections/image.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/light.h"
 #include "process.h"
 
@@ -121,8 +121,8 @@ TEST(ExchangeBlender, LampsThatFaceSomewhere) {
          {"outer_rad", 0.35},
          {"inner_share", 0.4},
          {"exponent", 1}}}}};
-  letter.document.images.resize(1);
-  letter.document.images[0].light = {"disc", "panel", "stage"};
+  keep_images(letter.document, {"lamp"});
+  light_image(letter.document, "lamp", {"disc", "panel", "stage"});
   letter.enlarge_without_balls();
   const View& view = letter.scene.views[0];
   const io::Image picture = rendered(letter, view.image, 32);

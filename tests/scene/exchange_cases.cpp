@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
@@ -27,6 +28,12 @@ void Letter::enlarge_without_balls() {
 void bend_lens(manifest::Document& document) {
   document.cameras["c"].model = "radial-tangential";
   document.cameras["c"].distortion["k1"] = -0.2;
+}
+
+void light_image(manifest::Document& document, const std::string& id, const std::vector<std::string>& lamps) {
+  manifest::ImageEntry& image = document.images.at(manifest::index_of_image(document, id).value());
+  image.light = lamps;
+  image.gain.reset();
 }
 
 manifest::Document every_look(const Letter& letter) {

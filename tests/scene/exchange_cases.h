@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "base/atomic_file.h"
 #include "data.h"
@@ -109,6 +110,9 @@ void expect_same_pixels(const Scene& scene, std::size_t image, const Project& pr
     EXPECT_NEAR(there.y, here->y, 0.05);
   }
 }
+
+// Lights the image of this id by these lamps alone; a camera that takes light as it comes.
+void light_image(manifest::Document& document, const std::string& id, const std::vector<std::string>& lamps);
 
 // Gives the camera c a lens that other programs do not have.
 void bend_lens(manifest::Document& document);

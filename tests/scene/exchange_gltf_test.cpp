@@ -5,8 +5,8 @@
 #include <set>
 
 #include "exchange_cases.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/file.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
@@ -231,10 +231,9 @@ TEST(ExchangeGltf, LampsComeBack) {
          {"watt_per_sr", white}}}},
       {"stage", {"spot", {{"position_m", at}, {"direction", down}, {"watt_per_sr", white}, {"outer_rad", 0.5}}}},
       {"sun", {"directional", {{"towards", std::vector<double>{0.3, 0.2, 1}}, {"watt_per_m2", white}}}}};
-  document.images.resize(2);
-  document.images[0].light = {"point", "disc", "stage", "sun"};
-  document.images[0].gain.reset();
-  document.images[1].light = {"point", "ball", "panel"};
+  keep_images(document, {"lamp", "sun"});
+  light_image(document, "lamp", {"point", "disc", "stage", "sun"});
+  light_image(document, "sun", {"point", "ball", "panel"});
   const Scene scene = build_scene(document);
   const Imprint back(export_scene(scene, *find_exchange("gltf")));
   ASSERT_EQ(back.scene.appearance.lights.size(), scene.appearance.lights.size());
@@ -279,7 +278,7 @@ TEST(ExchangeGltf, SurfacesComeBack) {
 TEST(ExchangeGltf, ACoatOverMetalComesBack) {
   manifest::Document document = Letter().document;
   document.lights.erase("sky");
-  document.images.resize(1);
+  keep_images(document, {"lamp"});
   document.surfaces["lacquer"] = {"rough-coat", {{"eta", 1.5}, {"alpha", 0.04}}};
   document.surfaces["lacquer"].base = "gold";
   document.objects.back().surface = "lacquer";

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "exchange_cases.h"
-#include "manifest/sections/image.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/object.h"
@@ -104,7 +104,7 @@ TEST(ExchangeBlender, NamesWithQuotesStayNames) {
   document.objects.resize(1);
   document.objects[0].id = "the ''' potter's \"bowl\\";
   document.lights.erase("sky");
-  document.images.resize(1);
+  keep_images(document, {"lamp"});
   const Exported exported = export_scene(build_scene(document), *find_exchange("blender"));
   const manifest::Value numbers = blender_numbers(exported);
   EXPECT_EQ(numbers.find("objects")->as_array().at(0).find("id")->as_string(), document.objects[0].id);

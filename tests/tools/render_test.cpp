@@ -6,7 +6,7 @@
 #include "data.h"
 #include "io/picture.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/rendering.h"
 #include "manifest/sections/surface.h"
@@ -33,7 +33,7 @@ class Render : public testing::Test {
 
 TEST_F(Render, ASpecimenThroughAPipe) {
   const Ended specimen = render({"--specimen", "knot", "--out", "k"});
-  EXPECT_EQ(document(specimen).images.size(), 9u);
+  EXPECT_EQ(names_in(document(specimen), "images").size(), 9u);
   const Ended ended = render({"--image", "view-1-lamp-2", "--spp", "2", "--out", "r", "--preview"}, specimen.out);
   const manifest::Document done = document(ended);
   ASSERT_EQ(done.renderings.size(), 1u);
@@ -98,8 +98,9 @@ TEST_F(Render, RecordingsConcealWhatTheyShow) {
   const manifest::Document after = document(ended);
   EXPECT_TRUE(after.mechanisms.empty());
   EXPECT_TRUE(after.renderings.empty());
-  EXPECT_EQ(after.images[0].file, "recording-view-0-lamp-0");
-  EXPECT_TRUE(after.images[1].file.empty());
+  EXPECT_TRUE(has_entry(after, "files", "recording-view-0-lamp-0"));
+  EXPECT_THAT(files_of_image(after, 0), testing::ElementsAre(folder_ / "rec/view-0-lamp-0.exr"));
+  EXPECT_TRUE(files_of_image(after, 1).empty());
   EXPECT_EQ(after.surfaces.at("clay").parameters.at("albedo").value, (std::vector<double>{0.5, 0.5, 0.5}));
   EXPECT_EQ(after.lights.at("lamp-0").model, before.lights.at("lamp-0").model);
   const io::Image picture = io::read_picture(folder_ / "rec/view-0-lamp-0.exr");

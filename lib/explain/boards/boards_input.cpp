@@ -7,6 +7,7 @@
 #include "camera/corner_table.h"
 #include "explain/boards/boards_problem.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
@@ -70,24 +71,24 @@ std::size_t entered(std::vector<Part>& parts, const std::string& name, Read read
 void add_table(const manifest::Document& document, const std::string& name, BoardsInput& input) {
   const camera::CornerTable table = camera::read_corners(document, name);
   for (const camera::ImageCorners& corners : table.images) {
-    const auto image = std::find_if(document.images.begin(), document.images.end(),
-                                    [&](const manifest::ImageEntry& i) { return i.id == corners.image; });
-    const std::string place = manifest::place(document, "/tables/" + name);
-    if (image == document.images.end())
-      throw Error(Exit::data, place, "has corners of image " + corners.image + ", which the manifest does not list");
-    if (image->weight && *image->weight == 0) continue;
-    if (!image->camera_from_board)
+    const auto listed = manifest::index_of_image(document, corners.image);
+    if (!listed)
+      throw Error(Exit::data, manifest::place(document, "/tables/" + name),
+                  "has corners of image " + corners.image + ", which the manifest does not list");
+    const manifest::ImageEntry& image = document.images[*listed];
+    if (image.weight && *image.weight == 0) continue;
+    if (!image.camera_from_board)
       throw Error(Exit::data, manifest::place(document, "/images/" + corners.image), "has no camera_from_board",
                   "calibrate first: calib-charuco");
     BoardsInput::View view;
     view.image = corners.image;
-    view.camera = entered(input.cameras, table.camera.empty() ? image->camera : table.camera,
+    view.camera = entered(input.cameras, table.camera.empty() ? image.camera : table.camera,
                           [&](const std::string& id) { return camera_input(document, id); });
-    view.board = entered(input.boards, table.board.empty() ? image->board : table.board,
+    view.board = entered(input.boards, table.board.empty() ? image.board : table.board,
                          [&](const std::string& id) { return board_input(document, id); });
-    view.camera_from_board = *image->camera_from_board;
-    view.time_s = image->time_s;
-    view.temperature_K = image->temperature_K;
+    view.camera_from_board = *image.camera_from_board;
+    view.time_s = image.time_s;
+    view.temperature_K = image.temperature_K;
     for (const camera::TableCorner& c : corners.corners) {
       view.corners.push_back({c.board_m, c.pixel, c.sigma_px, static_cast<camera::Colour>(c.channel), c.turned_rad});
       if (!view.time_s && std::isfinite(c.time_s)) view.time_s = c.time_s;

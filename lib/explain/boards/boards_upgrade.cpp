@@ -5,6 +5,7 @@
 
 #include "explain/boards/boards_outcome.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
@@ -138,11 +139,11 @@ void upgrade_boards(const Problem& problem, const BoardsInput& input, const std:
   }
   upgrade_mechanisms(problem, input, roles, e, document);
   for (std::size_t v = 0; v < input.views.size(); ++v) {
-    const auto image = std::find_if(document.images.begin(), document.images.end(),
-                                    [&](const manifest::ImageEntry& i) { return i.id == input.views[v].image; });
-    if (image == document.images.end()) continue;
-    upgrade_image(input, v, roles, e, *image);
-    image->rms_px = rms(input, o, e, [&](std::size_t other) { return other == v; });
+    const auto listed = manifest::index_of_image(document, input.views[v].image);
+    if (!listed) continue;
+    manifest::ImageEntry& image = document.images[*listed];
+    upgrade_image(input, v, roles, e, image);
+    image.rms_px = rms(input, o, e, [&](std::size_t other) { return other == v; });
   }
 }
 

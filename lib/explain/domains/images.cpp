@@ -2,7 +2,7 @@
 #include "explain/domain.h"
 #include "explain/images/images_problem.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/mesh.h"
 
 namespace gonio::explain::domains {
@@ -23,15 +23,13 @@ const Domain& images() {
                              .files =
                                  [](const manifest::Document& document) {
                                    std::vector<std::filesystem::path> files;
-                                   const auto add = [&](const std::string& id, const std::string& pointer) {
-                                     if (!id.empty()) files.push_back(manifest::resolve(document, id, pointer));
-                                   };
-                                   for (std::size_t i = 0; i < document.images.size(); ++i) {
-                                     add(document.images[i].file, "/images/" + std::to_string(i) + "/file");
-                                     add(document.images[i].mask, "/images/" + std::to_string(i) + "/mask");
-                                   }
+                                   const std::size_t images = names_in(document, "images").size();
+                                   for (std::size_t i = 0; i < images; ++i)
+                                     for (auto& file : manifest::files_of_image(document, i)) files.push_back(file);
                                    for (const auto& [name, mesh] : document.meshes)
-                                     add(mesh.file, "/meshes/" + name + "/file");
+                                     if (!mesh.file.empty())
+                                       files.push_back(
+                                           manifest::resolve(document, mesh.file, "/meshes/" + name + "/file"));
                                    return files;
                                  }};
   return domain;

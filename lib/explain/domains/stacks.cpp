@@ -3,7 +3,7 @@
 #include "explain/stacks/exposures_problem.h"
 #include "explain/stacks/photometric_problem.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
+#include "manifest/image_list.h"
 
 namespace gonio::explain::domains {
 
@@ -31,12 +31,8 @@ const Domain& stacks() {
             std::vector<std::filesystem::path> files;
             for (const explain::stacks::Kind kind : {explain::stacks::Kind::exposures, explain::stacks::Kind::lights})
               for (const std::vector<std::size_t>& entries : explain::stacks::stacks_of(document, kind))
-                for (const std::size_t i : entries) {
-                  const std::string at = "/images/" + std::to_string(i);
-                  files.push_back(manifest::resolve(document, document.images[i].file, at + "/file"));
-                  if (!document.images[i].mask.empty())
-                    files.push_back(manifest::resolve(document, document.images[i].mask, at + "/mask"));
-                }
+                for (const std::size_t i : entries)
+                  for (auto& file : manifest::files_of_image(document, i)) files.push_back(file);
             return files;
           }};
   return domain;

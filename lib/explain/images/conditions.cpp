@@ -8,8 +8,6 @@
 #include "explain/images/fixed_pattern.h"
 #include "explain/images/observed.h"
 #include "light/polarized_emitter.h"
-#include "manifest/document.h"
-#include "manifest/sections/image.h"
 
 namespace gonio::explain::images {
 namespace {
@@ -107,8 +105,8 @@ double plane_azimuth(const LightSource& light, Vec3 wi, const Patch& patch, Vec3
 
 class Describer {
  public:
-  Describer(const ImageModel& model, const Recording& image, const manifest::ImageEntry& entry)
-      : model_(model), image_(image), cache_(model.cache(image.view)), entry_(entry) {}
+  Describer(const ImageModel& model, const Recording& image)
+      : model_(model), image_(image), cache_(model.cache(image.view)) {}
 
   // Conditions of a pixel that do not depend on the colour; the largest facet stands for it.
   Known of(const Pixel& pixel) const {
@@ -118,9 +116,9 @@ class Describer {
     if (!image_.lights.empty()) c[identity_at] = static_cast<double>(image_.lights[0]);
     c[row_at] = pixel.y;
     c[edge_at] = edge_distance(pixel);
-    c[exposure_at] = entry_.exposure_s.value_or(none);
-    c[time_at] = entry_.time_s.value_or(none);
-    c[temperature_at] = entry_.temperature_K.value_or(none);
+    c[exposure_at] = image_.exposure_s.value_or(none);
+    c[time_at] = image_.time_s.value_or(none);
+    c[temperature_at] = image_.temperature_K.value_or(none);
     if (pixel.facets > 0) of_facet(largest(pixel), c);
     return c;
   }
@@ -175,13 +173,11 @@ class Describer {
   const ImageModel& model_;
   const Recording& image_;
   const ViewCache& cache_;
-  const manifest::ImageEntry& entry_;
 };
 
 }  // namespace
 
-std::vector<Condition> image_conditions(const manifest::Document& document, const ImageModel& model,
-                                        const std::vector<std::vector<std::uint32_t>>& picked,
+std::vector<Condition> image_conditions(const ImageModel& model, const std::vector<std::vector<std::uint32_t>>& picked,
                                         std::span<const double> prediction) {
   const std::vector<double> relative(prediction.begin(), prediction.end());
   std::vector<Condition> all;
@@ -192,7 +188,7 @@ std::vector<Condition> image_conditions(const manifest::Document& document, cons
   for (std::size_t g = 0; g < picked.size(); ++g) {
     const Recording& image = model.recordings().images[g];
     const ViewCache& cache = model.cache(image.view);
-    const Describer describe(model, image, document.images[image.entry]);
+    const Describer describe(model, image);
     for (const std::uint32_t p : picked[g]) {
       Known known = describe.of(cache.pixels[p]);
       const Rgb mirrored = opposite(image, cache.pixels[p]);

@@ -14,8 +14,7 @@ namespace gonio::explain::images {
 // pixel. camera.pixel is how far the same pixel stands out from its neighbours in other views (fixed_pattern.h). One
 // row per picked pixel and channel, images in order. `prediction`: of the base model, one per row; structure that
 // scales with the signal is a curve over a condition times it. Angles in rad; with several lights on, the first counts.
-std::vector<Condition> image_conditions(const manifest::Document& document, const ImageModel& model,
-                                        const std::vector<std::vector<std::uint32_t>>& picked,
+std::vector<Condition> image_conditions(const ImageModel& model, const std::vector<std::vector<std::uint32_t>>& picked,
                                         std::span<const double> prediction);
 
 }  // namespace gonio::explain::images

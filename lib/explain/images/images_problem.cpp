@@ -76,7 +76,7 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
         build_cache(*caster_, recordings_.views[v], layout_.lights, *monomials_, chosen[v], cache_options_));
   model_ = std::make_unique<ImageModel>(recordings_, layout_, *monomials_, std::move(caches));
   bind(document);
-  fill_rows(document);
+  fill_rows();
   misplaced_ = misplaced_files(recordings_, *model_, picked_);
   if (!misplaced_.files.empty()) candidates_.clear();  // no physics is fitted to pictures of something else
 }
@@ -129,7 +129,7 @@ void ImagesProblem::choose_pixels(std::size_t pixels, std::vector<std::vector<st
   }
 }
 
-void ImagesProblem::fill_rows(const manifest::Document& document) {
+void ImagesProblem::fill_rows() {
   Observations& o = observations_;
   o.first.push_back(0);
   std::uint32_t blocks = 0;
@@ -172,7 +172,7 @@ void ImagesProblem::fill_rows(const manifest::Document& document) {
     o.group.push_back(image.id);
     picked_.push_back(std::move(mine));
   }
-  o.conditions = image_conditions(document, *model_, picked_, prediction);
+  o.conditions = image_conditions(*model_, picked_, prediction);
 }
 
 SceneState ImagesProblem::raw_state(std::span<const double> values) const {

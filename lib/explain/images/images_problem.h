@@ -56,7 +56,7 @@ class ImagesProblem final : public Problem {
   SceneState raw_state(std::span<const double> values) const;
   void bind(const manifest::Document& document);
   void choose_pixels(std::size_t pixels, std::vector<std::vector<std::array<int, 2>>>& chosen) const;
-  void fill_rows(const manifest::Document& document);
+  void fill_rows();
 
   Recordings recordings_;
   SceneLayout layout_;

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/object.h"
@@ -74,10 +75,9 @@ Rgb mean_of_finite(const io::Image& picture) {
 }
 
 void read_mask(const manifest::Document& document, Recording& image) {
-  const manifest::ImageEntry& entry = document.images[image.entry];
-  if (entry.mask.empty()) return;
-  const std::string pointer = "/images/" + std::to_string(image.entry) + "/mask";
-  const io::Image mask = io::read_picture(manifest::resolve(document, entry.mask, pointer));
+  const std::filesystem::path path = manifest::mask_path(document, image.entry);
+  if (path.empty()) return;
+  const io::Image mask = io::read_picture(path);
   if (mask.width != image.picture.width || mask.height != image.picture.height)
     refuse(document, image.entry, "/mask", "has another size than the picture", "crop both alike");
   for (std::size_t i = 0; i < image.counts.size(); ++i)
@@ -137,7 +137,7 @@ Recordings read_recordings(const manifest::Document& document) {
       if (entry.light.empty() ||
           std::find(entry.light.begin(), entry.light.end(), recordings.lights[l]) != entry.light.end())
         image.lights.push_back(l);
-    read_pixels(document, manifest::resolve(document, entry.file, "/images/" + std::to_string(i) + "/file"), image);
+    read_pixels(document, manifest::picture_path(document, i), image);
     const camera::CameraModel& camera = recordings.views[image.view].model;
     if (image.picture.width != camera.width_px() || image.picture.height != camera.height_px())
       refuse(document, i, "/file",

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "io/picture.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
+#include "manifest/image_list.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain::images {
@@ -56,8 +56,7 @@ void add_picture(const std::filesystem::path& path, const manifest::Document& do
                  Pairs& pairs) {
   for (std::size_t g = 0; g < recordings.images.size(); ++g) {
     const Recording& image = recordings.images[g];
-    const std::string pointer = "/images/" + std::to_string(image.entry) + "/file";
-    if (manifest::resolve(document, document.images[image.entry].file, pointer).filename() != path.filename()) continue;
+    if (manifest::picture_path(document, image.entry).filename() != path.filename()) continue;
     const io::Image other = read_take(document, image, path);
     check_size(path, image, other);
     compare(image, other, pairs[g]);

@@ -6,6 +6,7 @@
 #include "base/progress.h"
 #include "explain/robot/robot_findings.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
@@ -73,14 +74,13 @@ void upgrade_arm(const RobotWork& work, const RobotState& state, manifest::Docum
     }
   }
   for (const RobotInput::View& view : work.input.views) {
-    const auto image = std::find_if(document.images.begin(), document.images.end(),
-                                    [&](const manifest::ImageEntry& i) { return i.id == view.image; });
-    if (image == document.images.end()) continue;
+    const auto listed = manifest::index_of_image(document, view.image);
+    if (!listed) continue;
     const auto tool = tool_pose(work.input, view, state);
     manifest::Pose<frame::Base, frame::Tool> pose;
     pose.rotation = tool.rotation;
     pose.translation_m = tool.translation_m;
-    image->base_from_tool = pose;
+    document.images[*listed].base_from_tool = pose;
   }
 }
 

@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "light/turn.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "stats/intervals.h"
 
@@ -50,9 +49,8 @@ double angle(double cosine) {
   return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
-Vec3 direction_to_eye(const manifest::Document& document, const StackImage& image,
-                      const std::vector<PatchLight>& lamps) {
-  if (const auto& pose = document.images[image.entry].world_from_camera) return pose->rotate({0, 0, -1});
+Vec3 direction_to_eye(const StackImage& image, const std::vector<PatchLight>& lamps) {
+  if (const auto& pose = image.world_from_camera) return pose->rotate({0, 0, -1});
   // Without a pose, lamps with z > 0 speak of axes whose z points at the camera, as is the habit of photometric stereo.
   double z = 0;
   for (const PatchLight& lamp : lamps) z += lamp.towards.z;
@@ -72,9 +70,9 @@ PhotometricProblem::PhotometricProblem(const manifest::Document& document, Stack
       throw Error(Exit::data, manifest::place(document, "/lights/" + image.light), "gives no light",
                   "state watt_per_m2 above zero");
   }
-  eye_ = direction_to_eye(document, stack_.images[0], lamps_);
+  eye_ = direction_to_eye(stack_.images[0], lamps_);
   right_ = {1, 0, 0}, down_ = {0, -eye_.z, 0};
-  if (const auto& pose = document.images[stack_.images[0].entry].world_from_camera)
+  if (const auto& pose = stack_.images[0].world_from_camera)
     right_ = pose->rotate({1, 0, 0}), down_ = pose->rotate({0, 1, 0});
   const Stack mean = grey(stack_);
   sites_ = choose_sites(mean, ReadingNoise(mean), {.sites = sites, .fewest = fewest_shown}, place);

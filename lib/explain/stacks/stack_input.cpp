@@ -12,6 +12,7 @@
 #include "io/codes.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/object.h"
@@ -81,7 +82,7 @@ void drop_neighbours_of_clipped(const std::vector<std::uint8_t>& clipped, int re
 void read_image(const Document& document, StackImage& image, Stack& stack) {
   const ImageEntry& entry = document.images[image.entry];
   const std::string at = manifest::place(document, pointer(image.entry, "/response"));
-  const std::filesystem::path path = manifest::resolve(document, entry.file, pointer(image.entry, "/file"));
+  const std::filesystem::path path = manifest::picture_path(document, image.entry);
   const int bits = io::code_bits(path);
   if (bits > 0 && entry.response.is_null())
     throw Error(Exit::data, at, "is not stated for an 8 or 16-bit picture",
@@ -120,12 +121,12 @@ void read_image(const Document& document, StackImage& image, Stack& stack) {
 }
 
 void read_mask(const Document& document, StackImage& image) {
-  const std::string& mask = document.images[image.entry].mask;
+  const std::filesystem::path mask = manifest::mask_path(document, image.entry);
   if (mask.empty()) return;
-  const std::string at = pointer(image.entry, "/mask");
-  const metric::Mask read = metric::read_mask(manifest::resolve(document, mask, at));
+  const metric::Mask read = metric::read_mask(mask);
   if (read.width != image.picture.width || read.height != image.picture.height)
-    throw Error(Exit::data, manifest::place(document, at), "has another size than the picture", "crop both alike");
+    throw Error(Exit::data, manifest::place(document, pointer(image.entry, "/mask")),
+                "has another size than the picture", "crop both alike");
   const std::size_t channels = image.picture.channels.size();
   for (std::size_t i = 0; i < image.counts.size(); ++i) image.counts[i] = image.counts[i] && read.counts[i / channels];
 }
@@ -188,6 +189,7 @@ Stack read_stack(const Document& document, const std::vector<std::size_t>& entri
     if (e.gain && e.gain->given()) image.gain = e.gain->scalar();
     image.time_s = e.time_s;
     image.temperature_K = e.temperature_K;
+    if (e.world_from_camera) image.world_from_camera = *e.world_from_camera;
     if (kind == Kind::lights) image.light = e.light[0];
     if (e.noise) image.noise = *e.noise;
     image.noise_stated = e.noise && (e.noise->gain > 0 || e.noise->read > 0);

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "geom/rigid.h"
 #include "geom/vector.h"
 #include "io/image.h"
 #include "manifest/noise.h"
@@ -26,6 +27,7 @@ struct StackImage {
   std::vector<std::uint8_t> counts;  // one per reading
   double exposure_s = 1, gain = 1;   // gain: factor on the light, 1 unless the manifest knows better
   std::optional<double> time_s, temperature_K;
+  std::optional<Rigid<frame::World, frame::Camera>> world_from_camera;  // where it is stated
   std::string light;  // of a stack of lights: key in the manifest's lights
   manifest::Noise noise;
   bool noise_stated = false;

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "base/text.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
@@ -129,9 +129,9 @@ class Reader {
     const Motion world_from_gltf{matrix_of(Quaternion{half, half, 0, 0}), {}};
     const Item nodes = scene["nodes"];
     for (std::size_t i = 0; i < nodes.size(); ++i) walk(nodes[i], world_from_gltf, 0);
-    for (manifest::ImageEntry& image : cameras_of_scene_) {
+    for (manifest::PlannedImage& image : cameras_of_scene_) {
       image.light = lamps_of_scene_;
-      imported_.document.images.push_back(std::move(image));
+      manifest::enter_image(imported_.document, image);
     }
   }
 
@@ -242,15 +242,14 @@ class Reader {
       imported_.document.cameras[name] = camera_of(entry);
     }
     if (!is_rotation(motion.linear)) lose(node, "a camera that is scaled", "it as it would be without");
-    manifest::ImageEntry image;
+    manifest::PlannedImage image;
     image.id = node["name"].text("");
     if (image.id.empty()) image.id = "view";
     for (int i = 2; !image_names_.insert(image.id).second; ++i)
       image.id = node["name"].text("view") + "-" + std::to_string(i);
     image.camera = name;
-    image.world_from_camera.emplace();
-    image.world_from_camera->rotation = normalized(turn_without_scale(motion.linear) * Quaternion{0, 1, 0, 0});
-    image.world_from_camera->translation_m = motion.offset;
+    image.world_from_camera.rotation = normalized(turn_without_scale(motion.linear) * Quaternion{0, 1, 0, 0});
+    image.world_from_camera.translation_m = motion.offset;
     cameras_of_scene_.push_back(std::move(image));
   }
 
@@ -361,7 +360,7 @@ class Reader {
   std::map<std::string, std::string> meshes_;
   std::map<std::uint64_t, std::string> cameras_;
   std::vector<std::string> lamps_of_scene_;
-  std::vector<manifest::ImageEntry> cameras_of_scene_;
+  std::vector<manifest::PlannedImage> cameras_of_scene_;
 };
 
 }  // namespace
