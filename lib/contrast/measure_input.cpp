@@ -12,7 +12,9 @@
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/pattern.h"
-#include "metric/linear_picture.h"
+#include "photograph/linear_picture.h"
+#include "photograph/mask.h"
+#include "photograph/saturation.h"
 
 namespace gonio::contrast {
 namespace {
@@ -303,7 +305,7 @@ GreyView read_view(const manifest::Document& document, const InputView& view, co
   const manifest::ImageEntry& entry = document.images[view.image];
   const auto path = manifest::resolve(document, entry.file, "/images/" + std::to_string(view.image) + "/file");
   if (options.note_input) options.note_input(path);
-  const metric::LinearPicture picture = metric::read_linear(path, entry.response, view.place);
+  const photograph::LinearPicture picture = photograph::read_linear(path, entry.response, view.place);
   const io::Image& colour = picture.colour;
   if (view.camera && (colour.width != view.camera->width_px() || colour.height != view.camera->height_px()))
     throw Error(Exit::data, path.string(),
@@ -324,16 +326,12 @@ GreyView read_view(const manifest::Document& document, const InputView& view, co
         grey.variance[i] +=
             w * w *
             static_cast<float>(std::max(0.0, double{v}) / entry.noise->gain + entry.noise->read * entry.noise->read);
-      if (double{v} >= view.full_scale * (1 - 1e-6)) grey.saturated[i] = 1;
+      if (photograph::at_full_scale(v, view.full_scale)) grey.saturated[i] = 1;
     }
-  if (!entry.mask.empty()) {
-    const metric::Mask mask =
-        metric::read_mask(manifest::resolve(document, entry.mask, "/images/" + std::to_string(view.image) + "/mask"));
-    if (mask.width != grey.width || mask.height != grey.height)
-      throw Error(Exit::data, view.place + "/mask", "has another size than the picture",
-                  "give a mask of the same size");
-    grey.counts = mask.counts;
-  }
+  if (!entry.mask.empty())
+    grey.counts = photograph::read_mask_of(
+        colour, manifest::resolve(document, entry.mask, "/images/" + std::to_string(view.image) + "/mask"),
+        view.place + "/mask");
   return grey;
 }
 

@@ -8,6 +8,7 @@
 
 #include "goniometry/irradiance.h"
 #include "goniometry/patch_cells.h"
+#include "photograph/saturation.h"
 #include "scene/scene.h"
 #include "stats/intervals.h"
 
@@ -113,8 +114,7 @@ class Reader {
       if (!is_finite(v)) ++no_numbers;
       const std::size_t at = static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(view_.picture->colour.width) +
                              static_cast<std::size_t>(pixel.x);
-      if (view_.picture->clipped[at] != 0 || (view_.full_scale > 0 && max_component(v) >= view_.full_scale))
-        ++saturated;
+      if (view_.picture->clipped[at] != 0 || photograph::at_full_scale(max_component(v), view_.full_scale)) ++saturated;
     }
     const std::string of = " of its " + std::to_string(pixels.size()) + " pixels ";
     if (no_numbers > 0) return std::to_string(no_numbers) + of + "are no numbers";

@@ -61,13 +61,13 @@ PictureReading read_picture(const Recording& recording, std::size_t number_of_vi
     if (tile) result.tile = refused;
     return result;
   }
-  const metric::LinearPicture picture =
-      metric::read_linear(manifest::resolve(*recording.document, image.file, pointer + "/file"), image.response, place);
+  const photograph::LinearPicture picture = photograph::read_linear(
+      manifest::resolve(*recording.document, image.file, pointer + "/file"), image.response, place);
   check_size(picture.colour, seen.camera.width_px(), seen.camera.height_px(), "the picture", place);
   result.channels = picture.colour.channels.size();
-  std::optional<metric::Mask> mask;
+  std::optional<photograph::Mask> mask;
   if (!image.mask.empty()) {
-    mask = metric::read_mask(manifest::resolve(*recording.document, image.mask, pointer + "/mask"));
+    mask = photograph::read_mask(manifest::resolve(*recording.document, image.mask, pointer + "/mask"));
     check_size(io::Image(mask->width, mask->height, {}), seen.camera.width_px(), seen.camera.height_px(), "the mask",
                place);
   }
