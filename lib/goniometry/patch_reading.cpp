@@ -9,6 +9,7 @@
 #include "goniometry/irradiance.h"
 #include "goniometry/patch_cells.h"
 #include "photograph/saturation.h"
+#include "scene/mechanisms/reference_tile.h"
 #include "scene/scene.h"
 #include "stats/intervals.h"
 
@@ -229,8 +230,7 @@ class Reader {
 Rgb Reflector::operator()(Vec3 wo, Vec3 wi) const {
   surface::Values values = outer.values;
   if (base.model != nullptr) values.base = &base;
-  const double in = 1 - wi.z, out = 1 - wo.z;
-  return outer.model->evaluate(values, wo, wi) * (scale / (1 + falls_in * in * in + falls_out * out * out));
+  return outer.model->evaluate(values, wo, wi) * (scale / equation::reference_tile(falls_in, falls_out, wi.z, wo.z));
 }
 
 PatchReading read_patch(const Patch& patch, const PictureView& view, const Reflector* reflector,

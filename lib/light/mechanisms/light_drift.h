@@ -2,11 +2,17 @@
 #pragma once
 #include <cmath>
 
-namespace gonio::light {
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+const Mechanism& light_drift();
+}
+
+namespace gonio::equation {
 
 // `since_s`: after the first recording. 1 to the last bit at amplitude 0.
-inline double drift(double amplitude, double time_constant_s, double since_s) {
+inline double light_drift(double amplitude, double time_constant_s, double since_s) {
   return 1 + amplitude * std::exp(-since_s / time_constant_s);
 }
 
-}  // namespace gonio::light
+}  // namespace gonio::equation

@@ -1,6 +1,5 @@
-// optics.vignetting: the lens passes less light towards the picture's edge. Equation: scene/appearance.cpp,
-// vignetting().
-#include "mechanism/mechanism.h"
+// optics.vignetting: the lens passes less light towards the picture's edge.
+#include "scene/mechanisms/optics_vignetting.h"
 
 namespace gonio::mechanism {
 
@@ -24,6 +23,9 @@ const Mechanism& optics_vignetting() {
       .conditions = {"camera.image-radius"},
       .mistaken_for = {{.with = "light.lobe", .told_apart = "move the patch together with the light"},
                        {.with = "light.direction", .told_apart = "roll the camera: vignetting turns with it"}},
+      .inputs = {{.name = "image_radius", .unit = "1", .lower = 0, .upper = 2.5}},
+      .act = [](double v, std::span<const double> at,
+                std::span<const double> p) { return v * equation::optics_vignetting(p[0], at[0] * at[0]); },
   };
   return declaration;
 }
