@@ -77,6 +77,12 @@ function(gonio_finish_library)
   gonio_bindings(render/links Link render/link.h gonio::render all_links links)
   gonio_bindings(explain/images/terms Term explain/images/term.h gonio::explain::images all_terms terms)
   gonio_bindings(explain/tables/terms Term explain/tables/table_model.h gonio::explain::tables all_terms terms)
+  gonio_bindings(explain/tables/reflectance ReflectanceBinding explain/tables/reflectance_binding.h
+    gonio::explain::tables all_reflectance_bindings reflectance)
+  gonio_bindings(explain/stacks/exposures ExposureBinding explain/stacks/exposure_binding.h gonio::explain::stacks
+    all_exposure_bindings exposures)
+  gonio_bindings(explain/stacks/lights LightBinding explain/stacks/light_binding.h gonio::explain::stacks
+    all_light_bindings lights)
   gonio_registry(${GONIO_GENERATED}/domains.cpp Domain explain/domain.h
     "std::span<const gonio::explain::Domain* const> gonio::explain::all_domains()" gonio::explain::domains
     ${domain_files})
