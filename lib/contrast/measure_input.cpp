@@ -15,6 +15,8 @@
 #include "photograph/linear_picture.h"
 #include "photograph/mask.h"
 #include "photograph/saturation.h"
+#include "render/mechanisms/sensor_saturation.h"
+#include "scene/mechanisms.h"
 
 namespace gonio::contrast {
 namespace {
@@ -112,14 +114,12 @@ std::optional<CameraPose> camera_pose(const manifest::ImageEntry& image, const M
 }
 
 double full_scale_of(const manifest::Document& document, const std::string& camera, const MeasureOptions& options) {
-  double full_scale = options.full_scale;
-  const auto use = document.mechanisms.find("sensor.saturation");
-  if (use == document.mechanisms.end()) return full_scale;
-  const auto value = use->second.parameters.find("full_scale");
-  const bool applies = use->second.on.empty() || std::ranges::find(use->second.on, camera) != use->second.on.end();
-  if (applies && value != use->second.parameters.end() && value->second.given() && value->second.scalar() > 0)
-    full_scale = std::min(full_scale, value->second.scalar());
-  return full_scale;
+  const mechanism::Mechanism& saturation = mechanism::sensor_saturation();
+  const auto use = document.mechanisms.find(saturation.id);
+  if (use == document.mechanisms.end()) return options.full_scale;
+  const auto amounts =
+      scene::camera_amounts(saturation, use->second, camera, manifest::place(document, "/mechanisms/" + saturation.id));
+  return amounts ? std::min(options.full_scale, amounts->front()) : options.full_scale;
 }
 
 InputView view_of(const manifest::Document& document, std::size_t image, int placement,
