@@ -31,8 +31,19 @@ function(gonio_room name)
   set(GONIO_ROOMS ${GONIO_ROOMS} room_${name} CACHE INTERNAL "")
 endfunction()
 
+# gonio_bindings(FOLDER TYPE HEADER NAMESPACE LIST INNER): lib/FOLDER/*.cpp, one file for each mechanism that a simulator
+# has, in NAMESPACE::INNER, as the registry NAMESPACE::LIST(); its source is appended to `bindings`.
+macro(gonio_bindings folder type header namespace list inner)
+  file(GLOB binding_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/${folder}/*.cpp)
+  string(REPLACE "/" "_" binding_source ${folder})
+  gonio_registry(${GONIO_GENERATED}/${binding_source}.cpp ${type} ${header}
+    "std::span<const ${namespace}::${type}* const> ${namespace}::${list}()" ${namespace}::${inner} ${binding_files})
+  list(APPEND bindings ${GONIO_GENERATED}/${binding_source}.cpp)
+endmacro()
+
 # One static library of all rooms plus the generated registries; the programs take from it what they use.
 function(gonio_finish_library)
+  set(bindings "")
   file(GLOB mechanism_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/*/mechanisms/*.cpp)
   file(GLOB surface_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/surface/models/*.cpp)
   file(GLOB law_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/surface/laws/*.cpp)
@@ -58,17 +69,20 @@ function(gonio_finish_library)
   gonio_registry(${GONIO_GENERATED}/exchanges.cpp Exchange scene/exchange/exchange.h
     "std::span<const gonio::scene::Exchange* const> gonio::scene::all_exchanges()" gonio::scene ${exchange_files})
   file(GLOB table_model_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/explain/tables/models/*.cpp)
-  file(GLOB table_term_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/explain/tables/terms/*.cpp)
   gonio_registry(${GONIO_GENERATED}/table_models.cpp Model explain/tables/table_model.h
     "std::span<const gonio::explain::tables::Model* const> gonio::explain::tables::all_models()"
     gonio::explain::tables ${table_model_files})
-  gonio_registry(${GONIO_GENERATED}/table_terms.cpp Term explain/tables/table_model.h
-    "std::span<const gonio::explain::tables::Term* const> gonio::explain::tables::all_terms()"
-    gonio::explain::tables ${table_term_files})
-  file(GLOB image_term_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/explain/images/terms/*.cpp)
-  gonio_registry(${GONIO_GENERATED}/image_terms.cpp Term explain/images/term.h
-    "std::span<const gonio::explain::images::Term* const> gonio::explain::images::all_terms()"
-    gonio::explain::images::terms ${image_term_files})
+  # Where simulators bind to mechanisms (tests/meta/bindings_test knows these folders).
+  gonio_bindings(scene/edits Edit scene/edit.h gonio::scene all_edits edits)
+  gonio_bindings(render/links Link render/link.h gonio::render all_links links)
+  gonio_bindings(explain/images/terms Term explain/images/term.h gonio::explain::images all_terms terms)
+  gonio_bindings(explain/tables/terms Term explain/tables/table_model.h gonio::explain::tables all_terms terms)
+  gonio_bindings(explain/tables/reflectance ReflectanceBinding explain/tables/reflectance_binding.h
+    gonio::explain::tables all_reflectance_bindings reflectance)
+  gonio_bindings(explain/stacks/exposures ExposureBinding explain/stacks/exposure_binding.h gonio::explain::stacks
+    all_exposure_bindings exposures)
+  gonio_bindings(explain/stacks/lights LightBinding explain/stacks/light_binding.h gonio::explain::stacks
+    all_light_bindings lights)
   gonio_registry(${GONIO_GENERATED}/domains.cpp Domain explain/domain.h
     "std::span<const gonio::explain::Domain* const> gonio::explain::all_domains()" gonio::explain::domains
     ${domain_files})
@@ -77,7 +91,7 @@ function(gonio_finish_library)
     list(APPEND objects $<TARGET_OBJECTS:${room}>)
   endforeach()
   set(registries ${GONIO_GENERATED}/mechanisms.cpp ${GONIO_GENERATED}/domains.cpp
-      ${GONIO_GENERATED}/table_models.cpp ${GONIO_GENERATED}/table_terms.cpp ${GONIO_GENERATED}/image_terms.cpp
+      ${GONIO_GENERATED}/table_models.cpp ${bindings}
       ${GONIO_GENERATED}/nrsfm_solvers.cpp ${GONIO_GENERATED}/animatronics.cpp)
   if(EXISTS ${CMAKE_SOURCE_DIR}/lib/surface/surface.h)
     list(APPEND registries ${GONIO_GENERATED}/surfaces.cpp ${GONIO_GENERATED}/laws.cpp)

@@ -6,18 +6,11 @@
 #include "camera/undistort_document.h"
 #include "cli/program.h"
 #include "manifest/document.h"
-#include "metric/linear_picture.h"
 
 namespace gonio::tools::develop {
 namespace {
 
 using cli::Type;
-
-camera::Transfer transfer(const manifest::Value& stated, const std::string& place, bool codes) {
-  const metric::Response response(stated, place);
-  if (codes) response.check_invertible(place);
-  return {[response](float v) { return response(v); }, [response](float v) { return response.code(v); }};
-}
 
 // The photographs on the command line become images of the manifest; without any, all of its images are developed.
 std::vector<std::size_t> chosen_images(cli::Invocation& call) {
@@ -51,7 +44,6 @@ camera::UndistortRequest request_of(cli::Invocation& call) {
   request.format = chosen<camera::PictureFormat>(call, "format", formats);
   if (call.given("saturation")) request.saturation = call.number("saturation");
   request.images = chosen_images(call);
-  request.transfer = transfer;
   request.output_path = [&call](const std::string& name) { return call.output_path(name); };
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
   return request;

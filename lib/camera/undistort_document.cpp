@@ -15,6 +15,9 @@
 #include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
+#include "photograph/mask.h"
+#include "photograph/response.h"
+#include "photograph/saturation.h"
 
 namespace gonio::camera {
 namespace {
@@ -106,11 +109,8 @@ std::vector<std::uint8_t> good_pixels(const io::Image& stored, double saturation
   for (std::size_t i = 0; i < stored.data.size(); ++i)
     if (stored.data[i] >= saturation && !is_variance(stored, i)) good[i / channels] = 0;
   if (mask.empty()) return good;
-  const io::Image counts = io::read_picture(mask);
-  if (counts.width != stored.width || counts.height != stored.height)
-    throw Error(Exit::data, mask.string(), "has another size than its picture", "make a mask of the same size");
-  for (std::size_t i = 0; i < good.size(); ++i)
-    if (!(counts.data[i * counts.channels.size()] > 0.5f)) good[i] = 0;
+  const std::vector<std::uint8_t> counts = photograph::read_mask_of(stored, mask, mask.string());
+  for (std::size_t i = 0; i < good.size(); ++i) good[i] = good[i] && counts[i];
   return good;
 }
 
@@ -122,23 +122,31 @@ void check_size(const io::Image& stored, const manifest::Camera& camera, const W
               "use the camera that took it; pictures must be neither cropped nor scaled");
 }
 
+// Where the response of an 8 or 16-bit picture is not stated it is the identity, and codes are interpolated as they
+// are.
+photograph::Response response_of(const manifest::Value& stated, const std::string& place, bool codes_are_written) {
+  photograph::Response response(stated, place);
+  if (codes_are_written) response.check_invertible(place);
+  return response;
+}
+
 // Back to codes. Returns how many values lay outside what codes can hold by more than half a code.
-std::size_t encode(io::Image& image, const Transfer& transfer, double half_code) {
+std::size_t encode(io::Image& image, const photograph::Response& response, double half_code) {
   std::size_t outside = 0;
   for (float& v : image.data) {
-    v = transfer.code(v);
+    v = response.code(v);
     if (v < -half_code || v > 1 + half_code) ++outside;
   }
   return outside;
 }
 
 void write(const std::filesystem::path& path, io::Image& picture, const std::vector<std::uint8_t>& valid,
-           const Transfer& transfer, int bits) {
+           const photograph::Response& response, int bits) {
   if (bits == 0) {
     io::write_picture(path, picture);
     return;
   }
-  const std::size_t outside = encode(picture, transfer, bits == 16 ? 0.5 / 65535 : 0.5 / 255);
+  const std::size_t outside = encode(picture, response, photograph::half_code(bits));
   io::write_png(path, picture, bits);
   const auto invalid = static_cast<std::size_t>(std::ranges::count(valid, std::uint8_t{0}));
   if (outside > 0)
@@ -167,17 +175,16 @@ void undistort_image(manifest::Document& document, std::size_t index, const Undi
   request.note_input(work.path);
   const auto mask = manifest::mask_path(document, index);
   if (!mask.empty()) request.note_input(mask);
-  const double highest_code = 1 - (source_bits == 16 ? 0.5 / 65535 : 0.5 / 255);
-  const double saturation = request.saturation ? *request.saturation : source_bits == 0 ? INFINITY : highest_code;
+  const double saturation = request.saturation ? *request.saturation : photograph::saturated_from(source_bits);
   const std::vector<std::uint8_t> good = good_pixels(stored, saturation, mask);
-  const Transfer transfer = request.transfer(image.response, place, bits != 0);
+  const photograph::Response response = response_of(image.response, place, bits != 0);
   for (std::size_t i = 0; i < stored.data.size(); ++i)
-    if (!is_variance(stored, i)) stored.data[i] = transfer.linear(stored.data[i]);
+    if (!is_variance(stored, i)) stored.data[i] = response(stored.data[i]);
   const Resampling resampling{request.choice.kernel, std::max(1.0, 1 / request.choice.scale), request.limit_overshoot,
                               pitch};
   Undistorted result =
       undistort(stored, good, CameraModel(camera, work.place), CameraModel(pinhole, work.place), resampling);
-  write(picture_path, result.picture, result.valid, transfer, bits);
+  write(picture_path, result.picture, result.valid, response, bits);
   io::Image counts(result.picture.width, result.picture.height, {"Y"});
   std::ranges::transform(result.valid, counts.data.begin(), [](std::uint8_t v) { return static_cast<float>(v); });
   io::write_png(mask_path, counts, 8);
@@ -236,7 +243,7 @@ void check_undistortion(const manifest::Document& document, const UndistortReque
     if (bits == 0 && source_bits != 0 && image.response.is_null())
       throw Error(Exit::data, place, "is an 8 or 16-bit picture whose response is not stated, and EXR is linear",
                   "state \"response\" (--response), or write codes");
-    request.transfer(image.response, place, bits != 0);
+    response_of(image.response, place, bits != 0);
   }
 }
 

@@ -8,17 +8,10 @@
 
 #include "camera/undistort.h"
 #include "manifest/sections/forward.h"
-#include "manifest/value.h"
 
 namespace gonio::camera {
 
 enum class PictureFormat { same, exr, png8, png16 };  // same: EXR from EXR, else PNG with the source's number of bits
-
-// Between stored values and linear light. Where the response of an 8 or 16-bit picture is not known both are the
-// identity, and codes are interpolated as they are.
-struct Transfer {
-  std::function<float(float)> linear, code;
-};
 
 struct UndistortRequest {
   PinholeChoice choice;
@@ -26,8 +19,6 @@ struct UndistortRequest {
   PictureFormat format = PictureFormat::same;
   std::optional<double> saturation;  // stored values from here on are saturated; left out: the highest code, EXR never
   std::vector<std::size_t> images;   // places in document.images
-  // `codes`: the way back to codes is needed, too. Error(data) at `place` for responses that cannot give it.
-  std::function<Transfer(const manifest::Value& response, const std::string& place, bool codes)> transfer;
   std::function<std::filesystem::path(const std::string& name)> output_path;
   std::function<void(const std::filesystem::path&)> note_input;
 };

@@ -13,7 +13,11 @@
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/pattern.h"
-#include "metric/linear_picture.h"
+#include "photograph/linear_picture.h"
+#include "photograph/mask.h"
+#include "photograph/saturation.h"
+#include "render/mechanisms/sensor_saturation.h"
+#include "scene/mechanisms.h"
 
 namespace gonio::contrast {
 namespace {
@@ -111,14 +115,12 @@ std::optional<CameraPose> camera_pose(const manifest::ImageEntry& image, const M
 }
 
 double full_scale_of(const manifest::Document& document, const std::string& camera, const MeasureOptions& options) {
-  double full_scale = options.full_scale;
-  const auto use = document.mechanisms.find("sensor.saturation");
-  if (use == document.mechanisms.end()) return full_scale;
-  const auto value = use->second.parameters.find("full_scale");
-  const bool applies = use->second.on.empty() || std::ranges::find(use->second.on, camera) != use->second.on.end();
-  if (applies && value != use->second.parameters.end() && value->second.given() && value->second.scalar() > 0)
-    full_scale = std::min(full_scale, value->second.scalar());
-  return full_scale;
+  const mechanism::Mechanism& saturation = mechanism::sensor_saturation();
+  const auto use = document.mechanisms.find(saturation.id);
+  if (use == document.mechanisms.end()) return options.full_scale;
+  const auto amounts =
+      scene::camera_amounts(saturation, use->second, camera, manifest::place(document, "/mechanisms/" + saturation.id));
+  return amounts ? std::min(options.full_scale, amounts->front()) : options.full_scale;
 }
 
 InputView view_of(const manifest::Document& document, std::size_t image, int placement,
@@ -305,7 +307,7 @@ GreyView read_view(const manifest::Document& document, const InputView& view, co
   const manifest::ImageEntry& entry = document.images[view.image];
   const auto path = manifest::picture_path(document, view.image);
   if (options.note_input) options.note_input(path);
-  const metric::LinearPicture picture = metric::read_linear(path, entry.response, view.place);
+  const photograph::LinearPicture picture = photograph::read_linear(path, entry.response, view.place);
   const io::Image& colour = picture.colour;
   if (view.camera && (colour.width != view.camera->width_px() || colour.height != view.camera->height_px()))
     throw Error(Exit::data, path.string(),
@@ -326,15 +328,10 @@ GreyView read_view(const manifest::Document& document, const InputView& view, co
         grey.variance[i] +=
             w * w *
             static_cast<float>(std::max(0.0, double{v}) / entry.noise->gain + entry.noise->read * entry.noise->read);
-      if (double{v} >= view.full_scale * (1 - 1e-6)) grey.saturated[i] = 1;
+      if (photograph::at_full_scale(v, view.full_scale)) grey.saturated[i] = 1;
     }
-  if (const auto mask_file = manifest::mask_path(document, view.image); !mask_file.empty()) {
-    const metric::Mask mask = metric::read_mask(mask_file);
-    if (mask.width != grey.width || mask.height != grey.height)
-      throw Error(Exit::data, view.place + "/mask", "has another size than the picture",
-                  "give a mask of the same size");
-    grey.counts = mask.counts;
-  }
+  if (const auto mask_file = manifest::mask_path(document, view.image); !mask_file.empty())
+    grey.counts = photograph::read_mask_of(colour, mask_file, view.place + "/mask");
   return grey;
 }
 

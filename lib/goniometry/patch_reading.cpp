@@ -8,6 +8,8 @@
 
 #include "goniometry/irradiance.h"
 #include "goniometry/patch_cells.h"
+#include "photograph/saturation.h"
+#include "scene/mechanisms/reference_tile.h"
 #include "scene/scene.h"
 #include "stats/intervals.h"
 
@@ -113,8 +115,7 @@ class Reader {
       if (!is_finite(v)) ++no_numbers;
       const std::size_t at = static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(view_.picture->colour.width) +
                              static_cast<std::size_t>(pixel.x);
-      if (view_.picture->clipped[at] != 0 || (view_.full_scale > 0 && max_component(v) >= view_.full_scale))
-        ++saturated;
+      if (view_.picture->clipped[at] != 0 || photograph::at_full_scale(max_component(v), view_.full_scale)) ++saturated;
     }
     const std::string of = " of its " + std::to_string(pixels.size()) + " pixels ";
     if (no_numbers > 0) return std::to_string(no_numbers) + of + "are no numbers";
@@ -229,8 +230,7 @@ class Reader {
 Rgb Reflector::operator()(Vec3 wo, Vec3 wi) const {
   surface::Values values = outer.values;
   if (base.model != nullptr) values.base = &base;
-  const double in = 1 - wi.z, out = 1 - wo.z;
-  return outer.model->evaluate(values, wo, wi) * (scale / (1 + falls_in * in * in + falls_out * out * out));
+  return outer.model->evaluate(values, wo, wi) * (scale / equation::reference_tile(falls_in, falls_out, wi.z, wo.z));
 }
 
 PatchReading read_patch(const Patch& patch, const PictureView& view, const Reflector* reflector,

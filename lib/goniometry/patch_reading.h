@@ -21,7 +21,8 @@
 #include "goniometry/patch.h"
 #include "light/light.h"
 #include "manifest/noise.h"
-#include "metric/linear_picture.h"
+#include "photograph/linear_picture.h"
+#include "photograph/mask.h"
 #include "surface/surface.h"
 
 namespace gonio::goniometry {
@@ -34,8 +35,8 @@ struct Reflector {  // a surface of known reflectance: f(wo, wi), 1/sr, in the p
 };
 
 struct PictureView {  // of a patch
-  const metric::LinearPicture* picture = nullptr;
-  const metric::Mask* mask = nullptr;  // null: all pixels count
+  const photograph::LinearPicture* picture = nullptr;
+  const photograph::Mask* mask = nullptr;  // null: all pixels count
   std::optional<manifest::Noise> noise;
   Rgb gain{1, 1, 1};                 // of the values over radiance
   double falloff = 0;                // optics.vignetting

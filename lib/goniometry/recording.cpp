@@ -13,7 +13,10 @@
 #include "goniometry/tile.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/image.h"
+#include "render/mechanisms/sensor_black_offset.h"
+#include "render/mechanisms/sensor_saturation.h"
 #include "render/sensor_chain.h"
+#include "scene/mechanisms/optics_vignetting.h"
 #include "stats/intervals.h"
 
 namespace gonio::goniometry {
@@ -62,13 +65,13 @@ PictureReading read_picture(const Recording& recording, std::size_t number_of_vi
     if (tile) result.tile = refused;
     return result;
   }
-  const metric::LinearPicture picture =
-      metric::read_linear(manifest::picture_path(*recording.document, listed), image.response, place);
+  const photograph::LinearPicture picture =
+      photograph::read_linear(manifest::picture_path(*recording.document, listed), image.response, place);
   check_size(picture.colour, seen.camera.width_px(), seen.camera.height_px(), "the picture", place);
   result.channels = picture.colour.channels.size();
-  std::optional<metric::Mask> mask;
+  std::optional<photograph::Mask> mask;
   if (const auto path = manifest::mask_path(*recording.document, listed); !path.empty()) {
-    mask = metric::read_mask(path);
+    mask = photograph::read_mask(path);
     check_size(io::Image(mask->width, mask->height, {}), seen.camera.width_px(), seen.camera.height_px(), "the mask",
                place);
   }
@@ -78,8 +81,9 @@ PictureReading read_picture(const Recording& recording, std::size_t number_of_vi
                    .noise = image.noise,
                    .gain = seen.gain,
                    .falloff = recording.scene.appearance.vignetting_falloff,
-                   .black = sensor.black_offset,
-                   .full_scale = options.full_scale > 0 ? options.full_scale : sensor.full_scale,
+                   .black = sensor.amount(mechanism::sensor_black_offset(), "offset"),
+                   .full_scale = options.full_scale > 0 ? options.full_scale
+                                                        : sensor.amount(mechanism::sensor_saturation(), "full_scale"),
                    .camera = &seen.camera,
                    .world_from_camera = seen.world_from_camera,
                    .world_from_patch = {},
@@ -292,8 +296,9 @@ class Reduction {
              "\" wandered: readings of the tile scatter by " + number(100 * wander->relative) + " %, their noise by " +
              number(100 * wander->expected) + " %.");
     for (const std::string& id : names_in(*recording_.document, "mechanisms"))
-      if ((id.starts_with("sensor.") && id != "sensor.saturation" && id != "sensor.black-offset") ||
-          (id.starts_with("optics.") && id != "optics.vignetting"))
+      if ((id.starts_with("sensor.") && id != mechanism::sensor_saturation().id &&
+           id != mechanism::sensor_black_offset().id) ||
+          (id.starts_with("optics.") && id != mechanism::optics_vignetting().id))
         note("The mechanism " + id + " is not undone in the pictures.");
     if (std::ranges::any_of(result_.readings, [](const Reading& r) { return std::isnan(r.scatter); }))
       note("Noise is not stated of all images; there the scatter over the patch stands for it.");

@@ -13,6 +13,8 @@
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
+#include "scene/mechanisms/optics_vignetting.h"
+#include "scene/mechanisms/reference_tile.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -100,7 +102,8 @@ manifest::Document part_for_scene(const Recording& recording) {
   object.world_from_object = recording.sample->entry.world_from_sample;
   part.objects.push_back(object);
   std::erase_if(part.mechanisms, [](const auto& use) {
-    return !use.first.starts_with("light.") && !use.first.starts_with("lens.") && use.first != "optics.vignetting";
+    return !use.first.starts_with("light.") && !use.first.starts_with("lens.") &&
+           use.first != mechanism::optics_vignetting().id;
   });
   return part;
 }
@@ -137,8 +140,8 @@ Reflector reflector_of(const Recording& recording) {
     result.scale = r.size() == 3 ? Rgb{r[0], r[1], r[2]} : Rgb{r[0], r[0], r[0]};
     if (!(std::ranges::min(r) > 0))
       throw Error(Exit::data, tile.place + "/reflectance", "is 0: such a tile shows no light", "give what it reflects");
-    result.falls_in = mechanism_amount(*recording.document, "reference.tile", "incidence");
-    result.falls_out = mechanism_amount(*recording.document, "reference.tile", "exitance");
+    result.falls_in = mechanism_amount(*recording.document, mechanism::reference_tile().id, "incidence");
+    result.falls_out = mechanism_amount(*recording.document, mechanism::reference_tile().id, "exitance");
   }
   return result;
 }

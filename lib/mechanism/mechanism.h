@@ -1,9 +1,11 @@
 // Mechanisms: every optional term of a simulator is a hypothesis about the physics that was left out.
 //
-// A mechanism is declared once, in one file beside its equation (lib/<subject>/mechanisms/<name>.cpp; the file's stem with
-// '_' for '.' and '-' names the function: lens_radial.cpp defines `const Mechanism& lens_radial()`). The build gathers all
-// into all_mechanisms(). Simulators evaluate the terms, `explain` walks the list, the man page and the schema are printed
-// from it. At the neutral values the term vanishes exactly.
+// A mechanism is declared once, in one file (lib/<subject>/mechanisms/<name>.cpp; the file's stem with '_' for '.' and
+// '-' names the function: lens_radial.cpp defines `const Mechanism& lens_radial()`). The build gathers all into
+// all_mechanisms(). An equation that more than one simulator evaluates stands in the header beside it, in namespace
+// gonio::equation, and nowhere else. Simulators bind to mechanisms in files of their own (scene/edits, render/links,
+// explain/*/terms, ...), `explain` walks the list, the man page and the schema are printed from it. At the neutral
+// values the term vanishes exactly.
 #pragma once
 #include <span>
 #include <string>
@@ -12,16 +14,20 @@
 namespace gonio::mechanism {
 
 struct Parameter {
-  std::string name;           // with its unit: "radius_m", "k1"
-  std::string unit;           // "m", "rad", "1", ...
-  double neutral = 0;         // the term vanishes here
+  std::string name;             // with its unit: "radius_m", "k1"
+  std::string unit;             // "m", "rad", "1", ...
+  double neutral = 0;           // the term vanishes here
   double lower = 0, upper = 0;  // physical bounds of a plausible fit
-  double start = 0;           // where a fit begins (never the neutral value where the slope vanishes there)
+  double start = 0;             // where a fit begins (never the neutral value where the slope vanishes there)
   std::string meaning;
 };
 struct Confusion {
   std::string with;        // canonical id (or a plain word where the list has none)
   std::string told_apart;  // the cheapest measurement that separates the two
+};
+struct Input {  // what an equation needs to know of one value, besides the parameters
+  std::string name, unit;
+  double lower = 0, upper = 1;  // in which it is met
 };
 enum class Target { scene, surface, light, camera, board, object };  // what one set of parameters belongs to
 
@@ -37,6 +43,10 @@ struct Mechanism {
   std::vector<Parameter> parameters;
   std::vector<std::string> conditions;  // that carry its signature, the most telling first: "camera.image-radius"
   std::vector<Confusion> mistaken_for;
+  // The equation, where it takes one value to another: `at` has the inputs and `p` the parameters in their order. `v`
+  // comes back to the last bit at the neutral values; a factor is never negative within the bounds.
+  std::vector<Input> inputs{};
+  double (*act)(double v, std::span<const double> at, std::span<const double> p) = nullptr;
 };
 
 std::span<const Mechanism* const> all_mechanisms();  // sorted by id; defined in a generated source

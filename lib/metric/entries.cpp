@@ -57,9 +57,9 @@ manifest::Document document_of(const Entry& entry) {
 
 Overlay lay_over(const Entry& entry, Channels channels) {
   std::optional<Mask> mask;
-  if (!entry.mask.empty()) mask = read_mask(entry.mask);
-  return lay_over(entry.image, read_linear(entry.photograph, entry.response, entry.photograph_place),
-                  read_linear(entry.rendering, entry.rendering_response, entry.rendering_place),
+  if (!entry.mask.empty()) mask = photograph::read_mask(entry.mask);
+  return lay_over(entry.image, photograph::read_linear(entry.photograph, entry.response, entry.photograph_place),
+                  photograph::read_linear(entry.rendering, entry.rendering_response, entry.rendering_place),
                   mask ? &*mask : nullptr, channels, entry.noise);
 }
 

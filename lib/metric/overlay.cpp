@@ -137,7 +137,7 @@ Overlay lay_over(std::string name, LinearPicture photograph, LinearPicture rende
   o.rendering_variance = std::move(rendering.variance.data);
   o.noise = noise;
   o.clipped = std::move(photograph.clipped);
-  o.integer_codes = photograph.integer_codes;
+  o.integer_codes = photograph.integer_codes();
   if (mask != nullptr)
     o.counts = mask->counts;
   else

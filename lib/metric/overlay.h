@@ -9,9 +9,12 @@
 #include <vector>
 
 #include "manifest/noise.h"
-#include "metric/linear_picture.h"
+#include "photograph/linear_picture.h"
+#include "photograph/mask.h"
 
 namespace gonio::metric {
+
+using photograph::LinearPicture, photograph::Mask;
 
 enum class Channels { all, luminance, red, green, blue };
 Channels channels_named(const std::string& name);  // "all", ...

@@ -10,11 +10,17 @@
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/reconstruction.h"
 #include "manifest/sections/sequence.h"
+#include "mechanism/mechanism.h"
 #include "nrsfm/files.h"
 #include "nrsfm/follow.h"
 #include "nrsfm/manifest_sequences.h"
 #include "nrsfm/near_camera.h"
 #include "nrsfm/outlying.h"
+
+namespace gonio::mechanism {
+const Mechanism& tracks_perspective();
+const Mechanism& tracks_scale();
+}  // namespace gonio::mechanism
 
 namespace gonio::nrsfm {
 namespace {
@@ -54,7 +60,7 @@ bool is_on(const manifest::MechanismUse& use, const std::string& name) {
 
 // What the manifest has switched on for this sequence.
 std::optional<double> known_perspective(const Document& document, const std::string& sequence) {
-  const auto found = document.mechanisms.find("tracks.perspective");
+  const auto found = document.mechanisms.find(mechanism::tracks_perspective().id);
   const std::string& camera = document.sequences.at(sequence).camera;
   if (found == document.mechanisms.end() || !is_on(found->second, camera)) return std::nullopt;
   const manifest::MechanismUse& use = found->second;
@@ -65,7 +71,7 @@ std::optional<double> known_perspective(const Document& document, const std::str
 }
 
 bool scales_are_on(const Document& document, const std::string& sequence) {
-  const auto found = document.mechanisms.find("tracks.scale");
+  const auto found = document.mechanisms.find(mechanism::tracks_scale().id);
   return found != document.mechanisms.end() && is_on(found->second, sequence);
 }
 

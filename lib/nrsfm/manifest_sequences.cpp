@@ -12,8 +12,13 @@
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/reconstruction.h"
 #include "manifest/sections/sequence.h"
+#include "mechanism/mechanism.h"
 #include "nrsfm/files.h"
 #include "nrsfm/followed.h"
+
+namespace gonio::mechanism {
+const Mechanism& tracks_outliers();
+}
 
 namespace gonio::nrsfm {
 namespace {
@@ -92,7 +97,7 @@ Sequence sequence_of(const manifest::Document& document, const std::string& id) 
     sequence.truth_frame = entry.truth_frame == "camera" ? ShapeFrame::camera : ShapeFrame::object;
   if (entry.unit_m) sequence.unit_m = *entry.unit_m;
   for (const auto& [factor, level] : entry.factors) sequence.factors[factor] = level;
-  if (const auto use = document.mechanisms.find("tracks.outliers"); use != document.mechanisms.end())
+  if (const auto use = document.mechanisms.find(mechanism::tracks_outliers().id); use != document.mechanisms.end())
     hide(use->second, id, manifest::place(document, "/mechanisms/tracks.outliers/on"), sequence);
   return sequence;
 }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "light/mechanisms/light_ambient.h"
+
 namespace gonio::render {
 namespace {
 
@@ -53,7 +55,7 @@ std::vector<std::string> PathSetting::light_planes() const {
   if (!transport.per_light) return {};
   std::vector<std::string> names;
   for (const std::size_t light : view.lights) names.push_back("light." + scene.appearance.lights[light].id);
-  if (scene.appearance.ambient) names.push_back("light.ambient");
+  if (scene.appearance.ambient) names.push_back(mechanism::light_ambient().id);
   return names;
 }
 

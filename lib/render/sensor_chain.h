@@ -1,32 +1,26 @@
 // From a rendered picture to what a camera records: a chain of mechanisms, each of which vanishes exactly at its
-// neutral value. Values v are linear and in the rendering's unit throughout, black offset and full scale too.
-//
-//   0. sensor.shutter         v *= 1 + extra / exposure, where the image states its exposure
-//   1. optics.ghost           v += share * v of the point opposite about the picture's centre
-//      optics.veiling-glare   v += share * mean of the picture, channel by channel
-//   2. sensor.crosstalk       (R, G, B) mixed: 1 - 2 share of the own band, share of each other
-//   3. the camera's mosaic    one channel Y behind colour filters; "polarizers": Y behind polarizers (render/mosaic.h)
-//   4. sensor.prnu            v *= 1 + sigma n, n normal and always the same for a pixel of a camera
-//   5. photon noise           Poisson: v is v * gain electrons (Janesick 2007, equation 2.14)
-//   6. sensor.non-linearity   quadratic, power law, tone curve (render/tone_curve.h)
-//   7. sensor.row-pattern     v *= 1 + amplitude sin(2 pi row / period_px + phase_rad)
-//   8. sensor.black-offset    v += offset
-//   9. read noise             normal
-//  10. sensor.saturation      v = min(v, full_scale)
-//  11. sensor.clipped-resampling   v = mean of min(v, full_scale) over a box about the pixel; not behind a mosaic,
-//                             whose neighbours are of other colours
-// The equations of single values stand in render/sensor_links.h. Negative readings stay. The rendering's own Monte
-// Carlo noise remains: render with enough samples that it is small beside the sensor's. Every image id has noise of its
-// own under one seed.
+// neutral value. Values are linear and in the rendering's unit throughout, black offset and full scale too. The steps,
+// in this order (render/link.h); which mechanism acts at which step its file in render/links says:
+//   optics      pictures before the filters: shutter, ghost, veiling glare, crosstalk
+//               the camera's mosaic: one channel Y behind colour filters; "polarizers": behind these (render/mosaic.h)
+//   light       sensitivity of pixels
+//               photon noise, Poisson: v is v * gain electrons (Janesick 2007, equation 2.14)
+//   signal      response, rows
+//   dark        read noise, normal; black offset. Added to the signal
+//   reading     full scale
+//   resampling  a picture made of native pixels; not behind a mosaic, whose neighbours are of other colours
+// Negative readings stay. The rendering's own Monte Carlo noise remains: render with enough samples that it is small
+// beside the sensor's. Every image id has noise of its own under one seed.
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "io/image.h"
 #include "manifest/noise.h"
 #include "manifest/sections/forward.h"
 #include "mechanism/mechanism.h"
-#include "render/tone_curve.h"
+#include "render/link.h"
 
 namespace gonio::render {
 
@@ -34,13 +28,16 @@ struct Sensor {  // as it stands: ideal, three channels, without noise
   std::string camera;
   std::string mosaic;
   manifest::Noise noise;
-  double shutter_extra_s = 0, exposure_s = 0;
-  double ghost_share = 0, glare_share = 0, crosstalk_share = 0, prnu_sigma = 0;
-  Response response;
-  double row_amplitude = 0, row_period_px = 100, row_phase_rad = 0;
-  double black_offset = 0;
-  double full_scale = 0;  // 0: no limit
-  double resampled_full_scale = 0, resampling_px = 1;
+  double exposure_s = 0;  // 0: not stated
+  struct Active {
+    const Link* link = nullptr;
+    std::vector<double> amounts;  // one per parameter of the mechanism
+  };
+  std::vector<Active> links;  // in the order of the chain
+  // Puts the mechanism's link in its place; Error(internal) where it has none.
+  void switch_on(const mechanism::Mechanism& mechanism, std::vector<double> amounts);
+  // Of a parameter by its name; neutral where the mechanism is not switched on.
+  double amount(const mechanism::Mechanism& mechanism, const std::string& parameter) const;
 };
 
 // Is it a link of the chain, so that sensor_of() understands it?

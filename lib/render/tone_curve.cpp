@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/mechanisms/sensor_non_linearity.h"
+
 namespace gonio::render {
 namespace {
 
@@ -17,10 +19,6 @@ const std::array<double, nodes>& log_nodes() {
     return x;
   }();
   return all;
-}
-
-double power(double v, double exponent) {
-  return std::copysign(std::pow(std::abs(v), exponent), v);
 }
 
 }  // namespace
@@ -75,8 +73,8 @@ double ToneCurve::reading(double light) const {
 
 double Response::operator()(double light) const {
   double v = light;
-  if (quadratic != 0) v *= 1 + quadratic * v / reference;
-  if (gamma != 1) v = reference * power(v / reference, gamma);
+  if (quadratic != 0) v = equation::sensor_quadratic(v, quadratic, reference);
+  if (gamma != 1) v = equation::sensor_power_law(v, gamma, reference);
   if (!curve.linear()) v = reference * curve.reading(v / reference);
   return v;
 }
@@ -84,7 +82,7 @@ double Response::operator()(double light) const {
 double Response::light(double reading) const {
   double v = reading;
   if (!curve.linear()) v = reference * curve.light(v / reference);
-  if (gamma != 1) v = reference * power(v / reference, 1 / gamma);
+  if (gamma != 1) v = equation::sensor_power_law(v, 1 / gamma, reference);
   // q u^2 + u = v with u = light / reference: u = 2 v / (1 + sqrt(1 + 4 q v)).
   if (quadratic != 0) v = 2 * v / (1 + std::sqrt(std::max(0.0, 1 + 4 * quadratic * v / reference)));
   return v;

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "scene/light_covers.h"
+#include "scene/mechanisms/optics_vignetting.h"
 #include "scene/scene.h"
 #include "scene/spectra.h"
 #include "scene/variation.h"
@@ -83,7 +84,7 @@ void refresh(Light& light, const std::string& place) {
 
 double vignetting(double falloff, int width_px, int height_px, Vec2 pixel) {
   const Vec2 centre{0.5 * (width_px - 1), 0.5 * (height_px - 1)}, arm = pixel - centre;
-  return std::max(0.0, 1 - falloff * dot(arm, arm) / (0.25 * width_px * width_px));
+  return equation::optics_vignetting(falloff, dot(arm, arm), 0.25 * width_px * width_px);
 }
 
 }  // namespace gonio::scene

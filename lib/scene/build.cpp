@@ -7,7 +7,6 @@
 #include "base/progress.h"
 #include "io/picture.h"
 #include "io/ply.h"
-#include "light/drift.h"
 #include "manifest/document.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
@@ -18,12 +17,18 @@
 #include "manifest/sections/surface.h"
 #include "mesh/curvature.h"
 #include "optics/colour.h"
+#include "scene/amounts.h"
 #include "scene/checks.h"
+#include "scene/edit.h"
 #include "scene/mechanisms.h"
 #include "scene/placement.h"
 #include "scene/scene.h"
 #include "scene/spectra.h"
 #include "scene/variation.h"
+
+namespace gonio::mechanism {
+const Mechanism& light_second_source();
+}
 
 namespace gonio::scene {
 namespace {
@@ -270,15 +275,7 @@ class Builder {
     }
   }
 
-  // A mechanism's parameter as the manifest has it, for the whole scene.
-  double amount(const std::string& id, const char* parameter, double neutral) const {
-    const auto use = document_.mechanisms.find(id);
-    if (use == document_.mechanisms.end()) return neutral;
-    const auto found = use->second.parameters.find(parameter);
-    return found == use->second.parameters.end() || !found->second.given() ? neutral : found->second.scalar();
-  }
-
-  // light.drift and light.spectrum at the time of an image; 1 where either is not stated.
+  // What lamps give at the time of an image over what they are stated to; 1 where it states none.
   Rgb lamps_at(const manifest::ImageEntry& image) const {
     if (!image.time_s) return {1, 1, 1};
     double first_s = *image.time_s, last_s = first_s;
@@ -287,10 +284,15 @@ class Builder {
       last_s = std::max(last_s, other.time_s.value_or(last_s));
     }
     const double since_s = *image.time_s - first_s, along = last_s > first_s ? since_s / (last_s - first_s) : 0;
-    const Rgb shift{1 + amount("light.spectrum", "red_share", 0) * along, 1,
-                    1 + amount("light.spectrum", "blue_share", 0) * along};
-    return shift *
-           light::drift(amount("light.drift", "amplitude", 0), amount("light.drift", "time_constant_s", 600), since_s);
+    const Moment moment{since_s, along};
+    Rgb factor{1, 1, 1};
+    for (const auto& [id, use] : document_.mechanisms) {
+      const mechanism::Mechanism* mechanism = mechanism::find_mechanism(id);
+      const Edit* edit = mechanism != nullptr ? find_edit(*mechanism) : nullptr;
+      if (edit != nullptr && edit->lamps != nullptr)
+        factor *= edit->lamps(amounts_of(*mechanism, use, 0, 1, at("/mechanisms/" + id)), moment);
+    }
+    return factor;
   }
 
   std::vector<std::size_t> lights_of(const Scene& scene, const manifest::ImageEntry& image,
@@ -304,7 +306,7 @@ class Builder {
       lights.push_back(static_cast<std::size_t>(found - all.begin()));
     }
     for (std::size_t i = 0; i < all.size(); ++i)
-      if (image.light.empty() || all[i].id == second_source) lights.push_back(i);
+      if (image.light.empty() || all[i].id == mechanism::light_second_source().id) lights.push_back(i);
     return lights;
   }
 

@@ -7,6 +7,7 @@
 #include "manifest/sections/camera.h"
 #include "manifest/sections/mechanism_use.h"
 #include "scene/amounts.h"
+#include "scene/edit.h"
 #include "scene/mechanisms.h"
 
 namespace gonio::scene {
@@ -36,9 +37,10 @@ std::optional<Amounts> camera_amounts(const Mechanism& mechanism, const manifest
 
 void apply_mechanism(View& view, const Mechanism& mechanism, const manifest::MechanismUse& use,
                      const std::string& place) {
-  if (mechanism.id != "optics.defocus") return;
+  const Edit* edit = find_edit(mechanism);
+  if (edit == nullptr || edit->view == nullptr) return;
   const auto amounts = camera_amounts(mechanism, use, view.camera_name, place);
-  if (amounts) view.lens = {.aperture_radius_m = (*amounts)[0], .focus_m = (*amounts)[1]};
+  if (amounts) edit->view(view, *amounts);
 }
 
 void apply_mechanism(manifest::Camera& camera, const std::string& name, const Mechanism& mechanism,

@@ -22,9 +22,6 @@
 
 namespace gonio::scene {
 
-// The light that light.second-source adds; on in every image.
-inline constexpr const char* second_source = "light.second-source";
-
 // Names of the surfaces or lights that `mechanism` can apply to; empty for scene, camera and board mechanisms.
 std::vector<std::string> mechanism_targets(const Appearance& appearance, const mechanism::Mechanism& mechanism);
 

@@ -1,5 +1,4 @@
 // The links of a camera's chain, one by one; |z| < 4.5 where there is noise.
-#include "camera/intrinsics.h"
 #include "render/sensor_chain.h"
 
 #include <gmock/gmock.h>
@@ -7,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "camera/intrinsics.h"
 #include "geom/vector.h"
 #include "manifest/document.h"
 #include "manifest/sections/image.h"
@@ -104,7 +104,7 @@ TEST(SensorChain, PrnuIsTheSameInEveryPictureOfACameraAndNoiseIsNot) {
   for (float& v : flat.data) v = 1;
   Sensor sensor;
   sensor.camera = "a";
-  sensor.prnu_sigma = 0.02;
+  sensor.switch_on(*mechanism::find_mechanism("sensor.prnu"), {0.02});
   const io::Image one = recorded(flat, sensor, "one", 1), two = recorded(flat, sensor, "two", 1);
   EXPECT_EQ(one.data, two.data);
   double square = 0;
@@ -113,7 +113,7 @@ TEST(SensorChain, PrnuIsTheSameInEveryPictureOfACameraAndNoiseIsNot) {
   EXPECT_NEAR(square / n / 4e-4, 1, 4.5 * std::sqrt(2 / n));
   sensor.camera = "b";
   EXPECT_NE(recorded(flat, sensor, "one", 1).data, one.data);
-  sensor.prnu_sigma = 0;
+  sensor.links.clear();
   sensor.noise = {.gain = 1000, .read = 0.01};
   EXPECT_NE(recorded(flat, sensor, "one", 1).data, recorded(flat, sensor, "two", 1).data);
 }
@@ -125,7 +125,7 @@ TEST(SensorChain, NoiseBehindAMosaicAndBeforeOffsetAndSaturation) {
   Sensor sensor;
   sensor.mosaic = "GRBG";
   sensor.noise = {.gain = 500, .read = 0.01};
-  sensor.black_offset = 0.1;
+  sensor.switch_on(*mechanism::find_mechanism("sensor.black-offset"), {0.1});
   const io::Image raw = recorded(flat, sensor, "raw", 3);
   ASSERT_THAT(raw.channels, testing::ElementsAre("Y"));
   const std::array<double, 4> level = {0.4, 0.2, 0.6, 0.4};
@@ -140,7 +140,7 @@ TEST(SensorChain, NoiseBehindAMosaicAndBeforeOffsetAndSaturation) {
     EXPECT_NEAR(mean, level[f] + 0.1, 4.5 * std::sqrt(variance / n)) << f;
     EXPECT_NEAR(square / n / variance, 1, 4.5 * std::sqrt(2 / n) + 0.005) << f;
   }
-  sensor.full_scale = 0.5;
+  sensor.switch_on(*mechanism::find_mechanism("sensor.saturation"), {0.5});
   const io::Image clipped = recorded(flat, sensor, "raw", 3);
   for (const float v : clipped.data) ASSERT_LE(v, 0.5f);
 }

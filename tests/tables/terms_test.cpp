@@ -56,7 +56,7 @@ TEST(Terms, EveryOneVanishesAtNeutralAndDeclaresWhatTheProblemFills) {
   for (std::size_t i = 0; i < rows; ++i) plain[i] /= problem.reference(i);
   EXPECT_EQ(neutral, plain);
   std::size_t of_expressions = 0;
-  for (const Term* term : all_terms()) {
+  for (const Term* term : all_forms()) {
     const mechanism::Mechanism& m = term->mechanism();
     of_expressions += term->models.empty() || std::ranges::find(term->models, "expression") != term->models.end();
     const auto candidate =
@@ -159,7 +159,7 @@ TEST(Terms, AShutterThatIsLateByMostOfTheShortestExposureIsNamed) {
 
 // Whatever acts on tables says so in its declaration.
 TEST(Terms, MechanismsOfTermsAreDeclaredForTables) {
-  for (const Term* term : all_terms()) {
+  for (const Term* term : all_forms()) {
     const mechanism::Mechanism& m = term->mechanism();
     EXPECT_TRUE(std::ranges::find(m.domains, "tables") != m.domains.end()) << m.id;
   }

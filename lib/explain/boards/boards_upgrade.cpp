@@ -10,6 +10,11 @@
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+const Mechanism& board_warp();
+}
 
 namespace gonio::explain {
 namespace {
@@ -131,7 +136,7 @@ void upgrade_boards(const Problem& problem, const BoardsInput& input, const std:
   }
   for (std::size_t p = 0; p < roles.size(); ++p) {
     if (roles[p].board == none || roles[p].column >= camera::CornerColumn::motion) continue;
-    if (!(input.boards[roles[p].board].warped || is_named(problem, e, "board.warp"))) continue;
+    if (!(input.boards[roles[p].board].warped || is_named(problem, e, mechanism::board_warp().id))) continue;
     manifest::Board& section = document.boards.at(input.boards[roles[p].board].name);
     const std::string axis = roles[p].column == BoardColumn::warp ? "x_m" : "y_m";
     section.warp[axis] = manifest::Parameter(e.values[p]);

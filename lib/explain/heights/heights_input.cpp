@@ -7,7 +7,13 @@
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/relief.h"
 #include "manifest/sections/table.h"
+#include "mechanism/mechanism.h"
 #include "relief/document.h"
+
+namespace gonio::mechanism {
+const Mechanism& surface_anisotropy();
+const Mechanism& surface_micro_ridges();
+}  // namespace gonio::mechanism
 
 namespace gonio::explain {
 namespace {
@@ -16,7 +22,8 @@ bool is_heights(const manifest::Table& table) {
   return table.model == "heights";
 }
 
-const manifest::MechanismUse* use_of(const manifest::Document& document, const char* id, const std::string& surface) {
+const manifest::MechanismUse* use_of(const manifest::Document& document, const std::string& id,
+                                     const std::string& surface) {
   const auto found = document.mechanisms.find(id);
   if (found == document.mechanisms.end()) return nullptr;
   const std::vector<std::string>& on = found->second.on;
@@ -49,9 +56,9 @@ std::vector<HeightsInput> heights_inputs(const manifest::Document& document) {
                   "give the height map: \"file\": id of a .sur, .opd, .nms, .x3p, .plu, OpenEXR or TIFF");
     input.map = io::read_height_map(manifest::resolve(document, table.file, "/tables/" + name + "/file"),
                                     picture_of_file(document, table.file));
-    if (const manifest::MechanismUse* use = use_of(document, "surface.micro-ridges", table.surface))
+    if (const manifest::MechanismUse* use = use_of(document, mechanism::surface_micro_ridges().id, table.surface))
       input.ridges = use->parameters, input.has_ridges = use->parameters.contains("ridge_period_m");
-    if (const manifest::MechanismUse* use = use_of(document, "surface.anisotropy", table.surface))
+    if (const manifest::MechanismUse* use = use_of(document, mechanism::surface_anisotropy().id, table.surface))
       input.lay = use->parameters, input.has_lay = true;
     inputs.push_back(std::move(input));
   }

@@ -8,8 +8,14 @@
 #include "geom/angle.h"
 #include "manifest/document.h"
 #include "manifest/sections/mechanism_use.h"
+#include "mechanism/mechanism.h"
 #include "report/colour_map.h"
 #include "report/number_text.h"
+
+namespace gonio::mechanism {
+const Mechanism& surface_anisotropy();
+const Mechanism& surface_micro_ridges();
+}  // namespace gonio::mechanism
 
 namespace gonio::explain {
 namespace {
@@ -71,7 +77,7 @@ std::vector<double> over_tiles(const TileSpectra& spectra, const std::vector<dou
 std::string heights_remarks(const HeightsInput& input, const TileSpectra& spectra, const Problem& problem,
                             const Explanation& e) {
   std::string text;
-  const std::string ridges = "surface.micro-ridges.", lay = "surface.anisotropy.";
+  const std::string ridges = mechanism::surface_micro_ridges().id + ".", lay = mechanism::surface_anisotropy().id + ".";
   if (const Estimate* period = estimate_of(problem, e, ridges + "ridge_period_m")) {
     const Estimate *azimuth = estimate_of(problem, e, ridges + "ridge_azimuth_rad"),
                    *amplitude = estimate_of(problem, e, ridges + "ridge_amplitude_m");

@@ -8,17 +8,17 @@
 #include "explain/heights/heights_outcome.h"
 #include "inference/explanation.h"
 #include "manifest/document.h"
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+const Mechanism& surface_anisotropy();
+const Mechanism& surface_micro_ridges();
+}  // namespace gonio::mechanism
 
 namespace gonio::explain {
 namespace {
 
 using namespace heights;
-
-const mechanism::Mechanism& declared(const char* id) {
-  const mechanism::Mechanism* m = mechanism::find_mechanism(id);
-  if (m == nullptr) throw Error(Exit::internal, "explain", std::string("mechanism ") + id + " is not registered");
-  return *m;
-}
 
 class HeightsProblem final : public Problem {
  public:
@@ -83,11 +83,11 @@ class HeightsProblem final : public Problem {
     }
   }
 
-  void enter(const char* id, const std::vector<std::size_t>& parameters, bool known) {
+  void enter(const mechanism::Mechanism& m, const std::vector<std::size_t>& parameters, bool known) {
     if (known)
       base_.insert(base_.end(), parameters.begin(), parameters.end());
     else
-      candidates_.push_back({&declared(id), on(), parameters, {}});
+      candidates_.push_back({&m, on(), parameters, {}});
   }
   std::vector<std::string> on() const {
     return input_.surface.empty() ? std::vector<std::string>{} : std::vector<std::string>{input_.surface};
@@ -98,7 +98,7 @@ class HeightsProblem final : public Problem {
   }
 
   void lay() {
-    const mechanism::Mechanism& m = declared("surface.anisotropy");
+    const mechanism::Mechanism& m = mechanism::surface_anisotropy();
     std::vector<std::size_t> own;
     for (const mechanism::Parameter& info : m.parameters) {
       Parameter p{m.id + "." + info.name, info.unit, info.start, info.neutral, info.lower, info.upper, 0.05, {}, {}};
@@ -106,7 +106,7 @@ class HeightsProblem final : public Problem {
       own.push_back(add(std::move(p)));
     }
     layout_.lay = own[0];
-    enter("surface.anisotropy", own, input_.has_lay);
+    enter(m, own, input_.has_lay);
   }
 
   // Period and direction begin where the tiles that are set apart have their strongest line.
@@ -119,7 +119,7 @@ class HeightsProblem final : public Problem {
       for (std::size_t k = 0; k + 1 < harmonics; ++k)
         g.harmonic[k] = given(input_.ridges, "ridge_harmonic_" + std::to_string(k + 2), 0);
     }
-    const std::string prefix = "surface.micro-ridges.";
+    const std::string prefix = mechanism::surface_micro_ridges().id + ".";
     const double bin = g.period_m / (static_cast<double>(spectra_.n) * std::max(spectra_.step_x_m, spectra_.step_y_m));
     const double reach = 0.5 * bin;  // a line is searched for to half a cycle per tile; beyond is another one
     const auto parameter = [&](const char* name, const char* unit, double start, double neutral, double lower,
@@ -136,7 +136,7 @@ class HeightsProblem final : public Problem {
     own.push_back(parameter("ridge_amplitude_m", "m", g.amplitude_m, 0, 0, 100 * g.amplitude_m, 0.1 * g.amplitude_m));
     harmonic_ = g.harmonic;
     layout_.ridges = own[0];
-    enter("surface.micro-ridges", own, input_.has_ridges);
+    enter(mechanism::surface_micro_ridges(), own, input_.has_ridges);
   }
 
   void observe() {

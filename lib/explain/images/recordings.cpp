@@ -9,57 +9,37 @@
 #include <tuple>
 
 #include "base/error.h"
-#include "io/picture.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/object.h"
-#include "metric/linear_picture.h"
+#include "photograph/linear_picture.h"
+#include "photograph/mask.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain::images {
 namespace {
-
-constexpr double saturation = 1.0 - 0.5 / 255;  // full scale of an integer file
 
 [[noreturn]] void refuse(const manifest::Document& document, std::size_t entry, const std::string& key,
                          const std::string& problem, const std::string& remedy) {
   throw Error(Exit::data, manifest::place(document, "/images/" + std::to_string(entry) + key), problem, remedy);
 }
 
-bool integer_file(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension != ".exr";
-}
-
 void read_pixels(const manifest::Document& document, const std::filesystem::path& path, Recording& image) {
-  const io::Image raw = io::read_picture(path);
   const manifest::ImageEntry& entry = document.images[image.entry];
   const std::string place = manifest::place(document, "/images/" + std::to_string(image.entry) + "/response");
-  const bool grey = raw.channel("G") < 0;
-  const int channel[3] = {grey ? 0 : raw.channel("R"), grey ? 0 : raw.channel("G"), grey ? 0 : raw.channel("B")};
-  if (!grey && (channel[0] < 0 || channel[2] < 0))
-    refuse(document, image.entry, "/file", "names a picture without channels R, G, B or Y", "record one of them");
-  std::vector<metric::Response> response;
-  for (const char* name : {"R", "G", "B"})
-    response.emplace_back(metric::response_of_channel(entry.response, grey ? "Y" : name, place), place);
-  image.picture = io::Image(raw.width, raw.height, {"R", "G", "B"});
-  image.counts.assign(raw.pixels(), 1);
-  const bool integer = integer_file(path);
-  for (int y = 0; y < raw.height; ++y)
-    for (int x = 0; x < raw.width; ++x)
-      for (int c = 0; c < 3; ++c) {
-        const float code = raw.at(x, y, channel[c]);
-        const float value = response[static_cast<std::size_t>(c)](code);
-        image.picture.at(x, y, c) = value;
-        if (!std::isfinite(value) || (integer && code >= saturation))
-          image
-              .counts[static_cast<std::size_t>(y) * static_cast<std::size_t>(raw.width) + static_cast<std::size_t>(x)] =
-              0;
-      }
+  const photograph::LinearPicture read = photograph::read_linear(path, entry.response, place);
+  const io::Image& colour = read.colour;
+  const std::size_t channels = colour.channels.size();
+  image.picture = io::Image(colour.width, colour.height, {"R", "G", "B"});
+  image.counts.assign(colour.pixels(), 1);
+  for (std::size_t i = 0; i < colour.pixels(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float value = colour.data[i * channels + (channels == 3 ? c : 0)];
+      image.picture.data[3 * i + c] = value;
+      if (!std::isfinite(value) || read.clipped[i]) image.counts[i] = 0;
+    }
 }
 
 Rgb mean_of_finite(const io::Image& picture) {
@@ -74,14 +54,12 @@ Rgb mean_of_finite(const io::Image& picture) {
   return n > 0 ? sum / n : sum;
 }
 
-void read_mask(const manifest::Document& document, Recording& image) {
+void leave_out_masked(const manifest::Document& document, Recording& image) {
   const std::filesystem::path path = manifest::mask_path(document, image.entry);
   if (path.empty()) return;
-  const io::Image mask = io::read_picture(path);
-  if (mask.width != image.picture.width || mask.height != image.picture.height)
-    refuse(document, image.entry, "/mask", "has another size than the picture", "crop both alike");
-  for (std::size_t i = 0; i < image.counts.size(); ++i)
-    if (!(mask.data[i * mask.channels.size()] > 0.5f)) image.counts[i] = 0;
+  const std::vector<std::uint8_t> counts = photograph::read_mask_of(
+      image.picture, path, manifest::place(document, "/images/" + std::to_string(image.entry) + "/mask"));
+  for (std::size_t i = 0; i < image.counts.size(); ++i) image.counts[i] = image.counts[i] && counts[i];
 }
 
 manifest::Noise measured_noise(const Recording& image) {
@@ -145,7 +123,7 @@ Recordings read_recordings(const manifest::Document& document) {
                  " pixels, the camera " + std::to_string(camera.width_px()) + "x" + std::to_string(camera.height_px()),
              "give the camera the size of its pictures");
     image.mean = mean_of_finite(image.picture);
-    read_mask(document, image);
+    leave_out_masked(document, image);
     image.noise = entry.noise ? *entry.noise : measured_noise(image);
     image.gain = entry.gain ? *entry.gain : manifest::Parameter(1.0);
     image.exposure_s = entry.exposure_s;

@@ -9,6 +9,11 @@
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/surface.h"
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+const Mechanism& transport_indirect();
+}
 
 namespace gonio::explain::images {
 namespace {
@@ -82,7 +87,7 @@ SceneLayout read_scene(const manifest::Document& document, const Recordings& rec
   for (const std::string& name : surfaces) layout.start.surfaces.push_back(surface_state(document, name));
   for (const std::string& name : recordings.lights) read_light(document, name, layout);
   for (const Recording& image : recordings.images) layout.start.gain.push_back(image.gain.rgb());
-  const auto indirect = document.mechanisms.find("transport.indirect");
+  const auto indirect = document.mechanisms.find(mechanism::transport_indirect().id);
   if (indirect != document.mechanisms.end() && indirect->second.parameters.contains("strength"))
     layout.start.indirect = indirect->second.parameters.at("strength").scalar();
   return layout;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/mechanisms/light_inverse_square.h"
 #include "light/turn.h"
 
 namespace gonio::explain::images {
@@ -23,7 +24,8 @@ struct Aim {
 Aim aim(const LightSource& light, Vec3 point_m) {
   if (light.directional) {
     if (light.nearness_per_m == 0) return {light.direction, 1};
-    const Vec3 to_light = light.direction - (point_m - light.centre_m) * light.nearness_per_m;  // times nearness
+    const Vec3 to_light =
+        equation::light_inverse_square_arm(light.nearness_per_m, light.direction, point_m - light.centre_m);
     const double square = dot(to_light, to_light);
     return {to_light / std::sqrt(square), 1 / square};
   }

@@ -9,9 +9,16 @@
 #include "manifest/sections/camera.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/sequence.h"
+#include "mechanism/mechanism.h"
 #include "report/number_text.h"
 #include "report/plot.h"
 #include "stats/distributions.h"
+
+namespace gonio::mechanism {
+const Mechanism& tracks_outliers();
+const Mechanism& tracks_perspective();
+const Mechanism& tracks_scale();
+}  // namespace gonio::mechanism
 
 namespace gonio::explain {
 namespace {
@@ -22,7 +29,7 @@ using gonio::nrsfm::NearCamera;
 using gonio::nrsfm::Outlying;
 using gonio::nrsfm::Run;
 
-bool is_named(const TracksView& v, const Explanation& e, const char* id) {
+bool is_named(const TracksView& v, const Explanation& e, const std::string& id) {
   return std::any_of(e.named.begin(), e.named.end(),
                      [&](std::size_t c) { return v.problem.candidates()[c].id() == id; });
 }
@@ -151,7 +158,7 @@ void upgrade_perspective(const TracksView& v, const Explanation& e, manifest::Do
   manifest::TrackSequence& entry = document.sequences.at(v.followed.sequence);
   entry.projection = "perspective";
   if (entry.camera.empty()) entry.camera = enter_camera(v, 1 / std::abs(kappa), document);
-  manifest::MechanismUse& use = document.mechanisms["tracks.perspective"];
+  manifest::MechanismUse& use = document.mechanisms[mechanism::tracks_perspective().id];
   if (std::find(use.on.begin(), use.on.end(), entry.camera) != use.on.end()) return;
   use.on.push_back(entry.camera);
   use.parameters["inverse_focal_per_px"].value.push_back(kappa);
@@ -160,13 +167,13 @@ void upgrade_perspective(const TracksView& v, const Explanation& e, manifest::Do
 
 void upgrade_scale(const TracksView& v, manifest::Document& document) {
   document.sequences.at(v.followed.sequence).projection = "perspective";
-  manifest::MechanismUse& use = document.mechanisms["tracks.scale"];
+  manifest::MechanismUse& use = document.mechanisms[mechanism::tracks_scale().id];
   if (std::find(use.on.begin(), use.on.end(), v.followed.sequence) == use.on.end())
     use.on.push_back(v.followed.sequence);
 }
 
 void upgrade_outliers(const TracksView& v, manifest::Document& document) {
-  manifest::MechanismUse& use = document.mechanisms["tracks.outliers"];
+  manifest::MechanismUse& use = document.mechanisms[mechanism::tracks_outliers().id];
   for (const Run& run : v.followed.outlying.runs) {
     use.on.push_back(gonio::nrsfm::hidden_name(v.followed.sequence, run.point, run.first, run.last));
     const char* names[] = {"slip_u_px", "slip_v_px"};
@@ -209,18 +216,19 @@ std::string track_unit(const Followed& followed) {
 
 std::string tracks_remarks(const TracksView& v, const Explanation& e) {
   std::string text;
-  if (is_named(v, e, "tracks.perspective")) text += perspective_remark(v, e) + " ";
-  if (is_named(v, e, "tracks.scale")) text += scale_remark(v, e) + " ";
+  if (is_named(v, e, mechanism::tracks_perspective().id)) text += perspective_remark(v, e) + " ";
+  if (is_named(v, e, mechanism::tracks_scale().id)) text += scale_remark(v, e) + " ";
   if (!v.followed.outlying.runs.empty()) text += outlier_remark(v, lacks_shapes(v, e)) + " ";
   if (lacks_shapes(v, e)) text += shapes_remark(v, e) + " ";
-  if (const NearCamera* near = v.followed.asked_nearby(); near != nullptr && !is_named(v, e, "tracks.perspective"))
+  if (const NearCamera* near = v.followed.asked_nearby();
+      near != nullptr && !is_named(v, e, mechanism::tracks_perspective().id))
     text += hidden_remark(*near) + " ";
   return text + part_remark(v);
 }
 
 void upgrade_tracks(const TracksView& v, const Explanation& e, manifest::Document& document) {
-  if (is_named(v, e, "tracks.perspective")) upgrade_perspective(v, e, document);
-  if (is_named(v, e, "tracks.scale")) upgrade_scale(v, document);
+  if (is_named(v, e, mechanism::tracks_perspective().id)) upgrade_perspective(v, e, document);
+  if (is_named(v, e, mechanism::tracks_scale().id)) upgrade_scale(v, document);
   if (!v.followed.outlying.runs.empty() && !lacks_shapes(v, e)) upgrade_outliers(v, document);
 }
 
@@ -317,7 +325,7 @@ void conclude_shapes(const TracksView& v, std::optional<std::size_t> candidate, 
   if (!lacks_shapes(v, e)) return;
   e.significant = e.important = true;
   const bool repaired = !e.named.empty() && excess(v, e.fitted_after) < 0.5 * excess(v, e.fitted_before);
-  if (repaired && !is_named(v, e, "tracks.perspective")) return;
+  if (repaired && !is_named(v, e, mechanism::tracks_perspective().id)) return;
   if (candidate) v.followed.near_camera();
   const NearCamera* near = candidate ? v.followed.asked_nearby() : nullptr;
   if (repaired && near != nullptr && near->stands) return;

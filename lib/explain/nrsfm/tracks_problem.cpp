@@ -7,6 +7,13 @@
 #include "base/error.h"
 #include "explain/nrsfm/tracks_outcome.h"
 #include "inference/explanation.h"
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+const Mechanism& tracks_outliers();
+const Mechanism& tracks_perspective();
+const Mechanism& tracks_scale();
+}  // namespace gonio::mechanism
 
 namespace gonio::explain {
 namespace {
@@ -18,12 +25,6 @@ using gonio::nrsfm::Run;
 
 constexpr double depth_start = 0.05, depth_most = 0.8;  // kappa times the largest radius
 constexpr double most_log_scale = 1.5;
-
-const mechanism::Mechanism& declared(const char* id) {
-  const mechanism::Mechanism* m = mechanism::find_mechanism(id);
-  if (m == nullptr) throw Error(Exit::internal, "explain", std::string("mechanism ") + id + " is not registered");
-  return *m;
-}
 
 class TracksProblem final : public Problem {
  public:
@@ -77,7 +78,7 @@ class TracksProblem final : public Problem {
   void conclude(Explanation& e) const override {
     std::optional<std::size_t> perspective;
     for (std::size_t c = 0; c < candidates_.size(); ++c)
-      if (candidates_[c].id() == "tracks.perspective") perspective = c;
+      if (candidates_[c].id() == mechanism::tracks_perspective().id) perspective = c;
     conclude_shapes(view(), perspective, e);
     if (outlying_.runs.empty()) return;
     conclude_outliers(view(), candidates_.size() - 1, e);
@@ -136,7 +137,7 @@ class TracksProblem final : public Problem {
     for (std::size_t p = 0; p < followed_.points.size(); ++p)
       for (const Followed::Place& place : followed_.places(start_, p))
         depth = std::max(depth, std::hypot(place.camera[0], place.camera[1], place.camera[2]));
-    const mechanism::Mechanism& m = declared("tracks.perspective");
+    const mechanism::Mechanism& m = mechanism::tracks_perspective();
     Parameter& kappa = parameters_[layout_.perspective];
     kappa.name = m.id + "." + m.parameters[0].name, kappa.unit = "1/" + track_unit(followed_);
     // Negative where the solver's depths are reversed, which an orthographic camera does not see.
@@ -147,24 +148,24 @@ class TracksProblem final : public Problem {
   }
 
   void choose_base() {
-    const auto join = [&](std::size_t first, std::size_t last, const char* id, bool known) {
+    const auto join = [&](std::size_t first, std::size_t last, const mechanism::Mechanism& m, bool known) {
       std::vector<std::size_t> own;
       for (std::size_t p = first; p < last; ++p) own.push_back(p);
       if (known)
         base_.insert(base_.end(), own.begin(), own.end());
       else
-        candidates_.push_back({&declared(id), {}, own, {}});
+        candidates_.push_back({&m, {}, own, {}});
     };
     for (std::size_t p = layout_.rotation; p < layout_.scale; ++p) base_.push_back(p);
     for (std::size_t p = layout_.weight; p < layout_.perspective; ++p) base_.push_back(p);
-    join(layout_.perspective, layout_.count, "tracks.perspective", followed_.inverse_focal.has_value());
-    join(layout_.scale, layout_.weight, "tracks.scale", followed_.free_scales);
+    join(layout_.perspective, layout_.count, mechanism::tracks_perspective(), followed_.inverse_focal.has_value());
+    join(layout_.scale, layout_.weight, mechanism::tracks_scale(), followed_.free_scales);
   }
 
   // Their offsets are known before the race and stay where they are.
   void name_outliers() {
     if (outlying_.runs.empty()) return;
-    Candidate c{&declared("tracks.outliers"), {}, {}, {}};
+    Candidate c{&mechanism::tracks_outliers(), {}, {}, {}};
     for (const Run& run : outlying_.runs) {
       c.on.push_back(gonio::nrsfm::hidden_name(followed_.sequence, run.point, run.first, run.last));
       for (std::size_t i = 0; i < 2; ++i) {

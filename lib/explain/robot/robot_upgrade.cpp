@@ -12,6 +12,12 @@
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/mounting.h"
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+const Mechanism& board_scale();
+const Mechanism& board_warp();
+}  // namespace gonio::mechanism
 
 namespace gonio::explain {
 namespace {
@@ -97,12 +103,12 @@ void upgrade_robot(const RobotWork& work, const Problem& problem, const RobotFin
     camera::store(state.intrinsics, section);
   }
   manifest::Board& board = document.boards.at(work.input.board);
-  if (is_named(problem, e, "board.warp")) {
+  if (is_named(problem, e, mechanism::board_warp().id)) {
     board.warp["x_m"] = manifest::Parameter(state.warp.sag_x_m);
     board.warp["y_m"] = manifest::Parameter(state.warp.sag_y_m);
   }
-  if (is_named(problem, e, "board.scale"))
-    document.mechanisms["board.scale"] = {
+  if (is_named(problem, e, mechanism::board_scale().id))
+    document.mechanisms[mechanism::board_scale().id] = {
         {work.input.board}, {{"scale_x", state.scale[0]}, {"scale_y", state.scale[1]}}, {}};
 }
 

@@ -10,18 +10,19 @@
 
 namespace gonio::explain::stacks {
 std::string ExposuresProblem::remarks(const Explanation& e) const {
-  if (!is_named(*this, e, "sensor.non-linearity")) return "";
-  const auto named = std::find_if(e.named.begin(), e.named.end(),
-                                  [&](std::size_t c) { return candidates_[c].id() == "sensor.non-linearity"; });
-  const std::vector<std::size_t>& own = candidates_[*named].parameters;
-  if (own[0] == shared_.quadratic)
+  const auto response =
+      std::ranges::find_if(e.named, [&](std::size_t c) { return written(c) == Written::as_response; });
+  if (response == e.named.end()) return "";
+  const std::vector<std::size_t>& own = candidates_[*response].parameters;
+  const std::string& form = parameters_[own[0]].name;
+  if (form.ends_with(".quadratic"))
     return "The response departs from proportion by " + printed(100 * e.values[own[0]]) + " % at the reading " +
            printed(stack_.full_scale) + ".";
-  if (own[0] == shared_.gamma)
+  if (form.ends_with(".gamma"))
     return "The response is a power law: readings grow with the light to the power " + printed(e.values[own[0]]) + ".";
   const ReadingChain now = chain(e.values);
-  std::string text =
-      own[0] != shared_.slope[0] ? "The response is a tone curve of each channel" : "The response is a tone curve";
+  const bool of_all = form == candidates_[*response].id() + ".slope";
+  std::string text = of_all ? "The response is a tone curve" : "The response is a tone curve of each channel";
   text += ", not one power: where it reads";
   for (const double z : {0.25, 0.5, 0.75}) {
     const render::ToneCurve& curve = now.response[stack_.channels.size() > 1 ? 1 : 0].curve;
@@ -33,16 +34,11 @@ std::string ExposuresProblem::remarks(const Explanation& e) const {
 }
 
 void ExposuresProblem::apply(const Explanation& e, manifest::Document& document) const {
-  const bool bent = is_named(*this, e, "sensor.non-linearity");
+  const bool bent = std::ranges::any_of(e.named, [&](std::size_t c) { return written(c) == Written::as_response; });
   const ReadingChain now = chain(e.values);
   if (bent) state_responses(stack_, now.response, now.offset, document);
-  for (const std::size_t c : e.named) {
-    const mechanism::Mechanism& m = *candidates_[c].mechanism;
-    if (m.id == "sensor.non-linearity" || (bent && m.id == "sensor.black-offset")) continue;
-    const bool of_camera = m.target == mechanism::Target::camera && !stack_.camera.empty();
-    switch_on(candidates_[c], of_camera ? std::vector<std::string>{stack_.camera} : std::vector<std::string>{}, e,
-              document);
-  }
+  for (const std::size_t c : e.named)
+    if (is_switched_on(written(c), bent)) switch_on(candidates_[c], written_on(stack_, candidates_[c]), e, document);
 }
 
 Illustration ExposuresProblem::illustrate(const Explanation& e, const std::filesystem::path& out,

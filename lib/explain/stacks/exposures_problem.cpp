@@ -65,7 +65,7 @@ ExposuresProblem::ExposuresProblem(const manifest::Document& document, Stack sta
   sites_ = choose_sites(stack_, noise_, options, place);
   add_radiances();
   add_rows();
-  add_shared(document);
+  add_mechanisms(document);
   add_conditions();
 }
 
@@ -119,6 +119,30 @@ void ExposuresProblem::add_rows() {
   }
 }
 
+// What the manifest's mechanisms already say of the camera belongs to the base model and is not proposed again.
+void ExposuresProblem::add_mechanisms(const manifest::Document& document) {
+  ExposureFacts facts{taken_[0].exposure_s, true, observations_.value};
+  for (const StackImage& image : stack_.images) {
+    facts.shortest_s = std::min(facts.shortest_s, image.exposure_s);
+    facts.timed = facts.timed && image.time_s.has_value();
+  }
+  const auto all = all_exposure_bindings();
+  std::vector<const ExposureBinding*> bindings(all.begin(), all.end());
+  std::ranges::stable_sort(bindings, {}, &ExposureBinding::order);
+  for (const ExposureBinding* binding : bindings) {
+    StackEntry entry(document, stack_, binding->mechanism(), parameters_, base_, candidates_);
+    binding->enter(entry, facts);
+    bound_.push_back({binding, entry.first, entry.count()});
+  }
+}
+
+Written ExposuresProblem::written(std::size_t candidate) const {
+  const std::size_t number = candidates_[candidate].parameters[0];
+  const auto bound =
+      std::ranges::find_if(bound_, [&](const Bound& b) { return number >= b.first && number < b.first + b.count; });
+  return bound->binding->written;
+}
+
 void ExposuresProblem::add_conditions() {
   // What the base model's fit reads. Not what the other pictures alone predict: a picture whose light was a little off
   // would differ from that by what its residuals are, and any curve along it would seem to explain them.
@@ -162,25 +186,7 @@ void ExposuresProblem::add_conditions() {
 ReadingChain ExposuresProblem::chain(std::span<const double> values) const {
   ReadingChain chain;
   chain.mean_radiance = mean_radiance_;
-  const bool colour = stack_.channels.size() > 1;
-  for (std::size_t c = 0; c < stack_.channels.size(); ++c) {
-    // Alternatives of one family: at most one of the curves is not neutral, so that slopes multiply and bends add.
-    double slope = values[shared_.slope[0]];
-    render::ToneBends bends;
-    for (std::size_t k = 0; k < bends.size(); ++k) bends[k] = values[shared_.bend[0][k]];
-    if (colour) {
-      slope *= values[shared_.slope[c + 1]];
-      for (std::size_t k = 0; k < bends.size(); ++k) bends[k] += values[shared_.bend[c + 1][k]];
-    }
-    chain.response[c] = {values[shared_.quadratic], values[shared_.gamma], stack_.full_scale,
-                         render::ToneCurve(render::slopes_of(slope, bends))};
-  }
-  chain.offset = values[shared_.offset] + values[shared_.rounding];
-  chain.full_scale = values[shared_.full_scale];
-  chain.extra_s = values[shared_.extra_s];
-  chain.drift = values[shared_.drift];
-  chain.drift_s = values[shared_.drift_s];
-  chain.glare_share = values[shared_.glare];
+  for (const Bound& bound : bound_) bound.binding->set(values.subspan(bound.first, bound.count), stack_, chain);
   return chain;
 }
 

@@ -8,10 +8,9 @@
 // radiances belong to all pictures.
 #pragma once
 #include <memory>
-#include <tuple>
 
 #include "explain/engine.h"
-#include "explain/stacks/reading_chain.h"
+#include "explain/stacks/exposure_binding.h"
 #include "explain/stacks/stack_sites.h"
 
 namespace gonio::explain::stacks {
@@ -40,23 +39,16 @@ class ExposuresProblem final : public Problem {
   ReadingChain chain(std::span<const double> values) const;
 
  private:
-  // Places in parameters_ of what all readings share.
-  struct Shared {
-    std::size_t quadratic = 0, gamma = 0, offset = 0, rounding = 0, full_scale = 0, extra_s = 0, drift = 0, drift_s = 0,
-                glare = 0;
-    std::array<std::size_t, 4> slope{};  // of one curve for all channels, then of each channel's own
-    std::array<std::array<std::size_t, std::tuple_size_v<render::ToneBends>>, 4> bend{};
+  struct Bound {
+    const ExposureBinding* binding = nullptr;
+    std::size_t first = 0, count = 0;  // its numbers in parameters_
   };
   void add_radiances();
   void add_rows();
   void add_conditions();
-  void add_shared(const manifest::Document& document);
-  void add_responses(const manifest::Document& document);
+  void add_mechanisms(const manifest::Document& document);
   double radiance(const ReadingChain& chain, std::span<const double> values, std::size_t site) const;
-  // A parameter as `id` declares it; `prefix` stands before its name. Neutral is what the manifest already says.
-  std::size_t add_parameter(const manifest::Document& document, const std::string& id, const std::string& name,
-                            double size, const std::string& prefix = "");
-  void add_candidate(const manifest::Document& document, const std::string& id, std::vector<std::size_t> parameters);
+  Written written(std::size_t candidate) const;  // of the mechanism that it is of
 
   Stack stack_;
   ReadingNoise noise_;
@@ -64,7 +56,7 @@ class ExposuresProblem final : public Problem {
   std::vector<std::size_t> shown_in_;           // by site: the image that its radiance is stated in
   std::vector<std::vector<std::size_t>> rows_;  // by image: sites, ascending
   std::vector<Taken> taken_;                    // by image
-  Shared shared_;
+  std::vector<Bound> bound_;
   std::array<double, 3> mean_radiance_{};
 };
 

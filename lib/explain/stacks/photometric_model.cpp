@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/mechanisms/light_ambient.h"
+#include "light/mechanisms/light_inverse_square.h"
 #include "linear/solve.h"
+#include "render/mechanisms/sensor_black_offset.h"
+#include "scene/mechanisms/optics_vignetting.h"
 #include "surface/fresnel.h"
 #include "surface/interface_albedo.h"
 #include "surface/microfacet.h"
@@ -44,14 +48,13 @@ Vec3 least_squares(const std::vector<PatchLight>& lights, const std::vector<doub
 
 PatchLight seen_from(const PatchLight& light, Vec3 position, double nearness) {
   if (nearness == 0) return light;
-  const Vec3 q = light.towards - position * nearness;
-  const double squared = dot(q, q);
-  return {q / std::sqrt(squared), light.white / squared};
+  const Vec3 arm = equation::light_inverse_square_arm(nearness, light.towards, position);
+  return {normalized(arm), light.white * equation::light_inverse_square(arm)};
 }
 
 double PatchModel::operator()(Vec3 b, double tint, const PatchLight& light, double radius) const {
   const double albedo = norm(b);
-  if (!(albedo > 0)) return response(0) + offset;
+  if (!(albedo > 0)) return equation::sensor_black_offset(response(0), offset);
   const Vec3 n = b / albedo;
   const double ci = dot(n, light.towards), co = dot(n, eye);
   double u = 0;
@@ -69,10 +72,9 @@ double PatchModel::operator()(Vec3 b, double tint, const PatchLight& light, doub
       }
     }
   }
-  if (ambient != 0) u += pi * ambient * tint * albedo * light.white;
-  double v = response(u);
-  if (falloff != 0) v *= 1 - falloff * radius * radius;
-  return v + offset;
+  if (ambient != 0) u += equation::light_ambient(ambient) * tint * albedo * light.white;
+  const double v = response(u) * equation::optics_vignetting(falloff, radius * radius);
+  return equation::sensor_black_offset(v, offset);
 }
 
 Patch fitted_patch(const PatchModel& model, const PatchReadings& readings, const Patch& start) {

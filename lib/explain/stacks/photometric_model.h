@@ -26,8 +26,8 @@ struct PatchLight {  // one picture's lamp, already turned
 };
 
 // The same lamp as `position` sees it, where it stands at 1 / nearness from the origin along `towards` and gives its
-// white there (light.inverse-square): q = towards - nearness position; towards' = q / |q|, white' = white / |q|^2.
-// Unchanged at nearness 0. Positions are in units of half the picture's width, which a stack without geometry has.
+// white there (light.inverse-square). Unchanged at nearness 0. Positions are in units of half the picture's width,
+// which a stack without geometry has.
 PatchLight seen_from(const PatchLight& light, Vec3 position, double nearness);
 
 struct Patch {

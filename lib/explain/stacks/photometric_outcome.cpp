@@ -15,31 +15,17 @@
 namespace gonio::explain::stacks {
 namespace {
 
-constexpr double likely_turn_rad = 0.1;  // of a lamp; also holds all of them, which could turn with all normals
 constexpr double likely_strength = 0.3;  // of a free lamp's logarithm; albedo takes what is common
 constexpr double likely_slope = 0.2;     // of the same, over half the picture's width
-constexpr double highest_f0 = 0.2;       // readings need not be on an absolute scale
-
-constexpr double nearest = 0.7;  // half widths' inverse: a lamp just outside the picture
 
 constexpr std::size_t fewest_lamps = 5;  // that must show a pixel of the whole picture
 
 }  // namespace
 
-// Turns and strengths of the lamps.
-void PhotometricProblem::add_lamps(const manifest::Document& document) {
+// Strengths of the lamps.
+void PhotometricProblem::add_lamps() {
   for (std::size_t g = 0; g < lamps_.size(); ++g) {
     const std::string& name = stack_.images[g].light;
-    std::array<std::size_t, 2> tilt{};
-    for (int axis = 0; axis < 2; ++axis) {
-      const std::string key = axis == 0 ? "tilt_x_rad" : "tilt_y_rad";
-      Parameter p = declared(document, "light.direction", key, name + "/" + key, name, 0.05);
-      p.groups = {g};
-      p.prior_sigma = likely_turn_rad;
-      tilt[static_cast<std::size_t>(axis)] = parameters_.size();
-      parameters_.push_back(std::move(p));
-    }
-    tilt_.push_back(tilt);
     Parameter strength;
     strength.name = "lights/" + name + "/log_strength";
     strength.unit = "1";
@@ -65,50 +51,20 @@ void PhotometricProblem::add_lamps(const manifest::Document& document) {
   }
 }
 
-void PhotometricProblem::propose_candidate(const manifest::Document& document, const std::string& id,
-                                           std::vector<std::size_t> parameters, const std::string& target) {
-  const mechanism::Mechanism* m = mechanism::find_mechanism(id);
-  if (m == nullptr || is_given(document, id, target)) return;
-  Candidate candidate;
-  candidate.mechanism = m;
-  candidate.parameters = std::move(parameters);
-  candidate.family = id;
-  candidates_.push_back(std::move(candidate));
+void PhotometricProblem::add_mechanisms(const manifest::Document& document) {
+  const auto all = all_light_bindings();
+  std::vector<const LightBinding*> bindings(all.begin(), all.end());
+  std::ranges::stable_sort(bindings, {}, &LightBinding::order);
+  for (const LightBinding* binding : bindings) {
+    StackEntry entry(document, stack_, binding->mechanism(), parameters_, base_, candidates_);
+    binding->enter(entry);
+    bound_.push_back({binding, entry.first, entry.count()});
+  }
 }
 
-void PhotometricProblem::add_candidates(const manifest::Document& document) {
-  const auto add = [&](const std::string& id, const std::string& name, double size) -> std::size_t {
-    const bool of_camera = id.starts_with("sensor.");
-    parameters_.push_back(declared(document, id, name, id + "." + name, of_camera ? stack_.camera : "", size));
-    return parameters_.size() - 1;
-  };
-  shared_.f0 = add("surface.interface", "f0", 0.02);
-  parameters_.back().upper = highest_f0;
-  shared_.alpha = add("surface.interface", "alpha", 0.1);
-  shared_.sigma_rad = add("surface.diffuse-roughness", "sigma_rad", 0.1);
-  shared_.ambient = add("light.ambient", "radiance_g", 0.01);
-  shared_.gamma = add("sensor.non-linearity", "gamma", 0.2);
-  shared_.quadratic = add("sensor.non-linearity", "quadratic", 0.1);
-  shared_.offset = add("sensor.black-offset", "offset", 0.05 * stack_.full_scale);
-  parameters_.back().lower = -stack_.full_scale, parameters_.back().upper = stack_.full_scale;
-  parameters_.back().start = 0.005 * stack_.full_scale;
-  shared_.falloff = add("optics.vignetting", "falloff", 0.1);
-  shared_.nearness = add("light.inverse-square", "nearness_per_m", 0.1);
-  parameters_.back().upper = nearest;
-  propose_candidate(document, "surface.interface", {shared_.f0, shared_.alpha}, "");
-  propose_candidate(document, "surface.diffuse-roughness", {shared_.sigma_rad}, "");
-  std::vector<std::size_t> tilts;
-  for (const std::array<std::size_t, 2>& tilt : tilt_) tilts.insert(tilts.end(), tilt.begin(), tilt.end());
-  propose_candidate(document, "light.direction", tilts, stack_.images[0].light);
-  for (const StackImage& image : stack_.images)
-    if (!candidates_.empty() && candidates_.back().id() == "light.direction")
-      candidates_.back().on.push_back(image.light);
-  propose_candidate(document, "light.inverse-square", {shared_.nearness}, stack_.images[0].light);
-  propose_candidate(document, "light.ambient", {shared_.ambient}, "");
-  propose_candidate(document, "sensor.non-linearity", {shared_.gamma}, stack_.camera);
-  propose_candidate(document, "sensor.non-linearity", {shared_.quadratic}, stack_.camera);
-  propose_candidate(document, "sensor.black-offset", {shared_.offset}, stack_.camera);
-  propose_candidate(document, "optics.vignetting", {shared_.falloff}, "");
+const PhotometricProblem::Bound& PhotometricProblem::bound_of(std::size_t candidate) const {
+  const std::size_t number = candidates_[candidate].parameters[0];
+  return *std::ranges::find_if(bound_, [&](const Bound& b) { return number >= b.first && number < b.first + b.count; });
 }
 
 std::string PhotometricProblem::remarks(const Explanation& e) const {
@@ -123,39 +79,25 @@ std::string PhotometricProblem::remarks(const Explanation& e) const {
   if (slope(worst) > evenness)
     text += (text.empty() ? "" : " ") + std::string("The light of ") + stack_.images[worst].light + " changes by " +
             printed(100 * slope(worst)) + " % over half the picture's width.";
-  if (is_named(*this, e, "light.inverse-square"))
-    text += (text.empty() ? "" : " ") + std::string("The lamps stand ") + printed(1 / e.values[shared_.nearness]) +
-            " half widths of the picture away; without a scale the manifest cannot say so in metres.";
-  if (!is_named(*this, e, "light.direction")) return text;
-  double sum = 0;
-  for (const std::array<std::size_t, 2>& t : tilt_) sum += std::hypot(e.values[t[0]], e.values[t[1]]);
-  return text + (text.empty() ? "" : " ") + "The lamps stand " +
-         printed(sum / static_cast<double>(tilt_.size()) * 180 / pi) +
-         " degrees away from where they were said to be, "
-         "on average.";
+  for (const Bound& bound : bound_)
+    if (bound.binding->remark != nullptr && is_named(*this, e, bound.binding->mechanism().id))
+      text += (text.empty() ? "" : " ") + bound.binding->remark(bound.of(e.values));
+  return text;
 }
 
 void PhotometricProblem::apply(const Explanation& e, manifest::Document& document) const {
   const PatchModel now = model(e.values);
-  const bool bent = is_named(*this, e, "sensor.non-linearity");
+  const auto written = [&](std::size_t c) { return bound_of(c).binding->written; };
+  const bool bent = std::ranges::any_of(e.named, [&](std::size_t c) { return written(c) == Written::as_response; });
   if (bent) {
     const std::vector<render::Response> same(3, now.response);
     state_responses(stack_, same, now.offset, document);
   }
   for (const std::size_t c : e.named) {
-    const std::string& id = candidates_[c].id();
-    if (id == "light.inverse-square") continue;  // a stack without geometry has no metre
-    if (id == "sensor.non-linearity" || (bent && id == "sensor.black-offset")) continue;
-    std::vector<std::string> on;
-    if (id == "light.direction") on = candidates_[c].on;
-    if (id == "sensor.black-offset" && !stack_.camera.empty()) on = {stack_.camera};
-    switch_on(candidates_[c], on, e, document);
-    if (id != "light.ambient") continue;
-    manifest::MechanismUse& use = document.mechanisms[id];
-    for (const char* name : {"radiance_r", "radiance_g", "radiance_b"}) {
-      use.parameters[name] = manifest::Parameter(e.values[shared_.ambient]);
-      use.sigma[name] = {e.sigma[shared_.ambient]};
-    }
+    if (!is_switched_on(written(c), bent)) continue;
+    switch_on(candidates_[c], written_on(stack_, candidates_[c]), e, document);
+    if (const LightBinding& binding = *bound_of(c).binding; binding.complete != nullptr)
+      binding.complete(document.mechanisms[binding.mechanism().id]);
   }
   for (std::size_t g = 0; g < lamps_.size(); ++g) {
     const std::size_t p = strength_[g];

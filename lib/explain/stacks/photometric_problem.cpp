@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "base/error.h"
-#include "light/turn.h"
 #include "manifest/document.h"
 #include "manifest/sections/light.h"
 #include "stats/intervals.h"
@@ -80,8 +79,8 @@ PhotometricProblem::PhotometricProblem(const manifest::Document& document, Stack
   if (std::any_of(free_.begin(), free_.end(), [](char f) { return f != 0; })) start_strengths();
   add_patches();
   add_rows();
-  add_lamps(document);
-  add_candidates(document);
+  add_lamps();
+  add_mechanisms(document);
   add_conditions();
   beside_ = beside();
 }
@@ -260,13 +259,8 @@ Patch PhotometricProblem::patch(std::span<const double> values, std::size_t site
 
 PatchModel PhotometricProblem::model(std::span<const double> values) const {
   PatchModel m;
-  m.sigma_rad = values[shared_.sigma_rad];
-  m.f0 = values[shared_.f0];
-  m.alpha = values[shared_.alpha];
-  m.ambient = values[shared_.ambient];
-  m.offset = values[shared_.offset];
-  m.falloff = values[shared_.falloff];
-  m.response = {values[shared_.quadratic], values[shared_.gamma], stack_.full_scale, render::ToneCurve()};
+  for (const Bound& bound : bound_)
+    if (bound.binding->set != nullptr) bound.binding->set(bound.of(values), stack_, m);
   m.eye = eye_;
   return m;
 }
@@ -278,12 +272,12 @@ Vec3 PhotometricProblem::position(int x, int y) const {
 
 PatchLight PhotometricProblem::light(std::span<const double> values, std::size_t group, Vec3 at) const {
   PatchLight lamp = lamps_[group];
-  const double x = values[tilt_[group][0]], y = values[tilt_[group][1]];
-  if (x != 0 || y != 0) lamp.towards = light::turned(lamp.towards, x, y);
   const double strength =
       values[strength_[group]] + values[slope_[group][0]] * dot(at, right_) + values[slope_[group][1]] * dot(at, down_);
   if (strength != 0) lamp.white *= std::exp(strength);
-  return seen_from(lamp, at, values[shared_.nearness]);
+  for (const Bound& bound : bound_)
+    if (bound.binding->aim != nullptr) bound.binding->aim(bound.of(values), group, at, lamp);
+  return lamp;
 }
 
 std::vector<PatchLight> PhotometricProblem::lights(std::span<const double> values, int x, int y) const {

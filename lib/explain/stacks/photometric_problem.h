@@ -13,6 +13,7 @@
 #include <memory>
 
 #include "explain/engine.h"
+#include "explain/stacks/light_binding.h"
 #include "explain/stacks/photometric_model.h"
 #include "explain/stacks/stack_sites.h"
 
@@ -46,19 +47,19 @@ class PhotometricProblem final : public Problem {
   std::vector<PatchLight> lights(std::span<const double> values, int x, int y) const;
 
  private:
-  struct Shared {
-    std::size_t sigma_rad = 0, f0 = 0, alpha = 0, ambient = 0, gamma = 0, quadratic = 0, offset = 0, falloff = 0,
-                nearness = 0;
+  struct Bound {
+    const LightBinding* binding = nullptr;
+    std::size_t first = 0, count = 0;  // its numbers in parameters_
+    std::span<const double> of(std::span<const double> values) const { return values.subspan(first, count); }
   };
   void keep_shown_sites(const std::string& place);
   void start_strengths();
   void add_patches();
   void add_rows();
   void add_conditions();
-  void add_lamps(const manifest::Document& document);
-  void add_candidates(const manifest::Document& document);
-  void propose_candidate(const manifest::Document& document, const std::string& id, std::vector<std::size_t> parameters,
-                         const std::string& target);
+  void add_lamps();
+  void add_mechanisms(const manifest::Document& document);
+  const Bound& bound_of(std::size_t candidate) const;
   double radius(int x, int y) const;
   Vec3 position(int x, int y) const;  // of what a pixel shows, in half widths, were the scene flat
   PatchLight light(std::span<const double> values, std::size_t group, Vec3 at) const;
@@ -80,12 +81,11 @@ class PhotometricProblem final : public Problem {
   std::vector<double> stated_;     // by image: white as the manifest says
   std::vector<char> free_;
   std::vector<Site> sites_;
-  std::vector<Patch> start_;                    // by site
-  std::vector<std::vector<std::size_t>> rows_;  // by image: sites, ascending
-  std::vector<std::array<std::size_t, 2>> tilt_;
+  std::vector<Patch> start_;                       // by site
+  std::vector<std::vector<std::size_t>> rows_;     // by image: sites, ascending
   std::vector<std::size_t> strength_;              // by image: logarithm of a factor on the lamp
   std::vector<std::array<std::size_t, 2>> slope_;  // by image: of that logarithm, to the right and down
-  Shared shared_;
+  std::vector<Bound> bound_;
   Vec3 right_, down_;       // of the picture's axes
   Vec3 eye_;                // direction from the scene to the camera
   std::size_t hidden_ = 0;  // readings in cast shadows

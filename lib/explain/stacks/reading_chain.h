@@ -1,18 +1,18 @@
 // From a scene's radiance to the reading in one picture of a stack of exposures, in the order of
-// render/sensor_chain.h:
-//   u = radiance (exposure + extra time) gain          sensor.shutter
-//   u *= 1 + amplitude exp(-time / time constant)      light.drift
-//   u += glare share * (mean radiance) * the same      optics.veiling-glare
-//   v = response(u)                                    sensor.non-linearity, channel by channel
-//   v += offset                                        sensor.black-offset
-//   v = min(v, full_scale)                             sensor.saturation; 0: no limit
+// render/sensor_chain.h, with the equations of the mechanisms:
+//   u = radiance times the time that the shutter was open, gain and the drifting lamp
+//   v = full scale of (response of (u under a veil, channel by channel) + offset)
 // Radiance is in readings per second: what a linear sensor would read after one second.
 #pragma once
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 
+#include "light/mechanisms/light_drift.h"
+#include "render/mechanisms/optics_veiling_glare.h"
+#include "render/mechanisms/sensor_black_offset.h"
+#include "render/mechanisms/sensor_saturation.h"
+#include "render/mechanisms/sensor_shutter.h"
 #include "render/tone_curve.h"
 
 namespace gonio::explain::stacks {
@@ -29,10 +29,8 @@ struct ReadingChain {
   double operator()(double radiance, int channel, const Taken& at) const {
     const auto c = static_cast<std::size_t>(channel);
     const double time = effective_s(at);
-    double u = radiance * time;
-    if (glare_share != 0) u += glare_share * mean_radiance[c] * time;
-    const double v = response[c](u) + offset;
-    return full_scale > 0 ? std::min(v, full_scale) : v;
+    const double u = equation::optics_veiling_glare(radiance * time, glare_share, mean_radiance[c] * time);
+    return equation::sensor_saturation(equation::sensor_black_offset(response[c](u), offset), full_scale);
   }
   // The radiance that gives this reading, were there no saturation.
   double radiance(double reading, int channel, const Taken& at) const {
@@ -42,8 +40,8 @@ struct ReadingChain {
 
  private:
   double effective_s(const Taken& at) const {
-    const double time = (at.exposure_s + extra_s) * at.gain;
-    return drift != 0 ? time * (1 + drift * std::exp(-at.since_s / drift_s)) : time;
+    const double open_s = equation::sensor_shutter(at.exposure_s, extra_s, at.exposure_s);
+    return open_s * at.gain * equation::light_drift(drift, drift_s, at.since_s);
   }
 };
 

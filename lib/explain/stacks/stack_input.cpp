@@ -9,14 +9,14 @@
 #include "base/error.h"
 #include "camera/intrinsics.h"
 #include "camera/mosaic.h"
-#include "io/codes.h"
-#include "io/picture.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/object.h"
-#include "metric/linear_picture.h"
+#include "photograph/linear_picture.h"
+#include "photograph/mask.h"
+#include "photograph/response.h"
 
 namespace gonio::explain::stacks {
 namespace {
@@ -82,53 +82,31 @@ void drop_neighbours_of_clipped(const std::vector<std::uint8_t>& clipped, int re
 void read_image(const Document& document, StackImage& image, Stack& stack) {
   const ImageEntry& entry = document.images[image.entry];
   const std::string at = manifest::place(document, pointer(image.entry, "/response"));
-  const std::filesystem::path path = manifest::picture_path(document, image.entry);
-  const int bits = io::code_bits(path);
-  if (bits > 0 && entry.response.is_null())
-    throw Error(Exit::data, at, "is not stated for an 8 or 16-bit picture",
-                "state \"response\": \"linear\", \"srgb\" or a table");
-  const double quantum = bits > 0 ? 1 / (std::pow(2.0, bits) - 1) : 0;
-  stack.integer = bits > 0;
-  if (entry.response.is_string() && entry.response.as_string() == "linear")
-    stack.quantum = std::max(stack.quantum, quantum);
-  const io::Image raw = io::read_picture(path);
-  const bool colour = raw.channel("R") >= 0 && raw.channel("G") >= 0 && raw.channel("B") >= 0;
-  if (!colour && raw.channel("Y") < 0)
-    throw Error(Exit::data, manifest::place(document, pointer(image.entry, "/file")),
-                "names a picture without channels R, G, B or Y", "record one of them");
-  const std::vector<std::string> channels =
-      colour ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
-  image.picture = io::Image(raw.width, raw.height, channels);
-  image.counts.assign(image.picture.data.size(), 1);
-  const float lowest = static_cast<float>(0.5 * quantum), highest = static_cast<float>(1 - 0.5 * quantum);
-  std::vector<std::uint8_t> clipped(raw.pixels());
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    const metric::Response response(metric::response_of_channel(entry.response, channels[c], at), at);
-    const auto from = static_cast<std::size_t>(raw.channel(channels[c]));
-    stack.lowest =
-        std::max(response(0), stack.images.empty() && c == 0 ? response(0) : static_cast<float>(stack.lowest));
-    stack.highest =
-        std::min(response(1), stack.images.empty() && c == 0 ? response(1) : static_cast<float>(stack.highest));
-    for (std::size_t p = 0; p < raw.pixels(); ++p) {
-      const float code = raw.data[p * raw.channels.size() + from];
-      const std::size_t i = p * channels.size() + c;
-      image.picture.data[i] = response(code);
-      if (!std::isfinite(code) || (bits > 0 && (code < lowest || code > highest))) image.counts[i] = 0;
-      if (bits > 0 && code > highest) clipped[p] = 1;
-    }
+  photograph::LinearPicture read =
+      photograph::read_linear(manifest::picture_path(document, image.entry), entry.response, at);
+  stack.integer = read.integer_codes();
+  if (stack.integer && entry.response.is_string() && entry.response.as_string() == "linear")
+    stack.quantum = std::max(stack.quantum, 1 / (std::pow(2.0, read.code_bits) - 1));
+  for (const std::string& channel : read.colour.channels) {
+    const photograph::Response response(photograph::response_of_channel(entry.response, channel, at), at);
+    const bool first = stack.images.empty() && &channel == &read.colour.channels[0];
+    stack.lowest = std::max(response(0), first ? response(0) : static_cast<float>(stack.lowest));
+    stack.highest = std::min(response(1), first ? response(1) : static_cast<float>(stack.highest));
   }
-  drop_neighbours_of_clipped(clipped, stack.step, image);
+  image.picture = std::move(read.colour);
+  image.counts.resize(image.picture.data.size());
+  for (std::size_t i = 0; i < image.counts.size(); ++i)
+    image.counts[i] = std::isfinite(image.picture.data[i]) && !read.dark[i];
+  drop_neighbours_of_clipped(read.clipped, stack.step, image);
 }
 
-void read_mask(const Document& document, StackImage& image) {
-  const std::filesystem::path mask = manifest::mask_path(document, image.entry);
-  if (mask.empty()) return;
-  const metric::Mask read = metric::read_mask(mask);
-  if (read.width != image.picture.width || read.height != image.picture.height)
-    throw Error(Exit::data, manifest::place(document, pointer(image.entry, "/mask")),
-                "has another size than the picture", "crop both alike");
+void leave_out_masked(const Document& document, StackImage& image) {
+  const std::filesystem::path path = manifest::mask_path(document, image.entry);
+  if (path.empty()) return;
+  const std::vector<std::uint8_t> counts =
+      photograph::read_mask_of(image.picture, path, manifest::place(document, pointer(image.entry, "/mask")));
   const std::size_t channels = image.picture.channels.size();
-  for (std::size_t i = 0; i < image.counts.size(); ++i) image.counts[i] = image.counts[i] && read.counts[i / channels];
+  for (std::size_t i = 0; i < image.counts.size(); ++i) image.counts[i] = image.counts[i] && counts[i / channels];
 }
 
 void check_alike(const Document& document, const StackImage& image, const Stack& stack) {
@@ -194,7 +172,7 @@ Stack read_stack(const Document& document, const std::vector<std::size_t>& entri
     if (e.noise) image.noise = *e.noise;
     image.noise_stated = e.noise && (e.noise->gain > 0 || e.noise->read > 0);
     read_image(document, image, stack);
-    read_mask(document, image);
+    leave_out_masked(document, image);
     if (!stack.images.empty()) check_alike(document, image, stack);
     stack.images.push_back(std::move(image));
   }

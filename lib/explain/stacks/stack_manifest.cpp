@@ -7,7 +7,7 @@
 #include "manifest/document.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
-#include "metric/linear_picture.h"
+#include "photograph/response.h"
 
 namespace gonio::explain::stacks {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 constexpr int table_rows = 128;
 
 // [[code, light], ...] over the codes that the stack holds.
-manifest::Value response_table(const Stack& stack, const metric::Response& stated, const render::Response& response,
+manifest::Value response_table(const Stack& stack, const photograph::Response& stated, const render::Response& response,
                                double offset) {
   const double top = stack.integer ? 1 : stack.full_scale;
   manifest::Value table = manifest::Value::array();
@@ -75,7 +75,7 @@ void state_responses(const Stack& stack, std::span<const render::Response> by_ch
     const std::string at = "/images/" + std::to_string(image.entry) + "/response";
     manifest::Value tables = manifest::Value::object();
     for (std::size_t c = 0; c < stack.channels.size(); ++c) {
-      const metric::Response stated(metric::response_of_channel(entry.response, stack.channels[c], at), at);
+      const photograph::Response stated(photograph::response_of_channel(entry.response, stack.channels[c], at), at);
       manifest::Value table = response_table(stack, stated, by_channel[c], offset);
       if (stack.channels.size() == 1)
         tables = std::move(table);

@@ -150,7 +150,7 @@ std::string curve_drawing(const Stack& stack, const ReadingChain& chain, const s
       const double x = f.left + (f.right - f.left) * i / 100, light = std::pow(10, x);
       const double v = linear ? light : chain.response[c](light) + chain.offset;
       if (!(v > 0)) continue;
-      const double y = std::log10(chain.full_scale > 0 ? std::min(v, chain.full_scale) : v);
+      const double y = std::log10(equation::sensor_saturation(v, chain.full_scale));
       if (y < f.bottom || y > f.top) continue;
       path += printed_path(path.empty() ? "M%.1f %.1f" : "L%.1f %.1f", f.x(x), f.y(y));
     }

@@ -11,11 +11,16 @@
 #include "manifest/document.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+const Mechanism& light_position();
+const Mechanism& light_second_source();
+}  // namespace gonio::mechanism
 
 namespace gonio::explain::tables {
 namespace {
 
-constexpr char inverse_square[] = "light.inverse-square";
 constexpr int grid = 12;
 
 scene::Light lamp_of(const manifest::Document& document, const std::string& name, const std::string& place) {
@@ -46,16 +51,6 @@ std::vector<double> list_of(Vec3 v) {
 }
 
 }  // namespace
-
-void bring_near(scene::Light& lamp, double nearness_per_m, Vec3 centre_m, const std::string& place) {
-  if (nearness_per_m == 0) return;
-  const Vec3 towards = normalized(lamp.parameters.at("towards").vector());
-  const Rgb facing = lamp.parameters.at("watt_per_m2").rgb();
-  lamp.model = light::find("point");
-  lamp.parameters = {{"position_m", manifest::Parameter(list_of(centre_m + towards * (1 / nearness_per_m)))},
-                     {"watt_per_sr", manifest::Parameter(list_of(facing * (1 / (nearness_per_m * nearness_per_m))))}};
-  scene::refresh(lamp, place);
-}
 
 Rgb irradiance(const scene::Light& lamp, Vec3 point_m, Vec3 normal) {
   const std::string& model = lamp.model->info().id;
@@ -136,12 +131,10 @@ void LampState::mechanisms_of_lamps() {
   for (const mechanism::Mechanism* m : mechanism::all_mechanisms()) {
     if (m->target != mechanism::Target::light) continue;
     if (std::find(m->domains.begin(), m->domains.end(), "tables") == m->domains.end()) continue;
-    if (m->id == "light.position") continue;  // places of lamps are the base model's own parameters here
+    if (m->id == mechanism::light_position().id) continue;  // places of lamps are the base model's own parameters here
     const std::vector<std::string> targets = scene::mechanism_targets(appearance_, *m);
     for (std::size_t l = 0; l < lamps().size(); ++l) {
-      const bool by_scene = std::find(targets.begin(), targets.end(), lamps()[l].id) != targets.end();
-      const bool near = m->id == inverse_square && lamps()[l].model->info().id == "directional";
-      if (!near && (!by_scene || m->id == inverse_square)) continue;
+      if (std::find(targets.begin(), targets.end(), lamps()[l].id) == targets.end()) continue;
       Candidate candidate{m, {lamps()[l].id}, {}, {}};
       for (std::size_t k = 0; k < m->parameters.size(); ++k) {
         const mechanism::Parameter& p = m->parameters[k];
@@ -155,8 +148,7 @@ void LampState::mechanisms_of_lamps() {
 }
 
 void LampState::second_source() {
-  const mechanism::Mechanism* m = mechanism::find_mechanism("light.second-source");
-  if (m == nullptr || m->parameters.size() != 3) return;  // irradiance, azimuth, elevation
+  const mechanism::Mechanism* m = &mechanism::light_second_source();  // irradiance, azimuth, elevation
   double facing = 0;
   for (const scene::Light& lamp : lamps()) {
     const Rgb e = irradiance(lamp, centre_m_, sight_of(lamp, centre_m_, centre_m_).towards);
@@ -227,10 +219,7 @@ std::vector<scene::Light> LampState::at(std::span<const double> values) const {
           second_lamp(std::vector<double>{values[c.parameters[0]], values[c.parameters[1]], values[c.parameters[2]]});
       continue;
     }
-    if (m.id == inverse_square)
-      bring_near(state.lights[lamp], values[c.parameters[0]], centre_m_, place_);
-    else
-      scene::apply_mechanism(state, m, use, centre_m_, place_);
+    scene::apply_mechanism(state, m, use, centre_m_, place_);
   }
   if (second) state.lights.push_back(std::move(*second));
   return state.lights;

@@ -51,14 +51,9 @@ class LampState {
 
 // light.second-source in a table, as declared: a point as far from the centre as the first lamp is (a directional one:
 // parallel light), so that its irradiance of a plane differs from that of even ambient light. Its direction is not
-// found by small steps: four quarters of the horizon are alternatives of one family.
-//
-// A lamp whose rays the base model believes to be parallel, at 1 / nearness_per_m from the centre instead, its
-// irradiance at the centre unchanged: E(p) = E cos D^2 / d^2 (light.inverse-square). Unchanged at nearness 0.
-void bring_near(scene::Light& lamp, double nearness_per_m, Vec3 centre_m, const std::string& place);
-
-// Irradiance of an unoccluded lamp on a small plane, W/m^2: in closed form for points and spheres, else the mean over a
-// regular grid of the lamp's own samples (12 x 12, a midpoint rule).
+// found by small steps: four quarters of the horizon are alternatives of one family. Irradiance of an unoccluded lamp
+// on a small plane, W/m^2: in closed form for points and spheres, else the mean over a regular grid of the lamp's own
+// samples (12 x 12, a midpoint rule).
 Rgb irradiance(const scene::Light& lamp, Vec3 point_m, Vec3 normal);
 
 // Where the lamp is as seen from a point: direction to it, distance (infinite ones: along the rays, from the centre)

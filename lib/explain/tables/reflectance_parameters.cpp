@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "explain/tables/model_parameters.h"
+#include "explain/tables/reflectance_binding.h"
 #include "manifest/document.h"
 #include "manifest/reference.h"
 #include "manifest/sections/mechanism_use.h"
@@ -22,32 +23,12 @@ namespace {
 
 using Kind = ReflectanceSlot::Kind;
 
-constexpr std::array<const char*, 7> rendered = {
-    "surface.diffuse-roughness", "surface.interface", "surface.specular", "surface.anisotropy",
-    "surface.retro-reflection",  "surface.residue",   "surface.walls"};
-// A fringe at 550 nm is 0.2 um of a film of index 1.35 and 0.14 um of one of 2.0. Films of lower and of higher index
-// than the interface's turn the phase the other way, and between the two nothing is seen.
-struct FilmClass {
-  double lowest_eta, start_eta, highest_eta, width_m;  // width: of a range of thickness
-  std::size_t ranges;
-};
-constexpr std::array<FilmClass, 2> film_classes = {{{1.15, 1.35, 1.5, 0.12e-6, 5}, {1.5, 2.0, 2.4, 0.08e-6, 8}}};
-constexpr double thinnest_film_m = 0.02e-6;
-constexpr std::size_t fewest_bands_of_a_film = 5;  // fewer cannot tell fringes from any other colour of the gloss
-constexpr std::size_t ridge_sectors = 4;
 // A share that may be all there is, such as that of walls, is estimated from both sides of it: held at its bound it
 // would have no sigma. What the manifest is given is cut to the bound.
 constexpr double beyond_all = 0.25;
-constexpr double overlap = 1.5;  // of sectors: no azimuth lies at the limit of all that hold it
 
 void set_component(Rgb& rgb, std::size_t k, double value) {
   (k == 0 ? rgb.x : k == 1 ? rgb.y : rgb.z) = value;
-}
-
-const mechanism::Mechanism& declared(const std::string& id) {
-  const mechanism::Mechanism* m = mechanism::find_mechanism(id);
-  if (m == nullptr) throw Error(Exit::internal, "explain", "mechanism " + id + " is not registered");
-  return *m;
 }
 
 class Collector {
@@ -70,12 +51,15 @@ class Collector {
     // Tables that a model has prepared hold for the values that it was given.
     if (!out_.base.empty() && out_.base_model->info().attachment == manifest::Attachment::none)
       for (surface::Values& v : out_.base_values) v.prepared = nullptr;
-    for (const char* id : rendered) rendered_mechanism(declared(id));
+    const auto all = all_reflectance_bindings();
+    std::vector<const ReflectanceBinding*> bindings(all.begin(), all.end());
+    std::ranges::stable_sort(bindings, {}, &ReflectanceBinding::order);
+    for (const ReflectanceBinding* binding : bindings)
+      if (binding->kind == Kind::mechanism) rendered_mechanism(*binding);
     out_.full_model = scratch_.surfaces[0].model;
     const SurfacePlaces places(*out_.full_model);
-    if (places.film() && rows_.band_m.size() >= fewest_bands_of_a_film) film();
-    if (places.ridges() && rotated()) ridges();
-    if (!rows_.band_m.empty() && varies(rows_.excitation)) fluorescence();
+    for (const ReflectanceBinding* binding : bindings)
+      if (binding->kind != Kind::mechanism && binding->shows(rows_, places)) term(*binding);
     return std::move(out_);
   }
 
@@ -205,7 +189,8 @@ class Collector {
       out_.candidates.push_back(std::move(candidate));
   }
 
-  void rendered_mechanism(const mechanism::Mechanism& m) {
+  void rendered_mechanism(const ReflectanceBinding& binding) {
+    const mechanism::Mechanism& m = binding.mechanism();
     if (scene::mechanism_targets(scratch_, m).empty()) return;
     const std::optional<std::size_t> own = parameter_place(*out_.base_model, m.parameters[0].name);
     const auto stated = document_.surfaces.at(section_.surface).parameters.find(m.parameters[0].name);
@@ -222,7 +207,7 @@ class Collector {
       // The signature vanishes where the base has no gloss; edits begin from where a search would.
       start.parameters[info.name] = manifest::Parameter(info.start);
       // Numbers that shape a term do not switch it on; those that vanish with it do.
-      const bool switches = &info == &m.parameters[0] || m.id == "surface.anisotropy";
+      const bool switches = &info == &m.parameters[0] || binding.each_switches;
       parameters.push_back({p, {Kind::mechanism, info.name, ReflectanceSlot::all, 0, "", switches, info.neutral}});
     }
     const scene::Surface before = scratch_.surfaces[0];
@@ -241,72 +226,18 @@ class Collector {
     return std::clamp(own < 0.3 ? 3 * own : own / 3, p.lower, p.upper);
   }
 
-  void film() {
-    const mechanism::Mechanism& m = declared("surface.thin-film");
-    for (const FilmClass& c : film_classes)
-      for (std::size_t k = 0; k < c.ranges; ++k) {
-        Parameter thickness = of_mechanism(m, m.parameters[0]), index = of_mechanism(m, m.parameters[1]);
-        thickness.lower = thinnest_film_m + c.width_m * static_cast<double>(k);
-        thickness.upper = thickness.lower + c.width_m;
-        thickness.start = 0.5 * (thickness.lower + thickness.upper);
-        thickness.size = 1e-8;
-        index.lower = c.lowest_eta, index.start = c.start_eta, index.upper = c.highest_eta, index.size = 0.05;
-        if (use_of(m) != nullptr) {
-          thickness.lower = 0, thickness.upper = m.parameters[0].upper;
-          index.lower = film_classes[0].lowest_eta, index.upper = film_classes[1].highest_eta;
-        }
-        enter(m,
-              {{thickness, {Kind::film, "film_m", ReflectanceSlot::all, 0, ""}},
-               {index, {Kind::film, "film_eta", ReflectanceSlot::all, 1, ""}}},
-              m.id);
-        if (use_of(m) != nullptr) return;
-      }
-  }
-
-  // Only a sample that was rotated shows what is its own direction and what is the instrument's.
-  bool rotated() const {
-    std::array<std::size_t, ridge_sectors> seen{};
-    for (const Vec3& w : rows_.wi) {
-      if (std::hypot(w.x, w.y) < 0.05) continue;
-      const double turns = std::atan2(w.y, w.x) / pi;
-      ++seen[static_cast<std::size_t>(std::floor((turns - std::floor(turns)) * ridge_sectors + 0.5)) % ridge_sectors];
+  // Alternatives of one family where there are several ranges.
+  void term(const ReflectanceBinding& binding) {
+    const mechanism::Mechanism& m = binding.mechanism();
+    std::vector<Parameter> declared;
+    for (const mechanism::Parameter& info : m.parameters) declared.push_back(of_mechanism(m, info));
+    const std::vector<std::vector<Parameter>> ranges = binding.ranges(declared, use_of(m) != nullptr);
+    for (const std::vector<Parameter>& range : ranges) {
+      std::vector<std::pair<Parameter, ReflectanceSlot>> own;
+      for (std::size_t k = 0; k < range.size(); ++k)
+        own.push_back({range[k], {binding.kind, m.parameters[k].name, ReflectanceSlot::all, k, ""}});
+      enter(m, std::move(own), binding.kind == Kind::fluorescence ? "" : m.id);
     }
-    return std::count_if(seen.begin(), seen.end(), [&](std::size_t n) { return 50 * n > rows_.rows(); }) >= 2;
-  }
-
-  void ridges() {
-    const mechanism::Mechanism& m = declared("surface.micro-ridges");
-    const double half = 0.5 * pi / ridge_sectors;
-    for (std::size_t k = 0; k < ridge_sectors; ++k) {
-      Parameter share = of_mechanism(m, m.parameters[0]), tilt = of_mechanism(m, m.parameters[1]),
-                azimuth = of_mechanism(m, m.parameters[2]);
-      azimuth.start = azimuth.neutral = 2 * half * static_cast<double>(k);
-      azimuth.lower = azimuth.start - overlap * half, azimuth.upper = azimuth.start + overlap * half;
-      azimuth.size = 0.1, tilt.size = 0.05, tilt.neutral = tilt.start;
-      if (use_of(m) != nullptr) azimuth.lower = -half, azimuth.upper = pi - half;
-      enter(m,
-            {{share, {Kind::ridges, "ridge_share", ReflectanceSlot::all, 0, ""}},
-             {tilt, {Kind::ridges, "ridge_rad", ReflectanceSlot::all, 1, ""}},
-             {azimuth, {Kind::ridges, "ridge_azimuth_rad", ReflectanceSlot::all, 2, ""}}},
-            m.id);
-      if (use_of(m) != nullptr) return;
-    }
-  }
-
-  static bool varies(const std::vector<double>& column) {
-    return !column.empty() &&
-           *std::max_element(column.begin(), column.end()) > *std::min_element(column.begin(), column.end());
-  }
-
-  void fluorescence() {
-    const mechanism::Mechanism& m = declared("surface.fluorescence");
-    std::vector<std::pair<Parameter, ReflectanceSlot>> own;
-    for (std::size_t k = 0; k < m.parameters.size(); ++k) {
-      Parameter p = of_mechanism(m, m.parameters[k]);
-      if (k > 0) p.size = 1e-8;
-      own.push_back({p, {Kind::fluorescence, m.parameters[k].name, ReflectanceSlot::all, k, ""}});
-    }
-    enter(m, std::move(own), "");
   }
 
   const manifest::Document& document_;

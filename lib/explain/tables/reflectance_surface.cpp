@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "surface/fresnel.h"
+#include "surface/mechanisms/surface_fluorescence.h"
 #include "surface/microfacet.h"
 #include "surface/thin_film.h"
 
@@ -116,10 +117,9 @@ double ReflectanceEvaluation::value(std::size_t row, std::size_t band, const Sha
   if (state_.film.film_m > 0) f = film(row, band, f, shared);
   if (state_.ridges.share > 0) f += ridged(row, band, shared);
   const FluorescenceTerm& glow = state_.fluorescence;
-  if (glow.emission > 0) {
-    const double off = (rows_.band_m[band] - glow.centre_m) / glow.width_m;
-    f += glow.emission * rows_.excitation[row] * std::exp(-0.5 * off * off) / pi;
-  }
+  if (glow.emission > 0)
+    f += equation::surface_fluorescence(glow.emission, glow.centre_m, glow.width_m, rows_.band_m[band]) *
+         rows_.excitation[row];
   return state_.gain * f;
 }
 

@@ -1,6 +1,6 @@
 // Forward models of tables, and terms that act on what any of them predicts. Both are registered by file:
-// lib/explain/tables/models/<model>.cpp defines `const Model& <model>()`, lib/explain/tables/terms/<id with _>.cpp
-// defines `const Term& <id with _>()`, in namespace gonio::explain::tables.
+// lib/explain/tables/models/<model>.cpp defines `const Model& <model>()` in namespace gonio::explain::tables,
+// lib/explain/tables/terms/<id with _>.cpp defines `const Term& <id with _>()` in gonio::explain::tables::terms.
 //
 // TablesProblem (tables_problem.h) reads a table, sorts its rows by group, binds the model that the table names, adds
 // the terms whose columns are there, and hands the whole to the engine. A row has one prediction for each observed
@@ -118,21 +118,25 @@ struct TermColumn {
 };
 
 // A mechanism that changes a predicted value through known columns, whatever predicted it: an offset, a response curve,
-// a drift with time. `act` returns `predicted`, to the bit, at the neutral parameters.
+// a drift with time.
 struct Term {
   const mechanism::Mechanism& (*mechanism)() = nullptr;
   int order = 0;                                  // terms act in this order: light, volume, optics, sensor (term_order)
   std::vector<TermColumn> columns{};              // in the order of `at`
   std::vector<std::string> models{};              // to which it applies; empty: to all
   bool (*applies)(const Table& table) = nullptr;  // null: wherever the needed columns are there and vary
+  // Null: the mechanism's own equation, whose inputs are these columns in this order. A term has one of its own where
+  // columns may be missing, or where it is one form of several, and calls the equation (namespace gonio::equation).
   double (*act)(double predicted, std::span<const double> at, std::span<const double> parameters) = nullptr;
   // Fits the mechanism's declaration (already in `parameters`) to a table whose largest observation is `scale`.
   void (*adapt)(const Table& table, double scale, std::span<TermParameter> parameters) = nullptr;
+  std::span<const Term> alternatives{};  // further forms of the same mechanism, each a candidate of its own
 };
 namespace term_order {  // as render/sensor_chain.h has it behind the optics
 constexpr int light = 100, volume = 200, reference = 300, optics = 400, shutter = 500, non_linearity = 600,
               row_pattern = 700, black_offset = 800, saturation = 900;
 }
-std::span<const Term* const> all_terms();
+std::span<const Term* const> all_terms();  // sorted by name; defined in a generated source
+std::vector<const Term*> all_forms();      // of all of them, each term's alternatives behind it
 
 }  // namespace gonio::explain::tables

@@ -344,7 +344,7 @@ void TablesProblem::plan(const manifest::Document& document) {
   std::vector<std::string> done;
   for (const Candidate& c : bound_->candidates()) done.push_back(c.id());
   // The same terms at the same places: a column that only the proposals vary would let in further ones.
-  for (const Term* term : all_terms()) {
+  for (const Term* term : all_forms()) {
     const std::string& id = term->mechanism().id;
     const auto same = [&](const Candidate& c) { return c.id() == id; };
     if (std::none_of(terms_->candidates().begin(), terms_->candidates().end(), same)) done.push_back(id);

@@ -36,6 +36,15 @@ TermParameter declared(const mechanism::Parameter& p) {
 
 }  // namespace
 
+std::vector<const Term*> all_forms() {
+  std::vector<const Term*> forms;
+  for (const Term* term : all_terms()) {
+    forms.push_back(term);
+    for (const Term& form : term->alternatives) forms.push_back(&form);
+  }
+  return forms;
+}
+
 bool is_applicable(const Term& term, const Table& table, const std::string& model) {
   if (!term.models.empty() && std::find(term.models.begin(), term.models.end(), model) == term.models.end())
     return false;
@@ -53,7 +62,7 @@ TermStack::TermStack(const Table& table, const std::string& model, const std::ve
                      std::size_t offset)
     : observed_(table.observed.size()), offset_(offset) {
   std::vector<const Term*> terms;
-  for (const Term* term : all_terms()) {
+  for (const Term* term : all_forms()) {
     if (std::find(done.begin(), done.end(), term->mechanism().id) != done.end()) continue;
     if (is_applicable(*term, table, model)) terms.push_back(term);
   }
@@ -108,11 +117,12 @@ void TermStack::act(std::span<const double> values, std::size_t first, std::span
   for (const Bound& bound : bound_) {
     if (!bound.in_play(values)) continue;
     const std::vector<double> p = numbers(bound, values);
+    const auto equation = bound.term->act != nullptr ? bound.term->act : bound.term->mechanism().act;
     at.resize(bound.at.size());
     for (std::size_t i = 0; i < predictions.size(); ++i) {
       const std::size_t row = (first + i) / observed_;
       for (std::size_t k = 0; k < at.size(); ++k) at[k] = bound.at[k][row];
-      predictions[i] = bound.term->act(predictions[i], at, p);
+      predictions[i] = equation(predictions[i], at, p);
     }
   }
 }

@@ -1,5 +1,5 @@
-// light.ambient: stray light of the room. Equation: light/models/uniform.cpp.
-#include "mechanism/mechanism.h"
+// light.ambient: stray light of the room. In space: light/models/uniform.cpp.
+#include "light/mechanisms/light_ambient.h"
 
 namespace gonio::mechanism {
 
@@ -38,6 +38,12 @@ const Mechanism& light_ambient() {
       .mistaken_for = {{.with = "sensor.black-offset", .told_apart = "lens cap, or the same scene at two exposures"},
                        {.with = "optics.veiling-glare", .told_apart = "mask the bright areas"},
                        {.with = "transport.indirect", .told_apart = "switch the lamp off: ambient light stays"}},
+      .inputs = {{.name = "exposure_s", .unit = "s", .lower = 0, .upper = 10},
+                 {.name = "channel", .unit = "1", .lower = 0, .upper = 2}},
+      .act =
+          [](double v, std::span<const double> at, std::span<const double> p) {
+            return v + equation::light_ambient(p[static_cast<std::size_t>(at[1])]) * at[0];
+          },
   };
   return declaration;
 }

@@ -1,6 +1,5 @@
-// light.drift: lamps change as they warm up. Equation below; explain/tables/terms/light_drift.cpp. It acts on
-// images that state their time (scene/build.cpp).
-#include "mechanism/mechanism.h"
+// light.drift: lamps change as they warm up. It acts on images that state their time.
+#include "light/mechanisms/light_drift.h"
 
 namespace gonio::mechanism {
 
@@ -32,6 +31,9 @@ const Mechanism& light_drift() {
       .mistaken_for = {{.with = "sensor.shutter",
                         .told_apart = "interleave a reference patch, or shuffle the exposures"},
                        {.with = "camera.thermal", .told_apart = "a second lamp that is warm already"}},
+      .inputs = {{.name = "time_s", .unit = "s", .lower = 0, .upper = 1e4}},
+      .act = [](double v, std::span<const double> at,
+                std::span<const double> p) { return v * equation::light_drift(p[0], p[1], at[0]); },
   };
   return declaration;
 }

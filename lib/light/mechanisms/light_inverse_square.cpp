@@ -1,6 +1,5 @@
-// light.inverse-square: a lamp that is not infinitely far. Equation: explain/tables/lamp_state.h, bring_near(); for
-// readings along a bench, explain/tables/terms/light_inverse_square.cpp.
-#include "mechanism/mechanism.h"
+// light.inverse-square: a lamp that is not infinitely far.
+#include "light/mechanisms/light_inverse_square.h"
 
 namespace gonio::mechanism {
 
@@ -25,6 +24,12 @@ const Mechanism& light_inverse_square() {
       .conditions = {"light.distance", "surface.incidence-angle"},
       .mistaken_for = {{.with = "light.lobe", .told_apart = "move the light, or the patch, along the axis"},
                        {.with = "optics.vignetting", .told_apart = "move the patch together with the light"}},
+      .inputs = {{.name = "distance_m", .unit = "m", .lower = 0, .upper = 10}},  // further away than the origin
+      .act =
+          [](double v, std::span<const double> at, std::span<const double> p) {
+            const Vec3 axis{0, 0, 1};
+            return v * equation::light_inverse_square(equation::light_inverse_square_arm(p[0], axis, axis * -at[0]));
+          },
   };
   return declaration;
 }

@@ -1,6 +1,5 @@
-// light.spectrum: the colour of a lamp changes. Equation below; explain/tables/terms/light_spectrum.cpp. It acts on
-// images that state their time (scene/build.cpp).
-#include "mechanism/mechanism.h"
+// light.spectrum: the colour of a lamp changes. It acts on images that state their time.
+#include "light/mechanisms/light_spectrum.h"
 
 namespace gonio::mechanism {
 
@@ -32,6 +31,12 @@ const Mechanism& light_spectrum() {
       .conditions = {"image.time", "image.channel"},
       .mistaken_for = {{.with = "surface.fluorescence", .told_apart = "a spectrometer on the lamp, or a UV filter"},
                        {.with = "light.drift", .told_apart = "ratios of channels: warming up leaves them"}},
+      .inputs = {{.name = "time_s", .unit = "1", .lower = 0, .upper = 1},
+                 {.name = "channel", .unit = "1", .lower = 0, .upper = 2}},
+      .act =
+          [](double v, std::span<const double> at, std::span<const double> p) {
+            return at[1] == 0 || at[1] == 2 ? v * equation::light_spectrum(p[at[1] == 0 ? 0 : 1], at[0]) : v;
+          },
   };
   return declaration;
 }

@@ -1,5 +1,5 @@
-// optics.ghost: light goes to and fro between the lens' surfaces. Equation: render/sensor_links.h, with_ghost().
-#include "mechanism/mechanism.h"
+// optics.ghost: light goes to and fro between the lens' surfaces.
+#include "render/mechanisms/optics_ghost.h"
 
 namespace gonio::mechanism {
 
@@ -25,6 +25,9 @@ const Mechanism& optics_ghost() {
       .mistaken_for = {{.with = "surface.interface",
                         .told_apart = "rotate the camera: a ghost moves against the scene"},
                        {.with = "optics.veiling-glare", .told_apart = "cover the brightest spot"}},
+      .inputs = {{.name = "mirrored", .unit = "W/(m^2 sr)", .lower = 0, .upper = 10}},
+      .act = [](double v, std::span<const double> at,
+                std::span<const double> p) { return equation::optics_ghost(v, p[0], at[0]); },
   };
   return declaration;
 }

@@ -1,5 +1,5 @@
-// optics.veiling-glare: light strays inside the lens. Equation: render/sensor_chain.h, step 1.
-#include "mechanism/mechanism.h"
+// optics.veiling-glare: light strays inside the lens.
+#include "render/mechanisms/optics_veiling_glare.h"
 
 namespace gonio::mechanism {
 
@@ -23,6 +23,9 @@ const Mechanism& optics_veiling_glare() {
       .conditions = {"image.mean", "image.radiance"},
       .mistaken_for = {{.with = "light.ambient", .told_apart = "mask the bright areas"},
                        {.with = "sensor.black-offset", .told_apart = "mask the bright areas: an offset stays"}},
+      .inputs = {{.name = "mean_of_picture", .unit = "W/(m^2 sr)", .lower = 0, .upper = 10}},
+      .act = [](double v, std::span<const double> at,
+                std::span<const double> p) { return equation::optics_veiling_glare(v, p[0], at[0]); },
   };
   return declaration;
 }

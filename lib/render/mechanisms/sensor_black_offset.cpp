@@ -1,5 +1,5 @@
-// sensor.black-offset: readings without light. Equation: render/sensor_chain.h, step 8.
-#include "mechanism/mechanism.h"
+// sensor.black-offset: readings without light.
+#include "render/mechanisms/sensor_black_offset.h"
 
 namespace gonio::mechanism {
 
@@ -23,6 +23,8 @@ const Mechanism& sensor_black_offset() {
       .conditions = {"image.radiance", "image.exposure"},
       .mistaken_for = {{.with = "light.ambient", .told_apart = "lens cap, or the same scene at two exposures"},
                        {.with = "optics.veiling-glare", .told_apart = "lens cap"}},
+      .act = [](double v, std::span<const double>,
+                std::span<const double> p) { return equation::sensor_black_offset(v, p[0]); },
   };
   return declaration;
 }

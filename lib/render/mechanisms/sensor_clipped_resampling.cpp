@@ -1,5 +1,5 @@
-// sensor.clipped-resampling: pixels are mixed after they were clipped. Equation: render/sensor_chain.h, step 11.
-#include "mechanism/mechanism.h"
+// sensor.clipped-resampling: pixels are mixed after they were clipped.
+#include "render/mechanisms/sensor_clipped_resampling.h"
 
 namespace gonio::mechanism {
 

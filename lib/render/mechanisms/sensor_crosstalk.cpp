@@ -1,5 +1,5 @@
-// sensor.crosstalk: bands leak into each other. Equation: render/sensor_chain.h, step 2.
-#include "mechanism/mechanism.h"
+// sensor.crosstalk: bands leak into each other.
+#include "render/mechanisms/sensor_crosstalk.h"
 
 namespace gonio::mechanism {
 
@@ -23,6 +23,9 @@ const Mechanism& sensor_crosstalk() {
       .conditions = {"image.hue"},
       .mistaken_for = {{.with = "dispersion", .told_apart = "light of one colour"},
                        {.with = "surface albedo", .told_apart = "light of one colour"}},
+      .inputs = {{.name = "sum", .unit = "W/(m^2 sr)", .lower = 0, .upper = 30}},
+      .act = [](double v, std::span<const double> at,
+                std::span<const double> p) { return equation::sensor_crosstalk(v, p[0], at[0]); },
   };
   return declaration;
 }

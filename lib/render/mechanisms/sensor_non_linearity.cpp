@@ -1,7 +1,18 @@
-// sensor.non-linearity: the reading bends away from the light. Equations: render/tone_curve.h. Its three forms are
+// sensor.non-linearity: the reading bends away from the light. Its three forms are
 // alternatives; explain fits one of them at a time.
-#include "mechanism/mechanism.h"
-#include "render/tone_curve.h"
+#include "render/mechanisms/sensor_non_linearity.h"
+
+#include <algorithm>
+
+namespace gonio::equation {
+
+render::Response sensor_non_linearity(std::span<const double> parameters) {
+  render::ToneBends bends;
+  std::copy_n(parameters.begin() + 4, bends.size(), bends.begin());
+  return {parameters[0], parameters[2], parameters[1], render::ToneCurve(render::slopes_of(parameters[3], bends))};
+}
+
+}  // namespace gonio::equation
 
 namespace gonio::mechanism {
 namespace {
@@ -71,6 +82,8 @@ const Mechanism& sensor_non_linearity() {
       .mistaken_for = {{.with = "surface.specular", .told_apart = "exposure ramp"},
                        {.with = "sensor.black-offset", .told_apart = "lens cap"},
                        {.with = "sensor.saturation", .told_apart = "shorter exposure"}},
+      .act = [](double v, std::span<const double>,
+                std::span<const double> p) { return equation::sensor_non_linearity(p)(v); },
   };
   return declaration;
 }

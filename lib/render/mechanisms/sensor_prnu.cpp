@@ -1,5 +1,5 @@
-// sensor.prnu: pixels differ in their sensitivity. Equation: render/sensor_chain.h, step 4.
-#include "mechanism/mechanism.h"
+// sensor.prnu: pixels differ in their sensitivity.
+#include "render/mechanisms/sensor_prnu.h"
 
 namespace gonio::mechanism {
 
@@ -23,6 +23,9 @@ const Mechanism& sensor_prnu() {
       .conditions = {"camera.pixel"},
       .mistaken_for = {{.with = "texture", .told_apart = "shift the object by some pixels: the pattern stays"},
                        {.with = "sensor.row-pattern", .told_apart = "direct current for the lamps: rows vanish"}},
+      .inputs = {{.name = "normal_of_pixel", .unit = "1", .lower = -12, .upper = 12}},
+      .act = [](double v, std::span<const double> at,
+                std::span<const double> p) { return equation::sensor_prnu(v, p[0], at[0]); },
   };
   return declaration;
 }

@@ -1,5 +1,5 @@
-// sensor.row-pattern: flicker under a rolling shutter. Equation: render/sensor_chain.h, step 7.
-#include "mechanism/mechanism.h"
+// sensor.row-pattern: flicker under a rolling shutter.
+#include "render/mechanisms/sensor_row_pattern.h"
 
 namespace gonio::mechanism {
 
@@ -37,6 +37,9 @@ const Mechanism& sensor_row_pattern() {
       .conditions = {"camera.image-y"},
       .mistaken_for = {{.with = "texture", .told_apart = "lamps on direct current"},
                        {.with = "light.lobe", .told_apart = "lamps on direct current"}},
+      .inputs = {{.name = "row", .unit = "px", .lower = 0, .upper = 4000}},
+      .act = [](double v, std::span<const double> at,
+                std::span<const double> p) { return equation::sensor_row_pattern(v, p[0], p[1], p[2], at[0]); },
   };
   return declaration;
 }

@@ -1,5 +1,5 @@
-// sensor.saturation: readings have a largest value. Equation: render/sensor_chain.h, step 10.
-#include "mechanism/mechanism.h"
+// sensor.saturation: readings have a largest value.
+#include "render/mechanisms/sensor_saturation.h"
 
 namespace gonio::mechanism {
 
@@ -23,6 +23,8 @@ const Mechanism& sensor_saturation() {
       .conditions = {"image.radiance"},
       .mistaken_for = {{.with = "sensor.non-linearity", .told_apart = "shorter exposure"},
                        {.with = "surface.specular", .told_apart = "shorter exposure"}},
+      .act = [](double v, std::span<const double>,
+                std::span<const double> p) { return equation::sensor_saturation(v, p[0]); },
   };
   return declaration;
 }

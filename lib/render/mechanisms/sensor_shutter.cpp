@@ -1,6 +1,5 @@
-// sensor.shutter: the exposure is not what was set. Equation below; explain/tables/terms/sensor_shutter.cpp. It acts on
-// images that state their exposure (render/sensor_links.h).
-#include "mechanism/mechanism.h"
+// sensor.shutter: the exposure is not what was set. It acts on images that state their exposure.
+#include "render/mechanisms/sensor_shutter.h"
 
 namespace gonio::mechanism {
 
@@ -24,6 +23,9 @@ const Mechanism& sensor_shutter() {
       .conditions = {"image.exposure"},
       .mistaken_for = {{.with = "light.drift", .told_apart = "the exposures in shuffled order, some of them twice"},
                        {.with = "sensor.black-offset", .told_apart = "lens cap: an offset stays"}},
+      .inputs = {{.name = "exposure_s", .unit = "s", .lower = 1e-4, .upper = 10}},
+      .act = [](double v, std::span<const double> at,
+                std::span<const double> p) { return equation::sensor_shutter(v, p[0], at[0]); },
   };
   return declaration;
 }

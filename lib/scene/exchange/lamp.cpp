@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "light/aimed.h"
+#include "light/mechanisms/light_ambient.h"
 
 namespace gonio::scene {
 namespace {
@@ -130,7 +131,7 @@ Quaternion Lamp::turn() const {
 Lamp ambient_lamp(const light::Emitter& ambient) {
   Lamp lamp;
   lamp.kind = Lamp::Kind::uniform;
-  lamp.id = "light.ambient";
+  lamp.id = mechanism::light_ambient().id;
   lamp.value = ambient.hit({}, {0, 0, 1}).radiance;
   return lamp;
 }

@@ -1,6 +1,8 @@
-// reference.tile: a white standard that is not Lambertian. Equation below; explain/tables/terms/reference_tile.cpp. A
-// property of how readings were normalised: `render` has no such stage.
-#include "mechanism/mechanism.h"
+// reference.tile: a white standard that is not Lambertian. A property of how readings were
+// normalised: `render` has no such stage.
+#include "scene/mechanisms/reference_tile.h"
+
+#include <cmath>
 
 namespace gonio::mechanism {
 
@@ -32,6 +34,12 @@ const Mechanism& reference_tile() {
       .conditions = {"surface.incidence-angle", "surface.exitance-angle"},
       .mistaken_for = {{.with = "light.lobe", .told_apart = "tilt the tile"},
                        {.with = "surface.diffuse-roughness", .told_apart = "measure a second, polished specimen"}},
+      .inputs = {{.name = "theta_i", .unit = "rad", .lower = 0, .upper = 1.57},
+                 {.name = "theta_o", .unit = "rad", .lower = 0, .upper = 1.57}},
+      .act =
+          [](double v, std::span<const double> at, std::span<const double> p) {
+            return v * equation::reference_tile(p[0], p[1], std::cos(at[0]), std::cos(at[1]));
+          },
   };
   return declaration;
 }

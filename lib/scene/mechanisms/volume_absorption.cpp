@@ -1,6 +1,6 @@
-// volume.absorption: the material takes light on the way. Equation: render/media.h; explain/tables/terms. `render`
+// volume.absorption: the material takes light on the way. `render` (render/media.h)
 // applies it to surfaces that let light through and have sigma_a_per_m.
-#include "mechanism/mechanism.h"
+#include "scene/mechanisms/volume_absorption.h"
 
 namespace gonio::mechanism {
 
@@ -24,6 +24,9 @@ const Mechanism& volume_absorption() {
       .conditions = {"volume.path-length"},
       .mistaken_for = {{.with = "surface albedo", .told_apart = "two thicknesses of the same material"},
                        {.with = "light.ambient", .told_apart = "two thicknesses of the same material"}},
+      .inputs = {{.name = "path_m", .unit = "m", .lower = 0, .upper = 0.1}},
+      .act = [](double v, std::span<const double> at,
+                std::span<const double> p) { return v * equation::volume_absorption(p[0], at[0]); },
   };
   return declaration;
 }

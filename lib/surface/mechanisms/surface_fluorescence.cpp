@@ -1,6 +1,6 @@
 // surface.fluorescence: light that is absorbed returns at longer wavelengths. render does not simulate it: its paths
 // carry every band by itself.
-#include "mechanism/mechanism.h"
+#include "surface/mechanisms/surface_fluorescence.h"
 
 namespace gonio::mechanism {
 
@@ -40,6 +40,12 @@ const Mechanism& surface_fluorescence() {
       .conditions = {"surface.excitation", "surface.wavelength"},
       .mistaken_for = {{.with = "light.spectrum", .told_apart = "a filter that takes the ultraviolet away"},
                        {.with = "surface.thin-film", .told_apart = "tilt the sample: the colour of a dye stays"}},
+      .inputs = {{.name = "wavelength", .unit = "m", .lower = 3.8e-7, .upper = 7.8e-7},
+                 {.name = "excitation", .unit = "1", .lower = 0, .upper = 10}},
+      .act =
+          [](double f, std::span<const double> at, std::span<const double> p) {
+            return f + equation::surface_fluorescence(p[0], p[1], p[2], at[0]) * at[1];
+          },
   };
   return declaration;
 }

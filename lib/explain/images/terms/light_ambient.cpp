@@ -1,9 +1,7 @@
 // light.ambient: equation in light/models/uniform.cpp; open sky and light by way of surfaces from the cache.
-#include "explain/images/uses.h"
+#include "light/mechanisms/light_ambient.h"
 
-namespace gonio::mechanism {
-const Mechanism& light_ambient();
-}
+#include "explain/images/uses.h"
 
 namespace gonio::explain::images::terms {
 
@@ -13,7 +11,7 @@ const Term& light_ambient() {
       .reach = Reach::compose,
       .candidates =
           [](const Setting& s) {
-            if (switched_on(s.document, "light.ambient")) return std::vector<Use>{};
+            if (switched_on(s.document, mechanism::light_ambient().id)) return std::vector<Use>{};
             return std::vector{scene_use(mechanism::light_ambient())};
           },
       .edit =

@@ -1,12 +1,9 @@
 // light.drift: all lamps together, by the time of each picture.
+#include "light/mechanisms/light_drift.h"
+
 #include <set>
 
 #include "explain/images/uses.h"
-#include "light/drift.h"
-
-namespace gonio::mechanism {
-const Mechanism& light_drift();
-}
 
 namespace gonio::explain::images::terms {
 namespace {
@@ -16,7 +13,7 @@ std::vector<Use> candidates(const Setting& s) {
   std::set<double> times;
   for (const Recording& image : s.recordings.images)
     if (image.time_s) times.insert(*image.time_s);
-  if (times.size() < 3 || switched_on(s.document, "light.drift")) return {};
+  if (times.size() < 3 || switched_on(s.document, mechanism::light_drift().id)) return {};
   const double whole = *times.rbegin() - *times.begin();
   Use use = scene_use(mechanism::light_drift());
   use.numbers[1].lower = whole / static_cast<double>(2 * times.size());
@@ -28,7 +25,7 @@ std::vector<Use> candidates(const Setting& s) {
 void edit(const Use& use, std::size_t image, const SceneLayout&, const Recordings& recordings, SceneState& state) {
   const std::span<const double> amounts = use.amounts(state);
   if (const auto time = recordings.images[image].time_s)
-    state.gain[image] *= light::drift(amounts[0], amounts[1], *time - recordings.first_time_s);
+    state.gain[image] *= equation::light_drift(amounts[0], amounts[1], *time - recordings.first_time_s);
 }
 
 }  // namespace

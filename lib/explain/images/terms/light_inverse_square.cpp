@@ -1,10 +1,8 @@
 // light.inverse-square: lamps that the base model has at infinity; explain/images/shading.h has the equation. Their
 // shadows, and their light by way of surfaces, stay those of parallel light.
-#include "explain/images/uses.h"
+#include "light/mechanisms/light_inverse_square.h"
 
-namespace gonio::mechanism {
-const Mechanism& light_inverse_square();
-}
+#include "explain/images/uses.h"
 
 namespace gonio::explain::images::terms {
 namespace {

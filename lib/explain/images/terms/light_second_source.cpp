@@ -74,7 +74,7 @@ struct Sums {
 };
 
 std::vector<Use> candidates(const Setting& s) {
-  if (switched_on(s.document, "light.second-source")) return {};
+  if (switched_on(s.document, mechanism::light_second_source().id)) return {};
   const auto table = cast(s);
   const RoughResidual rough = rough_residual(s);
   double best = 0;

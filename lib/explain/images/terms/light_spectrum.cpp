@@ -1,15 +1,15 @@
 // light.spectrum: red and blue against green, by the time of each picture.
-#include "explain/images/uses.h"
+#include "light/mechanisms/light_spectrum.h"
 
-namespace gonio::mechanism {
-const Mechanism& light_spectrum();
-}
+#include "explain/images/uses.h"
 
 namespace gonio::explain::images::terms {
 namespace {
 
 std::vector<Use> candidates(const Setting& s) {
-  if (!(s.recordings.last_time_s > s.recordings.first_time_s) || switched_on(s.document, "light.spectrum")) return {};
+  if (!(s.recordings.last_time_s > s.recordings.first_time_s) ||
+      switched_on(s.document, mechanism::light_spectrum().id))
+    return {};
   return {scene_use(mechanism::light_spectrum())};
 }
 
@@ -17,7 +17,7 @@ void edit(const Use& use, std::size_t image, const SceneLayout&, const Recording
   const std::span<const double> shares = use.amounts(state);
   if (!r.images[image].time_s || !(r.last_time_s > r.first_time_s)) return;
   const double along = (*r.images[image].time_s - r.first_time_s) / (r.last_time_s - r.first_time_s);
-  state.gain[image] *= Rgb{1 + shares[0] * along, 1, 1 + shares[1] * along};
+  state.gain[image] *= Rgb{equation::light_spectrum(shares[0], along), 1, equation::light_spectrum(shares[1], along)};
 }
 
 }  // namespace

@@ -1,13 +1,10 @@
 // optics.ghost: the recording itself stands for the source of the ghost; what is wrong with that is of second order
 // in the share.
+#include "render/mechanisms/optics_ghost.h"
+
 #include "explain/images/image_model.h"
 #include "explain/images/observed.h"
 #include "explain/images/uses.h"
-#include "render/sensor_links.h"
-
-namespace gonio::mechanism {
-const Mechanism& optics_ghost();
-}
 
 namespace gonio::explain::images::terms {
 namespace {
@@ -22,7 +19,7 @@ void record(const Use& use, const Frame& frame, std::span<double> values) {
     const Rgb mirrored = opposite(frame.image, frame.cache.pixels[frame.picked[i]]);
     for (std::size_t c = 0; c < 3; ++c) {
       double& v = values[3 * i + c];
-      v = render::with_ghost(v, share, mirrored[static_cast<int>(c)] - share * v);
+      v = equation::optics_ghost(v, share, mirrored[static_cast<int>(c)] - share * v);
     }
   }
 }

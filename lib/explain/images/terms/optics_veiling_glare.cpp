@@ -1,13 +1,10 @@
 // optics.veiling-glare: the veil is a share of the recorded picture's mean, which holds the veil itself: the picture
 // without it has 1 / (1 + share) of that mean.
+#include "render/mechanisms/optics_veiling_glare.h"
+
 #include "explain/images/image_model.h"
 #include "explain/images/observed.h"
 #include "explain/images/uses.h"
-#include "render/sensor_links.h"
-
-namespace gonio::mechanism {
-const Mechanism& optics_veiling_glare();
-}
 
 namespace gonio::explain::images::terms {
 namespace {
@@ -20,7 +17,7 @@ void record(const Use& use, const Frame& frame, std::span<double> values) {
   const double share = camera_amounts(use, frame)[0];
   const Rgb mean = mean_of(frame.image) * (1 / (1 + share));
   for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = render::with_veil(values[i], share, mean[static_cast<int>(i % 3)]);
+    values[i] = equation::optics_veiling_glare(values[i], share, mean[static_cast<int>(i % 3)]);
 }
 
 }  // namespace

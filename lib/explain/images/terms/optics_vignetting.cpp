@@ -1,9 +1,7 @@
-// optics.vignetting: equation in scene/appearance.cpp, vignetting().
-#include "explain/images/uses.h"
+// optics.vignetting: scene::vignetting() of the amount.
+#include "scene/mechanisms/optics_vignetting.h"
 
-namespace gonio::mechanism {
-const Mechanism& optics_vignetting();
-}
+#include "explain/images/uses.h"
 
 namespace gonio::explain::images::terms {
 
@@ -13,7 +11,7 @@ const Term& optics_vignetting() {
       .reach = Reach::compose,
       .candidates =
           [](const Setting& s) {
-            if (switched_on(s.document, "optics.vignetting")) return std::vector<Use>{};
+            if (switched_on(s.document, mechanism::optics_vignetting().id)) return std::vector<Use>{};
             return std::vector{scene_use(mechanism::optics_vignetting())};
           },
       .edit = [](const Use& use, std::size_t, const SceneLayout&, const Recordings&,

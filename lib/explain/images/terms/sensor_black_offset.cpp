@@ -1,14 +1,11 @@
 // sensor.black-offset: bounds and start from the pictures' own unit.
+#include "render/mechanisms/sensor_black_offset.h"
+
 #include <algorithm>
 
 #include "explain/images/image_model.h"
 #include "explain/images/observed.h"
 #include "explain/images/uses.h"
-#include "render/sensor_links.h"
-
-namespace gonio::mechanism {
-const Mechanism& sensor_black_offset();
-}
 
 namespace gonio::explain::images::terms {
 namespace {
@@ -23,7 +20,7 @@ std::vector<Use> candidates(const Setting& s) {
 
 void record(const Use& use, const Frame& frame, std::span<double> values) {
   const double offset = camera_amounts(use, frame)[0];
-  for (double& v : values) v += offset;
+  for (double& v : values) v = equation::sensor_black_offset(v, offset);
 }
 
 }  // namespace

@@ -1,15 +1,13 @@
 // sensor.clipped-resampling: what native pixels lost beyond full scale is taken from the mean over the box that made
-// the picture's pixel of them (render/sensor_links.h, resampling_weight()). Of the eight pixels around, which the cache
-// does not hold, the base model's prediction stands for the reading.
+// the picture's pixel of them (render/mechanisms/sensor_clipped_resampling.h). Of the eight pixels around, which the
+// cache does not hold, the base model's prediction stands for the reading.
+#include "render/mechanisms/sensor_clipped_resampling.h"
+
 #include "explain/images/image_model.h"
 #include "explain/images/observed.h"
 #include "explain/images/recast.h"
 #include "explain/images/uses.h"
-#include "render/sensor_links.h"
-
-namespace gonio::mechanism {
-const Mechanism& sensor_clipped_resampling();
-}
+#include "render/mechanisms/sensor_saturation.h"
 
 namespace gonio::explain::images::terms {
 namespace {
@@ -64,14 +62,16 @@ void record(const Use& use, const Frame& frame, std::span<double> values) {
   const double full_scale = a[0], width_px = a[1];
   if (!(full_scale > 0)) return;
   const std::size_t v = frame.image.view;
-  const double own = render::resampling_weight(0, width_px);
-  for (double& value : values) value = own * own * render::with_limit(value, full_scale);
+  const double own = equation::sensor_clipped_resampling(0, width_px);
+  for (double& value : values) value = own * own * equation::sensor_saturation(value, full_scale);
   std::vector<double> beside(values.size());
   for (const Neighbours::One& n : static_cast<const Neighbours&>(*use.prepared).all) {
-    const double weight = render::resampling_weight(n.dx, width_px) * render::resampling_weight(n.dy, width_px);
+    const double weight =
+        equation::sensor_clipped_resampling(n.dx, width_px) * equation::sensor_clipped_resampling(n.dy, width_px);
     if (weight == 0) continue;
     frame.model.predict_from(n.views[v], n.sums[v], frame.state, frame.number, frame.picked, beside);
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] += weight * render::with_limit(beside[i], full_scale);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] += weight * equation::sensor_saturation(beside[i], full_scale);
   }
 }
 

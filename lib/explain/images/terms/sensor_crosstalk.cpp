@@ -1,12 +1,9 @@
 // sensor.crosstalk: bands of one pixel mixed.
+#include "render/mechanisms/sensor_crosstalk.h"
+
 #include "explain/images/image_model.h"
 #include "explain/images/observed.h"
 #include "explain/images/uses.h"
-#include "render/sensor_links.h"
-
-namespace gonio::mechanism {
-const Mechanism& sensor_crosstalk();
-}
 
 namespace gonio::explain::images::terms {
 namespace {
@@ -19,7 +16,7 @@ void record(const Use& use, const Frame& frame, std::span<double> values) {
   const double share = camera_amounts(use, frame)[0];
   for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
     const double sum = values[i] + values[i + 1] + values[i + 2];
-    for (std::size_t c = 0; c < 3; ++c) values[i + c] = render::with_crosstalk(values[i + c], share, sum);
+    for (std::size_t c = 0; c < 3; ++c) values[i + c] = equation::sensor_crosstalk(values[i + c], share, sum);
   }
 }
 

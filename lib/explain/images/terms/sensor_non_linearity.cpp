@@ -1,13 +1,10 @@
 // sensor.non-linearity: the quadratic form, stated at the largest value of the pictures; a power law and a tone curve
 // need a ramp of exposures (explain/stacks).
+#include "render/mechanisms/sensor_non_linearity.h"
+
 #include "explain/images/image_model.h"
 #include "explain/images/observed.h"
 #include "explain/images/uses.h"
-#include "render/tone_curve.h"
-
-namespace gonio::mechanism {
-const Mechanism& sensor_non_linearity();
-}
 
 namespace gonio::explain::images::terms {
 namespace {

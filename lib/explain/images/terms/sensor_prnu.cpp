@@ -4,6 +4,8 @@
 //   n = d s / (9/8 s^2 + e^2),   s such that d^2 / (9/8 s^2 + e^2) has the median of chi-square, 0.455
 // (Wiener 1949; the neighbours that d refers to have a pattern, too).
 // With one view, or where nothing moves over the pixels, nothing is known of them: the term then does nothing.
+#include "render/mechanisms/sensor_prnu.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,12 +13,7 @@
 #include "explain/images/image_model.h"
 #include "explain/images/observed.h"
 #include "explain/images/uses.h"
-#include "render/sensor_links.h"
 #include "stats/intervals.h"
-
-namespace gonio::mechanism {
-const Mechanism& sensor_prnu();
-}
 
 namespace gonio::explain::images::terms {
 namespace {
@@ -73,7 +70,7 @@ void record(const Use& use, const Frame& frame, std::span<double> values) {
     const std::size_t place = 3 * (static_cast<std::size_t>(pixel.y) * width + static_cast<std::size_t>(pixel.x));
     for (std::size_t c = 0; c < 3; ++c)
       if (const double n = normal[place + c]; !std::isnan(n))
-        values[3 * i + c] = render::with_fixed_pattern(values[3 * i + c], sigma, n);
+        values[3 * i + c] = equation::sensor_prnu(values[3 * i + c], sigma, n);
   }
 }
 

@@ -1,5 +1,7 @@
 // sensor.row-pattern: bands with one phase for all pictures of a camera, as sensor_chain.h records them. The search
 // starts at the strongest period of the rough residual over the rows.
+#include "render/mechanisms/sensor_row_pattern.h"
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -8,11 +10,6 @@
 #include "explain/images/observed.h"
 #include "explain/images/rough.h"
 #include "explain/images/uses.h"
-#include "render/sensor_links.h"
-
-namespace gonio::mechanism {
-const Mechanism& sensor_row_pattern();
-}
 
 namespace gonio::explain::images::terms {
 namespace {
@@ -63,7 +60,7 @@ std::vector<Use> candidates(const Setting& s) {
 void record(const Use& use, const Frame& frame, std::span<double> values) {
   const std::span<const double> a = camera_amounts(use, frame);
   for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = render::with_rows(values[i], a[0], a[1], a[2], frame.cache.pixels[frame.picked[i / 3]].y);
+    values[i] = equation::sensor_row_pattern(values[i], a[0], a[1], a[2], frame.cache.pixels[frame.picked[i / 3]].y);
 }
 
 }  // namespace

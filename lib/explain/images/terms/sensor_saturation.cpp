@@ -1,12 +1,9 @@
 // sensor.saturation: where several readings are as large as the largest one, that may be full scale.
+#include "render/mechanisms/sensor_saturation.h"
+
 #include "explain/images/image_model.h"
 #include "explain/images/observed.h"
 #include "explain/images/uses.h"
-#include "render/sensor_links.h"
-
-namespace gonio::mechanism {
-const Mechanism& sensor_saturation();
-}
 
 namespace gonio::explain::images::terms {
 namespace {
@@ -26,7 +23,7 @@ std::vector<Use> candidates(const Setting& s) {
 
 void record(const Use& use, const Frame& frame, std::span<double> values) {
   const double full_scale = camera_amounts(use, frame)[0];
-  for (double& v : values) v = render::with_limit(v, full_scale);
+  for (double& v : values) v = equation::sensor_saturation(v, full_scale);
 }
 
 }  // namespace

@@ -1,14 +1,11 @@
 // sensor.shutter: pictures whose exposures are stated and differ.
+#include "render/mechanisms/sensor_shutter.h"
+
 #include <set>
 
 #include "explain/images/image_model.h"
 #include "explain/images/observed.h"
 #include "explain/images/uses.h"
-#include "render/sensor_links.h"
-
-namespace gonio::mechanism {
-const Mechanism& sensor_shutter();
-}
 
 namespace gonio::explain::images::terms {
 namespace {
@@ -31,7 +28,7 @@ std::vector<Use> candidates(const Setting& s) {
 void record(const Use& use, const Frame& frame, std::span<double> values) {
   if (!frame.image.exposure_s) return;
   const double extra_s = camera_amounts(use, frame)[0];
-  for (double& v : values) v = render::with_shutter(v, extra_s, *frame.image.exposure_s);
+  for (double& v : values) v = equation::sensor_shutter(v, extra_s, *frame.image.exposure_s);
 }
 
 }  // namespace

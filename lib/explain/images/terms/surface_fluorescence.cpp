@@ -5,15 +5,13 @@
 // albedo. Under lamps of one colour it is a change of the albedo, and not asked for. Two numbers can be had of two
 // bands: the width is the declaration's. Where a pixel shows a matte surface alone, its own blue tells E_blue, light by
 // way of surfaces included; elsewhere lamps and open sky alone excite.
+#include "surface/mechanisms/surface_fluorescence.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "explain/images/image_model.h"
 #include "explain/images/uses.h"
-
-namespace gonio::mechanism {
-const Mechanism& surface_fluorescence();
-}
 
 namespace gonio::explain::images::terms {
 namespace {
@@ -39,7 +37,7 @@ std::vector<Use> candidates(const Setting& s) {
   if (!colours_differ(s)) return uses;
   for (std::size_t k = 0; k < s.layout.surfaces.size(); ++k) {
     if (!has_parameter(*s.layout.start.surfaces[k].model, "albedo") ||
-        switched_on(s.document, "surface.fluorescence", s.layout.surfaces[k]))
+        switched_on(s.document, mechanism::surface_fluorescence().id, s.layout.surfaces[k]))
       continue;
     Use use = target_use(mechanism::surface_fluorescence(), {s.layout.surfaces[k]}, {k}, false);
     Number &centre = use.numbers[1], &width = use.numbers[2];
@@ -54,10 +52,7 @@ std::vector<Use> candidates(const Setting& s) {
 void add(const Use& use, const Frame& frame, std::span<double> radiance) {
   const std::span<const double> a = use.amounts(frame.state);
   if (a[0] == 0) return;
-  const auto band = [&](double wavelength_m) {
-    const double z = (wavelength_m - a[1]) / a[2];
-    return a[0] * std::exp(-0.5 * z * z) / pi;
-  };
+  const auto band = [&](double wavelength_m) { return equation::surface_fluorescence(a[0], a[1], a[2], wavelength_m); };
   const Rgb sent{band(red_m), band(green_m), 0};
   const SurfaceState& surface = frame.state.surfaces[use.targets[0]];
   const Rgb albedo = surface.values.rgb(parameter_index(*surface.model, "albedo"));

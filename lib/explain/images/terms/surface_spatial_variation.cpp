@@ -57,7 +57,7 @@ std::vector<Use> candidates(const Setting& s) {
     const auto object = std::find_if(s.scene.instances.begin(), s.scene.instances.end(), bears);
     if (std::count_if(s.scene.instances.begin(), s.scene.instances.end(), bears) != 1 ||
         !has_parameter(*s.layout.start.surfaces[k].model, "albedo") ||
-        switched_on(s.document, "surface.spatial-variation", s.layout.surfaces[k]))
+        switched_on(s.document, mechanism::surface_spatial_variation().id, s.layout.surfaces[k]))
       continue;
     const auto object_from_world = inverse(object->world_from_object);
     std::vector<Seen> seen;

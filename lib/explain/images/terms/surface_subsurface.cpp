@@ -106,7 +106,8 @@ std::vector<Use> candidates(const Setting& s) {
   std::vector<Use> uses;
   for (std::size_t k = 0; k < s.layout.surfaces.size(); ++k) {
     const SurfaceState& surface = s.layout.start.surfaces[k];
-    if (!has_parameter(*surface.model, "albedo") || switched_on(s.document, "surface.subsurface", s.layout.surfaces[k]))
+    if (!has_parameter(*surface.model, "albedo") ||
+        switched_on(s.document, mechanism::surface_subsurface().id, s.layout.surfaces[k]))
       continue;
     uses.push_back(target_use(mechanism::surface_subsurface(), {s.layout.surfaces[k]}, {k}, false));
   }

@@ -135,7 +135,7 @@ std::shared_ptr<const Prepared> prepare(const Setting& s, const Use&) {
 std::vector<Use> candidates(const Setting& s) {
   const bool glass = std::ranges::any_of(s.scene.appearance.surfaces,
                                          [](const scene::Surface& surface) { return surface.model->transmits(); });
-  if (!glass || switched_on(s.document, "transport.caustic")) return {};
+  if (!glass || switched_on(s.document, mechanism::transport_caustic().id)) return {};
   return {scene_use(mechanism::transport_caustic())};
 }
 

@@ -19,7 +19,14 @@
 #include "manifest/document.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/table.h"
+#include "mechanism/mechanism.h"
 #include "stats/intervals.h"
+
+namespace gonio::mechanism {
+const Mechanism& lens_radial();
+const Mechanism& tracks_outliers();
+const Mechanism& tracks_perspective();
+}  // namespace gonio::mechanism
 
 namespace gonio::explain::tables {
 namespace {
@@ -178,28 +185,22 @@ class Tracks final : public BoundModel {
     }
     return first;
   }
-  static const mechanism::Mechanism& mechanism_of(const char* id) {
-    const mechanism::Mechanism* m = mechanism::find_mechanism(id);
-    if (m == nullptr) throw Error(Exit::internal, "explain", std::string("mechanism ") + id + " is not registered");
-    return *m;
-  }
-
   void bind_physics(const manifest::Document&, const Table& table) {
     if (inverse_focal_ == 0) {
-      Candidate c{&mechanism_of("tracks.perspective"), {}, {}, {}};
-      perspective_ = declare(*c.mechanism, "tracks.perspective.", 1e-4, {}, c);
+      Candidate c{&mechanism::tracks_perspective(), {}, {}, {}};
+      perspective_ = declare(*c.mechanism, c.mechanism->id + ".", 1e-4, {}, c);
       candidates_.push_back(std::move(c));
     }
     if (!knows_lens_) {
-      Candidate c{&mechanism_of("lens.radial"), {}, {}, {}};
-      lens_ = declare(*c.mechanism, "lens.radial.", 0.01, {}, c);
+      Candidate c{&mechanism::lens_radial(), {}, {}, {}};
+      lens_ = declare(*c.mechanism, c.mechanism->id + ".", 0.01, {}, c);
       candidates_.push_back(std::move(c));
     }
     bind_slips(table);
   }
 
   void bind_slips(const Table& table) {
-    Candidate c{&mechanism_of("tracks.outliers"), {}, {}, {}};
+    Candidate c{&mechanism::tracks_outliers(), {}, {}, {}};
     for (const Slip& slip : suspects()) {
       std::vector<std::size_t> groups;
       for (std::size_t g = 0; g < table.group.size(); ++g)

@@ -12,6 +12,12 @@
 #include "explain/tables/table_model.h"
 #include "manifest/document.h"
 #include "manifest/sections/table.h"
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+const Mechanism& volume_dispersion();
+const Mechanism& volume_index();
+}  // namespace gonio::mechanism
 
 namespace gonio::explain::tables {
 namespace {
@@ -45,8 +51,8 @@ class Plate final : public BoundModel {
     eta.parameter.lower = std::max(eta.parameter.lower, 1.0);
     const bool index_is_free = eta.free;
     add(std::move(eta));
-    add_mechanism("volume.index", !index_is_free && !theta_.empty());
-    add_mechanism("volume.dispersion", !wavelength_.empty() && table.varies("wavelength_m"));
+    add_mechanism(mechanism::volume_index(), !index_is_free && !theta_.empty());
+    add_mechanism(mechanism::volume_dispersion(), !wavelength_.empty() && table.varies("wavelength_m"));
     for (const char* column : {"path_m", "theta_i", "wavelength_m"})
       if (std::optional<Condition> c = condition_of(table, column)) conditions_.push_back(std::move(*c));
   }
@@ -74,12 +80,11 @@ class Plate final : public BoundModel {
     if (p.free) base_.push_back(parameters_.size());
     parameters_.push_back(std::move(p.parameter));
   }
-  void add_mechanism(const std::string& id, bool offered) {
-    const mechanism::Mechanism* m = mechanism::find_mechanism(id);
-    if (m == nullptr) throw Error(Exit::internal, "explain", "mechanism " + id + " is not registered");
-    const mechanism::Parameter& p = m->parameters.at(0);
-    if (offered) candidates_.push_back({m, {}, {parameters_.size()}, {}});
-    parameters_.push_back({id + "." + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, std::abs(p.start), {}, {}});
+  void add_mechanism(const mechanism::Mechanism& m, bool offered) {
+    const mechanism::Parameter& p = m.parameters.at(0);
+    if (offered) candidates_.push_back({&m, {}, {parameters_.size()}, {}});
+    parameters_.push_back(
+        {m.id + "." + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, std::abs(p.start), {}, {}});
   }
   double index(std::span<const double> values, std::size_t row) const {
     double eta = values[1] + values[2];

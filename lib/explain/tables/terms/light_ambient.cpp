@@ -1,16 +1,14 @@
 // light.ambient on readings: an open plane receives pi times the radiance of its surroundings, for as long as the
 // exposure lasts. Without a channel all three radiances are one number.
+#include "light/mechanisms/light_ambient.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "explain/tables/table_model.h"
 
-namespace gonio::mechanism {
-const Mechanism& light_ambient();
-}
-
-namespace gonio::explain::tables {
+namespace gonio::explain::tables::terms {
 
 const Term& light_ambient() {
   static const Term term{
@@ -24,7 +22,7 @@ const Term& light_ambient() {
           [](double f, std::span<const double> at, std::span<const double> p) {
             const double exposure = std::isnan(at[0]) ? 1 : at[0];
             const std::size_t band = std::isnan(at[1]) || at[1] < 0 || at[1] > 2 ? 0 : static_cast<std::size_t>(at[1]);
-            return f + std::numbers::pi * p[band] * exposure;
+            return f + equation::light_ambient(p[band]) * exposure;
           },
       .adapt =
           [](const Table& table, double scale, std::span<TermParameter> p) {
@@ -38,4 +36,4 @@ const Term& light_ambient() {
   return term;
 }
 
-}  // namespace gonio::explain::tables
+}  // namespace gonio::explain::tables::terms

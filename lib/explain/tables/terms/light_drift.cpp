@@ -1,14 +1,12 @@
 // light.drift on any reading with a time.
+#include "light/mechanisms/light_drift.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "explain/tables/table_model.h"
 
-namespace gonio::mechanism {
-const Mechanism& light_drift();
-}
-
-namespace gonio::explain::tables {
+namespace gonio::explain::tables::terms {
 
 const Term& light_drift() {
   static const Term term{
@@ -16,16 +14,13 @@ const Term& light_drift() {
       .order = term_order::light,
       .columns = {{.name = "time_s", .unit = "s", .meaning = "of the recording, from any moment", .from_least = true}},
       .models = {"sensor", "light", "volume", "surface", "expression"},
-      .act = [](double f, std::span<const double> at,
-                std::span<const double> p) { return f * (1 + p[0] * std::exp(-at[0] / p[1])); },
-      .adapt =
-          [](const Table& table, double, std::span<TermParameter> p) {
-            const std::vector<double>& time = *table.find("time_s");
-            const auto [least, most] = std::minmax_element(time.begin(), time.end());
-            const double span = *most - *least;
-            p[1] = {span / 3, span / 50, 5 * span, span / 3};
-          }};
+      .adapt = [](const Table& table, double, std::span<TermParameter> p) {
+        const std::vector<double>& time = *table.find("time_s");
+        const auto [least, most] = std::minmax_element(time.begin(), time.end());
+        const double span = *most - *least;
+        p[1] = {span / 3, span / 50, 5 * span, span / 3};
+      }};
   return term;
 }
 
-}  // namespace gonio::explain::tables
+}  // namespace gonio::explain::tables::terms

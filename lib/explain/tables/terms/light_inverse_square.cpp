@@ -1,15 +1,13 @@
-// light.inverse-square along a bench: v *= (D / (D + d - d_least))^2 with D the distance that belongs to the smallest
+// light.inverse-square along a bench: D is the distance that belongs to the smallest
 // distance_m. Where distance_m is the lamp's own distance, nearness is found as 1 / d_least; another value says that
 // the lamp's seat is not where the scale begins.
+#include "light/mechanisms/light_inverse_square.h"
+
 #include <algorithm>
 
 #include "explain/tables/table_model.h"
 
-namespace gonio::mechanism {
-const Mechanism& light_inverse_square();
-}
-
-namespace gonio::explain::tables {
+namespace gonio::explain::tables::terms {
 
 const Term& light_inverse_square() {
   static const Term term{
@@ -17,20 +15,14 @@ const Term& light_inverse_square() {
       .order = term_order::light + 1,
       .columns = {{.name = "distance_m", .unit = "m", .meaning = "along the axis from the lamp", .from_least = true}},
       .models = {"sensor", "volume", "surface", "expression"},
-      .act =
-          [](double f, std::span<const double> at, std::span<const double> p) {
-            const double stretched = 1 + p[0] * at[0];
-            return f / (stretched * stretched);
-          },
-      .adapt =
-          [](const Table& table, double, std::span<TermParameter> p) {
-            const std::vector<double>& d = *table.find("distance_m");
-            const auto [least, most] = std::minmax_element(d.begin(), d.end());
-            p[0].start = 0.2 / (*most - *least);
-            p[0].upper = std::max(p[0].upper, 100 / (*most - *least));
-            p[0].size = p[0].start;
-          }};
+      .adapt = [](const Table& table, double, std::span<TermParameter> p) {
+        const std::vector<double>& d = *table.find("distance_m");
+        const auto [least, most] = std::minmax_element(d.begin(), d.end());
+        p[0].start = 0.2 / (*most - *least);
+        p[0].upper = std::max(p[0].upper, 100 / (*most - *least));
+        p[0].size = p[0].start;
+      }};
   return term;
 }
 
-}  // namespace gonio::explain::tables
+}  // namespace gonio::explain::tables::terms

@@ -1,14 +1,12 @@
 // light.spectrum on readings with a channel and a time; channels 0, 1, 2 are red, green, blue. The time enters as a
 // share of the table's whole.
+#include "light/mechanisms/light_spectrum.h"
+
 #include <algorithm>
 
 #include "explain/tables/table_model.h"
 
-namespace gonio::mechanism {
-const Mechanism& light_spectrum();
-}
-
-namespace gonio::explain::tables {
+namespace gonio::explain::tables::terms {
 
 const Term& light_spectrum() {
   static const Term term{.mechanism = mechanism::light_spectrum,
@@ -19,12 +17,8 @@ const Term& light_spectrum() {
                                       .from_least = true,
                                       .as_share = true},
                                      {"channel", "1", "0, 1, 2"}},
-                         .models = {"sensor", "light", "surface", "expression"},
-                         .act = [](double f, std::span<const double> at, std::span<const double> p) {
-                           if (at[1] == 0) return f * (1 + p[0] * at[0]);
-                           return at[1] == 2 ? f * (1 + p[1] * at[0]) : f;
-                         }};
+                         .models = {"sensor", "light", "surface", "expression"}};
   return term;
 }
 
-}  // namespace gonio::explain::tables
+}  // namespace gonio::explain::tables::terms

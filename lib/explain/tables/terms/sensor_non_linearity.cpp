@@ -1,29 +1,53 @@
-// sensor.non-linearity as a quadratic of a predicted reading, stated at the table's largest value. Equation:
-// render/sensor_chain.h, step 6.
+// sensor.non-linearity as a quadratic of a predicted reading, stated at the table's largest value; or as a power law,
+// for pictures that were coded for a screen among others.
+#include "render/mechanisms/sensor_non_linearity.h"
+
+#include <array>
+
 #include "explain/tables/table_model.h"
 
-namespace gonio::mechanism {
-const Mechanism& sensor_non_linearity();
+namespace gonio::explain::tables::terms {
+namespace {
+
+constexpr std::size_t quadratic = 0, reference = 1, gamma = 2;  // places of the mechanism's parameters
+
+template <std::size_t bent>
+void fix_all_but(const Table&, double scale, std::span<TermParameter> p) {
+  const std::vector<mechanism::Parameter>& all = mechanism::sensor_non_linearity().parameters;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    if (k == bent) continue;
+    p[k].start = k == reference ? scale : all[k].neutral;
+    p[k].use = TermParameter::Use::fixed;
+  }
 }
 
-namespace gonio::explain::tables {
+double bend(double f, std::span<const double>, std::span<const double> p) {
+  return equation::sensor_quadratic(f, p[quadratic], p[reference]);
+}
+double raise(double f, std::span<const double>, std::span<const double> p) {
+  return p[gamma] == 1 || !(f > 0) ? f : equation::sensor_power_law(f, p[gamma], p[reference]);
+}
+
+Term response(double (*act)(double, std::span<const double>, std::span<const double>),
+              void (*adapt)(const Table&, double, std::span<TermParameter>)) {
+  return {.mechanism = mechanism::sensor_non_linearity,
+          .order = term_order::non_linearity,
+          .models = {"sensor", "light", "volume", "expression"},
+          .applies = [](const Table&) { return true; },
+          .act = act,
+          .adapt = adapt};
+}
+
+}  // namespace
 
 const Term& sensor_non_linearity() {
-  static const Term term{
-      .mechanism = mechanism::sensor_non_linearity,
-      .order = term_order::non_linearity,
-      .models = {"sensor", "light", "volume", "expression"},
-      .applies = [](const Table&) { return true; },
-      .act = [](double f, std::span<const double>, std::span<const double> p) { return f * (1 + p[0] * f / p[1]); },
-      .adapt =
-          [](const Table&, double scale, std::span<TermParameter> p) {
-            p[1] = {scale, scale, scale, scale, TermParameter::Use::fixed};
-            for (std::size_t k = 2; k < p.size(); ++k) {
-              p[k].start = mechanism::sensor_non_linearity().parameters[k].neutral;
-              p[k].use = TermParameter::Use::fixed;
-            }
-          }};
+  static const std::array<Term, 1> power_law{response(raise, fix_all_but<gamma>)};
+  static const Term term = [] {
+    Term form = response(bend, fix_all_but<quadratic>);
+    form.alternatives = power_law;
+    return form;
+  }();
   return term;
 }
 
-}  // namespace gonio::explain::tables
+}  // namespace gonio::explain::tables::terms

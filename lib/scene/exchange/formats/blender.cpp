@@ -23,6 +23,7 @@
 
 #include "base/text.h"
 #include "io/exr.h"
+#include "light/mechanisms/light_ambient.h"
 #include "scene/exchange/blender_script.h"
 #include "scene/exchange/geometry.h"
 #include "scene/exchange/lamp.h"
@@ -255,7 +256,7 @@ class Writer {
         const Light& light = scene_.appearance.lights[i];
         (light.emitter->infinite() ? surroundings : lamps).push_back(light.id);
       }
-      if (scene_.appearance.ambient) surroundings.push_back("light.ambient");
+      if (scene_.appearance.ambient) surroundings.push_back(mechanism::light_ambient().id);
       all.push_back(Value::object({{"id", view.image},
                                    {"camera", camera(view)},
                                    {"lights", lamps},

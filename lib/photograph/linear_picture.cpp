@@ -1,0 +1,64 @@
+#include "photograph/linear_picture.h"
+
+#include "base/error.h"
+#include "io/codes.h"
+#include "io/picture.h"
+#include "photograph/response.h"
+#include "photograph/saturation.h"
+
+namespace gonio::photograph {
+namespace {
+
+std::vector<std::string> colour_names(const io::Image& raw, const std::string& place) {
+  if (raw.channel("R") >= 0 && raw.channel("G") >= 0 && raw.channel("B") >= 0) return {"R", "G", "B"};
+  if (raw.channel("Y") >= 0) return {"Y"};
+  if (raw.channels.size() == 1) return {raw.channels[0]};
+  std::string names;
+  for (const auto& name : raw.channels) names += (names.empty() ? "" : ", ") + name;
+  throw Error(Exit::data, place, "has neither the channels R, G, B nor Y", "it has " + names);
+}
+
+io::Image select(const io::Image& raw, const std::vector<std::string>& names, const std::string& prefix) {
+  std::vector<std::size_t> from;
+  for (const auto& name : names) {
+    const int at = raw.channel(prefix + name);
+    if (at < 0) return {};
+    from.push_back(static_cast<std::size_t>(at));
+  }
+  io::Image selected(raw.width, raw.height, names.size() == 1 ? std::vector<std::string>{"Y"} : names);
+  for (std::size_t i = 0; i < raw.pixels(); ++i)
+    for (std::size_t c = 0; c < from.size(); ++c)
+      selected.data[i * from.size() + c] = raw.data[i * raw.channels.size() + from[c]];
+  return selected;
+}
+
+}  // namespace
+
+LinearPicture read_linear(const std::filesystem::path& path, const manifest::Value& response,
+                          const std::string& place) {
+  LinearPicture picture;
+  picture.name = path.string();
+  picture.code_bits = io::code_bits(path);
+  if (picture.integer_codes() && response.is_null())
+    throw Error(Exit::data, place, "is an 8 or 16-bit picture whose response is not stated",
+                "state \"response\" (--response): \"linear\", \"srgb\" or a table");
+  const io::Image raw = io::read_picture(path);
+  const auto names = colour_names(raw, picture.name);
+  std::vector<Response> linear;
+  for (const auto& name : names) linear.emplace_back(response_of_channel(response, name, place), place);
+  picture.colour = select(raw, names, "");
+  picture.variance = select(raw, names, "variance.");
+  picture.clipped.assign(raw.pixels(), 0);
+  picture.dark.assign(picture.colour.data.size(), 0);
+  const double highest = saturated_from(picture.code_bits), lowest = dark_below(picture.code_bits);
+  const std::size_t channels = names.size();
+  for (std::size_t i = 0; i < picture.colour.data.size(); ++i) {
+    float& value = picture.colour.data[i];
+    if (value >= highest) picture.clipped[i / channels] = 1;
+    picture.dark[i] = value < lowest;
+    value = linear[i % channels](value);
+  }
+  return picture;
+}
+
+}  // namespace gonio::photograph

@@ -1,0 +1,26 @@
+// sensor.crosstalk: the three bands of one pixel.
+#include "render/mechanisms/sensor_crosstalk.h"
+
+#include "render/link.h"
+
+namespace gonio::render::links {
+namespace {
+
+OnPicture mix(std::span<const double> p, double) {
+  return [share = p[0]](io::Image& image) {
+    for (std::size_t i = 0; i + 2 < image.data.size(); i += 3) {
+      const double sum = double{image.data[i]} + image.data[i + 1] + image.data[i + 2];
+      for (std::size_t c = 0; c < 3; ++c)
+        image.data[i + c] = static_cast<float>(equation::sensor_crosstalk(image.data[i + c], share, sum));
+    }
+  };
+}
+
+}  // namespace
+
+const Link& sensor_crosstalk() {
+  static const Link link{.mechanism = mechanism::sensor_crosstalk, .step = Step::optics, .order = 40, .picture = mix};
+  return link;
+}
+
+}  // namespace gonio::render::links
