@@ -10,8 +10,8 @@
 namespace gonio::contrast {
 
 struct InputView {
-  std::size_t image = 0;  // place in document.images
-  std::string id, place;  // for messages
+  std::size_t image = 0;            // place in document.images
+  std::string id, place;            // for messages
   std::vector<std::string> lights;  // that were on
   int placement = 0;
   std::optional<camera::CameraModel> camera;

@@ -48,8 +48,9 @@ TEST(ImageList, SaysWhereFilesLie) {
 }
 
 TEST(ImageList, PlannedImagesAreEnteredAsTheyArePlanned) {
-  Document d =
-      parse_document(R"({"gonio": 1, "cameras": {"c": {}}, "lights": {"lamp": {"model": "uniform"}}})", "t", ".");
+  Document d = parse_document(
+      R"({"gonio": 1, "cameras": {"c": {}}, "lights": {"lamp": {"model": "uniform", "radiance": [1, 1, 1]}}})", "t",
+      ".");
   enter_image(d, {.id = "bare", .camera = "c"});
   enter_image(d, {.id = "whole",
                   .camera = "c",
@@ -58,13 +59,13 @@ TEST(ImageList, PlannedImagesAreEnteredAsTheyArePlanned) {
                   .noise = Noise{.gain = 100, .read = 0.5},
                   .group = "before"});
   const Value images = *to_value(d, ".").find("images");
-  EXPECT_EQ(images.as_array().at(0), parse_json(R"({"id": "bare", "camera": "c", "world_from_camera":
-                                                   {"rotation": [1, 0, 0, 0], "translation_m": [0, 0, 0]}})",
-                                                "t"));
-  EXPECT_EQ(images.as_array().at(1), parse_json(R"({"id": "whole", "camera": "c", "world_from_camera":
-      {"rotation": [0, 1, 0, 0], "translation_m": [1, 2, 3], "sigma": {"rotation_rad": 0.001, "translation_m": 0.0001}},
-      "light": "lamp", "noise": {"gain": 100, "read": 0.5}, "group": "before"})",
-                                                "t"));
+  EXPECT_EQ(print_json(images.as_array().at(0), -1),
+            R"({"id":"bare","camera":"c",)"
+            R"("world_from_camera":{"rotation":[1.0,0.0,0.0,0.0],"translation_m":[0.0,0.0,0.0]}})");
+  EXPECT_EQ(print_json(images.as_array().at(1), -1),
+            R"({"id":"whole","camera":"c","world_from_camera":{"rotation":[0.0,1.0,0.0,0.0],)"
+            R"("translation_m":[1.0,2.0,3.0],"sigma":{"rotation_rad":[0.001],"translation_m":[1e-04]}},)"
+            R"("light":"lamp","noise":{"gain":100.0,"read":0.5},"group":"before"})");
 }
 
 TEST(ImageList, ThoseThatAreKeptStayAsTheyWereInTheirOrder) {
