@@ -2,7 +2,8 @@
 # which sources go together, and why a unit means the same). A whole build takes a fraction of the time; after an edit the
 # rest of the unit is compiled again, so the preset `develop` does without.
 
-# gonio_make_units(TREE LINES): writes the units of every folder of TREE, of about LINES lines each.
+# gonio_make_units(TREE LINES FOLDER...): writes the units of every folder of TREE, of about LINES lines each, but for the
+# FOLDERs whose sources stay alone.
 function(gonio_make_units tree lines)
   find_program(PERL perl)
   if(NOT GONIO_UNITS OR NOT PERL)
@@ -15,7 +16,7 @@ function(gonio_make_units tree lines)
     if(IS_DIRECTORY ${folder} AND NOT EXISTS ${folder}/CMakeLists.txt)
       file(GLOB_RECURSE sources ${folder}/*.cpp)
       list(LENGTH sources count)
-      if(count GREATER 4)  # the few sources of lib/linear are long enough, each by itself
+      if(count GREATER 4 AND NOT name IN_LIST ARGN)
         list(JOIN sources " " sources)
         string(APPEND request "${name} ${sources}\n")
       endif()
