@@ -15,11 +15,11 @@ using cli::Type;
 
 gonio::explain::ExplainRequest request_of(cli::Invocation& call) {
   gonio::explain::ExplainRequest request;
-  request.options.matters = call.number("matters");
+  request.options.smallest_effect = call.number("smallest-effect");
   request.options.level = call.number("level");
   request.options.hypotheses = call.texts("hypotheses");
   request.options.protect = call.texts("protect");
-  request.options.dummies = static_cast<std::size_t>(call.integer("dummies"));
+  request.options.negative_controls = static_cast<std::size_t>(call.integer("negative-controls"));
   request.options.seed = call.seed;
   request.options.budget_s = request.recordings.budget_s = call.given("budget") ? call.number("budget") : 0;
   for (const std::string& path : call.texts("repeat")) request.recordings.repeats.emplace_back(path);
@@ -94,14 +94,15 @@ std::vector<cli::Option> table_options() {
 
 std::vector<cli::Option> engine_options() {
   return {
-      {.name = "matters",
+      {.name = "smallest-effect",
        .type = Type::quantity,
-       .help = "Smallest effect worth a name: images, rms share of the radiance; boards, share of the held-out error "
+       .help = "Smallest effect of interest: images, rms share of the radiance; boards, share of the held-out error "
                "removed.",
        .preset = "1%",
        .dimension = Dimension::ratio,
        .lower = 0,
-       .upper = 1},
+       .upper = 1,
+       .aliases = {"matters"}},
       {.name = "level",
        .type = Type::number,
        .help = "False alarms allowed to the null test and to every name.",
@@ -118,13 +119,14 @@ std::vector<cli::Option> engine_options() {
        .help = "Keep this parameter, or all whose name begins with it and a slash, at the manifest's value: cameras/c.",
        .metavar = "NAME",
        .repeat = true},
-      {.name = "dummies",
+      {.name = "negative-controls",
        .type = Type::integer,
        .help = "Mechanisms without physics that run in the same race.",
        .metavar = "N",
        .preset = "24",
        .lower = 0,
-       .upper = 1000},
+       .upper = 1000,
+       .aliases = {"dummies"}},
       {.name = "repeat",
        .type = Type::input_file,
        .help = "A further take of the same recordings, from which noise is measured; may be repeated.",

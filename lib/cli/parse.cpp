@@ -98,7 +98,8 @@ void parse_arguments(Invocation::State& state, int argc, char** argv) {
   for (const Option& o : state.options) {
     Argument& a = state.arguments[o.name];
     a.option = &o;
-    const std::string names = (o.letter != 0 ? std::string("-") + o.letter + "," : std::string()) + "--" + o.name;
+    std::string names = (o.letter != 0 ? std::string("-") + o.letter + "," : std::string()) + "--" + o.name;
+    for (const std::string& alias : o.aliases) names += ",--" + alias;
     if (o.type == Type::flag)
       app.add_flag(names, counts[o.name]);
     else
@@ -116,8 +117,10 @@ void parse_arguments(Invocation::State& state, int argc, char** argv) {
   // Before CLI11 sees them: it would take an unknown option's value for an operand and complain about that one.
   for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {
     const std::string word = argv[i], name = word.substr(0, word.find('='));
-    if (word.starts_with("--") &&
-        std::ranges::none_of(state.options, [&](const Option& o) { return "--" + o.name == name; }))
+    if (word.starts_with("--") && std::ranges::none_of(state.options, [&](const Option& o) {
+          return "--" + o.name == name ||
+                 std::ranges::any_of(o.aliases, [&](const std::string& alias) { return "--" + alias == name; });
+        }))
       unknown_option(state, word);
   }
   try {

@@ -43,6 +43,7 @@ struct Option {
   std::vector<std::string> conflicts{};  // long names it cannot stand with
   std::vector<std::string> needs{};      // long names that must stand beside it
   char letter = 0;                       // short form, 'i' for -i; 0: none
+  std::vector<std::string> aliases{};    // former long names: understood, and listed nowhere
 };
 
 // How the manifest enters: from -i FILE, else from an operand that ends in .json, else from standard input where that

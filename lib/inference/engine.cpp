@@ -41,9 +41,9 @@ void set_aside_groups(const std::vector<std::size_t>& test_groups, System& syste
 // Whether there is a mismatch is asked of all groups: it chooses nothing, and the groups set aside judge names, not
 // this.
 double mismatch_p(const System& all, const std::vector<double>& start, Options options) {
-  options.dummies = 0;
+  options.negative_controls = 0;
   const Race race(all, options);
-  return remainder(race, race.base(start), options).global_p;
+  return residual_structure(race, race.base(start), options).global_p;
 }
 
 System in_play(const Problem& problem, const Options& options) {
@@ -153,7 +153,7 @@ void fill_scoreboard(const Selection& s, Explanation& e) {
   };
   for (std::size_t k = 0; k < std::min<std::size_t>(2, s.before.curves.size()); ++k)
     append(s.before.curves[k].hypothesis, "a free curve over ");
-  if (!s.before.dummies.empty()) append(s.before.dummies[0], "best ");
+  if (!s.before.negative_controls.empty()) append(s.before.negative_controls[0], "best ");
 }
 
 // Best first, with the places of minor effects following.
@@ -216,7 +216,7 @@ void place_stage(const Problem& problem, Explanation& e) {
 
 Explanation explain(const Problem& problem, const Options& options) {
   Explanation e;
-  e.matters = options.matters;
+  e.smallest_effect = options.smallest_effect;
   System all = in_play(problem, options);
   const std::vector<double> start = starting_values(problem);
   const NoiseFindings noise = settle_noise(all, start);
@@ -235,7 +235,7 @@ Explanation explain(const Problem& problem, const Options& options) {
   e.isolability = final_isolability(chosen_on, selection, options);
   e.conditions = selection.before.conditions;
   e.false_alarm = selection.after.false_alarm;
-  e.dummies = selection.after.dummies.size();
+  e.negative_controls = selection.after.negative_controls.size();
   e.shortened = selection.shortened;
   final_scores(all, chosen_on, selection, e);
   fill_scoreboard(selection, e);

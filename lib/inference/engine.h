@@ -1,9 +1,9 @@
 // The engine of `explain`: from a problem to an explanation, by the steps noise, fair refit, isolability, null test,
 // location, naming on held-out groups, equivalents, final judgement on groups that were never opened.
 //
-// It knows no physics. Rules it keeps: nothing is named without a significant mismatch; nothing below `matters`; no
-// name for what a dummy does as well, what sits at its bound, what helps no unseen group; equals are reported as
-// equals.
+// It knows no physics. Rules it keeps: nothing is named without a significant mismatch; nothing below
+// `smallest_effect`; no name for what a negative control does as well, what sits at its bound, what helps no unseen
+// group; equals are reported as equals.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -14,12 +14,12 @@
 namespace gonio::inference {
 
 struct Options {
-  double matters = 0.01;                // smallest effect worth a name, see Importance
+  double smallest_effect = 0.01;        // smallest effect worth a name, see Importance
   double level = 0.01;                  // false alarms allowed to the null test, and to every name
   std::vector<std::string> hypotheses;  // mechanism ids to consider; empty: all candidates of the problem
   std::vector<std::string> protect;     // names of parameters, or of what stands before a '/', that keep their values
   int draws = 1999;                     // of the null distribution
-  std::size_t dummies = 24;
+  std::size_t negative_controls = 24;
   std::uint64_t seed = 1;
   double budget_s = 0;  // 0: none; see ProblemOptions::budget_s
 };

@@ -186,9 +186,9 @@ manifest::Value entry_of(const Problem& problem, const Explanation& e, const Ill
                     .test_groups = {}};
   for (const std::size_t g : e.test_groups) entry.held_out.test_groups.push_back(problem.observations().group[g]);
   entry.fitted = {e.fitted_before, e.fitted_after};
-  entry.null_test = {e.global_p, e.significant, e.important, e.matters};
+  entry.null_test = {e.global_p, e.significant, e.important, e.smallest_effect};
   entry.noise = {e.noise_factor, static_cast<std::int64_t>(e.outlier_blocks)};
-  entry.dummies = {static_cast<std::int64_t>(e.dummies), e.false_alarm};
+  entry.negative_controls = {static_cast<std::int64_t>(e.negative_controls), e.false_alarm};
   entry.scoreboard = scoreboard(e);
   entry.isolability = isolability(problem, e);
   entry.compensation = compensation(problem, e);

@@ -24,17 +24,18 @@ struct Estimate {
   bool at_bound = false;
 };
 
-// One hypothesis in the race: candidates switched on together, or a dummy, or a free curve over one condition
+// One hypothesis in the race: candidates switched on together, or a negative control, or a free curve over one
+// condition
 // ("unknown").
 struct Hypothesis {
-  enum class Kind { base, mechanisms, dummy, free_curve };
+  enum class Kind { base, mechanisms, negative_control, free_curve };
   Kind kind = Kind::mechanisms;
   std::string name;
-  std::vector<std::size_t> candidates;  // dummy: the one whose freedom it has
+  std::vector<std::size_t> candidates;  // negative control: the one whose freedom it has
   double held_out = 0;                  // score on held-out groups, in the user's unit
   double gain = 0, gain_sigma = 0;  // fall of the held-out mean square in noise units against the model it extends, and
                                     // the standard error of that over groups
-  double effect = 0;                // what --matters is held against
+  double effect = 0;                // what --smallest-effect is held against
   double wald_p = 1;                // of "all its parameters are neutral"
   std::vector<Estimate> parameters;
   std::string refused;  // why it cannot be named; empty: it can
@@ -134,7 +135,7 @@ struct Explanation {
   bool significant = false, important = false;
   double noise_factor = 1;
   std::size_t outlier_blocks = 0;
-  double matters = 0.01;
+  double smallest_effect = 0.01;
 
   std::vector<double> base_values;  // fair refit of the base model, all groups
   std::vector<double> values;       // with the named mechanisms; equals base_values where nothing is named
@@ -149,8 +150,8 @@ struct Explanation {
   bool converged = true;                           // of the final fit
   std::string shortened{};                         // what a budget left out, in a sentence; empty: nothing
   std::vector<std::size_t> test_groups;            // opened once at the end; empty: nested cross-validation over all
-  double false_alarm = 0;                          // share of dummies that would have passed for physics
-  std::size_t dummies = 0;
+  double false_alarm = 0;                          // share of negative controls that would have passed for physics
+  std::size_t negative_controls = 0;
 
   std::vector<Hypothesis> scoreboard;  // best first
   std::vector<Isolability> isolability;

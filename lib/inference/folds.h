@@ -1,6 +1,6 @@
 // Leave one group out for thousands of hypotheses at the price of one. The model's own parameters are eliminated once
-// for every fold; what is left of each foreign column (a mechanism's, a curve's, a dummy's) is a small matrix per fold,
-// and any set of them, singles, pairs, triples, is scored by solving in that matrix.
+// for every fold; what is left of each foreign column (a mechanism's, a curve's, a negative control's) is a small
+// matrix per fold, and any set of them, singles, pairs, triples, is scored by solving in that matrix.
 //
 // With x the own and t the foreign steps, fold g (all groups but g) has x = u - U t, so that
 //   S t = b,  S = F - C'U, b = c - U'a  (Schur complement of the fold's normal equations), and the held-out residual is

@@ -40,14 +40,14 @@ double noncentrality(double degrees, double level) {
 
 // Squared amplitude of a column at which its effect is what matters.
 double mattering(const System& system, const Projection& p, const BlockScores& scores, Eigen::Index column,
-                 double matters) {
+                 double smallest_effect) {
   if (system.problem().importance() == Importance::share_of_signal) {
     const double raw = scores.raw_surviving(column, column);
-    return raw > 0 ? matters * matters * scores.norm / raw : 0;
+    return raw > 0 ? smallest_effect * smallest_effect * scores.norm / raw : 0;
   }
   // The score falls by the share m where the effect adds (1 - m)^-2 - 1 of the noise's mean square.
   const double length = p.surviving(column, column);
-  return length > 0 ? (1 / ((1 - matters) * (1 - matters)) - 1) * p.rows / length : 0;
+  return length > 0 ? (1 / ((1 - smallest_effect) * (1 - smallest_effect)) - 1) * p.rows / length : 0;
 }
 
 // Diagonal of G^-1: the largest squared component of an effect of unit length, whatever the other components are.
@@ -69,13 +69,14 @@ Eigen::VectorXd largest_components(const Eigen::MatrixXd& gram, const Eigen::Vec
 
 // Limits of numbers that are not alone: by noise and by what matters, as for a single one.
 std::vector<double> limits_with_others(const System& system, const Projection& p, const BlockScores& scores,
-                                       const std::vector<Eigen::Index>& own, double white, double matters) {
+                                       const std::vector<Eigen::Index>& own, double white, double smallest_effect) {
   const Eigen::VectorXd full = p.full.diagonal()(own);
   const Eigen::VectorXd seen = largest_components(p.surviving(own, own), full);
   const bool of_signal = system.problem().importance() == Importance::share_of_signal;
   const Eigen::VectorXd raw =
       of_signal ? largest_components(scores.raw_surviving(own, own), scores.raw_surviving.diagonal()(own)) : seen;
-  const double least = of_signal ? matters * matters * scores.norm : (1 / ((1 - matters) * (1 - matters)) - 1) * p.rows;
+  const double least = of_signal ? smallest_effect * smallest_effect * scores.norm
+                                 : (1 / ((1 - smallest_effect) * (1 - smallest_effect)) - 1) * p.rows;
   std::vector<double> limits;
   for (Eigen::Index k = 0; k < seen.size(); ++k) limits.push_back(std::sqrt(std::max(white * seen[k], least * raw[k])));
   return limits;
@@ -132,17 +133,16 @@ std::vector<Isolability> isolability(const System& system, const Projection& p, 
       const Parameter& parameter = system.problem().parameters()[candidate.parameters[k]];
       const double by_noise =
           length > least_share * p.full(own[k], own[k]) ? white / length : std::numeric_limits<double>::infinity();
-      const double matters = mattering(system, p, scores, own[k], options.matters);
-      entry.detection_limit.push_back(std::sqrt(std::max(by_noise * inflated, matters)));
+      const double least = mattering(system, p, scores, own[k], options.smallest_effect);
+      entry.detection_limit.push_back(std::sqrt(std::max(by_noise * inflated, least)));
       const double reach = std::max(parameter.upper - parameter.neutral, parameter.neutral - parameter.lower);
       // Whether it could be seen is asked of the noise alone: an effect that is there, and strong, is itself what
       // correlates the residuals of a block, and must not hide itself.
-      if (std::sqrt(std::max(by_noise, matters)) < reach && entry.surviving_share > invisible_share)
-        entry.visible = true;
+      if (std::sqrt(std::max(by_noise, least)) < reach && entry.surviving_share > invisible_share) entry.visible = true;
     }
-    entry.limit_with_others = own.size() > 1
-                                  ? limits_with_others(system, p, scores, own, white * inflated, options.matters)
-                                  : entry.detection_limit;
+    entry.limit_with_others =
+        own.size() > 1 ? limits_with_others(system, p, scores, own, white * inflated, options.smallest_effect)
+                       : entry.detection_limit;
     result.push_back(std::move(entry));
   }
   for (std::size_t a = 0; a < result.size(); ++a)

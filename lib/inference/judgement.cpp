@@ -19,7 +19,7 @@ constexpr double price_of_a_look = 10;  // as in the null test
 constexpr double clearly_better = 0.1;  // by which a free curve must repair more, as a share of what it repairs
 
 bool repairs(const Hypothesis& h, const Options& options) {
-  return h.gain > 2 * h.gain_sigma && h.effect >= options.matters;
+  return h.gain > 2 * h.gain_sigma && h.effect >= options.smallest_effect;
 }
 
 // Does any of the candidates declare the condition as a carrier of its signature?
@@ -31,19 +31,19 @@ bool declares(const Problem& problem, const std::vector<std::size_t>& candidates
 }
 
 struct Left {
-  const Competitor* any = nullptr;     // the free curve that repairs most of what is left
-  const Competitor* own = nullptr;     // the same over a condition that a named mechanism declares
-  const Trail* trail = nullptr;        // what no smooth curve follows
-  const Crossing* crossing = nullptr;  // what turns round from one condition to another
+  const Competitor* any = nullptr;                        // the free curve that repairs most of what is left
+  const Competitor* own = nullptr;                        // the same over a condition that a named mechanism declares
+  const SerialCorrelation* serial_correlation = nullptr;  // what no smooth curve follows
+  const Interaction* interaction = nullptr;               // what turns round from one condition to another
 };
 Left structure_left(const Problem& problem, const Selection& s, const Options& options) {
   Left left;
   if (s.after.global_p > options.level) return left;
   const auto tells = [&](const auto& look) {
-    return look && price_of_a_look * look->p <= options.level && look->effect >= options.matters;
+    return look && price_of_a_look * look->p <= options.level && look->effect >= options.smallest_effect;
   };
-  if (tells(s.after.trail)) left.trail = &*s.after.trail;
-  if (tells(s.after.crossing)) left.crossing = &*s.after.crossing;
+  if (tells(s.after.serial_correlation)) left.serial_correlation = &*s.after.serial_correlation;
+  if (tells(s.after.interaction)) left.interaction = &*s.after.interaction;
   for (const Competitor& c : s.after.curves) {
     if (!repairs(c.hypothesis, options)) continue;
     if (left.any == nullptr) left.any = &c;
@@ -92,13 +92,13 @@ std::string objection_to(const Problem& problem, const Selection& s, const Left&
   if (too_much(left.own, clean ? clean_share : own_share))
     return "leaves structure over " + left.own->hypothesis.name + ", its own condition: it only imitates in part";
   if (too_much(left.any, other_share)) return "leaves more than it repairs, over " + left.any->hypothesis.name;
-  if (left.trail != nullptr && left.trail->power > std::max(0.0, repaired))
+  if (left.serial_correlation != nullptr && left.serial_correlation->power > std::max(0.0, repaired))
     return "leaves more than it repairs, a fine structure along " +
-           problem.observations().conditions[left.trail->condition].name;
-  if (left.crossing != nullptr && left.crossing->power > std::max(0.0, repaired))
+           problem.observations().conditions[left.serial_correlation->condition].name;
+  if (left.interaction != nullptr && left.interaction->power > std::max(0.0, repaired))
     return "leaves more than it repairs, over the product of " +
-           problem.observations().conditions[left.crossing->first].name + " and " +
-           problem.observations().conditions[left.crossing->second].name;
+           problem.observations().conditions[left.interaction->first].name + " and " +
+           problem.observations().conditions[left.interaction->second].name;
   if (better != nullptr)
     return "a free curve over " + better->hypothesis.name + " repairs more on unseen groups: it only imitates in part";
   return "";
@@ -127,13 +127,13 @@ std::string objection(const Problem& problem, const Selection& s, const Options&
 void judge(const Problem& problem, Selection& s, const Options& options, Explanation& e) {
   e.significant = s.before.global_p <= options.level;
   const Left left = structure_left(problem, s, options);
-  const bool remains = left.any != nullptr || left.trail != nullptr || left.crossing != nullptr;
+  const bool remains = left.any != nullptr || left.serial_correlation != nullptr || left.interaction != nullptr;
   if (left.any != nullptr)
     e.outside = outside_of(problem, left.any->condition);
-  else if (left.trail != nullptr)
-    e.outside = outside_of(problem, left.trail->condition);
-  else if (left.crossing != nullptr)
-    e.outside = outside_of(problem, left.crossing->first);
+  else if (left.serial_correlation != nullptr)
+    e.outside = outside_of(problem, left.serial_correlation->condition);
+  else if (left.interaction != nullptr)
+    e.outside = outside_of(problem, left.interaction->first);
   if (s.model.candidates.empty()) {
     e.verdict = remains ? Verdict::unknown : Verdict::null;
     e.important = remains;

@@ -80,8 +80,8 @@ struct Calibration {
   std::optional<double> sigma;  // one standard deviation, where it is stated
 };
 
-// What `--matters` is a share of: the signal (rms of the effect over sqrt(sum norm), images) or the held-out score that
-// the mechanism removes (boards, where pixels have no natural scale).
+// What `--smallest-effect` is a share of: the signal (rms of the effect over sqrt(sum norm), images) or the held-out
+// score that the mechanism removes (boards, where pixels have no natural scale).
 enum class Importance { share_of_signal, share_of_residual };
 
 // A measurement that could be taken next: one more group under conditions that the user can set.

@@ -190,7 +190,7 @@ double Race::effect(const Model& before, const Model& after) const {
 }
 
 Hypothesis Race::judged(const Model& before, const Model& after, const std::vector<std::size_t>& added,
-                        const std::vector<Hypothesis>& dummies, std::size_t looks, const Slopes* kept) const {
+                        const std::vector<Hypothesis>& negative_controls, std::size_t looks, const Slopes* kept) const {
   Hypothesis h;
   h.kind = Hypothesis::Kind::mechanisms;
   h.candidates = added;
@@ -214,14 +214,14 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
   for (const std::size_t c : added)
     h.wald_p =
         std::max(h.wald_p, neutral_p(system_, after.fit, u, system_.problem().candidates()[c].parameters, helps));
-  // A free hand in every group beats physics that all groups share: dummies are held against mechanisms of their own
-  // kind.
+  // A free hand in every group beats physics that all groups share: negative controls are held against mechanisms of
+  // their own kind.
   const bool grouped = has_numbers_of_groups(system_, added);
   std::ptrdiff_t peers = 0, rivals = 0;
-  for (const Hypothesis& dummy : dummies) {
-    if (has_numbers_of_groups(system_, dummy.candidates) != grouped) continue;
+  for (const Hypothesis& negative_control : negative_controls) {
+    if (has_numbers_of_groups(system_, negative_control.candidates) != grouped) continue;
     ++peers;
-    rivals += dummy.gain > h.gain + h.gain_sigma;
+    rivals += negative_control.gain > h.gain + h.gain_sigma;
   }
   const auto at_bound =
       std::find_if(h.parameters.begin(), h.parameters.end(), [](const Estimate& e) { return e.at_bound; });
@@ -236,12 +236,12 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
     h.refused =
         "has a number for every " + system_.problem().group_noun() + ", and too few of them agree that it helps";
   else if (10 * rivals > peers)
-    h.refused = "dummies without physics do better";
+    h.refused = "negative controls without physics do better";
   else if (stats::sidak(h.wald_p, static_cast<double>(looks)) > options_.level)
     h.refused = "its parameters cannot be told from neutral";
   else if (at_bound != h.parameters.end())
     h.refused = system_.problem().parameters()[at_bound->parameter].name + " ends at the limit of what is plausible";
-  else if (h.effect < options_.matters)
+  else if (h.effect < options_.smallest_effect)
     h.refused = "smaller than what matters";
   return h;
 }

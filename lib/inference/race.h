@@ -1,17 +1,17 @@
 // The race of hypotheses: every model is a set of candidates switched on together with the free parameters, fitted on
-// the groups in play and scored on held-out groups; dummies and free curves run against them.
+// the groups in play and scored on held-out groups; negative controls and free curves run against them.
 #pragma once
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "inference/crossing.h"
 #include "inference/engine.h"
 #include "inference/fit.h"
 #include "inference/folds.h"
+#include "inference/interaction.h"
+#include "inference/serial_correlation.h"
 #include "inference/signature.h"
-#include "inference/trail.h"
 
 namespace gonio::inference {
 
@@ -47,11 +47,12 @@ class Race {
   bool relatives(std::size_t a, std::size_t b) const;  // of one family: at most one of them is named
 
   // The step from `before` to `after` as one line of the scoreboard; `refused` says which condition of a name it fails.
-  // `dummies`: what those achieved on the same model; more than a tenth of them better by its standard
+  // `negative_controls`: what those achieved on the same model; more than a tenth of them better by its standard
   // error, and it is no better than chance.
   // `looks`: hypotheses tried beside it.
   Hypothesis judged(const Model& before, const Model& after, const std::vector<std::size_t>& added,
-                    const std::vector<Hypothesis>& dummies, std::size_t looks, const Slopes* kept = nullptr) const;
+                    const std::vector<Hypothesis>& negative_controls, std::size_t looks,
+                    const Slopes* kept = nullptr) const;
   double effect(const Model& before, const Model& after) const;
   std::string name_of(const std::vector<std::size_t>& candidates) const;
 
@@ -81,21 +82,21 @@ struct Competitor {
   HeldOut held_out;  // linear
 };
 
-// The state of knowledge about one model: what structure its residuals still hold, and what free curves and dummies
-// could repair.
-struct Remainder {
+// The state of knowledge about one model: what structure its residuals still hold, and what free curves and negative
+// controls could repair.
+struct ResidualStructure {
   double global_p = 1;
   std::vector<LocatedCondition> conditions;  // the most telling first
   std::vector<Isolability> isolability;
-  std::vector<double> inflation;     // see signature.h
-  std::vector<Competitor> curves;    // largest gain first
-  std::vector<Hypothesis> dummies;   // largest gain first
-  double false_alarm = 0;            // share of dummies that would have been named
-  std::optional<Trail> trail;        // structure that no smooth curve follows
-  std::optional<Crossing> crossing;  // structure in a product of conditions; asked where nothing else is found
+  std::vector<double> inflation;                        // see signature.h
+  std::vector<Competitor> curves;                       // largest gain first
+  std::vector<Hypothesis> negative_controls;            // largest gain first
+  double false_alarm = 0;                               // share of negative controls that would have been named
+  std::optional<SerialCorrelation> serial_correlation;  // structure that no smooth curve follows
+  std::optional<Interaction> interaction;  // structure in a product of conditions; asked where nothing else is found
   std::shared_ptr<const Evidence> evidence;
 };
-Remainder remainder(const Race& race, const Model& model, const Options& options);
+ResidualStructure residual_structure(const Race& race, const Model& model, const Options& options);
 
 // How much may be tried: a number of fits and of pairs, never a time.
 struct Effort {
@@ -115,7 +116,7 @@ struct PutAside {
 };
 struct Selection {
   Model base, model;
-  Remainder before, after;
+  ResidualStructure before, after;
   std::vector<Hypothesis> scoreboard;
   std::vector<std::size_t> minor;  // places in `scoreboard`
   std::vector<std::vector<std::size_t>> not_told_apart;
@@ -135,7 +136,7 @@ Selection select(const Race& race, const Options& options, const std::vector<dou
 
 // For each named effect, what could stand in its place: within two standard errors of the winner. For several together
 // also other sets, no larger, that have none of them and judge as well.
-void find_equals(const Race& race, const Options& options, const Effort& effort, Selection& selection);
+void find_alternatives(const Race& race, const Options& options, const Effort& effort, Selection& selection);
 // Is `other` as good as `best`, both extending `before`? Within `errors` standard errors of the paired difference over
 // groups, not beyond what the noise of single blocks could do, and with at least `share` of what the best one gained.
 bool as_good(const Model& before, const Model& best, const Model& other, double errors, double share);

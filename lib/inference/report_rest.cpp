@@ -19,7 +19,7 @@ void scoreboard(report::Page& page, const Problem& problem, const Explanation& e
   page.open_details("All hypotheses (" + std::to_string(e.scoreboard.size()) + ")");
   report::TableText table{
       "Gain: fall of the held-out mean square, in squared noise, against the model it extends. "
-      "Effect: what --matters is held against.",
+      "Effect: what --smallest-effect is held against.",
       {{"hypothesis", "", false},
        {"held-out score", problem.unit() == "1" ? "" : problem.unit()},
        {"gain", "", false},
@@ -113,7 +113,7 @@ void minor_effects(report::Page& page, const Explanation& e) {
   for (const std::size_t place : e.minor) {
     if (place >= e.scoreboard.size()) continue;
     const Hypothesis& h = e.scoreboard[place];
-    items.push_back(h.name + ": effect " + share_in_words(h.effect) + ", below " + share_in_words(e.matters));
+    items.push_back(h.name + ": effect " + share_in_words(h.effect) + ", below " + share_in_words(e.smallest_effect));
   }
   if (items.empty()) return;
   page.open_details("There, but too small to matter (" + std::to_string(items.size()) + ")");
@@ -160,8 +160,8 @@ void tell_rest(report::Page& page, const ReportPart& part) {
   minor_effects(page, e);
   compensation(page, problem, e);
   page.note("Noise: stated sigma times " + printed(e.noise_factor) + "; " + std::to_string(e.outlier_blocks) +
-            " blocks set aside as no measurements. Effects below " + share_in_words(e.matters) + " are not named." +
-            (e.shortened.empty() ? "" : " " + e.shortened));
+            " blocks set aside as no measurements. Effects below " + share_in_words(e.smallest_effect) +
+            " are not named." + (e.shortened.empty() ? "" : " " + e.shortened));
 }
 
 }  // namespace gonio::inference

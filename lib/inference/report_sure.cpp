@@ -38,17 +38,18 @@ void scores(report::Page& page, const Problem& problem, const Explanation& e) {
   };
   if (const auto h = best_of(Hypothesis::Kind::free_curve); h != e.scoreboard.end() && e.significant)
     bars.push_back(bar(h->name, h->held_out, Tone::neutral));
-  if (const auto h = best_of(Hypothesis::Kind::dummy); h != e.scoreboard.end() && e.significant)
-    bars.push_back(
-        bar("best of " + std::to_string(e.dummies) + " dummies without physics", h->held_out, Tone::neutral));
+  if (const auto h = best_of(Hypothesis::Kind::negative_control); h != e.scoreboard.end() && e.significant)
+    bars.push_back(bar("best of " + std::to_string(e.negative_controls) + " negative controls without physics",
+                       h->held_out, Tone::neutral));
   page.score_bars(bars);
   page.note(problem.score_name() + " on " + problem.group_noun() + "s that the fit did not see (" +
             (e.test_groups.empty() ? "each left out in turn"
                                    : std::to_string(e.test_groups.size()) + " opened once at the end") +
             "). The chance of such residuals without a mismatch is " +
             (e.global_p < 1e-6 ? "below one in a million" : printed(e.global_p, 2)) + "; " +
-            (e.false_alarm > 0 ? share_in_words(e.false_alarm) + " of the dummies would have passed for physics."
-                               : std::string("no dummy would have passed for physics.")));
+            (e.false_alarm > 0
+                 ? share_in_words(e.false_alarm) + " of the negative controls would have passed for physics."
+                 : std::string("no negative control would have passed for physics.")));
 }
 
 void parameters(report::Page& page, const Problem& problem, const Explanation& e) {

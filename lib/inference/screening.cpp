@@ -38,9 +38,10 @@ Screening::Runner Screening::runner_of(std::size_t candidate) const {
   return runner;
 }
 
-Screening::Screening(const Race& race, const Remainder& remainder) : race_(race), evidence_(*remainder.evidence) {
+Screening::Screening(const Race& race, const ResidualStructure& residual_structure)
+    : race_(race), evidence_(*residual_structure.evidence) {
   std::vector<std::size_t> visible;
-  for (const Isolability& i : remainder.isolability)
+  for (const Isolability& i : residual_structure.isolability)
     if (i.visible) visible.push_back(i.candidate);
   std::vector<Runner> runners(visible.size());
   std::vector<Entrant> entrants(visible.size());

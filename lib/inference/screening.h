@@ -16,7 +16,7 @@ struct Entrant {
 
 class Screening {
  public:
-  Screening(const Race& race, const Remainder& remainder);
+  Screening(const Race& race, const ResidualStructure& residual_structure);
   // Every visible candidate, the furthest-reaching first.
   const std::vector<Entrant>& singles() const { return singles_; }
   // The furthest-reaching pairs, at most `keep` of them, after a look at no more than `most`. `with`: only pairs that

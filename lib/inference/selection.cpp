@@ -4,8 +4,8 @@
 #include <cmath>
 #include <memory>
 
+#include "inference/forward_step.h"
 #include "inference/judgement.h"
-#include "inference/round.h"
 
 namespace gonio::inference {
 namespace {
@@ -26,7 +26,7 @@ void eliminate(const Race& race, const Options& options, Model& model) {
     for (const std::size_t c : model.candidates) {
       Model smaller = race.changed(model, smaller_set(model.candidates, c), &kept);
       const Gain g = gain(smaller.held_out, model.held_out);
-      if (g.mean > g.sigma && race.effect(smaller, model) >= options.matters) continue;
+      if (g.mean > g.sigma && race.effect(smaller, model) >= options.smallest_effect) continue;
       model = race.changed(smaller, smaller.candidates);
       again = true;
       break;
@@ -41,20 +41,20 @@ bool is_minor(const Hypothesis& h) {
 
 // A round with what it starts from; runners of the same round share it.
 struct Level {
-  Level(const Race& race, const Effort& effort, Model from, Remainder left)
-      : model(std::move(from)), after(std::move(left)), round(race, effort, model, after) {}
+  Level(const Race& race, const Effort& effort, Model from, ResidualStructure left)
+      : model(std::move(from)), after(std::move(left)), step(race, effort, model, after) {}
   Level(const Level&) = delete;
   Level& operator=(const Level&) = delete;
   Model model;
-  Remainder after;
-  Round round;
+  ResidualStructure after;
+  ForwardStep step;
 };
 // What forward selection has come to.
 struct Path {
   std::vector<std::shared_ptr<Level>> levels;
   std::vector<Runner> joined;  // one for each level but the last, where nothing more joins
   Model model;
-  Remainder after;
+  ResidualStructure after;
 };
 
 class Search {
@@ -96,7 +96,7 @@ class Search {
               turn.runner.model,
               {}};
     path.joined.push_back(turn.runner);
-    path.after = remainder(race_, path.model, options_);
+    path.after = residual_structure(race_, path.model, options_);
     climb(path, wary);
     take(path);
     grown_ = path.joined.size() > turn.level + 1;
@@ -111,12 +111,12 @@ class Search {
   void climb(Path& path, bool wary = false) const {
     while (path.after.global_p <= options_.level && path.model.candidates.size() < effort_.effects) {
       path.levels.push_back(std::make_shared<Level>(race_, effort_, path.model, path.after));
-      std::optional<Runner> joined = path.levels.back()->round.next();
-      while (joined && put_aside(joined->model.candidates, wary)) joined = path.levels.back()->round.next();
+      std::optional<Runner> joined = path.levels.back()->step.next();
+      while (joined && put_aside(joined->model.candidates, wary)) joined = path.levels.back()->step.next();
       if (!joined) return;
       path.model = joined->model;
       path.joined.push_back(std::move(*joined));
-      path.after = remainder(race_, path.model, options_);
+      path.after = residual_structure(race_, path.model, options_);
     }
   }
 
@@ -130,7 +130,7 @@ class Search {
     if (s_.model.candidates.size() < 2) return;
     const std::size_t size = s_.model.candidates.size();
     eliminate(race_, options_, s_.model);
-    if (s_.model.candidates.size() != size) s_.after = remainder(race_, s_.model, options_);
+    if (s_.model.candidates.size() != size) s_.after = residual_structure(race_, s_.model, options_);
   }
 
   void enter_lines(const Level& level) {
@@ -140,8 +140,8 @@ class Search {
       if (is_minor(h)) s_.minor.push_back(s_.scoreboard.size());
       s_.scoreboard.push_back(std::move(h));
     };
-    for (const Runner& r : level.round.runners()) enter(r.hypothesis);
-    for (Hypothesis& h : level.round.screened_out()) enter(std::move(h));
+    for (const Runner& r : level.step.runners()) enter(r.hypothesis);
+    for (Hypothesis& h : level.step.screened_out()) enter(std::move(h));
   }
 
   // The furthest-reaching other choices of all levels.
@@ -149,10 +149,10 @@ class Search {
     std::vector<Turn> list;
     for (std::size_t k = 0; k < path.joined.size(); ++k) {
       Level& level = *path.levels[k];
-      if (path.joined[k].hypothesis.candidates.size() == 1) level.round.admit_pairs();
+      if (path.joined[k].hypothesis.candidates.size() == 1) level.step.admit_pairs();
       const double chosen = gain(s_.base.held_out, path.joined[k].model.held_out).mean;
       for (std::size_t n = 0; n < effort_.runners_up; ++n) {
-        std::optional<Runner> r = level.round.next();
+        std::optional<Runner> r = level.step.next();
         if (!r) break;
         const double share = gain(s_.base.held_out, r->model.held_out).mean / chosen;
         if (share > least_share) list.push_back({k, std::move(*r), share});
@@ -212,10 +212,10 @@ Selection select(const Race& race, const Options& options, const std::vector<dou
   Selection s;
   s.shortened = effort.shortened;
   s.base = s.model = race.base(start);
-  s.before = s.after = remainder(race, s.base, options);
+  s.before = s.after = residual_structure(race, s.base, options);
   if (mismatch_p) s.before.global_p = s.after.global_p = *mismatch_p;
   Search(race, options, effort, s).run();
-  find_equals(race, options, effort, s);
+  find_alternatives(race, options, effort, s);
   return s;
 }
 

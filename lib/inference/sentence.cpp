@@ -90,7 +90,7 @@ std::string plain_sentence(const Problem& problem, const Explanation& e) {
   }
   if (e.significant)
     return "A mismatch beyond noise is there, but nothing that would repair it matters (under " +
-           printed(100 * e.matters) + " %); no physics is named (" + score + ").";
+           printed(100 * e.smallest_effect) + " %); no physics is named (" + score + ").";
   const std::string p = "(p = " + printed(e.global_p, 2) + ")";
   const double times = misfit_over_noise(problem, e);
   if (times <= most_over_noise) return "No mismatch beyond noise " + p + "; no physics is named (" + score + ").";

@@ -120,15 +120,16 @@ void Structures::add_curve(const System& system, std::size_t condition) {
   }
 }
 
-void Structures::add_dummy(const System& system, std::size_t candidate, std::size_t number, std::uint64_t seed) {
+void Structures::add_negative_control(const System& system, std::size_t candidate, std::size_t number,
+                                      std::uint64_t seed) {
   const Problem& problem = system.problem();
   const auto conditions = static_cast<std::uint32_t>(system.observations().conditions.size());
   if (conditions == 0) return;
   Random random(seed, 0x64756d6d79u + number);
   const std::vector<std::size_t>& parameters = problem.candidates()[candidate].parameters;
-  list.push_back({Structure::Kind::dummy,
+  list.push_back({Structure::Kind::negative_control,
                   number,
-                  "dummy-" + std::to_string(number + 1),
+                  "negative-control-" + std::to_string(number + 1),
                   extras.size(),
                   parameters.size(),
                   candidate,
@@ -153,7 +154,8 @@ std::vector<std::size_t> Projection::columns(const Structures& structures, std::
   const Structure& s = structures.list[structure];
   const std::size_t start =
       linearisation.own + s.first +
-      (s.kind == Structure::Kind::curve || s.kind == Structure::Kind::dummy ? structures.signature_columns : 0);
+      (s.kind == Structure::Kind::curve || s.kind == Structure::Kind::negative_control ? structures.signature_columns
+                                                                                       : 0);
   std::vector<std::size_t> result(s.count);
   for (std::size_t k = 0; k < s.count; ++k) result[k] = start + k;
   return result;
@@ -290,7 +292,7 @@ double concentrated_p(const Projection& p, const Structures& structures, const B
   double largest = 0, looks = 0;
   for (std::size_t s = 0; s < structures.list.size(); ++s) {
     const Structure::Kind kind = structures.list[s].kind;
-    if (kind == Structure::Kind::dummy) continue;
+    if (kind == Structure::Kind::negative_control) continue;
     for (const Eigen::Index c : p.foreign(structures, s)) {
       if (!(p.surviving(c, c) > visible_share * visible_share * p.full(c, c))) continue;
       largest = std::max(largest, scores.trimmed[c]);

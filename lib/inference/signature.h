@@ -1,5 +1,5 @@
-// What mechanisms, free curves and dummies look like in the recordings once the free parameters of a model are
-// projected out: isolability, the null test and location all read from this projection.
+// What mechanisms, free curves and negative controls look like in the recordings once the free parameters of a model
+// are projected out: isolability, the null test and location all read from this projection.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -13,14 +13,14 @@
 namespace gonio::inference {
 
 // One thing that could structure the residuals: a mechanism, the finite change that it makes at another point than its
-// start, a curve over one condition, or a dummy.
+// start, a curve over one condition, or a negative control.
 struct Structure {
-  enum class Kind { mechanism, change, curve, dummy };
+  enum class Kind { mechanism, change, curve, negative_control };
   Kind kind = Kind::mechanism;
-  std::size_t index = 0;  // candidate, condition, or number of the dummy
+  std::size_t index = 0;  // candidate, condition, or number of the negative control
   std::string name;
   std::size_t first = 0, count = 0;  // its columns among all signature parameters, or among all extras
-  std::size_t shape = 0;             // dummies: the candidate whose freedom it has
+  std::size_t shape = 0;             // negative controls: the candidate whose freedom it has
   std::vector<double> point{};       // changes: the values of the candidate's parameters
 };
 
@@ -38,7 +38,7 @@ class Structures {
   void add_curve(const System& system, std::size_t condition);
   // Smooth random functions of one or two conditions, as many and on the same groups as the candidate has parameters:
   // the same freedom without the physics.
-  void add_dummy(const System& system, std::size_t candidate, std::size_t number, std::uint64_t seed);
+  void add_negative_control(const System& system, std::size_t candidate, std::size_t number, std::uint64_t seed);
 
   std::vector<Structure> list;
   std::vector<Signature> signatures;

@@ -1,8 +1,8 @@
 // A problem made ready for linear algebra: whitened residuals (y - f) / sigma, their derivatives, and the small Gram
 // matrices of single groups from which every fit, fold, projection and score test of the engine is computed.
 //
-// Besides parameters there are extra columns: curves over conditions that no simulator knows (free curves, dummies).
-// They enter linearly and only through their Gram matrices.
+// Besides parameters there are extra columns: curves over conditions that no simulator knows (free curves, negative
+// controls). They enter linearly and only through their Gram matrices.
 //
 // Each group's blocks are dealt into two halves. A held-out group's nuisance parameters are fitted on one half and
 // judged on the other, and the reverse.

@@ -62,7 +62,7 @@ const std::vector<Field<NullTest>>& null_test_fields() {
       number_field("p", &T::p, "", "of residuals as structured as these where nothing is left out").range(0, 1),
       field("significant", &T::significant, "", "true: there is a mismatch beyond noise"),
       field("important", &T::important, "", "true: and it is larger than what matters"),
-      number_field("matters", &T::matters, "", "the smallest effect worth a name, a share")};
+      number_field("smallest_effect", &T::smallest_effect, "", "the smallest effect worth a name, a share")};
   return table;
 }
 
@@ -85,13 +85,13 @@ const std::vector<Field<NegativeControls>>& negative_controls_fields() {
 const std::vector<Field<ScoredHypothesis>>& scored_hypothesis_fields() {
   using T = ScoredHypothesis;
   static const std::vector<Field<T>> table{
-      field("hypothesis", &T::hypothesis, "", "mechanisms switched on together, a dummy, base or unknown")
+      field("hypothesis", &T::hypothesis, "", "mechanisms switched on together, a negative control, base or unknown")
           .always("")
           .needed(),
       number_field("held_out", &T::held_out, "", "score on groups that the fit never saw, unit of held_out"),
       number_field("gain", &T::gain, "", "fall of the held-out mean square in noise units"),
       number_field("gain_sigma", &T::gain_sigma, "", "standard error of the gain over groups"),
-      number_field("effect", &T::effect, "", "what `matters` is held against"),
+      number_field("effect", &T::effect, "", "what `smallest_effect` is held against"),
       field("p_neutral", &T::p_neutral, "", "of \"all its parameters are neutral\"").range(0, 1),
       field("refused", &T::refused, "", "why it is not named; left out: it can be")};
   return table;
@@ -203,7 +203,8 @@ const std::vector<Field<ExplanationEntry>>& explanation_fields() {
       field("fitted", &T::fitted, "", "the same score on those that it saw"),
       field("null_test", &T::null_test, "", "is there a mismatch at all?"),
       field("noise", &T::noise, "", "what the residuals say of the stated noise"),
-      field("dummies", &T::dummies, "", "negative controls: how often nothing would have passed for physics"),
+      field("negative_controls", &T::negative_controls, "",
+            "negative controls: how often nothing would have passed for physics"),
       field("scoreboard", &T::scoreboard, "", "all hypotheses, the best first").always(Value::array()),
       field("isolability", &T::isolability, "", "what these recordings can show").always(Value::array()),
       field("compensation", &T::compensation, "", "free parameters that the missing physics had bent")

@@ -181,7 +181,7 @@ void add_explanations(List& all) {
   all.push_back(part(e + "fitted", "Also of outside.", before_after_fields()));
   all.push_back(part(e + "null_test", "Is there a mismatch?", null_test_fields()));
   all.push_back(part(e + "noise", "Against what was stated.", explained_noise_fields()));
-  all.push_back(part(e + "dummies", "Mechanisms without physics.", negative_controls_fields()));
+  all.push_back(part(e + "negative_controls", "Mechanisms without physics.", negative_controls_fields()));
   all.push_back(part(e + "scoreboard", "One for each hypothesis.", scored_hypothesis_fields()));
   all.push_back(part(e + "isolability", "One for each mechanism that applies.", mechanism_visibility_fields()));
   all.push_back(part(e + "isolability/looks_like", "Mechanisms that are hard to tell apart.", look_alike_fields()));

@@ -13,11 +13,11 @@
 namespace gonio::nrsfm {
 
 struct Followed::Parts {
-  Parts(Sequence s, DeformingModel m, Outlying o, bool free)
-      : sequence(std::move(s)), model(std::move(m)), outlying(std::move(o)), free_scales(free) {}
+  Parts(Sequence s, DeformingModel m, Outliers o, bool free)
+      : sequence(std::move(s)), model(std::move(m)), outliers(std::move(o)), free_scales(free) {}
   Sequence sequence;  // less what does not follow
   DeformingModel model;
-  Outlying outlying;
+  Outliers outliers;
   bool free_scales = false;
   std::vector<std::vector<std::size_t>> seen;     // of every point that takes part: places of frames
   std::vector<std::vector<Eigen::Index>> places;  // the same

@@ -15,7 +15,7 @@
 #include "nrsfm/follow.h"
 #include "nrsfm/manifest_sequences.h"
 #include "nrsfm/near_camera.h"
-#include "nrsfm/outlying.h"
+#include "nrsfm/outliers.h"
 
 namespace gonio::mechanism {
 const Mechanism& tracks_perspective();
@@ -97,13 +97,13 @@ std::vector<std::size_t> numbers(const std::vector<Eigen::Index>& all) {
 }
 
 std::shared_ptr<const Followed::Parts> parts_of(const Solved& solved, double false_alarm) {
-  Outlying outlying = find_outlying(solved, false_alarm);
+  Outliers outliers = find_outliers(solved, false_alarm);
   Solved sound = solved;
-  sound.sequence = without(solved.sequence, outlying.runs);
+  sound.sequence = without(solved.sequence, outliers.runs);
   sound.sequence.truth.reset();  // nobody who measures has it
   sound.sequence.cameras.clear();
   DeformingModel model(settled(sound.sequence, solved_model(sound)));
-  auto parts = std::make_shared<Followed::Parts>(std::move(sound.sequence), std::move(model), std::move(outlying),
+  auto parts = std::make_shared<Followed::Parts>(std::move(sound.sequence), std::move(model), std::move(outliers),
                                                  solved.free_scales);
   const SolvedModel& m = parts->model.start();
   for (const Eigen::Index p : m.points) {
@@ -131,7 +131,7 @@ Followed::Followed(std::shared_ptr<const Parts> parts) : parts_(std::move(parts)
   centre = {m.centre.x(), m.centre.y()};
   layout = parts_->model.layout();
   start = parts_->model.values();
-  outlying = parts_->outlying;
+  outliers = parts_->outliers;
   shape_size.assign(terms, 0.0);
   for (const Eigen::MatrixXd& b : m.basis)
     for (std::size_t k = 0; k < terms; ++k)
@@ -174,7 +174,7 @@ std::vector<Followed::Place> Followed::places(std::span<const double> values, st
 
 const NearCamera& Followed::near_camera() const {
   std::call_once(parts_->near_camera_asked, [&] {
-    const double enough = beyond_noise * std::sqrt(2.0) * outlying.noise;
+    const double enough = beyond_noise * std::sqrt(2.0) * outliers.noise;
     parts_->near_camera = find_near_camera(parts_->sequence, parts_->model.start(), enough);
     parts_->near_camera_known = true;
   });

@@ -30,7 +30,7 @@ struct Run {  // of one point, frames that follow each other; counted from 0
   std::array<double, 2> offset{};  // mean
   double sigma = 0;                // of a coordinate of the mean
 };
-struct Outlying {
+struct Outliers {
   std::vector<Run> runs;         // by point, then frame
   std::size_t observations = 0;  // among so many ...
   std::size_t found = 0;         // ... so many lie outside
@@ -84,7 +84,7 @@ class Followed {
   std::vector<double> shape_size;           // root mean square of a coordinate, of every shape
   Layout layout;
   std::vector<double> start;  // the solver's answer as parameters; kappa is 0
-  Outlying outlying;
+  Outliers outliers;
 
   const std::vector<std::size_t>& seen(std::size_t point) const;  // places of frames
   std::vector<double> observed(std::size_t point) const;          // two numbers for each of them

@@ -58,7 +58,7 @@ RobustTracks::RobustTracks(const Solved& solved) : model_(solved_model(solved, t
     fit_frames();
     fit_perspective();
     if (round == rounds_of_distances) truncate();
-    if (round > 0) fit_remainder(least_distances ? price * typical() : 0);
+    if (round > 0) fit_residual_structure(least_distances ? price * typical() : 0);
     reweigh(least_distances);
   }
   find_leverages();
@@ -70,7 +70,7 @@ void RobustTracks::refit(const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic
     fit_points();
     fit_frames();
     fit_perspective();
-    fit_remainder(0);
+    fit_residual_structure(0);
   }
   find_leverages();
 }
@@ -98,7 +98,7 @@ void RobustTracks::truncate() {
 }
 
 // A C to the model's residuals, from where it stands; at first from their largest singular vectors.
-void RobustTracks::fit_remainder(double ridge) {
+void RobustTracks::fit_residual_structure(double ridge) {
   const Eigen::Index frames = model_.frame_count(), points = model_.point_count(), q = a_.cols();
   if (q == 0) return;
   Eigen::MatrixXd e = Eigen::MatrixXd::Zero(2 * frames, points);

@@ -40,7 +40,7 @@ class RobustTracks {
   void fit_points();
   void fit_frames();
   void fit_perspective();
-  void fit_remainder(double ridge);
+  void fit_residual_structure(double ridge);
   void truncate();
   double typical() const;  // one sigma of a coordinate, from the median
   void reweigh(bool least_distances);

@@ -101,7 +101,7 @@ TEST_F(BrdfFit, HandsItsSamplesOnToExplain) {
   const auto explained = [&](const std::vector<std::string>& fit) {
     const Ended fitted = run(fit);
     EXPECT_EQ(fitted.status, 0) << fitted.err;
-    const Ended ended = tests::Process({"explain", "--dummies", "4"}, folder_.path(), fitted.out).end();
+    const Ended ended = tests::Process({"explain", "--negative-controls", "4"}, folder_.path(), fitted.out).end();
     EXPECT_TRUE(ended.status == 0 || ended.status == 1) << ended.err;
     return manifest::parse_document(ended.out, "explained", folder_.path());
   };

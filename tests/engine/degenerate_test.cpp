@@ -181,7 +181,7 @@ TEST(Degenerate, NothingIsKnown) {
   p.forget_candidates();
   EXPECT_TRUE(explain(p, quick()).named.empty());
   Options none = quick();
-  none.dummies = 0;
+  none.negative_controls = 0;
   p.recorded().conditions.clear();
   EXPECT_TRUE(explain(p, none).named.empty());
 }

@@ -27,7 +27,7 @@ struct Prepared {
   explicit Prepared(std::vector<std::vector<double>> truth)
       : problem(library(), std::move(truth), {{}, 0.1, 0.03}, 21),
         system(problem, 1),
-        options{.draws = 99, .dummies = 6},
+        options{.draws = 99, .negative_controls = 6},
         race(system, options),
         base(race.base(starting_values(problem))) {}
 };
@@ -40,7 +40,7 @@ std::vector<std::vector<double>> square_and_tilt() {
 
 TEST(Folds, AgreeWithOneHypothesisAtATime) {
   const Prepared p(square_and_tilt());
-  const Remainder r = remainder(p.race, p.base, p.options);
+  const ResidualStructure r = residual_structure(p.race, p.base, p.options);
   const Evidence& e = *r.evidence;
   const Linearisation& l = e.projection.linearisation;
   int compared = 0;
@@ -60,7 +60,7 @@ TEST(Folds, AgreeWithOneHypothesisAtATime) {
 
 TEST(Folds, AStepAgainstABoundAtNeutralIsNotTaken) {
   const Prepared p(square_and_tilt());
-  const Remainder r = remainder(p.race, p.base, p.options);
+  const ResidualStructure r = residual_structure(p.race, p.base, p.options);
   const Evidence& e = *r.evidence;
   for (std::size_t s = 0; s < e.structures.list.size(); ++s)
     if (e.structures.list[s].name == "toy.decay" && e.structures.list[s].kind == Structure::Kind::mechanism) {
@@ -81,7 +81,7 @@ TEST(Folds, ChordsReachTheSameFit) {
 
 TEST(Folds, PairsAreRankedByWhatTheyRepairTogether) {
   const Prepared p(square_and_tilt());
-  const Remainder r = remainder(p.race, p.base, p.options);
+  const ResidualStructure r = residual_structure(p.race, p.base, p.options);
   const Screening screening(p.race, r);
   ASSERT_EQ(screening.singles().size(), library().size());
   const std::vector<Entrant> pairs = screening.pairs(10000, 1);

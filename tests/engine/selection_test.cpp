@@ -16,7 +16,7 @@ namespace {
 Options quick(std::uint64_t seed) {
   Options o;
   o.draws = 299;
-  o.dummies = 12;
+  o.negative_controls = 12;
   o.seed = seed;
   return o;
 }

@@ -16,7 +16,7 @@ namespace {
 Options quick(std::uint64_t seed) {
   Options o;
   o.draws = 499;
-  o.dummies = 24;
+  o.negative_controls = 24;
   o.seed = seed;
   return o;
 }

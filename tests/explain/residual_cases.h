@@ -62,7 +62,7 @@ inline std::unique_ptr<explain::Problem> residual_problem(const LeftOut& what, s
 inline double residual_p(const LeftOut& what, std::uint64_t seed) {
   explain::Options options;
   options.draws = 399;
-  options.dummies = 0;
+  options.negative_controls = 0;
   options.seed = seed;
   return explain::null_test(*residual_problem(what, seed), options);
 }

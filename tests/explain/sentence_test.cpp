@@ -16,7 +16,7 @@ using testing::Not;
 Explanation explained(const ToyProblem& problem) {
   Options options;
   options.draws = 199;
-  options.dummies = 4;
+  options.negative_controls = 4;
   return explain(problem, options);
 }
 

@@ -66,7 +66,7 @@ Answer explained(io::HeightMap map) {
       heights_problem({.table = "t", .surface = "", .place = "t.json", .map = std::move(map), .ridges = {}, .lay = {}}),
       {},
       {}};
-  a.e = explain(*a.problem, {.dummies = 8});
+  a.e = explain(*a.problem, {.negative_controls = 8});
   for (const std::size_t c : a.e.named) a.named.push_back(a.problem->candidates()[c].id());
   return a;
 }

@@ -38,7 +38,7 @@ class Misplaced : public testing::Test {
   static explain::ExplainRequest request() {
     explain::ExplainRequest request;
     request.options.draws = 99;
-    request.options.dummies = 2;
+    request.options.negative_controls = 2;
     request.page = *folder() / "page.html";
     return request;
   }

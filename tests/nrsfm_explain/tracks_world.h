@@ -99,10 +99,10 @@ struct Answer {
     return nullptr;
   }
 };
-// Fewer dummies than the program has: a third of the time.
+// Fewer negative controls than the program has: a third of the time.
 inline Options quick() {
   Options options;
-  options.dummies = 6;
+  options.negative_controls = 6;
   return options;
 }
 inline Answer explained(const gonio::nrsfm::Solved& solved, const Options& options = quick()) {

@@ -58,10 +58,10 @@ TEST(RecordedReflectance, GarnetRedHasAnInterface) {
   const World world = cornell("brdf/cornell/garnet_red.brdf", 15);
   ASSERT_EQ(world.rows.size(), 1439u);
   const TablesProblem problem = world.problem();
-  const Explanation all = explain(problem, {.dummies = 8});
+  const Explanation all = explain(problem, {.negative_controls = 8});
   ASSERT_FALSE(all.named.empty()) << all.sentence;
   EXPECT_EQ(problem.candidates()[all.named[0]].id(), "surface.interface") << all.sentence;
-  const Explanation e = explain(problem, {.hypotheses = {"surface.interface"}, .dummies = 8});
+  const Explanation e = explain(problem, {.hypotheses = {"surface.interface"}, .negative_controls = 8});
   ASSERT_EQ(named(problem, e), "surface.interface") << e.sentence;
   const Estimate *f0 = estimate_of(problem, e, "surface.interface@s.f0"),
                  *alpha = estimate_of(problem, e, "surface.interface@s.alpha");

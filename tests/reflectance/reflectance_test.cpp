@@ -139,7 +139,7 @@ TEST(Reflectance, WallsOfRidges) {
         "ridged", {{"ridge_rad", 0.25}, {"alpha_u", 0.2}, {"alpha_v", 0.15}, {"walls", 1}, {"residue_share", share}});
     const World world = paint_world(paint, truth, 14);
     const TablesProblem problem = world.problem();
-    const Explanation e = explain(problem, {.dummies = 4});
+    const Explanation e = explain(problem, {.negative_controls = 4});
     EXPECT_EQ(named(problem, e), share > 0 ? "surface.residue surface.walls" : "surface.walls") << e.sentence;
     const Estimate *walls = estimate_of(problem, e, "surface.walls@s.walls"),
                    *residue = estimate_of(problem, e, "surface.residue@s.residue_share");
@@ -190,7 +190,7 @@ TEST(Reflectance, IntervalsHoldTheTruthAsOftenAsTheySay) {
     const World world = paint_world(
         {.noise = 0.03}, registered("coated-diffuse", {{"albedo", 0.25}, {"f0", 0.045}, {"alpha", 0.3}}), seed);
     const TablesProblem problem = world.problem();
-    const Explanation e = explain(problem, {.dummies = 4});
+    const Explanation e = explain(problem, {.negative_controls = 4});
     ASSERT_EQ(named(problem, e), "surface.interface") << e.sentence;
     for (const auto& [name, value] : {std::pair{"f0", 0.045}, std::pair{"alpha", 0.3}}) {
       const Estimate* x = estimate_of(problem, e, std::string("surface.interface@s.") + name);
@@ -271,7 +271,7 @@ TEST(Reflectance, AGainIsFittedBesideAKnownColour) {
       [&](Vec3 wo, Vec3 wi, double w, double e) { return 0.37 * bright(wo, wi, w, e); }, 12);
   world.rest += R"(, "parameters": {"gain": {"value": 1, "free": true}})";
   const TablesProblem problem = world.problem();
-  const Explanation e = explain(problem, {.dummies = 8});
+  const Explanation e = explain(problem, {.negative_controls = 8});
   EXPECT_EQ(named(problem, e), "") << e.sentence;
   manifest::Document document = world.document();
   problem.apply(e, document);

@@ -182,7 +182,7 @@ std::string page_html(const Judgement& j, const std::vector<Judged>& cases, cons
   page.table(question_table(j));
   page.note(
       "An effect counts as present where its size is at least three times the detection limit that explain "
-      "printed for it, and its share of the signal at least what --matters asks. Whether effects can be told "
+      "printed for it, and its share of the signal at least what --smallest-effect asks. Whether effects can be told "
       "apart is the maker's count: the best other mechanism, at its best size, must leave at least five standard "
       "deviations of the effect (yes) or at most three (no). A condition counts as right if the maker or the "
       "library's own declaration of the true mechanism lists it. An observation counts as affected where the effect, "

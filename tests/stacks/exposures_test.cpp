@@ -29,21 +29,21 @@ struct Outcome {
   }
 };
 
-Outcome run(const manifest::Document& document, double matters = 0.01) {
+Outcome run(const manifest::Document& document, double smallest_effect = 0.01) {
   Outcome r;
   r.document = document;
   std::vector<std::unique_ptr<Problem>> problems = exposures_problems(document);
   r.problem = std::move(problems.at(0));
   Options options;
-  options.matters = matters;
+  options.smallest_effect = smallest_effect;
   r.explanation = explain(*r.problem, options);
   for (const std::size_t c : r.explanation.named) r.named.push_back(r.problem->candidates()[c].id());
   return r;
 }
 
-Outcome run(const ExposureWorld& world, double matters = 0.01) {
+Outcome run(const ExposureWorld& world, double smallest_effect = 0.01) {
   const tests::ScratchFolder folder;
-  return run(record(world, folder.path()), matters);
+  return run(record(world, folder.path()), smallest_effect);
 }
 
 // The sentence and what else ran: for whoever looks at a failure.

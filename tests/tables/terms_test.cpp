@@ -190,7 +190,7 @@ TEST(VolumeTable, IndexAndDispersionShowInTheAngleOfRefraction) {
       w.rows.push_back({theta, lambda, std::asin(std::sin(theta) / eta) + 2e-4 * random.normal(), 2e-4});
     }
   const TablesProblem problem = w.problem();
-  const Explanation e = explain(problem, {.matters = 0.001});
+  const Explanation e = explain(problem, {.smallest_effect = 0.001});
   EXPECT_EQ(named(problem, e), "volume.dispersion") << e.sentence;
 }
 

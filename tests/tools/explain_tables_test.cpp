@@ -165,7 +165,7 @@ TEST_F(ExplainTables, WhatIsWrongIsSaidInOneLine) {
 TEST_F(ExplainTables, WhatLiesBelowOutIsReplacedWithForceOnly) {
   write("d.csv", csv("theta [deg]", degree, 0.08));
   std::vector<std::string> call = quick("d.csv");
-  call.insert(call.end(), {"--dummies", "2", "--html", "page.html", "--out", "o"});
+  call.insert(call.end(), {"--negative-controls", "2", "--html", "page.html", "--out", "o"});
   ASSERT_EQ(explain(call).status, 0);
   ASSERT_TRUE(std::filesystem::exists(folder_ / "o/evidence-tables.csv"));
   write("o/evidence-tables.csv", "mine");

@@ -105,7 +105,7 @@ Illustration ImagesProblem::illustrate(const Explanation& explanation, const std
     const bool named = !explanation.named.empty(), shown = std::ranges::find(worst, image.id) != worst.end();
     std::vector<Box> boxes;
     if (explanation.verdict != Verdict::null)
-      boxes = boxes_of(mismatch_mask(whole, mask_limit, explanation.matters), whole, least_box, most_boxes);
+      boxes = boxes_of(mismatch_mask(whole, mask_limit, explanation.smallest_effect), whole, least_box, most_boxes);
     for (Box& box : boxes) box.group = image.id;
     if (shown) add_pictures(image.id, whole, boxes, named, result);
     if (explanation.verdict == Verdict::null) continue;

@@ -64,13 +64,13 @@ io::Image spread(const std::vector<double>& values, const WholeImage& image, int
   return picture;
 }
 
-std::vector<std::uint8_t> mismatch_mask(const WholeImage& image, double limit, double matters) {
+std::vector<std::uint8_t> mismatch_mask(const WholeImage& image, double limit, double smallest_effect) {
   const std::vector<double> significance = excess(image, false);
   double square = 0, n = 0;
   for (std::size_t i = 0; i < image.counts.size(); ++i)
     if (image.counts[i])
       for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) square += image.observed[c] * image.observed[c], n += 1;
-  const double least = matters * std::sqrt(square / std::max(1.0, n));
+  const double least = smallest_effect * std::sqrt(square / std::max(1.0, n));
   std::vector<std::uint8_t> mask(image.counts.size());
   for (std::size_t i = 0; i < mask.size(); ++i) {
     if (!image.counts[i] || significance[i] < limit) continue;

@@ -19,8 +19,8 @@ struct WholeImage {  // at every `stride`-th pixel of a picture, rows from the t
 // zero where nothing counts. `after`: with the named physics.
 std::vector<double> excess(const WholeImage& image, bool after);
 
-// 1 where the excess is above `limit` standard errors and the residual above `matters` of the picture's rms.
-std::vector<std::uint8_t> mismatch_mask(const WholeImage& image, double limit, double matters);
+// 1 where the excess is above `limit` standard errors and the residual above `smallest_effect` of the picture's rms.
+std::vector<std::uint8_t> mismatch_mask(const WholeImage& image, double limit, double smallest_effect);
 
 // Where the named physics acts: |after - before| over the noise, the mean of the colours, e; where nothing was named
 // (`after` equals `before`), the root of the excess per value of a window of 5 x 5. Shown as e / (e + 3): 0 where

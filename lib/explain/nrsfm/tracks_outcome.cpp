@@ -26,7 +26,7 @@ namespace {
 using gonio::nrsfm::beyond_noise;
 using gonio::nrsfm::Followed;
 using gonio::nrsfm::NearCamera;
-using gonio::nrsfm::Outlying;
+using gonio::nrsfm::Outliers;
 using gonio::nrsfm::Run;
 
 bool is_named(const TracksView& v, const Explanation& e, const std::string& id) {
@@ -78,7 +78,7 @@ std::string scale_remark(const TracksView& v, const Explanation& e) {
 
 // The largest first.
 std::string outlier_remark(const TracksView& v, bool lacking) {
-  const Outlying& o = v.followed.outlying;
+  const Outliers& o = v.followed.outliers;
   std::string text = std::to_string(o.found) + " of " + std::to_string(o.observations) + " observations (" +
                      share_in_words(static_cast<double>(o.found) / static_cast<double>(o.observations)) +
                      ") do not follow, by " + quantity(o.rms_offset, track_unit(v.followed), 3) + " (rms): ";
@@ -101,17 +101,17 @@ std::string outlier_remark(const TracksView& v, bool lacking) {
 
 // Mean square distance beyond noise.
 double excess(const TracksView& v, double score) {
-  return score * score - 2 * v.followed.outlying.noise * v.followed.outlying.noise;
+  return score * score - 2 * v.followed.outliers.noise * v.followed.outliers.noise;
 }
 
 bool lacks_shapes(const TracksView& v, const Explanation& e) {
-  return e.fitted_after > beyond_noise * std::sqrt(2.0) * v.followed.outlying.noise;
+  return e.fitted_after > beyond_noise * std::sqrt(2.0) * v.followed.outliers.noise;
 }
 
 std::string shapes_remark(const TracksView& v, const Explanation& e) {
-  const std::size_t more = std::max<std::size_t>(1, (v.followed.outlying.components + 2) / 3);
+  const std::size_t more = std::max<std::size_t>(1, (v.followed.outliers.components + 2) / 3);
   return "What is left, " + quantity(e.fitted_after, track_unit(v.followed), 3) + " where noise makes " +
-         quantity(std::sqrt(2.0) * v.followed.outlying.noise, track_unit(v.followed), 2) +
+         quantity(std::sqrt(2.0) * v.followed.outliers.noise, track_unit(v.followed), 2) +
          ", no camera makes: the object deforms in more ways than the model. Solve with a rank of " +
          std::to_string(v.followed.terms + more) + ".";
 }
@@ -174,7 +174,7 @@ void upgrade_scale(const TracksView& v, manifest::Document& document) {
 
 void upgrade_outliers(const TracksView& v, manifest::Document& document) {
   manifest::MechanismUse& use = document.mechanisms[mechanism::tracks_outliers().id];
-  for (const Run& run : v.followed.outlying.runs) {
+  for (const Run& run : v.followed.outliers.runs) {
     use.on.push_back(gonio::nrsfm::hidden_name(v.followed.sequence, run.point, run.first, run.last));
     const char* names[] = {"slip_u_px", "slip_v_px"};
     for (std::size_t i = 0; i < 2; ++i) {
@@ -218,7 +218,7 @@ std::string tracks_remarks(const TracksView& v, const Explanation& e) {
   std::string text;
   if (is_named(v, e, mechanism::tracks_perspective().id)) text += perspective_remark(v, e) + " ";
   if (is_named(v, e, mechanism::tracks_scale().id)) text += scale_remark(v, e) + " ";
-  if (!v.followed.outlying.runs.empty()) text += outlier_remark(v, lacks_shapes(v, e)) + " ";
+  if (!v.followed.outliers.runs.empty()) text += outlier_remark(v, lacks_shapes(v, e)) + " ";
   if (lacks_shapes(v, e)) text += shapes_remark(v, e) + " ";
   if (const NearCamera* near = v.followed.asked_nearby();
       near != nullptr && !is_named(v, e, mechanism::tracks_perspective().id))
@@ -229,7 +229,7 @@ std::string tracks_remarks(const TracksView& v, const Explanation& e) {
 void upgrade_tracks(const TracksView& v, const Explanation& e, manifest::Document& document) {
   if (is_named(v, e, mechanism::tracks_perspective().id)) upgrade_perspective(v, e, document);
   if (is_named(v, e, mechanism::tracks_scale().id)) upgrade_scale(v, document);
-  if (!v.followed.outlying.runs.empty() && !lacks_shapes(v, e)) upgrade_outliers(v, document);
+  if (!v.followed.outliers.runs.empty() && !lacks_shapes(v, e)) upgrade_outliers(v, document);
 }
 
 namespace {
@@ -265,7 +265,7 @@ Hypothesis nested_hypothesis(const TracksView& v, const NearCamera& near, std::s
   const double value = near.steps.back().kappa;
   h.parameters.push_back({c.parameters[0], value, near.sigma, near.lower, near.upper, false});
   if (!near.stands) h.refused = "is not what both numbers of shapes agree on";
-  if (near.stands && h.effect < e.matters) h.refused = "smaller than what matters";
+  if (near.stands && h.effect < e.smallest_effect) h.refused = "smaller than what matters";
   return h;
 }
 
@@ -340,7 +340,7 @@ void conclude_shapes(const TracksView& v, std::optional<std::size_t> candidate, 
 }
 
 void conclude_outliers(const TracksView& v, std::size_t candidate, Explanation& e) {
-  const Outlying& o = v.followed.outlying;
+  const Outliers& o = v.followed.outliers;
   const Candidate& c = v.problem.candidates()[candidate];
   Hypothesis h;
   h.name = c.id();
@@ -353,14 +353,14 @@ void conclude_outliers(const TracksView& v, std::size_t candidate, Explanation& 
     const double value = run.offset[k % 2], reach = 1.96 * run.sigma;
     h.parameters.push_back({c.parameters[k], value, run.sigma, value - reach, value + reach, false});
   }
-  const bool matters = h.effect >= e.matters, lacking = lacks_shapes(v, e);
-  if (!matters) h.refused = "smaller than what matters";
+  const bool important = h.effect >= e.smallest_effect, lacking = lacks_shapes(v, e);
+  if (!important) h.refused = "smaller than what matters";
   if (lacking) h.refused = "deformation that the model lacks may look the same";
   e.scoreboard.push_back(h);
   if (lacking) return;
   e.global_p = std::min(e.global_p, o.p);
   e.significant = true;
-  if (!matters) {
+  if (!important) {
     e.minor.push_back(e.scoreboard.size() - 1);
     return;
   }

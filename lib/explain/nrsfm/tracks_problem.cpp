@@ -20,7 +20,7 @@ namespace {
 
 using gonio::nrsfm::Followed;
 using gonio::nrsfm::Layout;
-using gonio::nrsfm::Outlying;
+using gonio::nrsfm::Outliers;
 using gonio::nrsfm::Run;
 
 constexpr double depth_start = 0.05, depth_most = 0.8;  // kappa times the largest radius
@@ -30,7 +30,7 @@ class TracksProblem final : public Problem {
  public:
   explicit TracksProblem(Followed followed)
       : followed_(std::move(followed)),
-        outlying_(followed_.outlying),
+        outliers_(followed_.outliers),
         layout_(followed_.layout),
         start_(followed_.start) {
     for (const double size : followed_.shape_size) extent_ = std::hypot(extent_, size);
@@ -71,7 +71,7 @@ class TracksProblem final : public Problem {
   std::vector<std::size_t> tested_apart() const override {
     std::vector<std::size_t> places;
     for (std::size_t c = 0; c < candidates_.size(); ++c)
-      if (lacking_ || (c + 1 == candidates_.size() && !outlying_.runs.empty())) places.push_back(c);
+      if (lacking_ || (c + 1 == candidates_.size() && !outliers_.runs.empty())) places.push_back(c);
     return places;
   }
   double fit_tolerance() const override { return lacking_ ? 1e-3 : Problem::fit_tolerance(); }
@@ -80,7 +80,7 @@ class TracksProblem final : public Problem {
     for (std::size_t c = 0; c < candidates_.size(); ++c)
       if (candidates_[c].id() == mechanism::tracks_perspective().id) perspective = c;
     conclude_shapes(view(), perspective, e);
-    if (outlying_.runs.empty()) return;
+    if (outliers_.runs.empty()) return;
     conclude_outliers(view(), candidates_.size() - 1, e);
   }
   Illustration illustrate(const Explanation& e, const std::filesystem::path&, manifest::Document&) const override {
@@ -164,9 +164,9 @@ class TracksProblem final : public Problem {
 
   // Their offsets are known before the race and stay where they are.
   void name_outliers() {
-    if (outlying_.runs.empty()) return;
+    if (outliers_.runs.empty()) return;
     Candidate c{&mechanism::tracks_outliers(), {}, {}, {}};
-    for (const Run& run : outlying_.runs) {
+    for (const Run& run : outliers_.runs) {
       c.on.push_back(gonio::nrsfm::hidden_name(followed_.sequence, run.point, run.first, run.last));
       for (std::size_t i = 0; i < 2; ++i) {
         Parameter p;
@@ -182,7 +182,7 @@ class TracksProblem final : public Problem {
 
   void observe() {
     Observations& o = observations_;
-    const double sigma = std::max(outlying_.noise, 1e-9 * extent_);
+    const double sigma = std::max(outliers_.noise, 1e-9 * extent_);
     // Neighbouring frames share their noise; where they are few, the halves of a point need every one.
     const std::size_t frames_a_block = followed_.frames.size() >= 12 + 6 * followed_.terms ? 2 : 1;
     std::uint32_t block = 0;
@@ -228,7 +228,7 @@ class TracksProblem final : public Problem {
   }
 
   Followed followed_;
-  const Outlying& outlying_;
+  const Outliers& outliers_;
   const Layout& layout_;
   std::vector<double> start_;
   double extent_ = 0;  // root mean square of a coordinate

@@ -226,7 +226,7 @@ void add_effects(const Stack& stack, const Effects& effects, const Explanation& 
     order.push_back({-sum, g});
     std::vector<std::uint8_t> counts(effects.effect[g].size());
     for (std::size_t i = 0; i < counts.size(); ++i)
-      counts[i] = effects.effect[g][i] > beyond && effects.share[g][i] > e.matters;
+      counts[i] = effects.effect[g][i] > beyond && effects.share[g][i] > e.smallest_effect;
     for (Box& box : boxes_of(counts, effects, stack.images[g].id)) result.boxes.push_back(box);
     if (out.empty()) continue;
     const io::Image picture = effect_picture(stack, effects, g);

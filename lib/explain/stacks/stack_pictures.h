@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "explain/engine.h"
 #include "explain/stacks/reading_chain.h"
 #include "explain/stacks/stack_sites.h"
-#include "inference/explanation.h"
 
 namespace gonio::explain::stacks {
 

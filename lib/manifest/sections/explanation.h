@@ -95,13 +95,13 @@ struct HeldOutScore {
 struct NullTest {
   double p = not_known;
   std::optional<bool> significant, important;
-  double matters = not_known;
+  double smallest_effect = not_known;
 };
 struct ExplainedNoise {
   double factor = not_known;
   std::int64_t blocks_set_aside = 0;
 };
-struct NegativeControls {  // "dummies"
+struct NegativeControls {
   std::int64_t run = 0;
   double passed_share = not_known;
 };
@@ -161,7 +161,7 @@ struct ExplanationEntry {
   BeforeAfter fitted;
   NullTest null_test;
   ExplainedNoise noise;
-  NegativeControls dummies;
+  NegativeControls negative_controls;
   std::vector<ScoredHypothesis> scoreboard;
   std::vector<MechanismVisibility> isolability;
   std::vector<ShiftedParameter> compensation;

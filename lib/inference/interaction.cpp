@@ -1,5 +1,5 @@
 // See crossing.h.
-#include "inference/crossing.h"
+#include "inference/interaction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,14 +73,14 @@ Sums over_blocks(const System& system, const Eigen::MatrixXd& projected, Eigen::
 
 }  // namespace
 
-std::optional<Crossing> crossing(const System& system, const Fit& fit) {
+std::optional<Interaction> interaction(const System& system, const Fit& fit) {
   const Observations& o = system.observations();
   const std::vector<Pair> pairs = pairs_of(o.conditions);
   const LawData data(system, fit.values, fit.inner);
   if (pairs.empty() || data.blocks() < least_blocks) return std::nullopt;
   std::vector<std::vector<double>> ranks;
   for (const Condition& c : o.conditions) ranks.push_back(ranks_of(system, c));
-  Crossing best;
+  Interaction best;
   double largest = 0, rows = 0, norm = 0, squares = 0, looks = 0;
   Sums at_best;
   for (std::size_t first = 0; first < pairs.size(); first += columns_at_once) {

@@ -1,5 +1,5 @@
 // See round.h.
-#include "inference/round.h"
+#include "inference/forward_step.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ void sort_runners(std::vector<Runner>& runners) {
 
 }  // namespace
 
-Round::Round(const Race& race, const Effort& effort, const Model& model, const Remainder& left)
+ForwardStep::ForwardStep(const Race& race, const Effort& effort, const Model& model, const ResidualStructure& left)
     : race_(race), effort_(effort), model_(model), left_(left), screening_(race, left) {
   if (screening_.singles().empty()) return;
   kept_ = race.slopes_at(model);
@@ -47,7 +47,7 @@ Round::Round(const Race& race, const Effort& effort, const Model& model, const R
   polish_leaders();
 }
 
-std::vector<Hypothesis> Round::screened_out() const {
+std::vector<Hypothesis> ForwardStep::screened_out() const {
   std::vector<Hypothesis> list;
   for (std::size_t k = fitted_; k < screening_.singles().size(); ++k) {
     const Entrant& e = screening_.singles()[k];
@@ -67,13 +67,13 @@ std::vector<Hypothesis> Round::screened_out() const {
   return list;
 }
 
-bool Round::plainer(const Runner& a, const Runner& b) const {
+bool ForwardStep::plainer(const Runner& a, const Runner& b) const {
   const std::vector<std::size_t>&of_a = a.hypothesis.candidates, &of_b = b.hypothesis.candidates;
   const std::size_t finer_a = finer_ones(race_, of_a), finer_b = finer_ones(race_, of_b);
   return finer_a != finer_b ? finer_a < finer_b : numbers_of(race_, of_a) < numbers_of(race_, of_b);
 }
 
-std::optional<std::size_t> Round::winner() const {
+std::optional<std::size_t> ForwardStep::winner() const {
   std::optional<std::size_t> best;
   for (std::size_t k = 0; k < runners_.size() && !best; ++k)
     if (passes(runners_[k]) && !runners_[k].taken) best = k;
@@ -89,7 +89,7 @@ std::optional<std::size_t> Round::winner() const {
   return plainest;
 }
 
-std::optional<Runner> Round::next() {
+std::optional<Runner> ForwardStep::next() {
   while (const std::optional<std::size_t> k = winner()) {
     Runner& r = runners_[*k];
     r = polished(r);
@@ -100,16 +100,16 @@ std::optional<Runner> Round::next() {
   return std::nullopt;
 }
 
-Runner Round::polished(const Runner& r) const {
+Runner ForwardStep::polished(const Runner& r) const {
   if (r.polished) return r;
   Runner result{race_.changed(r.model, r.model.candidates), {}, true, r.taken};
   const std::size_t looks = screening_.singles().size() + (r.hypothesis.candidates.size() > 1 ? pairs_ : 0);
-  result.hypothesis = race_.judged(model_, result.model, r.hypothesis.candidates, left_.dummies, looks);
+  result.hypothesis = race_.judged(model_, result.model, r.hypothesis.candidates, left_.negative_controls, looks);
   return result;
 }
 
 // From where the screening says; a strongly nonlinear mechanism alone also from the point that promises most.
-Runner Round::fitted(const Entrant& e, std::size_t looks) const {
+Runner ForwardStep::fitted(const Entrant& e, std::size_t looks) const {
   std::vector<double> begun;
   for (const std::size_t c : model_.candidates)
     for (const std::size_t p : race_.system().problem().candidates()[c].parameters)
@@ -134,11 +134,11 @@ Runner Round::fitted(const Entrant& e, std::size_t looks) const {
       if (other.fit.cost < r.model.fit.cost) r.model = std::move(other);
     }
   }
-  r.hypothesis = race_.judged(model_, r.model, e.candidates, left_.dummies, looks, &kept_);
+  r.hypothesis = race_.judged(model_, r.model, e.candidates, left_.negative_controls, looks, &kept_);
   return r;
 }
 
-void Round::run_singles() {
+void ForwardStep::run_singles() {
   const std::vector<Entrant>& singles = screening_.singles();
   double best = 0;
   for (; fitted_ < std::min(effort_.fits, singles.size()); ++fitted_) {
@@ -152,7 +152,7 @@ void Round::run_singles() {
 
 // Two effects that cancel in the mean help only together; and one that imitates two may hide both. A pair is tried
 // where no single one passes, or where it reaches clearly further than every pair that holds the best single one.
-void Round::run_pairs() {
+void ForwardStep::run_pairs() {
   pairs_ = std::min(screening_.pair_count(), effort_.pairs);
   const auto best = std::find_if(runners_.begin(), runners_.end(), passes);
   std::vector<Entrant> pairs = screening_.pairs(effort_.pairs, most_pairs_fitted);
@@ -180,7 +180,7 @@ void Round::run_pairs() {
   }
 }
 
-void Round::admit_pairs() {
+void ForwardStep::admit_pairs() {
   for (const Entrant& e : passed_over_) {
     std::erase_if(runners_, [&](const Runner& r) { return r.hypothesis.candidates == e.candidates; });
     runners_.push_back(fitted(e, screening_.singles().size() + pairs_));
@@ -190,7 +190,7 @@ void Round::admit_pairs() {
 }
 
 // Who is near the best is fitted to the end before one is chosen: in a long valley chords stop short.
-void Round::polish_leaders() {
+void ForwardStep::polish_leaders() {
   sort_runners(runners_);
   const double best = runners_.empty() ? 0 : runners_[0].hypothesis.gain;
   for (std::size_t k = 0; k < std::min(most_leaders, runners_.size()); ++k)
@@ -199,7 +199,7 @@ void Round::polish_leaders() {
 }
 
 // Does the pair promise more than the better of its two does alone?
-bool Round::more_than_either(const Entrant& pair) const {
+bool ForwardStep::more_than_either(const Entrant& pair) const {
   return std::none_of(screening_.singles().begin(), screening_.singles().end(), [&](const Entrant& single) {
     if (single.candidates[0] != pair.candidates[0] && single.candidates[0] != pair.candidates[1]) return false;
     const Gain apart = gain(single.held_out, pair.held_out);

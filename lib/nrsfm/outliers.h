@@ -20,7 +20,7 @@
 
 namespace gonio::nrsfm {
 
-Outlying find_outlying(const Solved& solved, double false_alarm);
+Outliers find_outliers(const Solved& solved, double false_alarm);
 
 // The sequence with those observations hidden.
 Sequence without(const Sequence& sequence, const std::vector<Run>& runs);

@@ -1,5 +1,5 @@
-// See race.h: what is left in the residuals of a model. The null test, location, free curves and dummies all share one
-// projection.
+// See race.h: what is left in the residuals of a model. The null test, location, free curves and negative controls all
+// share one projection.
 #include <algorithm>
 #include <cmath>
 
@@ -18,9 +18,10 @@ Competitor linear_competitor(const Race& race, const Evidence& e, std::size_t s)
   const Structure& structure = e.structures.list[s];
   Competitor result;
   Hypothesis& h = result.hypothesis;
-  h.kind = structure.kind == Structure::Kind::dummy ? Hypothesis::Kind::dummy : Hypothesis::Kind::free_curve;
+  h.kind = structure.kind == Structure::Kind::negative_control ? Hypothesis::Kind::negative_control
+                                                               : Hypothesis::Kind::free_curve;
   h.name = structure.name;
-  if (h.kind == Hypothesis::Kind::dummy) h.candidates = {structure.shape};
+  if (h.kind == Hypothesis::Kind::negative_control) h.candidates = {structure.shape};
   result.condition = structure.index;
   const std::vector<Eigen::Index> places = e.projection.foreign(e.structures, s);
   const HeldOut& before = e.folds->own();
@@ -58,16 +59,16 @@ void gather(const Race& race, const Model& model, const Options& options, Struct
   for (const std::size_t c : race.open_to(model)) structures.add_changes(system, model.fit.values, c);
   for (std::size_t c = 0; c < system.observations().conditions.size(); ++c) structures.add_curve(system, c);
   const std::vector<std::size_t>& shapes = race.allowed();
-  for (std::size_t d = 0; d < options.dummies && !shapes.empty(); ++d)
-    structures.add_dummy(system, shapes[d % shapes.size()], d, options.seed);
+  for (std::size_t d = 0; d < options.negative_controls && !shapes.empty(); ++d)
+    structures.add_negative_control(system, shapes[d % shapes.size()], d, options.seed);
 }
 
 void run_competitors(const Race& race, const Model& model, const Options& options,
-                     const std::vector<double>& p_of_dummies, Remainder& r) {
+                     const std::vector<double>& p_of_negative_controls, ResidualStructure& r) {
   const std::vector<Structure>& list = r.evidence->structures.list;
   std::size_t passed = 0, number = 0;
   for (std::size_t s = 0; s < list.size(); ++s) {
-    if (list[s].kind != Structure::Kind::curve && list[s].kind != Structure::Kind::dummy) continue;
+    if (list[s].kind != Structure::Kind::curve && list[s].kind != Structure::Kind::negative_control) continue;
     Competitor c = linear_competitor(race, *r.evidence, s);
     Hypothesis& h = c.hypothesis;
     h.held_out *= model.held_out.score();
@@ -75,20 +76,21 @@ void run_competitors(const Race& race, const Model& model, const Options& option
       r.curves.push_back(std::move(c));
       continue;
     }
-    h.wald_p = p_of_dummies[number++];
-    passed += h.gain > h.gain_sigma && h.wald_p < options.level && h.effect >= options.matters;
-    r.dummies.push_back(std::move(h));
+    h.wald_p = p_of_negative_controls[number++];
+    passed += h.gain > h.gain_sigma && h.wald_p < options.level && h.effect >= options.smallest_effect;
+    r.negative_controls.push_back(std::move(h));
   }
   std::stable_sort(r.curves.begin(), r.curves.end(),
                    [](const Competitor& a, const Competitor& b) { return a.hypothesis.gain > b.hypothesis.gain; });
-  std::stable_sort(r.dummies.begin(), r.dummies.end(),
+  std::stable_sort(r.negative_controls.begin(), r.negative_controls.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.gain > b.gain; });
-  r.false_alarm = r.dummies.empty() ? 0 : static_cast<double>(passed) / static_cast<double>(r.dummies.size());
+  r.false_alarm =
+      r.negative_controls.empty() ? 0 : static_cast<double>(passed) / static_cast<double>(r.negative_controls.size());
 }
 
 }  // namespace
 
-Remainder remainder(const Race& race, const Model& model, const Options& options) {
+ResidualStructure residual_structure(const Race& race, const Model& model, const Options& options) {
   const System& system = race.system();
   const auto evidence = std::make_shared<Evidence>();
   Structures& structures = evidence->structures;
@@ -98,28 +100,28 @@ Remainder remainder(const Race& race, const Model& model, const Options& options
   evidence->folds = std::make_unique<Folds>(system, p.linearisation);
   BlockScores& scores = evidence->scores;
   std::vector<Look> looks;
-  std::vector<stats::ScoreFamily> dummy;
+  std::vector<stats::ScoreFamily> negative_control;
   for (std::size_t s = 0; s < structures.list.size(); ++s) {
     const Structure::Kind kind = structures.list[s].kind;
-    if (kind == Structure::Kind::dummy) dummy.push_back(std::move(scores.families[s]));
-    if (kind != Structure::Kind::dummy)
+    if (kind == Structure::Kind::negative_control) negative_control.push_back(std::move(scores.families[s]));
+    if (kind != Structure::Kind::negative_control)
       looks.push_back({std::move(scores.families[s]), of_single_groups(system, structures.list[s])});
   }
   scores.families.clear();
-  Remainder r;
+  ResidualStructure r;
   r.global_p = global_p(looks, scores.blocks, scores.inflation, options.draws, options.seed);
   r.global_p = std::min(r.global_p, price_of_further_looks * concentrated_p(p, structures, scores));
-  r.trail = trail(system, model.fit.values);
-  if (r.trail) r.global_p = std::min(r.global_p, price_of_further_looks * r.trail->p);
-  if (r.global_p > options.level) r.crossing = crossing(system, model.fit);
-  if (r.crossing) r.global_p = std::min(r.global_p, price_of_further_looks * r.crossing->p);
-  const stats::SignFlipResult dummy_test =
-      stats::sign_flip_test(dummy, scores.blocks, scores.inflation, 1, options.seed);
+  r.serial_correlation = serial_correlation(system, model.fit.values);
+  if (r.serial_correlation) r.global_p = std::min(r.global_p, price_of_further_looks * r.serial_correlation->p);
+  if (r.global_p > options.level) r.interaction = interaction(system, model.fit);
+  if (r.interaction) r.global_p = std::min(r.global_p, price_of_further_looks * r.interaction->p);
+  const stats::SignFlipResult negative_control_test =
+      stats::sign_flip_test(negative_control, scores.blocks, scores.inflation, 1, options.seed);
   r.inflation = inflation(system, p, structures, scores);
   r.isolability = isolability(system, p, structures, scores, r.inflation, options);
   r.conditions = locate(system, p, structures);
   r.evidence = evidence;
-  run_competitors(race, model, options, dummy_test.p, r);
+  run_competitors(race, model, options, negative_control_test.p, r);
   return r;
 }
 

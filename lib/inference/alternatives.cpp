@@ -59,20 +59,20 @@ bool was_put_aside(const Selection& s, const std::vector<std::size_t>& candidate
                      [&](const PutAside& p) { return same_set(p.candidates, candidates); });
 }
 
-struct Equal {
+struct Alternative {
   std::size_t candidate = 0;
   double gain = 0, apart = 0;  // held out; block z by which the winner is better
   bool form = false;           // a finer form of what is named
 };
 
-std::vector<Equal> equals_of(const Race& race, const Effort& effort, const Selection& s, std::size_t place,
-                             const Slopes& kept) {
+std::vector<Alternative> alternatives_of(const Race& race, const Effort& effort, const Selection& s, std::size_t place,
+                                         const Slopes& kept) {
   const std::size_t named = s.model.candidates[place];
   std::vector<std::size_t> others = s.model.candidates;
   std::erase(others, named);
   const Model rest = race.changed(s.model, others, &kept);
   const std::vector<std::size_t> open = race.open_to(rest);
-  std::vector<Equal> equals;
+  std::vector<Alternative> alternatives;
   std::size_t tried = 0;
   for (const std::size_t other : stand_ins(race, s, named)) {
     if (std::find(open.begin(), open.end(), other) == open.end()) continue;
@@ -88,10 +88,11 @@ std::vector<Equal> equals_of(const Race& race, const Effort& effort, const Selec
     if (!h.refused.empty()) continue;
     const bool form = race.system().problem().candidates()[other].finer && nearly_all(rest, s.model, exchanged);
     if (form || as_good(rest, s.model, exchanged, 2, 0.5))
-      equals.push_back({other, h.gain, block_z(exchanged.held_out, s.model.held_out), form});
+      alternatives.push_back({other, h.gain, block_z(exchanged.held_out, s.model.held_out), form});
   }
-  std::stable_sort(equals.begin(), equals.end(), [](const Equal& a, const Equal& b) { return a.gain > b.gain; });
-  return equals;
+  std::stable_sort(alternatives.begin(), alternatives.end(),
+                   [](const Alternative& a, const Alternative& b) { return a.gain > b.gain; });
+  return alternatives;
 }
 
 // Pairs that share nothing with the two that won, and judge as well as they do.
@@ -115,7 +116,7 @@ void find_other_pairs(const Race& race, const Options& options, const Effort& ef
     other.model = race.changed(other.model, e.candidates);
     if (!race.judged(s.base, other.model, e.candidates, {}, 1).refused.empty()) continue;
     if (!as_good(s.base, s.model, other.model, 2, 0.5)) continue;
-    other.after = remainder(race, other.model, options);
+    other.after = residual_structure(race, other.model, options);
     if (objection(race.system().problem(), other, options).empty()) s.instead.push_back(e.candidates);
   }
 }
@@ -136,16 +137,16 @@ bool nearly_all(const Model& before, const Model& best, const Model& other) {
   return gain(before.held_out, other.held_out).mean >= (1 - distinct_share) * gain(before.held_out, best.held_out).mean;
 }
 
-void find_equals(const Race& race, const Options& options, const Effort& effort, Selection& s) {
+void find_alternatives(const Race& race, const Options& options, const Effort& effort, Selection& s) {
   if (s.model.candidates.empty()) return;
   const Slopes kept = race.slopes_at(s.model);
   for (std::size_t place = 0; place < s.model.candidates.size(); ++place) {
-    std::vector<Equal> equals = equals_of(race, effort, s, place, kept);
-    for (double limit = 2; equals.size() + 1 > set_size && limit >= 1; limit -= 0.5)
-      std::erase_if(equals, [&](const Equal& e) { return !e.form && e.apart > limit; });
-    if (equals.empty()) continue;
+    std::vector<Alternative> alternatives = alternatives_of(race, effort, s, place, kept);
+    for (double limit = 2; alternatives.size() + 1 > set_size && limit >= 1; limit -= 0.5)
+      std::erase_if(alternatives, [&](const Alternative& e) { return !e.form && e.apart > limit; });
+    if (alternatives.empty()) continue;
     std::vector<std::size_t> set = {s.model.candidates[place]};
-    for (const Equal& e : equals) set.push_back(e.candidate);
+    for (const Alternative& e : alternatives) set.push_back(e.candidate);
     s.not_told_apart.push_back(std::move(set));
   }
   if (s.model.candidates.size() == 2) find_other_pairs(race, options, effort, race.slopes_at(s.base), s);

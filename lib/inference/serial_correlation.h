@@ -12,13 +12,13 @@
 
 namespace gonio::inference {
 
-struct Trail {
+struct SerialCorrelation {
   std::size_t condition = 0;
   double p = 1;       // among all conditions
   double power = 0;   // mean square of the structure in noise units
-  double effect = 0;  // what --matters is held against
+  double effect = 0;  // what --smallest-effect is held against
 };
 // The condition along which neighbours agree most; nothing where there is no condition.
-std::optional<Trail> trail(const System& system, const std::vector<double>& values);
+std::optional<SerialCorrelation> serial_correlation(const System& system, const std::vector<double>& values);
 
 }  // namespace gonio::inference

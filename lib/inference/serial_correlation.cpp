@@ -1,5 +1,5 @@
 // See trail.h.
-#include "inference/trail.h"
+#include "inference/serial_correlation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +41,7 @@ Sums along(const System& system, const Condition& condition, const std::vector<d
 
 }  // namespace
 
-std::optional<Trail> trail(const System& system, const std::vector<double>& values) {
+std::optional<SerialCorrelation> serial_correlation(const System& system, const std::vector<double>& values) {
   const Observations& o = system.observations();
   if (o.conditions.empty()) return std::nullopt;
   const std::vector<double> residual = system.raw_residual(values);
@@ -54,7 +54,7 @@ std::optional<Trail> trail(const System& system, const std::vector<double>& valu
     }
   std::vector<Sums> sums(o.conditions.size());
   parallel_for(0, sums.size(), [&](std::size_t c) { sums[c] = along(system, o.conditions[c], residual); });
-  Trail best;
+  SerialCorrelation best;
   double largest = 0;
   for (std::size_t c = 0; c < sums.size(); ++c) {
     const Sums& s = sums[c];

@@ -13,13 +13,13 @@
 
 namespace gonio::inference {
 
-struct Crossing {
+struct Interaction {
   std::size_t first = 0, second = 0;  // conditions
   double p = 1;                       // among all pairs
   double power = 0;                   // mean square of the structure in noise units
-  double effect = 0;                  // what --matters is held against
+  double effect = 0;                  // what --smallest-effect is held against
 };
 // The pair that tells most; nothing where there are no two conditions.
-std::optional<Crossing> crossing(const System& system, const Fit& fit);
+std::optional<Interaction> interaction(const System& system, const Fit& fit);
 
 }  // namespace gonio::inference

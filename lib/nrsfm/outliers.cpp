@@ -1,5 +1,5 @@
 // See outlying.h.
-#include "nrsfm/outlying.h"
+#include "nrsfm/outliers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,7 +101,7 @@ double tail(double d, double freedom) {
   return std::exp(-0.5 * freedom * std::log1p(d / freedom));
 }
 
-void gather_runs(const RobustTracks& fit, const Flags& outside, double sigma, Outlying& result) {
+void gather_runs(const RobustTracks& fit, const Flags& outside, double sigma, Outliers& result) {
   const SolvedModel& m = fit.model();
   double squares = 0;
   for (Eigen::Index p = 0; p < outside.cols(); ++p)
@@ -151,7 +151,7 @@ double held_out(const RobustTracks& fit, const Flags& outside, bool with) {
 
 }  // namespace
 
-Outlying find_outlying(const Solved& solved, double false_alarm) {
+Outliers find_outliers(const Solved& solved, double false_alarm) {
   RobustTracks fit(solved);
   Eigen::ArrayXXd d = distances_of(fit);
   const double n = static_cast<double>(finite(d.reshaped()).size()), freedom = fit.freedom();
@@ -169,7 +169,7 @@ Outlying find_outlying(const Solved& solved, double false_alarm) {
     fit.refit(outside);
     d = distances_of(fit);
   }
-  Outlying result;
+  Outliers result;
   result.observations = static_cast<std::size_t>(n);
   for (const double one : finite(d.reshaped())) result.p = std::min(result.p, n * tail(one, freedom));
   const double sigma = std::sqrt(variance_of(finite(squares_of(fit).reshaped())));

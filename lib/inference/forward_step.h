@@ -15,10 +15,10 @@ struct Runner {
   bool taken = false;     // next() has given it
 };
 
-class Round {
+class ForwardStep {
  public:
   // All of them outlive the round.
-  Round(const Race& race, const Effort& effort, const Model& model, const Remainder& left);
+  ForwardStep(const Race& race, const Effort& effort, const Model& model, const ResidualStructure& left);
 
   const std::vector<Runner>& runners() const { return runners_; }
   // Those that the screening left behind, as lines of the scoreboard.
@@ -43,7 +43,7 @@ class Round {
   const Race& race_;
   const Effort& effort_;
   const Model& model_;
-  const Remainder& left_;
+  const ResidualStructure& left_;
   Screening screening_;
   Slopes kept_;
   std::vector<Runner> runners_;
