@@ -53,10 +53,6 @@ double positive(const manifest::Parameter& parameter, const std::string& place) 
 
 }  // namespace
 
-std::span<const CameraModelInfo> camera_models() {
-  return models;
-}
-
 const CameraModelInfo& camera_model_info(const std::string& name, const std::string& place) {
   const auto found = std::ranges::find(models, std::string_view(name), &CameraModelInfo::name);
   if (found != models.end()) return *found;

@@ -47,7 +47,6 @@ struct CameraModelInfo {
   bool perspective;  // has focal lengths
   std::string_view sentence;
 };
-std::span<const CameraModelInfo> camera_models();
 const CameraModelInfo& camera_model_info(const std::string& name, const std::string& place);  // Error(data) for others
 std::size_t distortion_index(const std::string& name, const std::string& place);              // Error(data) for others
 

@@ -1,6 +1,6 @@
-// A sequence with a solver's answer, brought to the form in which it can be asked what the solver's camera left out
-// (deforming_model.h; no matrix library here, for the rooms above). Observations that do not follow have been found and
-// take no part (outlying.h).
+// A sequence of tracks and a solver's reconstruction of it, in the form in which `explain` tests what the solver's
+// camera model left out (the model itself: deforming_model.h). Outliers were found beforehand and are excluded
+// (outliers.h). Rooms above include this header, so no matrix library is in it.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -25,46 +25,46 @@ struct Layout {
   std::size_t count = 0;
 };
 
-struct Run {  // of one point, frames that follow each other; counted from 0
+struct Run {  // outliers of one point in consecutive frames, first and last included; counted from 0
   std::size_t point = 0, first = 0, last = 0;
-  std::array<double, 2> offset{};  // mean
-  double sigma = 0;                // of a coordinate of the mean
+  std::array<double, 2> offset{};  // mean distance from the prediction
+  double sigma = 0;                // standard error of one coordinate of that mean
 };
 struct Outliers {
   std::vector<Run> runs;         // by point, then frame
-  std::size_t observations = 0;  // among so many ...
-  std::size_t found = 0;         // ... so many lie outside
-  double p = 1;                  // chance of one as far out as the farthest, where noise is normal
-  double rms_offset = 0;         // of those found
-  std::size_t components = 0;    // that many points have in many frames and no camera makes: of shapes that are lacking
-  double noise = 0;              // one sigma of a coordinate, see robust_tracks.h
-  // RMS distance of sound observations on one half of a point's frames from where the other half, with and without
-  // those found, puts the point.
+  std::size_t observations = 0;  // that were tested
+  std::size_t found = 0;         // outliers among them
+  double p = 1;                  // probability, under normal noise, of an observation as far out as the farthest
+  double rms_offset = 0;         // of the outliers from their predictions
+  std::size_t components = 0;  // basis shapes that the model lacks: shared by many points and frames, made by no camera
+  double noise = 0;            // standard deviation of a coordinate, see robust_tracks.h
+  // RMS distance of inliers in one half of a point's frames from their prediction by the other half, which was fitted
+  // with or without the outliers.
   double held_out_with = 0, held_out_without = 0;
 };
 
-inline constexpr double beyond_noise = 1.5;  // root mean square of what is left, over the noise: something is
+inline constexpr double beyond_noise = 1.5;  // RMS residual over noise from which on the model lacks something
 
-// Perspective on top of as many shapes as the solver has, and one more; see near_camera.h. Distances are root mean
-// squares, in the tracks' unit.
+// Test of perspective in the presence of as many basis shapes as the solver has, and of one more; see near_camera.h.
+// Errors are RMS, in the tracks' unit.
 struct NearCamera {
-  static constexpr std::size_t stretches = 8;  // of frames: witnesses over time
+  static constexpr std::size_t stretches = 8;  // consecutive parts of the sequence, each judged by itself
   struct Step {
     std::size_t shapes = 0;
     double fitted_without = 0, fitted_with = 0, held_out_without = 0, held_out_with = 0;
-    double log_gain = 0;                         // held out, mean over points of log(without / with)
-    double t_of_points = 0, t_of_stretches = 0;  // of that, by points and by stretches of frames
+    double log_gain = 0;                         // mean over points of log(held_out_without / held_out_with)
+    double t_of_points = 0, t_of_stretches = 0;  // its t statistic over points, and over stretches of frames
     double kappa = 0, sigma = 0;
-    double depth = 0;            // largest, along the line of sight
-    double surviving_share = 0;  // of its signature, after all that the shapes and frames can imitate
-    double visible_from = 0;     // share of the distance that depths must reach for perspective to show
+    double depth = 0;            // of the object along the line of sight, its largest value
+    double surviving_share = 0;  // of perspective's signature that shapes and poses cannot imitate, 0 to 1
+    double visible_from = 0;     // depth over distance from which on perspective would be significant
   };
-  bool lacking = false;  // shapes, with weights free in every frame; nothing else is known where none is
+  bool lacking = false;  // the model lacks basis shapes; if not, nothing else was computed
   std::vector<Step> steps;
-  double of_a_shape = 0;  // log gain of the next shape by itself
-  bool stands = false;
-  double sigma = 0, lower = 0, upper = 0;               // of the last step's kappa; 95 %
-  std::vector<double> residual_without, residual_with;  // of the first step: two numbers for each of seen(), by points
+  double of_a_shape = 0;                                // log gain of one more basis shape without perspective
+  bool stands = false;                                  // perspective is named
+  double sigma = 0, lower = 0, upper = 0;               // of kappa in the last step: standard error, 95 % interval
+  std::vector<double> residual_without, residual_with;  // of the first step, (u, v) for each of seen(), point by point
 };
 
 class Followed {
@@ -74,12 +74,12 @@ class Followed {
 
   std::string sequence, reconstruction;          // ids
   bool free_scales = false;                      // the solver gave every frame a scale of its own
-  std::optional<double> inverse_focal;           // switched on in the manifest: tracks.perspective
-  bool perspective = false;                      // as the sequence says
-  std::optional<std::array<double, 4>> pinhole;  // fx, fy, cx, cy, px; as the sequence says
+  std::optional<double> inverse_focal;           // of tracks.perspective, where the manifest has switched it on
+  bool perspective = false;                      // the sequence states a perspective camera
+  std::optional<std::array<double, 4>> pinhole;  // fx, fy, cx, cy in px, where the sequence states them
   std::size_t all_frames = 0, all_points = 0;
-  std::vector<std::size_t> frames, points;  // those that take part
-  std::size_t terms = 0;                    // shapes
+  std::vector<std::size_t> frames, points;  // that are used
+  std::size_t terms = 0;                    // number of basis shapes
   std::array<double, 2> centre{};           // c0
   std::vector<double> shape_size;           // root mean square of a coordinate, of every shape
   Layout layout;
@@ -96,8 +96,8 @@ class Followed {
     std::array<double, 2> picture{};  // without perspective, from c0
   };
   std::vector<Place> places(std::span<const double> values, std::size_t point) const;
-  const NearCamera& near_camera() const;   // found at the first call
-  const NearCamera* asked_nearby() const;  // null where nobody has called, or no shapes are lacking
+  const NearCamera& near_camera() const;   // computed at the first call
+  const NearCamera* asked_nearby() const;  // null before that, or where no basis shapes are lacking
 
  private:
   std::shared_ptr<const Parts> parts_;
@@ -105,8 +105,8 @@ class Followed {
 
 // Reconstructions in one frame of reference for the whole sequence, whose camera is (scaled) orthographic.
 bool has_followed(const manifest::Document& document);
-// One for each sequence: of its reconstructions the one that reprojects best. `false_alarm`: of observations that do
-// not follow, a sequence.
+// One for each sequence, from its reconstruction with the smallest reprojection error. `false_alarm`: probability that
+// a sequence without outliers has one named.
 std::vector<Followed> followed_tracks(const manifest::Document& document, double false_alarm);
 std::vector<std::filesystem::path> followed_files(const manifest::Document& document);
 

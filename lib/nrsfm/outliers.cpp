@@ -1,4 +1,4 @@
-// See outlying.h.
+// See outliers.h.
 #include "nrsfm/outliers.h"
 
 #include <algorithm>

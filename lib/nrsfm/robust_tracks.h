@@ -1,4 +1,4 @@
-// Robust fit of a solver's model to all tracks; see outlying.h.
+// Robust fit of a solver's model to all tracks; see outliers.h.
 //
 // What the model leaves out is no outlier. A scale for every frame and perspective are fitted whether the solver has
 // them or not (kappa of deforming_model.h: (u - c0) (1 + kappa s q_z) + c0 is what a camera without it would see).

@@ -207,34 +207,4 @@ PoseList read_pose_files(std::span<const std::filesystem::path> paths, const Pos
   return all;
 }
 
-JointList parse_joint_list(std::string_view text, const std::string& file, const std::string& angle,
-                           std::size_t joints) {
-  if (angle != "rad" && angle != "deg")
-    throw Error(Exit::usage, file, "\"" + angle + "\" is no unit of angle", "name it: rad or deg");
-  const double factor = angle == "rad" ? 1 : pi / 180;
-  JointList list;
-  double largest = 0;
-  for (const NumberLine& line : number_lines(text, file)) {
-    if (joints == 0) joints = line.numbers.size();
-    if (line.numbers.size() != joints) wrong_count(line, std::to_string(joints));
-    ListedJoints row{{}, line.place, line.name};
-    for (const double value : line.numbers) {
-      if (std::abs(value * factor) > 4 * pi + 1e-6)  // several axes of real arms turn by up to 720 degrees
-        throw Error(Exit::data, line.place, "a joint at " + text_of(value) + " " + angle + " is beyond two full turns",
-                    factor == 1 ? "degrees? then name deg" : "name the unit that the file has");
-      largest = std::max(largest, std::abs(value));
-      row.joints_rad.push_back(value * factor);
-    }
-    list.rows.push_back(std::move(row));
-  }
-  if (list.rows.empty()) throw Error(Exit::data, file, "no joint angles in it");
-  if (factor != 1 && list.rows.size() >= many && largest <= 2 * pi)
-    list.warnings.push_back("no joint exceeds " + text_of(largest) + " degrees: radians read as degrees?");
-  return list;
-}
-
-JointList read_joint_list(const std::filesystem::path& path, const std::string& angle, std::size_t joints) {
-  return parse_joint_list(read_file(path), path.string(), angle, joints);
-}
-
 }  // namespace gonio::robot

@@ -69,19 +69,6 @@ PoseList read_pose_files(std::span<const std::filesystem::path> paths,
                          const PoseListFormat& format);  // one pose in each
 PoseList parse_pose_list(std::string_view text, const std::string& file, const PoseListFormat& format);
 
-struct ListedJoints {
-  std::vector<double> joints_rad;
-  std::string place, name;
-};
-struct JointList {
-  std::vector<ListedJoints> rows;  // all of the same length
-  std::vector<std::string> warnings;
-};
-// `angle` "rad" | "deg"; `joints`: how many each line must have, 0: as many as the first.
-JointList read_joint_list(const std::filesystem::path& path, const std::string& angle, std::size_t joints = 0);
-JointList parse_joint_list(std::string_view text, const std::string& file, const std::string& angle,
-                           std::size_t joints = 0);
-
 // Rotation about axes 'x', 'y', 'z' by angles in rad, in the order of the columns.
 Quaternion rotation_of_euler(const std::string& axes, bool fixed_axes, Vec3 angles_rad);
 

@@ -63,6 +63,22 @@ TEST(Programs, WhoeverWritesFilesTakesOutAndForce) {
   }
 }
 
+// A former name is understood like the present one, and no help or page has it.
+TEST(Programs, FormerNamesOfOptionsAreUnderstood) {
+  std::size_t count = 0;
+  for (const auto* program : cli::all_programs())
+    for (const auto& o : program->options)
+      for (const auto& alias : o.aliases) {
+        ++count;
+        SCOPED_TRACE(program->name + " --" + alias);
+        EXPECT_THAT(run({program->name, "--help"}).out, testing::Not(HasSubstr("--" + alias)));
+        // The complaint names the option by its present name: the value has reached it.
+        EXPECT_THAT(run({program->name, "--" + alias, "bad"}).err, HasSubstr("--" + o.name));
+        EXPECT_THAT(run({program->name, "--" + alias + "=bad"}).err, HasSubstr("--" + o.name));
+      }
+  EXPECT_GE(count, 2U);
+}
+
 TEST(Programs, HelpVersionAndDescriptionGoToStandardOutput) {
   for (const auto* program : cli::all_programs()) {
     SCOPED_TRACE(program->name);

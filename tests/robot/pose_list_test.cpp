@@ -163,17 +163,6 @@ TEST(PoseList, OddListsAreWarnedOf) {
               testing::ElementsAre(testing::HasSubstr("metres read as")));
 }
 
-TEST(PoseList, JointListsHaveAUnit) {
-  const JointList list = parse_joint_list("q1 q2 q3\n90 -45 720\n0 10 20\n", "j.csv", "deg");
-  ASSERT_EQ(list.rows.size(), 2u);
-  EXPECT_THAT(list.rows[0].joints_rad,
-              testing::ElementsAre(testing::DoubleEq(pi / 2), testing::DoubleEq(-pi / 4), testing::DoubleEq(4 * pi)));
-  EXPECT_THROW(parse_joint_list("90 -45 20\n", "j.csv", "rad"), Error);
-  EXPECT_THROW(parse_joint_list("1 2 3\n1 2\n", "j.csv", "rad"), Error);
-  EXPECT_THROW(parse_joint_list("1 2 3\n", "j.csv", "rad", 6), Error);
-  EXPECT_THROW(parse_joint_list("1 2 3\n", "j.csv", ""), Error);
-}
-
 TEST(PoseList, ReadsTheRecordedLists) {
   GONIO_NEEDS_DATA("handeye");
   const PoseList kuka = read_pose_list(tests::data("handeye/rwhe_kuka_3/RobotPosesVec.txt"), format("matrix"));

@@ -5,7 +5,7 @@
 // solver had one; weights of the shapes within the solver's freedom; K shapes per point. All of it is refitted. On a
 // held-out point everything that frames share comes from the other points, its own 3 K numbers are fitted on one half
 // of its frames and judged on the other. Hypotheses: tracks.perspective (one number), tracks.scale (one for each frame
-// but the first). Observations that do not follow are found beforehand (nrsfm/outlying.h), at a false-alarm rate of one
+// but the first). Observations that do not follow are found beforehand (nrsfm/outliers.h), at a false-alarm rate of one
 // in a hundred sequences, and take no part: tracks.outliers. Score: RMS distance of tracks from where the model sees
 // the points.
 #pragma once

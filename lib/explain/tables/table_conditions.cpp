@@ -39,11 +39,6 @@ const ColumnCondition* known_as(const std::string& column) {
 
 }  // namespace
 
-std::string condition_name(const std::string& column) {
-  const ColumnCondition* known = known_as(column);
-  return known == nullptr ? column : known->condition;
-}
-
 std::optional<Condition> condition_of(const Table& table, const std::string& column) {
   const std::size_t c = table.place_of(column);
   if (c == Table::none || !table.varies(column)) return {};

@@ -14,8 +14,6 @@ struct ColumnCondition {
   std::string column, condition, unit, stage;
 };
 std::span<const ColumnCondition> known_conditions();
-// The canonical name of a column's condition; its own name where there is none.
-std::string condition_name(const std::string& column);
 
 // The condition that a column carries, one value per row. Nothing where it is missing, constant, or holds names (but
 // for lamps and channels).
