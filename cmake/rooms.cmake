@@ -75,7 +75,7 @@ function(gonio_finish_library)
   # Where simulators bind to mechanisms (tests/meta/bindings_test knows these folders).
   gonio_bindings(scene/edits Edit scene/edit.h gonio::scene all_edits edits)
   gonio_bindings(render/links Link render/link.h gonio::render all_links links)
-  gonio_bindings(explain/images/terms Term explain/images/term.h gonio::explain::images all_terms terms)
+  gonio_bindings(relighting/terms Term relighting/term.h gonio::relighting all_terms terms)
   gonio_bindings(explain/tables/terms Term explain/tables/table_model.h gonio::explain::tables all_terms terms)
   gonio_bindings(explain/tables/reflectance ReflectanceBinding explain/tables/reflectance_binding.h
     gonio::explain::tables all_reflectance_bindings reflectance)

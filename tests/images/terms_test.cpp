@@ -8,8 +8,8 @@
 
 #include "ball_world.h"
 #include "explain/images/images_problem.h"
-#include "explain/images/uses.h"
 #include "manifest/document.h"
+#include "relighting/uses.h"
 
 namespace gonio::explain {
 namespace {

@@ -18,7 +18,7 @@ namespace {
 // The folders of bindings, one a simulator; the build gathers them (cmake/rooms.cmake).
 const std::vector<std::string> simulators = {"lib/scene/edits/",
                                              "lib/render/links/",
-                                             "lib/explain/images/terms/",
+                                             "lib/relighting/terms/",
                                              "lib/explain/tables/terms/",
                                              "lib/explain/tables/reflectance/",
                                              "lib/explain/stacks/exposures/",

@@ -25,7 +25,7 @@ std::string room_of(std::string path) {
   return path.substr(0, path.find('/'));
 }
 
-// The innermost folder that has a line: "explain/images" of "explain/images/terms/x.cpp", "camera" of
+// The innermost folder that has a line: "explain/images" of "explain/images/pictures.cpp", "camera" of
 // "camera/quality/x.h".
 std::string folder_of(std::string path, const std::map<std::string, int>& level) {
   if (path.starts_with("lib/")) path.erase(0, 4);

@@ -19,9 +19,9 @@
 #include <vector>
 
 #include "explain/engine.h"
-#include "explain/images/body_walks.h"
 #include "explain/images/images_problem.h"
 #include "manifest/document.h"
+#include "relighting/body_walks.h"
 
 namespace gonio::prove {
 namespace {

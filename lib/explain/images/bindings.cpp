@@ -5,11 +5,11 @@
 #include <map>
 
 #include "base/error.h"
-#include "explain/images/uses.h"
 #include "manifest/document.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/surface.h"
+#include "relighting/uses.h"
 
 namespace gonio::explain::images {
 namespace {

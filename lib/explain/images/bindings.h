@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "explain/engine.h"
-#include "explain/images/scene_state.h"
-#include "explain/images/term.h"
+#include "explain/images/model.h"
 #include "manifest/sections/forward.h"
+#include "relighting/scene_state.h"
+#include "relighting/term.h"
 
 namespace gonio::explain::images {
 

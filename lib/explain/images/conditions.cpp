@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "explain/images/fixed_pattern.h"
-#include "explain/images/observed.h"
 #include "light/polarized_emitter.h"
+#include "relighting/fixed_pattern.h"
+#include "relighting/observed.h"
 
 namespace gonio::explain::images {
 namespace {

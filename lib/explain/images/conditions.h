@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "explain/engine.h"
-#include "explain/images/image_model.h"
+#include "explain/images/model.h"
 
 namespace gonio::explain::images {
 

@@ -8,10 +8,10 @@
 #include "base/random.h"
 #include "explain/images/conditions.h"
 #include "explain/images/misplaced.h"
-#include "explain/images/repeats.h"
-#include "explain/images/uses.h"
 #include "inference/explanation.h"
 #include "manifest/document.h"
+#include "relighting/repeats.h"
+#include "relighting/uses.h"
 #include "scene/scene.h"
 
 namespace gonio::explain::images {

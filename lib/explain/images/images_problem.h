@@ -9,8 +9,8 @@
 
 #include "explain/engine.h"
 #include "explain/images/bindings.h"
-#include "explain/images/image_model.h"
-#include "explain/images/recordings.h"
+#include "explain/images/model.h"
+#include "relighting/recordings.h"
 #include "render/ray_caster.h"
 
 namespace gonio::explain::images {

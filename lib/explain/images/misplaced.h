@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "explain/images/image_model.h"
-#include "inference/explanation.h"
+#include "explain/engine.h"
+#include "explain/images/model.h"
 
 namespace gonio::explain::images {
 

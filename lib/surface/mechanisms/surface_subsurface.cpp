@@ -1,5 +1,5 @@
 // surface.subsurface: light leaves a translucent body beside where it entered. Random walks within closed bodies
-// (explain/images/body_walks.h), the profile of a half space (surface/diffusion_profile.h) beneath open surfaces.
+// (relighting/body_walks.h), the profile of a half space (surface/diffusion_profile.h) beneath open surfaces.
 //
 // Renderers state other lengths. Cycles' radius is 1.9 times this one for its random walks at an albedo of 0.5, 2.2
 // times at 0.75 and 1.65 times at 0.3 (scripts/proofs/cycles-subsurface): it takes the albedo for that of a body of

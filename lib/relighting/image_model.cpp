@@ -1,0 +1,230 @@
+#include "relighting/image_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "relighting/uses.h"
+#include "scene/scene.h"
+
+namespace gonio::relighting {
+namespace {
+
+constexpr std::size_t radius_count = radii_m.size();
+
+// Polynomials in the albedos of a state, colour by colour.
+class Transport {
+ public:
+  Transport(const SceneState& state, const render::Monomials& monomials)
+      : strength_(state.indirect), terms_(monomials.size()) {
+    const Vec3 oblique{std::sqrt(0.5), 0, std::sqrt(0.5)};
+    std::vector<Rgb> albedos;
+    for (const SurfaceState& s : state.surfaces)  // what lets light through does not spread it
+      albedos.push_back(s.model->transmits() ? Rgb{} : s.model->albedo(s.values, oblique));
+    std::array<std::vector<double>, 3> values;
+    for (int k = 0; k < 3; ++k) {
+      std::vector<double> albedo;
+      for (const Rgb& a : albedos) albedo.push_back(a[k]);
+      values[static_cast<std::size_t>(k)] = monomials.evaluate(albedo);
+    }
+    for (std::size_t m = 0; m < terms_; ++m) values_.push_back({values[0][m], values[1][m], values[2][m]});
+  }
+  std::size_t terms() const { return terms_; }
+  // The constant term is what an ambient source sends straight: no light between surfaces.
+  Rgb operator()(const float* coefficient) const {
+    Rgb sum;
+    for (std::size_t m = 1; m < terms_; ++m) sum += values_[m] * double{coefficient[m]};
+    return sum * strength_ + Rgb{coefficient[0], coefficient[0], coefficient[0]};
+  }
+
+ private:
+  double strength_;
+  std::size_t terms_;
+  std::vector<Rgb> values_;
+};
+
+Rgb albedo_of(const SurfaceState& surface) {
+  return has_parameter(*surface.model, "albedo") ? surface.values.rgb(parameter_index(*surface.model, "albedo"))
+                                                 : Rgb{};
+}
+
+}  // namespace
+
+ImageModel::ImageModel(const Recordings& recordings, const SceneLayout& layout, const render::Monomials& monomials,
+                       std::vector<ViewCache> views)
+    : recordings_(recordings), layout_(layout), monomials_(monomials), views_(std::move(views)) {
+  for (const ViewCache& cache : views_) sums_.push_back(facet_sums(cache));
+}
+
+Shader ImageModel::shader(std::size_t image) const {
+  const Recording& recording = recordings_.images[image];
+  return Shader(layout_, recording, views_[recording.view], sums_[recording.view]);
+}
+
+void ImageModel::add_uses(std::vector<Use> uses, bool in_play) {
+  for (Use& use : uses) {
+    use.place = uses_.size();
+    std::vector<double> amounts;
+    for (const Number& n : use.numbers) amounts.push_back(in_play || !n.free ? n.start : n.neutral);
+    layout_.start.amounts.push_back(std::move(amounts));
+    ordered_.push_back(use.place);
+    uses_.push_back(std::move(use));
+  }
+  std::stable_sort(ordered_.begin(), ordered_.end(),
+                   [&](std::size_t a, std::size_t b) { return uses_[a].term->order < uses_[b].term->order; });
+}
+
+void ImageModel::take_uses(const ImageModel& other, std::vector<Use> uses) {
+  uses_ = std::move(uses);
+  ordered_ = other.ordered_;
+  layout_.start = other.layout_.start;
+}
+
+SceneState ImageModel::edited(const SceneState& state, std::size_t image) const {
+  SceneState result = state;
+  for (const Use& use : uses_)
+    if (use.term->edit && !use.neutral(state)) use.term->edit(use, image, layout_, recordings_, result);
+  return result;
+}
+
+template <class Hook>
+void ImageModel::run_hooks(const SceneState& edited, std::size_t number, std::span<const std::uint32_t> picked,
+                           const Hook& hook) const {
+  const Recording& image = recordings_.images[number];
+  const Frame frame{number, image, views_[image.view], picked, edited, *this};
+  for (const std::size_t u : ordered_)
+    if (!uses_[u].neutral(edited)) hook(uses_[u], frame);
+}
+
+void ImageModel::shade_terms(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
+                             Shading& shading) const {
+  run_hooks(edited, image, picked, [&](const Use& use, const Frame& frame) {
+    if (use.term->shade) use.term->shade(use, frame, shading);
+  });
+}
+
+void ImageModel::add_terms(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
+                           std::span<double> radiance) const {
+  run_hooks(edited, image, picked, [&](const Use& use, const Frame& frame) {
+    if (use.term->add) use.term->add(use, frame, radiance);
+  });
+}
+
+void ImageModel::record_terms(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
+                              std::span<double> values) const {
+  run_hooks(edited, image, picked, [&](const Use& use, const Frame& frame) {
+    if (use.term->record) use.term->record(use, frame, values);
+  });
+}
+
+void ImageModel::predict(const SceneState& state, std::size_t image, std::span<const std::uint32_t> picked,
+                         std::span<double> radiance) const {
+  const SceneState now = edited(state, image);
+  Shading shading = shade(now, image, picked);
+  shade_terms(now, image, picked, shading);
+  compose(now, image, picked, shading, radiance);
+  add_terms(now, image, picked, radiance);
+  record_terms(now, image, picked, radiance);
+}
+
+void ImageModel::predict_from(const ViewCache& cache, std::span<const float> sums, const SceneState& edited,
+                              std::size_t image, std::span<const std::uint32_t> picked,
+                              std::span<double> radiance) const {
+  const Shading shading = Shader(layout_, recordings_.images[image], cache, sums)(edited, picked);
+  compose_from(cache, edited, image, picked, shading, radiance);
+}
+
+Shading ImageModel::shade(const SceneState& state, std::size_t image, std::span<const std::uint32_t> picked) const {
+  return shader(image)(state, picked);
+}
+
+void ImageModel::shade_again(const SceneState& state, std::size_t image, std::span<const std::uint32_t> picked,
+                             std::uint32_t surface, Shading& shading) const {
+  shader(image).again(state, picked, surface, shading);
+}
+
+void ImageModel::compose(const SceneState& state, std::size_t number, std::span<const std::uint32_t> picked,
+                         const Shading& shading, std::span<double> radiance) const {
+  compose_from(views_[recordings_.images[number].view], state, number, picked, shading, radiance);
+}
+
+void ImageModel::compose_from(const ViewCache& cache, const SceneState& state, std::size_t number,
+                              std::span<const std::uint32_t> picked, const Shading& shading,
+                              std::span<double> radiance) const {
+  const Recording& image = recordings_.images[number];
+  const std::size_t lights = layout_.lights.size();
+  const Transport transport(state, monomials_);
+  std::vector<Rgb> albedos;
+  for (const SurfaceState& s : state.surfaces) albedos.push_back(albedo_of(s));
+  const bool ambient = max_component(state.ambient) > 0;
+  std::size_t slot = 0;
+  for (std::size_t i = 0; i < picked.size(); ++i) {
+    const Pixel& pixel = cache.pixels[picked[i]];
+    Rgb sum = state.ambient * pixel.sky;
+    for (std::size_t k = 0; k < pixel.facets; ++k, ++slot) {
+      const std::size_t f = pixel.first_facet + k, first_source = f * (lights + 1);
+      const Facet& facet = cache.facets[f];
+      const Rgb albedo = albedos[facet.surface];
+      const Scattered& sent_on = shading.indirect[slot];
+      const bool glossy = max_component(sent_on.gloss) > 0;
+      Rgb irradiance, mirrored;
+      const auto add_source = [&](std::size_t source, Rgb emission) {
+        irradiance += transport(&cache.indirect[(first_source + source) * transport.terms()]) * emission;
+        if (glossy) mirrored += transport(&cache.mirrored[(first_source + source) * transport.terms()]) * emission;
+      };
+      for (std::size_t j = 0; j < shading.lights; ++j) {
+        const Rgb intensity = state.lights[image.lights[j]].intensity;
+        const Scattered& direct = shading.direct[slot * shading.lights + j];
+        sum += (albedo * direct.base + direct.gloss) * intensity;
+        add_source(image.lights[j], intensity);
+      }
+      if (ambient) add_source(lights, state.ambient);
+      sum += (albedo * irradiance * sent_on.base + sent_on.gloss * mirrored) * (facet.weight / pi);
+    }
+    sum *= exposure_of(state, image, number, pixel);
+    for (int c = 0; c < 3; ++c) radiance[3 * i + static_cast<std::size_t>(c)] = sum[c];
+  }
+}
+
+void ImageModel::variance(const SceneState& state, std::size_t number, std::span<const std::uint32_t> picked,
+                          std::span<double> variance) const {
+  const Recording& image = recordings_.images[number];
+  const ViewCache& cache = views_[image.view];
+  const std::size_t lights = layout_.lights.size();
+  for (std::size_t i = 0; i < picked.size(); ++i) {
+    const Pixel& pixel = cache.pixels[picked[i]];
+    Rgb sum, first,
+        second;  // of the facets' radiances, weighted by their share of the pixel: the contrast between them
+    for (std::size_t k = 0; k < pixel.facets; ++k) {
+      const std::size_t f = pixel.first_facet + k;
+      const Facet& facet = cache.facets[f];
+      const SurfaceState& surface = state.surfaces[facet.surface];
+      const Rgb albedo = surface.model->albedo(surface.values, {0, 0, 1});
+      Rgb level;
+      for (const std::size_t l : image.lights) {
+        const Rgb unit = albedo * state.lights[l].intensity * (1 / pi);
+        const double direct = facet.weight * cache.direct_sigma[f * lights + l];
+        const Rgb indirect = albedo * (2 * facet.weight * cache.indirect_sigma[f * (lights + 1) + l]);
+        sum += unit * unit * (Rgb{direct, direct, direct} * Rgb{direct, direct, direct} + indirect * indirect);
+        level += unit * (sums_[image.view][(f * lights + l) * radius_count] / std::max(1e-6f, facet.weight));
+      }
+      first += level * facet.weight;
+      second += level * level * facet.weight;
+    }
+    // Coverage of edges by n = 64 jittered sub-samples: the spread over n^(3/4) (Mitchell 1996).
+    sum += (second - first * first) * std::pow(64.0, -1.5);
+    const Rgb gain2 = state.gain[number] * state.gain[number];
+    for (int k = 0; k < 3; ++k) variance[3 * i + static_cast<std::size_t>(k)] = std::max(0.0, (sum * gain2)[k]);
+  }
+}
+
+Rgb exposure_of(const SceneState& state, const Recording& image, std::size_t number, const Pixel& pixel) {
+  const Vec2 place{static_cast<double>(pixel.x), static_cast<double>(pixel.y)};
+  return state.gain[number] * scene::vignetting(state.falloff, image.picture.width, image.picture.height, place);
+}
+
+double image_radius(const io::Image& picture, int x, int y) {
+  return std::hypot(x - 0.5 * (picture.width - 1), y - 0.5 * (picture.height - 1)) / (0.5 * picture.width);
+}
+
+}  // namespace gonio::relighting

@@ -1,0 +1,256 @@
+#include "relighting/recast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "scene/placement.h"
+
+namespace gonio::relighting {
+namespace {
+
+constexpr double step_px = 1.25;
+constexpr double most_steps = 4;  // beyond which a straight line is not to be trusted
+constexpr CacheOptions coarse{.samples = 4, .paths = 0, .patches = 1, .penumbrae = false};
+
+using Facets = std::map<std::uint32_t, std::size_t>;  // surface -> facet seen last
+
+Recasts::Node cast(const Setting& s, const std::vector<scene::Instance>& instances) {
+  const render::RayCaster caster(instances);
+  Recasts::Node node;
+  for (std::size_t v = 0; v < s.model.views(); ++v) {
+    std::vector<std::array<int, 2>> chosen;
+    for (const Pixel& p : s.model.cache(v).pixels) chosen.push_back({p.x, p.y});
+    node.views.push_back(
+        build_cache(caster, s.recordings.views[v], s.layout.lights, s.model.monomials(), chosen, coarse));
+    lend_indirect(s.model.cache(v), node.views.back());
+    node.sums.push_back(facet_sums(node.views.back()));
+  }
+  return node;
+}
+
+bool same(const Patch& a, const Patch& b) {
+  const auto equal = [](Vec3 p, Vec3 q) { return p.x == q.x && p.y == q.y && p.z == q.z; };
+  return a.weight == b.weight && equal(a.position_m, b.position_m) && equal(a.normal, b.normal) && equal(a.wo, b.wo);
+}
+
+// Sub-samples are drawn pixel by pixel: where nothing has moved, on the object or in its shadow, all is the same to the
+// last bit.
+bool same_pixel(const Recasts::Node& a, const Recasts::Node& b, std::size_t view, std::size_t pixel) {
+  const ViewCache &u = a.views[view], &w = b.views[view];
+  const Pixel &p = u.pixels[pixel], &q = w.pixels[pixel];
+  if (p.facets != q.facets || p.sky != q.sky) return false;
+  const std::size_t numbers = a.sums[view].size() / std::max<std::size_t>(1, u.facets.size());
+  for (std::size_t k = 0; k < p.facets; ++k) {
+    const std::size_t i = p.first_facet + k, j = q.first_facet + k;
+    const Facet &f = u.facets[i], &g = w.facets[j];
+    if (f.surface != g.surface || f.weight != g.weight || f.patches != g.patches) return false;
+    for (std::size_t n = 0; n < f.patches; ++n)
+      if (!same(u.patches[f.first_patch + n], w.patches[g.first_patch + n])) return false;
+    const auto lit = a.sums[view].begin() + static_cast<std::ptrdiff_t>(i * numbers);
+    if (!std::equal(lit, lit + static_cast<std::ptrdiff_t>(numbers),
+                    b.sums[view].begin() + static_cast<std::ptrdiff_t>(j * numbers)))
+      return false;
+  }
+  return true;
+}
+
+void mark_differences(const Recasts::Node& unmoved, Recasts::Node& node) {
+  for (std::size_t v = 0; v < node.views.size(); ++v) {
+    node.differs.emplace_back();
+    for (std::size_t p = 0; p < node.views[v].pixels.size(); ++p)
+      node.differs.back().push_back(!same_pixel(unmoved, node, v, p));
+  }
+}
+
+std::vector<scene::Instance> moved_scene(const Setting& s, const Use& use, std::span<const double> amounts) {
+  std::vector<scene::Instance> instances = s.scene.instances;
+  instances[use.targets[0]] = scene::moved(instances[use.targets[0]], *use.mechanism, amounts);
+  return instances;
+}
+
+struct Extent {
+  double metres_per_pixel = 1e-3, radius_m = 0.1, reach_m = 0.1;  // reach: from the frame's origin
+};
+// How far apart two neighbouring pixels look, at a distance.
+double pitch_m(const camera::CameraModel& camera, double distance_m) {
+  const Vec2 centre = camera.principal_point_px();
+  const camera::Ray a = camera.ray(centre), b = camera.ray({centre.x + 1, centre.y});
+  return norm(a.origin_m - b.origin_m + (a.direction - b.direction) * distance_m);
+}
+
+// Of an object, from what the sampled pixels show of it.
+Extent extent_of(const Setting& s, const scene::Instance& instance) {
+  Extent e;
+  Vec3 sum;
+  std::vector<Vec3> places;
+  double pitch = 0;
+  for (std::size_t v = 0; v < s.model.views(); ++v) {
+    const auto& pose = s.recordings.views[v].world_from_camera;
+    for (const Facet& f : s.model.cache(v).facets) {
+      if (f.surface != instance.surface) continue;
+      const Vec3 p = s.model.cache(v).patches[f.first_patch].position_m;
+      places.push_back(p);
+      sum += p;
+      pitch += pitch_m(s.recordings.views[v].model, norm(p - pose.translation_m));
+    }
+  }
+  if (places.empty()) return e;
+  const double n = static_cast<double>(places.size());
+  e.metres_per_pixel = pitch / n;
+  double square = 0, reach = 0;
+  for (const Vec3& p : places) {
+    square += dot(p - sum / n, p - sum / n);
+    reach += dot(p - instance.world_from_object.translation_m, p - instance.world_from_object.translation_m);
+  }
+  e.radius_m = std::max(1e-6, std::sqrt(square / n));
+  e.reach_m = std::max(1e-6, std::sqrt(reach / n));
+  return e;
+}
+
+double step_of(const mechanism::Parameter& p, const Extent& e) {
+  const double step_m = step_px * e.metres_per_pixel;
+  if (p.unit == "m") return step_m;
+  return step_m / (p.unit == "rad" ? e.radius_m : e.reach_m);
+}
+
+// Adds weight * (P(node) - P(unmoved)) for one image, where the two differ.
+class Change {
+ public:
+  Change(const Use& use, const Frame& frame, std::span<double> radiance)
+      : table_(static_cast<const Recasts&>(*use.prepared)), frame_(frame), out_(radiance) {}
+  void add(const Recasts::Node& node, double weight) {
+    std::vector<std::uint32_t> picked;
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < frame_.picked.size(); ++i)
+      if (node.differs[frame_.image.view][frame_.picked[i]]) picked.push_back(frame_.picked[i]), rows.push_back(3 * i);
+    std::vector<double> there(3 * picked.size()), unmoved(3 * picked.size());
+    predict(node, picked, there);
+    predict(table_.unmoved, picked, unmoved);
+    for (std::size_t i = 0; i < there.size(); ++i) out_[rows[i / 3] + i % 3] += weight * (there[i] - unmoved[i]);
+  }
+
+ private:
+  void predict(const Recasts::Node& node, std::span<const std::uint32_t> picked, std::span<double> out) const {
+    const std::size_t v = frame_.image.view;
+    frame_.model.predict_from(node.views[v], node.sums[v], frame_.state, frame_.number, picked, out);
+  }
+  const Recasts& table_;
+  const Frame& frame_;
+  std::span<double> out_;
+};
+
+}  // namespace
+
+void lend_indirect(const ViewCache& from, ViewCache& to) {
+  const auto lend = [](const std::vector<float>& source, std::vector<float>& target, std::size_t facets_from,
+                       std::size_t facets_to, std::size_t a, std::size_t b) {
+    const std::size_t stride = source.size() / std::max<std::size_t>(1, facets_from);
+    target.resize(stride * facets_to);
+    for (std::size_t k = 0; k < stride; ++k) target[b * stride + k] = source[a * stride + k];
+  };
+  to.indirect.clear(), to.mirrored.clear(), to.indirect_sigma.clear();
+  Facets last;
+  for (std::size_t f = 0; f < from.facets.size(); ++f) last.try_emplace(from.facets[f].surface, f);
+  for (std::size_t p = 0; p < to.pixels.size(); ++p) {
+    for (std::size_t k = 0; k < from.pixels[p].facets; ++k)
+      last[from.facets[from.pixels[p].first_facet + k].surface] = from.pixels[p].first_facet + k;
+    for (std::size_t k = 0; k < to.pixels[p].facets; ++k) {
+      const std::size_t f = to.pixels[p].first_facet + k;
+      const auto found = last.find(to.facets[f].surface);
+      if (found == last.end()) continue;
+      lend(from.indirect, to.indirect, from.facets.size(), to.facets.size(), found->second, f);
+      lend(from.mirrored, to.mirrored, from.facets.size(), to.facets.size(), found->second, f);
+      lend(from.indirect_sigma, to.indirect_sigma, from.facets.size(), to.facets.size(), found->second, f);
+    }
+  }
+}
+
+std::vector<Use> object_uses(const Setting& s, const mechanism::Mechanism& mechanism) {
+  std::vector<Use> uses;
+  for (std::size_t i = 0; i < s.scene.instances.size(); ++i) {
+    const scene::Instance& instance = s.scene.instances[i];
+    if (std::holds_alternative<scene::Plane>(instance.shape) || switched_on(s.document, mechanism.id, instance.id))
+      continue;
+    Use use = target_use(mechanism, {instance.id}, {i}, false);
+    const Extent e = extent_of(s, instance);
+    for (std::size_t k = 0; k < use.numbers.size(); ++k) {
+      const double most = most_steps * step_of(mechanism.parameters[k], e);
+      Number& n = use.numbers[k];
+      n.lower = std::max(n.lower, -most);
+      n.upper = std::min(n.upper, most);
+      n.start = std::min(n.start, 0.25 * n.upper);
+      // A ball that turns about its centre is the same ball.
+      if (std::holds_alternative<scene::Sphere>(instance.shape) && mechanism.parameters[k].unit == "rad")
+        n.free = false, n.start = n.neutral;
+    }
+    uses.push_back(use);
+  }
+  return uses;
+}
+
+std::shared_ptr<const Prepared> prepare_recasts(const Setting& s, const Use& use) {
+  auto result = std::make_shared<Recasts>();
+  result->unmoved = cast(s, s.scene.instances);
+  if (s.fitted) {
+    result->exact = true;
+    result->plus.push_back(cast(s, moved_scene(s, use, use.amounts(*s.fitted))));
+    mark_differences(result->unmoved, result->plus[0]);
+    return result;
+  }
+  const Extent e = extent_of(s, s.scene.instances[use.targets[0]]);
+  std::vector<double> amounts(use.numbers.size(), 0.0);
+  for (std::size_t k = 0; k < use.numbers.size(); ++k) {
+    const double step = step_of(use.mechanism->parameters[k], e);
+    result->step.push_back(step);
+    amounts[k] = -step;
+    result->minus.push_back(cast(s, moved_scene(s, use, amounts)));
+    amounts[k] = step;
+    result->plus.push_back(cast(s, moved_scene(s, use, amounts)));
+    amounts[k] = 0;
+    mark_differences(result->unmoved, result->minus.back());
+    mark_differences(result->unmoved, result->plus.back());
+  }
+  return result;
+}
+
+void add_recasts(const Use& use, const Frame& frame, std::span<double> radiance) {
+  const auto& table = static_cast<const Recasts&>(*use.prepared);
+  Change change(use, frame, radiance);
+  if (table.exact) return change.add(table.plus[0], 1);
+  const std::span<const double> amounts = use.amounts(frame.state);
+  for (std::size_t k = 0; k < amounts.size(); ++k) {
+    if (amounts[k] == 0) continue;
+    const double t = amounts[k] / table.step[k], inside = std::clamp(t, -1.0, 1.0), beyond = t - inside;
+    // The parabola through the three nodes, and its slope at the end of the step.
+    change.add(table.plus[k], 0.5 * (inside + inside * inside) + beyond * (0.5 + inside));
+    change.add(table.minus[k], -0.5 * (inside - inside * inside) - beyond * (0.5 - inside));
+  }
+}
+
+void recast_slopes(const Use& use, const Frame& frame, std::span<const std::size_t> numbers,
+                   std::span<double> columns) {
+  const auto& table = static_cast<const Recasts&>(*use.prepared);
+  const std::span<const double> amounts = use.amounts(frame.state);
+  const std::size_t rows = 3 * frame.picked.size();
+  std::fill(columns.begin(), columns.end(), 0.0);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const std::size_t k = numbers[i];
+    const double inside = std::clamp(amounts[k] / table.step[k], -1.0, 1.0);
+    Change change(use, frame, columns.subspan(i * rows, rows));
+    change.add(table.plus[k], (0.5 + inside) / table.step[k]);
+    change.add(table.minus[k], -(0.5 - inside) / table.step[k]);
+  }
+}
+
+Term recast_term(const mechanism::Mechanism& (*mechanism)(), std::vector<Use> (*candidates)(const Setting&)) {
+  return {.mechanism = mechanism,
+          .reach = Reach::add,
+          .order = -20,
+          .candidates = candidates,
+          .prepare = prepare_recasts,
+          .add = add_recasts,
+          .slopes = recast_slopes};
+}
+
+}  // namespace gonio::relighting

@@ -1,0 +1,153 @@
+// Reading of recordings. Where the manifest states no noise it is measured: the median absolute value of the horizontal
+// second difference (1, -2, 1), whose variance is six times that of a pixel, scaled to a standard deviation by 1 /
+// 0.6745 (Rousseeuw & Croux 1993). Smooth shading cancels in it, and edges are too few to move a median.
+#include "relighting/recordings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <tuple>
+
+#include "base/error.h"
+#include "manifest/document.h"
+#include "manifest/image_list.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/object.h"
+#include "photograph/linear_picture.h"
+#include "photograph/mask.h"
+#include "stats/intervals.h"
+
+namespace gonio::relighting {
+namespace {
+
+[[noreturn]] void refuse(const manifest::Document& document, std::size_t entry, const std::string& key,
+                         const std::string& problem, const std::string& remedy) {
+  throw Error(Exit::data, manifest::place(document, "/images/" + std::to_string(entry) + key), problem, remedy);
+}
+
+void read_pixels(const manifest::Document& document, const std::filesystem::path& path, Recording& image) {
+  const manifest::ImageEntry& entry = document.images[image.entry];
+  const std::string place = manifest::place(document, "/images/" + std::to_string(image.entry) + "/response");
+  const photograph::LinearPicture read = photograph::read_linear(path, entry.response, place);
+  const io::Image& colour = read.colour;
+  const std::size_t channels = colour.channels.size();
+  image.picture = io::Image(colour.width, colour.height, {"R", "G", "B"});
+  image.counts.assign(colour.pixels(), 1);
+  for (std::size_t i = 0; i < colour.pixels(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float value = colour.data[i * channels + (channels == 3 ? c : 0)];
+      image.picture.data[3 * i + c] = value;
+      if (!std::isfinite(value) || read.clipped[i]) image.counts[i] = 0;
+    }
+}
+
+Rgb mean_of_finite(const io::Image& picture) {
+  Rgb sum;
+  double n = 0;
+  for (std::size_t i = 0; i + 2 < picture.data.size(); i += 3) {
+    const Rgb value{picture.data[i], picture.data[i + 1], picture.data[i + 2]};
+    if (!std::isfinite(value.x + value.y + value.z)) continue;
+    sum += value;
+    n += 1;
+  }
+  return n > 0 ? sum / n : sum;
+}
+
+void leave_out_masked(const manifest::Document& document, Recording& image) {
+  const std::filesystem::path path = manifest::mask_path(document, image.entry);
+  if (path.empty()) return;
+  const std::vector<std::uint8_t> counts = photograph::read_mask_of(
+      image.picture, path, manifest::place(document, "/images/" + std::to_string(image.entry) + "/mask"));
+  for (std::size_t i = 0; i < image.counts.size(); ++i) image.counts[i] = image.counts[i] && counts[i];
+}
+
+manifest::Noise measured_noise(const Recording& image) {
+  std::vector<double> differences;
+  const io::Image& p = image.picture;
+  for (int y = 0; y < p.height; ++y)
+    for (int x = 1; x + 1 < p.width; ++x) {
+      const std::size_t i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(p.width) + static_cast<std::size_t>(x);
+      if (!image.counts[i - 1] || !image.counts[i] || !image.counts[i + 1]) continue;
+      for (int c = 0; c < 3; ++c)
+        differences.push_back(std::abs(double{p.at(x - 1, y, c)} - 2.0 * p.at(x, y, c) + p.at(x + 1, y, c)));
+    }
+  const double sigma = differences.empty() ? 0 : stats::median(differences) / 0.6745 / std::sqrt(6.0);
+  return {.gain = 0, .read = std::max(sigma, 1e-6)};
+}
+
+// The view that `entry` was taken from, entered where it is new.
+std::size_t view_of(const manifest::Document& document, const manifest::ImageEntry& entry, Recordings& recordings) {
+  Rigid<frame::World, frame::Camera> pose;
+  if (entry.world_from_camera) pose = {entry.world_from_camera->rotation, entry.world_from_camera->translation_m};
+  for (std::size_t v = 0; v < recordings.views.size(); ++v)
+    if (recordings.views[v].camera == entry.camera && recordings.views[v].world_from_camera == pose) return v;
+  recordings.views.push_back(
+      {entry.camera,
+       camera::CameraModel(*find_camera(document, entry.camera), manifest::place(document, "/cameras/" + entry.camera)),
+       pose});
+  return recordings.views.size() - 1;
+}
+
+}  // namespace
+
+bool has_recordings(const manifest::Document& document) {
+  return !document.objects.empty() &&
+         std::any_of(document.images.begin(), document.images.end(),
+                     [](const manifest::ImageEntry& e) { return !e.file.empty() && !e.camera.empty(); });
+}
+
+Recordings read_recordings(const manifest::Document& document) {
+  Recordings recordings;
+  bool timed = false;
+  for (const auto& [name, light] : document.lights) recordings.lights.push_back(name);
+  for (std::size_t i = 0; i < document.images.size(); ++i) {
+    const manifest::ImageEntry& entry = document.images[i];
+    if (entry.weight && *entry.weight == 0) continue;
+    if (!has_entry(document, "cameras", entry.camera))
+      refuse(document, i, "/camera", "names no camera: \"" + entry.camera + "\"", "enter it in cameras");
+    Recording image;
+    image.id = entry.id;
+    image.entry = i;
+    image.view = view_of(document, entry, recordings);
+    for (std::size_t l = 0; l < recordings.lights.size(); ++l)
+      if (entry.light.empty() ||
+          std::find(entry.light.begin(), entry.light.end(), recordings.lights[l]) != entry.light.end())
+        image.lights.push_back(l);
+    read_pixels(document, manifest::picture_path(document, i), image);
+    const camera::CameraModel& camera = recordings.views[image.view].model;
+    if (image.picture.width != camera.width_px() || image.picture.height != camera.height_px())
+      refuse(document, i, "/file",
+             "is " + std::to_string(image.picture.width) + "x" + std::to_string(image.picture.height) +
+                 " pixels, the camera " + std::to_string(camera.width_px()) + "x" + std::to_string(camera.height_px()),
+             "give the camera the size of its pictures");
+    image.mean = mean_of_finite(image.picture);
+    leave_out_masked(document, image);
+    image.noise = entry.noise ? *entry.noise : measured_noise(image);
+    image.gain = entry.gain ? *entry.gain : manifest::Parameter(1.0);
+    image.exposure_s = entry.exposure_s;
+    image.time_s = entry.time_s;
+    image.temperature_K = entry.temperature_K;
+    if (image.time_s)
+      recordings.first_time_s = timed ? std::min(recordings.first_time_s, *image.time_s) : *image.time_s;
+    if (image.time_s) recordings.last_time_s = timed ? std::max(recordings.last_time_s, *image.time_s) : *image.time_s;
+    timed = timed || image.time_s;
+    recordings.images.push_back(std::move(image));
+  }
+  return recordings;
+}
+
+io::Image read_take(const manifest::Document& document, const Recording& image, const std::filesystem::path& path) {
+  Recording take;
+  take.entry = image.entry;
+  read_pixels(document, path, take);
+  return take.picture;
+}
+
+double noise_sigma(const Recording& image, double value) {
+  const double shot = image.noise.gain > 0 ? std::max(value, 0.0) / image.noise.gain : 0;
+  return std::sqrt(shot + image.noise.read * image.noise.read);
+}
+
+}  // namespace gonio::relighting

@@ -1,0 +1,204 @@
+#include "relighting/shading.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "light/mechanisms/light_inverse_square.h"
+#include "light/turn.h"
+
+namespace gonio::relighting {
+namespace {
+
+constexpr std::size_t radius_count = radii_m.size();
+constexpr double grazing = 1e-3;  // mean directions of a patch are kept this far above its mean plane
+
+Vec3 above_horizon(Vec3 w) {
+  return w.z >= grazing ? w : normalized(Vec3{w.x, w.y, grazing});
+}
+
+// Direction to a light and its falloff at a point: 1 / d^2, or 1 for directional lights.
+struct Aim {
+  Vec3 wi;
+  double falloff;
+};
+Aim aim(const LightSource& light, Vec3 point_m) {
+  if (light.directional) {
+    if (light.nearness_per_m == 0) return {light.direction, 1};
+    const Vec3 to_light =
+        equation::light_inverse_square_arm(light.nearness_per_m, light.direction, point_m - light.centre_m);
+    const double square = dot(to_light, to_light);
+    return {to_light / std::sqrt(square), 1 / square};
+  }
+  const Vec3 to_light = light.position_m - point_m;
+  const double square = dot(to_light, to_light);
+  return {to_light / std::sqrt(square), 1 / square};
+}
+
+// The surface without and with a white base.
+struct Extremes {
+  surface::Values black, white;
+  bool has_base = false;
+  // Where nothing but the albedo has a colour, a band sees the albedo of its own alone: one evaluation with a base that
+  // is black in red and white in green yields both.
+  bool at_once = false;
+  explicit Extremes(const SurfaceState& surface) : black(surface.values), white(surface.values) {
+    has_base = has_parameter(*surface.model, "albedo");
+    if (!has_base) return;
+    const std::size_t albedo = parameter_index(*surface.model, "albedo");
+    black.v[albedo] = {0, 0, 0};
+    white.v[albedo] = {1, 1, 1};
+    const auto& parameters = surface.model->info().parameters;
+    at_once = std::count_if(parameters.begin(), parameters.end(),
+                            [](const manifest::ParameterInfo& p) { return p.components == 3; }) == 1;
+    if (at_once) white.v[albedo] = {0, 1, 1};
+  }
+  template <class F>  // F: Values -> Rgb, affine in the albedo
+  Scattered split(const F& f) const {
+    if (at_once) {
+      const Rgb both = f(white);
+      const double gloss = both.x, base = both.y - both.x;
+      return {{base, base, base}, {gloss, gloss, gloss}};
+    }
+    const Rgb gloss = f(black);
+    const double base = has_base ? mean(f(white) - gloss) : 0;
+    return {{base, base, base}, gloss};
+  }
+};
+
+}  // namespace
+
+RadiusWeights::RadiusWeights(double radius_m) {
+  if (radius_m <= 0) return;
+  const double r = std::min(radius_m, radii_m.back());
+  std::size_t i = 0;
+  while (i + 2 < radius_count && radii_m[i + 1] <= r) ++i;
+  const double h = radii_m[i + 1] - radii_m[i], t = (r - radii_m[i]) / h, t2 = t * t, t3 = t2 * t;
+  const std::size_t before = i == 0 ? 0 : i - 1, after = std::min(i + 2, radius_count - 1);
+  first = before;
+  count = after - before + 1;
+  weight = {0, 0, 0, 0};
+  const auto add = [&](std::size_t node, double w) { weight[node - before] += w; };
+  const double slope0 = (t3 - 2 * t2 + t) * h / (radii_m[i + 1] - radii_m[before]);
+  const double slope1 = (t3 - t2) * h / (radii_m[after] - radii_m[i]);
+  add(i, 2 * t3 - 3 * t2 + 1 - slope1);
+  add(i + 1, 3 * t2 - 2 * t3 + slope0);
+  add(before, -slope0);
+  add(after, slope1);
+}
+
+std::vector<float> facet_sums(const ViewCache& cache) {
+  const std::size_t stride = cache.patches.empty() ? 0 : cache.direct.size() / cache.patches.size();
+  std::vector<float> sums(cache.facets.size() * stride);
+  for (std::size_t f = 0; f < cache.facets.size(); ++f)
+    for (std::size_t k = 0; k < stride; ++k) {
+      double sum = 0;
+      for (std::size_t p = 0; p < cache.facets[f].patches; ++p) {
+        const std::size_t patch = cache.facets[f].first_patch + p;
+        sum += double{cache.patches[patch].weight} * cache.direct[patch * stride + k];
+      }
+      sums[f * stride + k] = static_cast<float>(sum);
+    }
+  return sums;
+}
+
+struct Shader::Lamp {
+  std::size_t light;
+  RadiusWeights radius;
+  LightSource source;  // turned and moved
+  bool turned;
+  double exponent;  // of the lobe about `axis`
+  Vec3 axis;        // from the lamp to the scene's centre
+  double lobe(Vec3 wi) const { return exponent == 0 ? 1 : std::pow(std::max(0.0, -dot(wi, axis)), exponent); }
+};
+
+std::vector<Shader::Lamp> Shader::lamps(const SceneState& state) const {
+  std::vector<Lamp> all;
+  for (const std::size_t l : image_.lights) {
+    const LightState& light = state.lights[l];
+    const LightSource& given = layout_.lights[l];
+    const bool moves = light.tilt_x_rad != 0 || light.tilt_y_rad != 0 || !(light.shift_m == Vec3{}) ||
+                       light.nearness_per_m != 0 || light.exponent != 0;
+    Lamp lamp{l, RadiusWeights(light.radius_m), given, moves, light.exponent, {}};
+    if (given.directional) {
+      lamp.source.direction = light::turned(given.direction, light.tilt_x_rad, light.tilt_y_rad);
+      lamp.source.centre_m = layout_.centre_m;
+      lamp.source.nearness_per_m = light.nearness_per_m;
+    } else {
+      lamp.source.position_m =
+          light::turned_about(given.position_m, light.tilt_x_rad, light.tilt_y_rad, layout_.centre_m) + light.shift_m;
+      if (light.exponent != 0) lamp.axis = normalized(layout_.centre_m - lamp.source.position_m);
+    }
+    all.push_back(lamp);
+  }
+  return all;
+}
+
+Scattered Shader::direct(const SurfaceState& surface, std::size_t f, const Lamp& lamp) const {
+  const std::size_t lights = layout_.lights.size(), l = lamp.light;
+  const bool lambertian = surface.lambertian();
+  if (lambertian && !lamp.turned) {
+    const double base = lamp.radius.of(&sums_[(f * lights + l) * radius_count]) / pi;
+    return {{base, base, base}, {}};
+  }
+  const Facet& facet = cache_.facets[f];
+  const Extremes extremes(surface);
+  Scattered sum;
+  for (std::size_t place = facet.first_patch; place < facet.first_patch + facet.patches; ++place) {
+    const Patch& patch = cache_.patches[place];
+    double irradiance = lamp.radius.of(&cache_.direct[(place * lights + l) * radius_count]);
+    const Aim now = aim(lamp.source, patch.position_m);
+    if (lamp.turned) {
+      const Aim was = aim(layout_.lights[l], patch.position_m);
+      const double change = std::max(0.0, dot(patch.normal, now.wi)) * now.falloff -
+                            std::max(0.0, dot(patch.normal, was.wi)) * was.falloff;
+      irradiance = std::max(0.0, irradiance + cache_.visible[place * lights + l] * change) * lamp.lobe(now.wi);
+    }
+    if (irradiance <= 0) continue;
+    const double weighted = irradiance * patch.weight;
+    if (lambertian) {
+      sum.base += Rgb{1, 1, 1} * (weighted / pi);
+      continue;
+    }
+    const Basis basis(patch.normal);
+    const Vec3 wo = above_horizon(basis.to_local(patch.wo)), wi = above_horizon(basis.to_local(now.wi));
+    const Scattered f_here =
+        extremes.split([&](const surface::Values& v) { return surface.model->evaluate(v, wo, wi); });
+    sum.base += f_here.base * weighted;
+    sum.gloss += f_here.gloss * weighted;
+  }
+  return sum;
+}
+
+Scattered Shader::scattered(const SurfaceState& surface, const Facet& facet) const {
+  if (surface.lambertian()) return {{1, 1, 1}, {}};
+  const Patch& patch = cache_.patches[facet.first_patch];
+  const Vec3 wo = above_horizon(Basis(patch.normal).to_local(patch.wo));
+  return Extremes(surface).split([&](const surface::Values& v) { return surface.model->albedo(v, wo); });
+}
+
+Shading Shader::operator()(const SceneState& state, std::span<const std::uint32_t> picked) const {
+  Shading shading;
+  shading.lights = image_.lights.size();
+  std::size_t facets = 0;
+  for (const std::uint32_t p : picked) facets += cache_.pixels[p].facets;
+  shading.direct.resize(facets * shading.lights);
+  shading.indirect.resize(facets);
+  for (std::uint32_t s = 0; s < state.surfaces.size(); ++s) again(state, picked, s, shading);
+  return shading;
+}
+
+void Shader::again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface,
+                   Shading& shading) const {
+  const std::vector<Lamp> on = lamps(state);
+  const SurfaceState& its = state.surfaces[surface];
+  std::size_t slot = 0;
+  for (const std::uint32_t p : picked)
+    for (std::size_t k = 0; k < cache_.pixels[p].facets; ++k, ++slot) {
+      const std::size_t f = cache_.pixels[p].first_facet + k;
+      if (cache_.facets[f].surface != surface) continue;
+      for (std::size_t i = 0; i < on.size(); ++i) shading.direct[slot * on.size() + i] = direct(its, f, on[i]);
+      shading.indirect[slot] = scattered(its, cache_.facets[f]);
+    }
+}
+
+}  // namespace gonio::relighting

@@ -1,0 +1,67 @@
+// Direct light of sampled pixels: the part of a prediction that depends on surface terms and on the lights' size and
+// place, but neither on albedos nor on intensities, in which an image is linear or nearly so.
+//
+// Per facet and light that is on: radiance = intensity (albedo * base + gloss), both per unit intensity and weighted by
+// the facet's share of the pixel. Per facet: the share of irregular incident light that is sent on is albedo * base +
+// gloss. For models without a diffuse base (metals) everything is gloss.
+//   base, gloss = sum over patches weight f(wo, wi) V cos(theta) / d^2,  f from lib/surface at albedo 0 and 1
+// A light that is turned or moved keeps the shadows that it cast; cosines and distances follow it. Lamps with a lobe
+// shine cos^exponent about the direction to the scene's centre (light.lobe); a directional light of finite nearness
+// stands at 1 / nearness from the centre, where its irradiance is what the base model says, and falls with the square.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "relighting/light_cache.h"
+#include "relighting/recordings.h"
+#include "relighting/scene_state.h"
+
+namespace gonio::relighting {
+
+struct Scattered {
+  Rgb base, gloss;
+};
+struct Shading {
+  std::size_t lights = 0;           // on in this image
+  std::vector<Scattered> direct;    // [facet of the picked pixels, in order][light of the image]
+  std::vector<Scattered> indirect;  // [facet of the picked pixels, in order]
+};
+
+// Weights of the radius table's entries at one radius: cubic Hermite with tangents from the neighbouring nodes (Catmull
+// & Rom 1974, for uneven spacing). At radius 0 the small light's entry is taken as it stands.
+struct RadiusWeights {
+  std::size_t first = 0, count = 1;
+  std::array<double, 4> weight{1, 0, 0, 0};
+  explicit RadiusWeights(double radius_m);
+  double of(const float* table) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < count; ++k) sum += weight[k] * table[first + k];
+    return sum;
+  }
+};
+
+// Weighted sums of a view's `direct` table over each facet's patches: [facet][light][radius].
+std::vector<float> facet_sums(const ViewCache& cache);
+
+class Shader {
+ public:
+  Shader(const SceneLayout& layout, const Recording& image, const ViewCache& cache, std::span<const float> sums)
+      : layout_(layout), image_(image), cache_(cache), sums_(sums) {}
+  Shading operator()(const SceneState& state, std::span<const std::uint32_t> picked) const;
+  // The facets of one surface anew.
+  void again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface,
+             Shading& shading) const;
+
+ private:
+  struct Lamp;
+  std::vector<Lamp> lamps(const SceneState& state) const;
+  Scattered direct(const SurfaceState& surface, std::size_t facet, const Lamp& lamp) const;
+  Scattered scattered(const SurfaceState& surface, const Facet& facet) const;
+  const SceneLayout& layout_;
+  const Recording& image_;
+  const ViewCache& cache_;
+  std::span<const float> sums_;
+};
+
+}  // namespace gonio::relighting
