@@ -5,9 +5,10 @@
 #include <cmath>
 
 #include "explain/engine.h"
-#include "explain/robot/robot_chain.h"
+#include "explain/robot/robot_problem.h"
 #include "explain/robot_world.h"
 #include "manifest/document.h"
+#include "robot/chain/chain.h"
 
 namespace gonio::explain::tests {
 namespace {
@@ -37,21 +38,21 @@ TEST(RobotPassage, NeutralValuesLeaveThePoseToTheBit) {
   CellTruth truth;
   truth.in_motion = true;
   truth.warming_K = 5;
-  const RobotInput input = robot_inputs(robot_cell(truth, 12, 1)).at(0);
-  for (const RobotInput::View& view : input.views) EXPECT_EQ(tool_pose(input, view, {}), view.base_from_tool);
+  const ChainInput input = robot_inputs(robot_cell(truth, 12, 1)).at(0);
+  for (const ChainInput::View& view : input.views) EXPECT_EQ(tool_pose(input, view, {}), view.base_from_tool);
 }
 
 // A lag of the time to the next image brings the pose to that image's: the parabola goes through both neighbours.
 TEST(RobotPassage, TheParabolaGoesThroughTheNeighbours) {
   CellTruth truth;
   truth.in_motion = true;
-  const RobotInput input = robot_inputs(robot_cell(truth, 12, 1)).at(0);
+  const ChainInput input = robot_inputs(robot_cell(truth, 12, 1)).at(0);
   int passed = 0;
   for (std::size_t v = 1; v + 1 < input.views.size(); ++v) {
     if (!input.views[v].passes) continue;
     ++passed;
     for (const std::size_t to : {v - 1, v + 1}) {
-      RobotState state;
+      ChainState state;
       state.lag_s = *input.views[to].time_s - *input.views[v].time_s;
       const auto at = tool_pose(input, input.views[v], state), there = input.views[to].base_from_tool;
       EXPECT_LT(norm(at.translation_m - there.translation_m), 1e-9);
@@ -64,7 +65,7 @@ TEST(RobotPassage, TheParabolaGoesThroughTheNeighbours) {
 }
 
 TEST(RobotPassage, TheSignOfApproachIsThatOfTheLastTurn) {
-  const RobotInput input = robot_inputs(robot_cell({}, 10, 2)).at(0);
+  const ChainInput input = robot_inputs(robot_cell({}, 10, 2)).at(0);
   EXPECT_EQ(input.views[0].approach, (std::array<double, 6>{}));
   for (std::size_t v = 1; v < input.views.size(); ++v)
     for (std::size_t j = 0; j < 6; ++j)

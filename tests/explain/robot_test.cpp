@@ -38,7 +38,7 @@ double estimated(const RobotWork& work, const std::string& parameter) {
 
 TEST(ExplainRobot, TheChainIsThatOfAnArmBuiltOtherwise) {
   const RobotWork work = settled(still(), 20, 1);
-  const RobotState state = state_of(work.input, work.parameters, work.aligned);
+  const ChainState state = state_of(work.input, work.parameters, work.aligned);
   for (std::size_t v = 0; v < 20; ++v) {
     const auto& view = work.input.views[v];
     EXPECT_LT(pose_difference(work, v, state).norm(), 1e-6) << view.image;
@@ -105,15 +105,15 @@ TEST(ExplainRobot, DerivativesAreThoseOfDifferences) {
 }
 
 TEST(ExplainRobot, NoiseOfTheToolMovesTheBoardAsTheChainSays) {
-  RobotInput input = robot_inputs(robot_cell({}, 8, 7)).at(0);
-  RobotState state;
+  ChainInput input = robot_inputs(robot_cell({}, 8, 7)).at(0);
+  ChainState state;
   for (const bool eye_to_hand : {false, true}) {
     input.eye_to_hand = eye_to_hand;
-    for (const RobotInput::View& view : input.views) {
+    for (const ChainInput::View& view : input.views) {
       const PoseMatrix by = by_tool(input, view, state);
       for (int k = 0; k < 6; ++k) {
         constexpr double step = 1e-6;
-        RobotInput::View moved = view;
+        ChainInput::View moved = view;
         std::array<double, 6> xi{};
         xi[static_cast<std::size_t>(k)] = step;
         moved.base_from_tool =
@@ -157,11 +157,11 @@ TEST(ExplainRobot, APoseBeyondAnyNoiseIsLeftOutAndNamed) {
 // What handeye left out is left out, but the arm went through it.
 TEST(ExplainRobot, PosesThatHandeyeLeftOutAreLeftOut) {
   manifest::Document document = robot_cell({}, 12, 8);
-  const RobotInput whole = robot_inputs(document).at(0);
+  const ChainInput whole = robot_inputs(document).at(0);
   document.mountings["hand"].outliers = {"view5"};
-  const RobotInput input = robot_inputs(document).at(0);
+  const ChainInput input = robot_inputs(document).at(0);
   ASSERT_EQ(input.views.size(), 11u);
-  for (const RobotInput::View& view : input.views) EXPECT_NE(view.image, "view5");
+  for (const ChainInput::View& view : input.views) EXPECT_NE(view.image, "view5");
   EXPECT_EQ(input.views[5].approach, whole.views[6].approach);
   document.mountings["hand"].outliers = {"view0", "view1", "view2", "view3", "view4", "view5", "view6"};
   EXPECT_FALSE(has_hand_eye(document));

@@ -2,7 +2,8 @@
 // bit-identical there.
 #include <gmock/gmock.h>
 
-#include "explain/robot/robot_chain.h"
+#include "mechanism/mechanism.h"
+#include "robot/chain/chain.h"
 #include "robot/kinematics.h"
 
 namespace gonio::robot {
@@ -25,26 +26,26 @@ TEST(RobotMechanisms, AreDeclaredWhole) {
 }
 
 TEST(RobotMechanisms, AtTheirNeutralValuesTheToolStaysWhereItWas) {
-  explain::RobotInput input;
+  ChainInput input;
   input.links = known_arm("ur10e", "test").links;
-  explain::RobotInput::View view;
+  ChainInput::View view;
   view.joints_rad = {0.1, -1.2, 1.3, -0.4, 0.5, 0.6};
   view.base_from_tool = flange(input.links, view.joints_rad);
-  EXPECT_EQ(explain::tool_pose(input, view, {}), view.base_from_tool);
-  explain::RobotState moved;
+  EXPECT_EQ(tool_pose(input, view, {}), view.base_from_tool);
+  ChainState moved;
   moved.joint_rad[1] = 1e-12;
-  EXPECT_LT(norm(explain::tool_pose(input, view, moved).translation_m - view.base_from_tool.translation_m), 2e-12);
+  EXPECT_LT(norm(tool_pose(input, view, moved).translation_m - view.base_from_tool.translation_m), 2e-12);
 }
 
 TEST(RobotMechanisms, SagLowersTheTool) {
-  explain::RobotInput input;
+  ChainInput input;
   input.links = known_arm("abb-irb-1600", "test").links;
-  explain::RobotInput::View view;
+  ChainInput::View view;
   view.joints_rad = {0, pi / 2, -pi / 2, 0, 0, 0};  // stretched forward: levers of 1.365 and 0.665 m
   view.base_from_tool = flange(input.links, view.joints_rad);
-  explain::RobotState state;
+  ChainState state;
   state.sag_rad_per_m = {1e-4, 2e-4};
-  const double drop = view.base_from_tool.translation_m.z - explain::tool_pose(input, view, state).translation_m.z;
+  const double drop = view.base_from_tool.translation_m.z - tool_pose(input, view, state).translation_m.z;
   EXPECT_NEAR(drop, 1e-4 * 1.365 * 1.365 + 2e-4 * 0.665 * 0.665, 1e-7);
 }
 

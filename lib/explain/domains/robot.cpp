@@ -14,7 +14,7 @@ const Domain& robot() {
       .problems =
           [](const manifest::Document& document, const ProblemOptions&) {
             std::vector<std::unique_ptr<Problem>> problems;
-            for (RobotInput& input : robot_inputs(document)) problems.push_back(robot_problem(std::move(input)));
+            for (ChainInput& input : robot_inputs(document)) problems.push_back(robot_problem(std::move(input)));
             return problems;
           },
       .files =

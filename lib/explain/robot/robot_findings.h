@@ -10,7 +10,7 @@
 namespace gonio::explain {
 
 struct RobotWork {
-  RobotInput input;
+  ChainInput input;
   RobotParameters parameters;
   std::vector<camera::BoardPose> reference;  // measured poses under the base model, one per view
   std::vector<NoisyView> noisy;              // at the aligned mounting, in the order of the views
@@ -29,12 +29,12 @@ Eigen::VectorXd prior_precision(const RobotParameters& parameters);
 
 std::vector<double> start_values(const RobotWork& work);
 // Change from the measured to the chain's pose of a view.
-PoseChange pose_difference(const RobotWork& work, std::size_t view, const RobotState& state);
+PoseChange pose_difference(const RobotWork& work, std::size_t view, const ChainState& state);
 // Its derivatives: by the chain's parameters (columns of others are zero), and of the measured pose (measured_slopes)
 // under `state`.
 Eigen::MatrixXd chain_slopes(const RobotWork& work, std::size_t view, std::vector<double> values,
                              std::span<const std::size_t> columns);
-Eigen::MatrixXd pose_slopes(const RobotWork& work, std::size_t view, const RobotState& state);
+Eigen::MatrixXd pose_slopes(const RobotWork& work, std::size_t view, const ChainState& state);
 
 std::vector<Condition> robot_conditions(const RobotWork& work);
 void append_robot_conditions(const RobotWork& work, std::size_t view, const PoseMatrix& whitener,

@@ -3,7 +3,8 @@
 #pragma once
 #include <vector>
 
-#include "explain/robot/robot_chain.h"
+#include "explain/robot/robot_problem.h"
+#include "robot/chain/chain.h"
 #include "robot/handeye/pose_noise.h"
 
 namespace gonio::explain {

@@ -21,7 +21,7 @@ std::array<double, 4> pinhole(const camera::Intrinsics& k) {
 
 class Declaration {
  public:
-  Declaration(const RobotInput& input, RobotParameters& result) : input_(input), result_(result) {}
+  Declaration(const ChainInput& input, RobotParameters& result) : input_(input), result_(result) {}
 
   void mounting(const std::string& name, Part part) {
     for (std::size_t i = 0; i < 6; ++i)
@@ -100,7 +100,7 @@ class Declaration {
 
   // Could these recordings show it, and does the base model lack it?
   bool moves_something(const RobotRole& role) const {
-    using View = RobotInput::View;
+    using View = ChainInput::View;
     const bool corners = !input_.views[0].corners.empty();
     const bool joints = !input_.links.empty() && !input_.views[0].joints_rad.empty();
     switch (role.part) {
@@ -127,7 +127,7 @@ class Declaration {
     result_.roles.push_back(role);
     return result_.parameters.size() - 1;
   }
-  const RobotInput& input_;
+  const ChainInput& input_;
   RobotParameters& result_;
 };
 
@@ -185,7 +185,7 @@ Eigen::Index slope_column(const RobotRole& role) {
   return static_cast<Eigen::Index>(first + role.index);
 }
 
-RobotParameters robot_parameters(const RobotInput& input) {
+RobotParameters robot_parameters(const ChainInput& input) {
   RobotParameters result;
   Declaration declare(input, result);
   declare.mounting(input.eye_to_hand ? "tool_from_board" : "tool_from_camera", Part::hand);
@@ -196,8 +196,8 @@ RobotParameters robot_parameters(const RobotInput& input) {
   return result;
 }
 
-RobotState state_of(const RobotInput& input, const RobotParameters& p, std::span<const double> values) {
-  RobotState s;
+ChainState state_of(const ChainInput& input, const RobotParameters& p, std::span<const double> values) {
+  ChainState s;
   s.intrinsics = input.intrinsics;
   s.warp = input.warp;
   for (std::size_t k = 0; k < p.roles.size(); ++k) {

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "explain/robot/robot_chain.h"
+#include "explain/robot/robot_problem.h"
+#include "robot/chain/chain.h"
 
 namespace gonio::explain {
 
@@ -26,8 +27,8 @@ struct RobotParameters {
   std::vector<Candidate> candidates;
 };
 // Candidates have all parameters that these recordings could move, estimable or not.
-RobotParameters robot_parameters(const RobotInput& input);
+RobotParameters robot_parameters(const ChainInput& input);
 
-RobotState state_of(const RobotInput& input, const RobotParameters& parameters, std::span<const double> values);
+ChainState state_of(const ChainInput& input, const RobotParameters& parameters, std::span<const double> values);
 
 }  // namespace gonio::explain

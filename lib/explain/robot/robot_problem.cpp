@@ -18,7 +18,7 @@ constexpr double estimable =
 
 class HandEyeProblem final : public RobotProblem {
  public:
-  explicit HandEyeProblem(RobotInput input) : work_{std::move(input), {}, {}, {}, {}, {}, {}} {
+  explicit HandEyeProblem(ChainInput input) : work_{std::move(input), {}, {}, {}, {}, {}, {}} {
     work_.parameters = robot_parameters(work_.input);
     settle(work_);
     if (work_.input.views.size() < fewest_views)
@@ -34,7 +34,7 @@ class HandEyeProblem final : public RobotProblem {
   }
 
   void predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const override {
-    const RobotState state = state_of(work_.input, work_.parameters, values);
+    const ChainState state = state_of(work_.input, work_.parameters, values);
     const PoseChange whitened = whitener_[group] * pose_difference(work_, group, state);
     for (std::size_t i = 0; i < 6; ++i) prediction[i] = whitened[static_cast<Eigen::Index>(i)];
   }
@@ -42,7 +42,7 @@ class HandEyeProblem final : public RobotProblem {
   // Chain: central differences, cheap. Measured pose: its implicit derivatives, with the opposite sign.
   void jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
                 std::span<double> derivatives) const override {
-    const RobotState state = state_of(work_.input, work_.parameters, values);
+    const ChainState state = state_of(work_.input, work_.parameters, values);
     const Eigen::MatrixXd by_chain = chain_slopes(work_, group, {values.begin(), values.end()}, columns);
     const Eigen::MatrixXd by_measurement = pose_slopes(work_, group, state);
     for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -135,7 +135,7 @@ class HandEyeProblem final : public RobotProblem {
 
 }  // namespace
 
-std::unique_ptr<RobotProblem> robot_problem(RobotInput input) {
+std::unique_ptr<RobotProblem> robot_problem(ChainInput input) {
   return std::make_unique<HandEyeProblem>(std::move(input));
 }
 

@@ -23,58 +23,14 @@
 #include <string>
 #include <vector>
 
-#include "camera/board_projection.h"
 #include "explain/engine.h"
 #include "inference/explanation.h"
 #include "manifest/sections/mounting.h"
-#include "robot/kinematics.h"
+#include "robot/chain/input.h"
 
 namespace gonio::explain {
 
-struct RobotInput {
-  struct Corner {
-    Vec2 board_m, pixel;
-    double sigma_px = 0;
-  };
-  struct View {
-    std::string image;
-    Rigid<frame::Base, frame::Tool> base_from_tool;
-    std::vector<double> joints_rad;    // of every view, or of none
-    std::array<double, 6> approach{};  // 1: the joint last turned forwards, -1: backwards, 0: not known
-    std::optional<double> time_s{}, temperature_K{};
-    double warmer_K = 0, later_s = 0;  // than the mean of the images, where all of them say
-    // T(t + dt) = T(t) xi, xi = velocity dt + acceleration dt^2 / 2 as (rotation vector, shift) in the tool's axes.
-    std::array<double, 6> velocity{}, acceleration{};
-    bool passes = false;  // the neighbours are near enough to know these
-    camera::BoardPose camera_from_board;
-    std::vector<Corner> corners;                       // of every view, or of none:
-    double rotation_sigma_rad = 0, shift_sigma_m = 0;  // then the stated noise of camera_from_board
-  };
-  std::string mounting, robot;  // names in the manifest's "mountings" and "robots"
-  bool eye_to_hand = false;
-  // eye-in-hand: tool_from_camera, base_from_board; eye-to-hand: tool_from_board, base_from_camera.
-  Rigid<frame::Tool, frame::Object> tool_from_hand;
-  Rigid<frame::Base, frame::Object> base_from_fixed;
-  std::vector<robot::Link> links;  // empty: the arm is not known
-  std::string camera, board;       // names
-  camera::Intrinsics intrinsics;
-  std::vector<std::size_t> terms;                         // lens terms that the camera has
-  std::array<std::optional<double>, 4> pinhole_sigma_px;  // fx fy cx cy
-  camera::BoardExtent extent;
-  camera::BoardWarp warp;
-  bool warped = false;
-  std::vector<View> views;
-};
-
-// Mountings with both of their poses, and at least six images that have a tool pose (or joints) and
-// camera_from_board.
-bool has_hand_eye(const manifest::Document& document);
-// One for each such mounting. Error(data) in words where a part is missing.
-std::vector<RobotInput> robot_inputs(const manifest::Document& document);
-
-// How the arm came to each pose and passed through it: approach, warmer_K, later_s, velocity and acceleration, from the
-// views' joints, times and temperatures.
-void find_passage(RobotInput& input);
+using namespace robot;  // the chain, by the names that this domain uses
 
 // What robot, camera and board contribute to the scatter of the board's position, standard deviations in m; and what
 // the poses cannot tell apart from the mounting, one sentence each, with the move that separates them.
@@ -94,6 +50,6 @@ class RobotProblem : public Problem {
   virtual RobotFindings findings(const Explanation& explanation) const = 0;
 };
 
-std::unique_ptr<RobotProblem> robot_problem(RobotInput input);
+std::unique_ptr<RobotProblem> robot_problem(ChainInput input);
 
 }  // namespace gonio::explain

@@ -12,7 +12,7 @@ namespace {
 constexpr int pose_iterations = 4;
 
 // A turn of the tool, a shift of it, and a turn of the seen board about its middle, by which its origin follows.
-robot::handeye::PoseScatter scatter_of(const RobotWork& work, std::size_t view, const RobotState& state,
+robot::handeye::PoseScatter scatter_of(const RobotWork& work, std::size_t view, const ChainState& state,
                                        const PoseMatrix& measured) {
   const PoseMatrix by = by_tool(work.input, work.input.views[view], state);
   const Vec3 arm = work.reference[view].rotate({work.input.extent.middle_m.x, work.input.extent.middle_m.y, 0});
@@ -41,7 +41,7 @@ Eigen::MatrixXd differences(const RobotWork& work, std::size_t view, const std::
 
 NoisyView noisy_view(const RobotWork& work, std::size_t view, const std::vector<double>& values,
                      const PoseMatrix& measured) {
-  const RobotState state = state_of(work.input, work.parameters, values);
+  const ChainState state = state_of(work.input, work.parameters, values);
   return {-pose_difference(work, view, state), differences(work, view, values),
           scatter_of(work, view, state, measured)};
 }
@@ -108,8 +108,8 @@ std::vector<double> start_values(const RobotWork& work) {
 namespace {
 
 // The measured pose under a state's camera and board.
-camera::BoardPose measured_under(const RobotWork& work, std::size_t view, const RobotState& state) {
-  const RobotInput::View& v = work.input.views[view];
+camera::BoardPose measured_under(const RobotWork& work, std::size_t view, const ChainState& state) {
+  const ChainInput::View& v = work.input.views[view];
   const camera::Intrinsics& base = work.input.intrinsics;
   const bool same = state.intrinsics.fx_px == base.fx_px && state.intrinsics.fy_px == base.fy_px &&
                     state.intrinsics.cx_px == base.cx_px && state.intrinsics.cy_px == base.cy_px &&
@@ -121,7 +121,7 @@ camera::BoardPose measured_under(const RobotWork& work, std::size_t view, const 
 
 }  // namespace
 
-PoseChange pose_difference(const RobotWork& work, std::size_t view, const RobotState& state) {
+PoseChange pose_difference(const RobotWork& work, std::size_t view, const ChainState& state) {
   return change_between(measured_under(work, view, state), chain_pose(work.input, work.input.views[view], state));
 }
 
@@ -130,7 +130,7 @@ Eigen::MatrixXd chain_slopes(const RobotWork& work, std::size_t view, std::vecto
                              std::span<const std::size_t> columns) {
   const auto n = static_cast<Eigen::Index>(columns.size());
   Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(6, n);
-  const RobotInput::View& v = work.input.views[view];
+  const ChainInput::View& v = work.input.views[view];
   const camera::BoardPose& from = work.reference[view];
   for (Eigen::Index c = 0; c < n; ++c) {
     const std::size_t p = columns[static_cast<std::size_t>(c)];
@@ -148,18 +148,18 @@ Eigen::MatrixXd chain_slopes(const RobotWork& work, std::size_t view, std::vecto
   return slopes;
 }
 
-Eigen::MatrixXd pose_slopes(const RobotWork& work, std::size_t view, const RobotState& state) {
-  const RobotInput::View& v = work.input.views[view];
+Eigen::MatrixXd pose_slopes(const RobotWork& work, std::size_t view, const ChainState& state) {
+  const ChainInput::View& v = work.input.views[view];
   if (v.corners.empty()) return Eigen::MatrixXd::Zero(6, static_cast<Eigen::Index>(slope_scale + 2));
   return measured_slopes(v, work.input, state, measured_under(work, view, state));
 }
 
 void settle(RobotWork& work) {
   for (const Parameter& p : work.parameters.parameters) work.aligned.push_back(p.neutral);
-  const RobotState base = state_of(work.input, work.parameters, work.aligned);
+  const ChainState base = state_of(work.input, work.parameters, work.aligned);
   std::vector<PoseMatrix> covariances;
   double squares = 0, freedom = 0;
-  for (const RobotInput::View& view : work.input.views) {
+  for (const ChainInput::View& view : work.input.views) {
     const MeasuredPose m = measured_pose(view, work.input, base, view.camera_from_board, 20);
     work.reference.push_back(m.camera_from_board);
     covariances.push_back(m.covariance);
@@ -182,21 +182,21 @@ void settle(RobotWork& work) {
 
 namespace {
 
-double speed(const RobotInput::View& v) {
+double speed(const ChainInput::View& v) {
   return std::hypot(v.velocity[3], v.velocity[4], v.velocity[5]);
 }
 
 // Conditions of recordings that say when they were taken.
 struct Drift {
   const char *name, *unit, *curve_unit;
-  double (*of)(const RobotInput::View& view);
+  double (*of)(const ChainInput::View& view);
 };
-constexpr Drift drifts[] = {{"robot.temperature", "K", "1", [](const RobotInput::View& v) { return v.warmer_K; }},
-                            {"robot.time", "s", "1", [](const RobotInput::View& v) { return v.later_s; }},
-                            {"robot.speed", "m/s", "s", [](const RobotInput::View& v) { return speed(v); }}};
+constexpr Drift drifts[] = {{"robot.temperature", "K", "1", [](const ChainInput::View& v) { return v.warmer_K; }},
+                            {"robot.time", "s", "1", [](const ChainInput::View& v) { return v.later_s; }},
+                            {"robot.speed", "m/s", "s", [](const ChainInput::View& v) { return speed(v); }}};
 
-bool varies(const RobotWork& work, double (*of)(const RobotInput::View& view)) {
-  return std::ranges::any_of(work.input.views, [&](const RobotInput::View& v) { return of(v) != 0; });
+bool varies(const RobotWork& work, double (*of)(const ChainInput::View& view)) {
+  return std::ranges::any_of(work.input.views, [&](const ChainInput::View& v) { return of(v) != 0; });
 }
 
 }  // namespace
@@ -219,8 +219,8 @@ std::vector<Condition> robot_conditions(const RobotWork& work) {
 // (temperature, time), the way of the tool (speed), a turn about the joint's axis (joint, approach).
 void append_robot_conditions(const RobotWork& work, std::size_t view, const PoseMatrix& whitener,
                              std::vector<Condition>& conditions) {
-  const RobotInput::View& v = work.input.views[view];
-  const RobotState state = state_of(work.input, work.parameters, work.aligned);
+  const ChainInput::View& v = work.input.views[view];
+  const ChainState state = state_of(work.input, work.parameters, work.aligned);
   const auto tool = tool_pose(work.input, v, state);
   const PoseMatrix by = by_tool(work.input, v, state);
   const camera::BoardPose& board = work.reference[view];

@@ -41,7 +41,7 @@ void write_pose(const Start& start, const std::array<double, 6>& change, const s
 
 void upgrade_mounting(const RobotWork& work, const RobotFindings& findings, const Explanation& e,
                       manifest::Mounting& section) {
-  const RobotState state = state_of(work.input, work.parameters, e.values);
+  const ChainState state = state_of(work.input, work.parameters, e.values);
   std::array<double, 6> hand{}, fixed{};
   for (std::size_t p = 0; p < work.parameters.roles.size(); ++p) {
     const RobotRole& role = work.parameters.roles[p];
@@ -68,7 +68,7 @@ void upgrade_mounting(const RobotWork& work, const RobotFindings& findings, cons
 }
 
 // The arm's rows, and the poses that follow from them; play, growth and lag, which no row holds, are in the poses.
-void upgrade_arm(const RobotWork& work, const RobotState& state, manifest::Document& document) {
+void upgrade_arm(const RobotWork& work, const ChainState& state, manifest::Document& document) {
   if (!work.input.links.empty()) {
     manifest::Robot& arm = document.robots.at(work.input.robot);
     arm.dh = work.input.links;
@@ -79,7 +79,7 @@ void upgrade_arm(const RobotWork& work, const RobotState& state, manifest::Docum
       arm.dh[i].d_m += state.d_m[i];
     }
   }
-  for (const RobotInput::View& view : work.input.views) {
+  for (const ChainInput::View& view : work.input.views) {
     const auto listed = manifest::index_of_image(document, view.image);
     if (!listed) continue;
     const auto tool = tool_pose(work.input, view, state);
@@ -94,7 +94,7 @@ void upgrade_arm(const RobotWork& work, const RobotState& state, manifest::Docum
 
 void upgrade_robot(const RobotWork& work, const Problem& problem, const RobotFindings& findings, const Explanation& e,
                    manifest::Document& document) {
-  const RobotState state = state_of(work.input, work.parameters, e.values);
+  const ChainState state = state_of(work.input, work.parameters, e.values);
   upgrade_mounting(work, findings, e, document.mountings.at(work.input.mounting));
   for (const std::string& text : findings.entangled) log(LogLevel::info, work.input.mounting + ": " + text);
   if (is_named(problem, e, "robot.")) upgrade_arm(work, state, document);

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "explain/robot/robot_problem.h"
+#include "robot/chain/input.h"
 
-namespace gonio::explain {
+namespace gonio::robot {
 namespace {
 
-using View = RobotInput::View;
+using View = ChainInput::View;
 constexpr double least_turn_rad = 1e-5;  // below it a joint stands
 constexpr double longest_gap_s = 1;      // beyond it nobody knows what the arm did between two images
 
@@ -46,7 +46,7 @@ void find_motion(const View& before, View& view, const View& after) {
 
 }  // namespace
 
-void find_passage(RobotInput& input) {
+void find_passage(ChainInput& input) {
   std::vector<View>& views = input.views;
   settle_drift(views, &View::temperature_K, &View::warmer_K);
   settle_drift(views, &View::time_s, &View::later_s);
@@ -67,4 +67,4 @@ void find_passage(RobotInput& input) {
   }
 }
 
-}  // namespace gonio::explain
+}  // namespace gonio::robot

@@ -1,12 +1,12 @@
-// See robot_chain.h.
-#include "explain/robot/robot_chain.h"
+// See chain.h.
+#include "robot/chain/chain.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
 
 #include "linear/solve.h"
 
-namespace gonio::explain {
+namespace gonio::robot {
 namespace {
 
 template <class To, class From>
@@ -34,27 +34,27 @@ Eigen::Matrix3d crossing(Vec3 v) {
   return m;
 }
 
-bool is_nominal(const RobotState& s) {
+bool is_nominal(const ChainState& s) {
   const std::array<double, 6> zero{};
   return s.joint_rad == zero && s.a_m == zero && s.d_m == zero && s.sag_rad_per_m == std::array<double, 2>{} &&
          s.backlash_rad == zero;
 }
 
 // The stated pose with the state's kinematics in place of the nominal ones.
-Rigid<frame::Base, frame::Tool> corrected_pose(const RobotInput& input, const RobotInput::View& view,
-                                               const RobotState& state) {
+Rigid<frame::Base, frame::Tool> corrected_pose(const ChainInput& input, const ChainInput::View& view,
+                                               const ChainState& state) {
   if (input.links.empty() || view.joints_rad.empty() || is_nominal(state)) return view.base_from_tool;
-  const auto nominal = robot::flange(input.links, view.joints_rad);
-  std::vector<robot::Link> links = input.links;
+  const auto nominal = flange(input.links, view.joints_rad);
+  std::vector<Link> links = input.links;
   std::vector<double> joints = view.joints_rad;
-  const std::vector<double> levers = robot::weight_levers(links, joints);
+  const std::vector<double> levers = weight_levers(links, joints);
   for (std::size_t i = 0; i < links.size() && i < 6; ++i) {
     links[i].a_m += state.a_m[i];
     links[i].d_m += state.d_m[i];
     joints[i] += state.joint_rad[i] + 0.5 * view.approach[i] * state.backlash_rad[i];
   }
   for (std::size_t k = 0; k < 2 && k + 1 < joints.size(); ++k) joints[k + 1] += state.sag_rad_per_m[k] * levers[k + 1];
-  return robot::flange(links, joints) * (inverse(nominal) * view.base_from_tool);
+  return flange(links, joints) * (inverse(nominal) * view.base_from_tool);
 }
 
 }  // namespace
@@ -67,8 +67,8 @@ PoseChange change_between(const camera::BoardPose& from, const camera::BoardPose
   return change;
 }
 
-Rigid<frame::Base, frame::Tool> tool_pose(const RobotInput& input, const RobotInput::View& view,
-                                          const RobotState& state) {
+Rigid<frame::Base, frame::Tool> tool_pose(const ChainInput& input, const ChainInput::View& view,
+                                          const ChainState& state) {
   Rigid<frame::Base, frame::Tool> tool = corrected_pose(input, view, state);
   if (state.lag_s != 0 && view.passes) {
     std::array<double, 6> xi{};
@@ -82,7 +82,7 @@ Rigid<frame::Base, frame::Tool> tool_pose(const RobotInput& input, const RobotIn
   return tool;
 }
 
-camera::BoardPose chain_pose(const RobotInput& input, const RobotInput::View& view, const RobotState& state) {
+camera::BoardPose chain_pose(const ChainInput& input, const ChainInput::View& view, const ChainState& state) {
   const auto hand = moved(input.tool_from_hand, state.hand);
   const auto fixed = moved(input.base_from_fixed, state.fixed);
   const auto tool = tool_pose(input, view, state);
@@ -91,7 +91,7 @@ camera::BoardPose chain_pose(const RobotInput& input, const RobotInput::View& vi
 }
 
 // Eye-in-hand: the chain is X^-1 T^-1 B, and T exp(xi) makes it X^-1 exp(-xi) X chain. Eye-to-hand: C^-1 T exp(xi) Z.
-PoseMatrix by_tool(const RobotInput& input, const RobotInput::View& view, const RobotState& state) {
+PoseMatrix by_tool(const ChainInput& input, const ChainInput::View& view, const ChainState& state) {
   const auto hand = moved(input.tool_from_hand, state.hand);
   const camera::BoardPose chain = chain_pose(input, view, state);
   PoseMatrix result = PoseMatrix::Zero();
@@ -110,7 +110,7 @@ PoseMatrix by_tool(const RobotInput& input, const RobotInput::View& view, const 
   return result;
 }
 
-MeasuredPose measured_pose(const RobotInput::View& view, const RobotInput& input, const RobotState& state,
+MeasuredPose measured_pose(const ChainInput::View& view, const ChainInput& input, const ChainState& state,
                            const camera::BoardPose& start, int iterations) {
   MeasuredPose result{start, PoseMatrix::Zero()};
   if (view.corners.empty()) {
@@ -122,7 +122,7 @@ MeasuredPose measured_pose(const RobotInput::View& view, const RobotInput& input
     PoseMatrix normal = PoseMatrix::Zero();
     PoseChange gradient = PoseChange::Zero();
     double squares = 0, rows = 0;
-    for (const RobotInput::Corner& c : view.corners) {
+    for (const ChainInput::Corner& c : view.corners) {
       Vec2 pixel;
       std::array<std::array<double, camera::BoardColumn::count>, 2> jacobian{};
       const Vec2 at{c.board_m.x * (1 + state.scale[0]), c.board_m.y * (1 + state.scale[1])};
@@ -153,13 +153,13 @@ MeasuredPose measured_pose(const RobotInput::View& view, const RobotInput& input
   return result;
 }
 
-Eigen::Matrix<double, 6, Eigen::Dynamic> measured_slopes(const RobotInput::View& view, const RobotInput& input,
-                                                         const RobotState& state, const camera::BoardPose& pose) {
+Eigen::Matrix<double, 6, Eigen::Dynamic> measured_slopes(const ChainInput::View& view, const ChainInput& input,
+                                                         const ChainState& state, const camera::BoardPose& pose) {
   using camera::BoardColumn;
   constexpr auto count = static_cast<Eigen::Index>(slope_scale + 2);
   PoseMatrix normal = PoseMatrix::Zero();
   Eigen::Matrix<double, 6, count> mixed = Eigen::Matrix<double, 6, count>::Zero();
-  for (const RobotInput::Corner& c : view.corners) {
+  for (const ChainInput::Corner& c : view.corners) {
     constexpr double step = 1e-6;  // of the scale, for the only derivatives that the camera's model does not give
     std::array<std::array<double, BoardColumn::count>, 2> jacobian{};
     std::array<Vec2, 2> stretched;
@@ -186,4 +186,4 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> measured_slopes(const RobotInput::View&
   return -linear::solve_ldlt(normal, mixed);
 }
 
-}  // namespace gonio::explain
+}  // namespace gonio::robot

@@ -1,10 +1,11 @@
 // See robot_problem.h: from the manifest to plain numbers.
+#include "robot/chain/input.h"
+
 #include <algorithm>
 
 #include "base/error.h"
 #include "camera/board.h"
 #include "camera/corner_table.h"
-#include "explain/robot/robot_problem.h"
 #include "manifest/document.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
@@ -13,7 +14,7 @@
 #include "manifest/sections/table.h"
 #include "robot/ur_calibration.h"
 
-namespace gonio::explain {
+namespace gonio::robot {
 namespace {
 
 constexpr std::ptrdiff_t fewest_images = 6;
@@ -53,7 +54,7 @@ auto as_part(const Pose& pose) {
   return std::pair{pose.rotation, pose.translation_m};
 }
 
-void read_camera(const manifest::Document& document, RobotInput& input) {
+void read_camera(const manifest::Document& document, ChainInput& input) {
   const std::string place = manifest::place(document, "/cameras/" + input.camera);
   const auto found = document.cameras.find(input.camera);
   if (found == document.cameras.end())
@@ -69,7 +70,7 @@ void read_camera(const manifest::Document& document, RobotInput& input) {
   }
 }
 
-void read_board(const manifest::Document& document, RobotInput& input) {
+void read_board(const manifest::Document& document, ChainInput& input) {
   const std::string place = manifest::place(document, "/boards/" + input.board);
   const auto found = document.boards.find(input.board);
   if (found == document.boards.end())
@@ -84,23 +85,23 @@ void read_board(const manifest::Document& document, RobotInput& input) {
   input.warp = {sag("x_m"), sag("y_m")};
 }
 
-void read_corners(const manifest::Document& document, RobotInput& input) {
+void read_corners(const manifest::Document& document, ChainInput& input) {
   for (const auto& [name, section] : document.tables) {
     if (section.model != "camera") continue;
     if (!section.camera.empty() && section.camera != input.camera) continue;
     if (!section.board.empty() && section.board != input.board) continue;
     const camera::CornerTable table = camera::read_corners(document, name);
     for (const camera::ImageCorners& own : table.images)
-      for (RobotInput::View& view : input.views) {
+      for (ChainInput::View& view : input.views) {
         if (view.image != own.image) continue;
         for (const camera::TableCorner& c : own.corners) view.corners.push_back({c.board_m, c.pixel, c.sigma_px});
       }
   }
 }
 
-RobotInput::View view_of(const manifest::Document& document, const manifest::ImageEntry& image,
-                         const RobotInput& input) {
-  RobotInput::View view;
+ChainInput::View view_of(const manifest::Document& document, const manifest::ImageEntry& image,
+                         const ChainInput& input) {
+  ChainInput::View view;
   view.image = image.id;
   view.joints_rad = image.joints_rad;
   view.time_s = image.time_s;
@@ -113,7 +114,7 @@ RobotInput::View view_of(const manifest::Document& document, const manifest::Ima
     if (input.links.empty())
       throw Error(Exit::data, place, "are given without base_from_tool, and the arm is not described",
                   "describe it in robots");
-    view.base_from_tool = robot::flange(input.links, image.joints_rad);
+    view.base_from_tool = flange(input.links, image.joints_rad);
   }
   if (const auto& sigma = image.camera_from_board->sigma;
       sigma && !sigma->rotation_rad.empty() && !sigma->translation_m.empty()) {
@@ -124,16 +125,16 @@ RobotInput::View view_of(const manifest::Document& document, const manifest::Ima
 }
 
 // Where any view lacks joints or corners, none of them counts: hypotheses are asked of all poses alike.
-void even_out(const manifest::Document& document, RobotInput& input) {
+void even_out(const manifest::Document& document, ChainInput& input) {
   const auto lacks = [&](auto condition) { return std::any_of(input.views.begin(), input.views.end(), condition); };
-  if (lacks([&](const RobotInput::View& v) { return v.joints_rad.size() != input.links.size(); })) {
+  if (lacks([&](const ChainInput::View& v) { return v.joints_rad.size() != input.links.size(); })) {
     input.links.clear();
-    for (RobotInput::View& v : input.views) v.joints_rad.clear();
+    for (ChainInput::View& v : input.views) v.joints_rad.clear();
   }
   std::erase_if(input.views,
-                [](const RobotInput::View& v) { return !v.corners.empty() && v.corners.size() < fewest_corners; });
-  if (!lacks([](const RobotInput::View& v) { return v.corners.empty(); })) return;
-  for (RobotInput::View& v : input.views) {
+                [](const ChainInput::View& v) { return !v.corners.empty() && v.corners.size() < fewest_corners; });
+  if (!lacks([](const ChainInput::View& v) { return v.corners.empty(); })) return;
+  for (ChainInput::View& v : input.views) {
     v.corners.clear();
     if (!(v.rotation_sigma_rad > 0) || !(v.shift_sigma_m > 0))
       throw Error(Exit::data, manifest::place(document, "/images/" + v.image + "/camera_from_board"),
@@ -141,8 +142,8 @@ void even_out(const manifest::Document& document, RobotInput& input) {
   }
 }
 
-RobotInput input_of(const manifest::Document& document, const std::string& name, const manifest::Mounting& m) {
-  RobotInput input;
+ChainInput input_of(const manifest::Document& document, const std::string& name, const manifest::Mounting& m) {
+  ChainInput input;
   input.mounting = name;
   input.eye_to_hand = m.kind == "eye-to-hand";
   const auto hand = input.eye_to_hand ? as_part(*m.tool_from_board) : as_part(*m.tool_from_camera);
@@ -153,12 +154,12 @@ RobotInput input_of(const manifest::Document& document, const std::string& name,
   input.robot = m.robot.empty() ? images[0]->robot : m.robot;
   input.camera = m.camera.empty() ? images[0]->camera : m.camera;
   input.board = m.board.empty() ? images[0]->board : m.board;
-  if (document.robots.contains(input.robot)) input.links = robot::arm_of(document, input.robot).links;
+  if (document.robots.contains(input.robot)) input.links = arm_of(document, input.robot).links;
   read_camera(document, input);
   read_board(document, input);
   for (const manifest::ImageEntry* image : images) input.views.push_back(view_of(document, *image, input));
   find_passage(input);  // by all poses: the arm went through those that are left out, too
-  std::erase_if(input.views, [&](const RobotInput::View& v) { return is_left_out(v.image, m); });
+  std::erase_if(input.views, [&](const ChainInput::View& v) { return is_left_out(v.image, m); });
   read_corners(document, input);
   even_out(document, input);
   return input;
@@ -171,11 +172,11 @@ bool has_hand_eye(const manifest::Document& document) {
                      [&](const auto& m) { return is_enough(document, m.second); });
 }
 
-std::vector<RobotInput> robot_inputs(const manifest::Document& document) {
-  std::vector<RobotInput> inputs;
+std::vector<ChainInput> robot_inputs(const manifest::Document& document) {
+  std::vector<ChainInput> inputs;
   for (const auto& [name, mounting] : document.mountings)
     if (is_enough(document, mounting)) inputs.push_back(input_of(document, name, mounting));
   return inputs;
 }
 
-}  // namespace gonio::explain
+}  // namespace gonio::robot

@@ -1,4 +1,4 @@
-// The pose of the board in the camera by two ways, and how noise of the robot moves it. Private to robot/.
+// The pose of the board in the camera by two ways, and how noise of the robot moves it.
 //
 // Changes of pose are six numbers, rotation vector (left, camera's axes, rad) then shift (m), as in camera::moved.
 //
@@ -9,15 +9,15 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "explain/robot/robot_problem.h"
+#include "robot/chain/input.h"
 
-namespace gonio::explain {
+namespace gonio::robot {
 
 using PoseChange = Eigen::Matrix<double, 6, 1>;
 using PoseMatrix = Eigen::Matrix<double, 6, 6>;
 
 // What the hypotheses move, at one point of the parameter space.
-struct RobotState {
+struct ChainState {
   std::array<double, 6> hand{}, fixed{};  // changes of the two mountings
   std::array<double, 6> joint_rad{}, a_m{}, d_m{};
   std::array<double, 2> sag_rad_per_m{};  // joints 2 and 3
@@ -33,15 +33,15 @@ PoseChange change_between(const camera::BoardPose& from, const camera::BoardPose
 
 // The tool pose as the controller said, corrected by the state's kinematics, base_from_tool = flange(state)
 // flange(nominal)^-1 given.
-Rigid<frame::Base, frame::Tool> tool_pose(const RobotInput& input, const RobotInput::View& view,
-                                          const RobotState& state);
+Rigid<frame::Base, frame::Tool> tool_pose(const ChainInput& input, const ChainInput::View& view,
+                                          const ChainState& state);
 
 // camera_from_board through the robot.
-camera::BoardPose chain_pose(const RobotInput& input, const RobotInput::View& view, const RobotState& state);
+camera::BoardPose chain_pose(const ChainInput& input, const ChainInput::View& view, const ChainState& state);
 
 // Derivative of the chain's pose by a change of the tool's pose, T <- T exp(xi), xi = (rotation, shift) in the tool's
 // axes.
-PoseMatrix by_tool(const RobotInput& input, const RobotInput::View& view, const RobotState& state);
+PoseMatrix by_tool(const ChainInput& input, const ChainInput::View& view, const ChainState& state);
 
 struct MeasuredPose {
   camera::BoardPose camera_from_board;
@@ -49,14 +49,14 @@ struct MeasuredPose {
   double squares = 0, freedom = 0;  // of the corners' residuals in units of that noise; numbers beyond the pose's six
 };
 // Least squares over the view's corners (Gauss-Newton), from `start`; views without corners keep their pose.
-MeasuredPose measured_pose(const RobotInput::View& view, const RobotInput& input, const RobotState& state,
+MeasuredPose measured_pose(const ChainInput::View& view, const ChainInput& input, const ChainState& state,
                            const camera::BoardPose& start, int iterations);
 
 // Derivatives of the measured pose by what moves it, at `pose`, by the implicit function theorem (Gauss-Newton's
 // Hessian): columns of `pinhole` (4), lens terms, warp (2) and scale (2), in this order. Corners only.
-Eigen::Matrix<double, 6, Eigen::Dynamic> measured_slopes(const RobotInput::View& view, const RobotInput& input,
-                                                         const RobotState& state, const camera::BoardPose& pose);
+Eigen::Matrix<double, 6, Eigen::Dynamic> measured_slopes(const ChainInput::View& view, const ChainInput& input,
+                                                         const ChainState& state, const camera::BoardPose& pose);
 inline constexpr std::size_t slope_distortion = 4;
 inline constexpr std::size_t slope_warp = slope_distortion + camera::distortion_terms, slope_scale = slope_warp + 2;
 
-}  // namespace gonio::explain
+}  // namespace gonio::robot
