@@ -7,7 +7,7 @@ set(GONIO_GENERATED ${CMAKE_BINARY_DIR}/generated)
 # gonio_room(NAME THIRD_PARTY...): lib/NAME/**.cpp as an object library. Vendored and system headers are -isystem.
 function(gonio_room name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/${name}/*.cpp)
-  gonio_in_units(sources lib/${name})
+  gonio_in_units(sources lib ${name})
   set(GONIO_THIRD_PARTY ${GONIO_THIRD_PARTY} ${ARGN} CACHE INTERNAL "")
   if(NOT sources)
     return()

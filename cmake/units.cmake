@@ -2,24 +2,21 @@
 # which sources go together, and why a unit means the same). A whole build takes a fraction of the time; after an edit the
 # rest of the unit is compiled again, so the preset `develop` does without.
 
-# gonio_make_units(TREE LINES FOLDER...): writes the units of every folder of TREE, of about LINES lines each, but for the
-# FOLDERs whose sources stay alone.
-function(gonio_make_units tree lines)
+# gonio_make_units(TREE LINES HOW FOLDER...): writes the units of each FOLDER of TREE, of about LINES lines each. HOW: GLOB,
+# a folder's own sources; GLOB_RECURSE, those below it as well.
+function(gonio_make_units tree lines how)
   find_program(PERL perl)
   if(NOT GONIO_UNITS OR NOT PERL)
     return()
   endif()
   set(request "")
-  file(GLOB folders LIST_DIRECTORIES true ${CMAKE_SOURCE_DIR}/${tree}/*)
-  foreach(folder IN LISTS folders)
-    get_filename_component(name ${folder} NAME)
-    if(IS_DIRECTORY ${folder} AND NOT EXISTS ${folder}/CMakeLists.txt)
-      file(GLOB_RECURSE sources ${folder}/*.cpp)
-      list(LENGTH sources count)
-      if(count GREATER 4 AND NOT name IN_LIST ARGN)
-        list(JOIN sources " " sources)
-        string(APPEND request "${name} ${sources}\n")
-      endif()
+  foreach(folder IN LISTS ARGN)
+    string(REPLACE "/" "_" name ${folder})
+    file(${how} sources ${CMAKE_SOURCE_DIR}/${tree}/${folder}/*.cpp)
+    list(LENGTH sources count)
+    if(count GREATER 4)
+      list(JOIN sources " " sources)
+      string(APPEND request "${name} ${sources}\n")
     endif()
   endforeach()
   file(WRITE ${CMAKE_BINARY_DIR}/units/${tree}.request "${request}")
@@ -37,9 +34,10 @@ function(gonio_make_units tree lines)
   endforeach()
 endfunction()
 
-# gonio_in_units(SOURCES FOLDER): puts the units of FOLDER (lib/camera) into the variable SOURCES, where there are any.
-function(gonio_in_units sources folder)
-  get_property(units GLOBAL PROPERTY GONIO_UNITS_${folder})
+# gonio_in_units(SOURCES TREE FOLDER): puts the units of TREE/FOLDER into the variable SOURCES, where there are any.
+function(gonio_in_units sources tree folder)
+  string(REPLACE "/" "_" name ${folder})
+  get_property(units GLOBAL PROPERTY GONIO_UNITS_${tree}/${name})
   if(units)
     set(${sources} ${units} PARENT_SCOPE)
   endif()

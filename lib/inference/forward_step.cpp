@@ -1,4 +1,4 @@
-// See round.h.
+// See forward_step.h.
 #include "inference/forward_step.h"
 
 #include <algorithm>

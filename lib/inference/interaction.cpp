@@ -1,4 +1,4 @@
-// See crossing.h.
+// See interaction.h.
 #include "inference/interaction.h"
 
 #include <algorithm>

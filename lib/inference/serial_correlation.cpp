@@ -1,4 +1,4 @@
-// See trail.h.
+// See serial_correlation.h.
 #include "inference/serial_correlation.h"
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 // Each group's blocks are dealt into two halves. A held-out group's nuisance parameters are fitted on one half and
 // judged on the other, and the reverse.
 //
-// Eigen stays within lib/explain: this header is private to it.
+// Eigen is in this header: rooms above include inference/problem.h and inference/engine.h instead.
 #pragma once
 #include <Eigen/Core>
 #include <array>

@@ -10,7 +10,7 @@
 #include <iostream>
 #include <string>
 
-#include "../engine/nonlinear_toy.h"
+#include "../inference/nonlinear_toy.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "explain/engine.h"

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "base/atomic_file.h"
-#include "explain/board_world.h"
+#include "explain/boards/board_world.h"
 #include "manifest/value.h"
 #include "stats/intervals.h"
 

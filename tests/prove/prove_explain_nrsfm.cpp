@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "../nrsfm_explain/tracks_world.h"
+#include "../explain/nrsfm/tracks_world.h"
 
 namespace gonio::explain {
 namespace {

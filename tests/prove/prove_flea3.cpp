@@ -1,7 +1,7 @@
-// hdr/flea3 as a table of grey levels on standard output: see tests/tables/flea3.h.
+// hdr/flea3 as a table of grey levels on standard output: see tests/explain/tables/flea3.h.
 #include <iostream>
 
-#include "tables/flea3.h"
+#include "explain/tables/flea3.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

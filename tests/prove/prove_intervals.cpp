@@ -1,13 +1,12 @@
 // Whether 95 % intervals of reconstructed tables hold for materials that the basis has not seen, region by region.
 //   prove-intervals FITS CORNELL ALUMINIUM FOLDER: writes intervals.csv; prints tables and holds claims.
-// Truth: the published fits of MERL materials (tests/reconstruction/published_fits.h), all cells up to 80 degrees, from
-// planned directions with 2 % of noise; three paints and aluminium as recorded, all rows but those taken as samples,
-// the nearest to planned directions, or random ones. What a row errs itself is told by the recording: rows with light
-// and eye exchanged (within 1.6 degrees, off the lobe) should be equal; half of their mean squared difference is the
-// variance of a row. Bases: the built-in one, which knows neither these materials nor the papers' models; the fits of
-// the other materials, as a user's own folder would be.
-// Nothing here is used to choose or to calibrate how wide intervals are.
-// Regions: theta_h up to 5, 20, 45, 90 degrees, theta_d up to 30, 60, 90 degrees.
+// Truth: the published fits of MERL materials (tests/goniometry/reconstruction/published_fits.h), all cells up to 80
+// degrees, from planned directions with 2 % of noise; three paints and aluminium as recorded, all rows but those taken
+// as samples, the nearest to planned directions, or random ones. What a row errs itself is told by the recording: rows
+// with light and eye exchanged (within 1.6 degrees, off the lobe) should be equal; half of their mean squared
+// difference is the variance of a row. Bases: the built-in one, which knows neither these materials nor the papers'
+// models; the fits of the other materials, as a user's own folder would be. Nothing here is used to choose or to
+// calibrate how wide intervals are. Regions: theta_h up to 5, 20, 45, 90 degrees, theta_d up to 30, 60, 90 degrees.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,8 +19,8 @@
 #include "geom/angle.h"
 #include "goniometry/plan.h"
 #include "goniometry/reconstruction.h"
+#include "goniometry/reconstruction/published_fits.h"
 #include "goniometry/tables.h"
-#include "reconstruction/published_fits.h"
 #include "stats/intervals.h"
 #include "surface/half_angle.h"
 

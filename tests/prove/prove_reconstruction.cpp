@@ -1,6 +1,6 @@
 // Reconstruction from few directions of materials that the basis has not seen: every material of the published fits
-// (tests/reconstruction/published_fits.h) is left out, reconstructed from n planned directions by a basis of the
-// others, and compared cell by cell. Measured-like, not measured: smooth models fitted to measurements.
+// (tests/goniometry/reconstruction/published_fits.h) is left out, reconstructed from n planned directions by a basis of
+// the others, and compared cell by cell. Measured-like, not measured: smooth models fitted to measurements.
 //   prove-reconstruction DATA FOLDER: writes errors.csv, spread.csv, plans.csv and index.html; prints what was found.
 // Bins: 90 of theta_h as in the database, because lobes need them, and 18 x 24 of theta_d and phi_d, along which tables
 // are smooth. Directions are planned once, on the basis of all materials.
@@ -16,7 +16,7 @@
 #include "base/text.h"
 #include "goniometry/plan.h"
 #include "goniometry/reconstruction.h"
-#include "reconstruction/published_fits.h"
+#include "goniometry/reconstruction/published_fits.h"
 #include "report/page.h"
 #include "stats/intervals.h"
 

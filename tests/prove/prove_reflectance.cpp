@@ -9,9 +9,9 @@
 
 #include "base/error.h"
 #include "data.h"
-#include "fit/recorded.h"
-#include "fit/study.h"
 #include "goniometry/fit.h"
+#include "goniometry/fit/recorded.h"
+#include "goniometry/fit/study.h"
 
 namespace gonio {
 namespace {

@@ -1,11 +1,11 @@
 // scripts/proofs/explain-residual-test: how often explain's null test sees physics that was left out, and how often it
-// sees some where nothing was. Cases come from tests/explain/board_world.cpp, which shares no code with the library;
-// every run has a camera of 1 to 5 megapixels, a board of 9 x 6 to 14 x 9 corners and 20 views of its own, with 0.1 px
-// noise.
+// sees some where nothing was. Cases come from tests/explain/boards/board_world.cpp, which shares no code with the
+// library; every run has a camera of 1 to 5 megapixels, a board of 9 x 6 to 14 x 9 corners and 20 views of its own,
+// with 0.1 px noise.
 #include <cstdio>
 #include <cstdlib>
 
-#include "explain/residual_cases.h"
+#include "inference/residual_cases.h"
 #include "stats/intervals.h"
 
 namespace gonio::prove {

@@ -14,8 +14,8 @@
 #include <string>
 
 #include "base/error.h"
-#include "goniometer/ridge_plate.h"
 #include "goniometry/fit.h"
+#include "goniometry/recording/ridge_plate.h"
 
 namespace {
 

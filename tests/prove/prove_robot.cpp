@@ -1,4 +1,4 @@
-// scripts/proofs/robot-explain: sealed hand-eye cells (tests/explain/robot_world.cpp: an arm by products of
+// scripts/proofs/robot-explain: sealed hand-eye cells (tests/explain/robot/robot_world.cpp: an arm by products of
 // exponentials) and one table of what explain finds, names, how much it says, whether its intervals cover, and how
 // often it is wrong.
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 #include "explain/engine.h"
 #include "explain/robot/robot_problem.h"
-#include "explain/robot_world.h"
+#include "explain/robot/robot_world.h"
 #include "manifest/document.h"
 #include "stats/intervals.h"
 

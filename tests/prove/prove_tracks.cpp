@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "base/atomic_file.h"
+#include "explain/nrsfm/tracks/mat_file.h"
 #include "manifest/value.h"
-#include "tracks/mat_file.h"
 
 namespace gonio::prove {
 namespace {
