@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "inference/residual_cases.h"
+#include "explain/boards/residual_cases.h"
 #include "stats/intervals.h"
 
 namespace gonio::prove {

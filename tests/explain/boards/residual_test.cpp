@@ -5,7 +5,7 @@
 
 #include "explain/engine.h"
 #include "inference/explanation.h"
-#include "inference/residual_cases.h"
+#include "explain/boards/residual_cases.h"
 
 namespace gonio::prove {
 namespace {
