@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
+#include "explain/robot/pose_matrix.h"
 #include "explain/robot/robot_problem.h"
-#include "robot/chain/chain.h"
 #include "robot/handeye/pose_noise.h"
 
 namespace gonio::explain {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "explain/robot/pose_matrix.h"
 #include "explain/robot/robot_problem.h"
-#include "robot/chain/chain.h"
 
 namespace gonio::explain {
 

@@ -14,7 +14,7 @@ constexpr int pose_iterations = 4;
 // A turn of the tool, a shift of it, and a turn of the seen board about its middle, by which its origin follows.
 robot::handeye::PoseScatter scatter_of(const RobotWork& work, std::size_t view, const ChainState& state,
                                        const PoseMatrix& measured) {
-  const PoseMatrix by = by_tool(work.input, work.input.views[view], state);
+  const PoseMatrix by = matrix_of(by_tool(work.input, work.input.views[view], state));
   const Vec3 arm = work.reference[view].rotate({work.input.extent.middle_m.x, work.input.extent.middle_m.y, 0});
   Eigen::Matrix<double, 6, 3> by_board;
   by_board << 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, -arm.z, arm.y, arm.z, 0, -arm.x, -arm.y, arm.x, 0;
@@ -122,7 +122,8 @@ camera::BoardPose measured_under(const RobotWork& work, std::size_t view, const 
 }  // namespace
 
 PoseChange pose_difference(const RobotWork& work, std::size_t view, const ChainState& state) {
-  return change_between(measured_under(work, view, state), chain_pose(work.input, work.input.views[view], state));
+  return vector_of(
+      change_between(measured_under(work, view, state), chain_pose(work.input, work.input.views[view], state)));
 }
 
 // Central differences with steps of 1e-4 of the typical size.
@@ -138,10 +139,10 @@ Eigen::MatrixXd chain_slopes(const RobotWork& work, std::size_t view, std::vecto
     const double step = 1e-4 * work.parameters.parameters[p].size, middle = values[p];
     values[p] = middle + step;
     const PoseChange up =
-        change_between(from, chain_pose(work.input, v, state_of(work.input, work.parameters, values)));
+        vector_of(change_between(from, chain_pose(work.input, v, state_of(work.input, work.parameters, values))));
     values[p] = middle - step;
     const PoseChange down =
-        change_between(from, chain_pose(work.input, v, state_of(work.input, work.parameters, values)));
+        vector_of(change_between(from, chain_pose(work.input, v, state_of(work.input, work.parameters, values))));
     values[p] = middle;
     slopes.col(c) = (up - down) / (2 * step);
   }
@@ -151,7 +152,8 @@ Eigen::MatrixXd chain_slopes(const RobotWork& work, std::size_t view, std::vecto
 Eigen::MatrixXd pose_slopes(const RobotWork& work, std::size_t view, const ChainState& state) {
   const ChainInput::View& v = work.input.views[view];
   if (v.corners.empty()) return Eigen::MatrixXd::Zero(6, static_cast<Eigen::Index>(slope_scale + 2));
-  return measured_slopes(v, work.input, state, measured_under(work, view, state));
+  const std::vector<double> slopes = measured_slopes(v, work.input, state, measured_under(work, view, state));
+  return Eigen::Map<const Eigen::MatrixXd>(slopes.data(), 6, static_cast<Eigen::Index>(slopes.size() / 6));
 }
 
 void settle(RobotWork& work) {
@@ -162,7 +164,7 @@ void settle(RobotWork& work) {
   for (const ChainInput::View& view : work.input.views) {
     const MeasuredPose m = measured_pose(view, work.input, base, view.camera_from_board, 20);
     work.reference.push_back(m.camera_from_board);
-    covariances.push_back(m.covariance);
+    covariances.push_back(matrix_of(m.covariance));
     squares += m.squares;
     freedom += m.freedom;
   }
@@ -222,7 +224,7 @@ void append_robot_conditions(const RobotWork& work, std::size_t view, const Pose
   const ChainInput::View& v = work.input.views[view];
   const ChainState state = state_of(work.input, work.parameters, work.aligned);
   const auto tool = tool_pose(work.input, v, state);
-  const PoseMatrix by = by_tool(work.input, v, state);
+  const PoseMatrix by = matrix_of(by_tool(work.input, v, state));
   const camera::BoardPose& board = work.reference[view];
   const auto append = [&](std::size_t k, double value, const PoseChange& direction) {
     const PoseChange whitened = whitener * direction;

@@ -1,13 +1,23 @@
 // See chain.h.
 #include "robot/chain/chain.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 
 #include "linear/solve.h"
 
 namespace gonio::robot {
 namespace {
+
+using Change6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+ChangeMatrix listed(const Matrix6& m) {
+  ChangeMatrix result;
+  std::copy_n(m.data(), result.size(), result.begin());
+  return result;
+}
 
 template <class To, class From>
 Rigid<To, From> moved(const Rigid<To, From>& pose, const std::array<double, 6>& change) {
@@ -59,12 +69,10 @@ Rigid<frame::Base, frame::Tool> corrected_pose(const ChainInput& input, const Ch
 
 }  // namespace
 
-PoseChange change_between(const camera::BoardPose& from, const camera::BoardPose& to) {
+Change change_between(const camera::BoardPose& from, const camera::BoardPose& to) {
   const Vec3 turn = rotation_vector_of(to.rotation * conjugate(from.rotation));
   const Vec3 shift = to.translation_m - from.translation_m;
-  PoseChange change;
-  change << turn.x, turn.y, turn.z, shift.x, shift.y, shift.z;
-  return change;
+  return {turn.x, turn.y, turn.z, shift.x, shift.y, shift.z};
 }
 
 Rigid<frame::Base, frame::Tool> tool_pose(const ChainInput& input, const ChainInput::View& view,
@@ -91,36 +99,38 @@ camera::BoardPose chain_pose(const ChainInput& input, const ChainInput::View& vi
 }
 
 // Eye-in-hand: the chain is X^-1 T^-1 B, and T exp(xi) makes it X^-1 exp(-xi) X chain. Eye-to-hand: C^-1 T exp(xi) Z.
-PoseMatrix by_tool(const ChainInput& input, const ChainInput::View& view, const ChainState& state) {
+ChangeMatrix by_tool(const ChainInput& input, const ChainInput::View& view, const ChainState& state) {
   const auto hand = moved(input.tool_from_hand, state.hand);
   const camera::BoardPose chain = chain_pose(input, view, state);
-  PoseMatrix result = PoseMatrix::Zero();
+  Matrix6 result = Matrix6::Zero();
   if (input.eye_to_hand) {
     const Eigen::Matrix3d camera_from_tool = matrix(chain.rotation * conjugate(hand.rotation));
     result.topLeftCorner<3, 3>() = camera_from_tool;
     result.bottomLeftCorner<3, 3>() = -camera_from_tool * crossing(hand.translation_m);
     result.bottomRightCorner<3, 3>() = camera_from_tool;
-    return result;
+    return listed(result);
   }
   const Eigen::Matrix3d camera_from_tool = matrix(conjugate(hand.rotation));
   const Vec3 board_in_tool = hand.rotate(chain.translation_m) + hand.translation_m;
   result.topLeftCorner<3, 3>() = -camera_from_tool;
   result.bottomLeftCorner<3, 3>() = camera_from_tool * crossing(board_in_tool);
   result.bottomRightCorner<3, 3>() = -camera_from_tool;
-  return result;
+  return listed(result);
 }
 
 MeasuredPose measured_pose(const ChainInput::View& view, const ChainInput& input, const ChainState& state,
                            const camera::BoardPose& start, int iterations) {
-  MeasuredPose result{start, PoseMatrix::Zero()};
+  MeasuredPose result{start};
   if (view.corners.empty()) {
-    result.covariance.diagonal().head<3>().setConstant(view.rotation_sigma_rad * view.rotation_sigma_rad);
-    result.covariance.diagonal().tail<3>().setConstant(view.shift_sigma_m * view.shift_sigma_m);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double sigma = k < 3 ? view.rotation_sigma_rad : view.shift_sigma_m;
+      result.covariance[7 * k] = sigma * sigma;
+    }
     return result;
   }
   for (int i = 0; i <= iterations; ++i) {
-    PoseMatrix normal = PoseMatrix::Zero();
-    PoseChange gradient = PoseChange::Zero();
+    Matrix6 normal = Matrix6::Zero();
+    Change6 gradient = Change6::Zero();
     double squares = 0, rows = 0;
     for (const ChainInput::Corner& c : view.corners) {
       Vec2 pixel;
@@ -130,34 +140,34 @@ MeasuredPose measured_pose(const ChainInput::View& view, const ChainInput& input
         continue;
       const std::array<double, 2> error = {c.pixel.x - pixel.x, c.pixel.y - pixel.y};
       for (std::size_t r = 0; r < 2; ++r) {
-        const Eigen::Map<const PoseChange> row(jacobian[r].data() + camera::BoardColumn::rotation);
+        const Eigen::Map<const Change6> row(jacobian[r].data() + camera::BoardColumn::rotation);
         normal += row * row.transpose() / (c.sigma_px * c.sigma_px);
         gradient += row * (error[r] / (c.sigma_px * c.sigma_px));
         squares += error[r] * error[r] / (c.sigma_px * c.sigma_px);
         rows += 1;
       }
     }
-    const Eigen::LDLT<PoseMatrix> factor(normal);
+    const linear::Ldlt factor(normal);
     if (i < iterations) {
-      const PoseChange step = factor.solve(gradient);
-      std::array<double, 6> change{};
+      const Change6 step = factor.solve(gradient);
+      Change change{};
       for (std::size_t k = 0; k < 6; ++k) change[k] = step[static_cast<Eigen::Index>(k)];
       result.camera_from_board = camera::moved(result.camera_from_board, change);
       if (step.norm() < 1e-10) iterations = i + 1;
       continue;
     }
-    result.covariance = factor.solve(PoseMatrix::Identity());
+    result.covariance = listed(factor.solve(Matrix6::Identity()));
     result.squares = squares;
     result.freedom = rows - 6;
   }
   return result;
 }
 
-Eigen::Matrix<double, 6, Eigen::Dynamic> measured_slopes(const ChainInput::View& view, const ChainInput& input,
-                                                         const ChainState& state, const camera::BoardPose& pose) {
+std::vector<double> measured_slopes(const ChainInput::View& view, const ChainInput& input, const ChainState& state,
+                                    const camera::BoardPose& pose) {
   using camera::BoardColumn;
   constexpr auto count = static_cast<Eigen::Index>(slope_scale + 2);
-  PoseMatrix normal = PoseMatrix::Zero();
+  Matrix6 normal = Matrix6::Zero();
   Eigen::Matrix<double, 6, count> mixed = Eigen::Matrix<double, 6, count>::Zero();
   for (const ChainInput::Corner& c : view.corners) {
     constexpr double step = 1e-6;  // of the scale, for the only derivatives that the camera's model does not give
@@ -169,7 +179,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> measured_slopes(const ChainInput::View&
     camera::predict(state.intrinsics, pose, input.extent, state.warp, {at.x + step * c.board_m.x, at.y}, stretched[0]);
     camera::predict(state.intrinsics, pose, input.extent, state.warp, {at.x, at.y + step * c.board_m.y}, stretched[1]);
     for (std::size_t r = 0; r < 2; ++r) {
-      const Eigen::Map<const PoseChange> row(jacobian[r].data() + BoardColumn::rotation);
+      const Eigen::Map<const Change6> row(jacobian[r].data() + BoardColumn::rotation);
       Eigen::Matrix<double, 1, count> own;
       for (std::size_t k = 0; k < slope_warp; ++k)
         own[static_cast<Eigen::Index>(k)] = jacobian[r][BoardColumn::intrinsics + k];
@@ -183,7 +193,8 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> measured_slopes(const ChainInput::View&
       mixed += weight * row * own;
     }
   }
-  return -linear::solve_ldlt(normal, mixed);
+  const Eigen::MatrixXd slopes = -linear::solve_ldlt(normal, mixed);
+  return {slopes.data(), slopes.data() + slopes.size()};
 }
 
 }  // namespace gonio::robot

@@ -6,15 +6,15 @@
 // nominal flange (s the sign of approach), then moved on along its path by the lag, then its position scaled by the
 // growth of the links: with all a_i and d_i times a factor, the flange's position is times this factor.
 #pragma once
-#include <Eigen/Core>
 #include <array>
+#include <vector>
 
 #include "robot/chain/input.h"
 
 namespace gonio::robot {
 
-using PoseChange = Eigen::Matrix<double, 6, 1>;
-using PoseMatrix = Eigen::Matrix<double, 6, 6>;
+using Change = std::array<double, 6>;         // of a pose
+using ChangeMatrix = std::array<double, 36>;  // changes by changes, column by column
 
 // What the hypotheses move, at one point of the parameter space.
 struct ChainState {
@@ -29,7 +29,7 @@ struct ChainState {
 };
 
 // change such that `moved(from, change)` is `to`.
-PoseChange change_between(const camera::BoardPose& from, const camera::BoardPose& to);
+Change change_between(const camera::BoardPose& from, const camera::BoardPose& to);
 
 // The tool pose as the controller said, corrected by the state's kinematics, base_from_tool = flange(state)
 // flange(nominal)^-1 given.
@@ -41,11 +41,11 @@ camera::BoardPose chain_pose(const ChainInput& input, const ChainInput::View& vi
 
 // Derivative of the chain's pose by a change of the tool's pose, T <- T exp(xi), xi = (rotation, shift) in the tool's
 // axes.
-PoseMatrix by_tool(const ChainInput& input, const ChainInput::View& view, const ChainState& state);
+ChangeMatrix by_tool(const ChainInput& input, const ChainInput::View& view, const ChainState& state);
 
 struct MeasuredPose {
   camera::BoardPose camera_from_board;
-  PoseMatrix covariance;            // from the corners' stated noise
+  ChangeMatrix covariance{};        // from the corners' stated noise
   double squares = 0, freedom = 0;  // of the corners' residuals in units of that noise; numbers beyond the pose's six
 };
 // Least squares over the view's corners (Gauss-Newton), from `start`; views without corners keep their pose.
@@ -53,9 +53,9 @@ MeasuredPose measured_pose(const ChainInput::View& view, const ChainInput& input
                            const camera::BoardPose& start, int iterations);
 
 // Derivatives of the measured pose by what moves it, at `pose`, by the implicit function theorem (Gauss-Newton's
-// Hessian): columns of `pinhole` (4), lens terms, warp (2) and scale (2), in this order. Corners only.
-Eigen::Matrix<double, 6, Eigen::Dynamic> measured_slopes(const ChainInput::View& view, const ChainInput& input,
-                                                         const ChainState& state, const camera::BoardPose& pose);
+// Hessian): six rows, column by column those of `pinhole` (4), lens terms, warp (2) and scale (2). Corners only.
+std::vector<double> measured_slopes(const ChainInput::View& view, const ChainInput& input, const ChainState& state,
+                                    const camera::BoardPose& pose);
 inline constexpr std::size_t slope_distortion = 4;
 inline constexpr std::size_t slope_warp = slope_distortion + camera::distortion_terms, slope_scale = slope_warp + 2;
 

@@ -110,7 +110,7 @@ TEST(ExplainRobot, NoiseOfTheToolMovesTheBoardAsTheChainSays) {
   for (const bool eye_to_hand : {false, true}) {
     input.eye_to_hand = eye_to_hand;
     for (const ChainInput::View& view : input.views) {
-      const PoseMatrix by = by_tool(input, view, state);
+      const PoseMatrix by = matrix_of(by_tool(input, view, state));
       for (int k = 0; k < 6; ++k) {
         constexpr double step = 1e-6;
         ChainInput::View moved = view;
@@ -120,7 +120,7 @@ TEST(ExplainRobot, NoiseOfTheToolMovesTheBoardAsTheChainSays) {
             view.base_from_tool * Rigid<frame::Tool, frame::Tool>{quaternion_of_rotation_vector({xi[0], xi[1], xi[2]}),
                                                                   {xi[3], xi[4], xi[5]}};
         const PoseChange change =
-            change_between(chain_pose(input, view, state), chain_pose(input, moved, state)) / step;
+            vector_of(change_between(chain_pose(input, view, state), chain_pose(input, moved, state))) / step;
         EXPECT_LT((change - by.col(k)).norm(), 1e-5) << k;
       }
     }
