@@ -2,9 +2,9 @@
 # which sources go together, and why a unit means the same). A whole build takes a fraction of the time; after an edit the
 # rest of the unit is compiled again, so the preset `develop` does without.
 
-# gonio_make_units(TREE LINES FOLDER...): writes the units of every folder of TREE, of about LINES lines each, but for the
-# FOLDERs whose sources stay alone.
-function(gonio_make_units tree lines)
+# gonio_make_units(TREE ROOT LINES FEWEST FOLDER...): writes the units of every folder of TREE that has at least FEWEST
+# sources, of about LINES lines each, but for the FOLDERs whose sources stay alone. Includes start from lib/ or from ROOT.
+function(gonio_make_units tree root lines fewest)
   find_program(PERL perl)
   if(NOT GONIO_UNITS OR NOT PERL)
     return()
@@ -16,7 +16,7 @@ function(gonio_make_units tree lines)
     if(IS_DIRECTORY ${folder} AND NOT EXISTS ${folder}/CMakeLists.txt)
       file(GLOB_RECURSE sources ${folder}/*.cpp)
       list(LENGTH sources count)
-      if(count GREATER 4 AND NOT name IN_LIST ARGN)
+      if(NOT count LESS fewest AND NOT name IN_LIST ARGN)
         list(JOIN sources " " sources)
         string(APPEND request "${name} ${sources}\n")
       endif()
@@ -24,7 +24,7 @@ function(gonio_make_units tree lines)
   endforeach()
   file(WRITE ${CMAKE_BINARY_DIR}/units/${tree}.request "${request}")
   execute_process(COMMAND ${PERL} ${CMAKE_SOURCE_DIR}/cmake/units.pl ${CMAKE_BINARY_DIR}/units/${tree}
-                          ${CMAKE_SOURCE_DIR}/${tree} ${CMAKE_SOURCE_DIR}/lib ${lines}
+                          ${root} ${CMAKE_SOURCE_DIR}/lib ${lines}
                   INPUT_FILE ${CMAKE_BINARY_DIR}/units/${tree}.request OUTPUT_VARIABLE answer COMMAND_ERROR_IS_FATAL ANY)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/units.pl)
   string(STRIP "${answer}" answer)
@@ -42,5 +42,13 @@ function(gonio_in_units sources folder)
   get_property(units GLOBAL PROPERTY GONIO_UNITS_${folder})
   if(units)
     set(${sources} ${units} PARENT_SCOPE)
+  endif()
+endfunction()
+
+# gonio_allow_units(TARGET): in a unit every source counts as a header, and what a type private to one source holds
+# alarms GCC.
+function(gonio_allow_units target)
+  if(GONIO_UNITS)
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()
