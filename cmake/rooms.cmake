@@ -24,10 +24,7 @@ function(gonio_room name)
     endif()
   endforeach()
   target_link_libraries(room_${name} PRIVATE ${ARGN})
-  if(GONIO_UNITS)
-    # In a unit every source counts as a header: what a type private to one source holds alarms GCC.
-    target_compile_options(room_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
-  endif()
+  gonio_allow_units(room_${name})
   set(GONIO_ROOMS ${GONIO_ROOMS} room_${name} CACHE INTERNAL "")
 endfunction()
 
@@ -108,16 +105,22 @@ function(gonio_finish_library)
   target_link_libraries(gonio PUBLIC ${GONIO_THIRD_PARTY})
 endfunction()
 
-# tools/<name>.cpp defines gonio::tools::<name_>::gonio_program(); each becomes the executable <name> in build/bin.
+# A folder tools/<name> is a program: its program.cpp defines gonio::tools::<name_>::gonio_program(), what stands beside
+# that belongs to it alone, and it becomes the executable <name> in build/bin.
 # gonio-describe, an executable that is not installed, knows them all and prints man pages, schemas and completions.
 function(gonio_tools)
-  file(GLOB tool_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tools/*.cpp)
+  file(GLOB mains CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tools/*/program.cpp)
+  set(sources "")
   set(declarations "")
   set(entries "")
   set(names "")
-  foreach(file IN LISTS tool_files)
-    get_filename_component(name ${file} NAME_WE)
+  foreach(main IN LISTS mains)
+    get_filename_component(folder ${main} DIRECTORY)
+    get_filename_component(name ${folder} NAME)
     string(REPLACE "-" "_" symbol ${name})
+    file(GLOB own CONFIGURE_DEPENDS ${folder}/*.cpp)
+    gonio_in_units(own tools ${name})
+    list(APPEND sources ${own})
     list(APPEND names ${name})
     string(APPEND declarations "namespace gonio::tools::${symbol} { const gonio::cli::Program& gonio_program(); }\n")
     string(APPEND entries "      &gonio::tools::${symbol}::gonio_program(),\n")
@@ -143,8 +146,11 @@ ${entries}  };
   return all;
 }
 ")
-  add_library(gonio_programs STATIC ${GONIO_GENERATED}/programs.cpp ${tool_files})
+  add_library(gonio_programs STATIC ${GONIO_GENERATED}/programs.cpp ${sources})
+  target_include_directories(gonio_programs PUBLIC ${CMAKE_SOURCE_DIR})  # "tools/<name>/call.h"
+  target_compile_definitions(gonio_programs PRIVATE GONIO_VERSION="${PROJECT_VERSION}")
   target_link_libraries(gonio_programs PUBLIC gonio)
+  gonio_allow_units(gonio_programs)
   add_executable(gonio-describe ${CMAKE_SOURCE_DIR}/man/gonio_describe.cpp)
   target_link_libraries(gonio-describe PRIVATE gonio_programs gonio)
   set(GONIO_TOOL_NAMES ${names} CACHE INTERNAL "")

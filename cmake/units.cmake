@@ -2,9 +2,10 @@
 # which sources go together, and why a unit means the same). A whole build takes a fraction of the time; after an edit the
 # rest of the unit is compiled again, so the preset `develop` does without.
 
-# gonio_make_units(TREE LINES HOW FOLDER...): writes the units of each FOLDER of TREE, of about LINES lines each. HOW: GLOB,
-# a folder's own sources; GLOB_RECURSE, those below it as well.
-function(gonio_make_units tree lines how)
+# gonio_make_units(TREE ROOT LINES FEWEST HOW FOLDER...): writes the units of each FOLDER of TREE that has at least FEWEST
+# sources, of about LINES lines each. HOW: GLOB, a folder's own sources; GLOB_RECURSE, those below it as well. Includes
+# start from lib/ or from ROOT.
+function(gonio_make_units tree root lines fewest how)
   find_program(PERL perl)
   if(NOT GONIO_UNITS OR NOT PERL)
     return()
@@ -14,14 +15,14 @@ function(gonio_make_units tree lines how)
     string(REPLACE "/" "_" name ${folder})
     file(${how} sources ${CMAKE_SOURCE_DIR}/${tree}/${folder}/*.cpp)
     list(LENGTH sources count)
-    if(count GREATER 4)
+    if(NOT count LESS fewest)
       list(JOIN sources " " sources)
       string(APPEND request "${name} ${sources}\n")
     endif()
   endforeach()
   file(WRITE ${CMAKE_BINARY_DIR}/units/${tree}.request "${request}")
   execute_process(COMMAND ${PERL} ${CMAKE_SOURCE_DIR}/cmake/units.pl ${CMAKE_BINARY_DIR}/units/${tree}
-                          ${CMAKE_SOURCE_DIR}/${tree} ${CMAKE_SOURCE_DIR}/lib ${lines}
+                          ${root} ${CMAKE_SOURCE_DIR}/lib ${lines}
                   INPUT_FILE ${CMAKE_BINARY_DIR}/units/${tree}.request OUTPUT_VARIABLE answer COMMAND_ERROR_IS_FATAL ANY)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/units.pl)
   string(STRIP "${answer}" answer)
@@ -40,5 +41,13 @@ function(gonio_in_units sources tree folder)
   get_property(units GLOBAL PROPERTY GONIO_UNITS_${tree}/${name})
   if(units)
     set(${sources} ${units} PARENT_SCOPE)
+  endif()
+endfunction()
+
+# gonio_allow_units(TARGET): in a unit every source counts as a header, and what a type private to one source holds
+# alarms GCC.
+function(gonio_allow_units target)
+  if(GONIO_UNITS)
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()

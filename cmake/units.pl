@@ -3,7 +3,7 @@
 # neighbours need as well. `perl units.pl OUT TREE LIB LINES < GROUPS` reads one group a line (NAME SOURCE...), writes
 # OUT/NAME/unit_N.cpp, each an #include of sources of that group with about LINES lines in all, and prints a line a group:
 # NAME and its units, separated by ';'. Units that stay the same are not touched. Quoted includes start
-# from LIB or from TREE, where the sources are (a source's own folder is tried first).
+# from LIB or from TREE, where the sources are (a source's own folder is tried first), or from the folder that LIB is in.
 #
 # A unit must mean what its sources mean alone. Private names (anonymous namespaces, aliases, macros) of a source are seen
 # by the sources behind it, so two sources share a unit only where neither mentions a private name of the other, and where
@@ -14,6 +14,7 @@ use strict;
 use warnings;
 
 my ($out, $tree, $lib, $lines_wanted) = @ARGV;
+(my $root = $lib) =~ s{/[^/]*$}{};
 my %keyword = map { $_ => 1 } qw(const constexpr static inline extern struct class union enum typename auto void double float
   int bool char unsigned long short final noexcept override default delete operator return);
 
@@ -55,7 +56,7 @@ sub declared {
   return () unless @t;
   my $text = join ' ', @t;
   if ($t[0] eq 'using') {
-    return ("using namespace" => $text) if @t > 1 && $t[1] eq 'namespace';
+    return ($text => $text) if @t > 1 && $t[1] eq 'namespace';
     return @t > 2 && $t[2] eq '=' ? ($t[1] => $text) : ($t[-1] => $text);
   }
   return ($t[1] => $text) if $t[0] eq 'namespace';
@@ -158,7 +159,7 @@ sub scanned { my ($path) = @_; return $scanned{$path} //= scan($path) }
 sub resolved {
   my ($from, $name) = @_;
   (my $folder = $from) =~ s{/[^/]*$}{};
-  for my $candidate ("$folder/$name", "$lib/$name", "$tree/$name") { return $candidate if -e $candidate }
+  for my $candidate ("$folder/$name", "$lib/$name", "$tree/$name", "$root/$name") { return $candidate if -e $candidate }
   return ();
 }
 
@@ -195,16 +196,36 @@ sub own {
   return $own_of{$path} = \%own;
 }
 
+# A names a whole namespace in WHERE: what B says there means something else where it mentions a name of that namespace that
+# nothing nearer hides.
+sub reaches {
+  my ($a, $b, $where, $directive) = @_;
+  (my $space = $directive) =~ s/^using namespace //;
+  $space =~ s/ //g;
+  my %headers = (%{ closure($a) }, %{ closure($b) });
+  my (%theirs, %hidden);
+  for my $open (map { scanned($_)->{open} } $a, keys %headers) {
+    for my $name (keys %$open) {
+      for my $in (keys %{ $open->{$name} }) {
+        $theirs{$name} = 1 if $in eq $space || $in =~ /::\Q$space\E$/;
+        $hidden{$name} = 1 if $in eq $where;
+      }
+    }
+  }
+  return grep { $theirs{$_} && !$hidden{$_} } keys %{ scanned($b)->{mentions} };
+}
+
 sub disturbs {
   my ($a, $b) = @_;  # private names of A, mentioned in B
   my ($own, $other) = (own($a), scanned($b));
   my $theirs = own($b);
   for my $name (keys %$own) {
-    next unless $other->{mentions}{$name} || $name eq 'using namespace';
+    next unless $other->{mentions}{$name} || $name =~ /^using namespace /;
     for my $where (keys %{ $own->{$name} }) {
       my $how = $own->{$name}{$where};
       next if ($theirs->{$name}{$where} // '') eq $how && $how =~ /^(?:using|namespace) /;
-      return 1 if sees($other->{spaces}, $where);
+      next unless sees($other->{spaces}, $where);
+      return 1 if $name !~ /^using namespace / || reaches($a, $b, $where, $how);
     }
   }
   return 0;
@@ -253,7 +274,7 @@ sub write_unit {
   # By names below the include folders, so that the text, and what a compiler cache makes of it, is the same in any checkout.
   my $text = "// Written by cmake/units.pl; do not edit.\n";
   for my $file (@headers, @sources) {
-    (my $name = $file) =~ s{^(?:\Q$lib\E|\Q$tree\E)/}{};
+    (my $name = $file) =~ s{^(?:\Q$lib\E|\Q$tree\E|\Q$root\E)/}{};
     $text .= "#include \"$name\"\n";
   }
   if (open my $old, '<', $path) { local $/; return if <$old> eq $text }

@@ -10,7 +10,7 @@
 #include "camera/calibrate_document_session.h"
 #include "camera/detection_failure.h"
 #include "camera/model_choice.h"
-#include "camera/quality/quality_page.h"
+#include "camera/quality/quality.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/board.h"
@@ -249,8 +249,7 @@ void judge_cameras(const std::vector<View>& views, const CalibrationSetup& setup
     if (!quality) continue;
     const std::string& name = setup.cameras[c].name;
     document.cameras.at(name).quality = section_of(*quality);
-    if (request.output)
-      write_quality(camera, *quality, request.output, document.cameras.size() == 1 ? "" : "-" + name, document);
+    if (request.report) request.report(camera, *quality, document.cameras.size() == 1 ? "" : "-" + name, document);
     log(LogLevel::info, "camera " + name + ": " + quality->verdict);
     if (quality->halves.refused.empty() && !quality->halves.agree)
       calibration.complaints.push_back((setup.cameras.size() == 1 ? "" : name + ": ") + disagreement(quality->halves));

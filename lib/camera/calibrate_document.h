@@ -19,6 +19,9 @@
 
 namespace gonio::camera {
 
+struct CameraResult;  // quality/projection_law.h
+struct Quality;       // quality/quality.h
+
 struct CalibrationRequest {
   std::string model = "radial-tangential";  // one of calibrated_models(), or "auto": chosen by held-out views
   bool model_given = false;                 // else a camera that the manifest knows keeps its model
@@ -27,9 +30,13 @@ struct CalibrationRequest {
   DetectionOptions detection;
   bool judge = true;  // say how well each camera predicts, and hold halves of the views against each other
   std::vector<double> distances_m;  // at which that is judged; empty: quality/quality.h's usual ones
-  std::function<std::filesystem::path(const std::string&)> output;  // place for maps, pictures and the page; none: none
-  std::filesystem::path corners_csv;                                // empty: the table's rows stand in the manifest
-  std::function<void(const std::filesystem::path&)> note_input;     // called for every picture read
+  // Writes what it likes about a camera that was judged and enters that; `suffix` ("-left") keeps several cameras
+  // apart.
+  std::function<void(const CameraResult& camera, const Quality& quality, const std::string& suffix,
+                     manifest::Document& document)>
+      report;
+  std::filesystem::path corners_csv;                             // empty: the table's rows stand in the manifest
+  std::function<void(const std::filesystem::path&)> note_input;  // called for every picture read
 };
 
 // Quick form: enters board, camera and pictures as "board", "camera" and images named after the files.

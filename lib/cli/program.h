@@ -2,9 +2,10 @@
 // writes; exit codes; references. --help, the man page's OPTIONS / EXIT STATUS / FILES, bash, zsh and fish completions,
 // --describe (JSON) and --check (validate everything, run nothing) all come from this description.
 //
-// A tool is one file, tools/<name>.cpp, that defines `const gonio::cli::Program& gonio_program()` inside
+// A program is one folder, tools/<name>: its program.cpp defines `const gonio::cli::Program& gonio_program()` inside
 // `namespace gonio::tools::<name with _ for ->`; the build makes the executable and the registry of programs from the
-// file's name (cmake/registry.cmake).
+// folder's name (cmake/rooms.cmake). Beside program.cpp stand the program's own options, call and page, in the same
+// namespace. What several programs share on the command line stands here in lib/cli; no other room knows of it.
 //
 // Common to every program, added here and meaning the same everywhere: -i/--input, -o/--output, --out DIR, --depfile
 // FILE,

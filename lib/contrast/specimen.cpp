@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "contrast/contrast_options.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
@@ -108,6 +107,15 @@ double Specimen::number(const std::string& parameter, const std::string& place) 
   const auto stated = parameters().find(parameter);
   if (stated != parameters().end() && stated->second.given()) return mean(stated->second.rgb());
   return wanted.preset.value_or(0);
+}
+
+const manifest::ParameterInfo& parameter_named(const manifest::ModelInfo& model, const std::string& name,
+                                               const std::string& place, Exit code) {
+  const auto found = std::ranges::find(model.parameters, name, &manifest::ParameterInfo::name);
+  if (found != model.parameters.end()) return *found;
+  std::string known;
+  for (const auto& p : model.parameters) known += (known.empty() ? "" : ", ") + p.name;
+  throw Error(code, place, "names \"" + name + "\", which model \"" + model.id + "\" has not", "it takes " + known);
 }
 
 }  // namespace gonio::contrast

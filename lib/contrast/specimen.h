@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "base/error.h"
 #include "contrast/experiment.h"
 #include "manifest/model.h"
 #include "manifest/sections/forward.h"
@@ -35,5 +36,9 @@ class Specimen {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+// What the model says of a parameter. Error(code) at `place` where it has none of that name.
+const manifest::ParameterInfo& parameter_named(const manifest::ModelInfo& model, const std::string& name,
+                                               const std::string& place, Exit code = Exit::usage);
 
 }  // namespace gonio::contrast

@@ -49,6 +49,11 @@ Results parse_results(const std::string& text, const std::string& name, const st
 // are the evaluations', and "algorithm"; "sequence" where they have none. Error(data) at the evaluation.
 Results results_of(const manifest::Document& document, const std::string& measure = {},
                    const std::string& alignment = {});
+// The evaluations' factors may be more than one wants in the model. Error(usage) at --factors for one that is not
+// there.
+void keep_factors(Results& results, const std::vector<std::string>& factors);
+// Several tables of one experiment. Error(data) at the table whose factors, measure or unit are others.
+Results joined(std::vector<Results> tables);
 
 struct AnalysisOptions {
   // Terms: "main", "pairs" (main effects and all two-way interactions whose cells all have results), or names:

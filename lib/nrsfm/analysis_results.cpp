@@ -1,6 +1,7 @@
 // Tables of results for an analysis of variance: from CSV, from the evaluations of a manifest. See analysis.h.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -126,6 +127,12 @@ const manifest::EvaluatedError* find(const manifest::Evaluation& e, const std::s
   return nullptr;
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& n : names) text += (text.empty() ? "" : ", ") + n;
+  return text;
+}
+
 }  // namespace
 
 Results read_results(const std::filesystem::path& file, const std::string& error,
@@ -184,6 +191,36 @@ Results results_of(const manifest::Document& document, const std::string& measur
                 "ask for a measure and an alignment that they have");
   if (results.unit == "1") results.unit.clear();
   return results;
+}
+
+void keep_factors(Results& results, const std::vector<std::string>& factors) {
+  if (factors.empty()) return;
+  for (const std::string& f : factors)
+    if (std::ranges::find(results.factors, f) == results.factors.end())
+      throw Error(Exit::usage, "--factors", "there is no factor \"" + f + "\"",
+                  "factors are " + listed(results.factors));
+  results.factors = factors;
+  for (Result& r : results.rows)
+    std::erase_if(r.factors, [&](const auto& f) { return std::ranges::find(factors, f.first) == factors.end(); });
+}
+
+Results joined(std::vector<Results> tables) {
+  Results all = std::move(tables.front());
+  const std::set<std::string> factors(all.factors.begin(), all.factors.end());
+  for (std::size_t k = 1; k < tables.size(); ++k) {
+    Results& t = tables[k];
+    if (std::set<std::string>(t.factors.begin(), t.factors.end()) != factors)
+      throw Error(Exit::data, t.name,
+                  "has the factors " + listed(t.factors) + ", " + all.name + " has " + listed(all.factors),
+                  "choose common ones with --factors");
+    if (t.measure != all.measure || t.unit != all.unit)
+      throw Error(Exit::data, t.name,
+                  "has " + t.measure + " in \"" + t.unit + "\", " + all.name + " has " + all.measure + " in \"" +
+                      all.unit + "\"",
+                  "analyse one error in one unit; --error chooses it");
+    std::ranges::move(t.rows, std::back_inserter(all.rows));
+  }
+  return all;
 }
 
 }  // namespace gonio::nrsfm

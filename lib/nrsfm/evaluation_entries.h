@@ -5,9 +5,16 @@
 
 #include "manifest/sections/forward.h"
 #include "nrsfm/evaluate.h"
-#include "nrsfm/submissions.h"
 
 namespace gonio::nrsfm {
+
+// One reconstruction that is held against a truth.
+struct Submission {
+  std::string id;
+  std::size_t sequence = 0;  // whose truth, of the sequences at hand
+  Reconstruction reconstruction;
+  std::vector<std::string> notes;
+};
 
 // As the manifest's section `evaluations` has it; lengths in metres where the sequence's unit is known.
 manifest::Evaluation entry_of(const Submission& submission, const Sequence& sequence, const Evaluated& evaluated,

@@ -29,6 +29,7 @@
 namespace gonio::relief {
 
 enum class Levelling { none, plane, quadratic };
+const std::vector<std::string>& levelling_names();  // in the enum's order
 struct Treatment {
   Levelling levelling = Levelling::plane;
   double s_filter_m = 0, l_filter_m = 0;  // nesting indices; 0: none

@@ -5,11 +5,10 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "manifest/fields.h"
+#include "manifest/document.h"
 #include "manifest/sections/file.h"
 #include "manifest/sections/ground_noise.h"
 #include "manifest/sections/relief.h"
-#include "relief/map_options.h"
 
 namespace gonio::relief {
 namespace {
@@ -25,15 +24,7 @@ std::string name_of(const manifest::Document& document, const std::string& file,
   return name;
 }
 
-io::HeightPicture picture_for(const cli::Invocation& call, const manifest::ReliefMap& relief) {
-  io::HeightPicture picture = picture_of(relief);
-  const io::HeightPicture said = picture_asked(call);
-  if (said.step_x_m > 0) picture.step_x_m = picture.step_y_m = said.step_x_m;
-  if (said.step_y_m > 0) picture.step_y_m = said.step_y_m;
-  if (said.unit_m > 0) picture.unit_m = said.unit_m;
-  if (!said.channel.empty()) picture.channel = said.channel;
-  return picture;
-}
+}  // namespace
 
 void remember(manifest::ReliefMap& relief, const io::HeightMap& map, const io::HeightPicture& picture) {
   relief.width = static_cast<std::int64_t>(map.width), relief.height = static_cast<std::int64_t>(map.height);
@@ -42,79 +33,12 @@ void remember(manifest::ReliefMap& relief, const io::HeightMap& map, const io::H
   relief.channel = picture.channel;
 }
 
-}  // namespace
-
-cli::Option relief_option() {
-  return {.name = "relief",
-          .type = cli::Type::text,
-          .help = "Relief of the manifest to work on; may be repeated. Default: all.",
-          .metavar = "NAME",
-          .repeat = true};
-}
-
-cli::Option map_operand() {
-  return {.name = "MAP",
-          .type = cli::Type::input_file,
-          .help =
-              "Height maps: .sur, .opd, .nms, .x3p, .plu, OpenEXR or TIFF; or one manifest that ends in .json. Without "
-              "any: the reliefs of the manifest.",
-          .repeat = true};
-}
-
-std::vector<AskedMap> maps_asked(const cli::Invocation& call) {
-  std::vector<AskedMap> all;
-  const std::vector<std::string>& names = call.texts("relief");
-  for (const std::string& file : call.texts("MAP")) all.push_back({{}, file});
-  if (!all.empty() && !names.empty())
-    throw Error(Exit::usage, "--relief",
-                "names a relief of the manifest, and " + call.texts("MAP").front() + " is a map",
-                "leave one of the two out");
-  if (!all.empty()) return all;
-  if (!call.has_document)
-    throw Error(Exit::no_input, "MAP", "is missing, and there is no manifest",
-                "name a height map, or pipe in a manifest with reliefs");
-  const auto& reliefs = call.document.reliefs;
-  std::vector<std::string> known;
-  for (const auto& [name, relief] : reliefs) known.push_back(name);
-  if (known.empty())
-    throw Error(Exit::data, manifest::place(call.document, "/reliefs"), "has no relief", "name a height map: MAP");
-  for (const std::string& name : names)
-    if (!reliefs.contains(name))
-      throw Error(Exit::data, "--relief", "\"" + name + "\" is not in reliefs of " + call.document.name,
-                  manifest::remedy_for(name, known));
-  for (const std::string& name : names.empty() ? known : names) all.push_back({name, {}});
-  return all;
-}
-
-void check_maps(const cli::Invocation& call) {
-  picture_asked(call);
-  maps_asked(call);
-}
-
 io::HeightPicture picture_of(const manifest::ReliefMap& relief) {
   io::HeightPicture picture;
   if (relief.step_m.size() == 2) picture.step_x_m = relief.step_m[0], picture.step_y_m = relief.step_m[1];
   picture.unit_m = relief.unit_m.value_or(0);
   picture.channel = relief.channel;
   return picture;
-}
-
-NamedMap read_map(cli::Invocation& call, const AskedMap& asked) {
-  manifest::Document& document = call.document;
-  if (!asked.relief.empty()) {
-    manifest::ReliefMap& relief = document.reliefs.at(asked.relief);
-    const fs::path path = manifest::resolve(document, relief.file, "/reliefs/" + asked.relief + "/file");
-    call.note_input(path);
-    const io::HeightPicture picture = picture_for(call, relief);
-    NamedMap read{asked.relief, document.files.at(relief.file).path, io::read_height_map(path, picture)};
-    remember(relief, read.map, picture);
-    return read;
-  }
-  call.note_input(asked.file);
-  const io::HeightPicture picture = picture_asked(call);
-  NamedMap read{{}, asked.file.string(), io::read_height_map(asked.file, picture)};
-  read.name = enter_map(document, asked.file, read.map, picture);
-  return read;
 }
 
 std::string enter_map(manifest::Document& document, const fs::path& path, const io::HeightMap& map,
@@ -128,17 +52,6 @@ std::string enter_map(manifest::Document& document, const fs::path& path, const 
   relief.file = id;
   remember(relief, map, picture);
   return name;
-}
-
-Treatment treatment_for(const cli::Invocation& call, const manifest::ReliefMap& relief) {
-  Treatment treatment = treatment_asked(call);
-  if (!relief.treatment) return treatment;
-  const manifest::ReliefTreatment& known = *relief.treatment;
-  const auto at = std::ranges::find(levelling_names(), known.levelling) - levelling_names().begin();
-  if (!call.given("levelling")) treatment.levelling = static_cast<Levelling>(at);
-  if (!call.given("s-filter")) treatment.s_filter_m = known.s_filter_m.value_or(0);
-  if (!call.given("l-filter")) treatment.l_filter_m = known.l_filter_m.value_or(0);
-  return treatment;
 }
 
 manifest::ReliefTreatment treatment_entry(const Treatment& t, const Treated& surface) {

@@ -79,6 +79,11 @@ std::vector<double> low_pass(const io::HeightMap& map, double nesting_m) {
 
 }  // namespace
 
+const std::vector<std::string>& levelling_names() {
+  static const std::vector<std::string> names{"none", "plane", "quadratic"};
+  return names;
+}
+
 Treated treated(const io::HeightMap& map, const Treatment& treatment, const std::string& place) {
   Treated result{map, 0, 0, 0};
   io::HeightMap& m = result.map;

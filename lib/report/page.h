@@ -6,7 +6,7 @@
 // folded.
 //
 // The page is written from top to bottom in the order of the calls. It does not lay out mathematics and knows nothing
-// of comparisons or explanations: those are composed by comparison_page.h and by explain's report.
+// of comparisons or explanations: those are composed by tools/compare/page.h and by explain's report.
 #pragma once
 #include <string>
 #include <string_view>

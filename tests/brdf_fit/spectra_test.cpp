@@ -9,11 +9,11 @@
 
 #include "base/random.h"
 #include "goniometry/document.h"
-#include "goniometry/page.h"
 #include "goniometry/plots.h"
 #include "manifest/document.h"
 #include "manifest/sections/surface_fit.h"
 #include "report/heat_drawing.h"
+#include "tools/brdf-fit/page.h"
 
 namespace gonio::goniometry {
 namespace {
@@ -97,7 +97,7 @@ TEST_F(FitOfManyBands, IsDrawnOverWavelength) {
 }
 
 TEST_F(FitOfManyBands, IsDrawnOnThePageAndNotListed) {
-  const std::string page = page_of(outcome(), {});
+  const std::string page = gonio::tools::brdf_fit::page_of(outcome(), {});
   EXPECT_THAT(page, HasSubstr("albedo of the bands"));
   EXPECT_THAT(page, HasSubstr("wavelength / nm"));
   EXPECT_THAT(page, HasSubstr("albedo[610 nm]"));  // red

@@ -5,10 +5,10 @@
 #include <fstream>
 
 #include "cli/program.h"
-#include "contrast/predict_call.h"
 #include "data.h"
 #include "manifest/sections/contrast.h"
 #include "samples.h"
+#include "tools/contrast/predict.h"
 
 namespace gonio::tests {
 namespace {
@@ -23,11 +23,11 @@ Said predict_with(std::vector<std::string> arguments, const std::string& manifes
   cli::Program program;
   program.name = "contrast";
   program.sentence = "predict";
-  program.options = contrast::predict_options();
+  program.options = tools::contrast::predict_options();
   program.options.push_back({.name = "html", .type = cli::Type::output_file, .help = "page"});
   program.takes_out = program.takes_seed = true;
-  program.check = contrast::predict_check;
-  program.run = contrast::predict_call;
+  program.check = tools::contrast::check_predict;
+  program.run = tools::contrast::run_predict;
   const tests::ScratchFolder scratch;
   const std::string folder = scratch.path();
   if (!manifest.empty()) {
@@ -51,9 +51,8 @@ struct Wrong {
 };
 
 TEST(ContrastRefusals, OneLineWithPlaceValueAndRemedy) {
-  const std::string two =
-      R"({"gonio": 1, "surfaces": {"a": {"model": "diffuse", "albedo": 0.5},)"
-      R"( "b": {"model": "diffuse", "albedo": 0.5}}})";
+  const std::string two = R"({"gonio": 1, "surfaces": {"a": {"model": "diffuse", "albedo": 0.5},)"
+                          R"( "b": {"model": "diffuse", "albedo": 0.5}}})";
   const std::vector<Wrong> wrong{
       {{"--model", "rigded"}, "", 64, "choose one of"},
       {{"--tilts=-20deg,,0deg"}, "", 64, "empty place"},

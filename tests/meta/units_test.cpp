@@ -56,8 +56,7 @@ std::string private_in(const std::string& space, const std::string& text) {
 }
 
 TEST_F(Units, NamesThatNobodyElseMentionsShareAUnit) {
-  EXPECT_TRUE(
-      together(private_in("g", "int one() { return 1; }"), private_in("g", "int two_() { return 2; }")));
+  EXPECT_TRUE(together(private_in("g", "int one() { return 1; }"), private_in("g", "int two_() { return 2; }")));
 }
 
 TEST_F(Units, TheSamePrivateNameTwiceDoesNot) {
@@ -92,6 +91,19 @@ TEST_F(Units, TheSameAliasTwiceIsNoCollision) {
   };
   EXPECT_TRUE(together(source("m", "first"), source("m", "second")));
   EXPECT_FALSE(together(source("m", "first"), source("n", "second")));
+}
+
+TEST_F(Units, AWholeNamespaceIsTakenInBesideSourcesThatUseNoneOfItsNames) {
+  write("n.h", "#pragma once\nnamespace n { int size(int); int run(int); }\n");
+  write("o.h", "#pragma once\nnamespace g { int run(int); }\n");
+  const std::string all = "#include \"n.h\"\nnamespace g { using namespace n; int f() { return size(1); } }\n";
+  EXPECT_TRUE(together(all, "namespace g { int f2() { return length(1); } }\n"));
+  EXPECT_FALSE(together(all, "namespace g { int f2() { return size(1); } }\n"));
+  EXPECT_FALSE(together("#include \"n.h\"\nnamespace g { using namespace n; using namespace m; int f(); }\n",
+                        "namespace g { int f2() { return size(1); } }\n"))
+      << "the second of two";
+  EXPECT_TRUE(together(all, "#include \"o.h\"\nnamespace g { int f2() { return run(1); } }\n"))
+      << "the namespace's own run hides the other";
 }
 
 TEST_F(Units, EverySourceIsInOneUnitOfAboutTheLength) {

@@ -11,7 +11,7 @@
 #include "eval_program.h"
 #include "io/csv.h"
 #include "nrsfm/analysis.h"
-#include "nrsfm/eval_views.h"
+#include "tools/nrsfm-eval/views.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -201,10 +201,10 @@ TEST_F(EvalManifest, ViewsAreTypicalOnes) {
   // a: 1, 2, 9; b: 4, 5 -> of each the (lower) median, the least first.
   const std::vector<std::string> algorithms = {"a", "b", "a", "b", "a"};
   const std::vector<double> errors = {9, 5, 1, 4, 2};
-  EXPECT_EQ(typical(algorithms, errors, 4), (std::vector<std::size_t>{4, 3}));
-  EXPECT_EQ(typical(algorithms, errors, 1), (std::vector<std::size_t>{4}));
-  EXPECT_EQ(typical(algorithms, errors, 5), (std::vector<std::size_t>{2, 4, 3, 1, 0}));
-  EXPECT_TRUE(typical(algorithms, errors, 0).empty());
+  EXPECT_EQ(gonio::tools::nrsfm_eval::typical(algorithms, errors, 4), (std::vector<std::size_t>{4, 3}));
+  EXPECT_EQ(gonio::tools::nrsfm_eval::typical(algorithms, errors, 1), (std::vector<std::size_t>{4}));
+  EXPECT_EQ(gonio::tools::nrsfm_eval::typical(algorithms, errors, 5), (std::vector<std::size_t>{2, 4, 3, 1, 0}));
+  EXPECT_TRUE(gonio::tools::nrsfm_eval::typical(algorithms, errors, 0).empty());
 }
 
 struct Wrong {

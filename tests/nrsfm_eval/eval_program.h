@@ -4,9 +4,9 @@
 
 #include "base/atomic_file.h"
 #include "data.h"
-#include "nrsfm/eval_call.h"
 #include "nrsfm/files.h"
 #include "shapes.h"
+#include "tools/nrsfm-eval/call.h"
 
 namespace gonio::nrsfm::tests {
 
@@ -21,12 +21,12 @@ class EvalFolder : public testing::Test {
     cli::Program program;
     program.name = "nrsfm-eval";
     program.sentence = "evaluate";
-    program.options = eval_options();
+    program.options = gonio::tools::nrsfm_eval::options();
     program.operands = {{.name = "RECONSTRUCTION", .type = cli::Type::input_file, .help = "shapes", .repeat = true}};
     program.standalone = {"truth", "table"};
     program.takes_out = program.takes_seed = true;
-    program.check = check_eval;
-    program.run = run_eval;
+    program.check = gonio::tools::nrsfm_eval::check;
+    program.run = gonio::tools::nrsfm_eval::run;
     arguments.insert(arguments.begin(), "nrsfm-eval");
     arguments.insert(arguments.end(), {"-o", path("out.json")});
     std::vector<char*> argv;

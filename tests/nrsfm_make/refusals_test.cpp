@@ -10,7 +10,7 @@
 #include "manifest/document.h"
 #include "manifest/sections/sequence.h"
 #include "nrsfm/files.h"
-#include "nrsfm/make_call.h"
+#include "tools/nrsfm-make/call.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -50,9 +50,9 @@ class MakeProgram : public ::testing::Test {
   Said run(Words words) {
     cli::Program program;
     program.name = "nrsfm-make", program.sentence = "make tracks";
-    program.options = make_options();
+    program.options = gonio::tools::nrsfm_make::options();
     program.takes_out = program.takes_seed = program.takes_resume = true;
-    program.check = check_make, program.run = run_make;
+    program.check = gonio::tools::nrsfm_make::check, program.run = gonio::tools::nrsfm_make::run;
     words.insert(words.begin(), "nrsfm-make");
     words.insert(words.end(), {"-o", path("m.json")});
     std::vector<char*> argv;

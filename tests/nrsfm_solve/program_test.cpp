@@ -15,9 +15,9 @@
 #include "nrsfm/files.h"
 #include "nrsfm/listing.h"
 #include "nrsfm/solution_file.h"
-#include "nrsfm/solve_call.h"
 #include "nrsfm/variables.h"
 #include "synthetic.h"
+#include "tools/nrsfm-solve/call.h"
 
 namespace gonio::nrsfm::testing {
 namespace {
@@ -37,12 +37,12 @@ class SolveProgram : public ::testing::Test {
     cli::Program program;
     program.name = "nrsfm-solve";
     program.sentence = "solve";
-    program.options = solve_options();
+    program.options = gonio::tools::nrsfm_solve::options();
     program.operands = {{.name = "TRACKS", .type = cli::Type::input_file, .help = "tracks", .repeat = true}};
     program.standalone = {"list"};
     program.takes_out = program.takes_seed = program.takes_resume = true;
-    program.check = check_solve;
-    program.run = run_solve;
+    program.check = gonio::tools::nrsfm_solve::check;
+    program.run = gonio::tools::nrsfm_solve::run;
     arguments.insert(arguments.begin(), "nrsfm-solve");
     arguments.insert(arguments.end(), {"-o", path("out.json")});
     std::vector<char*> argv;

@@ -1,0 +1,202 @@
+// From the command line to a request.
+#include "tools/calib-charuco/options.h"
+
+#include "base/error.h"
+#include "base/quantity.h"
+#include "manifest/sections/board.h"
+#include "tools/calib-charuco/page.h"
+
+namespace gonio::tools::calib_charuco {
+
+using namespace gonio::camera;
+
+namespace {
+
+using cli::Type;
+
+std::vector<std::string> names_of(const std::string& text) {
+  std::vector<std::string> names(1);
+  for (const char c : text) {
+    if (c == ',')
+      names.emplace_back();
+    else
+      names.back() += c;
+  }
+  return names;
+}
+
+std::vector<std::string> rig_of(const cli::Invocation& call) {
+  const std::vector<std::string> names = names_of(call.text("rig"));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (names[i] != names[j]) continue;
+      throw Error(Exit::usage, "--rig", "names " + names[i] + " twice", "name every camera once");
+    }
+    if (names[i].empty()) throw Error(Exit::usage, "--rig", "has an empty name", "name the cameras: --rig left,right");
+  }
+  if (names.size() < 2) throw Error(Exit::usage, "--rig", "names one camera", "leave it out, or name two or more");
+  return names;
+}
+
+std::vector<std::string> model_choices() {
+  std::vector<std::string> names = calibrated_models();
+  names.emplace_back("auto");
+  return names;
+}
+
+}  // namespace
+
+bool describes_board(const cli::Invocation& call) {
+  return call.given("checkerboard") || call.given("charuco");
+}
+
+Board board_of(const cli::Invocation& call) {
+  const bool charuco = call.given("charuco");
+  const std::string option = charuco ? "charuco" : "checkerboard";
+  manifest::Board section;
+  section.kind = option;
+  (charuco ? section.squares : section.inner_corners) = columns_and_rows(call.text(option), "--" + option);
+  section.square_m = call.number("square");
+  if (charuco) {
+    section.marker_m = call.number("marker");
+    if (call.given("dictionary")) section.dictionary = call.text("dictionary");
+    if (call.text("layout") != "auto") section.legacy_layout = call.text("layout") == "legacy";
+  }
+  try {
+    return camera::board_of(section, "--" + option, call.given("dictionary-file") ? call.text("dictionary-file") : "");
+  } catch (const Error& e) {
+    if (!e.place().starts_with("--")) throw;
+    throw Error(Exit::usage, e.place(), e.problem(), e.remedy());
+  }
+}
+
+CalibrationRequest request_of(cli::Invocation& call) {
+  CalibrationRequest request;
+  request.model = call.text("model");
+  request.model_given = call.given("model") || !call.has_document;
+  request.board_warp = call.flag("board-warp");
+  for (const std::string& term : call.texts("fix")) request.fixed.insert(term);
+  if (call.given("refine-window")) request.detection.window_px = static_cast<int>(call.integer("refine-window"));
+  request.judge = !call.flag("no-quality");
+  for (const std::string& text : call.texts("distance"))
+    request.distances_m.push_back(parse_quantity(text, Dimension::length, "--distance"));
+  for (const double d : request.distances_m)
+    if (!(d > 0)) throw Error(Exit::usage, "--distance", "is not above zero", "give a distance from the camera: 0.5m");
+  if (!call.out.empty()) {
+    request.corners_csv = call.output_path("corners.csv");
+    request.report = [&call](const CameraResult& camera, const Quality& quality, const std::string& suffix,
+                             manifest::Document& document) {
+      write_quality(
+          camera, quality, [&call](const std::string& name) { return call.output_path(name); }, suffix, document);
+    };
+  }
+  request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
+  return request;
+}
+
+void enter_command_line(cli::Invocation& call) {
+  if (!call.has_document) {
+    call.document.name = "command line";
+    if (!describes_board(call)) {
+      throw Error(Exit::usage, "calib-charuco", "has no board",
+                  "add --checkerboard 9x6 --square 25mm, or a manifest with boards");
+    }
+    if (!call.given("IMAGE")) throw Error(Exit::usage, "IMAGE", "is missing", "name photographs of the board");
+  }
+  if (describes_board(call)) {
+    if (!call.document.boards.empty()) {
+      throw Error(Exit::usage, call.given("charuco") ? "--charuco" : "--checkerboard",
+                  "the manifest describes its boards already", "leave the option out");
+    }
+    enter_board(board_of(call), call.document);
+  }
+  // What the user names may lie anywhere.
+  if (call.given("IMAGE") || call.given("dictionary-file")) call.document.allow_outside = true;
+  if (!call.given("IMAGE")) {
+    if (!call.given("rig")) return;
+    throw Error(Exit::usage, "--rig", "has no pictures to look for names in",
+                "name photographs, or give the images of the manifest a camera and a shot");
+  }
+  const std::string model = call.text("model") == "auto" ? "radial-tangential" : call.text("model");
+  if (call.given("rig"))
+    enter_rig(rig_of(call), call.texts("IMAGE"), model, call.document);
+  else
+    enter_pictures(call.texts("IMAGE"), model, call.document);
+}
+
+std::vector<cli::Option> calibration_options() {
+  return {
+      {.name = "checkerboard",
+       .type = Type::text,
+       .help = "Plain board: columns and rows of inner corners.",
+       .metavar = "CxR",
+       .conflicts = {"charuco"},
+       .needs = {"square"}},
+      {.name = "charuco",
+       .type = Type::text,
+       .help = "ChArUco board: columns and rows of squares.",
+       .metavar = "CxR",
+       .needs = {"square", "marker"}},
+      {.name = "square",
+       .type = Type::quantity,
+       .help = "Side of a square.",
+       .dimension = Dimension::length,
+       .lower = 1e-6,
+       .upper = 10},
+      {.name = "marker",
+       .type = Type::quantity,
+       .help = "Side of a marker with its black border.",
+       .dimension = Dimension::length,
+       .lower = 1e-6,
+       .upper = 10,
+       .needs = {"charuco"}},
+      {.name = "dictionary",
+       .type = Type::text,
+       .help = "Dictionary of the markers: 4X4_50 to 7X7_1000, ARUCO_ORIGINAL.",
+       .metavar = "NAME",
+       .conflicts = {"dictionary-file"},
+       .needs = {"charuco"}},
+      {.name = "dictionary-file",
+       .type = Type::input_file,
+       .help = "Dictionary of one's own, in OpenCV's YAML or JSON.",
+       .needs = {"charuco"}},
+      {.name = "layout",
+       .type = Type::choice,
+       .help = "Layout of a ChArUco board with an even number of rows: legacy is that of OpenCV before 4.6.",
+       .preset = "auto",
+       .choices = {"auto", "current", "legacy"},
+       .needs = {"charuco"}},
+      {.name = "rig",
+       .type = Type::text,
+       .help = "Cameras held together, by words that the pictures' names contain; the rest of a name is the shot.",
+       .metavar = "NAME,NAME"},
+      {.name = "model",
+       .type = Type::choice,
+       .help = "Lens model; a camera of the manifest keeps its own unless this is given. auto: by held-out views.",
+       .preset = "radial-tangential",
+       .choices = model_choices()},
+      {.name = "fix",
+       .type = Type::choice,
+       .help = "Hold a term: at the manifest's value, else at 0, equal focal lengths, the middle of the picture.",
+       .choices = fixable_terms(),
+       .repeat = true},
+      {.name = "board-warp", .type = Type::flag, .help = "Also fit how far the board sags (two parameters)."},
+      {.name = "refine-window",
+       .type = Type::integer,
+       .help = "Half-window of corner refinement in pixels instead of the one that follows the squares.",
+       .metavar = "N",
+       .lower = 1,
+       .upper = 50},
+      {.name = "distance",
+       .type = Type::quantity,
+       .help = "Judge the prediction at this distance; may be repeated. Default: the boards' median, and twice that.",
+       .dimension = Dimension::length,
+       .lower = 1e-6,
+       .upper = 1e6,
+       .repeat = true},
+      {.name = "no-quality",
+       .type = Type::flag,
+       .help = "Do not judge how well the camera predicts, nor compare halves of the views."}};
+}
+
+}  // namespace gonio::tools::calib_charuco
