@@ -12,7 +12,7 @@
 namespace gonio::tests {
 namespace {
 
-constexpr std::size_t longest_source = 400, longest_header = 250, longest_tool = 150, longest_line = 120;
+constexpr std::size_t longest_source = 400, longest_header = 250, longest_program = 150, longest_line = 120;
 constexpr std::size_t longest_function = 60;
 
 // Style sheets inside sources: lines of CSS are not broken.
@@ -24,10 +24,9 @@ const std::set<std::string>& with_style_sheets() {
 // What is still to be brought into the limit of lines; nothing new may join.
 constexpr std::size_t longest_line_for_now = 140;
 bool is_excused(const std::string& path) {
-  for (const char* folder :
-       {"tests/manifest/", "tests/scene/", "tests/stats/", "lib/camera/", "lib/explain/", "lib/mechanism/",
-        "lib/manifest/", "lib/robot/", "tests/bench/", "tests/camera/", "tests/explain/", "tests/prove/",
-        "tests/robot/"})
+  for (const char* folder : {"tests/manifest/", "tests/scene/", "tests/stats/", "lib/camera/", "lib/explain/",
+                             "lib/mechanism/", "lib/manifest/", "lib/robot/", "tests/bench/", "tests/camera/",
+                             "tests/explain/", "tests/prove/", "tests/robot/"})
     if (path.starts_with(folder)) return true;
   return false;
 }
@@ -51,11 +50,16 @@ std::size_t length_without_options(const std::vector<std::string>& lines) {
   return length;
 }
 
+// Where a program is described: tools/<name>/program.cpp.
+bool is_program(const std::string& path) {
+  return path.starts_with("tools/") && path.ends_with("/program.cpp");
+}
+
 TEST(Files, NoneIsTooLong) {
   for (const auto& file : all_sources()) {
-    const bool tool = file.path.starts_with("tools/");
-    const std::size_t limit = tool ? longest_tool : file.path.ends_with(".h") ? longest_header : longest_source;
-    const std::size_t length = tool ? length_without_options(file.lines) : file.lines.size();
+    const bool program = is_program(file.path);
+    const std::size_t limit = program ? longest_program : file.path.ends_with(".h") ? longest_header : longest_source;
+    const std::size_t length = program ? length_without_options(file.lines) : file.lines.size();
     EXPECT_LE(length, limit) << place(file, static_cast<int>(limit)) << ": " << length << " lines";
   }
 }
@@ -104,21 +108,31 @@ TEST(Files, FoldersAndFilesAreNamedAfterTheirSubject) {
   }
 }
 
-TEST(Files, SourcesAreSnakeCaseAndProgramsKebabCase) {
+TEST(Files, SourcesAreSnakeCase) {
   const std::regex snake("^[a-z0-9_]+\\.(h|cpp)$"), kebab("^[a-z0-9-]+\\.(h|cpp)$");
   for (const auto& file : all_sources()) {
     const auto name = std::filesystem::path(file.path).filename().string();
-    const bool program = file.path.starts_with("tools/") || file.path.find("/mechanisms/") != std::string::npos;
-    EXPECT_TRUE(std::regex_match(name, snake) || (program && std::regex_match(name, kebab))) << file.path;
+    const bool mechanism = file.path.find("/mechanisms/") != std::string::npos;
+    EXPECT_TRUE(std::regex_match(name, snake) || (mechanism && std::regex_match(name, kebab))) << file.path;
   }
 }
 
-TEST(Files, EveryHeaderOfLibIsIncludedOnceAndSaysWhatItIsFor) {
-  for (const auto& file : source_files("lib", {".h"})) {
-    ASSERT_FALSE(file.lines.empty()) << file.path;
-    EXPECT_TRUE(file.lines[0].starts_with("// ")) << place(file, 1) << ": no word about the file's purpose";
-    EXPECT_THAT(file.lines, testing::Contains("#pragma once")) << place(file, 1);
+// Adding a program is adding a folder, called as users type it.
+TEST(Files, EveryFolderOfToolsIsAProgram) {
+  const std::regex kebab("^[a-z0-9-]+$");
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(GONIO_SOURCE) / "tools")) {
+    EXPECT_TRUE(std::filesystem::exists(entry.path() / "program.cpp")) << entry.path();
+    EXPECT_TRUE(std::regex_match(entry.path().filename().string(), kebab)) << entry.path();
   }
+}
+
+TEST(Files, EveryHeaderIsIncludedOnceAndSaysWhatItIsFor) {
+  for (const char* folder : {"lib", "tools"})
+    for (const auto& file : source_files(folder, {".h"})) {
+      ASSERT_FALSE(file.lines.empty()) << file.path;
+      EXPECT_TRUE(file.lines[0].starts_with("// ")) << place(file, 1) << ": no word about the file's purpose";
+      EXPECT_THAT(file.lines, testing::Contains("#pragma once")) << place(file, 1);
+    }
 }
 
 // A source may leave that to the header of its name.

@@ -59,13 +59,38 @@ TEST(Layers, FoldersIncludeOnlyWhatLiesBelowThem) {
   }
 }
 
+// What a program says, asks and writes is its own: the rooms have the science, whoever calls them.
+TEST(Layers, NobodyInTheLibraryKnowsTheCommandLine) {
+  int includes = 0;
+  for (const auto& file : source_files("lib", {".h", ".cpp"})) {
+    if (file.path.starts_with("lib/cli/")) continue;
+    for (const auto& include : includes_of(file))
+      if (include.name.starts_with("cli/") || include.name.starts_with("tools/")) {
+        ++includes;
+        ADD_FAILURE() << place(file, include.line) << ": what reads options belongs to tools/<program>";
+      }
+  }
+  EXPECT_EQ(includes, 0);
+}
+
+TEST(Layers, AProgramKnowsTheLibraryAndItsOwnFolderAlone) {
+  const auto level = level_of_folder();
+  for (const auto& file : source_files("tools", {".h", ".cpp"})) {
+    const std::string own = file.path.substr(0, file.path.find('/', 6) + 1);  // "tools/render/"
+    for (const auto& include : includes_of(file))
+      EXPECT_TRUE(!include.quoted || include.name.starts_with(own) || level.contains(folder_of(include.name, level)))
+          << place(file, include.line) << ": \"" << include.name << "\" is neither in " << own << " nor in lib/";
+  }
+}
+
 bool third_party(const Include& include) {  // standard headers have neither a folder nor an extension
   return !include.quoted && include.name.find_first_of("./") != std::string::npos;
 }
 
 // Headers that name a library, or include one that does: path and the reason. Those of lib/linear are excused: matrices
-// are what they take and give, so whoever calls them sees <Eigen/Core> himself.
-std::map<std::string, std::string> headers_that_name_a_library() {
+// are what they take and give, so whoever calls them sees <Eigen/Core> himself. `but`: with these words a library's
+// headers begin that are excused everywhere.
+std::map<std::string, std::string> headers_that_name_a_library(const std::string& but = "<none>") {
   const auto headers = source_files("lib", {".h"});
   std::map<std::string, std::string> tainted;
   for (std::size_t before = 1; before != tainted.size();) {
@@ -73,7 +98,7 @@ std::map<std::string, std::string> headers_that_name_a_library() {
     for (const auto& header : headers) {
       if (header.path.starts_with("lib/linear/")) continue;
       for (const auto& include : includes_of(header))
-        if (third_party(include) || tainted.contains("lib/" + include.name))
+        if ((third_party(include) && !include.name.starts_with(but)) || tainted.contains("lib/" + include.name))
           tainted.emplace(header.path, place(header, include.line) + " includes " + include.name);
     }
     if (tainted.empty()) break;
@@ -85,14 +110,24 @@ std::map<std::string, std::string> headers_that_name_a_library() {
 // the folders above compile quickly. A header for the folder's own sources may name them.
 TEST(Layers, LibrariesStayInTheFolderThatUsesThem) {
   const auto tainted = headers_that_name_a_library();
-  for (const char* tree : {"lib", "tools"})
-    for (const auto& file : source_files(tree, {".h", ".cpp"}))
-      for (const auto& include : includes_of(file)) {
-        const auto reason = tainted.find("lib/" + include.name);
-        EXPECT_TRUE(reason == tainted.end() ||
-                    (std::string(tree) == "lib" && room_of(include.name) == room_of(file.path)))
-            << place(file, include.line) << ": " << include.name << " brings in a library: " << reason->second;
-      }
+  for (const auto& file : source_files("lib", {".h", ".cpp"}))
+    for (const auto& include : includes_of(file)) {
+      const auto reason = tainted.find("lib/" + include.name);
+      EXPECT_TRUE(reason == tainted.end() || room_of(include.name) == room_of(file.path))
+          << place(file, include.line) << ": " << include.name << " brings in a library: " << reason->second;
+    }
+}
+
+// A program hands on what its room takes and gives, matrices among it; it names no library itself.
+TEST(Layers, ProgramsSeeNoLibraryButTheMatricesOfTheirRoom) {
+  const auto tainted = headers_that_name_a_library("Eigen/");
+  for (const auto& file : source_files("tools", {".h", ".cpp"}))
+    for (const auto& include : includes_of(file)) {
+      EXPECT_FALSE(third_party(include)) << place(file, include.line) << ": <" << include.name << ">";
+      const auto reason = tainted.find("lib/" + include.name);
+      EXPECT_TRUE(reason == tainted.end())
+          << place(file, include.line) << ": " << include.name << " brings in a library: " << reason->second;
+    }
 }
 
 TEST(Layers, HeadersDoNotIncludeSources) {

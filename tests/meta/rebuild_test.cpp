@@ -48,10 +48,10 @@ class Tree {
 
  private:
   using Edges = std::map<std::string, std::set<std::string>>;
-  // As the compiler looks it up: beside the source, then below lib/ and tests/. Empty: no file of the tree.
+  // As the compiler looks it up: beside the source, then below lib/, tests/ and the root. Empty: no file of the tree.
   std::string found(const std::string& from, const std::string& name) const {
     const auto beside = (std::filesystem::path(from).parent_path() / name).lexically_normal().generic_string();
-    for (const std::string& candidate : {beside, "lib/" + name, "tests/" + name})
+    for (const std::string& candidate : {beside, "lib/" + name, "tests/" + name, name})
       if (files_.contains(candidate)) return candidate;
     return {};
   }
