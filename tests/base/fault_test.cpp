@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <Eigen/Core>
+#include <atomic>
 #include <cassert>
 #include <cstdlib>
 #include <fstream>
@@ -181,8 +182,13 @@ TEST(FaultFiles, NothingIsLeftHalfWritten) {
 TEST(FaultFiles, TheFirstSignalOfAUserStillEndsWithTryAgain) {
   const Ended ended = in_child([] {
     try {
-      parallel_for(0, 1000, [](std::size_t i) {
-        if (i == 10) ::raise(SIGTERM);
+      std::atomic<bool> raised = false;  // the work behind it waits, so that there is some left to be stopped
+      parallel_for(0, 1000, [&](std::size_t i) {
+        if (i == 10) {
+          ::raise(SIGTERM);
+          raised = true;
+        }
+        while (i > 10 && !raised) std::this_thread::yield();
       });
     } catch (const Error& e) {
       ::_exit(static_cast<int>(e.code()));
