@@ -8,6 +8,7 @@
 
 #include "camera/undistort.h"
 #include "manifest/sections/forward.h"
+#include "manifest/value.h"
 
 namespace gonio::camera {
 
