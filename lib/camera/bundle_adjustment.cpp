@@ -1,5 +1,4 @@
-// The descent: damped normal equations (Marquardt's diagonal, Nielsen's rule for the damping, Madsen, Nielsen &
-// Tingleff, "Methods for non-linear least squares problems", 2004, algorithm 3.16).
+// The descent: damped normal equations with the placements eliminated, under the shared control (optim/descent.h).
 #include "camera/bundle_adjustment.h"
 
 #include <Eigen/Core>
@@ -7,6 +6,7 @@
 #include <cmath>
 
 #include "linear/solve.h"
+#include "optim/descent.h"
 
 namespace gonio::camera {
 namespace {
@@ -17,7 +17,6 @@ using Vector = Eigen::VectorXd;
 using Change6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr int most_iterations = 100;
-constexpr double first_damping = 1e-4, largest_damping = 1e12;
 constexpr double settled = 1e-9;   // promised descent over the variance: a step of 3e-5 standard deviations
 constexpr double hardly = 1e-4;    // the same where rounding leaves no descent
 constexpr double exact_px = 1e-9;  // residuals that are rounding
@@ -108,41 +107,50 @@ bool sensible(const Adjustment& state) {
   return std::ranges::all_of(state.lenses, [](const Intrinsics& lens) { return lens.fx_px > 1 && lens.fy_px > 1; });
 }
 
+struct Bundle final : optim::Descent {
+  const std::vector<View>& views;
+  const CalibrationSetup& setup;
+  const std::vector<FreeParameter> free;
+  Adjustment& state;
+  Adjustment next;
+  NormalEquations at, there;
+  Step step;
+
+  Bundle(const std::vector<View>& of, const CalibrationSetup& s, Adjustment& start)
+      : views(of), setup(s), free(free_parameters(s, start)), state(start), at(normal_equations(of, s, free, start)) {}
+  void linearise() override {}  // evaluate() has
+  optim::Proposal propose(double damping) override {
+    step = damped_step(at, damping);
+    return {step.solved ? step.promised : NAN};
+  }
+  double evaluate() override {
+    if (!step.solved) return HUGE_VAL;
+    next = stepped(state, free, step);
+    if (!sensible(next)) return HUGE_VAL;
+    there = normal_equations(views, setup, free, next);
+    return there.cost;
+  }
+  void accept() override {
+    std::swap(state, next);
+    std::swap(at, there);
+  }
+};
+
 }  // namespace
 
 void adjust(const std::vector<View>& views, const CalibrationSetup& setup, Adjustment& state) {
-  const std::vector<FreeParameter> free = free_parameters(setup, state);
-  NormalEquations n = normal_equations(views, setup, free, state);
-  double damping = first_damping, growth = 2;
-  state.converged = false;
-  for (int i = 0; i < most_iterations && !state.converged; ++i) {
-    const Step step = damped_step(n, damping);
-    const double variance = n.squares / std::max(1.0, n.coordinates);
-    if (step.solved && (step.promised <= settled * variance || variance <= exact_px * exact_px)) {
-      state.converged = true;
-      break;
-    }
-    Adjustment next = step.solved ? stepped(state, free, step) : state;
-    if (step.solved && sensible(next)) {
-      NormalEquations there = normal_equations(views, setup, free, next);
-      const double ratio = (n.cost - there.cost) / step.promised;
-      if (ratio > 0) {
-        const double u = 2 * ratio - 1;
-        damping = std::max(1e-15, damping * std::max(0.1, 1 - u * u * u));
-        growth = 2;
-        state = std::move(next);
-        n = std::move(there);
-        continue;
-      }
-      if (step.promised <= hardly * variance) {
-        state.converged = true;
-        break;
-      }
-    }
-    damping *= growth;
-    growth *= 2;
-    if (damping > largest_damping) break;
-  }
+  Bundle bundle(views, setup, state);
+  const double coordinates = std::max(1.0, bundle.at.coordinates);
+  optim::Limits limits;
+  limits.most_trials = most_iterations;
+  limits.first_damping = 1e-4;
+  limits.least_damping = 1e-15;
+  limits.floor = exact_px * exact_px * coordinates;
+  limits.small_fall = {};
+  limits.small_promise = {settled / coordinates, 0};
+  limits.rounding = {hardly / coordinates, 0};
+  const bool converged = optim::descend(bundle, bundle.at.cost, limits).settled();
+  state.converged = converged;
 }
 
 }  // namespace gonio::camera

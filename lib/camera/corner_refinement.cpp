@@ -11,6 +11,9 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "optim/damped.h"
+#include "optim/descent.h"
+
 namespace gonio::camera {
 namespace {
 
@@ -122,7 +125,7 @@ void collect(const cv::Mat& values, const Prediction& p, const Extent& e, Window
   }
 }
 
-class Saddle {
+class Saddle final : public optim::Descent {
  public:
   Saddle(const Window& window, const Prediction& p) : window_(window) {
     q_.setZero();
@@ -134,32 +137,15 @@ class Saddle {
 
   // False where the samples do not determine the corner.
   bool fit() {
-    Matrix normal;
-    Vector gradient;
-    double cost = evaluate(q_, &normal, &gradient), damping = 1e-3;
-    for (int step = 0; step < most_steps; ++step) {
-      Matrix damped = normal;
-      damped.diagonal() *= 1 + damping;
-      const Vector change = damped.ldlt().solve(gradient);
-      Vector next = q_ + change;
-      for (const int k : {blur1, blur2}) next[k] = std::clamp(next[k], least_blur_px, 2 * std::max(1.0, q_[k]));
-      Matrix next_normal;
-      Vector next_gradient;
-      const double next_cost = evaluate(next, &next_normal, &next_gradient);
-      if (!(next_cost < cost)) {
-        if (std::hypot(change[x], change[y]) < small_step_px) return finish(normal, cost);
-        damping *= 10;
-        if (damping > 1e6) break;
-        continue;
-      }
-      q_ = next;
-      cost = next_cost;
-      normal = next_normal;
-      gradient = next_gradient;
-      damping = std::max(1e-9, 0.1 * damping);
-      if (std::hypot(change[x], change[y]) < small_step_px) break;
-    }
-    return finish(normal, cost);
+    next_ = q_;
+    const double cost = evaluate();
+    accept();
+    optim::Limits limits;
+    limits.most_trials = most_steps;
+    limits.least_damping = 1e-9;
+    limits.small_fall = {};
+    limits.small_step = small_step_px;
+    return finish(optim::descend(*this, cost, limits).cost);
   }
   const Vector& parameters_found() const { return q_; }
   double sigma_px() const { return sigma_px_; }
@@ -180,9 +166,17 @@ class Saddle {
     q_.tail<4>() = a.ldlt().solve(b);
   }
 
-  double evaluate(const Vector& q, Matrix* normal, Vector* gradient) const {
-    normal->setZero();
-    gradient->setZero();
+  void linearise() override {}  // evaluate() has
+  optim::Proposal propose(double damping) override {
+    const auto step = optim::damped_step(normal_, gradient_, damping);
+    next_ = q_ + step.change;
+    for (const int k : {blur1, blur2}) next_[k] = std::clamp(next_[k], least_blur_px, 2 * std::max(1.0, q_[k]));
+    return {step.promised, std::hypot(step.change[x], step.change[y])};
+  }
+  double evaluate() override {
+    const Vector& q = next_;
+    next_normal_.setZero();
+    next_gradient_.setZero();
     const double c1 = std::cos(q[turn1]), s1 = std::sin(q[turn1]), c2 = std::cos(q[turn2]), s2 = std::sin(q[turn2]);
     double cost = 0;
     for (const Sample& s : window_.samples) {
@@ -195,16 +189,21 @@ class Saddle {
       Vector j;
       j << k1 * s1 + k2 * s2, -k1 * c1 - k2 * c2, -k1 * a1, -k2 * a2, -k1 * d1 / q[blur1], -k2 * d2 / q[blur2], 1, s.x,
           s.y, e1 * e2;
-      normal->noalias() += j * j.transpose();
-      *gradient += residual * j;
+      next_normal_.noalias() += j * j.transpose();
+      next_gradient_ += residual * j;
       cost += residual * residual;
     }
     return cost;
   }
+  void accept() override {
+    q_ = next_;
+    normal_ = next_normal_;
+    gradient_ = next_gradient_;
+  }
 
-  bool finish(const Matrix& normal, double cost) {
+  bool finish(double cost) {
     const double free = static_cast<double>(window_.samples.size()) - parameters;
-    const Matrix inverse = normal.inverse();
+    const Matrix inverse = normal_.inverse();
     sigma_px_ = std::sqrt(0.5 * (inverse(x, x) + inverse(y, y)) * cost / free);
     misfit_ = std::sqrt(cost / free) / std::abs(q_[contrast]);
     return std::isfinite(sigma_px_) && sigma_px_ < largest_sigma_px;
@@ -215,7 +214,8 @@ class Saddle {
     return table(z);
   }
   const Window& window_;
-  Vector q_;
+  Vector q_, next_, gradient_, next_gradient_;
+  Matrix normal_, next_normal_;
   double sigma_px_ = 0, misfit_ = 0;
 };
 

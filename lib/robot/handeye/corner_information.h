@@ -15,9 +15,10 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 struct CornerInformation {
   Matrix6 information = Matrix6::Zero();
-  Vector6 gradient = Vector6::Zero();  // half the derivative of the squares
+  Vector6 gradient = Vector6::Zero();  // half the derivative of the cost
   Eigen::MatrixXd lens;                // 6 x lens_order: cross terms with the lens
   double squares = 0, coordinates = 0;
+  double cost = 0;       // Huber's: what the gradient is half the derivative of
   bool in_front = true;  // false: some corner lies behind the camera
 };
 CornerInformation corner_information(const Setup& setup, const View& view, const camera::BoardPose& pose,

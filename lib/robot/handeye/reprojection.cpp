@@ -2,10 +2,10 @@
 // the board so that the robot's deviation stays zero: by_pose * dT = -by_mountings * change.
 #include "robot/handeye/reprojection.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include "linear/solve.h"
+#include "optim/damped.h"
+#include "optim/descent.h"
 #include "robot/handeye/pose_adjustment.h"
 
 namespace gonio::robot::handeye {
@@ -35,28 +35,40 @@ Normal normal_equations(const Setup& setup, const std::vector<View>& views, cons
   return n;
 }
 
+struct Mountings final : optim::Descent {
+  const Setup& setup;
+  const std::vector<View>& views;
+  Solution solution, next;
+  Normal at, there;
+
+  Mountings(const Setup& of, const std::vector<View>& seen, const Solution& start)
+      : setup(of), views(seen), solution(start), next(start), at(normal_equations(of, seen, start)) {}
+  void linearise() override {}  // evaluate() has
+  optim::Proposal propose(double damping) override {
+    const auto step = optim::damped_step(at.information, Vector12(-at.gradient), damping);
+    next = moved_by(solution, step.change);
+    return {step.promised};
+  }
+  double evaluate() override {
+    there = normal_equations(setup, views, next);
+    return there.squares;
+  }
+  void accept() override {
+    solution = next;
+    at = there;
+  }
+};
+
 }  // namespace
 
 Solution minimise_reprojection(const Setup& setup, const std::vector<View>& views, const Solution& start) {
-  Solution s = start;
-  Normal at = normal_equations(setup, views, s);
-  double damping = 1e-6;
-  for (int step = 0; step < most_steps && damping < 1e8; ++step) {
-    const Matrix12 damped = at.information + damping * Matrix12(at.information.diagonal().asDiagonal());
-    const Vector12 change = -linear::solve_ldlt(damped, at.gradient);
-    const Solution next = moved_by(s, change);
-    const Normal there = normal_equations(setup, views, next);
-    if (!(there.squares <= at.squares)) {
-      damping *= 10;
-      continue;
-    }
-    const bool done = at.squares - there.squares < 1e-12 * at.squares;
-    s = next;
-    at = there;
-    damping = std::max(1e-12, damping * 0.1);
-    if (done) break;
-  }
-  return s;
+  Mountings mountings(setup, views, start);
+  optim::Limits limits;
+  limits.most_trials = most_steps;
+  limits.first_damping = 1e-6;
+  limits.small_fall = limits.rounding = {1e-12, 0};
+  optim::descend(mountings, mountings.at.squares, limits);
+  return mountings.solution;
 }
 
 }  // namespace gonio::robot::handeye

@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "linear/solve.h"
+#include "optim/damped.h"
+#include "optim/descent.h"
 #include "robot/handeye/corner_information.h"
 
 namespace gonio::robot::handeye {
@@ -14,7 +15,8 @@ using camera::BoardColumn;
 static_assert(BoardColumn::translation == BoardColumn::rotation + 3);
 
 constexpr double huber_sigmas = 3;
-constexpr int most_steps = 50;
+constexpr int most_steps = 50, most_rounds = 30;
+constexpr double same_noise = 1e-9;  // relative: from one round to the next
 
 std::size_t column_of(const std::string& name) {
   constexpr std::array<std::string_view, 4> pinhole = {"fx_px", "fy_px", "cx_px", "cy_px"};
@@ -45,6 +47,8 @@ CornerInformation corner_information(const Setup& setup, const View& view, const
     const double robust = size > huber_sigmas ? huber_sigmas / size : 1;
     const double weight = robust / (corner.sigma_px * corner.sigma_px);
     sum.squares += weight * dot(r, r);
+    const double knee = huber_sigmas * factor, z = size * factor;
+    sum.cost += size > huber_sigmas ? 2 * knee * z - knee * knee : z * z;
     sum.coordinates += 2 * robust;
     for (const int row : {0, 1}) {
       const auto& j = jacobian[static_cast<std::size_t>(row)];
@@ -64,29 +68,57 @@ camera::BoardPose moved_by(const camera::BoardPose& pose, const Vector6& change)
   return camera::moved(pose, {change(0), change(1), change(2), change(3), change(4), change(5)});
 }
 
-camera::BoardPose pose_by_camera(const Setup& setup, const View& view) {
-  camera::BoardPose pose = view.camera_from_board;
-  double factor = 1, damping = 1e-6;
-  CornerInformation at = corner_information(setup, view, pose, factor);
-  for (int step = 0; step < most_steps; ++step) {
-    factor = std::sqrt(std::max(1.0, at.squares / std::max(1.0, at.coordinates - 6)));
-    at = corner_information(setup, view, pose, factor);
-    const Matrix6 damped = at.information + damping * Matrix6(at.information.diagonal().asDiagonal());
-    const Vector6 change = -linear::solve_ldlt(damped, at.gradient);
-    const camera::BoardPose next = moved_by(pose, change);
-    const CornerInformation there = corner_information(setup, view, next, factor);
-    if (!there.in_front || there.squares > at.squares * (1 + 1e-12)) {
-      damping = std::max(damping, 1e-9) * 10;
-      if (damping > 1e6) break;
-      continue;
-    }
-    pose = next;
-    damping *= 0.1;
-    const double sigmas = std::sqrt(std::max(0.0, change.dot(at.information * change)));
-    at = there;
-    if (sigmas < 1e-9) break;
+namespace {
+
+// The pose for one size of the noise.
+struct PoseDescent final : optim::Descent {
+  const Setup& setup;
+  const View& view;
+  camera::BoardPose pose, next;
+  double factor;
+  CornerInformation at, there;
+
+  PoseDescent(const Setup& of, const View& seen)
+      : setup(of),
+        view(seen),
+        pose(seen.camera_from_board),
+        next(pose),
+        factor(1),
+        at(corner_information(of, seen, pose, factor)) {}
+  void linearise() override {}  // evaluate() has
+  optim::Proposal propose(double damping) override {
+    const auto step = optim::damped_step(at.information, Vector6(-at.gradient), damping);
+    next = moved_by(pose, step.change);
+    return {step.promised, std::sqrt(std::max(0.0, step.change.dot(at.information * step.change)))};
   }
-  return pose;
+  double evaluate() override {
+    there = corner_information(setup, view, next, factor);
+    return there.in_front ? there.cost : HUGE_VAL;
+  }
+  void accept() override {
+    pose = next;
+    at = there;
+  }
+};
+
+}  // namespace
+
+camera::BoardPose pose_by_camera(const Setup& setup, const View& view) {
+  PoseDescent descent(setup, view);
+  optim::Limits limits;
+  limits.most_trials = most_steps;
+  limits.first_damping = 1e-6;
+  limits.small_fall = {};
+  limits.rounding = {1e-12, 0};
+  limits.small_step = 1e-9;
+  for (int round = 0; round < most_rounds; ++round) {
+    const double before = descent.factor;
+    descent.factor = std::sqrt(std::max(1.0, descent.at.squares / std::max(1.0, descent.at.coordinates - 6)));
+    if (round > 0 && std::abs(descent.factor - before) <= same_noise * before) break;
+    descent.at = corner_information(setup, view, descent.pose, descent.factor);
+    optim::descend(descent, descent.at.cost, limits);
+  }
+  return descent.pose;
 }
 
 std::vector<PoseSample> samples_of(const Setup& setup, const std::vector<View>& views) {
