@@ -7,7 +7,7 @@
 //
 // Whoever minimises says how to linearise and how to solve for one damping: dense normal equations (damped.h), Schur
 // complements, variable projection, Fisher scoring. Dense problems of some hundred parameters with bounds, priors,
-// robust losses and a covariance need not do even that: least_squares.h. Problems of many blocks: blocks.h.
+// robust losses and a covariance need not do even that: least_squares.h. By Ceres: ceres_fit.h.
 #pragma once
 #include <cmath>
 #include <limits>
