@@ -63,7 +63,7 @@ std::vector<Option> picture_options() {
 }
 
 std::vector<Option> map_options() {
-  std::vector<Option> all = {
+  std::vector<Option> all{
       {.name = "levelling",
        .type = Type::choice,
        .help = "What is taken off the heights first, fitted by least squares; their mean always is.",
