@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "contrast_measure/sample_world.h"
+#include "contrast/measure/sample_world.h"
 #include "data.h"
 #include "manifest/document.h"
 #include "stats/distributions.h"

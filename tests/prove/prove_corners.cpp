@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "../camera/synthetic_board.h"
 #include "base/atomic_file.h"
 #include "camera/corner_detection.h"
+#include "camera/synthetic_board.h"
 #include "io/picture.h"
 #include "manifest/document.h"
 #include "manifest/sections/camera.h"

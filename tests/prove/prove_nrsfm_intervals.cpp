@@ -10,7 +10,7 @@
 
 #include "base/parallel.h"
 #include "nrsfm/error_intervals.h"
-#include "nrsfm_eval/erring.h"
+#include "nrsfm/evaluate/erring.h"
 
 namespace {
 

@@ -20,7 +20,7 @@
 
 #include "base/error.h"
 #include "nrsfm/files.h"
-#include "nrsfm_solve/synthetic.h"
+#include "nrsfm/solve/synthetic.h"
 
 namespace {
 

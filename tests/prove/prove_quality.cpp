@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "quality/coverage_runs.h"
+#include "camera/quality/coverage_runs.h"
 #include "stats/intervals.h"
 
 int main(int argc, char** argv) {

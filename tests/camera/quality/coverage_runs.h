@@ -7,7 +7,7 @@
 #include "camera/camera_model.h"
 #include "camera/quality/halves.h"
 #include "camera/quality/projection_law.h"
-#include "quality/quality_world.h"
+#include "camera/quality/quality_world.h"
 
 namespace gonio::camera::tests {
 

@@ -1,8 +1,8 @@
 // The five animatronics: equilibrium in every frame, and the properties that give each kind its name.
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -4,8 +4,8 @@
 #include <limits>
 #include <set>
 
-#include "../camera/synthetic_board.h"
 #include "base/atomic_file.h"
+#include "camera/synthetic_board.h"
 #include "data.h"
 #include "io/picture.h"
 #include "process.h"

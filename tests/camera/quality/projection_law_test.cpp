@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "camera/quality/coverage_runs.h"
 #include "camera/quality/next_views.h"
-#include "quality/coverage_runs.h"
 
 namespace gonio::camera::tests {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "camera/quality/coverage.h"
-#include "quality/quality_world.h"
+#include "camera/quality/quality_world.h"
 
 namespace gonio::camera::tests {
 namespace {

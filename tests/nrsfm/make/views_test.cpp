@@ -1,8 +1,8 @@
 // Virtual cameras: paths, projections, and which points the surface hides.
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
 #include <filesystem>
 #include <memory>
