@@ -7,11 +7,9 @@
 // folder's name (cmake/rooms.cmake). Beside program.cpp stand the program's own options, call and page, in the same
 // namespace. What several programs share on the command line stands here in lib/cli; no other room knows of it.
 //
-// Common to every program, added here and meaning the same everywhere: -i/--input, -o/--output, --out DIR, --depfile
-// FILE,
-// --seed N, --threads N, --progress WHEN, --log-level LEVEL, --force, --resume, --allow-outside, --check, --describe,
-// --help,
-// --version. A program lists in `common` those of --out, --seed, --resume, --force that it takes.
+// Common to every program, added here and meaning the same everywhere: -i/--input, -o/--output, --out DIR,
+// --depfile FILE, --seed N, --threads N, --progress WHEN, --log-level LEVEL, --force, --resume, --allow-outside,
+// --check, --describe, --help, --version. Of --out, --seed and --resume a program says which it takes (takes_out, ...).
 #pragma once
 #include <cstdint>
 #include <filesystem>
