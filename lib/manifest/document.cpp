@@ -44,6 +44,7 @@
 #include "manifest/sections/surface.h"
 #include "manifest/sections/surface_fit.h"
 #include "manifest/sections/table.h"
+#include "manifest/sections/volume.h"
 
 namespace gonio::manifest {
 namespace {
@@ -77,6 +78,8 @@ void for_each_section(D& d, const Visit& visit) {
   visit("contrasts", d.contrasts);
   visit("reliefs", d.reliefs);
   visit("ground_noises", d.ground_noises);
+  visit("volumes", d.volumes);
+  visit("markers", d.markers);
   visit("sequences", d.sequences);
   visit("reconstructions", d.reconstructions);
   visit("evaluations", d.evaluations);

@@ -48,6 +48,8 @@ struct Document {
   std::vector<Contrast> contrasts;
   std::map<std::string, ReliefMap> reliefs;
   std::map<std::string, GroundNoiseFit> ground_noises;
+  std::map<std::string, Volume> volumes;
+  std::vector<Marker> markers;
   std::map<std::string, TrackSequence> sequences;
   std::vector<ShapeReconstruction> reconstructions;
   std::vector<Evaluation> evaluations;

@@ -28,6 +28,7 @@
 #include "manifest/sections/surface.h"
 #include "manifest/sections/surface_fit.h"
 #include "manifest/sections/table.h"
+#include "manifest/sections/volume.h"
 #include "manifest/units.h"
 
 namespace gonio::manifest {
@@ -138,6 +139,38 @@ void check_reliefs(const Document& d) {
   }
 }
 
+void needs_numbers(std::size_t count, std::size_t wanted, const std::string& at, const char* remedy) {
+  if (count != 0 && count != wanted)
+    throw Error(Exit::data, at, "has " + std::to_string(count) + " numbers, needs " + std::to_string(wanted), remedy);
+}
+
+void check_volumes(const Document& d) {
+  for (const auto& [name, volume] : d.volumes) {
+    const std::string at = place(d, "/volumes/" + name);
+    must_exist(d.files, "files", volume.file, at + "/file");
+    for (std::size_t i = 0; i < volume.slices.size(); ++i)
+      must_exist(d.files, "files", volume.slices[i], at + "/slices/" + std::to_string(i));
+    must_exist(d.meshes, "meshes", volume.mesh, at + "/mesh");
+    must_exist(d.meshes, "meshes", volume.markers_mesh, at + "/markers_mesh");
+    needs_numbers(volume.size.size(), 3, at + "/size", "give voxels [i, j, k]");
+    needs_numbers(volume.spacing_m.size(), 3, at + "/spacing_m", "give lengths [i, j, k]");
+    needs_numbers(volume.tiles.size(), 2, at + "/tiles", "give [columns, rows]");
+    if (volume.volume_from_index)
+      needs_numbers(volume.volume_from_index->matrix.size(), 16, at + "/volume_from_index/matrix",
+                    "give 4 x 4 numbers, row by row");
+    for (std::size_t i = 0; i < volume.steps.size(); ++i)
+      must_exist(d.files, "files", volume.steps[i].picture, at + "/steps/" + std::to_string(i) + "/picture");
+  }
+  unique_ids(d.markers, place(d, "/markers"));
+  for (std::size_t i = 0; i < d.markers.size(); ++i) {
+    const Marker& marker = d.markers[i];
+    const std::string at = place(d, "/markers/" + std::to_string(i));
+    must_exist(d.volumes, "volumes", marker.volume, at + "/volume");
+    needs_numbers(marker.centre_m.size(), 3, at + "/centre_m", "give a point [x, y, z]");
+    needs_numbers(marker.covariance_m2.size(), 9, at + "/covariance_m2", "give 3 x 3 numbers, row by row");
+  }
+}
+
 void check_nrsfm(const Document& d) {
   for (const auto& [name, sequence] : d.sequences) {
     must_exist(d.files, "files", sequence.file, place(d, "/sequences/" + name + "/file"));
@@ -159,6 +192,7 @@ void check_references(const Document& d) {
   check_images(d);
   check_goniometry(d);
   check_reliefs(d);
+  check_volumes(d);
   check_nrsfm(d);
   unique_ids(d.objects, place(d, "/objects"));
   for (std::size_t i = 0; i < d.objects.size(); ++i) {

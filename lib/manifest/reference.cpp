@@ -151,6 +151,17 @@ void add_reliefs(List& all) {
   all.push_back(part("ground_noises: parts", "Sparse convolution noises.", ground_noise_part_fields()));
 }
 
+void add_volumes(List& all) {
+  all.push_back(keyed("volumes",
+                      "Samples on a grid, as tomographs give them, and the surface that ct-mesh-clean made of them. "
+                      "Index (0, 0, 0) is the centre of the first voxel.",
+                      volume_fields()));
+  all.push_back(
+      part("volumes: volume_from_index", "Columns are the grid's axes times the spacing.", index_map_fields()));
+  all.push_back(part("volumes: steps", "Written by ct-mesh-clean.", volume_step_fields()));
+  all.push_back(listed("markers", "Spheres glued to an object, found by ct-mesh-clean.", marker_fields()));
+}
+
 void add_tracks(List& all) {
   all.push_back(keyed("sequences", "Points of shapes that deform, followed over frames.", track_sequence_fields()));
   all.push_back(listed("reconstructions", "Shapes that a solver made of a sequence.", shape_reconstruction_fields()));
@@ -221,6 +232,7 @@ List all_described() {
   add_results(all);
   add_goniometry(all);
   add_reliefs(all);
+  add_volumes(all);
   add_tracks(all);
   add_explanations(all);
   Described provenance = part("provenance", "Written by the programs alone: which of them made the document, of what.",

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "report/mesh_style.h"
 #include "report/motion_style.h"
 #include "report/page_style.h"
 
@@ -224,6 +225,7 @@ void Page::footer(std::string_view text) {
 
 std::string Page::html() const {
   const bool moving = body_.find("<div class=\"motion\"") != std::string::npos;
+  const bool solid = body_.find("<div class=\"solid\"") != std::string::npos;
   std::string navigation;
   if (headings_.size() > 2) {
     for (std::size_t i = 0; i < headings_.size(); ++i)
@@ -235,10 +237,10 @@ std::string Page::html() const {
          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
          "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
          "<title>" +
-         escape(title_) + "</title>\n<style>" + std::string(page_style) + (moving ? std::string(motion_style) : "") +
+         escape(title_) + "</title>\n<style>" + std::string(page_style) + (moving ? std::string(motion_style) : "") + (solid ? std::string(solid_style) : "") +
          "</style></head>\n<body>" + head_ + navigation + "<main>" + body_ + (in_section_ ? "</section>" : "") +
          "</main>\n" + (footer_.empty() ? std::string() : "<footer>" + footer_ + "</footer>\n") + "<script>" +
-         std::string(page_script) + (moving ? std::string(motion_script) : "") + "</script></body></html>\n";
+         std::string(page_script) + (moving ? std::string(motion_script) : "") + (solid ? std::string(solid_script) : "") + "</script></body></html>\n";
 }
 
 }  // namespace gonio::report

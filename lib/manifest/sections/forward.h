@@ -31,10 +31,12 @@ struct GroundNoiseFit;
 struct GroundNoisePart;
 struct HeldOut;
 struct ImageEntry;
+struct IndexMap;
 struct LawUse;
 struct Light;
 struct LightPosition;
 struct Link;
+struct Marker;
 struct MechanismUse;
 struct Mesh;
 struct Mounting;
@@ -58,5 +60,7 @@ struct Surface;
 struct SurfaceFit;
 struct Table;
 struct TrackSequence;
+struct Volume;
+struct VolumeStep;
 
 }  // namespace gonio::manifest

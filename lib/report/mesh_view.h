@@ -1,0 +1,35 @@
+// A surface in space, shaded, which the reader turns (drag, arrow keys) and brings nearer (wheel, + and -); by the
+// page's script and WebGL. Without either, and on paper, a picture of it stands there. Several surfaces over one
+// another are switched by name: the same view of each.
+//
+// Parallel projection as in point_motion.h: p -> (turn p)_xy, y up, z towards the reader. Positions are stored with 16
+// bits a coordinate in the cube about all surfaces.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gonio::report {
+
+struct ViewedMesh {
+  std::string name;  // of the switch
+  std::vector<std::array<float, 3>> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
+  std::vector<float> value;                             // one a vertex, coloured; or empty: grey
+};
+struct MeshView {
+  std::string name;  // what is shown, for readers who do not see
+  std::vector<ViewedMesh> meshes;
+  std::string label, unit;                                 // of the values
+  double low = 0, high = 0;                                // of the colours; both 0: no values. low < 0: signed colours
+  std::array<double, 9> turn{1, 0, 0, 0, 0, 1, 0, -1, 0};  // row by row, at the beginning: z up, seen along +y
+};
+
+// For Figure::svg. Error-free for meshes without triangles.
+std::string html(const MeshView& view);
+
+// The picture: the first mesh (or `which`), lit from the reader's left shoulder, as the bytes of a PNG.
+std::string still_png(const MeshView& view, std::size_t which, int width, int height);
+
+}  // namespace gonio::report

@@ -1,0 +1,68 @@
+// ct-mesh-clean: from a CT volume to a mesh that can be rendered as glass (lib/volume,
+// lib/mesh/{carve,clean,verdict}.h).
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/text.h"
+#include "tools/ct-mesh-clean/work.h"
+
+namespace gonio::tools::ct_mesh_clean {
+namespace {
+
+void check(cli::Invocation& call) {
+  asked(call);
+  if (call.given("html")) check_writable(call.text("html"));
+}
+
+Exit run(cli::Invocation& call) {
+  Work work(call, asked(call));
+  work.name =
+      call.given("name") ? call.text("name") : file_stem(std::filesystem::path(call.text("VOLUME")).stem().string());
+  const std::filesystem::path html = call.given("html") ? std::filesystem::path(call.text("html"))
+                                     : call.out.empty() ? std::filesystem::path()
+                                                        : call.output_path("report.html");
+  for (const auto take : {open, look, correct, cut, select, contour, find_markers, carve, clean, judge}) take(work);
+  draw(work);
+  enter(work);
+  if (!html.empty()) write_file(html, page(work));
+  return work.missed ? Exit::quality : Exit::done;
+}
+
+std::vector<std::string> synopsis() {
+  return {"[OPTION]... VOLUME", "--voxel LENGTH --markers DIAMETER --out DIR [OPTION]... VOLUME [-i FILE]"};
+}
+
+}  // namespace
+
+const cli::Program& gonio_program() {
+  static const cli::Program program{
+      .name = "ct-mesh-clean",
+      .sentence = "from a CT volume to a closed mesh whose refraction can be trusted",
+      .synopsis = synopsis(),
+      .options = options(),
+      .operands = {{.name = "VOLUME",
+                    .type = cli::Type::text,
+                    .help = "The volume: a file, or a folder of slices.",
+                    .required = true}},
+      .takes_out = true,
+      .takes_seed = true,
+      .sections_read = {"files", "meshes", "surfaces", "objects", "volumes", "markers"},
+      .sections_written = {"files", "meshes", "surfaces", "objects", "volumes", "markers"},
+      .files = {{"NAME.ply", "the mesh, metres, normals at its vertices"},
+                {"NAME-markers.ply", "the markers' surface"},
+                {"NAME-slices-*.png", "slices with the contour drawn over them"},
+                {"report.html", "the report"}},
+      .exits = {{Exit::quality, "the mesh is not sound, or a limit is missed"}},
+      .references = {"Ju, Losasso, Schaefer & Warren, Dual contouring of Hermite data, SIGGRAPH 2002.",
+                     "Ju & Udeshi, Intersection-free contouring on an octree grid, Pacific Graphics 2006.",
+                     "Garland & Heckbert, Surface simplification using quadric error metrics, SIGGRAPH 1997.",
+                     "Kobbelt, sqrt(3)-subdivision, SIGGRAPH 2000.",
+                     "Taubin, A signal processing approach to fair surface design, SIGGRAPH 1995.",
+                     "Stets et al., Scene reassembly after multimodal digitization and pipeline evaluation using "
+                     "photorealistic rendering, Applied Optics 56, 2017."},
+      .see_also = {"render(1)", "scene(1)", "explain(1)", "gonio-manifest(5)"},
+      .check = check,
+      .run = run};
+  return program;
+}
+
+}  // namespace gonio::tools::ct_mesh_clean

@@ -1,0 +1,54 @@
+// Step: take the voxels' noise away.
+#include "base/text.h"
+#include "tools/ct-mesh-clean/work.h"
+
+namespace gonio::tools::ct_mesh_clean {
+namespace {
+
+// Positions' own uncertainty at the vertices that carving left where they were; empty where it is not known.
+std::vector<double> sigmas(const Work& work) {
+  if (work.edges.size() != work.mesh.positions_m.size()) return {};
+  std::vector<double> sigma;
+  sigma.reserve(work.edges.size());
+  for (const volume::Edge& e : work.edges) sigma.push_back((e.good ? e.sigma : 1.0) * work.voxel_m());
+  return sigma;
+}
+
+void clean_bounded(Work& work) {
+  const double within = work.asked.within.metres(work.voxel_m());
+  const mesh::BoundedResult result = mesh::clean_within(work.mesh, {.within_m = within, .sigma_m = sigmas(work)});
+  auto& entry = step(work, "clean", "least noise of normals within " + format("%.4g m of the data", within));
+  entry.figures = {{"within_m", within},
+                   {"rounds", static_cast<double>(result.rounds)},
+                   {"rms_move_m", result.rms_move_m},
+                   {"largest_move_m", result.largest_move_m},
+                   {"at_bound", static_cast<double>(result.at_bound)},
+                   {"normal_noise_before_rad", result.normal_noise_before_rad},
+                   {"normal_noise_after_rad", result.normal_noise_after_rad}};
+}
+
+}  // namespace
+
+void clean(Work& work) {
+  switch (work.asked.clean) {
+    case CleanBy::bounded: clean_bounded(work); break;
+    case CleanBy::subdivision:
+      mesh::clean_by_subdivision(work.mesh);
+      step(work, "clean",
+           "decimation to 1 % of the vertices, then four times sqrt(3) subdivision and decimation to 33 %");
+      break;
+    case CleanBy::taubin:
+      mesh::smooth_taubin(work.mesh);
+      step(work, "clean", "Taubin's lambda | mu smoothing");
+      break;
+    case CleanBy::none: break;
+  }
+  if (work.asked.faces > 0 && work.mesh.triangles.size() > work.asked.faces) {
+    const std::size_t before = work.mesh.triangles.size(), left = mesh::decimate(work.mesh, work.asked.faces);
+    step(work, "decimate", "quadric edge collapse").figures = {{"triangles_before", static_cast<double>(before)},
+                                                               {"triangles", static_cast<double>(left)}};
+  }
+  if (work.asked.clean != CleanBy::none || work.asked.faces > 0) work.stages.emplace_back("cleaned", work.mesh);
+}
+
+}  // namespace gonio::tools::ct_mesh_clean

@@ -1,0 +1,31 @@
+// Step: the surface, and where asked its vertices at the steepest gradient.
+#include "base/text.h"
+#include "tools/ct-mesh-clean/work.h"
+
+namespace gonio::tools::ct_mesh_clean {
+
+void contour(Work& work) {
+  work.contour = volume::contour(*work.volume, {.threshold = work.threshold.value, .inside = work.asked.inside});
+  auto& entry = step(work, "surface", "dual contouring on crossings and gradients");
+  entry.figures = {{"vertices", static_cast<double>(work.contour.positions.size())},
+                   {"triangles", static_cast<double>(work.contour.triangles.size())},
+                   {"split_polygons", static_cast<double>(work.contour.split_polygons)},
+                   {"shared_cells", static_cast<double>(work.contour.shared_cells)}};
+  work.stages.emplace_back("contour", in_metres(work, work.contour));
+  work.edges = volume::edges(*work.volume, work.contour, {.noise = work.look.noise_air});
+  if (work.asked.threshold_by == ThresholdBy::gradient) {
+    const volume::Refined refined = volume::move_to_steepest(work.contour, work.edges);
+    auto& moved = step(work, "steepest", "vertices moved to the steepest gradient along their normals");
+    moved.figures = {{"moved", static_cast<double>(refined.moved)},
+                     {"held", static_cast<double>(refined.held)},
+                     {"unfitted", static_cast<double>(refined.unfitted)},
+                     {"mean_shift_m", refined.mean_shift * work.voxel_m()},
+                     {"rms_shift_m", refined.rms_shift * work.voxel_m()},
+                     {"largest_shift_m", refined.largest_shift * work.voxel_m()},
+                     {"sigma_position_m", refined.sigma_position * work.voxel_m()}};
+    work.stages.emplace_back("steepest gradient", in_metres(work, work.contour));
+  }
+  work.data = work.mesh = in_metres(work, work.contour);
+}
+
+}  // namespace gonio::tools::ct_mesh_clean

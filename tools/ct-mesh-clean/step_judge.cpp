@@ -1,0 +1,58 @@
+// Step: is the mesh fit to be rendered as glass?
+#include "base/text.h"
+#include "tools/ct-mesh-clean/work.h"
+
+namespace gonio::tools::ct_mesh_clean {
+namespace {
+
+constexpr std::size_t distance_samples = 100000, rays = 20000;
+
+}  // namespace
+
+void judge(Work& work) {
+  const mesh::Soundness sound = mesh::soundness(work.mesh);
+  const auto crossing = mesh::self_intersections(work.mesh);
+  const mesh::Distance there = mesh::distance(work.mesh, work.data, distance_samples, work.call.seed),
+                       back = mesh::distance(work.data, work.mesh, distance_samples, work.call.seed + 1);
+  const double noise = mesh::normal_noise_rad(work.mesh);
+  const mesh::RayBend bend = mesh::ray_bend_of_noise(work.mesh, noise, work.asked.index, rays, work.call.seed);
+  const bool fit = sound.closed() && sound.manifold() && crossing.empty() && sound.degenerate_triangles == 0;
+  // The surface bounds the solid: its Euler number is twice the solid's, which the voxels tell. Carving a marker off
+  // may change it: said, not judged.
+  const std::int64_t wanted = 2 * work.euler;
+  std::string how =
+      fit ? "closed, 2-manifold, oriented, without self-intersections" : "not fit to be rendered as glass";
+  if (sound.euler != wanted)
+    how += "; Euler number " + std::to_string(sound.euler) + ", the volume's surface has " + std::to_string(wanted);
+  const Asked& a = work.asked;
+  const double limit = a.limit_distance ? a.limit_distance->metres(work.voxel_m()) : 0;
+  if (a.limit_distance && std::max(there.rms_m, back.rms_m) > limit) {
+    how += format("; %.3g m from the data, limit %.3g m", std::max(there.rms_m, back.rms_m), limit);
+    work.missed = true;
+  }
+  if (a.limit_bend_rad && bend.rms_rad > *a.limit_bend_rad) {
+    how += format("; rays are bent wrongly by %.3g rad, limit %.3g rad", bend.rms_rad, *a.limit_bend_rad);
+    work.missed = true;
+  }
+  work.sound = fit;
+  if (!fit) work.missed = true;
+  auto& entry = step(work, "verdict", how);
+  entry.figures = {{"components", static_cast<double>(sound.components)},
+                   {"boundary_edges", static_cast<double>(sound.boundary_edges)},
+                   {"crowded_edges", static_cast<double>(sound.crowded_edges)},
+                   {"disagreeing_edges", static_cast<double>(sound.disagreeing_edges)},
+                   {"pinched_vertices", static_cast<double>(sound.pinched_vertices)},
+                   {"self_intersections", static_cast<double>(crossing.size())},
+                   {"euler", static_cast<double>(sound.euler)},
+                   {"genus", static_cast<double>(sound.genus_sum)},
+                   {"distance_rms_m", there.rms_m},
+                   {"distance_largest_m", there.largest_m},
+                   {"distance_back_rms_m", back.rms_m},
+                   {"distance_back_largest_m", back.largest_m},
+                   {"normal_noise_rad", noise},
+                   {"ray_bend_rms_rad", bend.rms_rad},
+                   {"ray_bend_p95_rad", bend.p95_rad},
+                   {"triangles", static_cast<double>(work.mesh.triangles.size())}};
+}
+
+}  // namespace gonio::tools::ct_mesh_clean

@@ -1,0 +1,69 @@
+// Step: spheres glued to the object.
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "tools/ct-mesh-clean/work.h"
+
+namespace gonio::tools::ct_mesh_clean {
+namespace {
+
+// Half-way between the two densest materials, the denser of which is the markers'.
+double marker_threshold(const Work& work) {
+  if (work.asked.marker_threshold) return *work.asked.marker_threshold;
+  const auto& materials = work.look.mixture.materials;
+  if (materials.size() < 3)
+    throw Error(Exit::data, work.call.text("VOLUME"),
+                "shows " + std::to_string(materials.size()) + " materials: none of them is the markers'",
+                "give --marker-threshold VALUE");
+  return 0.5 * (materials[materials.size() - 2].mean + materials.back().mean);
+}
+
+}  // namespace
+
+void find_markers(Work& work) {
+  if (!work.asked.find_markers) return;
+  const double threshold = marker_threshold(work);
+  const volume::Contour surface =
+      volume::contour(*work.file, {.threshold = threshold, .inside = volume::Connectivity::six});
+  volume::MarkerWish wish{.noise = work.look.noise_air, .seed = work.call.seed};
+  wish.scale = work.spacing_m / work.voxel_m();
+  if (work.asked.marker_radius_m) wish.radius = *work.asked.marker_radius_m / work.voxel_m();
+  work.markers = volume::markers(*work.file, surface, threshold, wish);
+  work.markers_mesh = in_metres(work, surface);
+  double worst = 0;
+  for (const volume::Marker& m : work.markers.found) worst = std::max(worst, m.rms_residual);
+  auto& entry = step(work, "markers",
+                     std::to_string(work.markers.found.size()) + " spheres found, " +
+                         std::to_string(work.markers.refused.size()) + " refused" +
+                         (work.markers.refused.empty() ? "" : "; the first " + work.markers.refused.front().why));
+  entry.figures = {{"threshold", threshold},
+                   {"found", static_cast<double>(work.markers.found.size())},
+                   {"refused", static_cast<double>(work.markers.refused.size())},
+                   {"worst_residual_m", worst * work.voxel_m()}};
+  if (work.markers.found.empty())
+    throw Error(Exit::data, work.call.text("VOLUME"),
+                work.markers.refused.empty() ? "shows no sphere above a value of " + format("%.6g", threshold)
+                                             : "shows no marker: " + work.markers.refused.front().why,
+                "check --markers and --marker-threshold, or leave --markers out");
+}
+
+void carve(Work& work) {
+  if (work.markers.found.empty()) return;
+  std::vector<mesh::CarvedSphere> spheres;
+  for (const volume::Marker& m : work.markers.found)
+    spheres.push_back({metres(work, m.centre), m.radius * work.voxel_m()});
+  work.carved = mesh::carve(work.mesh, spheres, work.asked.eps, work.call.text("VOLUME"));
+  double worst = 0;
+  for (const mesh::FilledHole& h : work.carved.holes) worst = std::max(worst, h.uncertainty_m);
+  auto& entry = step(work, "carve",
+                     std::to_string(work.carved.holes.size()) + " holes filled within " +
+                         format("%.3g", 1 + work.asked.eps) + " radii of the markers");
+  entry.figures = {{"holes", static_cast<double>(work.carved.holes.size())},
+                   {"removed_triangles", static_cast<double>(work.carved.removed_triangles)},
+                   {"untouched_markers", static_cast<double>(work.carved.untouched.size())},
+                   {"worst_fill_sigma_m", worst}};
+  work.stages.emplace_back("carved", work.mesh);
+}
+
+}  // namespace gonio::tools::ct_mesh_clean

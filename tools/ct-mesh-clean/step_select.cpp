@@ -1,0 +1,40 @@
+// Step: what is connected, and what of it stays.
+#include <algorithm>
+#include <limits>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "tools/ct-mesh-clean/work.h"
+
+namespace gonio::tools::ct_mesh_clean {
+
+void select(Work& work) {
+  work.components = volume::components(*work.volume, work.threshold.value, work.asked.inside);
+  work.kept = volume::chosen(work.components, work.asked.keep);
+  const std::size_t all = work.components.list.size();
+  const auto stays = static_cast<std::size_t>(std::ranges::count(work.kept.keep, true));
+  if (stays == 0)
+    throw Error(Exit::data, work.call.text("VOLUME"),
+                all == 0 ? "nothing is above the threshold"
+                         : "none of its " + std::to_string(all) + " components stays: the largest is " +
+                               work.kept.reason.front(),
+                all == 0 ? "give a lower --threshold" : "loosen --largest, --at-least, --brighter, --darker or --box");
+  auto& entry = step(work, "components", std::to_string(stays) + " of " + std::to_string(all) + " stay");
+  std::uint64_t voxels = 0, dropped = 0;
+  for (std::size_t c = 0; c < all; ++c) (work.kept.keep[c] ? voxels : dropped) += work.components.list[c].voxels;
+  entry.figures = {{"components", static_cast<double>(all)},
+                   {"kept", static_cast<double>(stays)},
+                   {"kept_voxels", static_cast<double>(voxels)},
+                   {"dropped_voxels", static_cast<double>(dropped)}};
+  const float air = static_cast<float>(
+      std::min(work.look.mixture.materials.empty() ? work.look.histogram.smallest : work.look.mixture.materials[0].mean,
+               work.threshold.value));
+  if (stays < all) {
+    work.derived.push_back(volume::only(*work.volume, work.components, work.kept, air));
+    work.volume = work.derived.back().get();
+  }
+  work.euler = volume::euler_number(*work.volume, work.threshold.value, work.asked.inside);
+  entry.figures["euler"] = static_cast<double>(work.euler);
+}
+
+}  // namespace gonio::tools::ct_mesh_clean

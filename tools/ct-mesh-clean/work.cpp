@@ -1,0 +1,38 @@
+// What the steps share: from indices to metres, and the entry of a step.
+#include "tools/ct-mesh-clean/work.h"
+
+#include <algorithm>
+
+namespace gonio::tools::ct_mesh_clean {
+
+double Work::voxel_m() const {
+  return std::min({spacing_m.x, spacing_m.y, spacing_m.z});
+}
+
+Vec3 metres(const Work& work, Vec3 index) {
+  return work.origin_m + work.axes * (work.spacing_m * index);
+}
+
+io::TriangleMesh in_metres(const Work& work, const volume::Contour& contour) {
+  io::TriangleMesh mesh;
+  mesh.positions_m.reserve(contour.positions.size());
+  mesh.normals.reserve(contour.normals.size());
+  for (const auto& p : contour.positions) mesh.positions_m.push_back(metres(work, {p[0], p[1], p[2]}));
+  const Vec3 shrink{1 / work.spacing_m.x, 1 / work.spacing_m.y, 1 / work.spacing_m.z};  // gradients are covariant
+  for (const auto& n : contour.normals) {
+    const Vec3 turned = work.axes * (shrink * Vec3{n[0], n[1], n[2]});
+    const double length = norm(turned);
+    mesh.normals.push_back(length > 0 ? turned / length : Vec3{0, 0, 1});
+  }
+  mesh.triangles = contour.triangles;
+  if (work.left_handed)
+    for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+manifest::VolumeStep& step(Work& work, const char* name, std::string how) {
+  return work.steps.emplace_back(
+      manifest::VolumeStep{.name = name, .how = std::move(how), .figures = {}, .picture = ""});
+}
+
+}  // namespace gonio::tools::ct_mesh_clean
