@@ -11,6 +11,12 @@ void contour(Work& work) {
                    {"triangles", static_cast<double>(work.contour.triangles.size())},
                    {"split_polygons", static_cast<double>(work.contour.split_polygons)},
                    {"shared_cells", static_cast<double>(work.contour.shared_cells)}};
+  if (work.threshold.sigma > 0) {  // what a threshold that is wrong by its sigma does to a wall, and to a length
+    work.threshold.voxels_per_value = volume::voxels_per_value(work.look.histogram, work.contour, work.threshold.value,
+                                                               work.spacing_m / work.voxel_m());
+    entry.figures["sigma_wall_m"] = work.threshold.sigma_wall_voxels() * work.voxel_m();
+    entry.figures["sigma_length_m"] = 2 * work.threshold.sigma_wall_voxels() * work.voxel_m();
+  }
   work.stages.emplace_back("contour", in_metres(work, work.contour));
   work.edges = volume::edges(*work.volume, work.contour, {.noise = work.look.noise_air});
   if (work.asked.threshold_by == ThresholdBy::gradient) {

@@ -6,13 +6,31 @@
 namespace gonio::tools::ct_mesh_clean {
 namespace {
 
-// Between the air and the material above it that holds the most voxels.
-volume::Threshold between_materials(const volume::Mixture& mixture, const std::string& place) {
+// The material above the air that holds the most voxels.
+std::size_t object_material(const volume::Mixture& mixture, const std::string& place) {
   if (mixture.materials.size() < 2) throw Error(Exit::data, place, "holds one material only", "give --threshold VALUE");
   std::size_t largest = 1;
   for (std::size_t m = 2; m < mixture.materials.size(); ++m)
     if (mixture.materials[m].share > mixture.materials[largest].share) largest = m;
-  return volume::half_way(mixture, 0, largest);
+  return largest;
+}
+
+// The markers' diameter is known. Where they are of another material than the object, the share of the step from air to
+// material at which the markers have it is the object's as well.
+volume::Threshold by_reference(Work& work, std::size_t object) {
+  find_markers(work);
+  std::vector<volume::ReferenceSphere> spheres;
+  for (const volume::Marker& m : work.markers.found)
+    spheres.push_back({m.centre, *work.asked.marker_radius_m / work.voxel_m(), 0});
+  volume::Threshold threshold = volume::reference_length(*work.volume, spheres, work.spacing_m / work.voxel_m());
+  double inside = 0;
+  for (const volume::Marker& m : work.markers.found)
+    inside += m.mean_value / static_cast<double>(work.markers.found.size());
+  const double air = work.look.mixture.materials.front().mean, step = work.look.mixture.materials[object].mean - air;
+  const double share = (threshold.value - air) / (inside - air);
+  threshold.sigma *= step / (inside - air), threshold.value = air + share * step;
+  threshold.how += format(", at %.1f %% of the step from air to marker", 100 * share);
+  return threshold;
 }
 
 }  // namespace
@@ -23,11 +41,9 @@ void cut(Work& work) {
   switch (a.threshold_by) {
     case ThresholdBy::value: work.threshold = {.value = a.threshold, .how = "as asked"}; break;
     case ThresholdBy::otsu: work.threshold = volume::otsu(work.look.histogram); break;
-    case ThresholdBy::reference:
-      work.threshold = volume::by_reference(*work.volume, between_materials(work.look.mixture, place), a.inside,
-                                            *a.marker_radius_m / work.voxel_m(), work.look.noise_air);
-      break;
-    default: work.threshold = between_materials(work.look.mixture, place);
+    case ThresholdBy::reference: work.threshold = by_reference(work, object_material(work.look.mixture, place)); break;
+    default:
+      work.threshold = volume::half_way(*work.volume, work.look.mixture, 0, object_material(work.look.mixture, place));
   }
   const volume::Histogram& h = work.look.histogram;
   if (work.threshold.value >= h.largest || work.threshold.value < h.smallest)

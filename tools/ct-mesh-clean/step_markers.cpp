@@ -22,7 +22,7 @@ double marker_threshold(const Work& work) {
 }  // namespace
 
 void find_markers(Work& work) {
-  if (!work.asked.find_markers) return;
+  if (!work.asked.find_markers || !work.markers.found.empty()) return;  // the threshold may have asked already
   const double threshold = marker_threshold(work);
   const volume::Contour surface =
       volume::contour(*work.file, {.threshold = threshold, .inside = volume::Connectivity::six});
