@@ -16,16 +16,6 @@ bool before(Vec3 a, Vec3 b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
-// For every vertex the first one, in the order of places, that stands where it does.
-std::vector<std::uint32_t> welded(const std::vector<Vec3>& p) {
-  std::vector<std::uint32_t> order(p.size()), same(p.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return before(p[a], p[b]); });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    same[order[i]] = i > 0 && p[order[i]] == p[order[i - 1]] ? same[order[i - 1]] : order[i];
-  return same;
-}
-
 struct Edge {
   std::uint32_t low, high;
   bool forward;  // passed from low to high
@@ -86,6 +76,15 @@ void count_edges(std::vector<Edge>& edges, std::size_t vertices, Topology& topol
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> welded(const std::vector<Vec3>& p) {
+  std::vector<std::uint32_t> order(p.size()), same(p.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return before(p[a], p[b]); });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    same[order[i]] = i > 0 && p[order[i]] == p[order[i - 1]] ? same[order[i - 1]] : order[i];
+  return same;
+}
 
 Topology topology_of(const Mesh& mesh) {
   Topology topology;

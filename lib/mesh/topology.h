@@ -1,10 +1,15 @@
 // Does a mesh enclose a volume? Vertices at the same place, to the last bit, count as one: files repeat them at seams.
 #pragma once
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "mesh/mesh.h"
 
 namespace gonio::mesh {
+
+// For every vertex the first one, in the order of places, that stands where it does.
+std::vector<std::uint32_t> welded(const std::vector<Vec3>& positions_m);
 
 struct Topology {
   std::size_t boundary_edges = 0;       // with a triangle on one side only

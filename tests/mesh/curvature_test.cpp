@@ -7,51 +7,13 @@
 
 #include "base/random.h"
 #include "geom/rigid.h"
+#include "mesh/shapes.h"
 
 namespace gonio::mesh {
 namespace {
 
-// A grid of rows x columns over [0, 1]^2, closed along the second direction where `around`.
-template <class Position>
-io::TriangleMesh grid(std::uint32_t rows, std::uint32_t columns, bool around, const Position& position) {
-  io::TriangleMesh mesh;
-  const std::uint32_t across = around ? columns : columns + 1;
-  for (std::uint32_t i = 0; i <= rows; ++i)
-    for (std::uint32_t j = 0; j < across; ++j)
-      mesh.positions_m.push_back(position(static_cast<double>(i) / rows, static_cast<double>(j) / columns));
-  for (std::uint32_t i = 0; i < rows; ++i)
-    for (std::uint32_t j = 0; j < columns; ++j) {
-      const std::uint32_t a = i * across + j, b = i * across + (j + 1) % across;
-      mesh.triangles.push_back({a, b + across, b});
-      mesh.triangles.push_back({a, a + across, b + across});
-    }
-  return mesh;
-}
-
-// An octahedron whose faces were cut into four `levels` times, on a sphere.
-io::TriangleMesh ball(double radius_m, int levels) {
-  io::TriangleMesh mesh;
-  mesh.positions_m = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-  mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  for (int level = 0; level < levels; ++level) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
-    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [at, fresh] = known.try_emplace(std::minmax(a, b), mesh.positions_m.size());
-      if (fresh) mesh.positions_m.push_back(normalized(mesh.positions_m[a] + mesh.positions_m[b]));
-      return at->second;
-    };
-    std::vector<std::array<std::uint32_t, 3>> finer;
-    for (const auto& [a, b, c] : mesh.triangles) {
-      const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-      for (const auto& t :
-           {std::array{a, ab, ca}, std::array{ab, b, bc}, std::array{ca, bc, c}, std::array{ab, bc, ca}})
-        finer.push_back(t);
-    }
-    mesh.triangles = finer;
-  }
-  for (Vec3& p : mesh.positions_m) p *= radius_m;
-  return mesh;
-}
+using shapes::ball;
+using shapes::grid;
 
 std::vector<float> curvature_of(const io::TriangleMesh& raw, Shading shading = Shading::smooth) {
   return mean_curvature_per_m(prepare(raw, shading, "mesh.ply"));

@@ -1,0 +1,105 @@
+// Pairs of triangles whose boxes touch, told apart by exact predicates (CGAL's filtered kernel): two that share an edge
+// intersect where they lie in one plane on the same side of it; two that share a corner where the far edge of one meets
+// the other; others where they meet at all. Corners at the same place are shared, whatever their indices.
+//
+// Triangles without area are no surface and are left out: soundness() counts them.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("rounding-math")  // CGAL's interval arithmetic turns the processor's rounding
+#endif
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include <algorithm>
+#include <mutex>
+
+#include "base/parallel.h"
+#include "mesh/triangle_tree.h"
+#include "mesh/verdict.h"
+
+namespace gonio::mesh {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using ExactPoint = Kernel::Point_3;
+using ThreePlaces = std::array<Vec3, 3>;
+
+ExactPoint exact(Vec3 p) {
+  return {p.x, p.y, p.z};
+}
+Kernel::Triangle_3 exact(const ThreePlaces& t) {
+  return {exact(t[0]), exact(t[1]), exact(t[2])};
+}
+bool without_area(const ThreePlaces& t) {
+  return CGAL::collinear(exact(t[0]), exact(t[1]), exact(t[2]));
+}
+
+// `a` with its corner `first` in front, turned the way it was.
+ThreePlaces turned(const ThreePlaces& a, std::size_t first) {
+  return {a[first], a[(first + 1) % 3], a[(first + 2) % 3]};
+}
+
+bool folded_over_edge(Vec3 p, Vec3 q, Vec3 r, Vec3 s) {
+  return CGAL::coplanar(exact(p), exact(q), exact(r), exact(s)) &&
+         CGAL::coplanar_orientation(exact(p), exact(q), exact(r), exact(s)) == CGAL::POSITIVE;
+}
+
+bool meet(const ThreePlaces& a, const ThreePlaces& b) {
+  std::array<std::size_t, 3> partner{3, 3, 3};  // of a's corners, in b
+  std::size_t shared = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      if (a[i] == b[j]) {
+        partner[i] = j;
+        ++shared;
+      }
+  if (without_area(a) || without_area(b)) return false;
+  if (shared == 3) return true;
+  if (shared == 2) {
+    const std::size_t alone = partner[0] == 3 ? 0 : partner[1] == 3 ? 1 : 2;
+    const std::size_t i = (alone + 1) % 3, j = (alone + 2) % 3;
+    return folded_over_edge(a[i], a[j], a[alone], b[3 - partner[i] - partner[j]]);
+  }
+  if (shared == 1) {
+    const std::size_t i = partner[0] < 3 ? 0 : partner[1] < 3 ? 1 : 2;
+    const ThreePlaces mine = turned(a, i), other = turned(b, partner[i]);
+    return CGAL::do_intersect(exact(mine), Kernel::Segment_3(exact(other[1]), exact(other[2]))) ||
+           CGAL::do_intersect(exact(other), Kernel::Segment_3(exact(mine[1]), exact(mine[2])));
+  }
+  return CGAL::do_intersect(exact(a), exact(b));
+}
+
+}  // namespace
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(const io::TriangleMesh& mesh,
+                                                                        std::size_t at_most) {
+  const TriangleTree tree(mesh.positions_m, mesh.triangles);
+  const auto places = [&](std::uint32_t t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    return ThreePlaces{mesh.positions_m[a], mesh.positions_m[b], mesh.positions_m[c]};
+  };
+  // Stretches of triangles one after the other: who comes first does not depend on threads, and a mesh full of
+  // intersections is not searched to its end.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> all;
+  constexpr std::size_t stretch = 1 << 18;
+  for (std::size_t first = 0; first < mesh.triangles.size() && all.size() < at_most; first += stretch) {
+    const std::size_t last = std::min(first + stretch, mesh.triangles.size());
+    std::mutex lock;
+    parallel_for(
+        first, last,
+        [&](std::size_t i) {
+          const auto one = static_cast<std::uint32_t>(i);
+          const ThreePlaces mine = places(one);
+          if (!is_finite(mine[0]) || !is_finite(mine[1]) || !is_finite(mine[2])) return;
+          tree.overlapping_after(one, [&](std::uint32_t other) {
+            if (!meet(mine, places(other))) return;
+            const std::lock_guard hold(lock);
+            all.emplace_back(one, other);
+          });
+        },
+        1024);
+    std::sort(all.begin(), all.end());
+  }
+  if (all.size() > at_most) all.resize(at_most);
+  return all;
+}
+
+}  // namespace gonio::mesh
