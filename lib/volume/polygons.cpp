@@ -180,7 +180,7 @@ RowsRound rows_round(const SampleWindow& window, const std::array<std::size_t, 3
     return at;
   };
   const auto per = [](const std::array<std::size_t, 4>& at) {
-    return std::array{at[2] - at[0] == 2 ? 0.5 : 1.0, at[3] - at[1] == 2 ? 0.5 : 1.0};
+    return std::array{at[2] - at[0] == 2 ? 0.5f : 1.0f, at[3] - at[1] == 2 ? 0.5f : 1.0f};
   };
   const std::array<std::size_t, 4> y = clamped(row, size[1]), z = clamped(layer, size[2]);
   RowsRound round;
@@ -209,12 +209,8 @@ void draw_polygons(const Layers& layers, std::size_t row, const RowsRound& sampl
       const bool upwards = low == inside_in_s;  // the surface faces along the axis: its lower end is inside
       const Ring ring = ring_round(layers, cell, row, axis);
       const std::array<double, 3> origin = lowest_corner(cell, row, layers.here);
-      const Neighbourhood near = neighbourhood(samples, cell.column);
       if (!ring.any_drawn) {
-        const int high = 1 << axis;
-        const double at = (near.missing & (1 | 1 << high)) != 0
-                              ? 0.5
-                              : crossing_parameter(near.at(0), near.at(high), layers.threshold);
+        const double at = crossing_along(samples, cell.column, axis, layers.threshold);
         if (const auto first = diagonal(ring, layers.positions, origin, axis, at)) {
           draw_quad(ring, *first, upwards, drawn.triangles);
           continue;
@@ -222,7 +218,7 @@ void draw_polygons(const Layers& layers, std::size_t row, const RowsRound& sampl
       }
       ++drawn.split_polygons;
       cell.crossings = static_cast<std::uint8_t>(cell.crossings | 1 << axis);
-      draw_fan(ring, upwards, near, origin, axis, layers.threshold, drawn);
+      draw_fan(ring, upwards, neighbourhood(samples, cell.column), origin, axis, layers.threshold, drawn);
     }
   }
 }

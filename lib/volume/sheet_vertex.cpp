@@ -98,55 +98,102 @@ Vec3 held_within(const Sheet& sheet, Vec3 inner, Vec3 wanted) {
   return inner + std::max(0.0, share) * way;
 }
 
+using Samples = std::array<std::array<std::array<float, 4>, 4>, 4>;  // [z][y][x]; the cell's own at 1 and 2
+
+constexpr float scharr_side = 3.0f / 16, scharr_middle = 10.0f / 16;
+
+// Four numbers along x at once; smoothing and differences along x come last.
+using Four = std::array<float, 4>;
+Four smooth(const Four& a, const Four& b, const Four& c) {
+  Four sum;
+  for (std::size_t n = 0; n < 4; ++n) sum[n] = scharr_side * (a[n] + c[n]) + scharr_middle * b[n];
+  return sum;
+}
+Four difference(const Four& a, const Four& c, float per) {
+  Four rise;
+  for (std::size_t n = 0; n < 4; ++n) rise[n] = (c[n] - a[n]) * per;
+  return rise;
+}
+float smooth_along(const Four& v, std::size_t x) {
+  return scharr_side * (v[x] + v[x + 2]) + scharr_middle * v[x + 1];
+}
+
+void add_gradients(const Samples& samples, const std::array<std::array<float, 2>, 3>& per, Neighbourhood& near) {
+  for (std::size_t y = 0; y < 2; ++y) {
+    std::array<Four, 4> smoothed, rising;  // along y, by z
+    for (std::size_t z = 0; z < 4; ++z) {
+      smoothed[z] = smooth(samples[z][y], samples[z][y + 1], samples[z][y + 2]);
+      rising[z] = difference(samples[z][y], samples[z][y + 2], per[1][y]);
+    }
+    for (std::size_t z = 0; z < 2; ++z) {
+      const Four both = smooth(smoothed[z], smoothed[z + 1], smoothed[z + 2]);
+      const Four along_y = smooth(rising[z], rising[z + 1], rising[z + 2]);
+      const Four along_z = difference(smoothed[z], smoothed[z + 2], per[2][z]);
+      for (std::size_t x = 0; x < 2; ++x) {
+        const std::size_t corner = x + 2 * y + 4 * z;
+        near.gradient[0][corner] = (both[x + 2] - both[x]) * per[0][x];
+        near.gradient[1][corner] = smooth_along(along_y, x);
+        near.gradient[2][corner] = smooth_along(along_z, x);
+      }
+    }
+  }
+}
+
 // Trilinear between the corners.
 Vec3 gradient_at(const Neighbourhood& near, Vec3 p) {
   Vec3 sum{};
   for (int corner = 0; corner < 8; ++corner) {
     const double weight =
         ((corner & 1) != 0 ? p.x : 1 - p.x) * ((corner & 2) != 0 ? p.y : 1 - p.y) * ((corner & 4) != 0 ? p.z : 1 - p.z);
-    sum += weight * near.gradient(corner);
+    sum += weight * near.gradient_at(corner);
   }
   return sum;
 }
 
 }  // namespace
 
-double Neighbourhood::at(int corner) const {
-  const auto x = static_cast<std::size_t>(corner & 1), y = static_cast<std::size_t>(corner >> 1 & 1),
-             z = static_cast<std::size_t>(corner >> 2);
-  return static_cast<double>(value[z + 1][y + 1][x + 1]);
-}
-
-Vec3 Neighbourhood::gradient(int corner) const {
-  const auto x = static_cast<std::size_t>(corner & 1), y = static_cast<std::size_t>(corner >> 1 & 1),
-             z = static_cast<std::size_t>(corner >> 2);
-  const auto difference = [](float high, float low) { return static_cast<double>(high) - static_cast<double>(low); };
-  return {difference(value[z + 1][y + 1][x + 2], value[z + 1][y + 1][x]) * per[0][x],
-          difference(value[z + 1][y + 2][x + 1], value[z + 1][y][x + 1]) * per[1][y],
-          difference(value[z + 2][y + 1][x + 1], value[z][y + 1][x + 1]) * per[2][z]};
+Vec3 Neighbourhood::gradient_at(int corner) const {
+  const auto c = static_cast<std::size_t>(corner);
+  return {static_cast<double>(gradient[0][c]), static_cast<double>(gradient[1][c]),
+          static_cast<double>(gradient[2][c])};
 }
 
 Neighbourhood neighbourhood(const RowsRound& rows, std::size_t column) {
   Neighbourhood near;
   near.missing = rows.missing;
-  near.per = {std::array{0.5, 0.5}, rows.per_y, rows.per_z};
   const std::size_t width = rows.width;
-  std::array<std::size_t, 4> x{};
-  for (std::size_t n = 0; n < 4; ++n) x[n] = std::min(column + n < 2 ? 0 : column + n - 2, width - 1);
-  if (column <= 1 || column + 1 >= width) {
+  Samples samples;
+  std::array<std::array<float, 2>, 3> per{std::array{0.5f, 0.5f}, rows.per_y, rows.per_z};
+  if (column >= 2 && column + 1 < width) {
+    for (std::size_t z = 0; z < 4; ++z)
+      for (std::size_t y = 0; y < 4; ++y)
+        for (std::size_t x = 0; x < 4; ++x) samples[z][y][x] = rows.row[z][y][column - 2 + x];
+  } else {
     if (column == 0) near.missing |= 0x55;
     if (column == width) near.missing |= 0xaa;
-    near.per[0] = {x[2] - x[0] == 2 ? 0.5 : 1.0, x[3] - x[1] == 2 ? 0.5 : 1.0};
+    std::array<std::size_t, 4> from{};
+    for (std::size_t x = 0; x < 4; ++x) from[x] = std::min(column + x < 2 ? 0 : column + x - 2, width - 1);
+    per[0] = {from[2] - from[0] == 2 ? 0.5f : 1.0f, from[3] - from[1] == 2 ? 0.5f : 1.0f};
+    for (std::size_t z = 0; z < 4; ++z)
+      for (std::size_t y = 0; y < 4; ++y)
+        for (std::size_t x = 0; x < 4; ++x) samples[z][y][x] = rows.row[z][y][from[x]];
   }
-  for (std::size_t z = 0; z < 4; ++z)
-    for (std::size_t y = 0; y < 4; ++y)
-      for (std::size_t n = 0; n < 4; ++n) near.value[z][y][n] = rows.row[z][y][x[n]];
+  for (std::size_t c = 0; c < 8; ++c) near.value[c] = samples[1 + (c >> 2)][1 + (c >> 1 & 1)][1 + (c & 1)];
+  add_gradients(samples, per, near);
   return near;
 }
 
 double crossing_parameter(double first, double second, double threshold) {
   const double t = (first - threshold) / (first - second);
   return t >= end_margin ? std::min(t, 1 - end_margin) : end_margin;
+}
+
+double crossing_along(const RowsRound& rows, std::size_t column, int axis, double threshold) {
+  const int x = axis == 0, high = 1 << axis;
+  if ((rows.missing & (1 | 1 << high)) != 0 || column == 0 || (x == 1 && column == rows.width)) return 0.5;
+  const std::size_t y = axis == 1 ? 2 : 1, z = axis == 2 ? 2 : 1;
+  const float first = rows.row[1][1][column - 1], second = rows.row[z][y][x == 1 ? column : column - 1];
+  return crossing_parameter(static_cast<double>(first), static_cast<double>(second), threshold);
 }
 
 Crossing crossing(const Neighbourhood& near, int edge, double threshold) {
@@ -156,7 +203,7 @@ Crossing crossing(const Neighbourhood& near, int edge, double threshold) {
     return {corner_point(low) + axis_vector(axis, 0.5), axis_vector(axis, low_missing ? -1 : 1)};
   const double first = near.at(low), second = near.at(high);
   const double t = crossing_parameter(first, second, threshold);
-  Vec3 outward = -((1 - t) * near.gradient(low) + t * near.gradient(high));
+  Vec3 outward = -((1 - t) * near.gradient_at(low) + t * near.gradient_at(high));
   // Where the samples beyond contradict the crossing itself (walls and gaps of one voxel), it is right.
   if ((outward[axis] > 0) != (first > second) || outward[axis] == 0)
     outward += axis_vector(axis, first - second - outward[axis]);

@@ -2,8 +2,11 @@
 //
 // Coordinates are the cell's own, [0, 1]^3 from its lowest corner. Crossings lie where the value, linear along the
 // edge, meets the threshold, at least 2^-7 from either end; with a sample beyond the volume's border the crossing lies
-// half-way and its normal along the edge. Normals are minus the gradient: central differences at the samples (one-sided
-// at the border), linear between them.
+// half-way and its normal along the edge. Normals are minus the gradient: at the samples central differences (one-sided
+// at the border), smoothed across their axis by weights 3, 10, 3 (Scharr, Optimale Operatoren in der Digitalen
+// Bildverarbeitung, 2000), linear between them. Along a unit normal n of a blurred wall a central difference sees f'
+// n_a + f''' n_a^3 / 6, which turns normals away from the axes by degrees where the blur is below a voxel; smoothing by
+// a second moment near 1/3 makes that f' n_a + f''' n_a / 6, the same factor for each axis.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -18,23 +21,25 @@ namespace gonio::volume {
 // border's own row stands in.
 struct RowsRound {
   std::array<std::array<const float*, 4>, 4> row{};
-  std::array<double, 2> per_y{}, per_z{};  // of the lower and the upper sample: 1 / distance of what is subtracted
-  std::uint8_t missing = 0;                // bit c: corner c lies beyond the border, on account of y or z
+  std::array<float, 2> per_y{}, per_z{};  // of the lower and the upper sample: 1 / distance of what is subtracted
+  std::uint8_t missing = 0;               // bit c: corner c lies beyond the border, on account of y or z
   std::size_t width = 0;
 };
 
 struct Neighbourhood {
-  std::array<std::array<std::array<float, 4>, 4>, 4> value{};  // [z][y][x]; the cell's own at 1 and 2
-  std::array<std::array<double, 2>, 3> per{};
-  std::uint8_t missing = 0;
-  double at(int corner) const;
-  Vec3 gradient(int corner) const;
+  std::array<float, 8> value{};                    // by corner
+  std::array<std::array<float, 8>, 3> gradient{};  // by axis and corner; of corners beyond the border, anything
+  std::uint8_t missing = 0;                        // as in RowsRound, on account of x too
+  double at(int corner) const { return static_cast<double>(value[static_cast<std::size_t>(corner)]); }
+  Vec3 gradient_at(int corner) const;
 };
 // Of the cell between samples column - 1 and column of a row.
 Neighbourhood neighbourhood(const RowsRound& rows, std::size_t column);
 
 // The parameter of the crossing between two samples on different sides of the threshold, from the first to the second.
 double crossing_parameter(double first, double second, double threshold);
+// The same for the edge along an axis that starts at the lowest corner of a cell of a row.
+double crossing_along(const RowsRound& rows, std::size_t column, int axis, double threshold);
 
 struct Crossing {
   Vec3 point{}, normal{};
