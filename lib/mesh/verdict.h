@@ -36,6 +36,9 @@ struct Distance {
 };
 Distance distance(const io::TriangleMesh& from, const io::TriangleMesh& to, std::size_t samples, std::uint64_t seed);
 
+// From each point to the surface: positive outside, where it is closed.
+std::vector<double> signed_distances(const std::vector<Vec3>& points_m, const io::TriangleMesh& to);
+
 // A ray through both walls: rays with `directions` spread over the sphere are refracted at every crossing by index
 // `eta` with the mesh's (interpolated) normals; the exit direction against that of the reference. rms over rays that
 // leave both after the same number of crossings.

@@ -45,5 +45,8 @@ struct EdgeChange {
   double width_before_voxels = 0, width_after_voxels = 0;
   double mean_shift_voxels = 0, sigma_mean_shift = 0, rms_shift_voxels = 0;
 };
+// Edges of both volumes along the same normals, those of `before` at its threshold; `noise` is that of `before`. Edges that
+// either volume does not show are left out.
+EdgeChange edge_change(io::VolumeSource& before, io::VolumeSource& after, double threshold, double noise);
 
 }  // namespace gonio::volume

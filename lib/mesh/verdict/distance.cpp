@@ -101,6 +101,12 @@ std::vector<double> signed_distances(const std::vector<Vec3>& points, const Tria
 
 }  // namespace
 
+std::vector<double> signed_distances(const std::vector<Vec3>& points_m, const io::TriangleMesh& to) {
+  if (to.triangles.empty())
+    throw Error(Exit::data, "mesh", "a mesh without triangles has no distance", "give meshes with a surface");
+  return signed_distances(points_m, TriangleTree(to.positions_m, to.triangles), Sides(to));
+}
+
 Distance distance(const io::TriangleMesh& from, const io::TriangleMesh& to, std::size_t samples, std::uint64_t seed) {
   if (from.triangles.empty() || to.triangles.empty())
     throw Error(Exit::data, "mesh", "a mesh without triangles has no distance", "give meshes with a surface");
