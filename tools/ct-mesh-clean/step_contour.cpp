@@ -18,9 +18,16 @@ void contour(Work& work) {
     entry.figures["sigma_length_m"] = 2 * work.threshold.sigma_wall_voxels() * work.voxel_m();
   }
   work.stages.emplace_back("contour", in_metres(work, work.contour));
-  work.edges = volume::edges(*work.volume, work.contour, {.noise = work.look.noise_air});
+  const Vec3 scale = work.spacing_m / work.voxel_m();
+  work.edges = volume::edges(
+      *work.volume, work.contour,
+      {.noise = work.look.noise_air, .noise_correlation = work.look.noise_correlation, .scale = scale});
+  const volume::LocalThreshold local = volume::local_threshold(work.threshold, work.edges);
+  entry.figures["edges"] = static_cast<double>(local.edges);
+  entry.figures["wall_bias_m"] = local.wall_bias * work.voxel_m();  // what a global threshold does
+  entry.figures["wall_rms_m"] = local.wall_rms * work.voxel_m();
   if (work.asked.threshold_by == ThresholdBy::gradient) {
-    const volume::Refined refined = volume::move_to_steepest(work.contour, work.edges);
+    const volume::Refined refined = volume::move_to_steepest(work.contour, work.edges, 1.5, scale);
     auto& moved = step(work, "steepest", "vertices moved to the steepest gradient along their normals");
     moved.figures = {{"moved", static_cast<double>(refined.moved)},
                      {"held", static_cast<double>(refined.held)},
