@@ -57,10 +57,10 @@ function(gonio_finish_library)
   gonio_registry(${GONIO_GENERATED}/lights.cpp Model light/light.h
     "std::span<const gonio::light::Model* const> gonio::light::all_models()" gonio::light ${light_files})
   file(GLOB solver_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/nrsfm/solvers/*.cpp)
-  gonio_registry(${GONIO_GENERATED}/nrsfm_solvers.cpp Solver nrsfm/solver.h
+  gonio_registry(${GONIO_GENERATED}/nrsfm_solvers.cpp Solver nrsfm/solve/solver.h
     "std::span<const gonio::nrsfm::Solver* const> gonio::nrsfm::all_solvers()" gonio::nrsfm::solvers ${solver_files})
   file(GLOB animatronic_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/nrsfm/animatronics/*.cpp)
-  gonio_registry(${GONIO_GENERATED}/animatronics.cpp Animatronic nrsfm/animatronic.h
+  gonio_registry(${GONIO_GENERATED}/animatronics.cpp Animatronic nrsfm/make/animatronic.h
     "std::span<const gonio::nrsfm::Animatronic* const> gonio::nrsfm::all_animatronics()" gonio::nrsfm::animatronics
     ${animatronic_files})
   gonio_registry(${GONIO_GENERATED}/exchanges.cpp Exchange scene/exchange/exchange.h

@@ -13,7 +13,7 @@
 #include "manifest/reference.h"
 #include "mechanism/listing.h"
 #include "mechanism/reference.h"
-#include "nrsfm/listing.h"
+#include "nrsfm/solve/listing.h"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "goniometry/checks.h"
-#include "goniometry/plausible.h"
+#include "goniometry/fit/checks.h"
+#include "goniometry/fit/plausible.h"
 #include "goniometry/spectra.h"
 #include "manifest/document.h"
 #include "manifest/sections/surface.h"

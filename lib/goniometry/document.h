@@ -16,7 +16,7 @@ struct Verdict {
 // doubtful (Exit::quality): the fit did not converge, the surface reflects more than it receives, errs more than
 // a constant would, or errs on held-out directions by half as much again as on fitted ones. refused (Exit::negative):
 // no model may be believed. A good one's sentence adds where its name claims more than its numbers tell
-// (goniometry/plausible.h).
+// (goniometry/fit/plausible.h).
 Verdict verdict_of(const Outcome& outcome);
 
 // Adds or replaces surfaces/NAME (not where all was refused, nor for a table that render(1) would refuse) and

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "goniometry/fit.h"
-#include "goniometry/reconstruction.h"
-#include "goniometry/tables.h"
+#include "goniometry/fit/fit.h"
+#include "goniometry/reconstruct/reconstruction.h"
+#include "goniometry/tables/tables.h"
 #include "io/image.h"
 #include "io/merl.h"
 #include "manifest/sections/forward.h"

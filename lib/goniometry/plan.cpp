@@ -14,7 +14,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "geom/angle.h"
-#include "goniometry/reconstruction_parts.h"
+#include "goniometry/reconstruct/reconstruction_parts.h"
 #include "linear/solve.h"
 #include "linear/symmetric_eigen.h"
 
@@ -262,8 +262,7 @@ PlanQuality plan_quality(const Basis& basis, const std::vector<PlannedPair>& pai
   const Whole whole = whole_of(basis);
   const Known known = known_of(basis, options);
   const Eigen::Index k = c.q.rows();
-  const linear::Llt factor(known.information +
-                                           c.q * c.noise.cwiseInverse().asDiagonal() * c.q.transpose());
+  const linear::Llt factor(known.information + c.q * c.noise.cwiseInverse().asDiagonal() * c.q.transpose());
   const Eigen::MatrixXd s = factor.solve(Eigen::MatrixXd::Identity(k, k));
   Eigen::MatrixXd rows(k, known.q.cols() + c.q.cols());
   rows << known.q, c.q;

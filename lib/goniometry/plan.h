@@ -1,7 +1,7 @@
 // Which directions to measure: the pairs from which a basis learns most.
 //
-// Row k of Q' is what one pair of directions sees of the components (goniometry/reconstruction.h), its noise variance
-// 1 / W_k. After n pairs, S = (sum of W_k q_k q_k' + 1)^-1. Criteria:
+// Row k of Q' is what one pair of directions sees of the components (goniometry/reconstruct/reconstruction.h), its
+// noise variance 1 / W_k. After n pairs, S = (sum of W_k q_k q_k' + 1)^-1. Criteria:
 //   average      the mean over all cells of the predicted variance, trace(S M), M = mean of q q' (A-optimal for the
 //                table): what the table's user pays for
 //   determinant  ln det S (D-optimal): the volume of what is left open
@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "goniometry/basis.h"
+#include "goniometry/basis/basis.h"
 #include "goniometry/samples.h"
 
 namespace gonio::goniometry {

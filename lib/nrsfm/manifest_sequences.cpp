@@ -14,7 +14,7 @@
 #include "manifest/sections/sequence.h"
 #include "mechanism/mechanism.h"
 #include "nrsfm/files.h"
-#include "nrsfm/followed.h"
+#include "nrsfm/solve/followed.h"
 
 namespace gonio::mechanism {
 const Mechanism& tracks_outliers();

@@ -5,7 +5,7 @@
 
 #include "manifest/sections/forward.h"
 #include "nrsfm/sequence.h"
-#include "nrsfm/solver.h"
+#include "nrsfm/solve/solver.h"
 
 namespace gonio::nrsfm {
 

@@ -13,7 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/random.h"
 #include "goniometry/plan.h"
-#include "goniometry/reconstruction.h"
+#include "goniometry/reconstruct/reconstruction.h"
 #include "surface/half_angle.h"
 #include "surface/surface.h"
 

@@ -12,7 +12,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "nrsfm/errors.h"
+#include "nrsfm/evaluate/errors.h"
 
 namespace gonio {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "goniometry/fit_candidates.h"
-#include "goniometry/fit_problem.h"
+#include "goniometry/fit/fit_candidates.h"
+#include "goniometry/fit/fit_problem.h"
 #include "surface/interface_albedo.h"
 
 namespace gonio {

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "goniometry/tables_text.h"
+#include "goniometry/tables/tables_text.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   try {

@@ -14,7 +14,7 @@
 
 #include "base/atomic_file.h"
 #include "base/text.h"
-#include "contrast/brute_force.h"
+#include "contrast/predict/brute_force.h"
 #include "manifest/document.h"
 #include "manifest/sections/surface.h"
 #include "report/number_text.h"

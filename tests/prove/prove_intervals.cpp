@@ -18,9 +18,9 @@
 #include "base/text.h"
 #include "geom/angle.h"
 #include "goniometry/plan.h"
-#include "goniometry/reconstruction.h"
+#include "goniometry/reconstruct/reconstruction.h"
 #include "goniometry/reconstruction/published_fits.h"
-#include "goniometry/tables.h"
+#include "goniometry/tables/tables.h"
 #include "stats/intervals.h"
 #include "surface/half_angle.h"
 

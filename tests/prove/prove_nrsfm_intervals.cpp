@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "nrsfm/error_intervals.h"
 #include "nrsfm/evaluate/erring.h"
+#include "nrsfm/evaluate/error_intervals.h"
 
 namespace {
 

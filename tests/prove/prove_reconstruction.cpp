@@ -15,7 +15,7 @@
 #include "base/random.h"
 #include "base/text.h"
 #include "goniometry/plan.h"
-#include "goniometry/reconstruction.h"
+#include "goniometry/reconstruct/reconstruction.h"
 #include "goniometry/reconstruction/published_fits.h"
 #include "report/page.h"
 #include "stats/intervals.h"

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "data.h"
-#include "goniometry/fit.h"
+#include "goniometry/fit/fit.h"
 #include "goniometry/fit/recorded.h"
 #include "goniometry/fit/study.h"
 

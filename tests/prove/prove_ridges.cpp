@@ -14,7 +14,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "goniometry/fit.h"
+#include "goniometry/fit/fit.h"
 #include "goniometry/recording/ridge_plate.h"
 
 namespace {

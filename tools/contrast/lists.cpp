@@ -5,7 +5,7 @@
 
 #include "base/assignment.h"
 #include "base/error.h"
-#include "contrast/specimen.h"
+#include "contrast/predict/specimen.h"
 
 namespace gonio::tools::contrast {
 

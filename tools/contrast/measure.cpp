@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/text.h"
-#include "contrast/measure_maps.h"
-#include "contrast/measure_tables.h"
+#include "contrast/measure/measure_maps.h"
+#include "contrast/measure/measure_tables.h"
 #include "io/picture.h"
 #include "tools/contrast/measure_page.h"
 

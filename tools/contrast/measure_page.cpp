@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "contrast/measure_maps.h"
+#include "contrast/measure/measure_maps.h"
 #include "io/picture.h"
 #include "report/colour_map.h"
 #include "report/number_text.h"

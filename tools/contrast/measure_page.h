@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-#include "contrast/measure.h"
+#include "contrast/measure/measure.h"
 
 namespace gonio::tools::contrast {
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-#include "contrast/optimize.h"
+#include "contrast/predict/optimize.h"
 
 namespace gonio::tools::contrast {
 

@@ -1,5 +1,5 @@
-// contrast: what contrast a micro-structured surface will show when it is turned (lib/contrast/predict.h), and what
-// contrast photographs of one show.
+// contrast: what contrast a micro-structured surface will show when it is turned (lib/contrast/predict/predict.h), and
+// what contrast photographs of one show.
 #include <iostream>
 
 #include "base/atomic_file.h"

@@ -5,7 +5,7 @@
 
 #include "cli/height_maps.h"
 #include "explain/tables/quick_table.h"
-#include "goniometry/sample_table.h"
+#include "goniometry/tables/sample_table.h"
 
 namespace gonio::tools::explain {
 

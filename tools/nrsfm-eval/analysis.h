@@ -1,10 +1,10 @@
 // nrsfm-eval's analysis of variance behind its options: of tables (--table) or of the manifest's evaluations
-// (--analyse); what it means is in nrsfm/analysis.h.
+// (--analyse); what it means is in nrsfm/evaluate/analysis.h.
 #pragma once
 #include <optional>
 
 #include "cli/program.h"
-#include "nrsfm/analysis.h"
+#include "nrsfm/evaluate/analysis.h"
 
 namespace gonio::tools::nrsfm_eval {
 

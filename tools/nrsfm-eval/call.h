@@ -1,6 +1,6 @@
 // nrsfm-eval behind its description: which reconstructions are held against which truth, and what is written. What it
-// is made of: submissions.h (what it is given), nrsfm/evaluate.h (the errors), nrsfm/evaluation_entries.h (what is said
-// of them), analysis.h (what decides them).
+// is made of: submissions.h (what it is given), nrsfm/evaluate/evaluate.h (the errors),
+// nrsfm/evaluate/evaluation_entries.h (what is said of them), analysis.h (what decides them).
 #pragma once
 #include <vector>
 

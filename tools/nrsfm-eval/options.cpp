@@ -5,8 +5,8 @@
 #include "manifest/sections/evaluation.h"
 #include "manifest/sections/reconstruction.h"
 #include "manifest/sections/sequence.h"
-#include "nrsfm/alignment.h"
-#include "nrsfm/error_intervals.h"
+#include "nrsfm/evaluate/alignment.h"
+#include "nrsfm/evaluate/error_intervals.h"
 #include "tools/nrsfm-eval/analysis.h"
 #include "tools/nrsfm-eval/call.h"
 

@@ -7,7 +7,7 @@
 
 #include "manifest/sections/evaluation.h"
 #include "manifest/sections/forward.h"
-#include "nrsfm/analysis.h"
+#include "nrsfm/evaluate/analysis.h"
 #include "tools/nrsfm-eval/views.h"
 
 namespace gonio::tools::nrsfm_eval {

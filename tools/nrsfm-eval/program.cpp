@@ -1,4 +1,4 @@
-// nrsfm-eval: reconstructions of shapes that deform against the truth (lib/nrsfm/evaluate.h).
+// nrsfm-eval: reconstructions of shapes that deform against the truth (lib/nrsfm/evaluate/evaluate.h).
 #include "tools/nrsfm-eval/call.h"
 
 namespace gonio::tools::nrsfm_eval {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "cli/program.h"
-#include "nrsfm/evaluation_entries.h"
+#include "nrsfm/evaluate/evaluation_entries.h"
 
 namespace gonio::tools::nrsfm_eval {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "nrsfm/evaluate.h"
+#include "nrsfm/evaluate/evaluate.h"
 #include "report/point_motion.h"
 #include "tools/nrsfm-eval/submissions.h"
 

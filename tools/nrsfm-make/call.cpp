@@ -12,9 +12,9 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "manifest/sections/sequence.h"
-#include "nrsfm/factorial.h"
 #include "nrsfm/files.h"
-#include "nrsfm/flow.h"
+#include "nrsfm/make/factorial.h"
+#include "nrsfm/make/flow.h"
 
 namespace gonio::tools::nrsfm_make {
 

@@ -1,5 +1,5 @@
 // nrsfm-make: tracks of things that deform, from simulated animatronics or scans, as virtual cameras see them
-// (lib/nrsfm/factorial.h).
+// (lib/nrsfm/make/factorial.h).
 #include "tools/nrsfm-make/call.h"
 
 namespace gonio::tools::nrsfm_make {

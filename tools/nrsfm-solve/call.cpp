@@ -15,9 +15,9 @@
 #include "base/text.h"
 #include "manifest/sections/sequence.h"
 #include "nrsfm/files.h"
-#include "nrsfm/listing.h"
 #include "nrsfm/manifest_sequences.h"
-#include "nrsfm/solution_file.h"
+#include "nrsfm/solve/listing.h"
+#include "nrsfm/solve/solution_file.h"
 
 namespace gonio::tools::nrsfm_solve {
 

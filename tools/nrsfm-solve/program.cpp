@@ -1,4 +1,4 @@
-// nrsfm-solve: shapes from tracks of things that deform (lib/nrsfm/solver.h).
+// nrsfm-solve: shapes from tracks of things that deform (lib/nrsfm/solve/solver.h).
 #include "tools/nrsfm-solve/call.h"
 
 namespace gonio::tools::nrsfm_solve {

@@ -1,9 +1,9 @@
-// vdi2634: how well a 3D scanner measures, from spheres and planes that it scanned (mesh/acceptance/figures.h).
+// vdi2634: how well a 3D scanner measures, from spheres and planes that it scanned (metrology/figures.h).
 #include "cli/program.h"
 
 #include "base/error.h"
 #include "base/quantity.h"
-#include "mesh/acceptance/acceptance_document.h"
+#include "metrology/acceptance_document.h"
 
 namespace gonio::tools::vdi2634 {
 namespace {
@@ -26,12 +26,12 @@ std::pair<std::string, double> limit_of(const std::string& text) {
               "write probing-form=0.05mm; there are probing-form, probing-size, sphere-distance, flatness");
 }
 
-mesh::AcceptanceRequest request_of(cli::Invocation& call) {
-  mesh::AcceptanceRequest request;
+metrology::AcceptanceRequest request_of(cli::Invocation& call) {
+  metrology::AcceptanceRequest request;
   for (const std::string& cloud : call.texts("CLOUD")) request.clouds.emplace_back(cloud);
   request.metres_per_unit = call.text("unit") == "mm" ? 1e-3 : 1;
   request.planes = call.text("shape") == "plane";
-  for (const std::string& region : call.texts("region")) request.regions.push_back(mesh::region_of(region));
+  for (const std::string& region : call.texts("region")) request.regions.push_back(metrology::region_of(region));
   if (call.given("radius")) request.radius_m = call.number("radius");
   if (call.given("distance")) request.distance_m = call.number("distance");
   request.hold_radius = call.flag("hold-radius");
@@ -43,7 +43,7 @@ mesh::AcceptanceRequest request_of(cli::Invocation& call) {
 
 Exit run(cli::Invocation& call) {
   call.document.allow_outside = true;  // what the user names may lie anywhere
-  return mesh::measure_acceptance(call.document, request_of(call));
+  return metrology::measure_acceptance(call.document, request_of(call));
 }
 
 }  // namespace
@@ -101,7 +101,7 @@ const cli::Program& gonio_program() {
            "Coope, Circle fitting by linear and nonlinear least squares, JOTA 76(2), 1993.",
            "Liang & Zeger, Longitudinal data analysis using generalized linear models, Biometrika 73(1), 1986."},
       .see_also = {"gonio-manifest(5)", "gonio(7)"},
-      .check = [](cli::Invocation& call) { mesh::check_acceptance(request_of(call)); },
+      .check = [](cli::Invocation& call) { metrology::check_acceptance(request_of(call)); },
       .run = run};
   return program;
 }

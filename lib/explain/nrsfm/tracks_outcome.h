@@ -23,7 +23,7 @@ std::string tracks_remarks(const TracksView& view, const Explanation& e);
 // sequence's projection is one whose scale differs from frame to frame. Solvers then do not leave it out.
 void upgrade_tracks(const TracksView& view, const Explanation& e, manifest::Document& document);
 // Where shapes are lacking no race is run to its end: perspective is judged on top of as many shapes as the solver has
-// and one more (nrsfm/near_camera.h), and nothing else is named. `candidate`: tracks.perspective, if it is one.
+// and one more (nrsfm/solve/near_camera.h), and nothing else is named. `candidate`: tracks.perspective, if it is one.
 void conclude_shapes(const TracksView& view, std::optional<std::size_t> candidate, Explanation& e);
 // tracks.outliers joins what the engine has found; alone it is held against sound observations that the robust fit
 // predicts. Where shapes are lacking it is not named and nothing is hidden: deformation may look the same.

@@ -1,5 +1,6 @@
-// From the manifest's "tables" to numbers in SI: a file of columns with names (goniometry/tables_text.h), Cornell's
-// .brdf or MERL's .binary (goniometry/sample_table.h), a JSON file {"units": {...}, "rows": [{column: value, ...},
+// From the manifest's "tables" to numbers in SI: a file of columns with names (goniometry/tables/tables_text.h),
+// Cornell's .brdf or MERL's .binary (goniometry/tables/sample_table.h), a JSON file {"units": {...}, "rows": [{column:
+// value, ...},
 // ...]}, or rows inline. Units come from the manifest's `columns` (SI), and where the file's own heading states one
 // ("theta_i [deg]"), values are converted from that. Where a table names no sigma, columns named after the observed
 // ones are taken: f_sigma is that of f.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nrsfm/animatronic_support.h"
+#include "nrsfm/make/animatronic_support.h"
 
 namespace gonio::nrsfm::animatronics {
 namespace {

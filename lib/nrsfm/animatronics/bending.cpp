@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "nrsfm/animatronic_support.h"
+#include "nrsfm/make/animatronic_support.h"
 
 namespace gonio::nrsfm::animatronics {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "nrsfm/animatronic_support.h"
+#include "nrsfm/make/animatronic_support.h"
 
 namespace gonio::nrsfm::animatronics {
 namespace {

@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nrsfm/factorization.h"
-#include "nrsfm/shape_trajectory.h"
-#include "nrsfm/solver_support.h"
+#include "nrsfm/solve/factorization.h"
+#include "nrsfm/solve/shape_trajectory.h"
+#include "nrsfm/solve/solver_support.h"
 
 namespace gonio::nrsfm::solvers {
 namespace {

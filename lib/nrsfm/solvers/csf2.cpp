@@ -8,10 +8,10 @@
 // the principal coordinates of its shapes. In these weights are uncorrelated, so that M_j' M_k is near 0 and basis
 // shapes fitted one by one are near those fitted together. The second goes on where it leaves clearly less after a few
 // steps. Left out: the paper's growth of d in rounds.
-#include "nrsfm/factorization.h"
-#include "nrsfm/principal_curve.h"
-#include "nrsfm/shape_trajectory.h"
-#include "nrsfm/solver_support.h"
+#include "nrsfm/solve/factorization.h"
+#include "nrsfm/solve/principal_curve.h"
+#include "nrsfm/solve/shape_trajectory.h"
+#include "nrsfm/solve/solver_support.h"
 
 namespace gonio::nrsfm::solvers {
 namespace {

@@ -26,9 +26,9 @@
 #include "linear/qr.h"
 #include "linear/solve.h"
 #include "linear/symmetric_eigen.h"
-#include "nrsfm/extrapolation.h"
-#include "nrsfm/factorization.h"
-#include "nrsfm/solver_support.h"
+#include "nrsfm/solve/extrapolation.h"
+#include "nrsfm/solve/factorization.h"
+#include "nrsfm/solve/solver_support.h"
 
 namespace gonio::nrsfm::solvers {
 namespace {

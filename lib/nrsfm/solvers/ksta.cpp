@@ -11,10 +11,10 @@
 #include <cmath>
 #include <vector>
 
-#include "nrsfm/factorization.h"
-#include "nrsfm/principal_curve.h"
-#include "nrsfm/shape_trajectory.h"
-#include "nrsfm/solver_support.h"
+#include "nrsfm/solve/factorization.h"
+#include "nrsfm/solve/principal_curve.h"
+#include "nrsfm/solve/shape_trajectory.h"
+#include "nrsfm/solve/solver_support.h"
 
 namespace gonio::nrsfm::solvers {
 namespace {

@@ -12,8 +12,8 @@
 #include <limits>
 
 #include "base/error.h"
-#include "nrsfm/inextensible.h"
-#include "nrsfm/solver_support.h"
+#include "nrsfm/solve/inextensible.h"
+#include "nrsfm/solve/solver_support.h"
 
 namespace gonio::nrsfm::solvers {
 namespace {

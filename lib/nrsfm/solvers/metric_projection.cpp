@@ -18,9 +18,9 @@
 #include "linear/qr.h"
 #include "linear/solve.h"
 #include "linear/svd.h"
-#include "nrsfm/low_rank.h"
-#include "nrsfm/motion_manifold.h"
-#include "nrsfm/solver_support.h"
+#include "nrsfm/solve/low_rank.h"
+#include "nrsfm/solve/motion_manifold.h"
+#include "nrsfm/solve/solver_support.h"
 
 namespace gonio::nrsfm::solvers {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "linear/qr.h"
 #include "linear/symmetric_eigen.h"
-#include "nrsfm/factorization.h"
-#include "nrsfm/solver_support.h"
+#include "nrsfm/solve/factorization.h"
+#include "nrsfm/solve/solver_support.h"
 
 namespace gonio::nrsfm::solvers {
 namespace {

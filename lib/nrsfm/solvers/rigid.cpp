@@ -7,9 +7,9 @@
 // too small and depths too large (bas-relief).
 #include <Eigen/Core>
 
-#include "nrsfm/factorization.h"
-#include "nrsfm/rigid_motion.h"
-#include "nrsfm/solver_support.h"
+#include "nrsfm/solve/factorization.h"
+#include "nrsfm/solve/rigid_motion.h"
+#include "nrsfm/solve/solver_support.h"
 
 namespace gonio::nrsfm::solvers {
 namespace {

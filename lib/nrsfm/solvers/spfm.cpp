@@ -8,9 +8,9 @@
 #include <Eigen/Core>
 #include <cstdio>
 
-#include "nrsfm/factorization.h"
-#include "nrsfm/low_rank.h"
-#include "nrsfm/solver_support.h"
+#include "nrsfm/solve/factorization.h"
+#include "nrsfm/solve/low_rank.h"
+#include "nrsfm/solve/solver_support.h"
 
 namespace gonio::nrsfm::solvers {
 namespace {

@@ -14,10 +14,10 @@
 #include <cstdio>
 #include <limits>
 
-#include "nrsfm/factorization.h"
-#include "nrsfm/low_rank.h"
-#include "nrsfm/self_expression.h"
-#include "nrsfm/solver_support.h"
+#include "nrsfm/solve/factorization.h"
+#include "nrsfm/solve/low_rank.h"
+#include "nrsfm/solve/self_expression.h"
+#include "nrsfm/solve/solver_support.h"
 
 namespace gonio::nrsfm::solvers {
 namespace {

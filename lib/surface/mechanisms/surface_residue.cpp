@@ -1,5 +1,5 @@
 // surface.residue: lumps of material on an engineered relief. Equation: surface/residue.h, in every model that has
-// these parameters. Traced ridges with burrs are what it stands for (contrast/brute_force.h).
+// these parameters. Traced ridges with burrs are what it stands for (contrast/predict/brute_force.h).
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {

@@ -7,12 +7,12 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "contrast/cell_classes.h"
-#include "contrast/defects.h"
-#include "contrast/matrix_code.h"
-#include "contrast/measure_views.h"
-#include "contrast/sample_pose.h"
-#include "contrast/view_shift.h"
+#include "contrast/measure/cell_classes.h"
+#include "contrast/measure/defects.h"
+#include "contrast/measure/matrix_code.h"
+#include "contrast/measure/measure_views.h"
+#include "contrast/measure/sample_pose.h"
+#include "contrast/measure/view_shift.h"
 #include "stats/distributions.h"
 
 namespace gonio::contrast {

@@ -8,7 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "camera/intrinsics.h"
-#include "contrast/measure.h"
+#include "contrast/measure/measure.h"
 #include "data.h"
 #include "io/picture.h"
 #include "manifest/document.h"

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "camera/camera_model.h"
 #include "camera/intrinsics.h"
-#include "contrast/matrix_code.h"
+#include "contrast/measure/matrix_code.h"
 #include "io/picture.h"
 #include "io/ply.h"
 #include "manifest/document.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "contrast/measure.h"
+#include "contrast/measure/measure.h"
 #include "manifest/sections/forward.h"
 
 namespace gonio::tests {

@@ -1,5 +1,5 @@
 // Ridges as geometry against the model `ridged`, in the views of the contrast experiment.
-#include "contrast/brute_force.h"
+#include "contrast/predict/brute_force.h"
 
 #include <gtest/gtest.h>
 

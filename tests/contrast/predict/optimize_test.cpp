@@ -1,11 +1,11 @@
 // The surface of greatest contrast: against arithmetic, against a grid, and what is said of bounds.
-#include "contrast/optimize.h"
+#include "contrast/predict/optimize.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "contrast/simplex_search.h"
+#include "contrast/predict/simplex_search.h"
 #include "samples.h"
 
 namespace gonio::tests {

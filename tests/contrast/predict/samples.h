@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "contrast/predict.h"
+#include "contrast/predict/predict.h"
 #include "manifest/document.h"
 
 namespace gonio::tests {

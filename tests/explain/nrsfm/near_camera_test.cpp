@@ -1,12 +1,12 @@
 // Perspective on top of shapes that are too few: found where it is, with an interval that holds, and not found where
 // only shapes are lacking. The fits beneath it.
-#include "nrsfm/near_camera.h"
+#include "nrsfm/solve/near_camera.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdio>
 
-#include "nrsfm/deforming_fit.h"
+#include "nrsfm/solve/deforming_fit.h"
 #include "tracks_world.h"
 
 namespace gonio::nrsfm {

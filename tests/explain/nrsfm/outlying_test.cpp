@@ -1,7 +1,7 @@
 // The test of single observations: its false alarms, what it finds, and what it must not take for outliers.
 #include <gtest/gtest.h>
 
-#include "nrsfm/outliers.h"
+#include "nrsfm/solve/outliers.h"
 #include "tracks_world.h"
 
 namespace gonio::nrsfm {

@@ -8,9 +8,9 @@
 #include "base/random.h"
 #include "explain/engine.h"
 #include "explain/nrsfm/tracks_problem.h"
-#include "nrsfm/factorization.h"
-#include "nrsfm/follow.h"
-#include "nrsfm/solver.h"
+#include "nrsfm/solve/factorization.h"
+#include "nrsfm/solve/follow.h"
+#include "nrsfm/solve/solver.h"
 
 namespace gonio::explain::testing {
 

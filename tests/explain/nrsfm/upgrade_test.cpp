@@ -6,8 +6,8 @@
 
 #include "explain/explain_document.h"
 #include "manifest/document.h"
-#include "nrsfm/alignment.h"
-#include "nrsfm/errors.h"
+#include "nrsfm/evaluate/alignment.h"
+#include "nrsfm/evaluate/errors.h"
 #include "nrsfm/files.h"
 #include "nrsfm/manifest_sequences.h"
 #include "schema_check.h"

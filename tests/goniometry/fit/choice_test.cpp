@@ -2,9 +2,9 @@
 // what says the same with more numbers is named as the same.
 #include <gtest/gtest.h>
 
-#include "goniometry/fit.h"
+#include "goniometry/fit/fit.h"
+#include "goniometry/fit/fit_choice.h"
 #include "goniometry/fit/synthetic.h"
-#include "goniometry/fit_choice.h"
 
 namespace gonio {
 namespace {

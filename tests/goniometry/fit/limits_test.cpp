@@ -1,12 +1,12 @@
 // What directions cannot tell is not told: lobes narrower than the sampling are refused, wider ones are not.
-#include "goniometry/limits.h"
+#include "goniometry/fit/limits.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "base/error.h"
-#include "goniometry/fit.h"
+#include "goniometry/fit/fit.h"
 #include "goniometry/fit/synthetic.h"
 
 namespace gonio {

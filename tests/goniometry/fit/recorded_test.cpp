@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "data.h"
-#include "goniometry/fit.h"
+#include "goniometry/fit/fit.h"
 
 namespace gonio {
 namespace {

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "goniometry/fit.h"
+#include "goniometry/fit/fit.h"
 #include "goniometry/fit/synthetic.h"
 
 namespace gonio::tests {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "goniometry/fit.h"
+#include "goniometry/fit/fit.h"
 
 namespace gonio {
 namespace {

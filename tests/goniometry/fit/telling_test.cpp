@@ -1,17 +1,17 @@
 // What directions cannot tell is not fitted: a direction of the sample, from one plane or from one azimuth between
 // light and eye, is not told from the shape of its lobe, and no surface with one is offered.
-#include "goniometry/telling.h"
+#include "goniometry/fit/telling.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "data.h"
-#include "goniometry/fit.h"
+#include "goniometry/fit/fit.h"
+#include "goniometry/fit/fit_candidates.h"
+#include "goniometry/fit/limits.h"
 #include "goniometry/fit/recorded.h"
 #include "goniometry/fit/synthetic.h"
-#include "goniometry/fit_candidates.h"
-#include "goniometry/limits.h"
 
 namespace gonio {
 namespace {

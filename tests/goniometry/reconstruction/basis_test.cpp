@@ -1,5 +1,5 @@
 // Bases: the components against a dense decomposition, what is left, folders, files.
-#include "goniometry/basis.h"
+#include "goniometry/basis/basis.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

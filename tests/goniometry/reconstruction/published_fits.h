@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "goniometry/basis.h"
+#include "goniometry/basis/basis.h"
 
 namespace gonio::tests {
 

@@ -1,5 +1,5 @@
 // Tables from few directions: the closed form, honest intervals, bands, energy, refusals.
-#include "goniometry/reconstruction.h"
+#include "goniometry/reconstruct/reconstruction.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

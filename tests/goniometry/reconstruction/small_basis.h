@@ -4,7 +4,7 @@
 
 #include "base/random.h"
 #include "goniometry/plan.h"
-#include "goniometry/reconstruction.h"
+#include "goniometry/reconstruct/reconstruction.h"
 
 namespace gonio::tests {
 

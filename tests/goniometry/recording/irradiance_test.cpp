@@ -1,5 +1,5 @@
 // What arrives at a patch from lights with and without extent, against closed forms.
-#include "goniometry/irradiance.h"
+#include "goniometry/sample/irradiance.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // Pixels on a patch cover it but for its edge, whatever the lens does; parts of a patch that leave the others' course.
-#include "goniometry/patch.h"
+#include "goniometry/sample/patch.h"
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "base/random.h"
-#include "goniometry/patch_cells.h"
+#include "goniometry/sample/patch_cells.h"
 #include "manifest/sections/flat_patch.h"
 #include "recordings.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "geom/angle.h"
-#include "goniometry/recording.h"
+#include "goniometry/sample/recording.h"
 #include "io/picture.h"
 #include "manifest/document.h"
 #include "render/entries.h"

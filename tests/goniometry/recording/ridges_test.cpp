@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "data.h"
-#include "goniometry/fit.h"
+#include "goniometry/fit/fit.h"
 #include "ridge_plate.h"
 
 namespace gonio::goniometry {

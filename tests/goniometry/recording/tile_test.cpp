@@ -1,5 +1,5 @@
 // Scales of lights from readings of a white tile.
-#include "goniometry/tile.h"
+#include "goniometry/sample/tile.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Readers of reflectance tables: the same samples from every format, conventions found, rows left out, recorded files.
-#include "goniometry/tables.h"
+#include "goniometry/tables/tables.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include "base/random.h"
 #include "base/text.h"
 #include "data.h"
-#include "goniometry/sample_table.h"
-#include "goniometry/tables_text.h"
+#include "goniometry/tables/sample_table.h"
+#include "goniometry/tables/tables_text.h"
 #include "io/merl.h"
 #include "manifest/document.h"
 #include "manifest/sections/table.h"

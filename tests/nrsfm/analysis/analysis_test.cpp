@@ -1,6 +1,6 @@
 // From tables of results to tests, means, ranks, files and a page. Truth is made with known effects; fixed seeds, the
 // false-alarm rate stands beside each statistical claim.
-#include "nrsfm/analysis.h"
+#include "nrsfm/evaluate/analysis.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "eval_program.h"
 #include "io/csv.h"
-#include "nrsfm/analysis.h"
+#include "nrsfm/evaluate/analysis.h"
 #include "tools/nrsfm-eval/views.h"
 
 namespace gonio::nrsfm {

@@ -2,7 +2,7 @@
 #pragma once
 #include <cmath>
 
-#include "nrsfm/alignment.h"
+#include "nrsfm/evaluate/alignment.h"
 #include "shapes.h"
 
 namespace gonio::nrsfm::tests {

@@ -1,6 +1,6 @@
 // Errors of the shared reconstructions to the digits that were printed for them, each with its alignment; and what the
 // measures are by definition.
-#include "nrsfm/errors.h"
+#include "nrsfm/evaluate/errors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

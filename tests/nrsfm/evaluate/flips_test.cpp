@@ -6,7 +6,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "nrsfm/errors.h"
+#include "nrsfm/evaluate/errors.h"
 #include "shapes.h"
 #include "stats/distributions.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "erring.h"
-#include "nrsfm/error_intervals.h"
+#include "nrsfm/evaluate/error_intervals.h"
 #include "stats/distributions.h"
 
 namespace gonio::nrsfm {

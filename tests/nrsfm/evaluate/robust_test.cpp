@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "nrsfm/errors.h"
-#include "nrsfm/robust_fit.h"
+#include "nrsfm/evaluate/errors.h"
+#include "nrsfm/solve/robust_fit.h"
 #include "shapes.h"
 
 namespace gonio::nrsfm {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <map>
 
-#include "nrsfm/animatronic_support.h"
-#include "nrsfm/camera_paths.h"
-#include "nrsfm/occlusion.h"
+#include "nrsfm/make/animatronic_support.h"
+#include "nrsfm/make/camera_paths.h"
+#include "nrsfm/make/occlusion.h"
 
 namespace gonio::nrsfm {
 namespace {

@@ -1,6 +1,6 @@
 // Optical flow in rendered pictures: it follows what turns slowly, loses what the surface hides, and its errors are
 // measured against the points of the material.
-#include "nrsfm/flow.h"
+#include "nrsfm/make/flow.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nrsfm/animatronic_support.h"
-#include "nrsfm/factorial.h"
+#include "nrsfm/make/animatronic_support.h"
+#include "nrsfm/make/factorial.h"
 
 namespace gonio::nrsfm {
 namespace {

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "nrsfm/animatronic_support.h"
+#include "nrsfm/make/animatronic_support.h"
 
 namespace gonio::nrsfm {
 namespace {

@@ -10,9 +10,9 @@
 #include "base/error.h"
 #include "data.h"
 #include "io/ply.h"
-#include "nrsfm/animatronic_support.h"
-#include "nrsfm/factorial.h"
 #include "nrsfm/files.h"
+#include "nrsfm/make/animatronic_support.h"
+#include "nrsfm/make/factorial.h"
 
 namespace gonio::nrsfm {
 namespace {

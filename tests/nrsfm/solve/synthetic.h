@@ -7,10 +7,10 @@
 #include <string>
 
 #include "base/random.h"
-#include "nrsfm/alignment.h"
-#include "nrsfm/errors.h"
-#include "nrsfm/factorization.h"
-#include "nrsfm/solver.h"
+#include "nrsfm/evaluate/alignment.h"
+#include "nrsfm/evaluate/errors.h"
+#include "nrsfm/solve/factorization.h"
+#include "nrsfm/solve/solver.h"
 
 namespace gonio::nrsfm::testing {
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "made.h"
-#include "nrsfm/solver_support.h"
+#include "nrsfm/solve/solver_support.h"
 
 namespace gonio::nrsfm::testing {
 namespace {

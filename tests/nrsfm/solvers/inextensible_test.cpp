@@ -1,5 +1,5 @@
 // The maximum depth heuristic: its optimum, its answer on sheets that bend, recorded surfaces, and what it refuses.
-#include "nrsfm/inextensible.h"
+#include "nrsfm/solve/inextensible.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Shapes of least nuclear norm: optimality, coupling, and the block-matrix method on truths that it contains, on
 // recorded sequences, and under changes that must not matter.
-#include "nrsfm/low_rank.h"
+#include "nrsfm/solve/low_rank.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,9 +7,9 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "nrsfm/errors.h"
-#include "nrsfm/factorization.h"
-#include "nrsfm/solver.h"
+#include "nrsfm/evaluate/errors.h"
+#include "nrsfm/solve/factorization.h"
+#include "nrsfm/solve/solver.h"
 
 namespace gonio::nrsfm::testing {
 

@@ -5,7 +5,7 @@
 #include "data.h"
 #include "made.h"
 #include "nrsfm/files.h"
-#include "nrsfm/motion_manifold.h"
+#include "nrsfm/solve/motion_manifold.h"
 
 namespace gonio::nrsfm::testing {
 namespace {

@@ -1,5 +1,5 @@
 // One rigid shape by least reprojection error, and cameras that solvers choose by themselves.
-#include "nrsfm/rigid_motion.h"
+#include "nrsfm/solve/rigid_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "made.h"
-#include "nrsfm/self_expression.h"
+#include "nrsfm/solve/self_expression.h"
 
 namespace gonio::nrsfm::testing {
 namespace {

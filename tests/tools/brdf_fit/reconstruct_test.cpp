@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "data.h"
 #include "geom/vector.h"
-#include "goniometry/reconstruction.h"
+#include "goniometry/reconstruct/reconstruction.h"
 #include "io/merl.h"
 #include "manifest/document.h"
 #include "manifest/sections/surface.h"
