@@ -211,6 +211,11 @@ std::vector<cli::Option> mesh_options() {
        .dimension = Dimension::angle,
        .lower = 0,
        .upper = 3.2},
+      {.name = "reference",
+       .type = Type::input_file,
+       .help =
+           "A mesh of the same object from elsewhere, in the volume's frame (PLY, metres): how far from it, and what "
+           "rays through both say."},
       {.name = "surface",
        .type = Type::text,
        .help = "Name in surfaces of the object; a dielectric of --index where there is none of the name.",
@@ -263,6 +268,7 @@ std::vector<cli::Option> options() {
                  .type = Type::text,
                  .help = "Of the volume, the mesh and the object. Default: the file's.",
                  .metavar = "NAME"});
+  all.push_back({.name = "csv", .type = Type::output_file, .help = "Write the steps' figures as a table."});
   all.push_back(cli::report_option());
   return all;
 }

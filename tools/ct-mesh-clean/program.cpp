@@ -10,7 +10,15 @@ namespace {
 
 void check(cli::Invocation& call) {
   asked(call);
-  if (call.given("html")) check_writable(call.text("html"));
+  for (const char* option : {"html", "csv"})
+    if (call.given(option)) check_writable(call.text(option));
+}
+
+std::string csv_of(const Work& work) {
+  std::string csv = "step,figure,value\n";
+  for (const manifest::VolumeStep& s : work.steps)
+    for (const auto& [name, value] : s.figures) csv += s.name + "," + name + "," + shortest_text(value) + "\n";
+  return csv;
 }
 
 Exit run(cli::Invocation& call) {
@@ -23,6 +31,7 @@ Exit run(cli::Invocation& call) {
   for (const auto take : {open, look, correct, cut, select, contour, find_markers, carve, clean, judge}) take(work);
   draw(work);
   enter(work);
+  if (call.given("csv")) write_file(call.text("csv"), csv_of(work));
   if (!html.empty()) write_file(html, page(work));
   return work.missed ? Exit::quality : Exit::done;
 }

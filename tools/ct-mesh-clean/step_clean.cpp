@@ -1,4 +1,6 @@
 // Step: take the voxels' noise away.
+#include <algorithm>
+
 #include "base/text.h"
 #include "tools/ct-mesh-clean/work.h"
 
@@ -27,16 +29,25 @@ void clean_bounded(Work& work) {
                    {"normal_noise_after_rad", result.normal_noise_after_rad}};
 }
 
+// As published: to 1 % of the vertices first. With --faces, to the share that ends there: a round of subdivision and
+// decimation leaves 0.99 of what it was given.
+void clean_by_subdivision(Work& work) {
+  mesh::SubdivisionLoop loop;
+  const double wanted = 0.5 * static_cast<double>(work.asked.faces);  // vertices
+  if (work.asked.faces > 0)
+    loop.first = std::min(1.0, wanted / static_cast<double>(std::max<std::size_t>(1, work.mesh.positions_m.size())));
+  mesh::clean_by_subdivision(work.mesh, loop);
+  step(work, "clean",
+       format("decimation to %.3g %% of the vertices, then four times sqrt(3) subdivision and decimation to 33 %%",
+              100 * loop.first));
+}
+
 }  // namespace
 
 void clean(Work& work) {
   switch (work.asked.clean) {
     case CleanBy::bounded: clean_bounded(work); break;
-    case CleanBy::subdivision:
-      mesh::clean_by_subdivision(work.mesh);
-      step(work, "clean",
-           "decimation to 1 % of the vertices, then four times sqrt(3) subdivision and decimation to 33 %");
-      break;
+    case CleanBy::subdivision: clean_by_subdivision(work); break;
     case CleanBy::taubin:
       mesh::smooth_taubin(work.mesh);
       step(work, "clean", "Taubin's lambda | mu smoothing");

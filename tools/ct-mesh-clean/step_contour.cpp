@@ -19,9 +19,9 @@ void contour(Work& work) {
   }
   work.stages.emplace_back("contour", in_metres(work, work.contour));
   const Vec3 scale = work.spacing_m / work.voxel_m();
-  work.edges = volume::edges(
-      *work.volume, work.contour,
-      {.noise = work.look.noise_air, .noise_correlation = work.look.noise_correlation, .scale = scale});
+  work.edges =
+      volume::edges(*work.volume, work.contour,
+                    {.noise = work.look.noise_air, .noise_correlation = work.look.noise_correlation, .scale = scale});
   const volume::LocalThreshold local = volume::local_threshold(work.threshold, work.edges);
   entry.figures["edges"] = static_cast<double>(local.edges);
   entry.figures["wall_bias_m"] = local.wall_bias * work.voxel_m();  // what a global threshold does

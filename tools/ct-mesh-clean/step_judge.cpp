@@ -1,4 +1,5 @@
 // Step: is the mesh fit to be rendered as glass?
+#include "base/error.h"
 #include "base/text.h"
 #include "tools/ct-mesh-clean/work.h"
 
@@ -6,6 +7,28 @@ namespace gonio::tools::ct_mesh_clean {
 namespace {
 
 constexpr std::size_t distance_samples = 100000, rays = 20000;
+
+// Beside a mesh of the same object from elsewhere.
+void hold_against_reference(Work& work) {
+  const std::string& path = work.call.text("reference");
+  work.call.note_input(path);
+  const io::TriangleMesh reference = io::read_ply(path);
+  if (reference.triangles.empty()) throw Error(Exit::data, path, "has no triangles", "give a mesh with a surface");
+  const mesh::Distance there = mesh::distance(work.mesh, reference, distance_samples, work.call.seed),
+                       back = mesh::distance(reference, work.mesh, distance_samples, work.call.seed + 1);
+  const mesh::RayBend bend = mesh::ray_bend(work.mesh, reference, work.asked.index, rays, work.call.seed);
+  step(work, "reference", path).figures = {{"distance_rms_m", there.rms_m},
+                                           {"distance_mean_signed_m", there.mean_signed_m},
+                                           {"distance_largest_m", there.largest_m},
+                                           {"distance_back_rms_m", back.rms_m},
+                                           {"distance_back_largest_m", back.largest_m},
+                                           {"normals_rms_rad", mesh::normals_rms_rad(work.mesh, reference)},
+                                           {"ray_bend_rms_rad", bend.rms_rad},
+                                           {"ray_bend_median_rad", bend.median_rad},
+                                           {"ray_bend_p95_rad", bend.p95_rad},
+                                           {"rays", static_cast<double>(bend.rays)},
+                                           {"differing_paths", static_cast<double>(bend.differing_paths)}};
+}
 
 }  // namespace
 
@@ -53,6 +76,7 @@ void judge(Work& work) {
                    {"ray_bend_rms_rad", bend.rms_rad},
                    {"ray_bend_p95_rad", bend.p95_rad},
                    {"triangles", static_cast<double>(work.mesh.triangles.size())}};
+  if (work.call.given("reference")) hold_against_reference(work);
 }
 
 }  // namespace gonio::tools::ct_mesh_clean
