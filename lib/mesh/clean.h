@@ -28,22 +28,28 @@ void clean_by_subdivision(io::TriangleMesh& mesh, const SubdivisionLoop& wish = 
 // Taubin 1995: lambda | mu smoothing with uniform weights; pass band k = 1 / lambda + 1 / mu.
 void smooth_taubin(io::TriangleMesh& mesh, int iterations = 20, double lambda = 0.5, double mu = -0.53);
 
-// Ours. Minimises the noise of normals under a bound on the distance to the data:
-//   sum over pairs of neighbouring faces of a robust penalty of their normals' difference (feature-preserving: pairs that
-//   differ by more than the noise explains are edges of the object and pay no more) subject to |x_v - data_v| <= within
-// where data_v is the vertex's place on the volume's surface and moves are along normals alone; `sigma_m` (one per vertex,
-// or empty) are the data's own uncertainties: what the data know well moves less. Alternates between filtered normals
-// (bilateral in position and normal, Zheng et al. 2011) and vertices that follow them, projected on the bound.
+// Ours. Local quadratics at every triangle, each over as wide a neighbourhood as the data there bear: it grows while the
+// slopes agree with those of all narrower ones within their noise, and while what the quadratic leaves is the noise's
+// (intersection of confidence intervals, Goldenshluger & Nemirovski 1997). Planes get much averaging, tight curves
+// little. Edges of the object are not crossed, and a vertex goes where the surfaces of its triangles agree: to the
+// intersection of both sides at an edge. A quadratic's slope has no bias on planes, balls and tubes, and everything is
+// estimated from the data, not from smoothed data: nothing shrinks. Then |x_v - data_v| <= within_m, strictly; what would
+// intersect stays where the data have it. Normals are those of the estimated surfaces.
 struct BoundedWish {
   double within_m = 0;
-  int rounds = 20;
-  double feature_angle_rad = 0.5;          // normals that differ by more are never mixed
-  std::vector<double> sigma_m{};
+  int rounds = 2;                  // the second knows the edges from the first's normals
+  double feature_angle_rad = 0.5;  // between neighbouring triangles, noise taken off: an edge of the object from here
+  std::vector<double> sigma_m{};   // the data's own uncertainties, one a vertex or none; their ratios count
 };
 struct BoundedResult {
   int rounds = 0;
+  double sigma_m = 0;        // noise of the vertices along the normals, as found in the data
+  double inflation = 1;      // by how much its correlation makes means less certain
+  double mean_radius_m = 0;  // of the neighbourhoods
+  std::size_t sharp_edges = 0;
   double rms_move_m = 0, largest_move_m = 0;
-  std::size_t at_bound = 0;                // vertices that the bound holds
+  std::size_t at_bound = 0;  // vertices that the bound holds
+  std::size_t undone = 0;    // vertices put back because triangles would have intersected
   double normal_noise_before_rad = 0, normal_noise_after_rad = 0;  // normal_noise() below
 };
 BoundedResult clean_within(io::TriangleMesh& mesh, const BoundedWish& wish);
