@@ -15,8 +15,9 @@ namespace marker {
 namespace {
 
 constexpr double same_value = 0.15;    // of the step from air: values that agree so well are of one material
-constexpr double own_share = 0.15;     // of the directions: a sphere that goes on into its like so far grew there
+constexpr double own_share = 0.05;     // of the directions: a sphere that goes on into its like so far grew there
 constexpr double least_flatness = 0.12;
+// No step where the sphere's surface would be: what is there is not another body, however thin.
 
 std::string say(const char* format, double a, double b = 0, double c = 0) {
   char text[200];
@@ -71,7 +72,7 @@ Evidence evidence(const Sphere& s, const Crop& crop, Vec3 scale, const std::vect
     if (std::ranges::any_of(others, [&](const Candidate& o) { return norm(o.centre - far) < std::abs(o.radius) + 1; }))
       continue;
     bool goes_on = true;
-    for (double x = 0.5; x <= 2.6; x += 0.5)
+    for (double x = -1.2; x <= 0.9; x += 0.5)
       goes_on = goes_on && std::abs(crop.block.at(divided(s.centre + s.asked[n] * (s.radius + x), scale)) - e.within) < slack;
     like += goes_on ? 1 : 0;
   }
@@ -195,21 +196,28 @@ Markers markers(io::VolumeSource& source, const Contour& surface, double thresho
     return true;
   });
   const std::vector<Crop> crops = marker::crops(source, spheres, wish.scale);
-  marker::NoiseModel noise = marker::noise_within(spheres, crops, wish.scale, wish.noise_correlation);
-  if (wish.noise > 0) noise.sd = wish.noise;
-  std::vector<Judged> all;
+  std::vector<Judged> all(spheres.size());
+  const auto refine = [&](const marker::NoiseModel& noise, std::optional<double> radius) {
+    for (std::size_t n = 0; n < all.size(); ++n)
+      if (all[n].why.empty()) all[n].sphere = marker::refined(spheres[n], crops[n], noise, wish.scale, radius);
+  };
+  refine(marker::noise_within(spheres, crops, wish, {}), {});
   for (std::size_t n = 0; n < spheres.size(); ++n) {
-    Judged j{marker::refined(spheres[n], crops[n], noise, wish.scale, {}), {}};
     std::vector<Candidate> others = spheres;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(n));
-    j.evidence = marker::evidence(j.sphere, crops[n], wish.scale, others);
-    j.why = marker::reason_against(j.sphere, j.evidence, wish);
-    all.push_back(std::move(j));
+    all[n].evidence = marker::evidence(all[n].sphere, crops[n], wish.scale, others);
+    all[n].why = marker::reason_against(all[n].sphere, all[n].evidence, wish);
   }
   judge_together(all, wish);
-  if (const auto radius = held_radius(all, wish))
-    for (std::size_t n = 0; n < all.size(); ++n)
-      if (all[n].why.empty()) all[n].sphere = marker::refined({all[n].sphere.centre, *radius}, crops[n], noise, wish.scale, radius);
+  // The noise of what turned out to be markers, and their radius if it is the known one.
+  std::vector<bool> kept;
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    kept.push_back(all[n].why.empty());
+    if (kept[n]) spheres[n] = {all[n].sphere.centre, all[n].sphere.radius};
+  }
+  const marker::NoiseModel noise = marker::noise_within(spheres, crops, wish, kept);
+  refine(noise, {});
+  if (const auto radius = held_radius(all, wish)) refine(noise, radius);
   for (const Judged& j : all)
     if (j.why.empty())
       result.found.push_back(stated(j, wish.scale));

@@ -257,41 +257,62 @@ std::vector<Crop> crops(io::VolumeSource& source, const std::vector<Candidate>& 
   return result;
 }
 
-NoiseModel noise_within(const std::vector<Candidate>& spheres, const std::vector<Crop>& all, Vec3 scale,
-                        std::optional<double> known_correlation) {
+namespace {
+
+// Sums of (v - v')^2 / 2 over voxels `lag` apart, both within.
+struct Differences {
   std::array<double, 4> squares{}, count{};
-  for (std::size_t n = 0; n < spheres.size(); ++n) {
-    const Block& b = all[n].block;
-    const double within = std::abs(spheres[n].radius) - 2.2, without = std::abs(spheres[n].radius) + 3;
-    const std::array<std::size_t, 3> stride{1, b.size[0], b.size[0] * b.size[1]};
-    std::vector<char> kind(all[n].values.size());  // 1 within, 2 without
-    std::vector<double> outside;
-    for (std::size_t v = 0; v < kind.size(); ++v) {
-      const Vec3 index{b.low.x + static_cast<double>(v % b.size[0]), b.low.y + static_cast<double>(v / stride[1] % b.size[1]),
-                       b.low.z + static_cast<double>(v / stride[2])};
-      const double r = norm(index * scale - spheres[n].centre);
-      kind[v] = r < within ? 1 : r > without ? 2 : 0;
-      if (kind[v] == 2) outside.push_back(all[n].values[v]);
-    }
-    // Of what lies without, only what is as low as most: air.
-    const double low = quantile(outside, 0.25), middle = quantile(outside, 0.5), spread = 6 * std::max(1e-30, middle - low);
-    for (std::size_t v = 0; v < kind.size(); ++v)
-      if (kind[v] == 2 && all[n].values[v] > middle + spread) kind[v] = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (const std::size_t lag : {1u, 3u})
-        for (std::size_t v = 0; v < kind.size(); ++v) {
-          if (v / stride[axis] % b.size[axis] + lag >= b.size[axis]) continue;
-          const std::size_t other = v + lag * stride[axis];
-          if (kind[v] == 0 || kind[v] != kind[other]) continue;
-          const double d = static_cast<double>(all[n].values[v]) - all[n].values[other];
-          squares[lag] += d * d / 2, count[lag] += 1;
-        }
+  void add(const Differences& o) {
+    for (std::size_t lag = 0; lag < 4; ++lag) squares[lag] += o.squares[lag], count[lag] += o.count[lag];
   }
-  if (count[3] < 20) return {};
+};
+Differences differences_within(const Candidate& sphere, const Crop& crop, Vec3 scale) {
+  Differences result;
+  const Block& b = crop.block;
+  const double depth = std::abs(sphere.radius) - 2.2;
+  const std::array<std::size_t, 3> stride{1, b.size[0], b.size[0] * b.size[1]};
+  std::vector<bool> within(crop.values.size());
+  for (std::size_t v = 0; v < within.size(); ++v) {
+    const Vec3 index{b.low.x + static_cast<double>(v % b.size[0]),
+                     b.low.y + static_cast<double>(v / stride[1] % b.size[1]),
+                     b.low.z + static_cast<double>(v / stride[2])};
+    within[v] = norm(index * scale - sphere.centre) < depth;
+  }
+  for (const std::size_t lag : {1u, 3u})
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t v = 0; v < within.size(); ++v) {
+        const std::size_t other = v + lag * stride[axis];
+        if (!within[v] || v / stride[axis] % b.size[axis] + lag >= b.size[axis] || !within[other]) continue;
+        const double d = static_cast<double>(crop.values[v]) - crop.values[other];
+        result.squares[lag] += d * d / 2, result.count[lag] += 1;
+      }
+  return result;
+}
+
+}  // namespace
+
+NoiseModel noise_within(const std::vector<Candidate>& spheres, const std::vector<Crop>& all, const MarkerWish& wish,
+                        const std::vector<bool>& kept) {
+  std::vector<Differences> each;
+  for (std::size_t n = 0; n < spheres.size(); ++n) {
+    if (!kept.empty() && !kept[n]) continue;
+    const Differences d = differences_within(spheres[n], all[n], wish.scale);
+    if (d.count[3] >= (kept.empty() ? 20 : 1)) each.push_back(d);
+  }
+  Differences sum;
+  if (kept.empty() && !each.empty()) {
+    const auto middle = each.begin() + static_cast<std::ptrdiff_t>((each.size() - 1) / 2);
+    std::ranges::nth_element(each, middle, {}, [](const Differences& d) { return d.squares[3] / d.count[3]; });
+    sum = *middle;
+  } else {
+    for (const Differences& d : each) sum.add(d);
+  }
+  NoiseModel model{wish.noise, wish.noise_correlation.value_or(0)};
+  if (sum.count[3] < 20) return model;
   // D1 / D3 = (1 - q) / (1 - q^9), which falls with q.
-  const double near = squares[1] / count[1], far = squares[3] / count[3], ratio = far > 0 ? near / far : 1;
-  double q = known_correlation.value_or(0);
-  if (!known_correlation) {
+  const double near = sum.squares[1] / sum.count[1], far = sum.squares[3] / sum.count[3], ratio = far > 0 ? near / far : 1;
+  double& q = model.neighbour_correlation;
+  if (!wish.noise_correlation) {
     double low = -0.45, high = 0.95;
     for (int n = 0; n < 50; ++n) {
       q = (low + high) / 2;
@@ -299,7 +320,8 @@ NoiseModel noise_within(const std::vector<Candidate>& spheres, const std::vector
       (foretold > ratio ? low : high) = q;
     }
   }
-  return {std::sqrt(far / (q > 0 ? 1 - std::pow(q, 9) : 1)), q};
+  if (!(model.sd > 0)) model.sd = std::sqrt(far / (q > 0 ? 1 - std::pow(q, 9) : 1));
+  return model;
 }
 
 Sphere refined(const Candidate& start, const Crop& crop, const NoiseModel& noise, Vec3 scale,

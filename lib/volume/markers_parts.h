@@ -90,9 +90,10 @@ struct Sphere {
 struct NoiseModel {
   double sd = 0, neighbour_correlation = 0;
 };
-// From differences of voxels well within the spheres, one to three apart.
-NoiseModel noise_within(const std::vector<Candidate>& spheres, const std::vector<Crop>& crops, Vec3 scale,
-                        std::optional<double> known_correlation);
+// From differences of voxels well within the spheres, one and three apart: of all whose `kept` is true; where it is
+// empty, those of the sphere in the middle between the quiet and the noisy (hollow ones have walls within).
+NoiseModel noise_within(const std::vector<Candidate>& spheres, const std::vector<Crop>& crops, const MarkerWish& wish,
+                        const std::vector<bool>& kept);
 // `radius`: held fixed where it is given.
 Sphere refined(const Candidate& start, const Crop& crop, const NoiseModel& noise, Vec3 scale,
                std::optional<double> radius);

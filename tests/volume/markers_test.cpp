@@ -152,9 +152,8 @@ TEST(Markers, AKnobOfTheObjectsOwnIsRefused) {
 }
 
 TEST(Markers, HollowSpheresBubblesAndTubesAreRefusedInWords) {
-  // A hollow ball (first the void), a solid one with a bubble, and a rod.
+  // A hollow ball (first the void), a solid one with a bubble.
   const auto data = phantom::sampled({80, 44, 44}, [&](Vec3 p) {
-    const phantom::Disc rod(4, blur);
     return air + 0.9 * (phantom::ball(p, {20, 21, 22}, 11, blur) - phantom::ball(p, {20, 21, 22}, 8, blur)) +
            0.9 * (phantom::ball(p, {56, 21, 22}, 15, blur) - phantom::ball(p, {57, 20, 23}, 5, blur));
   }, 0.04, 0.3, 5);
