@@ -39,11 +39,20 @@ EdgeStep step_at(double s, double p, double w, double mean_curvature) {
           phi * (u - w * h * (1 + u * u))};
 }
 
+// What an object whose values slant by one per voxel along s adds: s up to p, smeared; none beyond. Slight: its slopes
+// are left out.
+double slanted(double s, double p, double w) {
+  const double u = (s - p) / w;
+  return 0.5 * s * std::erfc(u / std::numbers::sqrt2) - w * std::exp(-0.5 * u * u) / root_two_pi;
+}
+
 struct EdgeProblem {
   std::span<const double> s, values;
   double mean_curvature = 0, sample_sd = 1;  // of one sample, as far as it is independent
   double plateau_sd = 1, log_width_mean = 0, log_width_sd = 0;
   bool has_inner = false, has_outer = false;
+  double air_mean = 0, object_mean = 0, air_sd = 0, object_sd = 0;  // sd 0: not known
+  double slope = 0;
 };
 
 // N = 4: an edge alone. N = 8: with one behind, one before, or both.
@@ -60,7 +69,7 @@ class EdgeDescent final : public optim::Descent {
     const double s = problem_.s[i], w = std::exp(x[EdgeAt::log_width]), h = problem_.mean_curvature;
     const EdgeStep own = step_at(s, x[EdgeAt::position], w, h);
     const double rise = x[EdgeAt::object] - x[EdgeAt::air];
-    double v = x[EdgeAt::air] + rise * own.b;
+    double v = x[EdgeAt::air] + rise * own.b + problem_.slope * slanted(s, x[EdgeAt::position], w);
     if (slopes) {
       slopes->setZero();
       (*slopes)[EdgeAt::position] = rise * own.by_place;
@@ -69,7 +78,8 @@ class EdgeDescent final : public optim::Descent {
       (*slopes)[EdgeAt::object] = own.b;
     }
     if constexpr (N == 8) {
-      if (problem_.has_inner) v += add_behind(x, step_at(s, x[EdgeAt::behind], w, h), slopes);
+      if (problem_.has_inner)
+        v += add_behind(x, step_at(s, x[EdgeAt::behind], w, h), slopes) - problem_.slope * slanted(s, x[EdgeAt::behind], w);
       if (problem_.has_outer) v += add_before(x, step_at(s, x[EdgeAt::before], w, h), slopes);
     }
     return v;
@@ -132,6 +142,8 @@ class EdgeDescent final : public optim::Descent {
   // (x_a - mean) / sd, or (x_a - x_b) / sd where b is a parameter.
   template <class Body>
   void for_priors(const Body& body) const {
+    if (problem_.air_sd > 0) body(EdgeAt::air, -1, problem_.air_mean, problem_.air_sd);
+    if (problem_.object_sd > 0) body(EdgeAt::object, -1, problem_.object_mean, problem_.object_sd);
     if (problem_.log_width_sd > 0) body(EdgeAt::log_width, -1, problem_.log_width_mean, problem_.log_width_sd);
     if constexpr (N == 8) {
       if (problem_.has_inner) body(EdgeAt::air_behind, EdgeAt::air, 0, problem_.plateau_sd);
@@ -297,6 +309,10 @@ Edge fit_edge(std::span<const double> s, std::span<const double> values, const P
   problem.sample_sd = (wish.noise > 0 ? wish.noise : 0.03 * rise) * std::sqrt(sample.variance * sample.repeated);
   problem.has_inner = wish.inner.has_value();
   problem.has_outer = wish.outer.has_value();
+  problem.slope = wish.slope;
+  const double known_rise = wish.air && wish.object ? std::abs(*wish.object - *wish.air) : rise;
+  if (wish.air) problem.air_mean = *wish.air, problem.air_sd = wish.plateau_share * known_rise;
+  if (wish.object) problem.object_mean = *wish.object, problem.object_sd = wish.plateau_share * known_rise;
   if (wish.width) problem.log_width_mean = std::log(*wish.width), problem.log_width_sd = wish.width_share;
   if (alone)
     return fitted_edge<4>(problem, wish, Eigen::Vector4d(start.position, std::log(start.width), start.air, start.object),

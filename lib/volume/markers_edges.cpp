@@ -75,7 +75,7 @@ class Rays {
   }
 
   // The edge along one radius; sigma 0: none.
-  RadialEdge edge(const Sphere& s, Vec3 direction, const Levels& levels, std::optional<double> width) const {
+  RadialEdge edge(const Sphere& s, Vec3 direction, const Levels& levels, std::optional<double> width, bool settled) const {
     std::vector<double> places, values;
     const double inner = std::min(reach, 0.85 * s.radius), third = levels.air + 0.3 * (levels.object - levels.air);
     bool fallen = false;
@@ -94,10 +94,11 @@ class Rays {
     const auto covariance = trilinear_covariance(first, along * step, places.size(), noise_.neighbour_correlation);
     ProfileWish wish{noise_.sd, covariance, 1 / s.radius};
     wish.width = width;
+    if (settled) wish.air = levels.air, wish.object = levels.object;
     const Edge e = fit_edge(places, values, wish);
     const double rise = levels.object - levels.air, off = std::max(0.7, 0.08 * s.radius);
     if (!e.good || e.object < e.air || std::abs(e.position) > off || std::abs(e.air - levels.air) > 0.3 * rise ||
-        std::abs(e.object - levels.object) > 0.35 * rise)
+        std::abs(e.object - levels.object) > 0.35 * rise || (settled && e.excess > 4))
       return {};
     return {direction, s.radius + e.position, e.sigma, e.air, e.object, e.width};
   }
@@ -126,13 +127,15 @@ void leave_rims_out(Sphere& s) {
   s.covered = keep;
 }
 
-void collect(Sphere& s, const Rays& rays, std::optional<double> width) {
+// `known`: of the round before; then an edge that they do not describe is none (another body is near).
+void collect(Sphere& s, const Rays& rays, std::optional<double> width, const std::optional<Levels>& known) {
   const auto count = static_cast<std::size_t>(std::clamp(4 * pi * s.radius * s.radius / 3, 96.0, 1200.0));
   if (s.asked.size() != count) s.asked = even_directions(count);
   s.directions = count;
-  const Levels levels = rays.levels(s);
+  const Levels levels = known ? *known : rays.levels(s);
   std::vector<RadialEdge> all(count);
-  parallel_for(0, count, [&](std::size_t n) { all[n] = rays.edge(s, s.asked[n], levels, width); }, 32);
+  parallel_for(
+      0, count, [&](std::size_t n) { all[n] = rays.edge(s, s.asked[n], levels, width, known.has_value()); }, 32);
   s.covered.assign(count, false);
   std::vector<double> widths;
   for (std::size_t n = 0; n < count; ++n)
@@ -144,6 +147,12 @@ void collect(Sphere& s, const Rays& rays, std::optional<double> width) {
   s.edges.clear();
   for (std::size_t n = 0; n < count; ++n)
     if (s.covered[n]) s.edges.push_back(all[n]);
+}
+
+Levels levels_of(const std::vector<RadialEdge>& edges) {
+  std::vector<double> air, object;
+  for (const RadialEdge& e : edges) air.push_back(e.air), object.push_back(e.object);
+  return {quantile(air, 0.5), quantile(object, 0.5)};
 }
 
 using Slope = Eigen::Vector4d;
@@ -289,6 +298,28 @@ Differences differences_within(const Candidate& sphere, const Crop& crop, Vec3 s
   return result;
 }
 
+// Round a sphere, from the median of differences: other bodies may be there.
+Differences differences_without(const Candidate& sphere, const Crop& crop, Vec3 scale) {
+  Differences result;
+  const Block& b = crop.block;
+  const double radius = std::abs(sphere.radius) + 3;
+  const std::array<std::size_t, 3> stride{1, b.size[0], b.size[0] * b.size[1]};
+  for (const std::size_t lag : {1u, 3u}) {
+    std::vector<double> d;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t v = 0; v < crop.values.size(); ++v) {
+        const std::size_t i = v % b.size[0], j = v / stride[1] % b.size[1], k = v / stride[2];
+        const Vec3 index{b.low.x + static_cast<double>(i), b.low.y + static_cast<double>(j), b.low.z + static_cast<double>(k)};
+        if (std::array{i, j, k}[axis] + lag >= b.size[axis] || norm(index * scale - sphere.centre) < radius) continue;
+        d.push_back(std::abs(static_cast<double>(crop.values[v]) - crop.values[v + lag * stride[axis]]));
+      }
+    if (d.size() < 20) return {};
+    const double sd = quantile(d, 0.5) / 0.6745;
+    result.count[lag] = static_cast<double>(d.size()), result.squares[lag] = result.count[lag] * sd * sd / 2;
+  }
+  return result;
+}
+
 }  // namespace
 
 NoiseModel noise_within(const std::vector<Candidate>& spheres, const std::vector<Crop>& all, const MarkerWish& wish,
@@ -299,6 +330,13 @@ NoiseModel noise_within(const std::vector<Candidate>& spheres, const std::vector
     const Differences d = differences_within(spheres[n], all[n], wish.scale);
     if (d.count[3] >= (kept.empty() ? 20 : 1)) each.push_back(d);
   }
+  // Small ones have no inside to speak of.
+  double within = 0;
+  for (const Differences& d : each) within += d.count[3];
+  if (within < 200)
+    for (std::size_t n = 0; n < spheres.size(); ++n)
+      if (kept.empty() || kept[n])
+        if (const Differences d = differences_without(spheres[n], all[n], wish.scale); d.count[3] > 0) each.push_back(d);
   Differences sum;
   if (kept.empty() && !each.empty()) {
     const auto middle = each.begin() + static_cast<std::ptrdiff_t>((each.size() - 1) / 2);
@@ -333,10 +371,11 @@ Sphere refined(const Candidate& start, const Crop& crop, const NoiseModel& noise
   const Rays rays(crop, noise, scale);
   const Sharing sharing(noise);
   std::optional<double> width;
+  std::optional<Levels> levels;
   for (int round = 0; round < 5; ++round) {
     const Vec3 before = s.centre;
     const double radius_before = s.radius;
-    collect(s, rays, width);
+    collect(s, rays, width, levels);
     if (s.edges.size() < 12) return s;
     std::vector<Vec3> places;
     for (const RadialEdge& e : s.edges) places.push_back(s.centre + e.direction * e.distance);
@@ -345,6 +384,7 @@ Sphere refined(const Candidate& start, const Crop& crop, const NoiseModel& noise
     const std::vector<double> weights = solve(s, places, held);
     state_covariance(s, places, weights, held, sharing, scale);
     width = s.width;
+    levels = levels_of(s.edges);
     if (round > 1 && norm(s.centre - before) < 0.003 && std::abs(s.radius - radius_before) < 0.01) break;
   }
   return s;

@@ -89,6 +89,9 @@ struct ProfileWish {
   std::optional<double> inner{}, outer{};
   std::optional<double> width{};               // known from elsewhere, within
   double width_share = 0.07;                   // ... so much of it (sd)
+  std::optional<double> air{}, object{};       // plateaus known from elsewhere, within
+  double plateau_share = 0.05;                 // ... so much of the step between them (sd)
+  double slope = 0;                            // of the object's values along the normal, per voxel
 };
 Edge fit_edge(std::span<const double> s, std::span<const double> values, const ProfileWish& wish);
 Edge fit_edge(std::span<const double> s, std::span<const double> values, double noise);  // independent samples

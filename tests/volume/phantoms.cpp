@@ -43,11 +43,13 @@ class Memory final : public io::VolumeSource {
 };
 
 // White noise smeared along one axis, periodic.
-void smear(std::vector<float>& v, const std::array<std::size_t, 3>& size, std::size_t axis, double sd) {
-  const int reach = static_cast<int>(std::ceil(4 * sd));
+void smear(std::vector<float>& v, const std::array<std::size_t, 3>& size, std::size_t axis, double q) {
+  // Three voxels (a, 1, a), 2 a / (1 + 2 a^2) = q, as far as they do; a normal function beyond.
+  const double sd = std::sqrt(-0.25 / std::log(q)), a = (1 - std::sqrt(std::max(0.0, 1 - 2 * q * q))) / (2 * q);
+  const int reach = q < 0.4 ? 1 : static_cast<int>(std::ceil(4 * sd));
   std::vector<double> kernel;
   double squares = 0;
-  for (int d = -reach; d <= reach; ++d) kernel.push_back(std::exp(-0.5 * d * d / (sd * sd)));
+  for (int d = -reach; d <= reach; ++d) kernel.push_back(q < 0.4 ? (d == 0 ? 1 : a) : std::exp(-0.5 * d * d / (sd * sd)));
   for (const double k : kernel) squares += k * k;
   const std::size_t stride = axis == 0 ? 1 : axis == 1 ? size[0] : size[0] * size[1], n = size[axis];
   std::vector<double> line(n);
@@ -108,7 +110,7 @@ io::VolumeData sampled(std::array<std::size_t, 3> size, const Field& field, doub
     Random random(seed, 77);
     for (float& v : data.values) v = static_cast<float>(random.normal());
     if (q > 0)
-      for (std::size_t axis = 0; axis < 3; ++axis) smear(data.values, size, axis, std::sqrt(-0.25 / std::log(q)));
+      for (std::size_t axis = 0; axis < 3; ++axis) smear(data.values, size, axis, q);
   }
   std::size_t n = 0;
   for (std::size_t k = 0; k < size[2]; ++k)
