@@ -194,7 +194,7 @@ class Collapses {
     return {0, HalfEdges::HalfedgeHandle()};
   }
   bool allowed(HalfEdges::HalfedgeHandle h) const {
-    const auto from = mesh_.from_vertex_handle(h), to = mesh_.to_vertex_handle(h);
+    const auto from = mesh_.from_vertex_handle(h);
     if (mesh_.is_boundary(from) && !mesh_.is_boundary(mesh_.edge_handle(h))) return false;
     // What lies beside the edge loses one edge, and needs three.
     for (const auto side : {h, mesh_.opposite_halfedge_handle(h)}) {
