@@ -134,9 +134,8 @@ class DicomHeadReader {
   // The transfer syntax, from the group before the data set, which is always explicit and little endian.
   Syntax read_file_group() {
     std::string uid;
-    for (at_ = 132; at_ + 8 <= length_;) {
+    for (at_ = 132; at_ + 8 <= length_ && u16(at_) == 2;) {
       const Element e = element_at(at_, true);
-      if (e.tag >> 16 != 2) break;
       if (e.length == unknown_length) throw Fault{"has an element " + tag_text(e.tag) + " without a length"};
       if (e.tag == transfer_syntax) uid = word(e);
       at_ = e.at + e.length;

@@ -238,7 +238,7 @@ TEST_F(DicomSeries, WhatIsNoGridIsRefused) {
   EXPECT_THAT(refused({a, b, c, {.z = 6}}),
               HasSubstr("has a gap of 3 mm between slices 3 and 4 (s7.dcm, s6.dcm), where "
                         "1 mm are usual"));
-  EXPECT_THAT(refused({a, b, {.z = 2}}), HasSubstr("has two slices at one place, s8.dcm and s7.dcm"));
+  EXPECT_THAT(refused({a, b, {.z = 2}}), HasSubstr("has two slices at one place, s7.dcm and s8.dcm"));
   EXPECT_THAT(refused({a, {.z = 2, .spacing = "0.5\\0.5"}}),
               HasSubstr("s9.dcm: has a spacing of pixels of 0.25 x 0.5 mm, and s8.dcm of its series 0.5 x 0.5 mm"));
   EXPECT_THAT(refused({a, {.z = 2, .directions = "0.8\\0.6\\0\\-0.6\\0.8\\0"}}),

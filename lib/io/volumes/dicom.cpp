@@ -121,7 +121,7 @@ Mat3 axes_of(const DicomFile& file) {
   const auto [u, v] = *file.directions;
   if (std::abs(norm(u) - 1) > 1e-3 || std::abs(norm(v) - 1) > 1e-3)
     refuse_volume(file.path.string(), "states directions of rows and columns that have not the length 1");
-  const Vec3 i = normalized(u), j = normalized(v), k = cross(i, j);
+  const Vec3 i = normalized(u), j = normalized(v), k = normalized(cross(i, j));
   return {{i.x, j.x, k.x, i.y, j.y, k.y, i.z, j.z, k.z}};
 }
 

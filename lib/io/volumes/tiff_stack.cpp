@@ -7,6 +7,7 @@
 #include <tiffio.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdarg>
 #include <cstdio>
 #include <map>
@@ -67,6 +68,22 @@ class TiffFile {
     if (TIFFSetSubDirectory(tiff_, directory) != 1) refuse("has a page that cannot be read again");
   }
   std::uint64_t directory() { return TIFFCurrentDirOffset(tiff_); }
+  // libtiff takes a directory whose last bytes, the place of the next one, are cut off for the last.
+  void check_directory() {
+    const auto bytes = bytes_of_files({{.path = place_}}, length_);
+    std::array<char, 8> beginning{}, count{};
+    bytes->read(0, std::span(beginning).first(4));
+    const bool wide = beginning[2] == 43 || beginning[3] == 43;
+    const std::uint64_t at = directory(), entry = wide ? 20 : 12, next = wide ? 8 : 4;
+    const std::size_t head = wide ? 8 : 2;
+    if (at > length_ || length_ - at < head) refuse("ends within a directory of its pages");
+    bytes->read(at, std::span(count).first(head));
+    std::uint64_t entries = 0;
+    for (std::size_t n = 0; n < head; ++n)
+      entries = entries << 8 | static_cast<unsigned char>(count[is_big() ? n : head - 1 - n]);
+    if (entries > length_ / entry || length_ - at < head + entries * entry + next)
+      refuse("ends within a directory of its pages: truncated");
+  }
   void check_walk() {  // next() is false at the end and at damage
     if (!said_.empty()) refuse("has a page that cannot be read");
   }
@@ -276,6 +293,7 @@ std::unique_ptr<VolumeSource> open_long_imagej(TiffFile& tiff, VolumeHead head, 
 void add_pages(const std::filesystem::path& file, std::vector<PictureSlice>& slices) {
   TiffFile tiff(file);
   do {
+    tiff.check_directory();
     slices.push_back({file, tiff.directory()});
     if (slices.size() > most_pages) tiff.refuse("has more than 1048576 pages");
   } while (tiff.next());

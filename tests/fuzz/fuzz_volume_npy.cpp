@@ -1,0 +1,10 @@
+// Any bytes as a file of this format: a volume of numbers or one line of refusal.
+#include "volume_input.h"
+
+namespace gonio::io::volumes {
+const VolumeFormat& npy();
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  return gonio::fuzz::open_and_read(gonio::io::volumes::npy(), bytes, size);
+}
