@@ -53,8 +53,10 @@ struct ContourWish {
 };
 
 // Positions in index coordinates (voxel centres at integers), single precision; normals unit, from the volume's
-// gradient at the vertex (central differences, trilinear), pointing to smaller values: outwards. Counter-clockwise seen
-// from outside where the volume's axes are right-handed; the caller turns them where they are not.
+// gradient at the vertex (sheet_vertex.h), pointing to smaller values: outwards, in index coordinates too (where
+// spacings differ, divide each component by its axis's spacing and normalise). At the border's caps, those of the
+// crossings. Counter-clockwise seen from outside where the volume's axes are right-handed; the caller turns them where
+// they are not.
 struct Contour {
   std::vector<std::array<float, 3>> positions;
   std::vector<std::array<float, 3>> normals;
