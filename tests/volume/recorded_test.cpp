@@ -44,7 +44,7 @@ TEST(RecordedVolume, EngineBlock) {
   const tests::Soundness found = tests::soundness(surface.positions, surface.triangles);
   EXPECT_TRUE(found.sound()) << found.text();
   const double inner = tests::area(within_border(surface, *engine));
-  EXPECT_NEAR(inner / 222858, 1, 0.05);
+  EXPECT_NEAR(inner / 222858, 1, 0.01);
   RecordProperty("area_within_border", std::to_string(inner));
   RecordProperty("triangles", std::to_string(surface.triangles.size()));
 }
@@ -71,7 +71,7 @@ TEST(RecordedVolume, Tooth) {
   EXPECT_EQ(components(*tooth, 193, Connectivity::six).list.size(), 2u);
   const Contour surface = sound_contour(*tooth, 128.5);
   const double inner = tests::area(within_border(surface, *tooth));
-  EXPECT_NEAR(inner / 43731, 1, 0.05);
+  EXPECT_NEAR(inner / 43731, 1, 0.01);
   RecordProperty("area_within_border", std::to_string(inner));
   RecordProperty("triangles", std::to_string(surface.triangles.size()));
 }
@@ -86,7 +86,7 @@ TEST(RecordedVolume, BostonTeapot) {
   EXPECT_EQ(all.list[0].voxels, 644678u);
   const Contour surface = sound_contour(*teapot, 40.5);
   const double inner = tests::area(within_border(surface, *teapot));
-  EXPECT_NEAR(inner / 268737, 1, 0.05);
+  EXPECT_NEAR(inner / 268737, 1, 0.01);
   RecordProperty("area_within_border", std::to_string(inner));
   RecordProperty("triangles", std::to_string(surface.triangles.size()));
 }
