@@ -13,8 +13,8 @@ namespace gonio::mesh {
 namespace {
 
 constexpr std::array<double, 7> radii{1.5, 2.0, 2.7, 3.6, 4.8, 6.4, 8.5};  // mean edges
-constexpr double gamma_of_intervals = 2.0;
-constexpr double misfit_sd = 3;           // by how many sd the residual's mean square may exceed the noise
+constexpr double gamma_of_intervals = 3.0;
+constexpr double misfit_sd = 6;           // by how many sd the residual's mean square may exceed the noise
 constexpr double noise_radius = 3;        // mean edges
 constexpr double correlated_within = 2.2;
 constexpr std::size_t noise_samples = 3000;
