@@ -15,9 +15,8 @@ namespace marker {
 namespace {
 
 constexpr double same_value = 0.15;    // of the step from air: values that agree so well are of one material
-constexpr double own_share = 0.05;     // of the directions: a sphere that goes on into its like so far grew there
+constexpr double own_share = 0.06;     // of the directions: a sphere that goes on into its like so far grew there
 constexpr double least_flatness = 0.12;
-// No step where the sphere's surface would be: what is there is not another body, however thin.
 
 std::string say(const char* format, double a, double b = 0, double c = 0) {
   char text[200];
@@ -44,46 +43,51 @@ double flatness_of(const Sphere& s) {
 
 }  // namespace
 
-Evidence evidence(const Sphere& s, const Crop& crop, Vec3 scale, const std::vector<Candidate>& others) {
+Evidence evidence(const Sphere& s, const Crop& crop, Vec3 scale) {
   Evidence e;
-  std::vector<double> air, shell, core;
-  for (const RadialEdge& edge : s.edges) air.push_back(edge.air);
-  e.air = middle_of(air);
-  const double depth = std::max(0.45 * s.radius, s.radius - 2.2 * s.width - 1);
-  std::size_t unseen = 0, like = 0;
-  for (std::size_t n = 0; n < s.asked.size(); ++n)
-    for (double r = 0; r < depth; r += 0.5) {
-      const double v = crop.block.at(divided(s.centre + s.asked[n] * r, scale));
+  std::vector<double> without, shell, core;
+  const double width = s.edges.empty() ? 0.85 : s.width, depth = std::max(0.45 * s.radius, s.radius - 2.2 * width - 1);
+  const auto at = [&](Vec3 d, double r) { return crop.block.at(divided(s.centre + d * r, scale)); };
+  for (std::size_t n = 0; n < s.asked.size(); ++n) {
+    if (const double v = at(s.asked[n], s.radius + 2.5); std::isfinite(v)) without.push_back(v);
+    for (double r = 0; r < depth; r += depth / 12) {
+      const double v = at(s.asked[n], r);
       if (!std::isfinite(v)) continue;
-      // By volume: a radius speaks for r^2.
       if (n % 4 == 0 && r < 0.4 * s.radius) core.push_back(v);
       if (r > 0.7 * depth) shell.push_back(v);
     }
+  }
+  std::ranges::sort(without);
+  if (!without.empty()) e.air = without[without.size() / 5];  // air is what lies lowest round it
   e.within = middle_of(shell);
   e.centre = middle_of(core);
-  const double slack = same_value * (e.within - e.air) + 2.5 * s.noise;
-  for (std::size_t n = 0; n < s.asked.size(); ++n) {
-    if (s.covered[n]) continue;
-    const Vec3 far = s.centre + s.asked[n] * (s.radius + 3);
-    if (!std::isfinite(crop.block.at(divided(far, scale)))) {
-      ++unseen;
-      continue;
-    }
-    if (std::ranges::any_of(others, [&](const Candidate& o) { return norm(o.centre - far) < std::abs(o.radius) + 1; }))
-      continue;
-    bool goes_on = true;
-    for (double x = -1.2; x <= 0.9; x += 0.5)
-      goes_on = goes_on && std::abs(crop.block.at(divided(s.centre + s.asked[n] * (s.radius + x), scale)) - e.within) < slack;
-    like += goes_on ? 1 : 0;
-  }
-  const double all = static_cast<double>(std::max<std::size_t>(1, s.asked.size()));
-  e.unseen = static_cast<double>(unseen) / all;
-  e.grown = static_cast<double>(like) / all;
   e.flatness = s.edges.empty() ? 0 : flatness_of(s);
   return e;
 }
 
+double grown_share(const Sphere& s, const Evidence& e, const Crop& crop, Vec3 scale, const std::vector<Candidate>& others) {
+  const double slack = same_value * (e.within - e.air) + 2.5 * s.noise;
+  std::size_t like = 0;
+  for (std::size_t n = 0; n < s.asked.size(); ++n) {
+    if (s.covered[n]) continue;
+    const Vec3 beyond = s.centre + s.asked[n] * (s.radius + 2);
+    if (std::ranges::any_of(others, [&](const Candidate& o) { return norm(o.centre - beyond) < o.radius + 1; })) continue;
+    // No step where the sphere's surface would be, however thin what follows, and nothing denser behind: between air and
+    // something denser a smeared wall has any value.
+    bool goes_on = true;
+    for (double x = 1.3; x <= 3; x += 0.5)
+      goes_on = goes_on && !(crop.block.at(divided(s.centre + s.asked[n] * (s.radius + x), scale)) > e.within + slack);
+    for (double x = -1.2; x <= 0.9; x += 0.5)
+      goes_on = goes_on &&
+                std::abs(crop.block.at(divided(s.centre + s.asked[n] * (s.radius + x), scale)) - e.within) < slack;
+    like += goes_on ? 1 : 0;
+  }
+  return static_cast<double>(like) / static_cast<double>(std::max<std::size_t>(1, s.asked.size()));
+}
+
 std::string reason_against(const Sphere& s, const Evidence& e, const MarkerWish& wish) {
+  if (std::abs(e.centre - e.within) > 0.4 * std::abs(e.within - e.air))
+    return say("is hollow: %.4g in the middle, %.4g beneath the surface", e.centre, e.within);
   if (s.edges.size() < 12) return say("shows an edge in %.0f directions only (limit 12)", static_cast<double>(s.edges.size()));
   if (wish.radius && std::abs(s.radius - *wish.radius) > wish.radius_tolerance * *wish.radius)
     return say("radius %.2f is not the known %.2f within %.0f %%", s.radius, *wish.radius, 100 * wish.radius_tolerance);
@@ -95,8 +99,6 @@ std::string reason_against(const Sphere& s, const Evidence& e, const MarkerWish&
     return say("edges lie round a belt (least moment %.2f, limit %.2f): a tube or a ring", e.flatness, least_flatness);
   const double limit = std::max(0.25, 0.02 * s.radius) + 0.5 * s.edges[s.edges.size() / 2].sigma;
   if (s.rms > limit) return say("is not round: edges are off by %.2f voxel rms (limit %.2f)", s.rms, limit);
-  if (std::abs(e.centre - e.within) > 0.4 * std::abs(e.within - e.air))
-    return say("is hollow: %.4g in the middle, %.4g beneath the surface", e.centre, e.within);
   return {};
 }
 
@@ -117,6 +119,23 @@ struct Judged {
 
 bool grew(const Judged& j) {
   return j.evidence.grown > marker::own_share;
+}
+
+// Candidates from different cells may have come to rest in one place.
+constexpr const char* repeated = "the same again";
+void drop_repeated(std::vector<Judged>& all) {
+  for (std::size_t n = 0; n < all.size(); ++n)
+    for (std::size_t o = 0; o < n; ++o) {
+      const Sphere &a = all[n].sphere, &b = all[o].sphere;
+      if (all[o].why != repeated && norm(a.centre - b.centre) < 0.5 * std::min(a.radius, b.radius)) {
+        Judged& worse = a.cover() > b.cover() && !all[o].why.empty() ? all[o] : all[n];
+        worse.why = repeated;
+      }
+    }
+}
+// Of what nobody would take for a sphere nobody wants to read.
+bool worth_a_word(const Judged& j, const MarkerWish& wish) {
+  return j.why != repeated && (j.sphere.cover() > 0.6 * wish.least_cover || j.why.starts_with("is hollow"));
 }
 
 // Spheres that go on into their like are the object's own (knobs, rounded ends), if there are others that do not. Where
@@ -203,10 +222,16 @@ Markers markers(io::VolumeSource& source, const Contour& surface, double thresho
   };
   refine(marker::noise_within(spheres, crops, wish, {}), {});
   for (std::size_t n = 0; n < spheres.size(); ++n) {
-    std::vector<Candidate> others = spheres;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(n));
-    all[n].evidence = marker::evidence(all[n].sphere, crops[n], wish.scale, others);
+    all[n].evidence = marker::evidence(all[n].sphere, crops[n], wish.scale);
     all[n].why = marker::reason_against(all[n].sphere, all[n].evidence, wish);
+  }
+  drop_repeated(all);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    if (!all[n].why.empty()) continue;
+    std::vector<Candidate> others;
+    for (std::size_t o = 0; o < all.size(); ++o)
+      if (o != n && all[o].why.empty()) others.push_back({all[o].sphere.centre, all[o].sphere.radius});
+    all[n].evidence.grown = marker::grown_share(all[n].sphere, all[n].evidence, crops[n], wish.scale, others);
   }
   judge_together(all, wish);
   // The noise of what turned out to be markers, and their radius if it is the known one.
@@ -221,7 +246,7 @@ Markers markers(io::VolumeSource& source, const Contour& surface, double thresho
   for (const Judged& j : all)
     if (j.why.empty())
       result.found.push_back(stated(j, wish.scale));
-    else
+    else if (worth_a_word(j, wish))
       result.refused.push_back({divided(j.sphere.centre, wish.scale), j.sphere.radius, j.why});
   const auto order = [](const auto& a, const auto& b) {
     return std::array{a.centre.z, a.centre.y, a.centre.x} < std::array{b.centre.z, b.centre.y, b.centre.x};

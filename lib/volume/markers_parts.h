@@ -100,13 +100,14 @@ Sphere refined(const Candidate& start, const Crop& crop, const NoiseModel& noise
 
 // What lies within and behind a sphere.
 struct Evidence {
-  double within = 0, centre = 0, air = 0;  // medians: of the ball, of its middle, of what lies round it
-  double grown = 0;   // share of directions in which the sphere's own material goes on beyond it
-  double unseen = 0;                       // share of directions that leave the volume
+  double within = 0, centre = 0, air = 0;  // beneath the surface, in the middle, round it
+  double grown = 0;                        // share of directions in which the sphere's own material goes on beyond it
   double flatness = 1;                     // least second moment of the directions with an edge; 1/3 for a whole sphere
 };
-// `others`: what goes on into one of them does not count.
-Evidence evidence(const Sphere& sphere, const Crop& crop, Vec3 scale, const std::vector<Candidate>& others);
+Evidence evidence(const Sphere& sphere, const Crop& crop, Vec3 scale);
+// Share of the directions in which the sphere's own material goes on beyond it, but into one of `others`.
+double grown_share(const Sphere& sphere, const Evidence& evidence, const Crop& crop, Vec3 scale,
+                   const std::vector<Candidate>& others);
 // Why it is no marker; empty where it may be one. What speaks of the others is judged elsewhere.
 std::string reason_against(const Sphere& sphere, const Evidence& evidence, const MarkerWish& wish);
 
