@@ -40,7 +40,8 @@ io::VolumeData balls(std::array<std::size_t, 3> size, const std::vector<Ball>& a
       noise, 0.3, seed, scale);
 }
 Markers found_in(const io::VolumeData& data, const MarkerWish& wish, double threshold = 0.55) {
-  return markers(*phantom::in_memory(data), phantom::rough_surface(data, threshold), threshold, wish);
+  const auto source = phantom::in_memory(data);
+  return markers(*source, contour(*source, {threshold}), threshold, wish);
 }
 void tell(const Markers& m) {
   for (const Marker& f : m.found)
