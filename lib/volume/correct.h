@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct CuppingField {
   std::vector<double> coefficients;  // of monomials x^a y^b z^c, a + b + c <= degree, x in [-1, 1] over the volume
   double before = 0, after = 0;      // sd of the material's slowly varying part, as a share of object - air
   double air = 0, object = 0;
+  double lowest = 1, highest = 1;    // over the material; nowhere else does the field go beyond them
   double at(const std::array<std::size_t, 3>& size, double i, double j, double k) const;  // 1 where there is none
 };
 CuppingField fit_cupping(io::VolumeSource& source, double air, double object, int degree = 4);
@@ -26,6 +28,9 @@ CuppingField fit_cupping(io::VolumeSource& source, double air, double object, in
 struct RingWish {
   double centre_i = 0, centre_j = 0;  // index coordinates
   std::size_t window = 21;            // voxels of radius
+  // Half-way between air and object: what lies within three voxels of this contour, such as a wall that stands round the
+  // centre, is no ring.
+  std::optional<double> threshold{};
 };
 
 enum class Denoise { none, anisotropic, non_local };
@@ -36,17 +41,17 @@ struct CorrectWish {
   double noise = 0;                  // sd of the noise, in values
   double strength = 1;
 };
-// Reads through; each slab with enough neighbours that seams do not show.
+// Reads through; each slab with enough neighbours that seams do not show: denoised in blocks of 16 slices, whoever reads
+// how many at once. Error(usage) where denoising is asked for and no noise is known.
 std::unique_ptr<io::VolumeSource> corrected(io::VolumeSource& source, const CorrectWish& wish);
 
 // What a correction did to edges: 10-90 % width before and after along the same normals, and how far the edges moved.
 struct EdgeChange {
   std::size_t edges = 0;
   double width_before_voxels = 0, width_after_voxels = 0;
-  double mean_shift_voxels = 0, sigma_mean_shift = 0, rms_shift_voxels = 0;
+  double mean_shift_voxels = 0, sigma_mean_shift = 0, rms_shift_voxels = 0;  // along the outward normal
 };
-// Edges of both volumes along the same normals, those of `before` at its threshold; `noise` is that of `before`. Edges that
-// either volume does not show are left out.
-EdgeChange edge_change(io::VolumeSource& before, io::VolumeSource& after, double threshold, double noise);
+// Walls thicker than the edge's reach (4 voxels), at up to 1500 places; none: edges == 0.
+EdgeChange edge_change(io::VolumeSource& before, io::VolumeSource& after, double air, double object, double noise);
 
 }  // namespace gonio::volume

@@ -43,6 +43,19 @@ double cupping_of(const CoarseField& field, const Sides& sides) {
   return rims > 0 && inners > 0 ? (rim / rims - inner / inners) / sides.step() : 0;
 }
 
+// Beyond the circle that all views have seen, scanners store a constant: neither air nor free of noise.
+void leave_out_padding(const Slab& slab, Flags& air) {
+  const std::size_t w = slab.width, h = slab.height;
+  const double radius = static_cast<double>(std::min(w, h)) / 2 - 2;
+  for (std::size_t at = 0, j = 0; at + w < air.size(); at += w, j = j + 1 < h ? j + 1 : 0)
+    for (std::size_t i = 0; i + 1 < w; ++i) {
+      const double x = static_cast<double>(i) - static_cast<double>(w - 1) / 2;
+      if (std::hypot(x, static_cast<double>(j) - static_cast<double>(h - 1) / 2) < radius) continue;
+      const float* v = slab.values.data() + at + i;
+      if (v[0] == v[1] || v[0] == v[w]) air[at + i] = 0;
+    }
+}
+
 }  // namespace
 
 Look look(io::VolumeSource& source) {
@@ -63,6 +76,7 @@ Look look(io::VolumeSource& source) {
     Flags air(means.size()), object(means.size());
     for (std::size_t v = 0; v < means.size(); ++v)
       air[v] = sides.surely_air(means[v]), object[v] = sides.surely_object(means[v]);
+    leave_out_padding(slab, air);
     noise.take(slab, air, object);
     take_patches(slab, sides, patches);
     air = eroded(slab, std::move(air), 4);

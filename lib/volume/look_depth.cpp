@@ -49,7 +49,8 @@ Vec3 CoarseField::centre_index(std::size_t cell) const {
 CoarseField coarse_field(io::VolumeSource& source, const Sides& sides) {
   const auto& size = source.head().size;
   CoarseField field;
-  while (static_cast<double>(source.head().voxels()) / std::pow(static_cast<double>(field.f), 3) > most_cells) ++field.f;
+  while (static_cast<double>(source.head().voxels()) / std::pow(static_cast<double>(field.f), 3) > most_cells)
+    ++field.f;
   const std::size_t f = field.f;
   for (std::size_t a = 0; a < 3; ++a) field.cells[a] = size[a] / f;  // an incomplete cell at the end is left out
   const auto& n = field.cells;
@@ -78,7 +79,8 @@ CoarseField coarse_field(io::VolumeSource& source, const Sides& sides) {
     });
   });
   const std::size_t slice = n[0] * n[1];
-  parallel_for(0, n[1] * n[2], [&](std::size_t l) { sweep(field.depth.data() + l * n[0], 1, n[0]); }, 64);
+  parallel_for(
+      0, n[1] * n[2], [&](std::size_t l) { sweep(field.depth.data() + l * n[0], 1, n[0]); }, 64);
   parallel_for(0, n[2], [&](std::size_t k) {
     for (std::size_t i = 0; i < n[0]; ++i) sweep(field.depth.data() + k * slice + i, n[0], n[1]);
   });

@@ -52,8 +52,8 @@ void take_patches(const Slab& slab, const Sides& sides, Thinned<PatchPoint>& int
     for (std::size_t j = patch_half; j + patch_half < h; ++j)
       for (std::size_t i = patch_half; i + patch_half < w; ++i) {
         const float* v = slab.values.data() + k * slice + j * w + i;
-        if (!(v[0] >= half) || (v[1] >= half && v[-1] >= half && v[ws] >= half && v[-ws] >= half && v[ss] >= half &&
-                                v[-ss] >= half))
+        if (!(v[0] >= half) ||
+            (v[1] >= half && v[-1] >= half && v[ws] >= half && v[-ws] >= half && v[ss] >= half && v[-ss] >= half))
           continue;
         if (!into.wants()) continue;
         Vec3 slope{};  // least squares over 5 x 5 x 5
@@ -73,11 +73,19 @@ void take_patches(const Slab& slab, const Sides& sides, Thinned<PatchPoint>& int
               const Vec3 d{static_cast<double>(a), static_cast<double>(b), static_cast<double>(c)};
               const double along = dot(d, patch.normal);
               if (std::abs(along) > reach || dot(d, d) - along * along > lateral * lateral) continue;
-              patch.voxels.push_back({static_cast<float>(a), static_cast<float>(b), static_cast<float>(c),
-                                      v[c * ss + b * ws + a]});
+              patch.voxels.push_back(
+                  {static_cast<float>(a), static_cast<float>(b), static_cast<float>(c), v[c * ss + b * ws + a]});
             }
         into.add(std::move(patch));
       }
+}
+
+void refill(const Slab& slab, PatchPoint& patch) {
+  const auto at = [](double middle, float off) { return static_cast<std::size_t>(std::lround(middle + off)); };
+  for (auto& v : patch.voxels) {
+    const float* plane = slab.slice(std::lround(patch.at.z + v[2]));
+    v[3] = plane[at(patch.at.y, v[1]) * slab.width + at(patch.at.x, v[0])];
+  }
 }
 
 PatchFit fitted(const PatchPoint& patch, const Sides& sides, double noise) {
@@ -100,7 +108,8 @@ PatchFit fitted(const PatchPoint& patch, const Sides& sides, double noise) {
 
 std::vector<PatchFit> all_fitted(const std::vector<PatchPoint>& patches, const Sides& sides, double noise) {
   std::vector<PatchFit> fits(patches.size());
-  parallel_for(0, patches.size(), [&](std::size_t k) { fits[k] = fitted(patches[k], sides, noise); }, 16);
+  parallel_for(
+      0, patches.size(), [&](std::size_t k) { fits[k] = fitted(patches[k], sides, noise); }, 16);
   return fits;
 }
 

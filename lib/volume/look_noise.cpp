@@ -1,5 +1,5 @@
-// Noise: deviations from the mean of a cube round a voxel, where the cube and a margin of a voxel surely are air or surely
-// object. A cube of 7 voxels where there is room, else of 3; the voxel's own share in the mean is put back.
+// Noise: deviations from the mean of a cube round a voxel, where the cube and a margin of a voxel surely are air or
+// surely object. A cube of 7 voxels where there is room, else of 3; the voxel's own share in the mean is put back.
 #include <cmath>
 
 #include "volume/look_parts.h"
@@ -16,7 +16,8 @@ constexpr std::size_t enough_residuals = 3000, most_residuals = 1 << 18;
 }  // namespace
 
 NoiseProbe::NoiseProbe() {
-  for (std::size_t t = 0; t < tiers_of_noise.size(); ++t) air_.emplace_back(most_residuals), object_.emplace_back(most_residuals);
+  for (std::size_t t = 0; t < tiers_of_noise.size(); ++t)
+    air_.emplace_back(most_residuals), object_.emplace_back(most_residuals);
 }
 
 void NoiseProbe::take(const Slab& slab, const Flags& air, const Flags& object) {
@@ -53,6 +54,7 @@ void NoiseProbe::finish(Look& look) {
       if (tier.all().size() >= enough_residuals) return tier.all();
     for (auto& tier : tiers)
       if (tier.all().size() >= 50) return tier.all();
+    tiers.back().all().clear();  // too few to say anything
     return tiers.back().all();
   };
   const auto here = [](const std::vector<Residual>& residuals) {

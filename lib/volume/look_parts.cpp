@@ -14,7 +14,8 @@ template <class T, class Body>
 void along_lines(const Slab& slab, std::vector<T>& values, int axis, const Body& body) {
   const std::size_t w = slab.width, h = slab.height, slice = w * h, depth = values.size() / slice;
   if (axis == 0)
-    parallel_for(0, depth * h, [&](std::size_t l) { body(values.data() + l * w, std::size_t{1}, w); }, 64);
+    parallel_for(
+        0, depth * h, [&](std::size_t l) { body(values.data() + l * w, std::size_t{1}, w); }, 64);
   if (axis == 1)
     parallel_for(0, depth, [&](std::size_t k) {
       for (std::size_t i = 0; i < w; ++i) body(values.data() + k * slice + i, w, h);

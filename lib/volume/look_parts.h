@@ -1,5 +1,5 @@
-// Pieces that look() and the corrections are made of: which voxels surely are air or object, slabs to take figures from,
-// robust scales, and the volume on a coarse grid with the depth of every cell below the object's surface.
+// Pieces that look() and the corrections are made of: which voxels surely are air or object, slabs to take figures
+// from, robust scales, and the volume on a coarse grid with the depth of every cell below the object's surface.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -64,8 +64,8 @@ class Thinned {
 struct CoarseField {
   std::size_t f = 1;
   std::array<std::size_t, 3> cells{};
-  std::vector<float> mean;   // of the voxels
-  std::vector<float> depth;  // voxels below the surface of what surely is object; 0: not in it
+  std::vector<float> mean;                    // of the voxels
+  std::vector<float> depth;                   // voxels below the surface of what surely is object; 0: not in it
   Vec3 centre_index(std::size_t cell) const;  // index coordinates
 };
 CoarseField coarse_field(io::VolumeSource& source, const Sides& sides);
@@ -86,6 +86,8 @@ struct PatchFit {
 };
 // Of voxels at a surface in the slab; needs a margin of 6.
 void take_patches(const Slab& slab, const Sides& sides, Thinned<PatchPoint>& into);
+// The voxels of a patch that was taken elsewhere, from a slab that holds its middle.
+void refill(const Slab& slab, PatchPoint& patch);
 PatchFit fitted(const PatchPoint& patch, const Sides& sides, double noise);
 std::vector<PatchFit> all_fitted(const std::vector<PatchPoint>& patches, const Sides& sides, double noise);
 

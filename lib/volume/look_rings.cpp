@@ -41,11 +41,11 @@ SliceSums rings_of_slice(const Slab& slab, std::size_t at, const Flags& flags) {
     for (std::size_t s = 0; s < 2; ++s) {
       for (std::size_t near = r - 1; near <= r + 1; ++near) least = std::min(least, count[near][s]);
       if (least < 8) break;
-      bend[s] = sum[r][s] / count[r][s] -
-                (sum[r - 1][s] / count[r - 1][s] + sum[r + 1][s] / count[r + 1][s]) / 2;
+      bend[s] = sum[r][s] / count[r][s] - (sum[r - 1][s] / count[r - 1][s] + sum[r + 1][s] / count[r + 1][s]) / 2;
     }
     if (least < 8) continue;
-    result.products += least * bend[0] * bend[1] / 1.5;  // the second difference of independent rings has 1.5 times theirs
+    result.products +=
+        least * bend[0] * bend[1] / 1.5;  // the second difference of independent rings has 1.5 times theirs
     result.weights += least;
   }
   return result;
@@ -106,8 +106,10 @@ double RingProbe::variance() const {
 
 void StreakProbe::take(const Slab& slab, const std::vector<float>& means, const Flags& deep_air, const Sides& sides) {
   const std::size_t w = slab.width, h = slab.height, slice = w * h;
-  const double radius = static_cast<double>(std::min(w, h)) / 2 - 3, apart = std::max(5.0, 0.04 * static_cast<double>(w));
-  std::vector<std::array<std::array<double, 3>, 2>> sums(slab.count);  // count, sum, squares within and outside the hull
+  const double radius = static_cast<double>(std::min(w, h)) / 2 - 3,
+               apart = std::max(5.0, 0.04 * static_cast<double>(w));
+  std::vector<std::array<std::array<double, 3>, 2>> sums(
+      slab.count);  // count, sum, squares within and outside the hull
   parallel_for(0, slab.count, [&](std::size_t k) {
     const std::size_t base = (slab.margin + k) * slice;
     const auto hull = hull_of(slab, means.data() + base, sides.half());

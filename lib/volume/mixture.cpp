@@ -43,7 +43,6 @@ Bins bins_of(const Histogram& h) {
   for (std::size_t b = first; b < last; b += together) {
     double sum = 0;
     for (std::size_t k = b; k < std::min(b + together, last); ++k) sum += static_cast<double>(h.counts[k]);
-    if (sum == 0) continue;
     bins.at.push_back(h.low + width * (static_cast<double>(b) + 0.5 * static_cast<double>(together)));
     bins.weight.push_back(sum / bins.voxels);
   }
@@ -78,6 +77,7 @@ void improve(Model& m, const Bins& bins) {
   std::vector<double> weight(all, 0.0), sum(k, 0.0), squares(k, 0.0), p(all);
   double likelihood = 0;
   for (std::size_t b = 0; b < bins.at.size(); ++b) {
+    if (bins.weight[b] == 0) continue;
     double total = 1e-300;
     for (std::size_t c = 0; c < all; ++c) total += p[c] = density(m, c, bins.at[b]);
     likelihood += bins.weight[b] * std::log(total);
@@ -127,37 +127,6 @@ Model started(const Bins& bins, std::vector<double> means) {
   return m;
 }
 
-void iterate(Model& m, const Bins& bins) {
-  double before = -HUGE_VAL;
-  for (int step = 0; step < 400; ++step) {
-    improve(m, bins);
-    if (step > 10 && m.log_likelihood - before < 1e-9) break;
-    before = m.log_likelihood;
-  }
-}
-
-// From values spread evenly, and from even shares of the voxels that are not of the largest heap.
-Model best_model(const Bins& bins, std::size_t k) {
-  std::vector<double> even, shares;
-  const double low = bins.at.front(), high = bins.at.back();
-  for (std::size_t c = 0; c < k; ++c)
-    even.push_back(low + (high - low) * (static_cast<double>(c) + (k == 1 ? 0.5 : 0)) / std::max(1.0, double(k) - 1));
-  double sum = 0;
-  for (const double w : bins.weight) sum += std::sqrt(w);
-  double done = 0;
-  for (std::size_t b = 0; b < bins.at.size() && shares.size() < k; ++b)
-    if ((done += std::sqrt(bins.weight[b])) >= sum * (static_cast<double>(shares.size()) + 0.5) / double(k))
-      shares.push_back(bins.at[b]);
-  while (shares.size() < k) shares.push_back(high);
-  Model best;
-  for (const auto& start : {even, shares}) {
-    Model m = started(bins, start);
-    iterate(m, bins);
-    if (best < m) best = m;
-  }
-  return best;
-}
-
 Mixture mixture_of(const Model& m, const Bins& bins) {
   Mixture mixture;
   const double facts = bins.voxels / voxels_per_fact;
@@ -186,25 +155,131 @@ bool is_of_separate_materials(const Mixture& mixture) {
   return true;
 }
 
+// A heap of the histogram: where, how wide (to 60 % of its height on the steeper side: a standard deviation), and by
+// which factor of its height one must descend from it to reach a higher one.
+struct Heap {
+  std::size_t bin;
+  double sd, prominence;
+};
+std::vector<Heap> heaps_of(const Bins& bins) {
+  const auto n = static_cast<std::ptrdiff_t>(bins.at.size());
+  const double wide = std::max(0.7, static_cast<double>(n) / 200);
+  const auto reach = static_cast<std::ptrdiff_t>(3 * wide) + 1;
+  std::vector<double> smooth(bins.at.size());
+  for (std::ptrdiff_t b = 0; b < n; ++b) {
+    double sum = 0, weights = 0;
+    for (std::ptrdiff_t c = std::max<std::ptrdiff_t>(0, b - reach); c <= std::min(n - 1, b + reach); ++c) {
+      const double z = static_cast<double>(c - b) / wide, w = std::exp(-0.5 * z * z);
+      sum += w * bins.weight[static_cast<std::size_t>(c)], weights += w;
+    }
+    smooth[static_cast<std::size_t>(b)] = sum / weights + 0.1 / bins.voxels;
+  }
+  std::vector<Heap> heaps;
+  for (std::size_t b = 0; b < smooth.size(); ++b) {
+    if ((b > 0 && smooth[b] < smooth[b - 1]) || (b + 1 < smooth.size() && smooth[b] <= smooth[b + 1])) continue;
+    double prominence = HUGE_VAL, width = HUGE_VAL;
+    for (const std::ptrdiff_t step : {std::ptrdiff_t{-1}, std::ptrdiff_t{1}}) {
+      double lowest = smooth[b];
+      std::ptrdiff_t c = static_cast<std::ptrdiff_t>(b);
+      bool higher = false, narrow = false;
+      for (; c >= 0 && c < n && !higher; c += step) {
+        const double here = smooth[static_cast<std::size_t>(c)];
+        if (!narrow && here < 0.607 * smooth[b])
+          width = std::min(width, std::abs(static_cast<double>(c) - static_cast<double>(b))), narrow = true;
+        lowest = std::min(lowest, here), higher = here > smooth[b];
+      }
+      if (higher) prominence = std::min(prominence, smooth[b] / lowest);
+    }
+    heaps.push_back({b, bins.width * std::max(0.5, width == HUGE_VAL ? 1 : width), prominence});
+  }
+  std::sort(heaps.begin(), heaps.end(), [](const Heap& a, const Heap& b) { return a.prominence > b.prominence; });
+  return heaps;
+}
+
+// From the k most prominent heaps; empty where there are fewer.
+Model started_on_heaps(const Bins& bins, std::size_t k) {
+  std::vector<Heap> heaps = heaps_of(bins);
+  Model m;
+  if (heaps.size() < k) return m;
+  heaps.resize(k);
+  std::sort(heaps.begin(), heaps.end(), [](const Heap& a, const Heap& b) { return a.bin < b.bin; });
+  double covered = 0;
+  for (const Heap& h : heaps) {
+    double share = 0;
+    for (std::size_t b = 0; b < bins.at.size(); ++b)
+      if (std::abs(bins.at[b] - bins.at[h.bin]) < 2 * h.sd) share += bins.weight[b];
+    m.mean.push_back(bins.at[h.bin]), m.sd.push_back(h.sd), m.share.push_back(std::max(1e-6, 0.8 * share));
+    covered += m.share.back();
+  }
+  m.mixed.assign(k - 1, std::max(1e-6, (1 - covered) / static_cast<double>(k)));
+  return m;
+}
+
+void iterate(Model& m, const Bins& bins) {
+  double before = -HUGE_VAL;
+  for (int step = 0; step < 400; ++step) {
+    improve(m, bins);
+    if (step > 10 && m.log_likelihood - before < 1e-9) break;
+    before = m.log_likelihood;
+  }
+}
+
+// One more than asked for, the one with the fewest voxels left out again: what lies between materials is mixed.
+Model one_left_out(const Bins& bins, std::size_t k) {
+  Model more = started_on_heaps(bins, k + 1);
+  if (more.mean.empty()) return more;
+  iterate(more, bins);
+  const auto least = std::min_element(more.share.begin(), more.share.end()) - more.share.begin();
+  for (auto* v : {&more.mean, &more.sd, &more.share}) v->erase(v->begin() + least);
+  more.mixed.assign(k - 1, 0.1 / static_cast<double>(k));
+  return more;
+}
+
+// From values spread evenly, from even shares of the square roots of the counts, and from the heaps.
+Model best_model(const Bins& bins, std::size_t k) {
+  std::vector<double> even, shares;
+  const double low = bins.at.front(), high = bins.at.back(), n = static_cast<double>(k);
+  for (std::size_t c = 0; c < k; ++c)
+    even.push_back(low + (high - low) * (static_cast<double>(c) + (k == 1 ? 0.5 : 0)) / std::max(1.0, n - 1));
+  double sum = 0, done = 0;
+  for (const double w : bins.weight) sum += std::sqrt(w);
+  for (std::size_t b = 0; b < bins.at.size() && shares.size() < k; ++b)
+    if ((done += std::sqrt(bins.weight[b])) >= sum * (static_cast<double>(shares.size()) + 0.5) / n)
+      shares.push_back(bins.at[b]);
+  while (shares.size() < k) shares.push_back(high);
+  std::vector<Model> starts{started(bins, even), started(bins, shares), started_on_heaps(bins, k)};
+  Model best, best_sound;
+  starts.push_back(one_left_out(bins, k));
+  for (Model& m : starts) {
+    if (m.mean.empty()) continue;
+    iterate(m, bins);
+    if (best < m) best = m;
+    if (best_sound < m && is_of_separate_materials(mixture_of(m, bins))) best_sound = m;
+  }
+  return best_sound.mean.empty() ? best : best_sound;
+}
+
 }  // namespace
 
 Mixture materials(const Histogram& histogram, int count) {
   if (count < 1 || count > 16)
     throw Error(Exit::usage, "materials", std::to_string(count) + " asked (1 to 16 can be told apart)");
   const Bins bins = bins_of(histogram);
-  if (bins.at.size() < static_cast<std::size_t>(count))
+  const auto values = std::count_if(bins.weight.begin(), bins.weight.end(), [](double w) { return w > 0; });
+  if (values < count)
     throw Error(Exit::data, "histogram",
-                std::to_string(count) + " materials asked, but " + std::to_string(bins.at.size()) + " value" +
-                    (bins.at.size() == 1 ? " occurs" : "s occur"),
+                std::to_string(count) + " materials asked, but " + std::to_string(values) + " value" +
+                    (values == 1 ? " occurs" : "s occur"),
                 "a volume of one value has no surface: check the scan, or the window in which it was exported");
   return mixture_of(best_model(bins, static_cast<std::size_t>(count)), bins);
 }
 
 Mixture materials(const Histogram& histogram) {
-  const Bins bins = bins_of(histogram);
-  if (bins.at.size() < 2) return materials(histogram, 1);
+  const auto values = static_cast<std::size_t>(
+      std::count_if(histogram.counts.begin(), histogram.counts.end(), [](std::uint64_t n) { return n > 0; }));
+  if (values < 2) return materials(histogram, 1);
   Mixture best = materials(histogram, 2);
-  for (int count = 3; count <= 5 && bins.at.size() >= static_cast<std::size_t>(2 * count); ++count) {
+  for (int count = 3; count <= 5 && values >= static_cast<std::size_t>(2 * count); ++count) {
     const Mixture more = materials(histogram, count);
     if (is_of_separate_materials(more) && (more.bic < best.bic || !is_of_separate_materials(best))) best = more;
   }

@@ -33,7 +33,8 @@ void correct(Work& work) {
   io::VolumeSource* before = work.volume;
   work.derived.push_back(volume::corrected(*work.volume, wish));
   work.volume = work.derived.back().get();
-  const volume::EdgeChange change = volume::edge_change(*before, *work.volume, work.look.otsu, work.look.noise_air);
+  const volume::EdgeChange change = volume::edge_change(*before, *work.volume, work.look.mixture.materials.front().mean,
+                                                        work.look.mixture.materials.back().mean, work.look.noise_air);
   figures["edges"] = static_cast<double>(change.edges);
   figures["edge_width_before_voxels"] = change.width_before_voxels;
   figures["edge_width_after_voxels"] = change.width_after_voxels;
