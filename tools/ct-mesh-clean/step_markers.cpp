@@ -25,8 +25,8 @@ void find_markers(Work& work) {
   if (!work.asked.find_markers || !work.markers.found.empty()) return;  // the threshold may have asked already
   const double threshold = marker_threshold(work);
   const volume::Contour surface =
-      volume::contour(*work.file, {.threshold = threshold, .inside = volume::Connectivity::six});
-  volume::MarkerWish wish{.noise = work.look.noise_air, .seed = work.call.seed};
+      volume::contour(*work.file, {.threshold = threshold, .inside = volume::Connectivity::twenty_six});
+  volume::MarkerWish wish{.seed = work.call.seed};  // the noise within the markers is not that of the air
   wish.scale = work.spacing_m / work.voxel_m();
   if (work.asked.marker_radius_m) wish.radius = *work.asked.marker_radius_m / work.voxel_m();
   work.markers = volume::markers(*work.file, surface, threshold, wish);
