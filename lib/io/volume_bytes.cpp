@@ -213,6 +213,7 @@ std::unique_ptr<ByteSource> bytes_of_files(std::vector<DataFile> files, std::uin
 }
 
 std::string beginning_of_file(const std::filesystem::path& path, std::size_t most) {
+  most = static_cast<std::size_t>(std::min<std::uint64_t>(most, length_of_file(path)));
   const OpenFile file(path);
   std::string bytes(most, '\0');
   std::size_t got = 0;

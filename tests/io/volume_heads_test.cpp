@@ -163,6 +163,17 @@ TEST_F(VolumeHeads, BrokenNiftiIsRefusedInALine) {
               HasSubstr("bad: has its samples in an .img, which is not beside it"));
 }
 
+TEST_F(VolumeHeads, NiftiOfTwoFiles) {
+  const std::string bytes = stored<std::uint8_t>(ramp_);
+  const auto head = file("pair.hdr", nifti({{344, std::string("ni1\0", 4)}, {108, f32(3)}}));
+  file("pair.img", "abc" + bytes);
+  const VolumeData volume = read_volume(head);
+  EXPECT_EQ(volume.values, ramp_);
+  EXPECT_EQ(volume.head.files.back().filename(), "pair.img");
+  file("pair.img", "abc" + bytes.substr(1));
+  EXPECT_THAT(volume_refusal(head), HasSubstr("pair.img: has 59 bytes of data where 60 are promised"));
+}
+
 TEST_F(VolumeHeads, RawSamplesAreWhatTheWishSays) {
   const std::string bytes = "head" + stored<std::uint16_t>(ramp_, true);
   const VolumeWish wish{.size = {{5, 4, 3}}, .type = VoxelType::u16, .big_endian = true, .skip_bytes = 4};

@@ -322,6 +322,13 @@ TEST(VolumeNrrd, EngineBlockAsPublished) {
     return std::count_if(volume.values.begin(), volume.values.end(), [&](float v) { return v > limit; });
   };
   EXPECT_EQ(above(engine, 71), 1156699);
+  // NumPy 1.24 on the same file: sum, mean and some of the histogram.
+  std::array<std::size_t, 256> histogram{};
+  for (const float v : engine.values) ++histogram.at(static_cast<std::size_t>(v));
+  EXPECT_NEAR(std::accumulate(engine.values.begin(), engine.values.end(), 0.0) / 8388608, 187475057.0 / 8388608, 1e-9);
+  const std::pair<std::size_t, std::size_t> counts[] = {
+      {0, 3190248}, {50, 3786}, {100, 4536}, {200, 1288}, {255, 25642}};
+  for (const auto& [value, count] : counts) EXPECT_EQ(histogram[value], count) << value;
   EXPECT_EQ(above(engine, 179), 87629);
 }
 

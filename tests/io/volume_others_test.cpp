@@ -32,8 +32,8 @@ void expect_columns(const std::optional<Mat3>& axes, std::array<double, 9> rows)
 }
 
 TEST(VolumesOfOthers, HaveTheirValues) {
-  for (const char* name : {"c.npy", "fortran.npy", "nibabel_big.nii", "imagej.tif", "tiles.tif", "pillow.tif",
-                           "teem.nrrd", "teem_ascii.nrrd", "itk.mha", "itk.nrrd"}) {
+  for (const char* name : {"c.npy", "fortran.npy", "nibabel_big.nii", "imagej.tif", "imagej_long.tif", "dicom",
+                           "tiles.tif", "pillow.tif", "teem.nrrd", "teem_ascii.nrrd", "itk.mha", "itk.nrrd"}) {
     SCOPED_TRACE(name);
     const VolumeData volume = read_volume(written(name));
     EXPECT_EQ(volume.head.size, (std::array<std::size_t, 3>{5, 4, 3}));
@@ -82,6 +82,15 @@ TEST(VolumesOfOthers, ItksPlaces) {
   }
 }
 
+TEST(VolumesOfOthers, DcmtksSeries) {
+  const VolumeHead head = read_volume(written("dicom")).head;
+  EXPECT_EQ(head.format, "DICOM, JPEG lossless");
+  EXPECT_EQ(head.value, "hounsfield");
+  EXPECT_EQ(head.files[0].filename(), "slice7.dcm");
+  expect_near(head.spacing_m, {0.25e-3, 0.25e-3, 0.5e-3}, 1e-12);
+  expect_near(head.origin_m, {0.01, 0.02, 0.03}, 1e-12);
+}
+
 TEST(VolumesOfOthers, TeemsUnits) {
   const VolumeHead head = read_volume(written("teem.nrrd")).head;
   expect_near(head.spacing_m, {0.5e-6, 0.5e-6, 0.25e-6}, 1e-15);
@@ -95,6 +104,7 @@ TEST(VolumesOfOthers, TiffsOfMicroscopy) {
   expect_near(head.spacing_m, {0.25e-3, 0.25e-3, 0.4e-3}, 1e-9);
   EXPECT_EQ(read_volume(written("tiles.tif")).head.type, VoxelType::f32);
   EXPECT_FALSE(read_volume(written("tiles.tif")).head.spacing_m);
+  expect_near(read_volume(written("imagej_long.tif")).head.spacing_m, {0.25e-6, 0.25e-6, 0.4e-6}, 1e-12);
   EXPECT_THAT(volume_refusal(written("imagej.tif"), {.spacing_m = Vec3{1e-3, 1e-3, 1e-3}}),
               HasSubstr("states a spacing of 0.25 x 0.25 x 0.4 mm"));
 }
@@ -118,14 +128,22 @@ TEST(VolumesOfOthers, TheTeapotsAtlasAsCounted) {
   GONIO_NEEDS_DATA("ct/boston_teapot_atlas.png");
   const VolumeData teapot = read_volume(tests::data("ct/boston_teapot_atlas.png"), {.tiles = {{16, 16}}});
   EXPECT_EQ(teapot.head.size, (std::array<std::size_t, 3>{256, 256, 256}));
-  // The set's README: data in slices 2 to 175 alone.
-  std::size_t first = 256, last = 0;
-  for (std::size_t n = 0; n < teapot.values.size(); ++n)
-    if (teapot.values[n] > 40) first = std::min(first, n >> 16), last = std::max(last, n >> 16);
-  EXPECT_GE(first, 2u);
-  EXPECT_LE(last, 175u);
-  const auto above = std::count_if(teapot.values.begin(), teapot.values.end(), [](float v) { return v > 40; });
-  EXPECT_GT(above, 644678) << "the largest component at 40";
+  // NumPy and Pillow on the same file; the set's README: data in slices 2 to 175, and 644,678 voxels above 40 in the
+  // largest of 117 components.
+  std::size_t first = 256, last = 0, above = 0;
+  double sum = 0, row = 0, column = 0;
+  for (std::size_t n = 0; n < teapot.values.size(); ++n) {
+    if (teapot.values[n] > 0) first = std::min(first, n >> 16), last = std::max(last, n >> 16);
+    above += teapot.values[n] > 40;
+    sum += teapot.values[n];
+  }
+  for (std::size_t n = 0; n < 256; ++n) row += teapot.at(n, 120, 100), column += teapot.at(99, n, 57);
+  EXPECT_EQ(first, 2u);
+  EXPECT_EQ(last, 175u);
+  EXPECT_EQ(above, 656641u);
+  EXPECT_EQ(sum, 74626577);
+  EXPECT_EQ(row, 2918);
+  EXPECT_EQ(column, 1996);
 }
 
 }  // namespace

@@ -193,6 +193,15 @@ class TiffFile {
   TIFF* tiff_ = nullptr;
 };
 
+void check_same_page(const TiffPage& page, const TiffPage& first, const std::string& place) {
+  if (page == first) return;
+  const auto text = [](const TiffPage& p) {
+    return std::to_string(p.width) + " x " + std::to_string(p.height) + " " + name_of(p.type);
+  };
+  refuse_volume(place, "has a slice of " + text(page) + ", and the first one has " + text(first),
+                "leave out what is no slice of the volume");
+}
+
 // One slice: a page of a TIFF by the place of its directory, or a PNG (0).
 struct PictureSlice {
   std::filesystem::path file{};
@@ -233,12 +242,7 @@ class PictureStack : public VolumeSource {
       page = open_->page();
       if (page == expected) open_->read(page, stored_);
     }
-    if (page != expected)
-      refuse_volume(slice.file.string(),
-                    "has a slice of " + std::to_string(page.width) + " x " + std::to_string(page.height) + " " +
-                        name_of(page.type) + ", and the first one has " + std::to_string(expected.width) + " x " +
-                        std::to_string(expected.height) + " " + name_of(expected.type),
-                    "leave out what is no slice of the volume");
+    check_same_page(page, expected, slice.file.string());
   }
 
   std::vector<PictureSlice> slices_;
@@ -289,11 +293,12 @@ std::unique_ptr<VolumeSource> open_long_imagej(TiffFile& tiff, VolumeHead head, 
                        tiff.is_big());
 }
 
-// All pages of a TIFF; nothing is decoded.
-void add_pages(const std::filesystem::path& file, std::vector<PictureSlice>& slices) {
+// All pages of a TIFF, which must be like the first one; nothing is decoded.
+void add_pages(const std::filesystem::path& file, const TiffPage& first, std::vector<PictureSlice>& slices) {
   TiffFile tiff(file);
   do {
     tiff.check_directory();
+    check_same_page(tiff.page(), first, file.string());
     slices.push_back({file, tiff.directory()});
     if (slices.size() > most_pages) tiff.refuse("has more than 1048576 pages");
   } while (tiff.next());
@@ -311,9 +316,9 @@ std::unique_ptr<VolumeSource> open_stack(const std::filesystem::path& path, cons
   StatedGrid grid;
   TiffPage page;
   if (is_tiff(beginning_of_file(head.files[0], 32))) {
-    for (const auto& file : head.files) add_pages(file, slices);
     TiffFile first(head.files[0]);
     page = first.page();
+    for (const auto& file : head.files) add_pages(file, page, slices);
     head.size = {page.width, page.height, slices.size()};
     head.type = page.type;
     grid = imagej_grid(first, head);
