@@ -50,6 +50,9 @@ struct ContourWish {
   // data)
   bool hermite = true;
   double sharpness = 0.1;  // singular values of the QEF below this share of the largest are left out
+  // Where the surface needs more it is refused: a threshold within the noise makes a surface that fills the memory (24
+  // bytes a vertex, and two triangles of 12 bytes for each).
+  std::uint32_t most_vertices = 4294967295;
 };
 
 // Positions in index coordinates (voxel centres at integers), single precision; normals unit, from the volume's
@@ -65,7 +68,8 @@ struct Contour {
 };
 
 // Streams the volume once, slab by slab: memory is that of the result and of a few slices. The result does not depend
-// on the number of threads. Error(data) where more than 2^32 - 1 vertices would be needed.
+// on the number of threads. Error(data) where more than `most_vertices` would be needed, or an axis has more
+// than 8190 voxels.
 Contour contour(io::VolumeSource& source, const ContourWish& wish);
 
 }  // namespace gonio::volume

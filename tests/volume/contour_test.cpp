@@ -130,6 +130,29 @@ TEST(Contour, EmptyAndOversizedVolumes) {
   EXPECT_THROW(contour(oversized, {}), Error);
 }
 
+// Fails at one slice, as a truncated file does.
+class Truncated : public MemoryVolume {
+ public:
+  using MemoryVolume::MemoryVolume;
+  void read(std::size_t first, std::size_t count, std::span<float> to) override {
+    if (first + count > 20) throw Error(Exit::data, "memory", "ends after 20 slices");
+    MemoryVolume::read(first, count, to);
+  }
+};
+
+TEST(Contour, WhatCannotBeReadOrHeldIsRefused) {
+  const auto value = [](double i, double j, double k) { return norm(Vec3{i, j, k} - Vec3{5, 5, 15}) < 4 ? 1 : 0; };
+  Truncated truncated({10, 10, 30}, value);
+  EXPECT_THROW(contour(truncated, {0.5}), Error);
+  MemoryVolume whole({10, 10, 30}, value);
+  const std::size_t vertices = contour(whole, {0.5}).positions.size();
+  ContourWish wish{0.5};
+  wish.most_vertices = static_cast<std::uint32_t>(vertices);
+  EXPECT_EQ(contour(whole, wish).positions.size(), vertices);
+  --wish.most_vertices;
+  EXPECT_THROW(contour(whole, wish), Error);
+}
+
 // What everybody would write first: a vertex a cell at the mean of its crossings, two triangles an edge.
 class Naive {
  public:
