@@ -10,8 +10,8 @@
 
 namespace gonio::mesh {
 
-// Half-edge collapses by quadric error (Garland & Heckbert 1997) that keep the mesh manifold and flip no normal, down to
-// `faces`. Returns how many are left (more where no collapse is allowed any more).
+// Half-edge collapses by quadric error (Garland & Heckbert 1997) that keep the mesh manifold and flip no normal, down
+// to `faces`. Returns how many are left (more where no collapse is allowed any more).
 std::size_t decimate(io::TriangleMesh& mesh, std::size_t faces);
 
 // sqrt(3) subdivision (Kobbelt 2000), once.
@@ -28,13 +28,13 @@ void clean_by_subdivision(io::TriangleMesh& mesh, const SubdivisionLoop& wish = 
 // Taubin 1995: lambda | mu smoothing with uniform weights; pass band k = 1 / lambda + 1 / mu.
 void smooth_taubin(io::TriangleMesh& mesh, int iterations = 20, double lambda = 0.5, double mu = -0.53);
 
-// Ours. Local quadratics at every triangle, each over as wide a neighbourhood as the data there bear: it grows while the
-// slopes agree with those of all narrower ones within their noise, and while what the quadratic leaves is the noise's
-// (intersection of confidence intervals, Goldenshluger & Nemirovski 1997). Planes get much averaging, tight curves
-// little. Edges of the object are not crossed, and a vertex goes where the surfaces of its triangles agree: to the
-// intersection of both sides at an edge. A quadratic's slope has no bias on planes, balls and tubes, and everything is
-// estimated from the data, not from smoothed data: nothing shrinks. Then |x_v - data_v| <= within_m, strictly; what would
-// intersect stays where the data have it. Normals are those of the estimated surfaces.
+// Ours. Local quadratics at every triangle, each over as wide a neighbourhood as the data there bear: it grows while
+// the slopes agree with those of all narrower ones within their noise, and while what the quadratic leaves is the
+// noise's (intersection of confidence intervals, Goldenshluger & Nemirovski 1997). Planes get much averaging, tight
+// curves little. Edges of the object are not crossed, and a vertex goes where the surfaces of its triangles agree: to
+// the intersection of both sides at an edge. A quadratic's slope has no bias on planes, balls and tubes, and everything
+// is estimated from the data, not from smoothed data: nothing shrinks. Then |x_v - data_v| <= within_m, strictly; what
+// would intersect stays where the data have it. Normals are those of the estimated surfaces.
 struct BoundedWish {
   double within_m = 0;
   int rounds = 2;                  // the second knows the edges from the first's normals

@@ -1,5 +1,5 @@
-// Is a mesh fit to be rendered as glass? Closed, 2-manifold, oriented, without self-intersections; its genus; how far it
-// is from where the data put the surface; and what the noise of its normals does to light.
+// Is a mesh fit to be rendered as glass? Closed, 2-manifold, oriented, without self-intersections; its genus; how far
+// it is from where the data put the surface; and what the noise of its normals does to light.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,10 +14,10 @@ namespace gonio::mesh {
 
 struct Soundness {
   std::size_t components = 0, boundary_edges = 0, crowded_edges = 0, disagreeing_edges = 0;
-  std::size_t pinched_vertices = 0;      // whose triangles form more than one fan
+  std::size_t pinched_vertices = 0;  // whose triangles form more than one fan
   std::size_t degenerate_triangles = 0, unused_vertices = 0;
-  std::int64_t euler = 0;                // vertices - edges + faces
-  std::int64_t genus_sum = 0;            // (2 components - euler) / 2 where closed and manifold
+  std::int64_t euler = 0;      // vertices - edges + faces
+  std::int64_t genus_sum = 0;  // (2 components - euler) / 2 where closed and manifold
   bool closed() const { return boundary_edges == 0 && disagreeing_edges == 0; }
   bool manifold() const { return crowded_edges == 0 && pinched_vertices == 0; }
 };
@@ -31,7 +31,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(const io
 // Distances from points spread evenly over `from` (area-weighted, seeded, plus all vertices) to the surface `to`.
 struct Distance {
   double rms_m = 0, mean_m = 0, largest_m = 0, p99_m = 0;
-  double mean_signed_m = 0;              // positive: outside `to`, where `to` is closed
+  double mean_signed_m = 0;  // positive: outside `to`, where `to` is closed
   std::size_t samples = 0;
 };
 Distance distance(const io::TriangleMesh& from, const io::TriangleMesh& to, std::size_t samples, std::uint64_t seed);

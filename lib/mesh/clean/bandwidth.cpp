@@ -1,6 +1,8 @@
-// A wider neighbourhood has less noise and more bias. Neighbourhoods grow while the slopes that they tell are compatible
-// with those of all narrower ones: the intervals slope +- gamma sd have a point in common (intersection of confidence
-// intervals, Goldenshluger & Nemirovski 1997, Katkovnik 1999); and while what the quadratic leaves is the noise's.
+// A wider neighbourhood has less noise and more bias. Neighbourhoods grow while the slopes and the height that they
+// tell are compatible with those of all narrower ones: the intervals value +- gamma sd have a point in common
+// (intersection of confidence intervals, Goldenshluger & Nemirovski 1997, Katkovnik 1999); and while what the quadratic
+// leaves is the noise's. The height is held more narrowly: on a ball of radius R a quadratic over a disc of radius r
+// lies too far out by the order of r^4 / (48 R^3), everywhere the same way, while its slopes have no bias.
 #include "mesh/clean/bandwidth.h"
 
 #include <algorithm>
@@ -13,9 +15,9 @@ namespace gonio::mesh {
 namespace {
 
 constexpr std::array<double, 7> radii{1.5, 2.0, 2.7, 3.6, 4.8, 6.4, 8.5};  // mean edges
-constexpr double gamma_of_intervals = 3.0;
-constexpr double misfit_sd = 6;           // by how many sd the residual's mean square may exceed the noise
-constexpr double noise_radius = 3;        // mean edges
+constexpr std::array<double, 3> gammas{2.0, 3.0, 3.0};                     // of the height and both slopes
+constexpr double misfit_sd = 6;     // by how many sd the residual's mean square may exceed the noise
+constexpr double noise_radius = 3;  // mean edges
 constexpr double correlated_within = 2.2;
 constexpr std::size_t noise_samples = 3000;
 
@@ -91,21 +93,22 @@ NoiseSample sample_noise(const NoisySurface& surface, const std::vector<double>&
   return sample;
 }
 
-// Both slopes' intervals so far.
+// The intervals of the height and both slopes so far.
 class Compatible {
  public:
   bool still(const LocalQuadratic::Fit& fit, double unit_variance) {
-    for (int i = 0; i < 2; ++i) {
-      const double slope = fit.c[static_cast<std::size_t>(i + 1)];
-      const double reach = gamma_of_intervals * std::sqrt(unit_variance * fit.variance_of_slope(i));
-      low_[i] = std::max(low_[i], slope - reach);
-      high_[i] = std::min(high_[i], slope + reach);
+    bool compatible = true;
+    for (std::size_t i = 0; i < gammas.size(); ++i) {
+      const double reach = gammas[i] * std::sqrt(unit_variance * fit.inverse[7 * i]);
+      low_[i] = std::max(low_[i], fit.c[i] - reach);
+      high_[i] = std::min(high_[i], fit.c[i] + reach);
+      compatible = compatible && low_[i] <= high_[i];
     }
-    return low_[0] <= high_[0] && low_[1] <= high_[1];
+    return compatible;
   }
 
  private:
-  double low_[2] = {-1e300, -1e300}, high_[2] = {1e300, 1e300};
+  std::array<double, 3> low_{-1e300, -1e300, -1e300}, high_{1e300, 1e300, 1e300};
 };
 
 LocalSurface local_surface(const NoisySurface& surface, const VertexNoise& noise, const std::vector<double>& weights,
@@ -113,7 +116,7 @@ LocalSurface local_surface(const NoisySurface& surface, const VertexNoise& noise
   const Frame frame(surface, face);
   const double sigma = noise.sigma_m / surface.edge_m, variance = sigma * sigma * noise.inflation;
   LocalQuadratic quadratic;
-  Compatible slopes;
+  Compatible values;
   LocalSurface best;
   std::size_t added = 0;
   around.start(face);
@@ -130,7 +133,7 @@ LocalSurface local_surface(const NoisySurface& surface, const VertexNoise& noise
     if (!fit.good || quadratic.points() < 8) continue;
     const double freedom = quadratic.points() - 6;
     const double limit = sigma * sigma * (1 + misfit_sd * std::sqrt(2 * noise.inflation / freedom));
-    const bool fits = slopes.still(fit, variance) && fit.residual / freedom <= limit;
+    const bool fits = values.still(fit, variance) && fit.residual / freedom <= limit;
     if (!fits && best.radius > 0) break;
     for (std::size_t i = 0; i < 6; ++i) best.c[i] = static_cast<float>(fit.c[i]);
     best.variance = static_cast<float>(fit.variance_of_height());
@@ -158,7 +161,8 @@ VertexNoise noise_of(const NoisySurface& surface, const std::vector<double>& wei
   VertexNoise noise{surface.edge_m * std::sqrt(middle->mean_square), 1};
   double sum = 0;
   for (auto s = samples.begin(); s != middle; ++s) sum += s->correlations;
-  if (middle != samples.begin()) noise.inflation = std::clamp(1 + sum / static_cast<double>(middle - samples.begin()), 1.0, 8.0);
+  if (middle != samples.begin())
+    noise.inflation = std::clamp(1 + sum / static_cast<double>(middle - samples.begin()), 1.0, 8.0);
   return noise;
 }
 

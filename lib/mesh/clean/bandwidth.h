@@ -17,7 +17,8 @@ struct VertexNoise {
 };
 VertexNoise noise_of(const NoisySurface& surface, const std::vector<double>& weights);
 
-// At a triangle's centre, in Basis(guide): h(u, v) in units of the mean edge. radius 0: no fit, the triangle is its own.
+// At a triangle's centre, in Basis(guide): h(u, v) in units of the mean edge. radius 0: no fit, the triangle is its
+// own.
 struct LocalSurface {
   std::array<float, 6> c{};
   float variance = 0;  // of the height, for unit noise

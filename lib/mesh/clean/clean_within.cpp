@@ -1,5 +1,5 @@
-// Twice: local surfaces at every triangle from the data (bandwidth.h), their normals then being the guide for which edges
-// are the object's. A vertex goes where the local surfaces of its triangles agree best:
+// Twice: local surfaces at every triangle from the data (bandwidth.h), their normals then being the guide for which
+// edges are the object's. A vertex goes where the local surfaces of its triangles agree best:
 //   x = argmin sum_f w_f (m_f . (x - p_f))^2 + epsilon sum_f w_f |x - data|^2      w_f = 1 / variance of the height
 // p_f, m_f the point and normal of f's surface beside the vertex: on smooth ground their mean along the normal, at an
 // edge the intersection of both sides. Always from the data, never from what an earlier pass made: nothing shrinks.
@@ -69,8 +69,8 @@ struct Placed {
   Vec3 position{}, normal{};
 };
 
-Placed placed(const NoisySurface& surface, const std::vector<LocalSurface>& local,
-              std::span<const std::uint32_t> faces, std::uint32_t v) {
+Placed placed(const NoisySurface& surface, const std::vector<LocalSurface>& local, std::span<const std::uint32_t> faces,
+              std::uint32_t v) {
   using Three = Eigen::Matrix<double, 3, 3>;
   using Column = Eigen::Matrix<double, 3, 1>;
   const Vec3 data = surface.positions_m[v];
@@ -115,8 +115,8 @@ std::size_t undo_intersections(io::TriangleMesh& mesh, const std::vector<Vec3>& 
 std::vector<double> weights_of(const BoundedWish& wish, std::size_t vertices) {
   if (wish.sigma_m.empty()) return {};
   if (wish.sigma_m.size() != vertices)
-    throw Error(Exit::internal, "mesh", std::to_string(wish.sigma_m.size()) + " uncertainties for " +
-                                            std::to_string(vertices) + " vertices");
+    throw Error(Exit::internal, "mesh",
+                std::to_string(wish.sigma_m.size()) + " uncertainties for " + std::to_string(vertices) + " vertices");
   std::vector<double> sorted = wish.sigma_m, weights;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
