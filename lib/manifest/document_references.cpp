@@ -155,9 +155,14 @@ void check_volumes(const Document& d) {
     needs_numbers(volume.size.size(), 3, at + "/size", "give voxels [i, j, k]");
     needs_numbers(volume.spacing_m.size(), 3, at + "/spacing_m", "give lengths [i, j, k]");
     needs_numbers(volume.tiles.size(), 2, at + "/tiles", "give [columns, rows]");
-    if (volume.volume_from_index)
-      needs_numbers(volume.volume_from_index->matrix.size(), 16, at + "/volume_from_index/matrix",
-                    "give 4 x 4 numbers, row by row");
+    if (volume.volume_from_index) {
+      const auto& rows = volume.volume_from_index->matrix;
+      if (rows.size() != 4)
+        throw Error(Exit::data, at + "/volume_from_index/matrix",
+                    "has " + std::to_string(rows.size()) + " rows, 4 are needed");
+      for (std::size_t i = 0; i < 4; ++i)
+        needs_numbers(rows[i].size(), 4, at + "/volume_from_index/matrix/" + std::to_string(i), "give 4 x 4 numbers");
+    }
     for (std::size_t i = 0; i < volume.steps.size(); ++i)
       must_exist(d.files, "files", volume.steps[i].picture, at + "/steps/" + std::to_string(i) + "/picture");
   }

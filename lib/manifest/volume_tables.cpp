@@ -8,7 +8,7 @@ namespace gonio::manifest {
 const std::vector<Field<IndexMap>>& index_map_fields() {
   static const std::vector<Field<IndexMap>> table{
       field("matrix", &IndexMap::matrix, "m",
-            "4 x 4, row by row: takes an index [i, j, k, 1] to metres in the object's frame; its last row is 0 0 0 1")
+            "4 x 4, its rows: takes an index [i, j, k, 1] to metres in the object's frame; its last row is 0 0 0 1")
           .needed()};
   return table;
 }

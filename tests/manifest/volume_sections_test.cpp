@@ -15,12 +15,12 @@ TEST(VolumeSections, StandInADocument) {
   d.files["f"].path = "pot.nrrd";
   Volume& pot = d.volumes["pot"];
   pot.file = "f", pot.size = {4, 5, 6}, pot.spacing_m = {1e-4, 1e-4, 2e-4};
-  pot.volume_from_index = IndexMap{{1e-4, 0, 0, 0, 0, 1e-4, 0, 0, 0, 0, 2e-4, 0, 0, 0, 0, 1}};
+  pot.volume_from_index = IndexMap{{{1e-4, 0, 0, 0}, {0, 1e-4, 0, 0}, {0, 0, 2e-4, 0}, {0, 0, 0, 1}}};
   pot.steps.push_back({.name = "threshold", .how = "half-way", .figures = {{"value", 0.3}}, .picture = ""});
   d.markers.push_back({.id = "a", .volume = "pot", .centre_m = {0, 0, 1e-3}, .radius_m = 2.5e-3});
   const Document again = parse_document(print_document(d, "."), "m", ".");
   EXPECT_EQ(again.volumes.at("pot").steps.at(0).figures.at("value"), 0.3);
-  EXPECT_EQ(again.volumes.at("pot").volume_from_index->matrix.size(), 16u);
+  EXPECT_EQ(again.volumes.at("pot").volume_from_index->matrix.size(), 4u);
   EXPECT_EQ(again.markers.at(0).radius_m, 2.5e-3);
   EXPECT_NE(content_id(d), content_id(Document()));
 }
@@ -39,7 +39,7 @@ TEST(VolumeSections, RefuseWhatDoesNotExistOrHasAnotherShape) {
   EXPECT_THAT(refusal(R"("volumes": {"a": {"file": "f", "size": [4, 4]}})"),
               HasSubstr("/volumes/a/size: has 2 numbers, needs 3"));
   EXPECT_THAT(refusal(R"("volumes": {"a": {"file": "f", "spacing_m": [1e-4, 0, 1e-4]}})"), HasSubstr("/spacing_m"));
-  EXPECT_THAT(refusal(R"("volumes": {"a": {"file": "f", "volume_from_index": {"matrix": [1, 2]}}})"),
+  EXPECT_THAT(refusal(R"("volumes": {"a": {"file": "f", "volume_from_index": {"matrix": [[1, 2]]}}})"),
               HasSubstr("/volume_from_index/matrix"));
   EXPECT_THAT(refusal(R"("volumes": {"a": {"file": "f", "mesh": "m"}})"), HasSubstr("/volumes/a/mesh"));
   EXPECT_THAT(refusal(R"("markers": [{"id": "m", "centre_m": [0, 0]}])"), HasSubstr("/markers/0/centre_m"));

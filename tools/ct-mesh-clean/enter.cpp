@@ -23,25 +23,13 @@ std::string enter_mesh(Work& work, const std::string& name, const io::TriangleMe
   return name;
 }
 
-std::vector<double> matrix_of(const Work& work) {
+std::vector<std::vector<double>> matrix_of(const Work& work) {
   const Mat3& a = work.axes;
   const Vec3 s = work.spacing_m, o = work.origin_m;
-  return {a(0, 0) * s.x,
-          a(0, 1) * s.y,
-          a(0, 2) * s.z,
-          o.x,
-          a(1, 0) * s.x,
-          a(1, 1) * s.y,
-          a(1, 2) * s.z,
-          o.y,
-          a(2, 0) * s.x,
-          a(2, 1) * s.y,
-          a(2, 2) * s.z,
-          o.z,
-          0,
-          0,
-          0,
-          1};
+  return {{a(0, 0) * s.x, a(0, 1) * s.y, a(0, 2) * s.z, o.x},
+          {a(1, 0) * s.x, a(1, 1) * s.y, a(1, 2) * s.z, o.y},
+          {a(2, 0) * s.x, a(2, 1) * s.y, a(2, 2) * s.z, o.z},
+          {0, 0, 0, 1}};
 }
 
 // Covariance of index coordinates in metres: A C A^T with A = axes * diag(spacing).

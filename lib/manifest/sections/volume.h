@@ -10,8 +10,8 @@
 
 namespace gonio::manifest {
 
-struct IndexMap {                // index (i, j, k), voxel centres at integers -> metres in the object's frame
-  std::vector<double> matrix{};  // 4 x 4, row by row; its last row is 0 0 0 1
+struct IndexMap {  // index (i, j, k), voxel centres at integers -> metres in the object's frame
+  std::vector<std::vector<double>> matrix{};  // 4 x 4, its rows; the last is 0 0 0 1
 };
 struct VolumeStep {    // one step that ct-mesh-clean took, in order
   std::string name{};  // "look", "cupping", "threshold", ...

@@ -79,9 +79,9 @@ TEST(CtMeshClean, WhatItMakesPassesSceneCheckAndRendersWithStokesVectors) {
   const ScratchFolder folder;
   io::write_nrrd(folder / "ball.nrrd", volume_of(40, {ball({19.5, 19.5, 19.5}, 12, 2100)}, 40, 3));
   write_file(folder / "scene.json", R"({"gonio": 1,
- "cameras": {"c": {"width_px": 24, "height_px": 24, "fx_px": 60, "fy_px": 60, "cx_px": 11.5, "cy_px": 11.5,
-   "world_from_camera": {"matrix": [1, 0, 0, 0.002, 0, 1, 0, 0.002, 0, 0, 1, -0.006, 0, 0, 0, 1]}}},
- "lights": {"room": {"model": "constant", "radiance": 1}}, "images": [{"id": "v", "camera": "c"}]})");
+ "cameras": {"c": {"width_px": 24, "height_px": 24, "fx_px": 60, "fy_px": 60, "cx_px": 11.5, "cy_px": 11.5}},
+ "lights": {"room": {"model": "uniform", "radiance": 1}},
+ "images": [{"id": "v", "camera": "c", "world_from_camera": {"matrix": [[1, 0, 0, 0.002], [0, 1, 0, 0.002], [0, 0, 1, -0.006], [0, 0, 0, 1]]}}]})");
   const Ended made = run({"ct-mesh-clean", "-i", "scene.json", "--out", "o", "ball.nrrd"}, folder.path());
   ASSERT_EQ(made.status, 0) << made.err;
   const Ended checked = run({"scene", "check"}, folder.path(), made.out);
@@ -94,9 +94,10 @@ TEST(CtMeshClean, WhatItMakesPassesSceneCheckAndRendersWithStokesVectors) {
 TEST(CtMeshClean, AComponentOfTheTableGoesAndAnEnclosedOneGoesOnRequest) {
   const ScratchFolder folder;
   const Vec3 middle{23.5, 23.5, 27.5};
-  io::write_nrrd(folder / "pot.nrrd",
-                 volume_of(48, {shell(middle, 11, 15, 2100), ball(middle, 4, 2100),
-                                {[](Vec3 p) { return p.z - 3; }, 1900}}, 40, 5));
+  io::write_nrrd(
+      folder / "pot.nrrd",
+      volume_of(48, {shell(middle, 11, 15, 2100), ball(middle, 4, 2100), {[](Vec3 p) { return p.z - 3; }, 1900}}, 40,
+                5));
   const auto voxels = [&](std::vector<std::string> words) {
     words.insert(words.begin(), {"ct-mesh-clean", "--clean", "none", "--out", "o", "--force"});
     words.push_back("pot.nrrd");

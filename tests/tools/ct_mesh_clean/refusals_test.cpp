@@ -23,8 +23,9 @@ class Refusals : public testing::Test {
       io::write_nrrd(scratch / "flat.nrrd", volume_of(16, {}, 0, 1));
       const std::string whole = read_file(scratch / "ball.nrrd");
       write_file(scratch / "short.nrrd", whole.substr(0, whole.size() - 1000));
-      write_file(scratch / "huge.nrrd", "NRRD0004\ntype: uint16\ndimension: 3\nsizes: 4000000 4000000 4000000\n"
-                                        "endian: little\nencoding: raw\n\n1234");
+      write_file(scratch / "huge.nrrd",
+                 "NRRD0004\ntype: uint16\ndimension: 3\nsizes: 4000000 4000000 4000000\n"
+                 "endian: little\nencoding: raw\n\n1234");
       write_file(scratch / "text.txt", "no volume at all");
       io::VolumeData holes = ball_volume;
       holes.head.type = io::VoxelType::f32;
