@@ -51,15 +51,16 @@ run/%.compared: run/pictures/%/v.exr run/pictures/true/v.exr
 > compare --reference run/pictures/true/v.exr --rendered $< > $@
 
 run/table.txt: $(WAYS:%=run/%.compared)
-> echo 'way triangles normals_deg bend_deg distance_um rmse ssim' > $@
+> echo 'way triangles normals_deg bend_deg bend_median_deg distance_um rmse ssim' > $@
 > for w in $(WAYS); do awk -F, -v w=$$w ' \
 >   $$1 == "verdict" && $$2 == "triangles" {n = $$3} \
 >   $$2 == "normals_rms_rad" {a = $$3 * 57.2958} \
 >   $$1 == "reference" && $$2 == "ray_bend_rms_rad" {b = $$3 * 57.2958} \
+>   $$2 == "ray_bend_median_rad" {m = $$3 * 57.2958} \
 >   $$1 == "reference" && $$2 == "distance_rms_m" {d = $$3 * 1e6} \
 >   /"rmse":/ && !r {split($$0, x, ": "); r = x[2] + 0} \
 >   /"ssim":/ && !s {split($$1, x, ": "); s = x[2] + 0} \
->   END {print w, n, a, b, d, r, s}' run/$$w.csv run/$$w.compared >> $@; done
+>   END {print w, n, a, b, m, d, r, s}' run/$$w.csv run/$$w.compared >> $@; done
 > column -t $@
 
 run:
