@@ -24,9 +24,9 @@ namespace {
 using Eigen::Index;
 
 struct EdgeAt {
-  enum : Index { position, log_width, air, object, behind, air_behind, before, object_before };
+  enum : Index { position, log_width, air, object, behind, air_behind, before, object_before, slope = behind };
 };
-constexpr double root_two_pi = 2.5066282746310002, plateau_share = 0.15, guessed_width = 0.8;
+constexpr double root_two_pi = 2.5066282746310002, plateau_share = 0.15, usual_width = 0.8;
 
 struct EdgeStep {
   double b = 0, by_place = 0, by_log_width = 0;
@@ -55,7 +55,7 @@ struct EdgeProblem {
   double slope = 0;
 };
 
-// N = 4: an edge alone. N = 8: with one behind, one before, or both.
+// N = 4: an edge alone. N = 5: one whose object slants. N = 8: with one behind, one before, or both.
 template <int N>
 class EdgeDescent final : public optim::Descent {
  public:
@@ -69,13 +69,15 @@ class EdgeDescent final : public optim::Descent {
     const double s = problem_.s[i], w = std::exp(x[EdgeAt::log_width]), h = problem_.mean_curvature;
     const EdgeStep own = step_at(s, x[EdgeAt::position], w, h);
     const double rise = x[EdgeAt::object] - x[EdgeAt::air];
-    double v = x[EdgeAt::air] + rise * own.b + problem_.slope * slanted(s, x[EdgeAt::position], w);
+    const double slant = slanted(s, x[EdgeAt::position], w);
+    double v = x[EdgeAt::air] + rise * own.b + (N == 5 ? x[EdgeAt::slope % N] : problem_.slope) * slant;
     if (slopes) {
       slopes->setZero();
       (*slopes)[EdgeAt::position] = rise * own.by_place;
       (*slopes)[EdgeAt::log_width] = rise * own.by_log_width;
       (*slopes)[EdgeAt::air] = 1 - own.b;
       (*slopes)[EdgeAt::object] = own.b;
+      if (N == 5) (*slopes)[EdgeAt::slope % N] = slant;
     }
     if constexpr (N == 8) {
       if (problem_.has_inner)
@@ -177,7 +179,7 @@ class EdgeDescent final : public optim::Descent {
 };
 
 struct EdgeStart {
-  double position = 0, width = guessed_width, air = 0, object = 0;
+  double position = 0, width = usual_width, air = 0, object = 0;
 };
 double mean_of_samples(std::span<const double> v) {
   double sum = 0;
@@ -205,7 +207,7 @@ EdgeStart start_alone(std::span<const double> s, std::span<const double> v, std:
 // With a wall behind or before, plateaus are the extremes of the profile between the walls' starts, stretched by what
 // the spread function takes from a slab as thick.
 EdgeStart start_between(std::span<const double> s, std::span<const double> v, const ProfileWish& wish) {
-  const double w = wish.width.value_or(guessed_width), inner = wish.inner.value_or(s.front()),
+  const double w = wish.width.value_or(usual_width), inner = wish.inner.value_or(s.front()),
                outer = wish.outer.value_or(s.back());
   EdgeStart start{0, w, HUGE_VAL, -HUGE_VAL};
   for (std::size_t i = 0; i < s.size(); ++i) {
@@ -234,6 +236,7 @@ SampleNoise sample_noise(std::span<const double> covariance, std::size_t n) {
 template <int N>
 Edge fitted_edge(const EdgeProblem& problem, const ProfileWish& wish, const Eigen::Matrix<double, N, 1>& start, double unit) {
   using Vector = Eigen::Matrix<double, N, 1>;
+  using Matrix = Eigen::Matrix<double, N, N>;
   const std::size_t n = problem.s.size();
   EdgeDescent<N> descent(problem, start);
   optim::Limits limits;
@@ -254,7 +257,7 @@ Edge fitted_edge(const EdgeProblem& problem, const ProfileWish& wish, const Eige
     j.row(static_cast<Index>(i)) = row.transpose() / problem.sample_sd;
   }
   // S = J'CJ, C the samples' covariance for a voxel's noise of one.
-  Eigen::Matrix<double, N, N> s = Eigen::Matrix<double, N, N>::Zero();
+  Matrix s = Matrix::Zero();
   double trace = static_cast<double>(n);
   if (wish.covariance.empty()) {
     s = j.transpose() * j;
@@ -268,7 +271,7 @@ Edge fitted_edge(const EdgeProblem& problem, const ProfileWish& wish, const Eige
     }
   }
   const auto& h = descent.matrix();
-  const Vector a = linear::solve_ldlt(h, Vector(Vector::Unit(EdgeAt::position)));
+  const Matrix priors = descent.prior_matrix();
   double taken = 0;  // of the noise's squares by the fit
   for (Index k = 0; k < N; ++k)
     if (h(k, k) > 0) taken += linear::solve_ldlt(h, Vector(s.col(k)))[k];
@@ -286,7 +289,14 @@ Edge fitted_edge(const EdgeProblem& problem, const ProfileWish& wish, const Eige
   const double inflated = wish.noise > 0 ? variance * std::max(1.0, edge.excess / 2) : variance;
   // s is in units of 1 / sample_sd^2: W C W of the sandwich.
   const double unit2 = problem.sample_sd * problem.sample_sd;
-  edge.sigma = std::sqrt(a.dot(s * a) * inflated / unit2 + a.dot(descent.prior_matrix() * a));
+  const auto sigma_of = [&](Index k) {
+    const Vector a = linear::solve_ldlt(h, Vector(Vector::Unit(k)));
+    return std::sqrt(a.dot(s * a) * inflated / unit2 + a.dot(priors * a));
+  };
+  edge.sigma = sigma_of(EdgeAt::position);
+  edge.sigma_air = sigma_of(EdgeAt::air);
+  edge.sigma_object = sigma_of(EdgeAt::object);
+  if (N == 5) edge.slope = x[EdgeAt::slope % N];
   const double noise = std::sqrt(variance);
   edge.good = end.settled() && std::isfinite(edge.sigma) && std::abs(rise) > 3 * noise &&
               edge.position > problem.s.front() / 2 && edge.position < problem.s.back() / 2 && edge.sigma < unit;
@@ -310,10 +320,14 @@ Edge fit_edge(std::span<const double> s, std::span<const double> values, const P
   problem.has_inner = wish.inner.has_value();
   problem.has_outer = wish.outer.has_value();
   problem.slope = wish.slope;
-  const double known_rise = wish.air && wish.object ? std::abs(*wish.object - *wish.air) : rise;
-  if (wish.air) problem.air_mean = *wish.air, problem.air_sd = wish.plateau_share * known_rise;
-  if (wish.object) problem.object_mean = *wish.object, problem.object_sd = wish.plateau_share * known_rise;
+  if (wish.air) problem.air_mean = wish.air->mean, problem.air_sd = wish.air->sd;
+  if (wish.object) problem.object_mean = wish.object->mean, problem.object_sd = wish.object->sd;
   if (wish.width) problem.log_width_mean = std::log(*wish.width), problem.log_width_sd = wish.width_share;
+  if (alone && wish.slope_is_free) {
+    Eigen::Matrix<double, 5, 1> x;
+    x << start.position, std::log(start.width), start.air, start.object, 0;
+    return fitted_edge<5>(problem, wish, x, widest_sigma);
+  }
   if (alone)
     return fitted_edge<4>(problem, wish, Eigen::Vector4d(start.position, std::log(start.width), start.air, start.object),
                      widest_sigma);

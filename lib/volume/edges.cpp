@@ -8,18 +8,17 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "volume/contour_shape.h"
-#include "volume/sampling.h"
+#include "volume/edge_profiles.h"
 #include "volume/slabs.h"
-#include "volume/threshold.h"
 
 namespace gonio::volume {
 namespace {
 
 constexpr double smear = 2.5;              // widths: what a step still moves is a hundredth of it
 constexpr double near_by = 0.75;           // voxels from the vertex that are not searched for another wall
-constexpr double sharpest_curvature = 0.35;
-constexpr std::size_t scouts = 4000;       // vertices that tell the width and the noise
+constexpr float sharpest_curvature = 0.35F;  // 1 / voxel
+constexpr double guessed_width = 0.8;
+constexpr std::size_t scouts = 30000;      // vertices that tell what all share
 
 // What a walk along the normal met: the profile's limits and the walls beyond which it has to be two edges.
 struct Walk {
@@ -79,87 +78,65 @@ Walk walk_of(const std::vector<double>& values, double level, double reach, doub
 class Profiles {
  public:
   Profiles(const Contour& at, const EdgeWish& wish)
-      : at_(at), wish_(wish), curvature_(mean_curvature(at, wish.scale)) {
-    half_ = static_cast<std::size_t>(std::ceil(2 * wish.reach_voxels / wish.step_voxels));
-    for (float& h : curvature_) h = std::clamp(h, -static_cast<float>(sharpest_curvature), static_cast<float>(sharpest_curvature));
+      : at_(at), wish_(wish), curvature_(mean_curvature(at, wish.scale)),
+        half_(static_cast<std::size_t>(std::ceil(2 * wish.reach_voxels / wish.step_voxels))) {
+    for (float& h : curvature_) h = std::clamp(h, -sharpest_curvature, sharpest_curvature);
   }
-  double reach() const { return static_cast<double>(half_) * wish_.step_voxels; }
-  EdgeWish& wish() { return wish_; }
+  std::size_t margin() const {
+    return static_cast<std::size_t>(std::ceil(static_cast<double>(half_) * wish_.step_voxels / wish_.scale.z)) + 2;
+  }
 
-  Edge edge_at(const Block& block, std::size_t vertex) const {
-    const Place place = place_of(at_, vertex, wish_.scale);
-    std::vector<double> s(2 * half_ + 1), values(s.size());
-    for (std::size_t n = 0; n < s.size(); ++n) {
-      s[n] = (static_cast<double>(n) - static_cast<double>(half_)) * wish_.step_voxels;
-      values[n] = block.at(place.index + place.along * s[n]);
-    }
-    const double width = wish_.width.value_or(0.8);
+  EdgeProfile at(const Block& block, std::size_t vertex, double width) const {
+    EdgeProfile profile{vertex, place_of(at_, vertex, wish_.scale), curvature_[vertex]};
+    std::vector<double> values(2 * half_ + 1);
+    const auto s = [&](std::size_t n) {
+      return (static_cast<double>(n) - static_cast<double>(half_)) * wish_.step_voxels;
+    };
+    for (std::size_t n = 0; n < values.size(); ++n) values[n] = block.at(profile.place.index + profile.place.along * s(n));
     const Walk walk = walk_of(values, values[half_], wish_.reach_voxels, wish_.step_voxels, width);
-    std::size_t first = 0, last = s.size();
-    while (first < half_ && (s[first] < walk.first - 1e-9 || !std::isfinite(values[first]))) ++first;
-    while (last > half_ + 1 && (s[last - 1] > walk.last + 1e-9 || !std::isfinite(values[last - 1]))) --last;
-    const std::size_t n = last - first;
-    const std::vector<double> covariance =
-        trilinear_covariance(place.index + place.along * s[first], place.along * wish_.step_voxels, n,
-                             wish_.noise_correlation);
-    ProfileWish profile{wish_.noise, covariance, curvature_[vertex], walk.inner, walk.outer, wish_.width};
-    Edge edge = fit_edge(std::span(s).subspan(first, n), std::span(values).subspan(first, n), profile);
-    edge.inward = walk.inward;
-    edge.outward = walk.outward;
-    return edge;
+    std::size_t first = half_, last = half_ + 1;
+    while (first > 0 && s(first - 1) > walk.first - 1e-9 && std::isfinite(values[first - 1])) --first;
+    while (last < values.size() && s(last) < walk.last + 1e-9 && std::isfinite(values[last])) ++last;
+    for (std::size_t n = first; n < last; ++n) profile.s.push_back(s(n)), profile.values.push_back(values[n]);
+    profile.inward = walk.inward;
+    profile.outward = walk.outward;
+    profile.inner = walk.inner;
+    profile.outer = walk.outer;
+    return profile;
   }
 
  private:
   const Contour& at_;
-  EdgeWish wish_;
+  const EdgeWish& wish_;
   std::vector<float> curvature_;
-  std::size_t half_ = 0;
+  std::size_t half_;
 };
 
-// Edges of every n-th vertex, each where its vertex stands in the order.
-std::vector<Edge> streamed(io::VolumeSource& source, const Contour& at, const Profiles& profiles, Vec3 scale,
-                           double reach, std::size_t every) {
+// Calls `body` with where in the order a vertex stands, for every n-th, slab by slab.
+void stream(io::VolumeSource& source, const Contour& at, std::size_t margin, std::size_t every,
+            const std::function<void(const Block&, std::size_t)>& body) {
   const auto& size = source.head().size;
   const std::size_t count = (at.positions.size() + every - 1) / every;
-  std::vector<std::vector<std::size_t>> of_slice(size[2]);
+  std::vector<std::vector<std::uint32_t>> of_slice(size[2]);
   for (std::size_t n = 0; n < count; ++n) {
     const double k = at.positions[n * every][2];
-    of_slice[static_cast<std::size_t>(std::clamp(k, 0.0, static_cast<double>(size[2] - 1)))].push_back(n);
+    of_slice[static_cast<std::size_t>(std::clamp(k, 0.0, static_cast<double>(size[2] - 1)))].push_back(
+        static_cast<std::uint32_t>(n));
   }
-  std::vector<Edge> result(count);
   SlabWish wish;
-  wish.margin = static_cast<std::size_t>(std::ceil(reach / scale.z)) + 2;
+  wish.margin = margin;
   const Vec3 high{static_cast<double>(size[0] - 1), static_cast<double>(size[1] - 1), static_cast<double>(size[2] - 1)};
   for_each_slab(source, wish, [&](const Slab& slab) {
-    Block block{slab.values.data(), {slab.width, slab.height, slab.count + 2 * slab.margin},
-                {0, 0, static_cast<std::ptrdiff_t>(slab.first) - static_cast<std::ptrdiff_t>(slab.margin)}, {}, high};
-    std::vector<std::size_t> here;
+    const Block block{slab.values.data(),
+                      {slab.width, slab.height, slab.count + 2 * slab.margin},
+                      {0, 0, static_cast<std::ptrdiff_t>(slab.first) - static_cast<std::ptrdiff_t>(slab.margin)},
+                      {},
+                      high};
+    std::vector<std::uint32_t> here;
     for (std::size_t k = slab.first; k < slab.first + slab.count; ++k)
       here.insert(here.end(), of_slice[k].begin(), of_slice[k].end());
-    parallel_for(0, here.size(), [&](std::size_t n) { result[here[n]] = profiles.edge_at(block, here[n] * every); }, 256);
+    parallel_for(0, here.size(), [&](std::size_t n) { body(block, here[n]); }, 256);
   });
-  return result;
-}
-
-double median_of(std::vector<double> v) {
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
-
-// Width and noise from some vertices: of edges that stand alone where there are enough, else of all.
-void scout(const std::vector<Edge>& edges, EdgeWish& wish) {
-  std::vector<double> alone, all, noise;
-  for (const Edge& e : edges) {
-    if (!e.good) continue;
-    all.push_back(e.width);
-    if (std::min(e.inward, e.outward) > 2 * smear * e.width) alone.push_back(e.width);
-    noise.push_back(e.excess);
-  }
-  if (all.empty()) return;
-  if (!wish.width) wish.width = median_of(alone.size() >= 50 ? alone : all);
-  // The median of chi-square with the few degrees that a profile leaves is 0.85 of its mean.
-  if (!(wish.noise > 0)) wish.noise = std::sqrt(median_of(noise) / 0.85);
 }
 
 }  // namespace
@@ -168,12 +145,20 @@ std::vector<Edge> edges(io::VolumeSource& source, const Contour& at, const EdgeW
   if (at.positions.empty())
     throw Error(Exit::data, "surface", "it is empty: no value of the volume lies on both sides of the threshold",
                 "choose a threshold between two materials of the histogram");
-  Profiles profiles(at, wish);
-  if (!wish.width || !(wish.noise > 0)) {
-    const std::size_t share = std::max<std::size_t>(1, at.positions.size() / scouts);
-    scout(streamed(source, at, profiles, wish.scale, profiles.reach(), share), profiles.wish());
-  }
-  return streamed(source, at, profiles, wish.scale, profiles.reach(), std::max<std::size_t>(1, every));
+  const Profiles profiles(at, wish);
+  const std::size_t share = std::max<std::size_t>(1, at.positions.size() / scouts);
+  std::vector<EdgeProfile> some((at.positions.size() + share - 1) / share);
+  const double guess = wish.width.value_or(guessed_width);
+  stream(source, at, profiles.margin(), share,
+         [&](const Block& block, std::size_t n) { some[n] = profiles.at(block, n * share, guess); });
+  const EdgeCommon common = common_of(some, wish);
+  every = std::max<std::size_t>(1, every);
+  std::vector<Edge> result((at.positions.size() + every - 1) / every);
+  if (!(common.width > 0)) return result;  // no scout saw an edge
+  stream(source, at, profiles.margin(), every, [&](const Block& block, std::size_t n) {
+    result[n] = fit_profile(profiles.at(block, n * every, common.width), wish, &common);
+  });
+  return result;
 }
 
 }  // namespace gonio::volume

@@ -91,7 +91,8 @@ std::string reason_against(const Sphere& s, const Evidence& e, const MarkerWish&
   if (s.edges.size() < 12) return say("shows an edge in %.0f directions only (limit 12)", static_cast<double>(s.edges.size()));
   if (wish.radius && std::abs(s.radius - *wish.radius) > wish.radius_tolerance * *wish.radius)
     return say("radius %.2f is not the known %.2f within %.0f %%", s.radius, *wish.radius, 100 * wish.radius_tolerance);
-  if (!wish.radius && (s.radius < wish.smallest || s.radius > wish.largest))
+  const double slack = std::max(3 * s.sigma_radius, 0.02 * s.radius);
+  if (!wish.radius && (s.radius < wish.smallest - slack || s.radius > wish.largest + slack))
     return say("radius %.2f is not within %.2f to %.2f", s.radius, wish.smallest, wish.largest);
   if (s.cover() < wish.least_cover)
     return say("covers %.2f of the directions (limit %.2f)", s.cover(), wish.least_cover);

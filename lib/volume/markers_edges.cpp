@@ -94,7 +94,9 @@ class Rays {
     const auto covariance = trilinear_covariance(first, along * step, places.size(), noise_.neighbour_correlation);
     ProfileWish wish{noise_.sd, covariance, 1 / s.radius};
     wish.width = width;
-    if (settled) wish.air = levels.air, wish.object = levels.object;
+    constexpr double alike = 0.05;  // of the step: plateaus round one marker
+    const double plateau_sd = alike * std::abs(levels.object - levels.air);
+    if (settled) wish.air = Known{levels.air, plateau_sd}, wish.object = Known{levels.object, plateau_sd};
     const Edge e = fit_edge(places, values, wish);
     const double rise = levels.object - levels.air, off = std::max(0.7, 0.08 * s.radius);
     if (!e.good || e.object < e.air || std::abs(e.position) > off || std::abs(e.air - levels.air) > 0.3 * rise ||

@@ -69,7 +69,9 @@ double length_bias(const Threshold& used, double better);
 struct Edge {
   double position = 0, sigma = 0;      // voxels along the normal
   double width = 0;                    // sd of the spread function, voxels (of the samples': interpolation adds 1/6)
-  double air = 0, object = 0;
+  double air = 0, object = 0;          // object: at the contour, where it slants
+  double sigma_air = 0, sigma_object = 0;
+  double slope = 0;                    // of the object's values along the normal, per voxel, where it was asked for
   double misfit = 0;                   // rms residual / (object - air)
   bool good = false;                   // converged, step > 3 noise, |position| within half the profile
   // Distance from the contour to the next wall behind and in front of this one, where the profile met one.
@@ -78,6 +80,9 @@ struct Edge {
   double excess = 1;
 };
 
+struct Known {
+  double mean = 0, sd = 0;
+};
 // What is known of a profile beside its values.
 struct ProfileWish {
   double noise = 0;                            // sd of a voxel; 0: from the residuals
@@ -89,9 +94,9 @@ struct ProfileWish {
   std::optional<double> inner{}, outer{};
   std::optional<double> width{};               // known from elsewhere, within
   double width_share = 0.07;                   // ... so much of it (sd)
-  std::optional<double> air{}, object{};       // plateaus known from elsewhere, within
-  double plateau_share = 0.05;                 // ... so much of the step between them (sd)
+  std::optional<Known> air{}, object{};        // plateaus, from neighbours
   double slope = 0;                            // of the object's values along the normal, per voxel
+  bool slope_is_free = false;                  // fit it too, from 0; of edges that stand alone
 };
 Edge fit_edge(std::span<const double> s, std::span<const double> values, const ProfileWish& wish);
 Edge fit_edge(std::span<const double> s, std::span<const double> values, double noise);  // independent samples
@@ -109,9 +114,12 @@ struct EdgeWish {
   std::optional<double> width{};       // sd of the spread function where it is known; else the median of lone edges
   Vec3 scale{1, 1, 1};                 // spacing per axis over the smallest spacing
 };
-// Edges at vertices of a contour (all, or every n-th), by trilinear samples of the volume along the normals. The volume
-// is streamed twice: once for the width and the noise, from some thousand vertices, once for all. Walls behind and
-// before are found by walking the profile to twice the reach. Error(data) where the contour is empty.
+// Edges at vertices of a contour (all, or every n-th), by trilinear samples of the volume along the normals. Walls behind
+// and before are found by walking the profile to twice the reach. The volume is streamed twice: first some ten thousand
+// vertices tell what edges share, the width (that with the least residuals of all together: of thin walls the mean of
+// widths fitted one by one is too small), the noise, and place for place the plateaus and the slope of the object's
+// values beneath the surface (a cup); then every edge is fitted with these known as well as they are.
+// Error(data) where the contour is empty.
 std::vector<Edge> edges(io::VolumeSource& source, const Contour& at, const EdgeWish& wish, std::size_t every = 1);
 
 // What the edges themselves say of half-way: by it a global threshold can be judged. bias and rms: of wall positions

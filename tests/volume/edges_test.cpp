@@ -78,12 +78,13 @@ struct Tube {
   }
 };
 io::VolumeData volume_of(const Tube& tube, double noise, std::uint64_t seed) {
-  const phantom::Disc out(tube.outer, 0.8), in(tube.inner, 0.8);
+  const auto value = [&](double rho) { return cupped(rho, tube.outer, tube.depth); };
+  const phantom::Disc out(tube.outer, 0.8, value), in(tube.inner, 0.8, value);
   return phantom::sampled(
       {48, 48, 40},
       [&](Vec3 p) {
         const double rho = tube.rho(p);
-        return 1 + 10 * cupped(rho, tube.outer, tube.depth) * (out.at(rho) - in.at(rho));
+        return 1 + 10 * (out.at(rho) - in.at(rho));
       },
       noise, 0.3, seed);
 }
@@ -97,10 +98,11 @@ TEST(Edges, CuppingMovesTheWallsOfAThresholdAndNotTheseOnes) {
     const double radius = inwards ? tube.inner : tube.outer;
     // Where a contour at the global threshold stands, for want of one: the value crosses it on the normal.
     Contour surface = phantom::tube_surface(tube.centre, tube.axis, radius, 24, inwards);
-    const phantom::Disc disc(radius, 0.8);
+    const auto value = [&](double rho) { return cupped(rho, tube.outer, tube.depth); };
+    const phantom::Disc out(tube.outer, 0.8, value), in(tube.inner, 0.8, value);
     double off = 0;
     for (double x = -1.5; x < 1.5; x += 0.001) {
-      const double rho = radius + x, v = 1 + 10 * cupped(rho, tube.outer, tube.depth) * (inwards ? 1 - disc.at(rho) : disc.at(rho));
+      const double rho = radius + x, v = 1 + 10 * (out.at(rho) - in.at(rho));
       if ((v > threshold) != inwards) off = inwards ? -x : x;
     }
     disturb(surface, off, 0.03, 8);
@@ -121,7 +123,7 @@ TEST(Edges, CuppingMovesTheWallsOfAThresholdAndNotTheseOnes) {
     EXPECT_LT(after.rms, 0.1);
     if (inwards) {
       EXPECT_GT(std::abs(before.mean), 4 * std::abs(after.mean));
-      EXPECT_NEAR(local.wall_bias, before.mean, 0.08);
+      EXPECT_NEAR(local.wall_bias, before.mean, 0.12);  // by the slope in the middle of the edge
     }
   }
 }

@@ -80,14 +80,14 @@ double half_space(Vec3 place, Vec3 at, Vec3 normal, double w) {
   return normal_share(-dot(place - at, normal) / w);
 }
 
-Disc::Disc(double radius, double w) {
+Disc::Disc(double radius, double w, const std::function<double(double)>& value) {
   constexpr double dr = 0.01;
   for (double rho = 0; rho < radius + 8 * w + 1; rho += table_step) {
     double sum = 0;
     for (double r = std::max(dr / 2, rho - 8 * w); r < radius; r += dr) {
       const double h = std::min(dr, radius - r + dr / 2), middle = r;
       const double d = middle - rho;
-      sum += h * middle / (w * w) * std::exp(-0.5 * d * d / (w * w)) * scaled_bessel(middle * rho / (w * w));
+      sum += value(middle) * h * middle / (w * w) * std::exp(-0.5 * d * d / (w * w)) * scaled_bessel(middle * rho / (w * w));
       if (middle > rho + 8 * w) break;
     }
     table_.push_back(sum);

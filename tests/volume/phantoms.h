@@ -19,7 +19,8 @@ double half_space(Vec3 place, Vec3 at, Vec3 normal, double w);  // within where 
 // Discs smeared in two dimensions have no closed form: tabulated over the radius.
 class Disc {
  public:
-  Disc(double radius, double w);
+  // `value`: of the disc, over its radius.
+  Disc(double radius, double w, const std::function<double(double)>& value = [](double) { return 1.0; });
   double at(double rho) const;
 
  private:
