@@ -1,7 +1,6 @@
 #include "volume/contour.h"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -56,8 +55,9 @@ class Contouring {
   // Room for vertices that are about to be added; the number of the first.
   std::uint32_t add_vertices(std::size_t count) {
     const std::size_t before = made_.positions.size();
-    if (count > std::numeric_limits<std::uint32_t>::max() - before)
-      throw Error(Exit::data, place_, "its surface at this threshold needs more than 4294967295 vertices",
+    if (before + count > wish_.most_vertices)
+      throw Error(Exit::data, place_,
+                  "its surface at this threshold needs more than " + std::to_string(wish_.most_vertices) + " vertices",
                   "choose a threshold outside the noise, or denoise first");
     made_.positions.resize(before + count);
     made_.normals.resize(before + count);

@@ -30,7 +30,7 @@ struct Eigen3 {
 // vertex.
 Eigen3 eigen_of_symmetric(Mat3 a) {
   Eigen3 found;
-  const double small = 1e-24 * (a(0, 0) + a(1, 1) + a(2, 2)) * (a(0, 0) + a(1, 1) + a(2, 2));
+  const double small = 1e-18 * (a(0, 0) + a(1, 1) + a(2, 2)) * (a(0, 0) + a(1, 1) + a(2, 2));
   for (int sweep = 0; sweep < 12; ++sweep) {
     if (a(0, 1) * a(0, 1) + a(0, 2) * a(0, 2) + a(1, 2) * a(1, 2) <= small) break;
     for (int p = 0; p < 2; ++p)

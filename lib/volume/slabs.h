@@ -1,5 +1,5 @@
-// A volume read in slabs of slices that overlap, so that neighbourhoods are whole while memory stays bounded: what every
-// step over a whole volume is made of. Values as floats; what lies outside the volume is `outside`.
+// A volume read in slabs of slices that overlap, so that neighbourhoods are whole while memory stays bounded: what
+// every step over a whole volume is made of. Values as floats; what lies outside the volume is `outside`.
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -15,8 +15,9 @@ struct Slab {
   std::vector<float> values;  // (count + 2 margin) * width * height
   // k counts from the volume's first slice; first - margin <= k < first + count + margin.
   const float* slice(std::ptrdiff_t k) const {
-    return values.data() + static_cast<std::size_t>(k - static_cast<std::ptrdiff_t>(first) +
-                                                    static_cast<std::ptrdiff_t>(margin)) * width * height;
+    return values.data() +
+           static_cast<std::size_t>(k - static_cast<std::ptrdiff_t>(first) + static_cast<std::ptrdiff_t>(margin)) *
+               width * height;
   }
 };
 

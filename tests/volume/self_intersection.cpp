@@ -46,6 +46,7 @@ bool intersects_itself(const std::vector<std::array<float, 3>>& positions, const
   boxes.reserve(triangles.size());
   for (std::size_t n = 0; n < triangles.size(); ++n) {
     const Corners& t = triangles[n];
+    if (CGAL::collinear(points[t[0]], points[t[1]], points[t[2]])) return true;  // no triangle at all
     boxes.emplace_back(points[t[0]].bbox() + points[t[1]].bbox() + points[t[2]].bbox(), n);
   }
   bool found = false;
