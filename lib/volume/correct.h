@@ -18,7 +18,7 @@ struct CuppingField {
   std::vector<double> coefficients;  // of monomials x^a y^b z^c, a + b + c <= degree, x in [-1, 1] over the volume
   double before = 0, after = 0;      // sd of the material's slowly varying part, as a share of object - air
   double air = 0, object = 0;
-  double lowest = 1, highest = 1;    // over the material; nowhere else does the field go beyond them
+  double lowest = 1, highest = 1;  // over the material; nowhere else does the field go beyond them
   double at(const std::array<std::size_t, 3>& size, double i, double j, double k) const;  // 1 where there is none
 };
 CuppingField fit_cupping(io::VolumeSource& source, double air, double object, int degree = 4);
@@ -28,8 +28,8 @@ CuppingField fit_cupping(io::VolumeSource& source, double air, double object, in
 struct RingWish {
   double centre_i = 0, centre_j = 0;  // index coordinates
   std::size_t window = 21;            // voxels of radius
-  // Half-way between air and object: what lies within three voxels of this contour, such as a wall that stands round the
-  // centre, is no ring.
+  // Half-way between air and object: what lies within three voxels of this contour, such as a wall that stands round
+  // the centre, is no ring.
   std::optional<double> threshold{};
 };
 
@@ -37,12 +37,12 @@ enum class Denoise { none, anisotropic, non_local };
 struct CorrectWish {
   const CuppingField* cupping = nullptr;
   const RingWish* rings = nullptr;
-  Denoise denoise = Denoise::none;   // CImg: blur_anisotropic (tensor diffusion) or blur_patch (non-local means)
-  double noise = 0;                  // sd of the noise, in values
+  Denoise denoise = Denoise::none;  // CImg: blur_anisotropic (tensor diffusion) or blur_patch (non-local means)
+  double noise = 0;                 // sd of the noise, in values
   double strength = 1;
 };
-// Reads through; each slab with enough neighbours that seams do not show: denoised in blocks of 16 slices, whoever reads
-// how many at once. Error(usage) where denoising is asked for and no noise is known.
+// Reads through; each slab with enough neighbours that seams do not show: denoised in blocks of 16 slices, whoever
+// reads how many at once. Error(usage) where denoising is asked for and no noise is known.
 std::unique_ptr<io::VolumeSource> corrected(io::VolumeSource& source, const CorrectWish& wish);
 
 // What a correction did to edges: 10-90 % width before and after along the same normals, and how far the edges moved.

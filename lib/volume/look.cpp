@@ -62,9 +62,14 @@ Look look(io::VolumeSource& source) {
   Look look;
   look.histogram = histogram(source);
   look.mixture = materials(look.histogram);
+  if (look.mixture.materials.size() < 2) {
+    look.otsu = look.mixture.materials.front().mean;
+    return look;
+  }
   look.otsu = otsu(look.histogram).value;
-  if (look.mixture.materials.size() < 2) return look;
   const Sides sides = sides_of(look.mixture);
+  const AirAndObject chosen = air_and_object(look.mixture);
+  look.air = chosen.air, look.object = chosen.object;
   NoiseProbe noise;
   RingProbe rings;
   StreakProbe streaks;

@@ -28,17 +28,27 @@ void along_lines(const Slab& slab, std::vector<T>& values, int axis, const Body&
 
 }  // namespace
 
-Sides sides_of(const Mixture& mixture) {
+AirAndObject air_and_object(const Mixture& mixture) {
   const auto& all = mixture.materials;
   if (all.size() < 2)
     throw Error(Exit::data, "volume", "the histogram shows one material only",
                 "check the scan, or the window in which it was exported");
-  double largest = 0;
-  for (std::size_t m = 1; m < all.size(); ++m) largest = std::max(largest, all[m].share);
-  std::size_t object = 1;
-  for (std::size_t m = 1; m < all.size(); ++m)
-    if (all[m].share >= 0.2 * largest) object = m;
-  return {all[0].mean, all[object].mean};
+  const auto largest_from = [&](std::size_t first) {
+    double largest = 0;
+    for (std::size_t m = first; m < all.size(); ++m) largest = std::max(largest, all[m].share);
+    return largest;
+  };
+  AirAndObject chosen;
+  while (all[chosen.air].share < largest_from(0) / 30) ++chosen.air;
+  if (chosen.air + 1 == all.size()) chosen.air = 0;
+  for (std::size_t m = chosen.air + 1; m < all.size(); ++m)
+    if (all[m].share >= 0.2 * largest_from(chosen.air + 1)) chosen.object = m;
+  return chosen;
+}
+
+Sides sides_of(const Mixture& mixture) {
+  const AirAndObject chosen = air_and_object(mixture);
+  return {mixture.materials[chosen.air].mean, mixture.materials[chosen.object].mean};
 }
 
 void for_each_probe(io::VolumeSource& source, const ProbeWish& wish, const std::function<void(const Slab&)>& body) {

@@ -19,7 +19,11 @@ struct Sides {
   bool surely_air(float mean) const { return mean < air + 0.25 * step(); }
   bool surely_object(float mean) const { return mean > object - 0.25 * step() && mean < object + 0.35 * step(); }
 };
-// Air, and the densest material that is no smaller than a fifth of the largest beside air.
+// By position in the mixture, as Look says; Error(data) where there is one material only.
+struct AirAndObject {
+  std::size_t air = 0, object = 0;
+};
+AirAndObject air_and_object(const Mixture& mixture);
 Sides sides_of(const Mixture& mixture);
 
 // Slabs of `count` slices with margins, all of the volume where it has no more than `most` voxels, else spread evenly.

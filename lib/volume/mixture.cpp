@@ -27,7 +27,7 @@ struct Bins {
   double width = 0, voxels = 0;
 };
 
-// No more than 1024 bins over what holds all but a millionth of the voxels on either side.
+// No more than 640 bins over what holds all but a millionth of the voxels on either side.
 Bins bins_of(const Histogram& h) {
   Bins bins;
   const std::size_t n = h.counts.size();
@@ -37,7 +37,7 @@ Bins bins_of(const Histogram& h) {
     if ((below += static_cast<double>(h.counts[first])) > 1e-6 * bins.voxels) break;
   for (double above = 0; last > first + 1; --last)
     if ((above += static_cast<double>(h.counts[last - 1])) > 1e-6 * bins.voxels) break;
-  const std::size_t together = (last - first + 1023) / 1024;
+  const std::size_t together = (last - first + 639) / 640;
   const double width = (h.high - h.low) / static_cast<double>(n);
   bins.width = width * static_cast<double>(together);
   for (std::size_t b = first; b < last; b += together) {
@@ -59,27 +59,30 @@ struct Model {
   bool operator<(const Model& o) const { return log_likelihood < o.log_likelihood; }
 };
 
-double density(const Model& m, std::size_t component, double x) {
+// Of all components at x: the materials, then what lies between each and the next.
+void densities(const Model& m, double x, std::vector<double>& p, std::vector<double>& below) {
   const std::size_t k = m.mean.size();
-  if (component < k) {
-    const double z = (x - m.mean[component]) / m.sd[component];
-    return m.share[component] * std::exp(-0.5 * z * z) / (m.sd[component] * std::sqrt(2 * pi));
+  for (std::size_t c = 0; c < k; ++c) {
+    const double z = (x - m.mean[c]) / m.sd[c];
+    p[c] = std::abs(z) < 12 ? m.share[c] * std::exp(-0.5 * z * z) / (m.sd[c] * std::sqrt(2 * pi)) : 0;
+    below[c] = z > 6 ? 1 : z < -6 ? 0 : phi(z);
   }
-  const std::size_t a = component - k, b = a + 1;
-  const double wide = m.mean[b] - m.mean[a];
-  if (!(wide > 0) || m.mixed[a] == 0) return 0;
-  return m.mixed[a] * std::max(0.0, phi((x - m.mean[a]) / m.sd[a]) - phi((x - m.mean[b]) / m.sd[b])) / wide;
+  for (std::size_t c = 0; c + 1 < k; ++c) {
+    const double wide = m.mean[c + 1] - m.mean[c];
+    p[k + c] = wide > 0 ? m.mixed[c] * std::max(0.0, below[c] - below[c + 1]) / wide : 0;
+  }
 }
 
 // One step; the likelihood is that of the model as it came.
 void improve(Model& m, const Bins& bins) {
   const std::size_t k = m.mean.size(), all = 2 * k - 1;
-  std::vector<double> weight(all, 0.0), sum(k, 0.0), squares(k, 0.0), p(all);
+  std::vector<double> weight(all, 0.0), sum(k, 0.0), squares(k, 0.0), p(all), below(k);
   double likelihood = 0;
   for (std::size_t b = 0; b < bins.at.size(); ++b) {
     if (bins.weight[b] == 0) continue;
     double total = 1e-300;
-    for (std::size_t c = 0; c < all; ++c) total += p[c] = density(m, c, bins.at[b]);
+    densities(m, bins.at[b], p, below);
+    for (std::size_t c = 0; c < all; ++c) total += p[c];
     likelihood += bins.weight[b] * std::log(total);
     for (std::size_t c = 0; c < all; ++c) {
       const double w = bins.weight[b] * p[c] / total;
@@ -217,9 +220,9 @@ Model started_on_heaps(const Bins& bins, std::size_t k) {
 
 void iterate(Model& m, const Bins& bins) {
   double before = -HUGE_VAL;
-  for (int step = 0; step < 400; ++step) {
+  for (int step = 0; step < 300; ++step) {
     improve(m, bins);
-    if (step > 10 && m.log_likelihood - before < 1e-9) break;
+    if (step > 10 && m.log_likelihood - before < 1e-8) break;
     before = m.log_likelihood;
   }
 }
