@@ -106,7 +106,8 @@ std::string content(zip_t* archive, zip_uint64_t index, std::uint64_t file_bytes
   const zip_int64_t read = entry == nullptr ? -1 : zip_fread(entry, bytes.data(), bytes.size());
   char beyond;  // the checksum is compared where the entry ends
   const bool ends = read == static_cast<zip_int64_t>(bytes.size()) && zip_fread(entry, &beyond, 1) == 0;
-  if (entry == nullptr || zip_fclose(entry) != 0 || !ends) refuse_npy(place, "is damaged: its checksum or length is wrong");
+  if (entry == nullptr || zip_fclose(entry) != 0 || !ends)
+    refuse_npy(place, "is damaged: its checksum or length is wrong");
   return bytes;
 }
 
@@ -117,7 +118,7 @@ bool parse_npy(std::string_view bytes, const std::string& place, NpyArray& out) 
   if (head.kind == 'O') return false;
   if (const std::size_t wanted = head.count * head.bytes * (head.kind == 'U' ? 4 : 1); bytes.size() != wanted)
     refuse_npy(place, "has " + std::to_string(bytes.size()) + " bytes of data where its head makes " +
-                      std::to_string(wanted) + ": truncated");
+                          std::to_string(wanted) + ": truncated");
   out.size = head.size;
   if (head.kind == 'U' || head.kind == 'S') {
     if (head.count == 1) out.text = text_of(bytes, head);

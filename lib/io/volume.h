@@ -6,12 +6,12 @@
 // name; the last three do not describe themselves, and VolumeWish does.
 //
 // Indices count voxels: index (i, j, k) is the centre of a voxel, i along a row, j along the rows of a slice, k along
-// the slices, the order in which they are read. `volume_from_index` takes an index to metres in the frame of the volume:
-// p_m = origin_m + axes * diag(spacing_m) * index, columns of `axes` being unit vectors. Nothing of it is guessed:
-// what neither the file nor the wish says is absent, and Error(data) says how to say it. A spacing counts as stated where
-// the file says its unit, or its format's standard does: DICOM's and MetaImage's millimetres, NIfTI's xyzt_units, NRRD's
-// units and space units; millimetres, too, in an NRRD with one of the patient's frames, as ITK and Slicer write them.
-// All ones without a unit are what programs write that know no spacing: they state nothing.
+// the slices, the order in which they are read. `volume_from_index` takes an index to metres in the frame of the
+// volume: p_m = origin_m + axes * diag(spacing_m) * index, columns of `axes` being unit vectors. Nothing of it is
+// guessed: what neither the file nor the wish says is absent, and Error(data) says how to say it. A spacing counts as
+// stated where the file says its unit, or its format's standard does: DICOM's and MetaImage's millimetres, NIfTI's
+// xyzt_units, NRRD's units and space units; millimetres, too, in an NRRD with one of the patient's frames, as ITK and
+// Slicer write them. All ones without a unit are what programs write that know no spacing: they state nothing.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -33,14 +33,14 @@ std::size_t bytes_of(VoxelType type);
 const char* name_of(VoxelType type);  // "uint16"
 
 struct VolumeHead {
-  std::array<std::size_t, 3> size{};     // voxels: i, j, k
-  VoxelType type = VoxelType::u8;        // as stored
-  std::optional<Vec3> spacing_m{};       // between centres, positive
-  std::optional<Vec3> origin_m{};        // centre of voxel (0, 0, 0)
-  std::optional<Mat3> axes{};            // unit columns, right or left-handed, orthogonal within 1e-4
-  double slope = 1, intercept = 0;       // value = slope * stored + intercept
-  std::string value{};                   // what values mean, where the file says so: "hounsfield", ...
-  std::string format{};                  // "NRRD, gzip"
+  std::array<std::size_t, 3> size{};           // voxels: i, j, k
+  VoxelType type = VoxelType::u8;              // as stored
+  std::optional<Vec3> spacing_m{};             // between centres, positive
+  std::optional<Vec3> origin_m{};              // centre of voxel (0, 0, 0)
+  std::optional<Mat3> axes{};                  // unit columns, right or left-handed, orthogonal within 1e-4
+  double slope = 1, intercept = 0;             // value = slope * stored + intercept
+  std::string value{};                         // what values mean, where the file says so: "hounsfield", ...
+  std::string format{};                        // "NRRD, gzip"
   std::vector<std::filesystem::path> files{};  // all that were read, the head first
   std::string spacing_note{};  // what the file says of its spacing without stating one: "0.5 x 0.5 x 0.7 of no unit"
   std::size_t voxels() const { return size[0] * size[1] * size[2]; }
@@ -50,13 +50,13 @@ Vec3 stated_spacing(const VolumeHead& head);
 
 // What the user says beside the files. A statement that contradicts the file is Error(data).
 struct VolumeWish {
-  std::optional<Vec3> spacing_m{};                         // --voxel 120um or --voxel 0.1mm,0.1mm,0.3mm
-  std::optional<std::array<std::size_t, 3>> size{};        // raw: --size 512x512x400
-  std::optional<VoxelType> type{};                         // raw: --type uint16
-  bool big_endian = false;                                 // raw
-  std::size_t skip_bytes = 0;                              // raw: before the first sample
-  std::optional<std::array<std::size_t, 2>> tiles{};       // atlas: columns and rows of tiles, from the top left
-  bool accept_gap = false;                                 // DICOM: take the largest stack of equal spacing
+  std::optional<Vec3> spacing_m{};                    // --voxel 120um or --voxel 0.1mm,0.1mm,0.3mm
+  std::optional<std::array<std::size_t, 3>> size{};   // raw: --size 512x512x400
+  std::optional<VoxelType> type{};                    // raw: --type uint16
+  bool big_endian = false;                            // raw
+  std::size_t skip_bytes = 0;                         // raw: before the first sample
+  std::optional<std::array<std::size_t, 2>> tiles{};  // atlas: columns and rows of tiles, from the top left
+  bool accept_gap = false;                            // DICOM: take the largest stack of equal spacing
 };
 
 // An open volume: reads slices in order as floats (value, i.e. after slope and intercept). Reading forwards is fast in
@@ -65,8 +65,9 @@ class VolumeSource {
  public:
   virtual ~VolumeSource() = default;
   const VolumeHead& head() const { return head_; }
-  // Slices k = first .. first + count - 1 into `to` (count * size[0] * size[1] floats, i fastest). Error(data) where the
-  // file ends early or holds what is no number (place: file and slice), Error(io). Not to be called from two threads.
+  // Slices k = first .. first + count - 1 into `to` (count * size[0] * size[1] floats, i fastest). Error(data) where
+  // the file ends early or holds what is no number (place: file and slice), Error(io). Not to be called from two
+  // threads.
   virtual void read(std::size_t first, std::size_t count, std::span<float> to) = 0;
 
  protected:
@@ -96,12 +97,12 @@ void write_nrrd(const std::filesystem::path& path, const VolumeHead& head,
 
 // A member of the family: io/volumes/NAME.cpp defines `const VolumeFormat& NAME()`.
 struct VolumeFormat {
-  const char* name;                                // "NRRD"
-  const char* sentence;                            // one line for the man page
+  const char* name;      // "NRRD"
+  const char* sentence;  // one line for the man page
   // Is it mine? `beginning` holds up to 1024 bytes of a file; empty for a folder.
   bool (*mine)(const std::filesystem::path& path, std::string_view beginning, const VolumeWish& wish);
   std::unique_ptr<VolumeSource> (*open)(const std::filesystem::path& path, const VolumeWish& wish);
-  int order = 0;                                   // asked in ascending order; raw, which takes anything, last
+  int order = 0;  // asked in ascending order; raw, which takes anything, last
 };
 std::span<const VolumeFormat* const> all_volume_formats();
 

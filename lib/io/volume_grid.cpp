@@ -27,13 +27,14 @@ Vec3 column_of(const Mat3& m, int c) {
   return {m(0, c), m(1, c), m(2, c)};
 }
 
-void check_spacing(Vec3 spacing, double unit_m, const std::string& place) {
+void check_spacing(Vec3 spacing, double unit_m, const std::string& place,
+                   const char* remedy = "correct the spacing in its head") {
   for (int a = 0; a < 3; ++a) {
     if (!std::isfinite(spacing[a]) || spacing[a] <= 0)
       refuse_volume(place,
                     "states a spacing of " + shortest_text(spacing[a]) + " along " + axis_name(a) +
                         ", and distances between voxels are positive",
-                    "correct the spacing in its head");
+                    remedy);
     if (const double metres = spacing[a] * (unit_m > 0 ? unit_m : 1); unit_m > 0 && !(metres < largest_spacing_m))
       refuse_volume(place, "states a spacing of " + shortest_text(metres) + " m along " + axis_name(a) +
                                ", and below 10 m are possible");
@@ -114,7 +115,7 @@ void set_steps(StatedGrid& grid, const Mat3& steps) {
 
 void settle_grid(const StatedGrid& grid, const VolumeWish& wish, VolumeHead& head, const std::string& place) {
   if (grid.spacing) check_spacing(*grid.spacing, grid.unit_m, place);
-  if (wish.spacing_m) check_spacing(*wish.spacing_m, 1, "--voxel");
+  if (wish.spacing_m) check_spacing(*wish.spacing_m, 1, "--voxel", "say it as 120um or 0.1mm,0.1mm,0.3mm");
   if (grid.origin && !is_finite(*grid.origin)) refuse_volume(place, "states an origin that is no place");
   if (grid.axes) {
     check_axes(*grid.axes, place);

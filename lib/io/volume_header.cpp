@@ -12,7 +12,7 @@
 namespace gonio::io {
 namespace {
 
-constexpr std::int64_t most_files = 1 << 20;
+constexpr std::int64_t most_files = 1 << 16;
 constexpr std::size_t longest_shown = 40;
 
 bool is_blank(char c) {
@@ -160,7 +160,7 @@ std::vector<std::string> names_of_pattern(std::string_view pattern, std::int64_t
   if (step == 0 || first < 0 || last < 0 || first > std::int64_t{1} << 40 || last > std::int64_t{1} << 40 ||
       std::abs(step) > std::int64_t{1} << 40 || (step > 0) != (first <= last))
     if (first != last || step == 0) refuse("and no row of numbers for it");
-  if (std::abs(last - first) / std::abs(step) >= most_files) refuse("for more than 1048576 files");
+  if (std::abs(last - first) / std::abs(step) >= most_files) refuse("for more than 65536 files");
   std::vector<std::string> names;
   for (std::int64_t n = first; step > 0 ? n <= last : n >= last; n += step) {
     std::string digits = std::to_string(n);

@@ -30,7 +30,7 @@ std::optional<double> metres_of_unit(std::string_view unit);
 // is no more trusted than the head.
 std::filesystem::path beside(const std::filesystem::path& head, std::string_view name);
 // Names by printf's pattern with one %d, %03d or %i for first, first + step, ... up to last. Error(data) for any other
-// pattern, and for more than 2^20 files.
+// pattern, and for more than 65536 files.
 std::vector<std::string> names_of_pattern(std::string_view pattern, std::int64_t first, std::int64_t last,
                                           std::int64_t step, const std::string& place);
 

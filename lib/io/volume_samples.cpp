@@ -155,6 +155,31 @@ class TextVolume : public VolumeSource {
 
 }  // namespace
 
+std::size_t bytes_of(VoxelType type) {
+  switch (type) {
+    case VoxelType::u8:
+    case VoxelType::i8: return 1;
+    case VoxelType::u16:
+    case VoxelType::i16: return 2;
+    case VoxelType::f64: return 8;
+    default: return 4;
+  }
+}
+
+const char* name_of(VoxelType type) {
+  switch (type) {
+    case VoxelType::u8: return "uint8";
+    case VoxelType::i8: return "int8";
+    case VoxelType::u16: return "uint16";
+    case VoxelType::i16: return "int16";
+    case VoxelType::u32: return "uint32";
+    case VoxelType::i32: return "int32";
+    case VoxelType::f32: return "float32";
+    case VoxelType::f64: break;
+  }
+  return "float64";
+}
+
 bool is_swapped(bool big_endian) {
   return big_endian != (std::endian::native == std::endian::big);
 }

@@ -32,15 +32,16 @@ class MemoryFile {
   int fd_;
 };
 
-// At most some MiB are read: a deflated stream may promise a thousand times its length, and keeps it.
+// At most 8192 voxels are read: a deflated stream may promise a thousand times its length and keep it, which takes time
+// and finds nothing new.
 inline void read_all(io::VolumeSource& source) {
   const io::VolumeHead& head = source.head();
   const std::size_t slice = head.size[0] * head.size[1];
   if (slice == 0 || head.size[2] == 0) __builtin_trap();
   if (head.spacing_m && !(head.spacing_m->x > 0 && head.spacing_m->y > 0 && head.spacing_m->z > 0)) __builtin_trap();
-  if (slice > (std::size_t{1} << 18)) return;
+  if (slice > (std::size_t{1} << 13)) return;
   std::vector<float> values(slice);
-  const std::size_t slices = std::min(head.size[2], (std::size_t{1} << 19) / slice);
+  const std::size_t slices = std::min(head.size[2], (std::size_t{1} << 13) / slice);
   const auto read = [&](std::size_t k) {
     source.read(k, 1, values);
     for (const float v : values)

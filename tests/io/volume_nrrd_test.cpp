@@ -282,7 +282,7 @@ TEST_F(NrrdHeads, BrokenOnesAreRefusedInALine) {
   EXPECT_THAT(refused(head("uint8", "data file: ../../etc/passwd\n")), HasSubstr("samples outside its folder"));
   EXPECT_THAT(refused(head("uint8", "data file: /dev/zero\n")), HasSubstr("samples outside its folder"));
   EXPECT_THAT(refused(head("uint8", "data file: s%s.raw 1 3 1\n")), HasSubstr("one %d or %03d is possible"));
-  EXPECT_THAT(refused(head("uint8", "data file: s%d.raw 1 300000000 1\n")), HasSubstr("more than 1048576 files"));
+  EXPECT_THAT(refused(head("uint8", "data file: s%d.raw 1 300000000 1\n")), HasSubstr("more than 65536 files"));
   EXPECT_THAT(refused(head("uint8", "byte skip: -2\n")), HasSubstr("has a byteskip of -2"));
   EXPECT_THAT(refused(head("uint8", "line skip: 9\n")), HasSubstr("fewer lines"));
   EXPECT_THAT(volume_refusal(file(head("uint8", "data file: none.raw\n"), ""), {}, Exit::no_input),

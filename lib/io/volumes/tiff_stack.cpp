@@ -41,6 +41,16 @@ int pass_over(TIFF*, void*, const char*, const char*, va_list) {
   return 1;
 }
 
+// By SampleFormat and bits.
+const std::map<std::pair<int, int>, VoxelType>& tiff_types() {
+  static const std::map<std::pair<int, int>, VoxelType> types{
+      {{SAMPLEFORMAT_UINT, 8}, VoxelType::u8},     {{SAMPLEFORMAT_INT, 8}, VoxelType::i8},
+      {{SAMPLEFORMAT_UINT, 16}, VoxelType::u16},   {{SAMPLEFORMAT_INT, 16}, VoxelType::i16},
+      {{SAMPLEFORMAT_UINT, 32}, VoxelType::u32},   {{SAMPLEFORMAT_INT, 32}, VoxelType::i32},
+      {{SAMPLEFORMAT_IEEEFP, 32}, VoxelType::f32}, {{SAMPLEFORMAT_IEEEFP, 64}, VoxelType::f64}};
+  return types;
+}
+
 struct TiffPage {
   std::size_t width = 0, height = 0;
   VoxelType type = VoxelType::u8;
@@ -145,13 +155,8 @@ class TiffFile {
   VoxelType type() {
     const auto bits = number<std::uint16_t>(TIFFTAG_BITSPERSAMPLE, 1),
                kind = number<std::uint16_t>(TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
-    static const std::map<std::pair<int, int>, VoxelType> types = {
-        {{SAMPLEFORMAT_UINT, 8}, VoxelType::u8},     {{SAMPLEFORMAT_INT, 8}, VoxelType::i8},
-        {{SAMPLEFORMAT_UINT, 16}, VoxelType::u16},   {{SAMPLEFORMAT_INT, 16}, VoxelType::i16},
-        {{SAMPLEFORMAT_UINT, 32}, VoxelType::u32},   {{SAMPLEFORMAT_INT, 32}, VoxelType::i32},
-        {{SAMPLEFORMAT_IEEEFP, 32}, VoxelType::f32}, {{SAMPLEFORMAT_IEEEFP, 64}, VoxelType::f64}};
-    const auto found = types.find({kind == SAMPLEFORMAT_VOID ? SAMPLEFORMAT_UINT : kind, bits});
-    if (found == types.end())
+    const auto found = tiff_types().find({kind == SAMPLEFORMAT_VOID ? SAMPLEFORMAT_UINT : kind, bits});
+    if (found == tiff_types().end())
       refuse_volume(place_, "has samples of " + std::to_string(bits) + " bits of TIFF's format " + std::to_string(kind),
                     "integers of 8, 16 and 32 bits and floats are read");
     return found->second;
