@@ -24,6 +24,11 @@ double marker_threshold(const Work& work) {
 void find_markers(Work& work) {
   if (!work.asked.find_markers || !work.markers.found.empty()) return;  // the threshold may have asked already
   const double threshold = marker_threshold(work);
+  if (threshold >= work.look.histogram.largest)
+    throw Error(Exit::data, work.call.text("VOLUME"),
+                format("no value is above the markers' threshold of %.6g: the largest is %.6g", threshold,
+                       work.look.histogram.largest),
+                "give a lower --marker-threshold");
   const volume::Contour surface =
       volume::contour(*work.file, {.threshold = threshold, .inside = volume::Connectivity::twenty_six});
   volume::MarkerWish wish{.seed = work.call.seed};  // the noise within the markers is not that of the air
