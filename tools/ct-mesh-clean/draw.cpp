@@ -62,8 +62,22 @@ void line(io::Image& image, double x0, double y0, double x1, double y1, const Co
     const int x = static_cast<int>(std::lround(x0 + (x1 - x0) * i / n)),
               y = static_cast<int>(std::lround(y0 + (y1 - y0) * i / n));
     if (x < 0 || y < 0 || x >= image.width || y >= image.height) continue;
-    for (int c = 0; c < 3; ++c) image.at(x, y, c) = colour[static_cast<std::size_t>(c)];
+    for (int dy = 0; dy < 2; ++dy)
+      for (int dx = 0; dx < 2; ++dx)
+        for (int c = 0; c < 3; ++c)
+          image.at(std::min(x + dx, image.width - 1), std::min(y + dy, image.height - 1), c) =
+              colour[static_cast<std::size_t>(c)];
   }
+}
+
+// k points up in the pictures that show it, j down in the one that does not.
+io::Image upright(io::Image image, const Plane& p) {
+  if (p.v != 2) return image;
+  io::Image turned = image;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < 3; ++c) turned.at(x, image.height - 1 - y, c) = image.at(x, y, c);
+  return turned;
 }
 
 // Index coordinates of a point in metres.
@@ -103,7 +117,7 @@ io::Image grey(const Plane& p, double low, double high) {
   return image;
 }
 
-// Values that 0.5 % of the voxels are below, and above.
+// Values that 0.5 % of the voxels are below, and 0.05 % above: objects are small beside the air round them.
 std::pair<double, double> range_of(const volume::Histogram& h) {
   std::uint64_t all = 0;
   for (const std::uint64_t n : h.counts) all += n;
@@ -114,7 +128,7 @@ std::pair<double, double> range_of(const volume::Histogram& h) {
       if ((left -= static_cast<double>(h.counts[b])) <= 0) return h.low + (static_cast<double>(b) + 0.5) * bin;
     return h.high;
   };
-  const double low = percentile(0.005), high = percentile(0.995);
+  const double low = percentile(0.005), high = percentile(0.9995);
   return high > low ? std::pair{low, high} : std::pair{h.smallest, std::max(h.largest, h.smallest + 1e-30)};
 }
 
@@ -139,7 +153,7 @@ void draw(Work& work) {
     work.pictures.push_back({.step = p.across == 2 ? "surface" : "",
                              .title = std::string("slice ") + p.name + " " + std::to_string(p.at),
                              .caption = "Blue: the surface where the data put it. Orange: the cleaned mesh.",
-                             .png = io::encode_raster_png(image)});
+                             .png = io::encode_raster_png(upright(std::move(image), p))});
   }
 }
 

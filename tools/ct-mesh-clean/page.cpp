@@ -141,7 +141,7 @@ std::string page(const Work& work) {
   report::Page page("ct-mesh-clean", headline,
                     work.steps.empty() ? "" : work.call.text("VOLUME") + ": " + work.steps.front().how,
                     work.missed ? report::Tone::bad : report::Tone::good);
-  page.key_numbers({{"triangles", report::number_text(static_cast<double>(work.mesh.triangles.size()), 6), "", ""},
+  page.key_numbers({{"triangles", std::to_string(work.mesh.triangles.size()), "", ""},
                     {"distance to the data", format("%.3f", figure(work, "verdict", "distance_rms_m") / voxel), "voxel",
                      "root mean square"},
                     {"noise of normals", format("%.2f", figure(work, "verdict", "normal_noise_rad") * 180 / pi), "deg",
