@@ -34,7 +34,8 @@ bool pierces(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
   const double above = dot(n, a - p), below = dot(n, b - p);
   if (above * below >= 0) return false;
   const Vec3 d = b - a;
-  const double one = dot(d, cross(p - a, q - a)), two = dot(d, cross(q - a, r - a)), three = dot(d, cross(r - a, p - a));
+  const double one = dot(d, cross(p - a, q - a)), two = dot(d, cross(q - a, r - a)),
+               three = dot(d, cross(r - a, p - a));
   return (one > 0 && two > 0 && three > 0) || (one < 0 && two < 0 && three < 0);
 }
 

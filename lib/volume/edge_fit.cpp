@@ -81,7 +81,8 @@ class EdgeDescent final : public optim::Descent {
     }
     if constexpr (N == 8) {
       if (problem_.has_inner)
-        v += add_behind(x, step_at(s, x[EdgeAt::behind], w, h), slopes) - problem_.slope * slanted(s, x[EdgeAt::behind], w);
+        v += add_behind(x, step_at(s, x[EdgeAt::behind], w, h), slopes) -
+             problem_.slope * slanted(s, x[EdgeAt::behind], w);
       if (problem_.has_outer) v += add_before(x, step_at(s, x[EdgeAt::before], w, h), slopes);
     }
     return v;
@@ -215,7 +216,9 @@ EdgeStart start_between(std::span<const double> s, std::span<const double> v, co
     if (s[i] >= -0.5 && s[i] <= outer) start.air = std::min(start.air, v[i]);
   }
   const double rise = start.object - start.air;
-  const auto lacking = [&](double thickness) { return 1 / std::max(0.5, std::erf(thickness / (2 * w * std::numbers::sqrt2))) - 1; };
+  const auto lacking = [&](double thickness) {
+    return 1 / std::max(0.5, std::erf(thickness / (2 * w * std::numbers::sqrt2))) - 1;
+  };
   if (wish.inner) start.object += rise * lacking(-inner);
   if (wish.outer) start.air -= rise * lacking(outer);
   return start;
@@ -234,7 +237,8 @@ SampleNoise sample_noise(std::span<const double> covariance, std::size_t n) {
 }
 
 template <int N>
-Edge fitted_edge(const EdgeProblem& problem, const ProfileWish& wish, const Eigen::Matrix<double, N, 1>& start, double unit) {
+Edge fitted_edge(const EdgeProblem& problem, const ProfileWish& wish, const Eigen::Matrix<double, N, 1>& start,
+                 double unit) {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
   const std::size_t n = problem.s.size();
@@ -329,8 +333,8 @@ Edge fit_edge(std::span<const double> s, std::span<const double> values, const P
     return fitted_edge<5>(problem, wish, x, widest_sigma);
   }
   if (alone)
-    return fitted_edge<4>(problem, wish, Eigen::Vector4d(start.position, std::log(start.width), start.air, start.object),
-                     widest_sigma);
+    return fitted_edge<4>(
+        problem, wish, Eigen::Vector4d(start.position, std::log(start.width), start.air, start.object), widest_sigma);
   Eigen::Matrix<double, 8, 1> x;
   x << start.position, std::log(start.width), start.air, start.object, wish.inner.value_or(0), start.air,
       wish.outer.value_or(0), start.object;

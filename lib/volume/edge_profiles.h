@@ -15,7 +15,7 @@ struct EdgeProfile {
   Place place{};
   double mean_curvature = 0;
   std::vector<double> s{}, values{};
-  double inward = 0, outward = 0;        // distances to the next walls
+  double inward = 0, outward = 0;          // distances to the next walls
   std::optional<double> inner{}, outer{};  // walls that are fitted too
   bool alone() const { return !inner && !outer; }
 };
@@ -47,7 +47,8 @@ struct EdgeCommon {
 };
 
 // With nothing known beyond `wish`, or with what edges share.
-Edge fit_profile(const EdgeProfile& profile, const EdgeWish& wish, const EdgeCommon* common, bool slope_is_free = false);
+Edge fit_profile(const EdgeProfile& profile, const EdgeWish& wish, const EdgeCommon* common,
+                 bool slope_is_free = false);
 EdgeCommon common_of(const std::vector<EdgeProfile>& scouts, const EdgeWish& wish);
 
 }  // namespace gonio::volume

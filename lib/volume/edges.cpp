@@ -14,11 +14,11 @@
 namespace gonio::volume {
 namespace {
 
-constexpr double smear = 2.5;              // widths: what a step still moves is a hundredth of it
-constexpr double near_by = 0.75;           // voxels from the vertex that are not searched for another wall
+constexpr double smear = 2.5;                // widths: what a step still moves is a hundredth of it
+constexpr double near_by = 0.75;             // voxels from the vertex that are not searched for another wall
 constexpr float sharpest_curvature = 0.35F;  // 1 / voxel
 constexpr double guessed_width = 0.8;
-constexpr std::size_t scouts = 30000;      // vertices that tell what all share
+constexpr std::size_t scouts = 30000;  // vertices that tell what all share
 
 // What a walk along the normal met: the profile's limits and the walls beyond which it has to be two edges.
 struct Walk {
@@ -36,7 +36,9 @@ Crossings crossings_along(const std::vector<double>& v, double step, double leve
   const auto middle = static_cast<std::ptrdiff_t>(v.size() / 2), half = middle;
   const double sign = direction < 0 ? 1 : -1;  // inwards values lie above the level, outwards below
   Crossings found;
-  const auto above = [&](std::ptrdiff_t n) { return sign * (v[static_cast<std::size_t>(middle + direction * n)] - level); };
+  const auto above = [&](std::ptrdiff_t n) {
+    return sign * (v[static_cast<std::size_t>(middle + direction * n)] - level);
+  };
   for (std::ptrdiff_t n = 1; n < half; ++n) {
     if (static_cast<double>(n) * step < near_by) continue;
     const double before = above(n - 1), here = above(n), beyond = above(n + 1);
@@ -78,7 +80,9 @@ Walk walk_of(const std::vector<double>& values, double level, double reach, doub
 class Profiles {
  public:
   Profiles(const Contour& at, const EdgeWish& wish)
-      : at_(at), wish_(wish), curvature_(mean_curvature(at, wish.scale)),
+      : at_(at),
+        wish_(wish),
+        curvature_(mean_curvature(at, wish.scale)),
         half_(static_cast<std::size_t>(std::ceil(2 * wish.reach_voxels / wish.step_voxels))) {
     for (float& h : curvature_) h = std::clamp(h, -sharpest_curvature, sharpest_curvature);
   }
@@ -92,7 +96,8 @@ class Profiles {
     const auto s = [&](std::size_t n) {
       return (static_cast<double>(n) - static_cast<double>(half_)) * wish_.step_voxels;
     };
-    for (std::size_t n = 0; n < values.size(); ++n) values[n] = block.at(profile.place.index + profile.place.along * s(n));
+    for (std::size_t n = 0; n < values.size(); ++n)
+      values[n] = block.at(profile.place.index + profile.place.along * s(n));
     const Walk walk = walk_of(values, values[half_], wish_.reach_voxels, wish_.step_voxels, width);
     std::size_t first = half_, last = half_ + 1;
     while (first > 0 && s(first - 1) > walk.first - 1e-9 && std::isfinite(values[first - 1])) --first;
@@ -135,7 +140,8 @@ void stream(io::VolumeSource& source, const Contour& at, std::size_t margin, std
     std::vector<std::uint32_t> here;
     for (std::size_t k = slab.first; k < slab.first + slab.count; ++k)
       here.insert(here.end(), of_slice[k].begin(), of_slice[k].end());
-    parallel_for(0, here.size(), [&](std::size_t n) { body(block, here[n]); }, 256);
+    parallel_for(
+        0, here.size(), [&](std::size_t n) { body(block, here[n]); }, 256);
   });
 }
 

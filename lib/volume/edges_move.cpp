@@ -15,10 +15,10 @@
 namespace gonio::volume {
 namespace {
 
-constexpr double neighbour_sd = 0.1;     // voxels: how well a neighbour's plane foretells this vertex' wall
-constexpr double alike = 0.9;            // cosine between normals: beyond it there is a crease between them
-constexpr int filling_rounds = 8;        // so many edges far do good edges lend their shift
-constexpr int halvings = 5;              // then a vertex stays where it was
+constexpr double neighbour_sd = 0.1;  // voxels: how well a neighbour's plane foretells this vertex' wall
+constexpr double alike = 0.9;         // cosine between normals: beyond it there is a crease between them
+constexpr int filling_rounds = 8;     // so many edges far do good edges lend their shift
+constexpr int halvings = 5;           // then a vertex stays where it was
 
 struct Mover {
   Contour& contour;
@@ -179,8 +179,8 @@ Refined figures(const Mover& mover) {
 
 Refined move_to_steepest(Contour& contour, const std::vector<Edge>& edges, double at_most, Vec3 scale) {
   if (edges.size() != contour.positions.size())
-    throw Error(Exit::internal, "move_to_steepest", std::to_string(edges.size()) + " edges for " +
-                                                        std::to_string(contour.positions.size()) + " vertices");
+    throw Error(Exit::internal, "move_to_steepest",
+                std::to_string(edges.size()) + " edges for " + std::to_string(contour.positions.size()) + " vertices");
   Mover mover{contour, edges, at_most, scale};
   mover.prepare();
   mover.average();

@@ -8,9 +8,9 @@
 namespace gonio::volume {
 namespace {
 
-constexpr double box_edge = 10;              // voxels
-constexpr double least_count = 8;            // edges, weighted by how near their boxes are
-constexpr double width_share = 0.04;         // by which the width varies over a volume
+constexpr double box_edge = 10;               // voxels
+constexpr double least_count = 8;             // edges, weighted by how near their boxes are
+constexpr double width_share = 0.04;          // by which the width varies over a volume
 constexpr double least_plateau_share = 0.03;  // of the step: by which plateaus differ within a box
 
 double median_value(std::vector<double> v) {
@@ -22,9 +22,9 @@ double median_value(std::vector<double> v) {
 std::vector<Edge> fit_all(const std::vector<EdgeProfile>& profiles, const EdgeWish& wish, const EdgeCommon* common,
                           bool slopes) {
   std::vector<Edge> edges(profiles.size());
-  parallel_for(0, profiles.size(),
-               [&](std::size_t n) { edges[n] = fit_profile(profiles[n], wish, common, slopes && profiles[n].alone()); },
-               64);
+  parallel_for(
+      0, profiles.size(),
+      [&](std::size_t n) { edges[n] = fit_profile(profiles[n], wish, common, slopes && profiles[n].alone()); }, 64);
   return edges;
 }
 
@@ -79,7 +79,8 @@ std::optional<double> common_width(const std::vector<EdgeProfile>& profiles, dou
   };
   for (std::size_t n = 0; n < profiles.size(); ++n) {
     if (profiles[n].s.size() < 6) continue;
-    const std::array<long, 2> kind{std::lround(4 * profiles[n].inner.value_or(0)), std::lround(4 * profiles[n].outer.value_or(0))};
+    const std::array<long, 2> kind{std::lround(4 * profiles[n].inner.value_or(0)),
+                                   std::lround(4 * profiles[n].outer.value_or(0))};
     MeanProfile& mean = kinds[kind];
     mean.add(profiles[n], step);
     if (mean.members() < members) continue;
@@ -125,7 +126,8 @@ std::optional<EdgeNeighbours::Plateaus> EdgeNeighbours::near(const Place& place,
         if (found == boxes_.end()) continue;
         const auto tent = [](double x) { return std::max(0.0, 1 - std::abs(x) / 1.5); };
         const Sums& s = found->second;
-        const double t = tent(key[0] + dx + 0.5 - at.x) * tent(key[1] + dy + 0.5 - at.y) * tent(key[2] + dz + 0.5 - at.z);
+        const double t =
+            tent(key[0] + dx + 0.5 - at.x) * tent(key[1] + dy + 0.5 - at.y) * tent(key[2] + dz + 0.5 - at.z);
         sum.count += t * s.count, sum.weight += t * s.weight;
         sum.air += t * s.air, sum.air2 += t * s.air2, sum.noise_air += t * s.noise_air;
         sum.object += t * s.object, sum.object2 += t * s.object2, sum.noise_object += t * s.noise_object;
@@ -149,9 +151,8 @@ std::optional<EdgeNeighbours::Plateaus> EdgeNeighbours::near(const Place& place,
 Edge fit_profile(const EdgeProfile& profile, const EdgeWish& wish, const EdgeCommon* common, bool slope_is_free) {
   const std::size_t n = profile.s.size();
   if (n < 2) return {};
-  const auto covariance =
-      trilinear_covariance(profile.place.index + profile.place.along * profile.s.front(),
-                           profile.place.along * wish.step_voxels, n, wish.noise_correlation);
+  const auto covariance = trilinear_covariance(profile.place.index + profile.place.along * profile.s.front(),
+                                               profile.place.along * wish.step_voxels, n, wish.noise_correlation);
   ProfileWish known{wish.noise, covariance, profile.mean_curvature, profile.inner, profile.outer, wish.width};
   known.slope_is_free = slope_is_free;
   if (common) {
@@ -179,8 +180,8 @@ EdgeCommon common_of(const std::vector<EdgeProfile>& scouts, const EdgeWish& wis
   if (widths.empty()) return common;
   // The median of chi-square with the few degrees that a profile leaves is 0.85 of its mean.
   common.noise = wish.noise > 0 ? wish.noise : std::sqrt(median_value(excess) / 0.85);
-  common.width = wish.width ? *wish.width
-                            : common_width(scouts, wish.step_voxels, common.noise).value_or(median_value(widths));
+  common.width =
+      wish.width ? *wish.width : common_width(scouts, wish.step_voxels, common.noise).value_or(median_value(widths));
   EdgeWish told = wish;
   told.noise = common.noise;
   edges = fit_all(scouts, told, &common, true);

@@ -14,8 +14,8 @@ namespace gonio::volume {
 namespace marker {
 namespace {
 
-constexpr double same_value = 0.15;    // of the step from air: values that agree so well are of one material
-constexpr double own_share = 0.06;     // of the directions: a sphere that goes on into its like so far grew there
+constexpr double same_value = 0.15;  // of the step from air: values that agree so well are of one material
+constexpr double own_share = 0.06;   // of the directions: a sphere that goes on into its like so far grew there
 constexpr double least_flatness = 0.12;
 
 std::string say(const char* format, double a, double b = 0, double c = 0) {
@@ -65,21 +65,23 @@ Evidence evidence(const Sphere& s, const Crop& crop, Vec3 scale) {
   return e;
 }
 
-double grown_share(const Sphere& s, const Evidence& e, const Crop& crop, Vec3 scale, const std::vector<Candidate>& others) {
+double grown_share(const Sphere& s, const Evidence& e, const Crop& crop, Vec3 scale,
+                   const std::vector<Candidate>& others) {
   const double slack = same_value * (e.within - e.air) + 2.5 * s.noise;
   std::size_t like = 0;
   for (std::size_t n = 0; n < s.asked.size(); ++n) {
     if (s.covered[n]) continue;
     const Vec3 beyond = s.centre + s.asked[n] * (s.radius + 2);
-    if (std::ranges::any_of(others, [&](const Candidate& o) { return norm(o.centre - beyond) < o.radius + 1; })) continue;
-    // No step where the sphere's surface would be, however thin what follows, and nothing denser behind: between air and
-    // something denser a smeared wall has any value.
+    if (std::ranges::any_of(others, [&](const Candidate& o) { return norm(o.centre - beyond) < o.radius + 1; }))
+      continue;
+    // No step where the sphere's surface would be, however thin what follows, and nothing denser behind: between air
+    // and something denser a smeared wall has any value.
     bool goes_on = true;
     for (double x = 1.3; x <= 3; x += 0.5)
       goes_on = goes_on && !(crop.block.at(divided(s.centre + s.asked[n] * (s.radius + x), scale)) > e.within + slack);
     for (double x = -1.2; x <= 0.9; x += 0.5)
-      goes_on = goes_on &&
-                std::abs(crop.block.at(divided(s.centre + s.asked[n] * (s.radius + x), scale)) - e.within) < slack;
+      goes_on =
+          goes_on && std::abs(crop.block.at(divided(s.centre + s.asked[n] * (s.radius + x), scale)) - e.within) < slack;
     like += goes_on ? 1 : 0;
   }
   return static_cast<double>(like) / static_cast<double>(std::max<std::size_t>(1, s.asked.size()));
@@ -88,7 +90,8 @@ double grown_share(const Sphere& s, const Evidence& e, const Crop& crop, Vec3 sc
 std::string reason_against(const Sphere& s, const Evidence& e, const MarkerWish& wish) {
   if (std::abs(e.centre - e.within) > 0.4 * std::abs(e.within - e.air))
     return say("is hollow: %.4g in the middle, %.4g beneath the surface", e.centre, e.within);
-  if (s.edges.size() < 12) return say("shows an edge in %.0f directions only (limit 12)", static_cast<double>(s.edges.size()));
+  if (s.edges.size() < 12)
+    return say("shows an edge in %.0f directions only (limit 12)", static_cast<double>(s.edges.size()));
   if (wish.radius && std::abs(s.radius - *wish.radius) > wish.radius_tolerance * *wish.radius)
     return say("radius %.2f is not the known %.2f within %.0f %%", s.radius, *wish.radius, 100 * wish.radius_tolerance);
   const double slack = std::max(3 * s.sigma_radius, 0.02 * s.radius);
@@ -146,8 +149,9 @@ void judge_together(std::vector<Judged>& all, const MarkerWish& wish) {
   for (const Judged& j : all) free_standing += j.why.empty() && !grew(j) ? 1 : 0;
   for (Judged& j : all) {
     if (!j.why.empty() || !grew(j)) continue;
-    const std::string grown = marker::say("goes on into what it sits on with its own value %.4g over %.2f of the directions", j.evidence.within,
-                                          j.evidence.grown);
+    const std::string grown =
+        marker::say("goes on into what it sits on with its own value %.4g over %.2f of the directions",
+                    j.evidence.within, j.evidence.grown);
     if (free_standing > 0) {
       j.why = grown + ": part of the object";
       continue;
@@ -193,7 +197,8 @@ Marker stated(const Judged& j, Vec3 scale) {
 
 void demand(const Contour& surface, double threshold, const MarkerWish& wish) {
   if (surface.positions.empty())
-    throw Error(Exit::data, "markers", marker::say("no surface at the threshold %.6g: every value lies on one side of it", threshold),
+    throw Error(Exit::data, "markers",
+                marker::say("no surface at the threshold %.6g: every value lies on one side of it", threshold),
                 "choose a threshold between air and the markers");
   const double least = std::min({wish.scale.x, wish.scale.y, wish.scale.z});
   if (!(least > 0) || !(wish.smallest > 0) || !(wish.largest > wish.smallest) || (wish.radius && !(*wish.radius > 1.5)))

@@ -1,8 +1,8 @@
 // Candidates for markers: RANSAC over oriented points, local by an octree (Schnabel, Wahl & Klein 2007).
 //
-// A marker's vertices lie together, so that pairs are drawn within one cell of an octree, at each of its levels: a sphere
-// of radius R is found in cells of R/2 to R. Of two points with unit normals that lie on one sphere p_1 - R n_1 =
-// p_2 - R n_2, and the least squares of it are
+// A marker's vertices lie together, so that pairs are drawn within one cell of an octree, at each of its levels: a
+// sphere of radius R is found in cells of R/2 to R. Of two points with unit normals that lie on one sphere p_1 - R n_1
+// = p_2 - R n_2, and the least squares of it are
 //   R = (p_1 - p_2) . (n_1 - n_2) / |n_1 - n_2|^2,   c = mean(p - R n).
 // The best of some draws is refitted to its inliers in the cell, then to the surface all round, largest cover first.
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr int draws = 16;
 constexpr std::size_t patch_points = 64;
-constexpr double aligned = 0.88;       // cosine between a normal and the radius: noise of 28 degrees
+constexpr double aligned = 0.88;  // cosine between a normal and the radius: noise of 28 degrees
 constexpr std::size_t coarse_directions = 48, fine_directions = 192;
 
 double inlier_band(double radius) {
@@ -163,14 +163,17 @@ std::vector<Candidate> drawn(const Cloud& cloud, const MarkerWish& wish) {
     if (4 * edge < smallest) continue;
     const auto patches = cloud.patches(edge, patch_points, wish.seed + static_cast<std::uint64_t>(level));
     std::vector<Candidate> found(patches.size());
-    parallel_for(0, patches.size(), [&](std::size_t n) {
-      if (patches[n].size() < 8) return;
-      Random random(wish.seed, 1000003 * static_cast<std::uint64_t>(level + 1) + n);
-      Candidate c = of_patch(cloud, patches[n], wish, edge, random);
-      if (c.radius == 0) return;
-      c.cover = seen_round(cloud, c, directions, std::max(1.0, 0.15 * std::abs(c.radius))).cover;
-      found[n] = c;
-    }, 64);
+    parallel_for(
+        0, patches.size(),
+        [&](std::size_t n) {
+          if (patches[n].size() < 8) return;
+          Random random(wish.seed, 1000003 * static_cast<std::uint64_t>(level + 1) + n);
+          Candidate c = of_patch(cloud, patches[n], wish, edge, random);
+          if (c.radius == 0) return;
+          c.cover = seen_round(cloud, c, directions, std::max(1.0, 0.15 * std::abs(c.radius))).cover;
+          found[n] = c;
+        },
+        64);
     for (const Candidate& c : found)
       if (c.radius != 0 && c.cover > 0.6 * wish.least_cover) all.push_back(c);
   }

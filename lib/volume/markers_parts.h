@@ -75,7 +75,7 @@ struct RadialEdge {
   double distance = 0, sigma = 0, air = 0, object = 0, width = 0;  // distance from the centre
 };
 struct Sphere {
-  Vec3 centre{};                    // place
+  Vec3 centre{};  // place
   double radius = 0, sigma_radius = 0;
   std::array<double, 9> covariance{};  // of the place
   double rms = 0, width = 0, noise = 0;

@@ -12,7 +12,7 @@ namespace gonio::volume {
 
 // A box of voxels: part of a volume whose indices run from `low` to `high`; what is not within both has no value.
 struct Block {
-  const float* values = nullptr;        // i fastest
+  const float* values = nullptr;  // i fastest
   std::array<std::size_t, 3> size{};
   std::array<std::ptrdiff_t, 3> first{};  // the volume's index of values[0]
   Vec3 low{}, high{};

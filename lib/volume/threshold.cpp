@@ -123,8 +123,10 @@ Threshold otsu(const Histogram& h, double voxels_per_sample) {
     const double d = below_sum / below - (sum - below_sum) / (total - below);
     const double between = below * (total - below) * d * d, edge = h.low + static_cast<double>(b + 1) * width;
     // Between empty bins all are best: the middle of them.
-    if (between > best * (1 + 1e-12)) best = between, low = high = edge, at = {below, below_sum, below_squares};
-    else if (between >= best * (1 - 1e-12)) high = edge;
+    if (between > best * (1 + 1e-12))
+      best = between, low = high = edge, at = {below, below_sum, below_squares};
+    else if (between >= best * (1 - 1e-12))
+      high = edge;
   }
   Threshold t;
   t.how = "Otsu";

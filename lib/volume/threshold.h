@@ -34,7 +34,7 @@ Threshold half_way(const Mixture& mixture, std::size_t lower, std::size_t upper)
 // over ten blocks of slices, so that noise which neighbours share and a value that drifts along the scan count.
 Threshold half_way(io::VolumeSource& source, const Mixture& mixture, std::size_t lower, std::size_t upper);
 // Greatest between-class variance (Otsu 1979). sigma: by the delta method from T = (m0(T) + m1(T)) / 2, of which one
-// voxel in `voxels_per_sample` counts (neighbours share noise), and the bins' width. Error(data) where all values agree.
+// voxel in `voxels_per_sample` counts (neighbours share noise), and the bins' width. Error(data) where all agree.
 Threshold otsu(const Histogram& histogram, double voxels_per_sample = 1);
 
 // The mean of 1 / (dv/ds) over the surface, by the coarea formula from what is robust against noise: voxels whose value
@@ -54,7 +54,7 @@ struct ReferenceSphere {
 // voxels_per_value is set. Error(data) where no threshold does it.
 Threshold reference_length(io::VolumeSource& source, std::span<const ReferenceSphere> spheres, Vec3 scale = {1, 1, 1});
 
-// By how much a length between two walls that face outwards comes out too long (voxels) at `used`, if `better` is right.
+// By how much a length between two walls that face outwards comes out too long (voxels) at `used`, were `better` right.
 // A length between walls that face inwards (a bore) is too short by as much, one between walls that face alike right.
 double length_bias(const Threshold& used, double better);
 
@@ -102,8 +102,8 @@ Edge fit_edge(std::span<const double> s, std::span<const double> values, const P
 Edge fit_edge(std::span<const double> s, std::span<const double> values, double noise);  // independent samples
 
 // Covariance of `count` trilinear samples at first + n step (index coordinates) of noise with unit variance whose
-// correlation between voxels (a, b, c) apart is q^(a^2 + b^2 + c^2), q that of direct neighbours (-0.5 < q < 1; where it
-// is negative only neighbours correlate).
+// correlation between voxels (a, b, c) apart is q^(a^2 + b^2 + c^2), q that of direct neighbours (-0.5 < q < 1; a
+// negative one leaves only neighbours correlated).
 std::vector<double> trilinear_covariance(Vec3 first, Vec3 step, std::size_t count, double neighbour_correlation);
 
 struct EdgeWish {
@@ -114,7 +114,7 @@ struct EdgeWish {
   std::optional<double> width{};       // sd of the spread function where it is known; else the median of lone edges
   Vec3 scale{1, 1, 1};                 // spacing per axis over the smallest spacing
 };
-// Edges at vertices of a contour (all, or every n-th), by trilinear samples of the volume along the normals. Walls behind
+// Edges at vertices of a contour (all, or every n-th), by trilinear samples of the volume along normals. Walls behind
 // and before are found by walking the profile to twice the reach. The volume is streamed twice: first some ten thousand
 // vertices tell what edges share, the width (that with the least residuals of all together: of thin walls the mean of
 // widths fitted one by one is too small), the noise, and place for place the plateaus and the slope of the object's
@@ -132,7 +132,7 @@ struct LocalThreshold {
 LocalThreshold local_threshold(const Threshold& used, std::span<const Edge> edges);
 
 // Moves every vertex to the wall along its normal. A vertex' own edge and the planes through its neighbours' (whose
-// error for a curved surface cancels between the two normals) are averaged by their uncertainty; edges that are not good
+// error for a curved surface cancels between the two normals) are averaged by their errors; edges that are not good
 // take their neighbours' shift. No vertex moves by more than `at_most` voxels or by more than a third of the way to the
 // opposite wall, so that walls cannot cross; where a triangle would fold over or cross another, the shifts of its
 // vertices are halved until it does not.

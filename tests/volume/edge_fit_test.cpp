@@ -81,7 +81,8 @@ TEST(EdgeFit, AThinWallIsTwoEdges) {
     // Cut in the middle of the wall, where no plateau is.
     const auto short_s = line(-thickness / 2, 3, 0.25);
     std::vector<double> short_v;
-    for (const double x : short_s) short_v.push_back(1 + 10 * (step_share(x - 0.2, 0.8) - step_share(x - 0.2 + thickness, 0.8)));
+    for (const double x : short_s)
+      short_v.push_back(1 + 10 * (step_share(x - 0.2, 0.8) - step_share(x - 0.2 + thickness, 0.8)));
     const Edge alone = fit_edge(short_s, short_v, 0.05);
     EXPECT_GT(std::abs(alone.position - 0.2), 3 * std::abs(both.position - 0.2)) << thickness;
   }
@@ -112,7 +113,8 @@ TEST(EdgeFit, TheCovarianceOfSamplesIsThatOfNoiseThatWasDrawn) {
   std::vector<double> drawn(n * n);
   constexpr int repeats = 1500;
   for (int r = 0; r < repeats; ++r) {
-    const auto data = phantom::sampled({14, 14, 14}, [](Vec3) { return 0.0; }, 1, q, 100 + r);
+    const auto data = phantom::sampled(
+        {14, 14, 14}, [](Vec3) { return 0.0; }, 1, q, 100 + r);
     const Block block{data.values.data(), {14, 14, 14}, {}, {}, {13, 13, 13}};
     std::vector<double> v;
     for (std::size_t i = 0; i < n; ++i) v.push_back(block.at(first + step * static_cast<double>(i)));
@@ -164,8 +166,8 @@ Coverage coverage(int count, double thickness, double noise, double q, bool nois
   }
   result.share /= result.good, result.bias /= result.good, result.sigma /= result.good;
   result.rms = std::sqrt(result.rms / result.good);
-  std::printf("thickness %.1f noise %.3f q %.1f: %d good, coverage %.4f bias %+.4f rms %.4f sigma %.4f\n", thickness, noise,
-              q, result.good, result.share, result.bias, result.rms, result.sigma);
+  std::printf("thickness %.1f noise %.3f q %.1f: %d good, coverage %.4f bias %+.4f rms %.4f sigma %.4f\n", thickness,
+              noise, q, result.good, result.share, result.bias, result.rms, result.sigma);
   return result;
 }
 

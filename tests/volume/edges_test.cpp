@@ -1,5 +1,5 @@
-// Walls of volumes by their edges: spheres, tubes and thin walls with noise and cupping, against what a global threshold
-// makes of them.
+// Walls of volumes by their edges: spheres, tubes and thin walls with noise and cupping, against what a global
+// threshold makes of them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -58,8 +58,8 @@ TEST(Edges, BlurredSpheresWithNoiseHaveNoBias) {
     const auto found = edges(*source, surface, wish);
     const Refined r = move_to_steepest(surface, found);
     const Errors e = errors_of(surface, [&](Vec3 p) { return norm(p - centre) - radius; });
-    std::printf("sphere %.0f: mean %+.4f rms %.4f largest %.3f sigma %.4f unfitted %zu held %zu\n", radius, e.mean, e.rms,
-                e.largest, r.sigma_position, r.unfitted, r.held);
+    std::printf("sphere %.0f: mean %+.4f rms %.4f largest %.3f sigma %.4f unfitted %zu held %zu\n", radius, e.mean,
+                e.rms, e.largest, r.sigma_position, r.unfitted, r.held);
     EXPECT_LT(std::abs(e.mean), 0.02) << radius;
     EXPECT_LT(e.rms, 0.1) << radius;
     EXPECT_LT(r.unfitted, surface.positions.size() / 50);
@@ -148,9 +148,10 @@ TEST(Edges, WallsOfTwoAndAHalfVoxelsAreNotThinned) {
     Contour part;
     part.positions.assign(surface.positions.begin() + (inwards ? outside : 0),
                           inwards ? surface.positions.end() : surface.positions.begin() + outside);
-    const Errors e = errors_of(part, [&](Vec3 p) { return (tube.rho(p) - (inwards ? tube.inner : tube.outer)) * (inwards ? -1 : 1); });
-    std::printf("thin %s: mean %+.4f rms %.4f largest %.3f, sigma %.4f held %zu unfitted %zu\n", inwards ? "inner" : "outer",
-                e.mean, e.rms, e.largest, r.sigma_position, r.held, r.unfitted);
+    const Errors e = errors_of(
+        part, [&](Vec3 p) { return (tube.rho(p) - (inwards ? tube.inner : tube.outer)) * (inwards ? -1 : 1); });
+    std::printf("thin %s: mean %+.4f rms %.4f largest %.3f, sigma %.4f held %zu unfitted %zu\n",
+                inwards ? "inner" : "outer", e.mean, e.rms, e.largest, r.sigma_position, r.held, r.unfitted);
     EXPECT_LT(std::abs(e.mean), 0.03);
     EXPECT_LT(e.rms, 0.1);
   }
@@ -173,8 +174,8 @@ TEST(Edges, UnequalSpacingsAreWalkedInLengths) {
 
 TEST(Edges, EveryFifthIsTheSameAsOfAll) {
   const Vec3 centre{12, 12, 12};
-  const auto source = phantom::in_memory(
-      phantom::sampled({25, 25, 25}, [&](Vec3 p) { return phantom::ball(p, centre, 7, 0.8); }, 0.02, 0, 2));
+  const auto source = phantom::in_memory(phantom::sampled(
+      {25, 25, 25}, [&](Vec3 p) { return phantom::ball(p, centre, 7, 0.8); }, 0.02, 0, 2));
   const Contour surface = phantom::sphere_surface(centre, 7);
   EdgeWish wish;
   wish.noise = 0.02;
@@ -223,7 +224,8 @@ TEST(MoveToSteepest, NothingFoldsOrCrosses) {
     Contour surface = phantom::sphere_surface({20, 20, 20}, 6);
     phantom::append(surface, phantom::sphere_surface({20, 20, 33.5}, 6));  // nearly touching
     std::vector<Edge> found;
-    for (std::size_t v = 0; v < surface.positions.size(); ++v) found.push_back(good_edge(size * random.normal(), 0.001));
+    for (std::size_t v = 0; v < surface.positions.size(); ++v)
+      found.push_back(good_edge(size * random.normal(), 0.001));
     const Refined r = move_to_steepest(surface, found);
     std::vector<Vec3> places;
     for (const auto& p : surface.positions) places.push_back({p[0], p[1], p[2]});

@@ -1,4 +1,6 @@
 // Markers in phantoms whose spheres are known: none missed, none invented, centres within their covariance.
+#include "volume/markers.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +11,6 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "stats/distributions.h"
-#include "volume/markers.h"
 #include "volume/phantoms.h"
 
 namespace gonio::volume {
@@ -45,8 +46,8 @@ Markers found_in(const io::VolumeData& data, const MarkerWish& wish, double thre
 }
 void tell(const Markers& m) {
   for (const Marker& f : m.found)
-    std::printf("  found %.3f %.3f %.3f r %.3f +- %.3f cover %.2f rms %.3f value %.3f\n", f.centre.x, f.centre.y, f.centre.z,
-                f.radius, f.sigma_radius, f.cover, f.rms_residual, f.mean_value);
+    std::printf("  found %.3f %.3f %.3f r %.3f +- %.3f cover %.2f rms %.3f value %.3f\n", f.centre.x, f.centre.y,
+                f.centre.z, f.radius, f.sigma_radius, f.cover, f.rms_residual, f.mean_value);
   for (const RefusedMarker& f : m.refused)
     std::printf("  refused %.2f %.2f %.2f r %.2f: %s\n", f.centre.x, f.centre.y, f.centre.z, f.radius, f.why.c_str());
 }
@@ -55,8 +56,8 @@ double mahalanobis(Vec3 x, const std::array<double, 9>& c) {
   const auto minor = [&](int a, int b, int d, int e) { return c[a] * c[e] - c[b] * c[d]; };
   const double determinant = c[0] * minor(4, 5, 7, 8) - c[1] * minor(3, 5, 6, 8) + c[2] * minor(3, 4, 6, 7);
   const Mat3 inverse{{minor(4, 5, 7, 8), c[2] * c[7] - c[1] * c[8], minor(1, 2, 4, 5), minor(5, 3, 8, 6),
-                      c[0] * c[8] - c[2] * c[6], c[2] * c[3] - c[0] * c[5], minor(3, 4, 6, 7), c[1] * c[6] - c[0] * c[7],
-                      minor(0, 1, 3, 4)}};
+                      c[0] * c[8] - c[2] * c[6], c[2] * c[3] - c[0] * c[5], minor(3, 4, 6, 7),
+                      c[1] * c[6] - c[0] * c[7], minor(0, 1, 3, 4)}};
   return dot(x, inverse * x) / determinant;
 }
 
@@ -116,17 +117,21 @@ TEST(Markers, GluedOnesAreFoundAndTheGlassIsNoMarker) {
         all += 1;
         within += mahalanobis(off, m.found[f].covariance) < stats::chi2_quantile(0.95, 3) ? 1 : 0;
         if (norm(off) > 0.05)
-          std::printf("  scene %d: marker r %.2f off by %.3f (%+.3f %+.3f %+.3f) chi2 %.1f cover %.2f radius off %+.3f\n", n, b.radius, norm(off),
-                      off.x, off.y, off.z, mahalanobis(off, m.found[f].covariance), m.found[f].cover, m.found[f].radius - b.radius);
+          std::printf(
+              "  scene %d: marker r %.2f off by %.3f (%+.3f %+.3f %+.3f) chi2 %.1f cover %.2f radius off %+.3f\n", n,
+              b.radius, norm(off), off.x, off.y, off.z, mahalanobis(off, m.found[f].covariance), m.found[f].cover,
+              m.found[f].radius - b.radius);
       }
       missed += hit ? 0 : 1;
-      if (!hit) std::printf("  scene %d: missed %.2f %.2f %.2f r %.2f\n", n, b.centre.x, b.centre.y, b.centre.z, b.radius), tell(m);
+      if (!hit)
+        std::printf("  scene %d: missed %.2f %.2f %.2f r %.2f\n", n, b.centre.x, b.centre.y, b.centre.z, b.radius),
+            tell(m);
     }
     for (std::size_t f = 0; f < met.size(); ++f)
       if (!met[f]) ++invented, std::printf("  scene %d: invented\n", n), tell(m);
   }
-  std::printf("%d scenes, %d markers: missed %d invented %d, coverage %.3f, rms per axis %.4f, worst %.4f\n", scenes, all, missed,
-              invented, within / double(all), std::sqrt(squares / all), worst);
+  std::printf("%d scenes, %d markers: missed %d invented %d, coverage %.3f, rms per axis %.4f, worst %.4f\n", scenes,
+              all, missed, invented, within / double(all), std::sqrt(squares / all), worst);
   EXPECT_EQ(missed, 0);
   EXPECT_EQ(invented, 0);
 }
@@ -154,10 +159,13 @@ TEST(Markers, AKnobOfTheObjectsOwnIsRefused) {
 
 TEST(Markers, HollowSpheresBubblesAndTubesAreRefusedInWords) {
   // A hollow ball (first the void), a solid one with a bubble.
-  const auto data = phantom::sampled({80, 44, 44}, [&](Vec3 p) {
-    return air + 0.9 * (phantom::ball(p, {20, 21, 22}, 11, blur) - phantom::ball(p, {20, 21, 22}, 8, blur)) +
-           0.9 * (phantom::ball(p, {56, 21, 22}, 15, blur) - phantom::ball(p, {57, 20, 23}, 5, blur));
-  }, 0.04, 0.3, 5);
+  const auto data = phantom::sampled(
+      {80, 44, 44},
+      [&](Vec3 p) {
+        return air + 0.9 * (phantom::ball(p, {20, 21, 22}, 11, blur) - phantom::ball(p, {20, 21, 22}, 8, blur)) +
+               0.9 * (phantom::ball(p, {56, 21, 22}, 15, blur) - phantom::ball(p, {57, 20, 23}, 5, blur));
+      },
+      0.04, 0.3, 5);
   MarkerWish wish;
   wish.largest = 13;
   const Markers m = found_in(data, wish);

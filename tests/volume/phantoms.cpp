@@ -17,14 +17,16 @@ double scaled_bessel(double x) {
   if (x < 3.75) {
     const double t = x * x / 14.0625;
     return std::exp(-x) *
-           (1 + t * (3.5156229 + t * (3.0899424 + t * (1.2067492 + t * (0.2659732 + t * (0.0360768 + t * 0.0045813))))));
+           (1 +
+            t * (3.5156229 + t * (3.0899424 + t * (1.2067492 + t * (0.2659732 + t * (0.0360768 + t * 0.0045813))))));
   }
   const double t = 3.75 / x;
   return (0.39894228 +
           t * (0.01328592 +
                t * (0.00225319 +
                     t * (-0.00157565 +
-                         t * (0.00916281 + t * (-0.02057706 + t * (0.02635537 + t * (-0.01647633 + t * 0.00392377)))))))) /
+                         t * (0.00916281 +
+                              t * (-0.02057706 + t * (0.02635537 + t * (-0.01647633 + t * 0.00392377)))))))) /
          std::sqrt(x);
 }
 
@@ -49,7 +51,8 @@ void smear(std::vector<float>& v, const std::array<std::size_t, 3>& size, std::s
   const int reach = q < 0.4 ? 1 : static_cast<int>(std::ceil(4 * sd));
   std::vector<double> kernel;
   double squares = 0;
-  for (int d = -reach; d <= reach; ++d) kernel.push_back(q < 0.4 ? (d == 0 ? 1 : a) : std::exp(-0.5 * d * d / (sd * sd)));
+  for (int d = -reach; d <= reach; ++d)
+    kernel.push_back(q < 0.4 ? (d == 0 ? 1 : a) : std::exp(-0.5 * d * d / (sd * sd)));
   for (const double k : kernel) squares += k * k;
   const std::size_t stride = axis == 0 ? 1 : axis == 1 ? size[0] : size[0] * size[1], n = size[axis];
   std::vector<double> line(n);
@@ -59,7 +62,8 @@ void smear(std::vector<float>& v, const std::array<std::size_t, 3>& size, std::s
     for (std::size_t i = 0; i < n; ++i) {
       double sum = 0;
       for (int d = -reach; d <= reach; ++d)
-        sum += kernel[static_cast<std::size_t>(d + reach)] * line[(i + 4 * n + static_cast<std::size_t>(d + reach) - static_cast<std::size_t>(reach)) % n];
+        sum += kernel[static_cast<std::size_t>(d + reach)] *
+               line[(i + 4 * n + static_cast<std::size_t>(d + reach) - static_cast<std::size_t>(reach)) % n];
       v[start + i * stride] = static_cast<float>(sum / std::sqrt(squares));
     }
   }
@@ -87,7 +91,8 @@ Disc::Disc(double radius, double w, const std::function<double(double)>& value) 
     for (double r = std::max(dr / 2, rho - 8 * w); r < radius; r += dr) {
       const double h = std::min(dr, radius - r + dr / 2), middle = r;
       const double d = middle - rho;
-      sum += value(middle) * h * middle / (w * w) * std::exp(-0.5 * d * d / (w * w)) * scaled_bessel(middle * rho / (w * w));
+      sum += value(middle) * h * middle / (w * w) * std::exp(-0.5 * d * d / (w * w)) *
+             scaled_bessel(middle * rho / (w * w));
       if (middle > rho + 8 * w) break;
     }
     table_.push_back(sum);
@@ -130,7 +135,8 @@ Contour grid_surface(std::size_t m, std::size_t n, const std::function<Patch(dou
   Contour c;
   for (std::size_t b = 0; b < n; ++b)
     for (std::size_t a = 0; a < m; ++a) {
-      const Patch p = at(static_cast<double>(a) / static_cast<double>(m), static_cast<double>(b) / static_cast<double>(n - 1));
+      const Patch p =
+          at(static_cast<double>(a) / static_cast<double>(m), static_cast<double>(b) / static_cast<double>(n - 1));
       const Vec3 i{p.place.x / scale.x, p.place.y / scale.y, p.place.z / scale.z}, g = normalized(p.normal * scale);
       c.positions.push_back({static_cast<float>(i.x), static_cast<float>(i.y), static_cast<float>(i.z)});
       c.normals.push_back({static_cast<float>(g.x), static_cast<float>(g.y), static_cast<float>(g.z)});
@@ -159,11 +165,12 @@ Contour sphere_surface(Vec3 centre, double radius, Vec3 scale) {
 
 Contour tube_surface(Vec3 centre, Vec3 axis, double radius, double length, bool inwards) {
   const Basis basis(normalized(axis));
-  return grid_surface(static_cast<std::size_t>(2 * pi * radius), static_cast<std::size_t>(length), [&](double u, double v) {
-    const double phi = 2 * pi * (inwards ? -u : u);
-    const Vec3 d = basis.t * std::cos(phi) + basis.b * std::sin(phi);
-    return Patch{centre + d * radius + basis.n * ((v - 0.5) * length), inwards ? -d : d};
-  });
+  return grid_surface(static_cast<std::size_t>(2 * pi * radius), static_cast<std::size_t>(length),
+                      [&](double u, double v) {
+                        const double phi = 2 * pi * (inwards ? -u : u);
+                        const Vec3 d = basis.t * std::cos(phi) + basis.b * std::sin(phi);
+                        return Patch{centre + d * radius + basis.n * ((v - 0.5) * length), inwards ? -d : d};
+                      });
 }
 
 void append(Contour& to, const Contour& more) {

@@ -20,7 +20,8 @@ double half_space(Vec3 place, Vec3 at, Vec3 normal, double w);  // within where 
 class Disc {
  public:
   // `value`: of the disc, over its radius.
-  Disc(double radius, double w, const std::function<double(double)>& value = [](double) { return 1.0; });
+  Disc(
+      double radius, double w, const std::function<double(double)>& value = [](double) { return 1.0; });
   double at(double rho) const;
 
  private:
@@ -38,7 +39,8 @@ std::unique_ptr<io::VolumeSource> in_memory(io::VolumeData data);
 struct Patch {
   Vec3 place{}, normal{};
 };
-Contour grid_surface(std::size_t m, std::size_t n, const std::function<Patch(double, double)>& at, Vec3 scale = {1, 1, 1});
+Contour grid_surface(std::size_t m, std::size_t n, const std::function<Patch(double, double)>& at,
+                     Vec3 scale = {1, 1, 1});
 Contour sphere_surface(Vec3 centre, double radius, Vec3 scale = {1, 1, 1});
 Contour tube_surface(Vec3 centre, Vec3 axis, double radius, double length, bool inwards);
 void append(Contour& to, const Contour& more);

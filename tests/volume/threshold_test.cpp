@@ -1,4 +1,6 @@
 // Thresholds: what they are, how sure they are, what they do to a length, and what is refused.
+#include "volume/threshold.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +10,6 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "volume/phantoms.h"
-#include "volume/threshold.h"
 
 namespace gonio::volume {
 namespace {
@@ -96,7 +97,8 @@ TEST(Threshold, SlicesTellHowSureMeansAre) {
 TEST(Threshold, VoxelsPerValueIsTheMeanInverseGradient) {
   constexpr double w = 0.9;
   const Vec3 centre{20, 20.3, 19.7};
-  const auto data = phantom::sampled({40, 40, 40}, [&](Vec3 p) { return 100 * phantom::ball(p, centre, 13, w); }, 2, 0, 3);
+  const auto data = phantom::sampled(
+      {40, 40, 40}, [&](Vec3 p) { return 100 * phantom::ball(p, centre, 13, w); }, 2, 0, 3);
   const auto h = histogram_of(data.values, -20, 120, 4096);
   const double per_value = voxels_per_value(h, phantom::sphere_surface(centre, 13), 50);
   EXPECT_NEAR(per_value, -w * std::sqrt(2 * pi) / 100, 0.12 * w * std::sqrt(2 * pi) / 100);
@@ -110,11 +112,14 @@ TEST(Threshold, VoxelsPerValueIsTheMeanInverseGradient) {
 TEST(ReferenceLength, SpheresOfKnownRadiusSetTheThreshold) {
   const Vec3 one{14, 14.3, 13.8}, other{14.4, 14, 36};
   const auto source = phantom::in_memory(phantom::sampled(
-      {28, 28, 50}, [&](Vec3 p) { return 10 + 80 * (phantom::ball(p, one, 8, 0.8) + phantom::ball(p, other, 8, 0.8)); }, 3, 0.3, 4));
+      {28, 28, 50}, [&](Vec3 p) { return 10 + 80 * (phantom::ball(p, one, 8, 0.8) + phantom::ball(p, other, 8, 0.8)); },
+      3, 0.3, 4));
   // Radii that lie at 50 %, but for the shift of curved walls, and radii smaller by a quarter of a voxel.
-  const std::vector<ReferenceSphere> spheres{{one, 8, 0.01}, {other, 8, 0.01}}, smaller{{one, 7.75, 0.01}, {other, 7.75, 0.01}};
+  const std::vector<ReferenceSphere> spheres{{one, 8, 0.01}, {other, 8, 0.01}},
+      smaller{{one, 7.75, 0.01}, {other, 7.75, 0.01}};
   const Threshold t = reference_length(*source, spheres), higher = reference_length(*source, smaller);
-  std::printf("reference length %.2f +- %.2f, %.4f voxels per value; smaller %.2f\n", t.value, t.sigma, t.voxels_per_value, higher.value);
+  std::printf("reference length %.2f +- %.2f, %.4f voxels per value; smaller %.2f\n", t.value, t.sigma,
+              t.voxels_per_value, higher.value);
   EXPECT_NEAR(t.value, 50 - 0.08 * 80 / (0.8 * 2.5066), 1.5);  // w^2 / R = 0.08 voxel
   EXPECT_NEAR((higher.value - t.value) * t.voxels_per_value, -0.25, 0.03);
   EXPECT_GT(t.sigma, 0);
@@ -123,7 +128,8 @@ TEST(ReferenceLength, SpheresOfKnownRadiusSetTheThreshold) {
 
 TEST(ReferenceLength, RadiiThatNoThresholdGivesAreRefused) {
   const Vec3 centre{14, 14, 14};
-  const auto source = phantom::in_memory(phantom::sampled({28, 28, 28}, [&](Vec3 p) { return phantom::ball(p, centre, 8, 0.8); }));
+  const auto source =
+      phantom::in_memory(phantom::sampled({28, 28, 28}, [&](Vec3 p) { return phantom::ball(p, centre, 8, 0.8); }));
   EXPECT_THROW(reference_length(*source, std::vector<ReferenceSphere>{{centre, 11, 0}}), Error);
   EXPECT_THROW(reference_length(*source, {}), Error);
 }
