@@ -21,7 +21,10 @@
 namespace gonio::mesh {
 namespace {
 
-constexpr double least_cosine = 0.5;        // of the angle by which a triangle may turn
+constexpr double least_cosine = 0.5;  // of the angle by which a triangle may turn
+constexpr double normals_count = 0.5;
+constexpr double least_facing = 0.2;        // cosine between a triangle and the normals at its corners
+constexpr double folded_cosine = -0.3;      // between neighbours
 constexpr double least_compactness = 0.05;  // 4 sqrt(3) area / sum of squared sides: 1 where equilateral
 
 using HalfEdges = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
@@ -110,22 +113,51 @@ struct Quadric {
   }
   double at(Vec3 p) const {
     const Vec3 a{xx * p.x + xy * p.y + xz * p.z, xy * p.x + yy * p.y + yz * p.z, xz * p.x + yz * p.y + zz * p.z};
-    return std::max(0.0, dot(p, a) + 2 * dot(b, p) + c);
+    return dot(p, a) + 2 * dot(b, p) + c;
   }
   double weight() const { return xx + yy + zz; }
 };
 
+// Sum over triangles of area |gradient p + offset - n|^2, `gradient` and `offset` being a triangle's normals as a
+// linear function. What does not depend on n is in a Quadric.
+struct NormalQuadric {
+  std::array<Vec3, 3> gradients{};
+  Vec3 offsets{};
+  double weight = 0;
+  void operator+=(const NormalQuadric& o) {
+    for (std::size_t k = 0; k < 3; ++k) gradients[k] += o.gradients[k];
+    offsets += o.offsets;
+    weight += o.weight;
+  }
+  double with(Vec3 p, Vec3 n) const {
+    const Vec3 said = Vec3{dot(gradients[0], p), dot(gradients[1], p), dot(gradients[2], p)} + offsets;
+    return weight * dot(n, n) - 2 * dot(n, said);
+  }
+};
+
 class Collapses {
  public:
-  explicit Collapses(HalfEdges& mesh) : mesh_(mesh), quadrics_(mesh.n_vertices()), stamps_(mesh.n_vertices(), 0) {
+  // `normals`: one a vertex, or none.
+  Collapses(HalfEdges& mesh, const std::vector<Vec3>& normals)
+      : mesh_(mesh), normals_(normals), quadrics_(mesh.n_vertices()), stamps_(mesh.n_vertices(), 0) {
     if (mesh.n_vertices() > 0) origin_ = point_of(mesh, HalfEdges::VertexHandle(0));
+    if (!normals.empty()) {
+      of_normals_.resize(mesh.n_vertices());
+      double sum = 0;
+      for (const auto& e : mesh.edges()) sum += mesh.calc_edge_length(e);
+      normal_length_ = normals_count * sum / static_cast<double>(std::max<std::size_t>(1, mesh.n_edges()));
+    }
     for (const auto& f : mesh.faces()) add_face(f);
     for (const auto& h : mesh.halfedges())
       if (mesh.is_boundary(h)) add_border(h);
     std::vector<Waiting> all;
     all.reserve(mesh.n_vertices());
-    for (const auto& v : mesh.vertices())
-      if (!mesh.is_isolated(v)) all.push_back({cheapest(v), static_cast<std::uint32_t>(v.idx()), 0});
+    queued_.assign(mesh.n_vertices(), nothing);
+    for (const auto& v : mesh.vertices()) {
+      if (mesh.is_isolated(v)) continue;
+      const auto i = static_cast<std::uint32_t>(v.idx());
+      all.push_back({queued_[i] = cheapest(v), i, 0});
+    }
     queue_ = std::priority_queue<Waiting>({}, std::move(all));
   }
 
@@ -135,11 +167,12 @@ class Collapses {
       const Waiting next = queue_.top();
       queue_.pop();
       if (next.stamp != stamps_[next.vertex]) continue;
+      queued_[next.vertex] = nothing;
       const HalfEdges::VertexHandle v(static_cast<int>(next.vertex));
       const auto [cost, halfedge] = best_allowed(v);
-      if (!halfedge.is_valid()) continue;  // comes back when something beside it changes
+      if (!halfedge.is_valid()) continue;  // comes back when a new neighbour is cheap
       if (cost > next.cost) {
-        queue_.push({cost, next.vertex, next.stamp});
+        push(next.vertex, cost);
         continue;
       }
       left -= mesh_.is_boundary(mesh_.edge_handle(halfedge)) ? 1 : 2;
@@ -165,7 +198,35 @@ class Collapses {
     const double doubled = norm(n);
     if (!(doubled > 0)) return;
     for (const auto v : {a, b, c}) quadric(v).add_plane(n / doubled, at(a), doubled / 2);
+    if (!normals_.empty()) add_normals({a, b, c}, n / doubled, doubled / 2);
   }
+  // s(p) = s_a + (s_b - s_a) beta(p) + (s_c - s_a) gamma(p), barycentric functions of the triangle's plane.
+  void add_normals(std::array<HalfEdges::VertexHandle, 3> corners, Vec3 unit, double area) {
+    const Vec3 pa = at(corners[0]), ab = at(corners[1]) - pa, ac = at(corners[2]) - pa;
+    const Vec3 beta = cross(ac, unit) / (2 * area), gamma = cross(unit, ab) / (2 * area);
+    const Vec3 na = normal_of(corners[0]), nb = normal_of(corners[1]) - na, nc = normal_of(corners[2]) - na;
+    const double weight = area * normal_length_ * normal_length_;
+    Quadric alone;
+    NormalQuadric with_normal;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int i = static_cast<int>(k);
+      const Vec3 gradient = beta * nb[i] + gamma * nc[i];
+      const double length = norm(gradient), offset = na[i] - dot(gradient, pa);
+      // (gradient p + offset)^2 is a plane's squared distance times the gradient's squared length.
+      if (length > 0)
+        alone.add_plane(gradient / length, gradient * (-offset / (length * length)), weight * length * length);
+      else
+        alone.c += weight * offset * offset;
+      with_normal.gradients[k] = gradient * weight;
+      (i == 0 ? with_normal.offsets.x : i == 1 ? with_normal.offsets.y : with_normal.offsets.z) = offset * weight;
+    }
+    with_normal.weight = weight;
+    for (const auto v : corners) {
+      quadric(v) += alone;
+      of_normals_[static_cast<std::size_t>(v.idx())] += with_normal;
+    }
+  }
+  Vec3 normal_of(HalfEdges::VertexHandle v) const { return normals_[static_cast<std::size_t>(v.idx())]; }
   // A plane through a border edge, upright on its triangle, holds the border.
   void add_border(HalfEdges::HalfedgeHandle h) {
     const auto a = mesh_.from_vertex_handle(h), b = mesh_.to_vertex_handle(h);
@@ -178,7 +239,13 @@ class Collapses {
   // Where planes leave it open, short edges go first.
   double cost(HalfEdges::VertexHandle from, HalfEdges::VertexHandle to) {
     const Vec3 p = at(to), edge = p - at(from);
-    return quadric(from).at(p) + quadric(to).at(p) + 1e-9 * quadric(from).weight() * dot(edge, edge);
+    double error = quadric(from).at(p) + quadric(to).at(p);
+    if (!normals_.empty()) {
+      const Vec3 n = normal_of(to);
+      error += of_normals_[static_cast<std::size_t>(from.idx())].with(p, n) +
+               of_normals_[static_cast<std::size_t>(to.idx())].with(p, n);
+    }
+    return std::max(0.0, error) + 1e-9 * quadric(from).weight() * dot(edge, edge);
   }
   double cheapest(HalfEdges::VertexHandle v) {
     double least = std::numeric_limits<double>::infinity();
@@ -222,25 +289,49 @@ class Collapses {
       if (!(doubled > 0) || dot(before, after) < least_cosine * length * doubled) return false;
       const double now = compactness(pb - new_place, pc - new_place, doubled);
       if (now < least_compactness && now < compactness(pb - old_place, pc - old_place, length)) return false;
+      if (folds(mesh_.opposite_halfedge_handle(mesh_.next_halfedge_handle(out)), from, after, before)) return false;
+      if (!normals_.empty())
+        for (const auto v : {to, b, c})
+          if (dot(after, normal_of(v)) < least_facing * doubled && dot(before, normal_of(v)) >= least_facing * length)
+            return false;
     }
     return true;
+  }
+  // Would a triangle with that normal be folded back over the neighbour behind `beyond`, and was it not before?
+  bool folds(HalfEdges::HalfedgeHandle beyond, HalfEdges::VertexHandle going, Vec3 after, Vec3 before) const {
+    if (mesh_.is_boundary(beyond)) return false;
+    const auto apex = mesh_.to_vertex_handle(mesh_.next_halfedge_handle(beyond));
+    if (apex == going) return false;
+    const Vec3 a = at(mesh_.from_vertex_handle(beyond)), b = at(mesh_.to_vertex_handle(beyond));
+    const Vec3 n = cross(b - a, at(apex) - a);
+    return dot(after, n) < folded_cosine * norm(after) * norm(n) &&
+           dot(before, n) >= folded_cosine * norm(before) * norm(n);
   }
   void collapse(HalfEdges::HalfedgeHandle h) {
     const auto from = mesh_.from_vertex_handle(h), to = mesh_.to_vertex_handle(h);
     quadric(to) += quadric(from);
+    if (!normals_.empty())
+      of_normals_[static_cast<std::size_t>(to.idx())] += of_normals_[static_cast<std::size_t>(from.idx())];
     ++stamps_[static_cast<std::size_t>(from.idx())];
     mesh_.collapse(h);
-    renew(to);
-    for (const auto& beside : mesh_.vv_range(to)) renew(beside);
+    // What waits, waits with no more than it costs: errors only grow, and the edges to `to` alone are new.
+    push(static_cast<std::uint32_t>(to.idx()), cheapest(to));
+    for (const auto& beside : mesh_.vv_range(to)) push(static_cast<std::uint32_t>(beside.idx()), cost(beside, to));
   }
-  void renew(HalfEdges::VertexHandle v) {
-    const auto i = static_cast<std::uint32_t>(v.idx());
-    queue_.push({cheapest(v), i, ++stamps_[i]});
+  void push(std::uint32_t v, double cost) {
+    if (cost >= queued_[v]) return;
+    queued_[v] = cost;
+    queue_.push({cost, v, ++stamps_[v]});
   }
 
   HalfEdges& mesh_;
+  const std::vector<Vec3>& normals_;
   Vec3 origin_{};
+  double normal_length_ = 0;
+  std::vector<NormalQuadric> of_normals_;
   std::vector<Quadric> quadrics_;
+  static constexpr double nothing = std::numeric_limits<double>::infinity();
+  std::vector<double> queued_;  // what each vertex waits with
   std::vector<std::uint32_t> stamps_;
   std::priority_queue<Waiting> queue_;
   std::vector<std::pair<double, HalfEdges::HalfedgeHandle>> candidates_;
@@ -255,7 +346,7 @@ std::size_t decimate(io::TriangleMesh& mesh, std::size_t faces) {
   built.request_edge_status();
   built.request_halfedge_status();
   built.request_face_status();
-  Collapses(built).down_to(faces);
+  Collapses(built, mesh.normals).down_to(faces);
   keep_rest(built, mesh);
   return mesh.triangles.size();
 }
