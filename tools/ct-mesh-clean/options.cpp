@@ -103,7 +103,7 @@ std::vector<cli::Option> file_options() {
            .type = Type::text,
            .help = "The picture is an atlas: so many columns and rows of slices, from the top left.",
            .metavar = "CxR"},
-          {.name = "largest-stack",
+          {.name = "accept-gap",
            .type = Type::flag,
            .help = "DICOM: where slices are missing, take the largest stack of equal spacing."}};
 }
@@ -281,7 +281,7 @@ Asked asked(const cli::Invocation& call) {
   a.file.big_endian = call.flag("big-endian");
   if (call.given("skip")) a.file.skip_bytes = static_cast<std::size_t>(call.integer("skip"));
   if (call.given("tiles")) a.file.tiles = counts_of<2>(call.text("tiles"), "tiles", "as in 16x16");
-  a.file.accept_gap = call.flag("largest-stack");
+  a.file.accept_gap = call.flag("accept-gap");
   threshold_asked(call.text("threshold"), a);
   a.inside = call.text("connectivity") == "6" ? volume::Connectivity::six : volume::Connectivity::twenty_six;
   for (const std::string& what : call.texts("correct")) (what == "rings" ? a.rings : a.cupping) = true;

@@ -1,5 +1,4 @@
 // Step: open the volume; where its voxels lie is read or asked for, never guessed.
-#include "base/error.h"
 #include "base/text.h"
 #include "tools/ct-mesh-clean/work.h"
 
@@ -17,10 +16,7 @@ void open(Work& work) {
   work.file = io::open_volume(path, work.asked.file);
   const io::VolumeHead& head = work.file->head();
   for (const auto& file : head.files) work.call.note_input(file);
-  if (!head.spacing_m)
-    throw Error(Exit::data, path, "does not say how far apart its voxels are",
-                "give the distance of their centres: --voxel 120um, or --voxel 0.1mm,0.1mm,0.3mm");
-  work.spacing_m = *head.spacing_m;
+  work.spacing_m = io::stated_spacing(head);
   work.origin_m = head.origin_m.value_or(Vec3{});
   work.axes = head.axes.value_or(Mat3{});
   work.left_handed = determinant(work.axes) < 0;
