@@ -4,7 +4,11 @@
 
 namespace gonio::mesh {
 
+namespace {
+
 constexpr double least_agreement = 0.4;  // cosine
+
+}  // namespace
 
 NoisySurface surface_of(const std::vector<Vec3>& positions_m, const std::vector<Corners>& triangles) {
   NoisySurface surface{positions_m, triangles, neighbours_of_faces(triangles, positions_m.size()), {}, {}, {}};
