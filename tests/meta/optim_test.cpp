@@ -23,7 +23,6 @@ const std::map<std::string, std::string>& excused() {
       {"lib/nrsfm/rigid_motion.cpp", "its move is not measured yet"},
       {"lib/nrsfm/robust_fit.cpp", "its move is not measured yet"},
       {"lib/nrsfm/shape_trajectory.cpp", "its move is not measured yet"},
-      {"lib/relief/ground_noise.cpp", "its move is not measured yet"},
   };
   return files;
 }
