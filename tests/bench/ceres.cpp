@@ -1,6 +1,5 @@
 // `scripts/bench ceres`: three problems of calibration as the rooms solve them and by Ceres, on the same simulated
-// worlds, in turn, in one thread. Times are processor time, the least of five; errors are of the parameters against the
-// truth of the simulation.
+// worlds, in one thread. Times: processor time, the least of five. Errors: against the truth of the simulation.
 //   bench-ceres pose      the sample's pose: optim::fit and optim::fit_by_ceres of the same model
 //   bench-ceres handeye   twelve numbers of two mountings: robot/handeye/reprojection.h, and the same by fit_by_ceres
 //   bench-ceres boards    bundle adjustment of one camera: camera::adjust, and Ceres with its own Schur complement
@@ -38,9 +37,8 @@ double now_s() {
 }
 
 struct Side {
-  double seconds = 0, cost = 0, error2 = 0, steps = 0;
+  double seconds = 0, error2 = 0, steps = 0;
 };
-// Runs `solve` five times; the least time counts.
 template <class Solve>
 double timed(const Solve& solve) {
   double least = HUGE_VAL;
@@ -131,8 +129,7 @@ void pose(int images, int count) {
 
 // --- both mountings of a hand-eye calibration from all corners ---
 
-// Parameters: quaternion and shift of either mounting. Slopes as the room has them: a change of the mountings moves the
-// board's predicted pose so that the robot's deviation stays zero.
+// Parameters: quaternion and shift of either mounting. Slopes as the room has them (robot/handeye/reprojection.cpp).
 struct MountingsModel final : optim::Model {
   const robot::handeye::Setup& setup;
   const std::vector<robot::handeye::View>& views;
@@ -152,13 +149,10 @@ struct MountingsModel final : optim::Model {
   Eigen::VectorXd moved(const Eigen::VectorXd& x, const Eigen::VectorXd& change) const override {
     return parameters(robot::handeye::moved_by(solution(x), robot::handeye::Vector12(change)));
   }
-  Eigen::Index rows() const {
+  bool residuals(const Eigen::VectorXd& x, Eigen::VectorXd& r) const override {
     Eigen::Index n = 0;
     for (const auto& view : views) n += 2 * static_cast<Eigen::Index>(view.corners.size());
-    return n;
-  }
-  bool residuals(const Eigen::VectorXd& x, Eigen::VectorXd& r) const override {
-    r.resize(rows());
+    r.resize(n);
     Eigen::Index row = 0;
     for (const auto& view : views) {
       const camera::BoardPose pose = robot::handeye::predicted_pose(setup.kind, view, solution(x));
@@ -228,7 +222,6 @@ void handeye(int count) {
 }
 
 // --- one camera and a board: bundle adjustment ---
-
 using namespace camera;
 
 struct BoardWorld {
@@ -272,6 +265,8 @@ struct BoardWorld {
 struct PlacementManifold final : ceres::Manifold {
   int AmbientSize() const override { return 7; }
   int TangentSize() const override { return 6; }
+  bool Minus(const double*, const double*, double*) const override { return false; }  // no solver here asks
+  bool MinusJacobian(const double*, double*) const override { return false; }
   bool Plus(const double* x, const double* d, double* moved) const override {
     const auto& [q, t] =
         camera::moved({{x[0], x[1], x[2], x[3]}, {x[4], x[5], x[6]}}, {d[0], d[1], d[2], d[3], d[4], d[5]});
@@ -284,8 +279,6 @@ struct PlacementManifold final : ceres::Manifold {
     for (int i = 0; i < 6; ++i) j[7 * i] = 1;
     return true;
   }
-  bool Minus(const double*, const double*, double*) const override { return false; }
-  bool MinusJacobian(const double*, double*) const override { return false; }
 };
 
 Intrinsics lens_at(const BoardWorld& world, const std::vector<FreeParameter>& free, const double* change) {
@@ -402,7 +395,6 @@ int main(int argc, char** argv) {
   } else if (what == "boards") {
     for (const int pictures : {15, 60}) gonio::boards(pictures, 4);
   } else {
-    std::fprintf(stderr, "usage: bench-ceres pose | handeye | boards\n");
-    return 64;
+    return std::fprintf(stderr, "usage: bench-ceres pose | handeye | boards\n"), 64;
   }
 }

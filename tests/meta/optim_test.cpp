@@ -14,14 +14,13 @@ namespace {
 // What could not be moved, and why. It may only become shorter.
 const std::map<std::string, std::string>& excused() {
   static const std::map<std::string, std::string> files{
-      {"lib/explain/stacks/photometric_model.cpp", "its move is not measured yet"},
-      {"lib/goniometry/fit_solve.cpp", "its move is not measured yet"},
-      {"lib/nrsfm/deforming_fit.cpp", "its move is not measured yet"},
-      {"lib/nrsfm/factorization.cpp", "its move is not measured yet"},
-      {"lib/nrsfm/metric_upgrade.cpp", "its move is not measured yet"},
-      {"lib/nrsfm/rigid_motion.cpp", "its move is not measured yet"},
-      {"lib/nrsfm/robust_fit.cpp", "its move is not measured yet"},
-      {"lib/nrsfm/shape_trajectory.cpp", "its move is not measured yet"},
+      {"lib/goniometry/fit_solve.cpp", "moved, its tests pass and take 3.7 s of processor time for 2.4 s"},
+      {"lib/nrsfm/deforming_fit.cpp", "moved only together with factorization and metric_upgrade so far"},
+      {"lib/nrsfm/factorization.cpp", "moved with the others here, metric_projection errs by 2e-3 for 1e-4"},
+      {"lib/nrsfm/metric_upgrade.cpp", "moved with the others here, pta errs by 2e-5 on exact tracks for 1e-6"},
+      {"lib/nrsfm/rigid_motion.cpp", "moved only together with factorization and metric_upgrade so far"},
+      {"lib/nrsfm/robust_fit.cpp", "moved only together with factorization and metric_upgrade so far"},
+      {"lib/nrsfm/shape_trajectory.cpp", "moved only together with factorization and metric_upgrade so far"},
   };
   return files;
 }
