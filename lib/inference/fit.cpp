@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "optim/descent.h"
 
 namespace gonio::inference {
 namespace {
@@ -38,46 +39,60 @@ std::vector<std::size_t> free_columns(const System& system, const Linearisation&
   return columns;
 }
 
+struct Bounded final : optim::Descent {
+  const System& system;
+  const std::vector<std::size_t>& active;
+  const Slopes* kept;
+  std::vector<double> values, moved;
+  Linearisation at;
+  std::vector<std::size_t> columns;
+
+  Bounded(const System& of, const std::vector<std::size_t>& free, const Slopes* chords, std::vector<double> start)
+      : system(of), active(free), kept(chords), values(std::move(start)) {
+    for (const std::size_t p : active) values[p] = system.clamped(p, values[p]);
+  }
+  void linearise() override {
+    at = inference::linearise(system, values, active, {}, {}, kept);
+    columns = free_columns(system, at, downhill(at));
+  }
+  optim::Proposal propose(double damping) override {
+    const NormalEquations equations(at, columns, NormalEquations::none, damping);
+    Eigen::VectorXd step = equations.solve(equations.gradient()).col(0);
+    moved = values;
+    bool cut = false;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const std::size_t p = at.columns[columns[c]].parameter;
+      double& along = step[static_cast<Eigen::Index>(c)];
+      moved[p] = system.clamped(p, values[p] + along);
+      if (moved[p] == values[p] + along) continue;
+      along = moved[p] - values[p];
+      cut = true;
+    }
+    if (cut) return {promised_fall(at, columns, step)};
+    return {equations.gradient().dot(step) + damping * step.dot(equations.diagonal().cwiseProduct(step))};
+  }
+  double evaluate() override { return cost_of(system, moved, active); }
+  void accept() override { values.swap(moved); }
+};
+
 }  // namespace
 
 Fit fit(const System& system, std::vector<double> start, const std::vector<std::size_t>& active, int iterations,
         const Slopes* kept) {
-  Fit result{std::move(start), active, {}, 0, false};
-  for (const std::size_t p : active) result.values[p] = system.clamped(p, result.values[p]);
-  result.cost = cost_of(system, result.values, active);
+  Bounded bounded(system, active, kept, std::move(start));
   const double tolerance = system.problem().fit_tolerance();
-  double damping = 1e-4;
-  for (int i = 0; i < iterations && !result.converged; ++i) {
-    const Linearisation l = linearise(system, result.values, active, {}, {}, kept);
-    std::vector<std::size_t> columns = free_columns(system, l, downhill(l));
-    bool accepted = false;
-    // Chords that lead nowhere will not do so by being shortened.
-    const double most_damping = kept == nullptr ? 1e10 : 1e3 * std::max(damping, 1e-3);
-    while (!accepted && damping < most_damping) {
-      const NormalEquations equations(l, columns, NormalEquations::none, damping);
-      const Eigen::MatrixXd step = equations.solve(equations.gradient());
-      std::vector<double> values = result.values;
-      for (std::size_t c = 0; c < columns.size(); ++c) {
-        const std::size_t p = l.columns[columns[c]].parameter;
-        values[p] = system.clamped(p, values[p] + step(static_cast<Eigen::Index>(c), 0));
-      }
-      const double cost = cost_of(system, values, active);
-      accepted = cost < result.cost;
-      if (!accepted) {
-        // No descent although the step promised less than rounding can show: this is the minimum.
-        if (2 * equations.gradient().dot(step.col(0)) < tolerance * result.cost + 1e-9) break;
-        damping *= 10;
-        continue;
-      }
-      // A fall of a millionth of one noise unit, or of a billionth of the whole (Problem::fit_tolerance), changes no
-      // conclusion.
-      result.converged = result.cost - cost < 1e-6 + tolerance * result.cost && damping <= 1e-2;
-      result.values = std::move(values);
-      result.cost = cost;
-      damping = std::max(damping / 10, 1e-12);
-    }
-    if (!accepted) result.converged = true;
-  }
+  optim::Limits limits;
+  limits.most_steps = iterations;
+  limits.first_damping = 1e-4;
+  limits.most_damping = 1e10;
+  if (kept != nullptr) limits.most_refusals = 5;  // chords that lead nowhere will not do so by being shortened
+  // A fall of a millionth of one noise unit, or of a billionth of the whole (Problem::fit_tolerance), changes no
+  // conclusion.
+  limits.small_fall = {tolerance, 1e-6};
+  limits.calm_damping = 1e-2;
+  limits.rounding = {tolerance, 1e-9};
+  const optim::Descended end = optim::descend(bounded, cost_of(system, bounded.values, active), limits);
+  Fit result{std::move(bounded.values), active, {}, end.cost, end.stop != optim::Stop::steps};
   for (const std::size_t p : active) {
     const Parameter& parameter = system.problem().parameters()[p];
     if (result.values[p] > parameter.lower && result.values[p] < parameter.upper) result.inner.push_back(p);

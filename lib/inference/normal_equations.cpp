@@ -20,6 +20,23 @@ Eigen::VectorXd downhill(const Linearisation& l) {
   return result;
 }
 
+double promised_fall(const Linearisation& l, const std::vector<std::size_t>& columns, const Eigen::VectorXd& step) {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(l.columns.size()));
+  all(columns) = step;
+  double fall = 0;
+  for (std::size_t c = 0; c < l.columns.size(); ++c) {
+    const double s = all[static_cast<Eigen::Index>(c)];
+    fall += s * (2 * l.columns[c].prior_pull - s * l.columns[c].prior_precision);
+  }
+  for (const GroupGram& gram : l.grams) {
+    const Eigen::MatrixXd whole = gram.whole();
+    const Eigen::Index n = whole.cols() - 1;
+    const Eigen::VectorXd own = all(gram.columns);
+    fall += own.dot(2 * whole.col(n).head(n) - whole.topLeftCorner(n, n) * own);
+  }
+  return fall;
+}
+
 NormalEquations::Part NormalEquations::part_of(const GroupGram& gram,
                                                const std::vector<Eigen::Index>& place_in_subset) {
   Part p;

@@ -102,8 +102,11 @@ Model Race::started(const Model& from, std::vector<std::size_t> candidates, cons
     m.held_out = held_out_by_step(system_, m.fit);
     return m;
   }
-  std::optional<Slopes> turned = along_chords(from, values, active, *kept, m.fit);
-  if (from.fit.cost - m.fit.cost < 0.5 * promise) {
+  auto [reached, turned, promised] = along_chords(from, values, active, *kept);
+  m.fit = std::move(reached);
+  // Chords that are stuck show by what tangents promise there, however much was gained on the way.
+  const double gained = from.fit.cost - m.fit.cost;
+  if (gained < 0.5 * promise || gained < promised) {
     Fit anew = fit(system_, std::move(values), active);
     if (anew.cost < m.fit.cost) {
       m.fit = std::move(anew);
@@ -115,18 +118,17 @@ Model Race::started(const Model& from, std::vector<std::size_t> candidates, cons
 }
 
 // Where tangents promise more than a small part of what the chords have gained, they take the chords' place.
-std::optional<Slopes> Race::along_chords(const Model& from, std::vector<double> values,
-                                         const std::vector<std::size_t>& active, const Slopes& kept,
-                                         Fit& result) const {
-  std::optional<Slopes> turned;
+Race::AlongChords Race::along_chords(const Model& from, std::vector<double> values,
+                                     const std::vector<std::size_t>& active, const Slopes& kept) const {
+  AlongChords at;
   for (int turn = 0;; ++turn) {
-    result = fit(system_, std::move(values), active, chords, turned ? &*turned : &kept);
-    if (turn == turns) return turned;
-    Slopes fresh = slopes(system_, result.values, active);
-    const double promised = decrement(system_, result, fresh);
-    if (promised < small_gain * std::max(0.0, from.fit.cost - result.cost) + small_cost) return turned;
-    values = result.values;
-    turned = std::move(fresh);
+    at.fit = fit(system_, std::move(values), active, chords, at.turned ? &*at.turned : &kept);
+    Slopes fresh = slopes(system_, at.fit.values, active);
+    at.promised = decrement(system_, at.fit, fresh);
+    const double gained = std::max(0.0, from.fit.cost - at.fit.cost);
+    if (turn == turns || at.promised < small_gain * gained + small_cost) return at;
+    values = at.fit.values;
+    at.turned = std::move(fresh);
   }
 }
 

@@ -34,7 +34,8 @@ class Race {
   // chords of these slopes (inference/system.h), which is what most hypotheses are worth.
   Model changed(const Model& from, std::vector<std::size_t> candidates, const Slopes* kept = nullptr) const;
   // The same, the candidates' parameters beginning at `start` (all of them, in order). `promise`: fall of the sum of
-  // squares that their linear form has; where the chords reach less than half of it, the fit begins anew with tangents.
+  // squares that their linear form has; where the chords reach less than half of it, or of what they have reached and
+  // tangents where they end still promise, the fit begins anew with tangents.
   Model started(const Model& from, std::vector<std::size_t> candidates, const std::vector<double>& start,
                 const Slopes* kept, double promise = 0) const;
   // The cost that one step from there promises.
@@ -61,8 +62,13 @@ class Race {
   std::pair<std::vector<double>, std::vector<std::size_t>> beginning(const Model& from,
                                                                      const std::vector<std::size_t>& candidates,
                                                                      const std::vector<double>& start) const;
-  std::optional<Slopes> along_chords(const Model& from, std::vector<double> values,
-                                     const std::vector<std::size_t>& active, const Slopes& kept, Fit& result) const;
+  struct AlongChords {
+    Fit fit;
+    std::optional<Slopes> turned;  // where they were taken anew
+    double promised = 0;           // further fall of the cost, by tangents where the fit has ended
+  };
+  AlongChords along_chords(const Model& from, std::vector<double> values, const std::vector<std::size_t>& active,
+                           const Slopes& kept) const;
   const System& system_;
   const Options& options_;
   std::vector<std::size_t> allowed_, free_;

@@ -169,6 +169,10 @@ class NormalEquations {
 // J'r + prior pull of all columns.
 Eigen::VectorXd downhill(const Linearisation& linearisation);
 
+// Fall of the cost that the linearisation promises for any step along `columns`: 2 g's - s'Hs.
+double promised_fall(const Linearisation& linearisation, const std::vector<std::size_t>& columns,
+                     const Eigen::VectorXd& step);
+
 // What all groups but one say. Each group's own numbers are eliminated once, then sums over the others are formed by
 // halving, so that nothing is subtracted.
 struct WithoutGroup {

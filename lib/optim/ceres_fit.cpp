@@ -17,6 +17,28 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using Row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// Slopes where they were asked for last are not worked out again: where Ceres ends it has asked for them.
+class Remembering final : public Model {
+ public:
+  explicit Remembering(const Model& model) : model_(model) {}
+  bool residuals(const VectorXd& x, VectorXd& r) const override { return model_.residuals(x, r); }
+  Index freedoms(const VectorXd& x) const override { return model_.freedoms(x); }
+  VectorXd moved(const VectorXd& x, const VectorXd& change) const override { return model_.moved(x, change); }
+  double difference(const VectorXd& x, Index k) const override { return model_.difference(x, k); }
+  Eigen::MatrixXd slopes(const VectorXd& x, const VectorXd& r) const override {
+    if (x_.size() != x.size() || x_ != x) {
+      slopes_ = model_.slopes(x, r);
+      x_ = x;
+    }
+    return slopes_;
+  }
+
+ private:
+  const Model& model_;
+  mutable VectorXd x_;
+  mutable Eigen::MatrixXd slopes_;
+};
+
 // Ceres multiplies slopes by parameters with the derivative of moved() at no change. A model states slopes by change:
 // they stand in the first columns, and that derivative is [1; 0].
 class Changes final : public ceres::Manifold {
@@ -79,7 +101,8 @@ ceres::Solver::Options options_of(const Limits& limits) {
 
 }  // namespace
 
-Fit fit_by_ceres(const Model& model, VectorXd start, const Limits& limits) {
+Fit fit_by_ceres(const Model& fitted, VectorXd start, const Limits& limits) {
+  const Remembering model(fitted);
   VectorXd r;
   if (!model.residuals(start, r)) throw Error(Exit::internal, "optim", "the model has no value at the start");
   if (model.freedoms(start) > start.size())

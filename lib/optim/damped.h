@@ -31,4 +31,11 @@ DampedStep<Vector::RowsAtCompileTime> damped_step(const Eigen::MatrixBase<Matrix
   return step;
 }
 
+// What the quadratic model promises for another change than the one solved for: one that bounds have cut short.
+template <class Matrix, class Vector, class Change>
+double promised_fall(const Eigen::MatrixBase<Matrix>& h, const Eigen::MatrixBase<Vector>& downhill,
+                     const Eigen::MatrixBase<Change>& change) {
+  return change.dot(2 * downhill - h.template selfadjointView<Eigen::Lower>() * change);
+}
+
 }  // namespace gonio::optim

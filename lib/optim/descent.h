@@ -2,8 +2,8 @@
 //
 // Levenberg's and Marquardt's method with the gain ratio as its guide (Madsen, Nielsen & Tingleff, "Methods for
 // non-linear least squares problems", 2004, algorithm 3.16): a step that lowers the cost is taken, and the damping then
-// follows from how well the quadratic model foretold the fall; a step that does not is refused, and the damping grows
-// twice as fast with every refusal in a row.
+// follows from how well the quadratic model foretold the fall, but never rises; a step that does not is refused, and
+// the damping grows twice as fast with every refusal in a row.
 //
 // Whoever minimises says how to linearise and how to solve for one damping: dense normal equations (damped.h), Schur
 // complements, variable projection, Fisher scoring. Dense problems of some hundred parameters with bounds, priors,
@@ -17,7 +17,9 @@ namespace gonio::optim {
 
 // Where one damping leads, before anything is evaluated there.
 struct Proposal {
-  double promised = 0;  // fall of the cost by the quadratic model, in the cost's unit; NaN where nobody knows
+  // Fall of the cost by the quadratic model, in the cost's unit, for the step as it is taken, bounds and all; NaN where
+  // nobody knows.
+  double promised = 0;
   double length = std::numeric_limits<double>::infinity();  // of the step, in the unit of Limits::small_step
 };
 

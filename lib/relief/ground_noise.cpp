@@ -9,6 +9,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "linear/solve.h"
+#include "optim/damped.h"
+#include "optim/descent.h"
 #include "relief/areal.h"
 #include "relief/fft.h"
 
@@ -162,37 +164,53 @@ struct Fitted {
   double objective = 0;
 };
 
-Fitted scored(const std::vector<Periodograms>& all, VectorXd theta) {
-  Fitted fit{theta, models_of(all, theta), 0};
-  fit.objective = whittle(all, fit.models);
-  double damping = 1e-3;
-  for (int round = 0; round < 60 && damping < 1e8; ++round) {
-    MatrixXd information = MatrixXd::Zero(theta.size(), theta.size());
-    VectorXd score = VectorXd::Zero(theta.size());
+// Fisher scoring.
+struct Scoring final : optim::Descent {
+  const std::vector<Periodograms>& all;
+  Fitted at, there;
+  MatrixXd information;
+  VectorXd score;
+
+  Scoring(const std::vector<Periodograms>& of, VectorXd theta) : all(of) {
+    at.theta = std::move(theta);
+    at.objective = objective_of(at);
+  }
+  double objective_of(Fitted& fit) const {
+    fit.models = models_of(all, fit.theta);
+    return whittle(all, fit.models);
+  }
+  void linearise() override {
+    information = MatrixXd::Zero(at.theta.size(), at.theta.size());
+    score = VectorXd::Zero(at.theta.size());
     for (std::size_t a = 0; a < all.size(); ++a) {
-      const Model& m = fit.models[a];
+      const Model& m = at.models[a];
       const auto tiles = static_cast<double>(all[a].tiles.size());
       information += tiles * m.slopes.transpose() * m.slopes;
       score += tiles * m.slopes.transpose() * (all[a].mean.cwiseQuotient(m.power).array() - 1).matrix();
     }
-    information.diagonal() *= 1 + damping;
     information.diagonal().array() += 1e-6;
-    VectorXd step = linear::solve_ldlt(information, score);
+  }
+  optim::Proposal propose(double damping) override {
+    VectorXd step = optim::damped_step(information, score, damping).change;
     const double largest = step.cwiseAbs().maxCoeff();
     if (largest > 1) step *= 1 / largest;
-    const VectorXd next = fit.theta + step;
-    std::vector<Model> models = models_of(all, next);
-    const double objective = whittle(all, models);
-    if (!(objective <= fit.objective)) {
-      damping *= 10;
-      continue;
-    }
-    const bool done = fit.objective - objective < 1e-7 * std::abs(objective) && largest < 1e-3;
-    fit = {next, std::move(models), objective};
-    damping = std::max(1e-9, damping / 10);
-    if (done) break;
+    there.theta = at.theta + step;
+    return {score.dot(step) - 0.5 * step.dot(information * step), largest};
   }
-  return fit;
+  double evaluate() override { return there.objective = objective_of(there); }
+  void accept() override { std::swap(at, there); }
+};
+
+Fitted scored(const std::vector<Periodograms>& all, VectorXd theta) {
+  Scoring scoring(all, std::move(theta));
+  optim::Limits limits;
+  limits.most_trials = 60;
+  limits.least_damping = 1e-9;
+  limits.most_damping = 1e8;
+  limits.small_fall = {0, 1e-4};  // of minus a logarithm of a likelihood: what is left changes no criterion
+  limits.rounding = {0, 1e-6};
+  optim::descend(scoring, scoring.at.objective, limits);
+  return std::move(scoring.at);
 }
 
 // One part more where it helps most, of cells from two points to half a tile.

@@ -14,18 +14,13 @@ namespace {
 // What could not be moved, and why. It may only become shorter.
 const std::map<std::string, std::string>& excused() {
   static const std::map<std::string, std::string> files{
-      {"lib/contrast/measure/sample_pose.cpp", "its move is not measured yet"},
-      {"lib/explain/stacks/photometric_model.cpp", "its move is not measured yet"},
-      {"lib/explain/tables/preliminary_fit.cpp", "with this one and the next moved, two answers of explain changed"},
-      {"lib/goniometry/fit/fit_solve.cpp", "its move is not measured yet"},
-      {"lib/inference/fit.cpp", "see preliminary_fit"},
-      {"lib/nrsfm/solve/deforming_fit.cpp", "its move is not measured yet"},
-      {"lib/nrsfm/solve/factorization.cpp", "its move is not measured yet"},
-      {"lib/nrsfm/solve/metric_upgrade.cpp", "its move is not measured yet"},
-      {"lib/nrsfm/solve/rigid_motion.cpp", "its move is not measured yet"},
-      {"lib/nrsfm/solve/robust_fit.cpp", "its move is not measured yet"},
-      {"lib/nrsfm/solve/shape_trajectory.cpp", "its move is not measured yet"},
-      {"lib/relief/ground_noise.cpp", "its move is not measured yet"},
+      {"lib/goniometry/fit/fit_solve.cpp", "moved, its tests pass and take 3.7 s of processor time for 2.4 s"},
+      {"lib/nrsfm/solve/deforming_fit.cpp", "moved only together with factorization and metric_upgrade so far"},
+      {"lib/nrsfm/solve/factorization.cpp", "moved with the others here, metric_projection errs by 2e-3 for 1e-4"},
+      {"lib/nrsfm/solve/metric_upgrade.cpp", "moved with the others here, pta errs by 2e-5 on exact tracks for 1e-6"},
+      {"lib/nrsfm/solve/rigid_motion.cpp", "moved only together with factorization and metric_upgrade so far"},
+      {"lib/nrsfm/solve/robust_fit.cpp", "moved only together with factorization and metric_upgrade so far"},
+      {"lib/nrsfm/solve/shape_trajectory.cpp", "moved only together with factorization and metric_upgrade so far"},
   };
   return files;
 }

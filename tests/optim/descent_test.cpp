@@ -3,12 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "optim/damped.h"
 
 namespace gonio::optim {
 namespace {
@@ -22,13 +26,13 @@ struct Line final : Descent {
     asked.push_back(damping);
     const double g = 2 * (3 - x), step = g / (2 * (1 + damping));
     there = x + step * exaggeration;
-    return {g * step - step * step, std::abs(step * exaggeration)};
+    return {boast * (g * step - step * step), std::abs(step * exaggeration)};
   }
   double evaluate() override {
     return wall && there > *wall ? std::numeric_limits<double>::quiet_NaN() : cost_at(there);
   }
   void accept() override { x = there; }
-  double x, there = 0, exaggeration = 1;
+  double x, there = 0, exaggeration = 1, boast = 1;
   std::optional<double> wall;
   std::vector<double> asked;
   int linearised = 0;
@@ -116,6 +120,42 @@ TEST(Descent, AHeavilyDampedCrawlIsNotRest) {
   Line patient(10);
   EXPECT_TRUE(descend(patient, patient.cost_at(patient.x), limits).settled());
   EXPECT_NEAR(patient.x, 3, 1e-2);
+}
+
+// A promise that is never kept, as by a slope along a kink: steps are taken all the same, and the damping is not to
+// rise until none of them matters.
+TEST(Descent, AStepThatIsTakenNeverRaisesTheDamping) {
+  Line line(10);
+  line.boast = 30;
+  Limits limits;
+  limits.first_damping = 1;
+  limits.small_fall = {0, 1e-12};
+  limits.rounding = {};
+  limits.most_steps = 60;
+  const Descended d = descend(line, line.cost_at(line.x), limits);
+  EXPECT_TRUE(std::ranges::is_sorted(line.asked, std::greater<>())) << line.asked.back();
+  EXPECT_EQ(d.stop, Stop::fall);
+  EXPECT_NEAR(line.x, 3, 1e-6);
+}
+
+// Residuals that are linear keep every promise exactly, also for a step that a bound has cut.
+TEST(Damped, APromiseIsOfTheStepThatIsTaken) {
+  Eigen::MatrixXd j(4, 2);
+  j << 1, 2, -1, 3, 0.5, 1, 2, -1;
+  const Eigen::Vector4d r(1, -2, 3, 0.5);
+  const Eigen::MatrixXd h = j.transpose() * j;
+  const Eigen::VectorXd downhill = -(j.transpose() * r);
+  const auto step = damped_step(h, downhill, 0.3);
+  const auto fall = [&](const Eigen::VectorXd& change) { return r.squaredNorm() - (r + j * change).squaredNorm(); };
+  EXPECT_NEAR(step.promised, fall(step.change), 1e-12);
+  EXPECT_NEAR(promised_fall(h, downhill, step.change), step.promised, 1e-12);
+  Eigen::VectorXd cut = step.change;
+  cut[1] *= 0.25;
+  EXPECT_NEAR(promised_fall(h, downhill, cut), fall(cut), 1e-12);
+  EXPECT_GT(std::abs(step.promised - fall(cut)), 1e-3);
+  Eigen::MatrixXd lower = h;
+  lower(0, 1) = 1e9;  // only the lower triangle is read
+  EXPECT_NEAR(promised_fall(lower, downhill, cut), fall(cut), 1e-12);
 }
 
 TEST(Descent, EveryReasonHasItsOwnWords) {

@@ -5,10 +5,10 @@
 // projection P,
 //     minimise  sum |P(D_i C_i X p_k) - u_ik|^2 / s_ik^2  +  sum |rotation of D_i|^2 / s_r^2 + |shift of D_i|^2 /
 //     s_t^2,
-// by Levenberg-Marquardt. The robot's repeatability (s_r, s_t) thus counts as what it is, and images share out what
-// their marks do not agree on. The start is the better of the two poses that four points of a plane leave open in one
-// image (Collins & Bartoli 2014), over all images. The covariance is that of the linearised problem, times chi^2 over
-// the degrees of freedom where that is above one.
+// by Ceres (optim/ceres_fit.h; scripts/bench ceres). The robot's repeatability (s_r, s_t) thus counts as what it is,
+// and images share out what their marks do not agree on. The start is the better of the two poses that four points of a
+// plane leave open in one image (Collins & Bartoli 2014), over all images. The covariance is that of the linearised
+// problem, times chi^2 over the degrees of freedom where that is above one.
 #pragma once
 #include <array>
 #include <string>

@@ -8,6 +8,8 @@
 #include "light/mechanisms/light_ambient.h"
 #include "light/mechanisms/light_inverse_square.h"
 #include "linear/solve.h"
+#include "optim/damped.h"
+#include "optim/descent.h"
 #include "render/mechanisms/sensor_black_offset.h"
 #include "scene/mechanisms/optics_vignetting.h"
 #include "surface/fresnel.h"
@@ -77,53 +79,75 @@ double PatchModel::operator()(Vec3 b, double tint, const PatchLight& light, doub
   return equation::sensor_black_offset(v, offset);
 }
 
-Patch fitted_patch(const PatchModel& model, const PatchReadings& readings, const Patch& start) {
-  const std::size_t channels = readings.channels;
-  const Eigen::Index unknowns = channels == 1 ? 3 : 5;
-  const auto patch_of = [&](const Eigen::VectorXd& v) {
+namespace {
+
+// The numbers of one patch: its vector, then two of three tints where there are colours. Slopes are forward
+// differences: a patch is one of thousands, and its end is judged by the fall alone.
+struct PatchDescent final : optim::Descent {
+  const PatchModel& model;
+  const PatchReadings& readings;
+  Eigen::VectorXd v, r, next, next_r, gradient;
+  Eigen::MatrixXd h;
+
+  PatchDescent(const PatchModel& of, const PatchReadings& read, const Patch& start)
+      : model(of), readings(read), v(read.channels == 1 ? 3 : 5) {
+    v.head(3) = eigen(start.b);
+    if (read.channels > 1) v[3] = start.tint[0], v[4] = start.tint[1];
+    r = residuals(v);
+  }
+  static Patch patch_of(const Eigen::VectorXd& v) {
     Patch p{{v[0], v[1], v[2]}, {1, 1, 1}};
-    if (channels > 1) p.tint = {v[3], v[4], 3 - v[3] - v[4]};
+    if (v.size() > 3) p.tint = {v[3], v[4], 3 - v[3] - v[4]};
     return p;
-  };
-  const auto residuals = [&](const Eigen::VectorXd& v) {
-    const Patch p = patch_of(v);
-    Eigen::VectorXd r(static_cast<Eigen::Index>(readings.y.size()));
+  }
+  Eigen::VectorXd residuals(const Eigen::VectorXd& of) const {
+    const Patch p = patch_of(of);
+    const std::size_t channels = readings.channels;
+    Eigen::VectorXd result(static_cast<Eigen::Index>(readings.y.size()));
     for (std::size_t i = 0; i < readings.y.size(); ++i) {
       const double w = readings.weight[i];
       const double f = w > 0 ? model(p.b, p.tint[i % channels], readings.lights[i / channels], readings.radius) : 0;
-      r[static_cast<Eigen::Index>(i)] = w > 0 ? (readings.y[i] - f) * w : 0;
+      result[static_cast<Eigen::Index>(i)] = w > 0 ? (readings.y[i] - f) * w : 0;
     }
-    return r;
-  };
-  Eigen::VectorXd v(unknowns);
-  v.head(3) = eigen(start.b);
-  if (channels > 1) v[3] = start.tint[0], v[4] = start.tint[1];
-  Eigen::VectorXd r = residuals(v);
-  double damping = 1e-3;
-  for (int i = 0; i < 15 && damping < 1e5; ++i) {
-    Eigen::MatrixXd j(r.size(), unknowns);
-    for (Eigen::Index c = 0; c < unknowns; ++c) {
+    return result;
+  }
+  void linearise() override {
+    Eigen::MatrixXd j(r.size(), v.size());
+    for (Eigen::Index c = 0; c < v.size(); ++c) {
       Eigen::VectorXd moved = v;
       const double step = c < 3 ? 1e-5 * std::max(v.head(3).norm(), 1e-6) : 1e-5;
       moved[c] += step;
       j.col(c) = (r - residuals(moved)) / step;
     }
-    Eigen::MatrixXd h = j.transpose() * j;
-    h.diagonal() *= 1 + damping;
-    h.diagonal().array() += 1e-12 * h.trace();
-    const Eigen::VectorXd moved = v + linear::solve_ldlt(h, Eigen::VectorXd(j.transpose() * r));
-    const Eigen::VectorXd then = residuals(moved);
-    if (!(then.squaredNorm() < r.squaredNorm())) {
-      damping *= 10;
-      continue;
-    }
-    const bool done = r.squaredNorm() - then.squaredNorm() < 1e-6 * r.squaredNorm();
-    v = moved;
-    r = then;
-    damping = std::max(1e-9, damping / 10);
-    if (done) break;
+    h = j.transpose() * j;
+    gradient = j.transpose() * r;
   }
-  return patch_of(v);
+  optim::Proposal propose(double damping) override {
+    const auto step = optim::damped_step(h, gradient, damping);
+    next = v + step.change;
+    return {step.promised};
+  }
+  double evaluate() override {
+    next_r = residuals(next);
+    return next_r.squaredNorm();
+  }
+  void accept() override {
+    v.swap(next);
+    r.swap(next_r);
+  }
+};
+
+}  // namespace
+
+Patch fitted_patch(const PatchModel& model, const PatchReadings& readings, const Patch& start) {
+  PatchDescent patch(model, readings, start);
+  optim::Limits limits;
+  limits.most_trials = 15;
+  limits.least_damping = 1e-9;
+  limits.most_damping = 1e5;
+  limits.small_fall = limits.rounding = {1e-6, 0};
+  optim::descend(patch, patch.r.squaredNorm(), limits);
+  return PatchDescent::patch_of(patch.v);
 }
 
 Patch matte_patch(const PatchReadings& readings, std::vector<char>& hidden) {

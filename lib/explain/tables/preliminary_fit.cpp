@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "explain/tables/tables_problem.h"
-#include "linear/solve.h"
+#include "optim/damped.h"
+#include "optim/descent.h"
 
 namespace gonio::explain::tables {
 namespace {
@@ -39,38 +40,43 @@ Normal normal_at(const Problem& problem, const std::vector<double>& values, bool
   return normal;
 }
 
+struct Preliminary final : optim::Descent {
+  const Problem& problem;
+  std::vector<double> values, moved;
+  Normal at;
+
+  explicit Preliminary(const Problem& of) : problem(of) {
+    for (const Parameter& p : problem.parameters()) values.push_back(p.neutral);
+    for (const std::size_t p : problem.base()) values[p] = problem.parameters()[p].start;
+  }
+  void linearise() override { at = normal_at(problem, values, true); }
+  optim::Proposal propose(double damping) override {
+    Eigen::VectorXd step = optim::damped_step(at.gram, at.gradient, damping).change;
+    moved = values;
+    for (std::size_t k = 0; k < problem.base().size(); ++k) {
+      const Parameter& p = problem.parameters()[problem.base()[k]];
+      double &v = moved[problem.base()[k]], &along = step[static_cast<Eigen::Index>(k)];
+      const double from = v;
+      v = std::clamp(v + along, p.lower, p.upper);
+      along = v - from;  // what bounds have left of it
+    }
+    return {optim::promised_fall(at.gram, at.gradient, step)};
+  }
+  double evaluate() override { return normal_at(problem, moved, false).cost; }
+  void accept() override { values.swap(moved); }
+};
+
 }  // namespace
 
 std::vector<double> preliminary_fit(const Problem& problem) {
-  constexpr int iterations = 60;
-  std::vector<double> values;
-  for (const Parameter& p : problem.parameters()) values.push_back(p.neutral);
-  for (const std::size_t p : problem.base()) values[p] = problem.parameters()[p].start;
-  Normal normal = normal_at(problem, values, true);
-  double damping = 1e-4;
-  for (int i = 0; i < iterations && damping < 1e10; ++i) {
-    Eigen::MatrixXd lifted = normal.gram;
-    lifted.diagonal() *= 1 + damping;
-    lifted.diagonal().array() += 1e-300;
-    const Eigen::VectorXd step = linear::solve_ldlt(lifted, normal.gradient);
-    std::vector<double> moved = values;
-    for (std::size_t k = 0; k < problem.base().size(); ++k) {
-      const Parameter& p = problem.parameters()[problem.base()[k]];
-      moved[problem.base()[k]] =
-          std::clamp(values[problem.base()[k]] + step[static_cast<Eigen::Index>(k)], p.lower, p.upper);
-    }
-    const double cost = normal_at(problem, moved, false).cost;
-    if (!(cost < normal.cost)) {
-      damping *= 10;
-      continue;
-    }
-    const bool settled = normal.cost - cost < 1e-9 * normal.cost;
-    values = std::move(moved);
-    if (settled) break;
-    normal = normal_at(problem, values, true);
-    damping = std::max(damping / 10, 1e-12);
-  }
-  return values;
+  Preliminary preliminary(problem);
+  optim::Limits limits;
+  limits.most_trials = 60;
+  limits.first_damping = 1e-4;
+  limits.most_damping = 1e10;
+  limits.small_fall = limits.rounding = {1e-9, 0};
+  optim::descend(preliminary, normal_at(problem, preliminary.values, false).cost, limits);
+  return preliminary.values;
 }
 
 }  // namespace gonio::explain::tables
