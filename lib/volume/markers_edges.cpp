@@ -96,15 +96,16 @@ class Rays {
     const auto covariance = trilinear_covariance(first, along * step, places.size(), noise_.neighbour_correlation);
     ProfileWish wish{noise_.sd, covariance, 1 / s.radius};
     wish.width = width;
+    wish.width_share = 0.25;        // slices are sharper along the axis than within
     constexpr double alike = 0.05;  // of the step: plateaus round one marker
     const double plateau_sd = alike * std::abs(levels.object - levels.air);
     if (settled) wish.air = Known{levels.air, plateau_sd}, wish.object = Known{levels.object, plateau_sd};
     const Edge e = fit_edge(places, values, wish);
     const double rise = levels.object - levels.air, off = std::max(0.7, 0.08 * s.radius);
     if (!e.good || e.object < e.air || std::abs(e.position) > off || std::abs(e.air - levels.air) > 0.3 * rise ||
-        std::abs(e.object - levels.object) > 0.35 * rise || (settled && e.excess > 4))
+        std::abs(e.object - levels.object) > 0.35 * rise)
       return {};
-    return {direction, s.radius + e.position, e.sigma, e.air, e.object, e.width};
+    return {direction, s.radius + e.position, e.sigma, e.air, e.object, e.width, e.excess};
   }
 
   double at(const Sphere& s, Vec3 direction, double x) const {
@@ -141,12 +142,15 @@ void collect(Sphere& s, const Rays& rays, std::optional<double> width, const std
   parallel_for(
       0, count, [&](std::size_t n) { all[n] = rays.edge(s, s.asked[n], levels, width, known.has_value()); }, 32);
   s.covered.assign(count, false);
-  std::vector<double> widths;
+  std::vector<double> widths, excess;
   for (std::size_t n = 0; n < count; ++n)
-    if (all[n].sigma > 0) widths.push_back(all[n].width);
+    if (all[n].sigma > 0) widths.push_back(all[n].width), excess.push_back(all[n].excess);
   s.width = quantile(widths, 0.5);
+  // Misfits that all directions share are the model's or the scanner's (streaks); only what stands out is another body.
+  const double most = known ? 4 * std::max(1.0, quantile(excess, 0.5)) : HUGE_VAL;
   for (std::size_t n = 0; n < count; ++n)
-    s.covered[n] = all[n].sigma > 0 && all[n].width < 1.8 * s.width && all[n].width > 0.5 * s.width;
+    s.covered[n] =
+        all[n].sigma > 0 && all[n].width < 1.8 * s.width && all[n].width > 0.45 * s.width && all[n].excess < most;
   leave_rims_out(s);
   s.edges.clear();
   for (std::size_t n = 0; n < count; ++n)

@@ -72,7 +72,7 @@ double room_round(double radius);
 // A sphere's edges in the volume.
 struct RadialEdge {
   Vec3 direction{};
-  double distance = 0, sigma = 0, air = 0, object = 0, width = 0;  // distance from the centre
+  double distance = 0, sigma = 0, air = 0, object = 0, width = 0, excess = 0;  // distance: from the centre
 };
 struct Sphere {
   Vec3 centre{};  // place
