@@ -69,6 +69,10 @@ function(gonio_finish_library)
   gonio_registry(${GONIO_GENERATED}/table_models.cpp Model explain/tables/table_model.h
     "std::span<const gonio::explain::tables::Model* const> gonio::explain::tables::all_models()"
     gonio::explain::tables ${table_model_files})
+  file(GLOB volume_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/io/volumes/*.cpp)
+  gonio_registry(${GONIO_GENERATED}/volume_formats.cpp VolumeFormat io/volume.h
+    "std::span<const gonio::io::VolumeFormat* const> gonio::io::all_volume_formats()" gonio::io::volumes
+    ${volume_files})
   # Where simulators bind to mechanisms (tests/meta/bindings_test knows these folders).
   gonio_bindings(scene/edits Edit scene/edit.h gonio::scene all_edits edits)
   gonio_bindings(render/links Link render/link.h gonio::render all_links links)
@@ -89,7 +93,8 @@ function(gonio_finish_library)
   endforeach()
   set(registries ${GONIO_GENERATED}/mechanisms.cpp ${GONIO_GENERATED}/domains.cpp
       ${GONIO_GENERATED}/table_models.cpp ${bindings}
-      ${GONIO_GENERATED}/nrsfm_solvers.cpp ${GONIO_GENERATED}/animatronics.cpp)
+      ${GONIO_GENERATED}/nrsfm_solvers.cpp ${GONIO_GENERATED}/animatronics.cpp
+      ${GONIO_GENERATED}/volume_formats.cpp)
   if(EXISTS ${CMAKE_SOURCE_DIR}/lib/surface/surface.h)
     list(APPEND registries ${GONIO_GENERATED}/surfaces.cpp ${GONIO_GENERATED}/laws.cpp)
   endif()

@@ -41,7 +41,9 @@ sub tokens_of {
     if ($text =~ /\G(::|->|\[\[|\]\]|.)/gcs) { push @tokens, $1; next }
   }
   my $heavy = $text =~ /^[ \t]*#[ \t]*include[ \t]*<(?:Eigen|opencv2|CLI)\//m;
-  return { tokens => \@tokens, includes => \@includes, macros => \@macros, lines => $count, heavy => $heavy };
+  # Half a minute and a gigabyte each: whoever shares a unit with one waits for it.
+  my $alone = $text =~ m{^[ \t]*#[ \t]*include[ \t]*<(?:CGAL|OpenMesh)/}m;
+  return { tokens => \@tokens, includes => \@includes, macros => \@macros, lines => $count, heavy => $heavy, alone => $alone };
 }
 
 # Names that one statement at namespace level declares -> how (the text of an alias: the same alias twice is no collision).
@@ -289,11 +291,13 @@ while (my $group = <STDIN>) {
   my @units;
   for my $source (@sources) {
     my $lines = scanned($source)->{lines};
+    my $alone = scanned($source)->{alone};
     my ($unit) = grep {
       my $u = $_;
+      !$alone && !$u->{alone} &&
       $u->{lines} + $lines <= $lines_wanted && !grep { !together($_, $source) } @{ $u->{sources} }
     } @units;
-    push @units, $unit = { lines => 0, sources => [] } unless $unit;
+    push @units, $unit = { lines => 0, sources => [], alone => $alone } unless $unit;
     $unit->{lines} += $lines;
     push @{ $unit->{sources} }, $source;
   }

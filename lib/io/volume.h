@@ -8,15 +8,20 @@
 // Indices count voxels: index (i, j, k) is the centre of a voxel, i along a row, j along the rows of a slice, k along
 // the slices, the order in which they are read. `volume_from_index` takes an index to metres in the frame of the volume:
 // p_m = origin_m + axes * diag(spacing_m) * index, columns of `axes` being unit vectors. Nothing of it is guessed:
-// what neither the file nor the wish says is absent, and Error(data) says how to say it.
+// what neither the file nor the wish says is absent, and Error(data) says how to say it. A spacing counts as stated where
+// the file says its unit, or its format's standard does: DICOM's and MetaImage's millimetres, NIfTI's xyzt_units, NRRD's
+// units and space units; millimetres, too, in an NRRD with one of the patient's frames, as ITK and Slicer write them.
+// All ones without a unit are what programs write that know no spacing: they state nothing.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geom/vector.h"
@@ -37,8 +42,11 @@ struct VolumeHead {
   std::string value{};                   // what values mean, where the file says so: "hounsfield", ...
   std::string format{};                  // "NRRD, gzip"
   std::vector<std::filesystem::path> files{};  // all that were read, the head first
+  std::string spacing_note{};  // what the file says of its spacing without stating one: "0.5 x 0.5 x 0.7 of no unit"
   std::size_t voxels() const { return size[0] * size[1] * size[2]; }
 };
+// The spacing, or Error(data) that says what the file has instead and how to say it.
+Vec3 stated_spacing(const VolumeHead& head);
 
 // What the user says beside the files. A statement that contradicts the file is Error(data).
 struct VolumeWish {
@@ -79,9 +87,12 @@ struct VolumeData {
 };
 VolumeData read_volume(const std::filesystem::path& path, const VolumeWish& wish = {});
 std::unique_ptr<VolumeSource> source_of(VolumeData data);
-// NRRD, stored as head.type (Error(data) where a value does not fit), raw or gzip. Slice by slice: `slice` is asked for
-// k = 0, 1, ...; the file appears whole or not at all.
+// NRRD, values stored as head.type (Error(data) where one does not fit: out of range, or a fraction in a type of
+// integers), raw or gzip; slope and intercept are applied already and not written. Slice by slice: `slice` is asked to
+// fill k = 0, 1, ... in this order; the file appears whole or not at all.
 void write_nrrd(const std::filesystem::path& path, const VolumeData& volume, bool gzip = false);
+void write_nrrd(const std::filesystem::path& path, const VolumeHead& head,
+                const std::function<void(std::size_t k, std::span<float> slice)>& slice, bool gzip = false);
 
 // A member of the family: io/volumes/NAME.cpp defines `const VolumeFormat& NAME()`.
 struct VolumeFormat {

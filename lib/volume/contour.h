@@ -1,20 +1,30 @@
 // The surface of a volume at a threshold: dual contouring that is closed, 2-manifold, oriented and free of
 // self-intersections by construction.
 //
-// A voxel is inside where its value exceeds the threshold; whatever lies beyond the volume's border is outside, so that
-// an object that the border cuts is closed there. A grid cell is the cube between eight voxel centres. Every sheet of
-// the surface that passes through a cell gets a vertex of its own, at the minimum of the quadratic error of Hermite data
-// (crossing points and gradients, Ju et al. 2002; minimum-norm over singular directions), held strictly within the cell
-// and, where several sheets share it, within the convex region of its own sheet. Every crossed grid edge gives a polygon
-// round it.
+// A voxel is inside where its value exceeds the threshold (one that equals it is outside). What lies beyond the volume's
+// border counts as outside: an object that the border cuts is closed there by a flat cap half a voxel beyond its last
+// samples, where their voxels end. A cell is the cube between eight voxel centres. Every sheet of the surface that passes
+// through a cell gets a vertex of its own, at the minimum of the quadratic error of Hermite data (crossing points and
+// gradients, Ju et al. 2002; minimum-norm over singular directions), held strictly within the cell and, where several
+// sheets share it, within the convex region of its own sheet (cell_cases.h). Every crossed grid edge gives a polygon.
 //
-// Why nothing intersects (Ju & Udeshi 2006, on a uniform grid): two cells that share a face are convex together, so the
-// segment between their vertices crosses that face, and the polygon round an edge split into triangles at the edge's
-// crossing point stays within the tetrahedra between the edge and pairs of neighbouring vertices (its envelope);
-// envelopes of different edges have no common interior. The plain quad (two triangles) is taken where it lies within
-// the envelope. Faces whose four edges are all crossed, and faces of cells with several sheets, are drawn explicitly:
-// straight segments between crossing points, so that sheets never share an edge. Sheets of one cell are separated by
-// planes (x + y + z = 1 round a lone corner, x + y = 1 between opposite edges).
+// Why nothing intersects. (1) On the faces of the cells draw segments between crossings (cell_cases.h): simple closed
+// loops on the boundary of every cell, one for each sheet. The cone over a loop from the sheet's vertex is a disk that
+// does not intersect itself, since the vertex is an interior point of a convex body and the loop lies on its boundary;
+// cones of one cell lie in convex regions that do not meet; a tunnel cell (two loops of one component) has a strip that
+// rises from one loop to the other, star-shaped round the diagonal. Cells meet in the segments alone: the surface is
+// embedded. (2) On a face with one segment p q between two cells with one sheet each, replace it by the path p m q, where
+// m is the point where the line between the two vertices passes the face: strictly within it, because two neighbouring
+// cells are convex together. The loops stay simple, so the surface stays embedded; its triangles over p m and m q join
+// to those with corners (p, vertex, vertex) and (q, vertex, vertex) (Ju & Udeshi 2006). All other faces keep their
+// segments: ambiguous ones, and those of cells with several sheets, so that no edge is shared by four polygons. (3) Where
+// all four faces round an edge are of the first kind, its four triangles round the crossing lie in the edge's envelope,
+// the four tetrahedra between the edge and neighbouring vertices. Envelopes meet in their boundaries only, so whatever
+// spans the same four edges inside one may take their place: two triangles, if a diagonal stays in it (polygons.cpp).
+//
+// All this holds for the coordinates as they are stored: crossings are 2^-7 or more from the ends of their edges, and the
+// margins of the vertices (sheet_vertex.h) exceed the rounding to single precision; axes of more than 8190 voxels are
+// refused. Not covered: other positions. Whoever moves vertices has to check again.
 //
 // Topology: that of the voxels, `inside` counting 26 neighbours and outside 6, or the reverse. With 26, voxels that touch
 // in an edge or a corner are joined; with 6 they are separate. The Euler number of the surface is twice that of the

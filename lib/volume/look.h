@@ -22,7 +22,8 @@ Histogram histogram(io::VolumeSource& source, std::size_t bins = 4096);
 
 // One material: a normal component of the histogram's mixture, by expectation maximisation from k-means starts. Between
 // two materials voxels that hold both lie anywhere between (partial volume, Santago & Gage 1993): they are a component
-// of their own, uniform between two neighbouring means and smeared by the noise.
+// of their own, uniform between two neighbouring means and smeared by the noise. Two components without a mode each are
+// one material with a slope in it (cupping), and are not told apart.
 struct Material {
   double mean = 0, sd = 0, share = 0;
   double sigma_mean = 0;                // standard error of the mean, from the effective number of voxels
@@ -40,13 +41,18 @@ struct Look {
   Mixture mixture;
   double otsu = 0;                      // threshold of greatest between-class variance (Otsu 1979)
   double noise_air = 0;                 // sd of high-pass residuals among voxels of air (robust)
-  double noise_object = 0;              // the same among voxels whose 26 neighbours are of the densest large material
+  double noise_object = 0;              // the same among voxels whose 26 neighbours are of the densest large material;
+                                        // 0: no wall is thick enough
   double noise_correlation = 0;         // of residuals of direct neighbours in air
   std::optional<double> edge_width_voxels{};  // 10 % to 90 % of a normal edge spread, median over the surface
   std::optional<double> sigma_edge_width{};
-  double cupping = 0;   // (value near the rim - value far inside) / (object - air) of one material; 0: none
-  double ring = 0;      // amplitude of structure in radius round the slices' centre that the angle does not share / noise
-  double streak = 0;    // sd among air voxels within the object's hull / sd far outside it
+  // (Value 3 to 5 voxels below the surface - value in the deepest tenth) / (object - air) of one material; 0: none, or no
+  // wall is 16 voxels thick.
+  double cupping = 0;
+  double ring = 0;  // sd of what a radius round the slices' centre has in common at all angles / noise; 0: none
+  // By how much means over 3 x 3 x 3 voxels of air vary more within the object's hull than far outside it / (object -
+  // air); 0: none
+  double streak = 0;
   bool cut_by_field = false;            // the object touches a face of the volume, or leaves the scanner's circle
   std::size_t cut_voxels = 0;
 };

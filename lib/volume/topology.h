@@ -3,6 +3,9 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "io/volume.h"
@@ -52,8 +55,9 @@ struct Kept {
 };
 Kept chosen(const Components& all, const KeepRule& rule);
 
-// The volume with what was not kept set to `outside` (voxels of dropped components and a border of one voxel round them
-// that belongs to no kept component), read through from `source`, which must outlive it.
+// The volume with what was not kept set to `outside`, read through from `source`, which must outlive it: voxels of dropped
+// components, and of the 26 neighbours of each those that neither belong to a kept component nor touch one (those say where
+// the kept one's wall is).
 std::unique_ptr<io::VolumeSource> only(io::VolumeSource& source, const Components& all, const Kept& kept,
                                        float outside);
 
