@@ -26,7 +26,8 @@ struct MarkerWish {
   double smallest = 3, largest = 100;    // plausible radii where none is known, voxels
   Vec3 scale{1, 1, 1};                   // spacing per axis over the smallest spacing
   double least_cover = 0.35;             // share of the sphere's directions that must show an edge
-  double noise = 0;
+  double noise = 0;                      // sd of a voxel; 0: from differences of voxels within and round the spheres
+  std::optional<double> noise_correlation{};  // of direct neighbours; else from the same differences
   std::uint64_t seed = 0;
 };
 

@@ -164,6 +164,65 @@ Contour tube_surface(Vec3 centre, Vec3 axis, double radius, double length, bool 
   });
 }
 
+Contour rough_surface(const io::VolumeData& data, double threshold) {
+  const auto [nx, ny, nz] = data.head.size;
+  const auto value = [&](std::ptrdiff_t i, std::ptrdiff_t j, std::ptrdiff_t k) {
+    const auto inside = [](std::ptrdiff_t a, std::size_t n) { return a >= 0 && a < static_cast<std::ptrdiff_t>(n); };
+    if (!inside(i, nx) || !inside(j, ny) || !inside(k, nz)) return 2 * threshold - 1e3;
+    return static_cast<double>(data.at(i, j, k));
+  };
+  Contour c;
+  const std::size_t wide = nx + 1, high = ny + 1;
+  std::vector<std::uint32_t> vertex(wide * high * (nz + 1), UINT32_MAX);
+  const auto cell = [&](std::ptrdiff_t i, std::ptrdiff_t j, std::ptrdiff_t k) {  // corners i, i + 1, from -1
+    return static_cast<std::size_t>(((k + 1) * static_cast<std::ptrdiff_t>(high) + j + 1) * static_cast<std::ptrdiff_t>(wide) + i + 1);
+  };
+  const auto last = [](std::size_t n) { return static_cast<std::ptrdiff_t>(n); };
+  for (std::ptrdiff_t k = -1; k < last(nz); ++k)
+    for (std::ptrdiff_t j = -1; j < last(ny); ++j)
+      for (std::ptrdiff_t i = -1; i < last(nx); ++i) {
+        std::array<double, 8> v{};
+        for (int n = 0; n < 8; ++n) v[n] = value(i + (n & 1), j + (n >> 1 & 1), k + (n >> 2)) - threshold;
+        Vec3 sum, gradient;
+        int crossed = 0;
+        for (int n = 0; n < 8; ++n)
+          for (int axis = 0; axis < 3; ++axis) {
+            const int m = n | 1 << axis;
+            if (m == n) continue;
+            const double d = v[m] - v[n];
+            gradient += Vec3{axis == 0 ? d : 0, axis == 1 ? d : 0, axis == 2 ? d : 0};
+            if ((v[n] > 0) == (v[m] > 0)) continue;
+            const double t = std::clamp(v[n] / (v[n] - v[m]), 0.05, 0.95);
+            sum += Vec3{(n & 1) + (axis == 0 ? t : 0), (n >> 1 & 1) + (axis == 1 ? t : 0), (n >> 2) + (axis == 2 ? t : 0)};
+            ++crossed;
+          }
+        if (crossed == 0) continue;
+        vertex[cell(i, j, k)] = static_cast<std::uint32_t>(c.positions.size());
+        const Vec3 p = sum / crossed, g = normalized(-gradient);
+        c.positions.push_back({static_cast<float>(i + p.x), static_cast<float>(j + p.y), static_cast<float>(k + p.z)});
+        c.normals.push_back({static_cast<float>(g.x), static_cast<float>(g.y), static_cast<float>(g.z)});
+      }
+  for (std::ptrdiff_t k = 0; k < last(nz); ++k)
+    for (std::ptrdiff_t j = 0; j < last(ny); ++j)
+      for (std::ptrdiff_t i = 0; i < last(nx); ++i)
+        for (int axis = 0; axis < 3; ++axis) {
+          const bool in = value(i, j, k) > threshold;
+          if (in == (value(i + (axis == 0), j + (axis == 1), k + (axis == 2)) > threshold)) continue;
+          const int u = (axis + 1) % 3, w = (axis + 2) % 3;
+          std::array<std::uint32_t, 4> q{};
+          for (int n = 0; n < 4; ++n) {
+            const int du = n == 1 || n == 2 ? 0 : 1, dw = n >= 2 ? 0 : 1;
+            q[n] = vertex[cell(i - (u == 0 ? du : w == 0 ? dw : 0), j - (u == 1 ? du : w == 1 ? dw : 0),
+                               k - (u == 2 ? du : w == 2 ? dw : 0))];
+          }
+          if (std::ranges::count(q, UINT32_MAX) > 0) continue;
+          if (!in) std::swap(q[1], q[3]);
+          c.triangles.push_back({q[0], q[1], q[2]});
+          c.triangles.push_back({q[0], q[2], q[3]});
+        }
+  return c;
+}
+
 void append(Contour& to, const Contour& more) {
   const auto base = static_cast<std::uint32_t>(to.positions.size());
   to.positions.insert(to.positions.end(), more.positions.begin(), more.positions.end());

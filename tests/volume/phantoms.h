@@ -40,6 +40,9 @@ struct Patch {
 Contour grid_surface(std::size_t m, std::size_t n, const std::function<Patch(double, double)>& at, Vec3 scale = {1, 1, 1});
 Contour sphere_surface(Vec3 centre, double radius, Vec3 scale = {1, 1, 1});
 Contour tube_surface(Vec3 centre, Vec3 axis, double radius, double length, bool inwards);
+// Naive surface nets: a vertex in every cell that the threshold crosses, at the mean of the crossings. Closed at the
+// border, not always manifold: enough to look for spheres on.
+Contour rough_surface(const io::VolumeData& data, double threshold);
 void append(Contour& to, const Contour& more);
 
 }  // namespace gonio::volume::phantom
