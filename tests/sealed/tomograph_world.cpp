@@ -1,5 +1,6 @@
-// CT volumes of hollow pieces of glass and aluminium: X-rays through exact ellipsoids, photons, filtered back-projection
-// (tests/ct), told against a mesh of the piece. What is believed of the piece is right, but for where it lies.
+// CT volumes of hollow pieces of glass and aluminium: X-rays through exact ellipsoids, photons, filtered
+// back-projection (tests/ct), told against a mesh of the piece. What is believed of the piece is right, but for where
+// it lies.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,11 +35,19 @@ class Tomograph final : public World {
         .as_drawn()
         .means({"offset_voxels"});
     add({"scale", "ct.scale", stage, {"volume.size"}, 0.0015, 0.008}).of_either_sign().as_drawn().means({"scale"});
-    add({"blur", "ct.blur", stage, {"volume.edge-width", "volume.edge-tilt"}, 0.9, 2}).as_drawn().nearly("spread_voxels");
-    add({"hardening", "ct.beam-hardening", stage, {"volume.path", "volume.depth", "volume.radius"}, 0.25, 1}).as_drawn();
+    add({"blur", "ct.blur", stage, {"volume.edge-width", "volume.edge-tilt"}, 0.9, 2})
+        .as_drawn()
+        .nearly("spread_voxels");
+    add({"hardening", "ct.beam-hardening", stage, {"volume.path", "volume.depth", "volume.radius"}, 0.25, 1})
+        .as_drawn();
     add({"cupping", "ct.cupping", stage, {"volume.radius", "volume.depth"}, 0.04, 0.2}).as_drawn().means({"cupping"});
     add({"rings", "ct.ring", stage, {"volume.ring", "volume.radius"}, 0.004, 0.02}).as_drawn();
-    add({"tilt", "ct.axis-tilt", stage, {"volume.azimuth-by-height", "volume.edge-azimuth", "volume.height"}, 0.006, 0.03})
+    add({"tilt",
+         "ct.axis-tilt",
+         stage,
+         {"volume.azimuth-by-height", "volume.edge-azimuth", "volume.height"},
+         0.006,
+         0.03})
         .of_either_sign()
         .as_drawn()
         .nearly("tilt_rad");
@@ -72,12 +81,15 @@ class Tomograph final : public World {
       const Vec3 way = normalized({random.normal(), random.normal(), random.normal()});
       const double large = 0.62 * least, small = 0.26 * least;
       const Ellipsoid hollow{outer.centre + way * (least - large),
-                             {large, large * random.uniform(0.7, 0.95), large * random.uniform(0.7, 0.95)}, turned(), true};
+                             {large, large * random.uniform(0.7, 0.95), large * random.uniform(0.7, 0.95)},
+                             turned(),
+                             true};
       const Ellipsoid bubble{outer.centre - way * (least - small), {small, small, small}, {}, true};
       bodies_ = {outer, hollow, bubble};
     }
     photons_ = std::exp(random.uniform(std::log(4e4), std::log(4e5)));
-    turn_ = ct::rotation_about(normalized({random.normal(), random.normal(), random.normal()}), random.uniform(0, 0.02));
+    turn_ =
+        ct::rotation_about(normalized({random.normal(), random.normal(), random.normal()}), random.uniform(0, 0.02));
     shift_ = near(1.0 / static_cast<double>(side));
     noise_seed_ = random.next();
     scanner_.seed = random.next();
@@ -162,8 +174,8 @@ class Tomograph final : public World {
     for (int a = 0; a < 3; ++a) file += format(" %zu", side);
     const double told_mm = 1e3 * voxel_m_ * (1 + scale_), origin_mm = -0.5 * told_mm * (static_cast<double>(side) - 1);
     file += "\nspace dimension: 3\nspace units: \"mm\" \"mm\" \"mm\"\n";
-    file += format("space directions: (%.17g,0,0) (0,%.17g,0) (0,0,%.17g)\nspace origin: (%.17g,%.17g,%.17g)\n", told_mm,
-                   told_mm, told_mm, origin_mm, origin_mm, origin_mm);
+    file += format("space directions: (%.17g,0,0) (0,%.17g,0) (0,0,%.17g)\nspace origin: (%.17g,%.17g,%.17g)\n",
+                   told_mm, told_mm, told_mm, origin_mm, origin_mm, origin_mm);
     file += "endian: little\nencoding: raw\n\n";
     for (const double v : observed) {
       const auto number = static_cast<float>(v);
@@ -184,9 +196,13 @@ class Tomograph final : public World {
     s.samples = {2, 2};
     s.spectrum = ct::tube(120, 2, 0, 16);
     s.imperfections["beam-hardening"] = size_of(sizes, "hardening");
-    constexpr std::array<std::pair<const char*, const char*>, 7> names{{{"blur", "blur"}, {"cupping", "cupping"},
-        {"rings", "ring"}, {"tilt", "axis-tilt"}, {"scatter", "scatter"}, {"offset axis", "axis-offset"},
-        {"drifting source", "drift"}}};
+    constexpr std::array<std::pair<const char*, const char*>, 7> names{{{"blur", "blur"},
+                                                                        {"cupping", "cupping"},
+                                                                        {"rings", "ring"},
+                                                                        {"tilt", "axis-tilt"},
+                                                                        {"scatter", "scatter"},
+                                                                        {"offset axis", "axis-offset"},
+                                                                        {"drifting source", "drift"}}};
     for (const auto& [own, its] : names)
       if (sizes.contains(own)) s.imperfections[its] = size_of(sizes, own);
     return s;
@@ -205,15 +221,16 @@ class Tomograph final : public World {
     std::nth_element(v.begin(), near, v.end());
     return *near;
   }
-  // What a mesh that was cut elsewhere, and a head that tells larger voxels, make of a comparison, to first order: walls
-  // are off along their normals, and by a share of their distance from the middle.
+  // What a mesh that was cut elsewhere, and a head that tells larger voxels, make of a comparison, to first order:
+  // walls are off along their normals, and by a share of their distance from the middle.
   Numbers misread(const Numbers& v, const Sizes& sizes) const {
     const double offset = size_of(sizes, "threshold"), scale = size_of(sizes, "scale");
     Numbers result = v;
     if (offset == 0 && scale == 0) return result;
     const double middle = 0.5 * (static_cast<double>(side) - 1);
     for_inner([&](std::size_t n, Vec3 index) {
-      const Vec3 slope = Vec3{v[n + 1] - v[n - 1], v[n + side] - v[n - side], v[n + side * side] - v[n - side * side]} * 0.5;
+      const Vec3 slope =
+          Vec3{v[n + 1] - v[n - 1], v[n + side] - v[n - side], v[n + side * side] - v[n - side * side]} * 0.5;
       result[n] += offset * gonio::norm(slope) - scale * dot(index - Vec3{middle, middle, middle}, slope);
     });
     return result;
@@ -225,14 +242,16 @@ class Tomograph final : public World {
         for (std::size_t i = 1; i + 1 < side; ++i)
           body((k * side + j) * side + i, Vec3{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
   }
-  // Ellipsoids as nets of longitudes and latitudes, moved to where the user believes them, walls `offset_voxels_` within
-  // (material) of where they are.
+  // Ellipsoids as nets of longitudes and latitudes, moved to where the user believes them, walls `offset_voxels_`
+  // within (material) of where they are.
   std::string mesh() const {
     constexpr int around = 180, down = 90;
     std::string points, faces;
     std::uint32_t count = 0, triangles = 0;
     const Mat3 back = transposed(turn_);
-    const auto put = [](std::string& to, auto value) { to.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    const auto put = [](std::string& to, auto value) {
+      to.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
     for (const Ellipsoid& e : bodies_) {
       const std::uint32_t first = count;
       for (int d = 0; d <= down; ++d)
@@ -240,7 +259,8 @@ class Tomograph final : public World {
           const double t = pi * d / down, f = 2 * pi * a / around;
           const Vec3 unit{std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t)};
           const Vec3 outward = normalized({unit.x / e.radii.x, unit.y / e.radii.y, unit.z / e.radii.z});
-          const Vec3 at = e.turn * (unit * e.radii - outward * ((e.hollow ? -1 : 1) * offset_voxels_ * voxel_m_)) + e.centre;
+          const Vec3 at =
+              e.turn * (unit * e.radii - outward * ((e.hollow ? -1 : 1) * offset_voxels_ * voxel_m_)) + e.centre;
           const Vec3 p = back * (at - shift_);
           for (const double c : {p.x, p.y, p.z}) put(points, c);
           ++count;
@@ -261,9 +281,11 @@ class Tomograph final : public World {
           if (d + 1 < down) face(index(d, a + 1), index(d + 1, a), index(d + 1, a + 1));
         }
     }
-    return format("ply\nformat binary_little_endian 1.0\nelement vertex %u\nproperty double x\nproperty double y\n"
-                  "property double z\nelement face %u\nproperty list uchar uint vertex_indices\nend_header\n",
-                  count, triangles) + points + faces;
+    return format(
+               "ply\nformat binary_little_endian 1.0\nelement vertex %u\nproperty double x\nproperty double y\n"
+               "property double z\nelement face %u\nproperty list uchar uint vertex_indices\nend_header\n",
+               count, triangles) +
+           points + faces;
   }
 
   std::vector<Ellipsoid> bodies_;
@@ -275,7 +297,7 @@ class Tomograph final : public World {
   std::uint64_t noise_seed_ = 0;
   mutable ct::Projections paths_;
   mutable double sigma_ = 0, scale_ = 0, offset_voxels_ = 0;
-  mutable Sizes told_;              // as simulated last
+  mutable Sizes told_;                                      // as simulated last
   mutable std::vector<std::pair<Sizes, Numbers>> scanned_;  // the perfect one first
 };
 

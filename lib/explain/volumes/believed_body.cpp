@@ -34,15 +34,18 @@ class Columns {
     return first + cell * ((static_cast<double>(ray) + 0.5) / rays_across - 0.5 + 1.234567e-7);
   }
   std::pair<std::size_t, std::size_t> range(double low, double high, double first, double cell, std::size_t n) const {
-    const double a = ((low - first) / cell + 0.5) * rays_across - 1, b = ((high - first) / cell + 0.5) * rays_across + 1;
+    const double a = ((low - first) / cell + 0.5) * rays_across - 1,
+                 b = ((high - first) / cell + 0.5) * rays_across + 1;
     const double last = static_cast<double>(n);
     return {static_cast<std::size_t>(std::clamp(a, 0.0, last)), static_cast<std::size_t>(std::clamp(b, 0.0, last))};
   }
   void add(Vec3 a, Vec3 b, Vec3 c) {
     const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     if (area == 0) return;
-    const auto [u0, u1] = range(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), body_.first_m.x, body_.cell_m.x, across_);
-    const auto [v0, v1] = range(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), body_.first_m.y, body_.cell_m.y, along_);
+    const auto [u0, u1] =
+        range(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), body_.first_m.x, body_.cell_m.x, across_);
+    const auto [v0, v1] =
+        range(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), body_.first_m.y, body_.cell_m.y, along_);
     for (std::size_t v = v0; v < v1; ++v)
       for (std::size_t u = u0; u < u1; ++u) {
         const double x = place(body_.first_m.x, body_.cell_m.x, u), y = place(body_.first_m.y, body_.cell_m.y, v);
@@ -92,7 +95,8 @@ double Body::at(Vec3 p) const {
       index[a] = static_cast<std::size_t>(k);
       weight *= upper ? f[a] : 1 - f[a];
     }
-    if (within && weight > 0) sum += weight * static_cast<double>(share[(index[2] * size[1] + index[1]) * size[0] + index[0]]);
+    if (within && weight > 0)
+      sum += weight * static_cast<double>(share[(index[2] * size[1] + index[1]) * size[0] + index[0]]);
   }
   return sum;
 }
@@ -125,8 +129,10 @@ Body body_of(const mesh::Mesh& mesh, std::array<std::size_t, 3> size, Vec3 exten
     }
   if (met == 0) throw Error(Exit::data, place, "lies outside of the volume", "give the object's pose in the volume");
   if (20 * broken > met)
-    throw Error(Exit::data, place, "is not closed, or its triangles face inwards: " + std::to_string(broken) + " of " +
-                std::to_string(met) + " rays through it do not leave it", "close the mesh: scene check");
+    throw Error(Exit::data, place,
+                "is not closed, or its triangles face inwards: " + std::to_string(broken) + " of " +
+                    std::to_string(met) + " rays through it do not leave it",
+                "close the mesh: scene check");
   for (float& share : body.share) share = std::clamp(share, 0.0f, 1.0f);
   return body;
 }
@@ -136,7 +142,8 @@ void add_ball(Body& body, Vec3 centre_m, double radius_m) {
   for (std::size_t k = 0; k < body.size[2]; ++k)
     for (std::size_t j = 0; j < body.size[1]; ++j)
       for (std::size_t i = 0; i < body.size[0]; ++i) {
-        const Vec3 p = body.first_m + body.cell_m * Vec3{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)};
+        const Vec3 p =
+            body.first_m + body.cell_m * Vec3{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)};
         if (norm(p - centre_m) > radius_m + max_component(body.cell_m)) continue;
         int inside = 0;
         for (int s = 0; s < fine * fine * fine; ++s) {

@@ -11,8 +11,8 @@ namespace gonio::explain::volumes {
 
 struct Body {
   std::array<std::size_t, 3> size{};
-  Vec3 cell_m{}, first_m{};   // first: centre of cell (0, 0, 0), in the scanner's frame
-  std::vector<float> share;  // i fastest
+  Vec3 cell_m{}, first_m{};         // first: centre of cell (0, 0, 0), in the scanner's frame
+  std::vector<float> share;         // i fastest
   double at(Vec3 scanner_m) const;  // linear between centres, 0 outside of the grid
 };
 

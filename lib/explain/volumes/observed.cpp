@@ -143,8 +143,7 @@ void add_paths(const VolumesInput& input, const Body& body, const Values& values
   const Tomograph tomograph(body);
   const double longest = tomograph.longest_m();
   o.longest_path_m = longest;
-  const double per_m =
-      input.attenuation ? std::max(1e-3, values.material - values.air) : nominal_attenuation / longest;
+  const double per_m = input.attenuation ? std::max(1e-3, values.material - values.air) : nominal_attenuation / longest;
   const std::vector<double> path = tomograph.mean_path(places);
   const auto squares = [](double most) { return [most](double p) { return p * p / most; }; };
   const std::vector<double> hardening = tomograph.reconstructed(squares(longest), places);
@@ -179,9 +178,10 @@ Observed observed(const VolumesInput& input) {
   std::vector<Row> rows = rows_of(sampled, body, values, sites);
   const auto walls = std::ranges::count(rows, Reading::wall, &Row::reading);
   if (walls < static_cast<std::ptrdiff_t>(fewest_walls))
-    throw Error(Exit::data, input.place, "shows an edge at " + std::to_string(walls) + " of " +
-                std::to_string(sites.size()) + " places of the believed surface (at least " +
-                std::to_string(fewest_walls) + ")", "give the object's pose in the volume, or a finer scan");
+    throw Error(Exit::data, input.place,
+                "shows an edge at " + std::to_string(walls) + " of " + std::to_string(sites.size()) +
+                    " places of the believed surface (at least " + std::to_string(fewest_walls) + ")",
+                "give the object's pose in the volume, or a finer scan");
   add_paths(input, body, values, rows, o);
   o.ring_rms = add_rings(sampled, body, values, rows);
   o.left_out = settle_row_noise(rows, o.voxel_m);

@@ -23,30 +23,30 @@ struct Row {
   Reading reading = Reading::wall;
   Vec3 at_m{}, normal{};  // scanner's frame, believed; of grey values the place where they were read
   double value = 0, sigma = 1;
-  double curvature = 0;   // of the surface, 1/voxel, positive where it bulges
-  double depth = 0;       // of grey values: to the nearer wall along the normal, voxels
-  double path_m = 0;      // mean length of the rays in the slice's plane through the place
+  double curvature = 0;  // of the surface, 1/voxel, positive where it bulges
+  double depth = 0;      // of grey values: to the nearer wall along the normal, voxels
+  double path_m = 0;     // mean length of the rays in the slice's plane through the place
   // What filtered back-projection makes of ... at grey values, as shares of material less air:
-  double hardening = 0;   // p^2 / p_max
-  double scatter = 0;     // exp(p) - 1, p in attenuation lengths
-  double markers = 0;     // the same as hardening for paths through markers
+  double hardening = 0;  // p^2 / p_max
+  double scatter = 0;    // exp(p) - 1, p in attenuation lengths
+  double markers = 0;    // the same as hardening for paths through markers
   double marker_path_m = 0;
-  double ring = 0;        // what other sectors show at this radius and slice, root mean square one
+  double ring = 0;  // what other sectors show at this radius and slice, root mean square one
   std::uint32_t block = 0;
   std::size_t group = 0;
 };
 
 struct Observed {
-  std::vector<Row> rows;      // by group
+  std::vector<Row> rows;  // by group
   std::size_t groups = 0, blocks = 0;
-  double voxel_m = 0;         // the smallest spacing
-  double field_m = 0;         // radius of the circle within a slice
+  double voxel_m = 0;  // the smallest spacing
+  double field_m = 0;  // radius of the circle within a slice
   double half_height_m = 0;
   double air = 0, material = 0;  // values of the volume that count as 0 and 1
   Vec3 moved_m{}, turned_rad{};  // of the believed shape, to where the readings were taken
   std::size_t sites = 0, left_out = 0;
-  double voxel_noise = 0;     // of one voxel, as a share of material less air
-  double ring_rms = 0;        // of the template before it was scaled
+  double voxel_noise = 0;  // of one voxel, as a share of material less air
+  double ring_rms = 0;     // of the template before it was scaled
   double longest_path_m = 0;
 };
 

@@ -81,7 +81,8 @@ std::pair<std::size_t, std::size_t> group_rows(std::vector<Row>& rows, double vo
       int widest = 0;
       double most = -1;
       for (int a = 0; a < 3; ++a) {
-        const auto [low, high] = std::minmax_element(begin, end, [&](const Row& p, const Row& q) { return axis(p, a) < axis(q, a); });
+        const auto [low, high] =
+            std::minmax_element(begin, end, [&](const Row& p, const Row& q) { return axis(p, a) < axis(q, a); });
         if (axis(*high, a) - axis(*low, a) > most) most = axis(*high, a) - axis(*low, a), widest = a;
       }
       std::stable_sort(begin, end, [&](const Row& p, const Row& q) { return axis(p, widest) < axis(q, widest); });

@@ -1,4 +1,5 @@
-// Noise of readings from their neighbours, and groups of readings that have no neighbours in common. Private to volumes/.
+// Noise of readings from their neighbours, and groups of readings that have no neighbours in common. Private to
+// volumes/.
 #pragma once
 #include <utility>
 #include <vector>

@@ -56,7 +56,8 @@ class Surface {
   Site drawn(Random& random, double voxel_m) const {
     const double place = random.uniform() * area();
     const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), place);
-    const auto& t = mesh_.triangles[std::min(static_cast<std::size_t>(found - cumulative_.begin()), cumulative_.size() - 1)];
+    const auto& t =
+        mesh_.triangles[std::min(static_cast<std::size_t>(found - cumulative_.begin()), cumulative_.size() - 1)];
     const double root = std::sqrt(random.uniform()), v = random.uniform();
     const std::array<double, 3> w{1 - root, root * (1 - v), root * v};
     Site site;
@@ -67,8 +68,8 @@ class Surface {
       normal += normals_[t[k]] * w[k];
       curvature += w[k] * static_cast<double>(curvature_[t[k]]);
     }
-    const Vec3 own = normalized(cross(mesh_.positions_m[t[1]] - mesh_.positions_m[t[0]],
-                                      mesh_.positions_m[t[2]] - mesh_.positions_m[t[0]]));
+    const Vec3 own = normalized(
+        cross(mesh_.positions_m[t[1]] - mesh_.positions_m[t[0]], mesh_.positions_m[t[2]] - mesh_.positions_m[t[0]]));
     const bool smooth = std::ranges::all_of(t, [&](std::uint32_t k) { return dot(normals_[k], own) > smooth_cosine; });
     site.normal = smooth ? normalized(normal) : own;
     site.curvature = smooth ? -curvature * voxel_m : 0;
@@ -185,10 +186,12 @@ Values values_of(const Sampled& sampled, const Body& body, const std::string& pl
                                        random.below(static_cast<std::uint32_t>(n[1])),
                                        random.below(static_cast<std::uint32_t>(n[2]))};
     if (i[0] + 2 >= n[0]) continue;
-    const Vec3 at = sampled.place_of({static_cast<double>(i[0]) + 1, static_cast<double>(i[1]), static_cast<double>(i[2])});
+    const Vec3 at =
+        sampled.place_of({static_cast<double>(i[0]) + 1, static_cast<double>(i[1]), static_cast<double>(i[2])});
     if (!sampled.within(at, 3)) continue;
     double least = 1, most = 0;
-    for (const Vec3 way : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
+    for (const Vec3 way :
+         {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
       const double share = body.at(at + way * (3 * sampled.voxel_m()));
       least = std::min(least, share), most = std::max(most, share);
     }
@@ -198,13 +201,18 @@ Values values_of(const Sampled& sampled, const Body& body, const std::string& pl
     differences.push_back((a - b) / std::sqrt(2.0));
   }
   if (inside.size() < 100 || outside.size() < 100)
-    throw Error(Exit::data, place, "has " + std::to_string(inside.size()) + " of 200000 voxels deep in the believed shape "
-                "and " + std::to_string(outside.size()) + " outside of it (at least 100 each)",
+    throw Error(Exit::data, place,
+                "has " + std::to_string(inside.size()) +
+                    " of 200000 voxels deep in the believed shape "
+                    "and " +
+                    std::to_string(outside.size()) + " outside of it (at least 100 each)",
                 "its walls are thinner than six voxels, or the shape's pose or unit is another");
   const Values values{stats::median(outside), stats::median(inside), stats::robust_sigma(differences)};
   if (!(std::abs(values.material - values.air) > 3 * values.noise))
-    throw Error(Exit::data, place, "does not show the believed shape: voxels in it and outside of it differ by less than "
-                "three widths of the noise", "give the object's pose in the volume");
+    throw Error(Exit::data, place,
+                "does not show the believed shape: voxels in it and outside of it differ by less than "
+                "three widths of the noise",
+                "give the object's pose in the volume");
   return values;
 }
 

@@ -16,8 +16,8 @@ struct Form {
 
 struct Term {
   const mechanism::Mechanism& (*mechanism)() = nullptr;
-  int order = 0;                                     // terms act in this order
-  std::vector<Form> forms{};                         // each is a candidate of its own; empty: all parameters at once
+  int order = 0;                                        // terms act in this order
+  std::vector<Form> forms{};                            // each is a candidate of its own; empty: all parameters at once
   bool (*applies)(const Observed& observed) = nullptr;  // null: always
   // The value of a row with the mechanism, of the one without it. `p`: all parameters of the declaration, in order.
   double (*act)(double value, const Row& row, const Observed& observed, std::span<const double> p) = nullptr;

@@ -1,7 +1,9 @@
 // Conditions of readings of a volume. Each holds for the kinds of reading that its physics could touch.
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
+#include "base/random.h"
 #include "explain/volumes/volumes_outcome.h"
 
 namespace gonio::explain {
@@ -26,14 +28,24 @@ std::vector<Condition> volume_conditions(const Observed& o) {
   const auto of = [](Reading reading, auto value) {
     return [=](const Row& row) { return row.reading == reading ? value(row) : none; };
   };
+  // An edge that is read off a grid errs with its phase within a voxel: places are told to two voxels and directions to
+  // a tenth, so that this is no structure of the recording. Drawn by the place alone, from -1 to 1.
+  const auto phase = [](const Row& row) {
+    const auto bits = static_cast<std::uint64_t>(std::llround(1e9 * (row.at_m.x + 3 * row.at_m.y + 7 * row.at_m.z)));
+    return 2 * Random(bits, 3).uniform() - 1;
+  };
   add("volume.size", "voxel", "voxel",
-      of(Reading::wall, [&](const Row& row) { return dot(row.at_m, row.normal) / o.voxel_m; }));
-  add("volume.curvature", "1/voxel", "voxel", of(Reading::wall, [](const Row& row) { return row.curvature; }));
+      of(Reading::wall, [&](const Row& row) { return dot(row.at_m, row.normal) / o.voxel_m + 2 * phase(row); }));
+  add("volume.curvature", "1/voxel", "voxel",
+      of(Reading::wall, [&](const Row& row) { return row.curvature * (1 + 0.2 * phase(row)); }));
   add("volume.edge-azimuth", "rad", "voxel",
-      of(Reading::wall, [](const Row& row) { return std::atan2(row.normal.y, row.normal.x); }));
-  add("volume.height", "voxel", "voxel", of(Reading::wall, [&](const Row& row) { return row.at_m.z / o.voxel_m; }));
-  add("volume.edge-width", "voxel", "voxel", of(Reading::width, [](const Row& row) { return std::abs(row.curvature); }));
-  add("volume.edge-tilt", "1", "voxel", of(Reading::width, [](const Row& row) { return std::abs(row.normal.z); }));
+      of(Reading::wall, [&](const Row& row) { return std::atan2(row.normal.y, row.normal.x) + 0.2 * phase(row); }));
+  add("volume.height", "voxel", "voxel",
+      of(Reading::wall, [&](const Row& row) { return row.at_m.z / o.voxel_m + 2 * phase(row); }));
+  add("volume.edge-width", "voxel", "voxel",
+      of(Reading::width, [&](const Row& row) { return std::abs(row.curvature) * (1 + 0.2 * phase(row)); }));
+  add("volume.edge-tilt", "1", "voxel",
+      of(Reading::width, [&](const Row& row) { return std::abs(row.normal.z) + 0.1 * phase(row); }));
   add("volume.depth", "voxel", "share", of(Reading::inside, [](const Row& row) { return row.depth; }));
   const auto grey = [](auto value) { return [=](const Row& row) { return is_grey(row) ? value(row) : none; }; };
   add("volume.radius", "radius of the field", "share",
@@ -46,7 +58,7 @@ std::vector<Condition> volume_conditions(const Observed& o) {
   Condition turned{"volume.azimuth-by-height", "rad", "tomograph", {}, {}, "voxel"};
   for (const Row& row : o.rows) {
     const bool wall = row.reading == Reading::wall;
-    turned.values.push_back(wall ? std::atan2(row.normal.y, row.normal.x) : none);
+    turned.values.push_back(wall ? std::atan2(row.normal.y, row.normal.x) + 0.2 * phase(row) : none);
     turned.direction.push_back(wall ? row.at_m.z / o.half_height_m : 0);
   }
   conditions.push_back(std::move(turned));

@@ -55,8 +55,9 @@ void add_pictures(const Observed& o, const std::vector<double>& left, const std:
         dots.push_back({row.at_m.x / reach, (above ? row.at_m.y : row.at_m.z) / reach, left[i]});
       }
       char title[160];
-      std::snprintf(title, sizeof title, "%s, %s, seen %s; red: %+.2g %s", walls ? "Walls" : "Grey values of the material",
-                    when.c_str(), above ? "along the rotation axis" : "from the side", scale,
+      std::snprintf(title, sizeof title, "%s, %s, seen %s; red: %+.2g %s",
+                    walls ? "Walls" : "Grey values of the material", when.c_str(),
+                    above ? "along the rotation axis" : "from the side", scale,
                     walls ? "voxel outwards" : "of material less air");
       into.pictures.push_back({title, "", dots_svg(dots, scale)});
     }
@@ -65,16 +66,18 @@ void add_pictures(const Observed& o, const std::vector<double>& left, const std:
 
 }  // namespace
 
-std::string volumes_remarks(const VolumesInput& input, const Observed& o, const Problem& problem, const Explanation& e) {
+std::string volumes_remarks(const VolumesInput& input, const Observed& o, const Problem& problem,
+                            const Explanation& e) {
   std::array<std::size_t, volumes::readings> count{};
   for (const Row& row : o.rows) ++count[static_cast<std::size_t>(row.reading)];
   char text[400];
-  std::snprintf(text, sizeof text,
-                "%zu walls, %zu edge widths, %zu grey values of the material and %zu of air were read at %zu places of "
-                "%s; %zu stood out of their neighbours and were left out. The shape was moved by %.3g voxels and turned "
-                "by %.3g degrees to where the volume has it.",
-                count[0], count[1], count[2], count[3], o.sites, input.mesh_name.c_str(), o.left_out,
-                norm(o.moved_m) / o.voxel_m, norm(o.turned_rad) * 180 / pi);
+  std::snprintf(
+      text, sizeof text,
+      "%zu walls, %zu edge widths, %zu grey values of the material and %zu of air were read at %zu places of "
+      "%s; %zu stood out of their neighbours and were left out. The shape was moved by %.3g voxels and turned "
+      "by %.3g degrees to where the volume has it.",
+      count[0], count[1], count[2], count[3], o.sites, input.mesh_name.c_str(), o.left_out, norm(o.moved_m) / o.voxel_m,
+      norm(o.turned_rad) * 180 / pi);
   std::string words = text;
   for (std::size_t p = 0; p < problem.parameters().size(); ++p) {
     const Parameter& parameter = problem.parameters()[p];

@@ -7,10 +7,11 @@
 // all of the step counts as much as a wall that is off by a voxel: the score is in voxels.
 //
 // Base model: a pose of six numbers, a value of air and one of the material, the width of edges of a tomograph that
-// resolves its voxels (0.25 to 0.8 of them, along the slices and across them). Hypotheses: ct.* (explain/volumes/terms),
-// one file each. Groups: sixteen blocks of space.
+// resolves its voxels (0.25 to 0.8 of them, along the slices and across them). Hypotheses: ct.*
+// (explain/volumes/terms), one file each. Groups: sixteen blocks of space.
 //
-// Frames: `scanner`, metres, origin in the middle of the volume, axes along its indices; the rotation axis is the third.
+// Frames: `scanner`, metres, origin in the middle of the volume, axes along its indices; the rotation axis is the
+// third.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -32,7 +33,7 @@ struct VolumesInput {
   std::string mesh_name;
   io::VolumeData volume;
   Vec3 spacing_m{};
-  mesh::Mesh mesh;  // in the scanner's frame
+  mesh::Mesh mesh;           // in the scanner's frame
   bool attenuation = false;  // values are 1/m
   struct Ball {
     Vec3 centre_m;  // in the scanner's frame

@@ -39,7 +39,8 @@ const Mechanism& ct_axis_tilt() {
                       .start = 0.01,
                       .meaning = "the tilt, views over a whole turn"}},
       .conditions = {"volume.azimuth-by-height", "volume.edge-azimuth", "volume.height"},
-      .mistaken_for = {{.with = "the object's pose", .told_apart = "look at walls all round, above and below the middle"},
+      .mistaken_for = {{.with = "the object's pose",
+                        .told_apart = "look at walls all round, above and below the middle"},
                        {.with = "ct.blur", .told_apart = "look at edges near and far from the middle slice"}},
   };
   return declaration;

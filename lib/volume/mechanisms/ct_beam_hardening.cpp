@@ -14,7 +14,8 @@ const Mechanism& ct_beam_hardening() {
           "p' = p (1 - hardening p / p_max) for the line integral p of the believed shape, p_max its longest; grey "
           "value: the filtered back-projection of p'",
       .source =
-          "Brooks & Di Chiro, Physics in Medicine and Biology 21 (1976) 390-398; Herman, same journal 24 (1979) 81-106: "
+          "Brooks & Di Chiro, Physics in Medicine and Biology 21 (1976) 390-398; Herman, same journal 24 (1979) "
+          "81-106: "
           "the polychromatic line integral to second order",
       .stage = "tomograph",
       .target = Target::scene,

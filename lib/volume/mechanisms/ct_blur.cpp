@@ -12,8 +12,9 @@ const Mechanism& ct_blur() {
       .equation =
           "w = sqrt(w0^2 + spread_voxels^2) for the standard deviation w of an edge, w0 that of a tomograph that "
           "resolves its voxels (at most 0.8 of them)",
-      .source = "Kak & Slaney, Principles of Computerized Tomographic Imaging, 1988, section 5.1; independent spreads "
-                "add their variances",
+      .source =
+          "Kak & Slaney, Principles of Computerized Tomographic Imaging, 1988, section 5.1; independent spreads "
+          "add their variances",
       .stage = "tomograph",
       .target = Target::scene,
       .domains = {"volumes"},

@@ -7,11 +7,13 @@ const Mechanism& ct_ring() {
   static const Mechanism declaration{
       .id = "ct.ring",
       .sentence =
-          "Pixels of the detector whose gain is off draw rings round the rotation axis: the same error at a radius of a "
+          "Pixels of the detector whose gain is off draw rings round the rotation axis: the same error at a radius of "
+          "a "
           "slice, whatever the angle.",
       .typical = "0.2 to 3 % of the material's value",
       .equation =
-          "v' = v + ring c(r, z): c, of root mean square one, is the fine structure in the radius r of slice z that the "
+          "v' = v + ring c(r, z): c, of root mean square one, is the fine structure in the radius r of slice z that "
+          "the "
           "sectors away from the place show",
       .source = "Sijbers & Postnov, Physics in Medicine and Biology 49 (2004) N247-N253",
       .stage = "tomograph",

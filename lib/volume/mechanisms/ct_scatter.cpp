@@ -23,7 +23,8 @@ const Mechanism& ct_scatter() {
                       .start = 0.02,
                       .meaning = "scattered photons over those of the open beam"}},
       .conditions = {"volume.path", "volume.depth", "volume.radius"},
-      .mistaken_for = {{.with = "ct.beam-hardening", .told_apart = "close the collimator, or filter the beam with copper"},
+      .mistaken_for = {{.with = "ct.beam-hardening",
+                        .told_apart = "close the collimator, or filter the beam with copper"},
                        {.with = "ct.cupping", .told_apart = "look at the air in hollows"}},
   };
   return declaration;

@@ -1,4 +1,5 @@
-// ct.threshold: a surface that was cut at another value than half-way. Equation: explain/volumes/terms/ct_threshold.cpp.
+// ct.threshold: a surface that was cut at another value than half-way. Equation:
+// explain/volumes/terms/ct_threshold.cpp.
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {

@@ -14,21 +14,19 @@ const Mechanism& ct_axis_tilt();
 namespace gonio::explain::volumes::terms {
 
 const Term& ct_axis_tilt() {
-  static const Term term{
-      .mechanism = mechanism::ct_axis_tilt,
-      .order = 300,
-      .forms = {{{"tilt_rad", "first_rad"}, false}, {{"wobble_rad"}, false}},
-      .act =
-          [](double value, const Row& row, const Observed& o, std::span<const double> p) {
-            if (row.reading != Reading::wall && row.reading != Reading::width) return value;
-            const double level = std::hypot(row.normal.x, row.normal.y);
-            if (!(level > 1e-6)) return value;
-            const double across = (row.at_m.x * row.normal.x + row.at_m.y * row.normal.y) / level;
-            const double lever = (row.at_m.z * level - row.normal.z * across) / o.voxel_m;
-            if (row.reading == Reading::width) return std::hypot(value, p[2] * lever);
-            const double azimuth = std::atan2(row.normal.y, row.normal.x);
-            return value + p[0] * std::tanh(8 * std::sin(azimuth - p[1])) * lever;
-          }};
+  static const Term term{.mechanism = mechanism::ct_axis_tilt,
+                         .order = 300,
+                         .forms = {{{"tilt_rad", "first_rad"}, false}, {{"wobble_rad"}, false}},
+                         .act = [](double value, const Row& row, const Observed& o, std::span<const double> p) {
+                           if (row.reading != Reading::wall && row.reading != Reading::width) return value;
+                           const double level = std::hypot(row.normal.x, row.normal.y);
+                           if (!(level > 1e-6)) return value;
+                           const double across = (row.at_m.x * row.normal.x + row.at_m.y * row.normal.y) / level;
+                           const double lever = (row.at_m.z * level - row.normal.z * across) / o.voxel_m;
+                           if (row.reading == Reading::width) return std::hypot(value, p[2] * lever);
+                           const double azimuth = std::atan2(row.normal.y, row.normal.x);
+                           return value + p[0] * std::tanh(8 * std::sin(azimuth - p[1])) * lever;
+                         }};
   return term;
 }
 

@@ -14,10 +14,9 @@ const Term& ct_beam_hardening() {
   static const Term term{
       .mechanism = mechanism::ct_beam_hardening,
       .order = 200,
-      .act =
-          [](double value, const Row& row, const Observed&, std::span<const double> p) {
-            return row.reading == Reading::inside || row.reading == Reading::outside ? value - p[0] * row.hardening : value;
-          }};
+      .act = [](double value, const Row& row, const Observed&, std::span<const double> p) {
+        return row.reading == Reading::inside || row.reading == Reading::outside ? value - p[0] * row.hardening : value;
+      }};
   return term;
 }
 

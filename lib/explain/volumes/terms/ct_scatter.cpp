@@ -14,10 +14,9 @@ const Term& ct_scatter() {
   static const Term term{
       .mechanism = mechanism::ct_scatter,
       .order = 200,
-      .act =
-          [](double value, const Row& row, const Observed&, std::span<const double> p) {
-            return row.reading == Reading::inside || row.reading == Reading::outside ? value - p[0] * row.scatter : value;
-          }};
+      .act = [](double value, const Row& row, const Observed&, std::span<const double> p) {
+        return row.reading == Reading::inside || row.reading == Reading::outside ? value - p[0] * row.scatter : value;
+      }};
   return term;
 }
 

@@ -14,10 +14,12 @@ const Term& ct_streak() {
   static const Term term{
       .mechanism = mechanism::ct_streak,
       .order = 200,
-      .applies = [](const Observed& o) { return std::ranges::any_of(o.rows, [](const Row& r) { return r.markers != 0; }); },
+      .applies =
+          [](const Observed& o) { return std::ranges::any_of(o.rows, [](const Row& r) { return r.markers != 0; }); },
       .act =
           [](double value, const Row& row, const Observed&, std::span<const double> p) {
-            return row.reading == Reading::inside || row.reading == Reading::outside ? value - p[0] * row.markers : value;
+            return row.reading == Reading::inside || row.reading == Reading::outside ? value - p[0] * row.markers
+                                                                                     : value;
           }};
   return term;
 }
