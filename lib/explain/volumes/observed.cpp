@@ -19,7 +19,8 @@ namespace gonio::explain::volumes {
 namespace {
 
 constexpr std::size_t site_count = 3000, alignment_count = 800, fewest_walls = 200, most_cells = 160;
-constexpr double plateau_voxels = 3.5, deepest_voxels = 40, highest_voxels = 20;
+constexpr double least_plateau = 3.5, deepest_voxels = 40, highest_voxels = 20;
+constexpr double least_reach = 3, largest_reach = 8, reach_in_widths = 3.5, plateau_in_widths = 4.5;
 constexpr double nominal_attenuation = 2;  // of the longest path, where values are no attenuation
 
 Body body_for(const VolumesInput& input, const Sampled& sampled, const mesh::Mesh& mesh) {
@@ -97,26 +98,40 @@ bool is_plain(const Body& body, Vec3 at, double share, double voxel_m) {
 
 // A grey value along the normal at a depth that is drawn; nothing where the next wall is too near.
 void add_grey(const Sampled& sampled, const Body& body, const Values& values, const Site& site, bool inside,
-              Random& random, std::vector<Row>& rows) {
-  const double free = (inside ? site.behind : site.before) - plateau_voxels;
+              double plateau, Random& random, std::vector<Row>& rows) {
+  const double free = (inside ? site.behind : site.before) - plateau;
   const double most = std::min(free, inside ? deepest_voxels : highest_voxels), share = random.uniform();
-  if (!(most >= plateau_voxels)) return;
-  const double depth = plateau_voxels + share * (most - plateau_voxels);
+  if (!(most >= plateau)) return;
+  const double depth = plateau + share * (most - plateau);
   Row row;
   row.reading = inside ? Reading::inside : Reading::outside;
   row.at_m = site.at_m + site.normal * ((inside ? -depth : depth) * sampled.voxel_m());
   if (!sampled.within(row.at_m, 2) || !is_plain(body, row.at_m, inside ? 1 : 0, sampled.voxel_m())) return;
   row.normal = site.normal;
-  row.depth = std::min(depth, std::max(plateau_voxels, free + plateau_voxels - depth));
+  row.depth = std::min(depth, std::max(plateau, free + plateau - depth));
   const double rise = values.material - values.air;
   row.value = (sampled.at(row.at_m) - values.air) / rise;
   row.sigma = values.noise / std::abs(rise);
   rows.push_back(row);
 }
 
-std::vector<Row> rows_of(const Sampled& sampled, const Body& body, const Values& values,
-                         const std::vector<Site>& sites) {
-  const std::vector<volume::Edge> edges = edges_of(sampled, sites, values, 3);
+// The width of most edges; what is read next to them stands clear of it.
+double typical_width(const Sampled& sampled, const std::vector<Site>& sites, const Values& values) {
+  std::vector<double> widths;
+  for (const double reach : {least_reach, 2 * least_reach}) {
+    widths.clear();
+    for (const volume::Edge& e : edges_of(sampled, sites, values, reach))
+      if (e.good) widths.push_back(e.width);
+    if (widths.size() > fewest_walls && reach > reach_in_widths * stats::median(widths)) break;
+  }
+  return widths.empty() ? 1 : stats::median(widths);
+}
+
+std::vector<Row> rows_of(const Sampled& sampled, const Body& body, const Values& values, const std::vector<Site>& sites,
+                         double width) {
+  const double plateau = std::max(least_plateau, plateau_in_widths * width);
+  const std::vector<volume::Edge> edges =
+      edges_of(sampled, sites, values, std::clamp(reach_in_widths * width, least_reach, largest_reach));
   std::vector<Row> rows;
   Random random(1, 0x67726579);
   for (std::size_t i = 0; i < sites.size(); ++i) {
@@ -131,8 +146,8 @@ std::vector<Row> rows_of(const Sampled& sampled, const Body& body, const Values&
       row.value = e.width, row.sigma = std::sqrt(2.0) * e.sigma;
       rows.push_back(row);
     }
-    add_grey(sampled, body, values, sites[i], true, random, rows);
-    add_grey(sampled, body, values, sites[i], false, random, rows);
+    add_grey(sampled, body, values, sites[i], true, plateau, random, rows);
+    add_grey(sampled, body, values, sites[i], false, plateau, random, rows);
   }
   return rows;
 }
@@ -175,7 +190,8 @@ Observed observed(const VolumesInput& input) {
   o.voxel_noise = values.noise / std::abs(values.material - values.air);
   const std::vector<Site> sites = sites_of(mesh, body, sampled.voxel_m(), site_count);
   o.sites = sites.size();
-  std::vector<Row> rows = rows_of(sampled, body, values, sites);
+  o.typical_width = typical_width(sampled, sites, values);
+  std::vector<Row> rows = rows_of(sampled, body, values, sites, o.typical_width);
   const auto walls = std::ranges::count(rows, Reading::wall, &Row::reading);
   if (walls < static_cast<std::ptrdiff_t>(fewest_walls))
     throw Error(Exit::data, input.place,

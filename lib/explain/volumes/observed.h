@@ -2,8 +2,8 @@
 //
 // Places are drawn evenly over the surface by its area, no two nearer than a few voxels, where a wall is flat enough
 // to be a wall over two voxels round the place, with material behind and air before it. At each: the edge along the
-// normal (volume/threshold.h), and one grey value below and one above the surface, at depths between 3.5 voxels and the
-// next wall less as many.
+// normal (volume/threshold.h), and one grey value below and one above the surface, at depths between 3.5 voxels (4.5
+// widths of the edges, where that is more) and the next wall less as many.
 //
 // Noise: of each kind of reading, what a reading differs by from the mean of its six nearest neighbours of the kind:
 // voxels' noise and all that a smooth effect cannot do. Readings beyond six such widths are left out and counted.
@@ -44,6 +44,7 @@ struct Observed {
   double half_height_m = 0;
   double air = 0, material = 0;  // values of the volume that count as 0 and 1
   Vec3 moved_m{}, turned_rad{};  // of the believed shape, to where the readings were taken
+  double typical_width = 0;      // of edges, voxels
   std::size_t sites = 0, left_out = 0;
   double voxel_noise = 0;  // of one voxel, as a share of material less air
   double ring_rms = 0;     // of the template before it was scaled

@@ -22,7 +22,7 @@ std::vector<Condition> volume_conditions(const Observed& o) {
   std::vector<Condition> conditions;
   const auto add = [&](const char* name, const char* unit, const char* curve_unit, auto value) {
     Condition c{name, unit, "tomograph", {}, {}, curve_unit};
-    for (const Row& row : o.rows) c.values.push_back(value(row));
+    for (const Row& row : o.rows) c.values.push_back(value(row)), c.direction.push_back(weight_of(row));
     conditions.push_back(std::move(c));
   };
   const auto of = [](Reading reading, auto value) {

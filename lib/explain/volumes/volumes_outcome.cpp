@@ -52,7 +52,7 @@ void add_pictures(const Observed& o, const std::vector<double>& left, const std:
       for (std::size_t i = 0; i < o.rows.size(); ++i) {
         const Row& row = o.rows[i];
         if (row.reading != (walls ? Reading::wall : Reading::inside)) continue;
-        dots.push_back({row.at_m.x / reach, (above ? row.at_m.y : row.at_m.z) / reach, left[i]});
+        dots.push_back({row.at_m.x / reach, (above ? row.at_m.y : row.at_m.z) / reach, left[i] / weight_of(row)});
       }
       char title[160];
       std::snprintf(title, sizeof title, "%s, %s, seen %s; red: %+.2g %s",

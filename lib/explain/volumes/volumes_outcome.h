@@ -9,6 +9,12 @@
 
 namespace gonio::explain {
 
+// Voxels for which an error of a reading's unit counts in the score: a grey value that is off by a quarter of material
+// less air counts as much as a wall that is off by a voxel.
+inline double weight_of(const volumes::Row& row) {
+  return row.reading == volumes::Reading::wall || row.reading == volumes::Reading::width ? 1 : 4;
+}
+
 std::vector<Condition> volume_conditions(const volumes::Observed& observed);
 std::string volumes_remarks(const VolumesInput& input, const volumes::Observed& observed, const Problem& problem,
                             const Explanation& explanation);

@@ -47,7 +47,7 @@ class VolumesProblem final : public Problem {
       const Row& row = observed_.rows[first + i];
       double v = base_value(row, values);
       for (std::size_t u = 0; u < active.size(); ++u) v = active[u]->term->act(v, row, observed_, parameters[u]);
-      prediction[i] = v;
+      prediction[i] = v * weight_of(row);
     }
   }
 
@@ -131,8 +131,10 @@ class VolumesProblem final : public Problem {
       free(name, "voxel", ideal_width, narrowest, widest, 0.1, ideal_sigma);
     for (const char* name : {"edge_width_between", "edge_width_by_curvature"})
       free(name, "voxel", 0, -0.3, 0.3, 0.05, ideal_sigma);
+    // Blur that came before the logarithm widens what a reading averages over.
+    const double wider = std::pow(std::max(1.0, observed_.typical_width / widest), 1.5);
     for (const char* name : {"wall_bias", "wall_bias_by_radius"})
-      free(name, "voxel", 0, -largest_bias, largest_bias, 0.02, usual_bias);
+      free(name, "voxel", 0, -largest_bias * wider, largest_bias * wider, 0.02, usual_bias * wider);
   }
 
   void enter(const Term& term) {
@@ -183,8 +185,8 @@ class VolumesProblem final : public Problem {
       o.first.push_back(static_cast<std::size_t>(last - observed_.rows.begin()));
     }
     for (const Row& row : observed_.rows) {
-      o.value.push_back(row.value);
-      o.sigma.push_back(row.sigma);
+      o.value.push_back(row.value * weight_of(row));
+      o.sigma.push_back(row.sigma * weight_of(row));
       o.norm.push_back(1);
       o.block.push_back(row.block);
     }

@@ -4,7 +4,7 @@
 // Observations, three thousand places spread evenly over the believed surface (explain/volumes/observed.h): where the
 // wall stands along the normal, how wide its edge is (voxels), and the grey value at a depth below it and at a height
 // above it (shares of material less air). Each has the noise that neighbouring places show. A grey value that is off by
-// all of the step counts as much as a wall that is off by a voxel: the score is in voxels.
+// a quarter of the step counts as much as a wall that is off by a voxel: the score is in voxels.
 //
 // Base model: a pose of six numbers, a value of air and one of the material, the width of edges of a tomograph that
 // resolves its voxels (0.25 to 0.8 of them, along the slices and across them). Hypotheses: ct.*
