@@ -162,10 +162,10 @@ void add_paths(const VolumesInput& input, const Body& body, const Values& values
   const std::vector<double> path = tomograph.mean_path(places);
   const auto squares = [](double most) { return [most](double p) { return p * p / most; }; };
   const std::vector<double> hardening = tomograph.reconstructed(squares(longest), places);
-  const std::vector<double> scatter =
-      tomograph.reconstructed([per_m](double p) { return std::expm1(per_m * p) / per_m; }, places);
+  const std::vector<std::vector<double>> scatter = tomograph.scattered(per_m, scatter_shares, places);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].path_m = path[i], rows[i].hardening = hardening[i];
   for (std::size_t i = 0; i < rows.size(); ++i)
-    rows[i].path_m = path[i], rows[i].hardening = hardening[i], rows[i].scatter = scatter[i];
+    for (std::size_t s = 0; s < scatter_shares.size(); ++s) rows[i].scatter[s] = scatter[s][i];
   if (input.markers.empty()) return;
   Body markers = body;
   std::ranges::fill(markers.share, 0.0f);

@@ -8,6 +8,7 @@
 // Noise: of each kind of reading, what a reading differs by from the mean of its six nearest neighbours of the kind:
 // voxels' noise and all that a smooth effect cannot do. Readings beyond six such widths are left out and counted.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ namespace gonio::explain::volumes {
 
 enum class Reading : std::uint8_t { wall, width, inside, outside };
 inline constexpr std::size_t readings = 4;
+inline constexpr std::array<double, 4> scatter_shares{0.03, 0.1, 0.3, 1};
 
 struct Row {
   Reading reading = Reading::wall;
@@ -28,8 +30,9 @@ struct Row {
   double path_m = 0;     // mean length of the rays in the slice's plane through the place
   // What filtered back-projection makes of ... at grey values, as shares of material less air:
   double hardening = 0;  // p^2 / p_max
-  double scatter = 0;    // exp(p) - 1, p in attenuation lengths
-  double markers = 0;    // the same as hardening for paths through markers
+  // ln(1 + s exp(p) G * (p exp(-p))) / s at the shares s, p in attenuation lengths, G a wide Gaussian
+  std::array<double, 4> scatter{};
+  double markers = 0;  // the same as hardening for paths through markers
   double marker_path_m = 0;
   double ring = 0;  // what other sectors show at this radius and slice, root mean square one
   std::uint32_t block = 0;

@@ -3,14 +3,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "base/parallel.h"
 
 namespace gonio::explain::volumes {
+namespace {
+
+// Three running means over 2 half + 1 of `n` numbers that lie `stride` apart; beyond the ends there is nothing.
+void smooth(float* values, std::size_t n, std::size_t stride, std::size_t half) {
+  std::vector<double> sums(n + 1);
+  for (int pass = 0; pass < 3; ++pass) {
+    for (std::size_t i = 0; i < n; ++i) sums[i + 1] = sums[i] + static_cast<double>(values[i * stride]);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t first = i < half ? 0 : i - half, last = std::min(n, i + half + 1);
+      values[i * stride] = static_cast<float>((sums[last] - sums[first]) / static_cast<double>(2 * half + 1));
+    }
+  }
+}
+
+}  // namespace
 
 Tomograph::Tomograph(const Body& body, std::size_t views)
     : slices_(body.size[2]),
       views_(views),
+      across_(body.size[0]),
       cell_(std::min(body.cell_m.x, body.cell_m.y)),
       first_z_(body.first_m.z),
       cell_z_(body.cell_m.z) {
@@ -70,27 +87,61 @@ std::vector<double> Tomograph::gathered(const std::vector<float>& sinogram, std:
   return result;
 }
 
-std::vector<double> Tomograph::reconstructed(const std::function<double(double)>& g,
-                                             std::span<const Vec3> places_m) const {
-  std::vector<float> filtered(paths_.size());
+std::vector<double> Tomograph::back_projected(const std::vector<float>& lines, std::span<const Vec3> places_m) const {
+  std::vector<float> filtered(lines.size());
   parallel_for(0, slices_ * views_, [&](std::size_t line) {
-    const float* p = paths_.data() + line * bins_;
+    const float* value = lines.data() + line * bins_;
     float* q = filtered.data() + line * bins_;
-    std::vector<double> value(bins_);
-    bool any = false;
-    for (std::size_t m = 0; m < bins_; ++m) value[m] = g(static_cast<double>(p[m])), any = any || value[m] != 0;
-    if (!any) return;
+    if (std::all_of(value, value + bins_, [](float v) { return v == 0; })) return;
     for (std::size_t n = 0; n < bins_; ++n) {
-      double sum = value[n] / 4;
+      double sum = static_cast<double>(value[n]) / 4;
       for (std::size_t m = (n + 1) % 2; m < bins_; m += 2) {
         const double d = static_cast<double>(n) - static_cast<double>(m);
-        sum -= value[m] / (pi * pi * d * d);
+        sum -= static_cast<double>(value[m]) / (pi * pi * d * d);
       }
       q[n] = static_cast<float>(sum / cell_);
     }
   });
   std::vector<double> result = gathered(filtered, places_m);
   for (double& v : result) v *= pi / static_cast<double>(views_);
+  return result;
+}
+
+std::vector<double> Tomograph::reconstructed(const std::function<double(double)>& g,
+                                             std::span<const Vec3> places_m) const {
+  std::vector<float> lines(paths_.size());
+  std::ranges::transform(paths_, lines.begin(), [&](float p) { return static_cast<float>(g(static_cast<double>(p))); });
+  return back_projected(lines, places_m);
+}
+
+// Three running means of the same width have the variance of one Gaussian: (width^2 - 1) / 4.
+std::vector<std::vector<double>> Tomograph::scattered(double per_m, std::span<const double> shares,
+                                                      std::span<const Vec3> places_m) const {
+  std::vector<float> lines(paths_.size());
+  std::ranges::transform(paths_, lines.begin(), [&](float path) {
+    const double p = per_m * static_cast<double>(path);
+    return static_cast<float>(p * std::exp(-p));
+  });
+  const double sd = static_cast<double>(across_) / 8;
+  const auto half = static_cast<std::size_t>(0.5 * (std::sqrt(4 * sd * sd + 1) - 1) + 0.5);
+  parallel_for(0, views_ * slices_, [&](std::size_t line) {
+    const std::size_t k = line / views_, a = line % views_;
+    smooth(lines.data() + (k * views_ + a) * bins_, bins_, 1, half);
+  });
+  const double scale = cell_ / cell_z_;
+  parallel_for(0, views_ * bins_, [&](std::size_t line) {
+    smooth(lines.data() + line, slices_, views_ * bins_,
+           static_cast<std::size_t>(static_cast<double>(half) * scale + 0.5));
+  });
+  std::vector<std::vector<double>> result;
+  for (const double share : shares) {
+    std::vector<float> lost(lines.size());
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const double over = std::exp(per_m * static_cast<double>(paths_[i])) * static_cast<double>(lines[i]);
+      lost[i] = static_cast<float>(std::log1p(share * over) / (share * per_m));
+    }
+    result.push_back(back_projected(lost, places_m));
+  }
   return result;
 }
 

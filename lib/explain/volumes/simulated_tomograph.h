@@ -18,12 +18,18 @@ class Tomograph {
   double longest_m() const { return longest_; }  // of all line integrals
   // The reconstruction of g(p), p in metres, at places of the scanner's frame.
   std::vector<double> reconstructed(const std::function<double(double)>& g, std::span<const Vec3> places_m) const;
+  // The reconstruction of ln(1 + s exp(p) G * (p exp(-p))) / (s per_m) with p = per_m times the path, for each share s:
+  // what single scattering takes from line integrals, over its share. G: a wide Gaussian over columns and slices, an
+  // eighth of the grid's width.
+  std::vector<std::vector<double>> scattered(double per_m, std::span<const double> shares,
+                                             std::span<const Vec3> places_m) const;
   // The mean over the views of the line integrals through each place, metres.
   std::vector<double> mean_path(std::span<const Vec3> places_m) const;
 
  private:
+  std::vector<double> back_projected(const std::vector<float>& lines, std::span<const Vec3> places_m) const;
   std::vector<double> gathered(const std::vector<float>& sinogram, std::span<const Vec3> places_m) const;
-  std::size_t bins_, slices_, views_;
+  std::size_t bins_, slices_, views_, across_;
   double cell_, first_z_, cell_z_, longest_ = 0;
   std::vector<double> cosine_, sine_;
   std::vector<float> paths_;  // slice, view, bin

@@ -131,8 +131,11 @@ class VolumesProblem final : public Problem {
       free(name, "voxel", ideal_width, narrowest, widest, 0.1, ideal_sigma);
     for (const char* name : {"edge_width_between", "edge_width_by_curvature"})
       free(name, "voxel", 0, -0.3, 0.3, 0.05, ideal_sigma);
-    // Blur that came before the logarithm widens what a reading averages over.
-    const double wider = std::pow(std::max(1.0, observed_.typical_width / widest), 1.5);
+    // What a reading averages over is a pixel's width (sd 0.29) or, where blur came before the logarithm, that of the
+    // blur; along a wall that rays touch the shortfall goes with its power of 3/2.
+    constexpr double pixel = 0.29, plain_width = 0.65;
+    const double blurred = std::max(0.0, observed_.typical_width * observed_.typical_width - plain_width * plain_width);
+    const double wider = std::pow(1 + blurred / (pixel * pixel), 0.75);
     for (const char* name : {"wall_bias", "wall_bias_by_radius"})
       free(name, "voxel", 0, -largest_bias * wider, largest_bias * wider, 0.02, usual_bias * wider);
   }

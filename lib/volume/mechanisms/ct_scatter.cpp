@@ -8,20 +8,23 @@ const Mechanism& ct_scatter() {
       .id = "ct.scatter",
       .sentence =
           "Scattered photons reach the detector everywhere: thick parts look thinner than they are, and hollows fill.",
-      .typical = "1 to 20 % of the open beam",
+      .typical = "5 to 50 % of what the primary beam lost",
       .equation =
-          "p' = p - scatter (exp(p) - 1) for the line integral p of the believed shape, to first order in the scatter; "
-          "grey value: the filtered back-projection of p'",
-      .source = "Glover, Medical Physics 9 (1982) 860-867; Siewerdsen & Jaffray, same journal 28 (2001) 220-231",
+          "p' = -ln(exp(-p) + scatter G * (p exp(-p))) for the line integrals p of the believed shape: G a Gaussian "
+          "over "
+          "the detector, an eighth of the field wide; grey value: the filtered back-projection of p'",
+      .source =
+          "Ohnesorge, Flohr & Klingenbeck-Regn, European Radiology 9 (1999) 563-569, equation 3: what the primary beam "
+          "lost is scattered once and spread",
       .stage = "tomograph",
       .target = Target::scene,
       .domains = {"volumes"},
       .parameters = {{.name = "scatter",
                       .unit = "1",
                       .lower = 0,
-                      .upper = 0.5,
+                      .upper = 1,
                       .start = 0.02,
-                      .meaning = "scattered photons over those of the open beam"}},
+                      .meaning = "scattered photons that arrive, over those that the primary beam lost"}},
       .conditions = {"volume.path", "volume.depth", "volume.radius"},
       .mistaken_for = {{.with = "ct.beam-hardening",
                         .told_apart = "close the collimator, or filter the beam with copper"},
