@@ -23,13 +23,12 @@ double per_share(const Row& row, double share) {
 }  // namespace
 
 const Term& ct_scatter() {
-  static const Term term{
-      .mechanism = mechanism::ct_scatter,
-      .order = 200,
-      .act = [](double value, const Row& row, const Observed&, std::span<const double> p) {
-        if (row.reading != Reading::inside && row.reading != Reading::outside) return value;
-        return value - p[0] * per_share(row, p[0]);
-      }};
+  static const Term term{.mechanism = mechanism::ct_scatter,
+                         .order = 200,
+                         .act = [](double value, const Row& row, const Observed&, std::span<const double> p) {
+                           if (row.reading != Reading::inside && row.reading != Reading::outside) return value;
+                           return value - p[0] * per_share(row, p[0]);
+                         }};
   return term;
 }
 
