@@ -56,6 +56,19 @@ Tomograph::Tomograph(const Body& body, std::size_t views)
         }
       }
   });
+  // Cells that are shared out to bins beat with them, most along the diagonals, and a ramp makes much of that: twice
+  // (1 2 1) / 4 takes it away. Nothing is asked of the reconstruction next to a wall.
+  parallel_for(0, slices_ * views_, [&](std::size_t line) {
+    float* p = paths_.data() + line * bins_;
+    for (int pass = 0; pass < 2; ++pass) {
+      float before = 0;
+      for (std::size_t n = 0; n + 1 < bins_; ++n) {
+        const float own = p[n];
+        p[n] = 0.25f * before + 0.5f * own + 0.25f * p[n + 1];
+        before = own;
+      }
+    }
+  });
   for (const float p : paths_) longest_ = std::max(longest_, static_cast<double>(p));
 }
 
