@@ -20,6 +20,7 @@ bool exists(const manifest::Document& d, Target target, const std::string& name)
     case Target::object: return has_entry(d, "objects", name);
     case Target::scene:
       if (!d.tables.empty() && name.starts_with("point ")) return true;  // of a table of tracks
+      if (has_entry(d, "volumes", name)) return true;
       return has_entry(d, "sequences", name.substr(0, name.find('/')));  // "walking/point-7/frame-12"
   }
   return false;

@@ -22,7 +22,8 @@ const std::vector<std::string> simulators = {"lib/scene/edits/",
                                              "lib/explain/tables/terms/",
                                              "lib/explain/tables/reflectance/",
                                              "lib/explain/stacks/exposures/",
-                                             "lib/explain/stacks/lights/"};
+                                             "lib/explain/stacks/lights/",
+                                             "lib/explain/volumes/terms/"};
 
 bool is_declaration(const std::string& path) {
   return path.find("/mechanisms/") != std::string::npos;

@@ -75,6 +75,11 @@ const std::vector<WorldEntry> entries{
      {{Kind::single, {"diverging light"}, "believed parallel"}},
      {16, 8, 8, 8, 4, 5},
      {8, 4, 4, 6, 2, 4}},
+    {"volumes",
+     tomograph_world,
+     {{Kind::alike, {"threshold"}, "ball", 3, 1}, {Kind::alike, {"scale"}, "ball", 3, 1}},
+     {10, 3, 4, 6, 3, 3},
+     {3, 1, 1, 2, 1, 1}},
     {"volume", volume_world, {}, {16, 8, 8, 8, 0, 5}, {8, 4, 4, 5, 0, 4}},
     {"tracks", tracks_world, {}, {14, 6, 8, 5, 0, 5}, {7, 3, 5, 3, 0, 4}}};
 

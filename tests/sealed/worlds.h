@@ -40,5 +40,6 @@ std::unique_ptr<World> exposures_world();
 std::unique_ptr<World> photometric_world();
 std::unique_ptr<World> gloss_world();
 std::unique_ptr<World> heights_world();
+std::unique_ptr<World> tomograph_world();
 
 }  // namespace gonio::sealed

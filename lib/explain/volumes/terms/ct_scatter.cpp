@@ -1,0 +1,35 @@
+// ct.scatter on grey values: what the scatter of single scattering is reconstructed to.
+#include <algorithm>
+#include <cmath>
+
+#include "explain/volumes/volume_term.h"
+
+namespace gonio::mechanism {
+const Mechanism& ct_scatter();
+}
+
+namespace gonio::explain::volumes::terms {
+namespace {
+
+// Between the shares at which it was reconstructed, linear in the logarithm of the share.
+double per_share(const Row& row, double share) {
+  if (!(share > scatter_shares.front())) return row.scatter.front();
+  std::size_t k = 0;
+  while (k + 2 < scatter_shares.size() && share > scatter_shares[k + 1]) ++k;
+  const double t = std::log(share / scatter_shares[k]) / std::log(scatter_shares[k + 1] / scatter_shares[k]);
+  return row.scatter[k] + std::min(t, 1.0) * (row.scatter[k + 1] - row.scatter[k]);
+}
+
+}  // namespace
+
+const Term& ct_scatter() {
+  static const Term term{.mechanism = mechanism::ct_scatter,
+                         .order = 200,
+                         .act = [](double value, const Row& row, const Observed&, std::span<const double> p) {
+                           if (row.reading != Reading::inside && row.reading != Reading::outside) return value;
+                           return value - p[0] * per_share(row, p[0]);
+                         }};
+  return term;
+}
+
+}  // namespace gonio::explain::volumes::terms

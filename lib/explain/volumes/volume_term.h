@@ -1,0 +1,27 @@
+// A mechanism on readings of a volume: one file in terms/, called after it.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "explain/volumes/observed.h"
+#include "mechanism/mechanism.h"
+
+namespace gonio::explain::volumes {
+
+struct Form {
+  std::vector<std::string> parameters;  // of the declaration, which are fitted together; the others stay neutral
+  bool finer = false;                   // Candidate::finer
+};
+
+struct Term {
+  const mechanism::Mechanism& (*mechanism)() = nullptr;
+  int order = 0;                                        // terms act in this order
+  std::vector<Form> forms{};                            // each is a candidate of its own; empty: all parameters at once
+  bool (*applies)(const Observed& observed) = nullptr;  // null: always
+  // The value of a row with the mechanism, of the one without it. `p`: all parameters of the declaration, in order.
+  double (*act)(double value, const Row& row, const Observed& observed, std::span<const double> p) = nullptr;
+};
+std::span<const Term* const> all_terms();  // sorted by name; defined in a generated source
+
+}  // namespace gonio::explain::volumes

@@ -1,0 +1,34 @@
+// ct.blur: edges wider than voxels warrant. Equation: explain/volumes/terms/ct_blur.cpp.
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+
+const Mechanism& ct_blur() {
+  static const Mechanism declaration{
+      .id = "ct.blur",
+      .sentence =
+          "Edges are wider than the voxels warrant: the focal spot, the detector or the object's motion spreads them.",
+      .typical = "0.5 to 2 voxels",
+      .equation =
+          "w = sqrt(w0^2 + spread_voxels^2) for the standard deviation w of an edge, w0 that of a tomograph that "
+          "resolves its voxels (at most 0.8 of them)",
+      .source =
+          "Kak & Slaney, Principles of Computerized Tomographic Imaging, 1988, section 5.1; independent spreads "
+          "add their variances",
+      .stage = "tomograph",
+      .target = Target::scene,
+      .domains = {"volumes"},
+      .parameters = {{.name = "spread_voxels",
+                      .unit = "1",
+                      .lower = 0,
+                      .upper = 6,
+                      .start = 0.8,
+                      .meaning = "standard deviation of the spread, in voxels of the smallest spacing"}},
+      .conditions = {"volume.edge-width", "volume.edge-tilt"},
+      .mistaken_for = {{.with = "ct.axis-tilt", .told_apart = "look at edges near and far from the middle slice"},
+                       {.with = "a smoothed reconstruction", .told_apart = "reconstruct with the plain ramp filter"}},
+  };
+  return declaration;
+}
+
+}  // namespace gonio::mechanism
