@@ -151,6 +151,7 @@ void check_volumes(const Document& d) {
     for (std::size_t i = 0; i < volume.slices.size(); ++i)
       must_exist(d.files, "files", volume.slices[i], at + "/slices/" + std::to_string(i));
     must_exist(d.meshes, "meshes", volume.mesh, at + "/mesh");
+    must_exist(d.meshes, "meshes", volume.reference, at + "/reference");
     must_exist(d.meshes, "meshes", volume.markers_mesh, at + "/markers_mesh");
     needs_numbers(volume.size.size(), 3, at + "/size", "give voxels [i, j, k]");
     needs_numbers(volume.spacing_m.size(), 3, at + "/spacing_m", "give lengths [i, j, k]");

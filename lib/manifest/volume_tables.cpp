@@ -37,6 +37,8 @@ const std::vector<Field<Volume>>& volume_fields() {
       field("connectivity", &Volume::connectivity, "", "neighbours of the inside: 6 or 26").one_of({"6", "26"}),
       sigma_field(&Volume::sigma),
       field("mesh", &Volume::mesh, "", "the surface that was made of it: name in meshes"),
+      field("reference", &Volume::reference, "",
+            "its shape from elsewhere, which explain holds the volume against: name in meshes"),
       field("markers_mesh", &Volume::markers_mesh, "", "the markers' surface: name in meshes"),
       field("steps", &Volume::steps, "", "what was done, in order, with its figures"),
       field("sound", &Volume::sound, "", "true: the mesh is closed, 2-manifold, oriented, without self-intersection")};

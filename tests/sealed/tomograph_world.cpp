@@ -185,7 +185,7 @@ class Tomograph final : public World {
     into.files["piece.ply"] = mesh();
     Value m = Value::object();
     m["meshes"]["piece"] = Value::object({{"file", "piece"}});
-    m["volumes"]["v"] = Value::object({{"file", "scan"}, {"mesh", "piece"}, {"value", "attenuation"}});
+    m["volumes"]["v"] = Value::object({{"file", "scan"}, {"reference", "piece"}, {"value", "attenuation"}});
     finish(m, into);
   }
 

@@ -103,6 +103,14 @@ void enter(Work& work) {
   entry.connectivity = work.asked.inside == volume::Connectivity::six ? "6" : "26";
   if (work.threshold.sigma > 0) entry.sigma["threshold"] = {work.threshold.sigma};
   entry.mesh = enter_mesh(work, work.name, work.mesh);
+  if (work.call.given("reference")) {
+    const std::string name = work.name + "-reference";
+    d.meshes[name] = manifest::Mesh{.file = manifest::add_file(d, work.call.text("reference"), name),
+                                    .sphere_radius_m = {},
+                                    .plane_size_m = {},
+                                    .normals = "smooth"};
+    entry.reference = name;
+  }
   if (!work.markers.found.empty()) {
     entry.markers_mesh = enter_mesh(work, work.name + "-markers", work.markers_mesh);
     enter_markers(work);

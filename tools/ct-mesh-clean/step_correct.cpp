@@ -13,8 +13,8 @@ void correct(Work& work) {
   std::map<std::string, double> figures;
   volume::CuppingField field;
   if (a.cupping) {
-    field = volume::fit_cupping(*work.volume, work.look.mixture.materials.front().mean,
-                                work.look.mixture.materials.back().mean);
+    field = volume::fit_cupping(*work.volume, work.look.mixture.materials[work.look.air].mean,
+                                work.look.mixture.materials[work.look.object].mean);
     wish.cupping = &field;
     how = "cupping divided out by a polynomial of degree " + std::to_string(field.degree);
     figures["cupping_before"] = field.before, figures["cupping_after"] = field.after;
@@ -33,8 +33,9 @@ void correct(Work& work) {
   io::VolumeSource* before = work.volume;
   work.derived.push_back(volume::corrected(*work.volume, wish));
   work.volume = work.derived.back().get();
-  const volume::EdgeChange change = volume::edge_change(*before, *work.volume, work.look.mixture.materials.front().mean,
-                                                        work.look.mixture.materials.back().mean, work.look.noise_air);
+  const volume::EdgeChange change =
+      volume::edge_change(*before, *work.volume, work.look.mixture.materials[work.look.air].mean,
+                          work.look.mixture.materials[work.look.object].mean, work.look.noise_air);
   figures["edges"] = static_cast<double>(change.edges);
   figures["edge_width_before_voxels"] = change.width_before_voxels;
   figures["edge_width_after_voxels"] = change.width_after_voxels;

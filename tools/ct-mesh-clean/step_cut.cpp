@@ -6,18 +6,13 @@
 namespace gonio::tools::ct_mesh_clean {
 namespace {
 
-// The material above the air that holds the most voxels.
-std::size_t object_material(const volume::Mixture& mixture, const std::string& place) {
-  if (mixture.materials.size() < 2) throw Error(Exit::data, place, "holds one material only", "give --threshold VALUE");
-  std::size_t largest = 1;
-  for (std::size_t m = 2; m < mixture.materials.size(); ++m)
-    if (mixture.materials[m].share > mixture.materials[largest].share) largest = m;
-  return largest;
+void needs_object(const volume::Look& look, const std::string& place) {
+  if (look.object == look.air) throw Error(Exit::data, place, "holds one material only", "give --threshold VALUE");
 }
 
 // The markers' diameter is known. Where they are of another material than the object, the share of the step from air to
 // material at which the markers have it is the object's as well.
-volume::Threshold by_reference(Work& work, std::size_t object) {
+volume::Threshold by_reference(Work& work) {
   find_markers(work);
   std::vector<volume::ReferenceSphere> spheres;
   for (const volume::Marker& m : work.markers.found)
@@ -26,7 +21,8 @@ volume::Threshold by_reference(Work& work, std::size_t object) {
   double inside = 0;
   for (const volume::Marker& m : work.markers.found)
     inside += m.mean_value / static_cast<double>(work.markers.found.size());
-  const double air = work.look.mixture.materials.front().mean, step = work.look.mixture.materials[object].mean - air;
+  const double air = work.look.mixture.materials[work.look.air].mean,
+               step = work.look.mixture.materials[work.look.object].mean - air;
   const double share = (threshold.value - air) / (inside - air);
   threshold.sigma *= step / (inside - air), threshold.value = air + share * step;
   threshold.how += format(", at %.1f %% of the step from air to marker", 100 * share);
@@ -41,9 +37,13 @@ void cut(Work& work) {
   switch (a.threshold_by) {
     case ThresholdBy::value: work.threshold = {.value = a.threshold, .how = "as asked"}; break;
     case ThresholdBy::otsu: work.threshold = volume::otsu(work.look.histogram); break;
-    case ThresholdBy::reference: work.threshold = by_reference(work, object_material(work.look.mixture, place)); break;
+    case ThresholdBy::reference:
+      needs_object(work.look, place);
+      work.threshold = by_reference(work);
+      break;
     default:
-      work.threshold = volume::half_way(*work.volume, work.look.mixture, 0, object_material(work.look.mixture, place));
+      needs_object(work.look, place);
+      work.threshold = volume::half_way(*work.volume, work.look.mixture, work.look.air, work.look.object);
   }
   const volume::Histogram& h = work.look.histogram;
   if (work.threshold.value >= h.largest || work.threshold.value < h.smallest)

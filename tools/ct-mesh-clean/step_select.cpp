@@ -26,9 +26,10 @@ void select(Work& work) {
                    {"kept", static_cast<double>(stays)},
                    {"kept_voxels", static_cast<double>(voxels)},
                    {"dropped_voxels", static_cast<double>(dropped)}};
-  const float air = static_cast<float>(
-      std::min(work.look.mixture.materials.empty() ? work.look.histogram.smallest : work.look.mixture.materials[0].mean,
-               work.threshold.value));
+  const float air =
+      static_cast<float>(std::min(work.look.mixture.materials.empty() ? work.look.histogram.smallest
+                                                                      : work.look.mixture.materials[work.look.air].mean,
+                                  work.threshold.value));
   if (stays < all) {
     work.derived.push_back(volume::only(*work.volume, work.components, work.kept, air));
     work.volume = work.derived.back().get();

@@ -16,7 +16,7 @@ namespace gonio::explain {
 namespace {
 
 const manifest::Mesh* mesh_of(const manifest::Document& document, const manifest::Volume& volume) {
-  const auto found = document.meshes.find(volume.mesh);
+  const auto found = document.meshes.find(volume.reference);
   return found == document.meshes.end() || found->second.file.empty() ? nullptr : &found->second;
 }
 
@@ -38,8 +38,8 @@ struct Grid {
 Grid grid_of(const manifest::Volume& volume, const io::VolumeHead& head, const std::string& place) {
   Grid grid;
   if (volume.volume_from_index) {
-    const std::vector<double>& m = volume.volume_from_index->matrix;
-    const auto column = [&](std::size_t c) { return Vec3{m.at(c), m.at(4 + c), m.at(8 + c)}; };
+    const std::vector<std::vector<double>>& rows = volume.volume_from_index->matrix;
+    const auto column = [&](std::size_t c) { return Vec3{rows.at(0).at(c), rows.at(1).at(c), rows.at(2).at(c)}; };
     grid.spacing_m = {norm(column(0)), norm(column(1)), norm(column(2))};
     grid.origin_m = column(3);
     for (int c = 0; c < 3; ++c) {
@@ -70,11 +70,11 @@ Rigid<frame::World, frame::Object> pose_of(const manifest::Document& document, c
 template <class Led>
 mesh::Mesh believed(const manifest::Document& document, const manifest::Volume& volume, bool turns_over,
                     const Led& led) {
-  const std::string at = "/meshes/" + volume.mesh + "/file";
+  const std::string at = "/meshes/" + volume.reference + "/file";
   io::TriangleMesh raw = io::read_ply(manifest::resolve(document, mesh_of(document, volume)->file, at));
   raw.normals.clear();
   mesh::Mesh mesh = mesh::prepare(std::move(raw), mesh::Shading::smooth, manifest::place(document, at));
-  const Rigid<frame::World, frame::Object> pose = pose_of(document, volume.mesh);
+  const Rigid<frame::World, frame::Object> pose = pose_of(document, volume.reference);
   for (Vec3& p : mesh.positions_m) p = led(pose * p);
   if (turns_over)
     for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
@@ -97,7 +97,7 @@ void read_given(const manifest::Document& document, VolumesInput& input) {
 
 VolumesInput read_input(const manifest::Document& document, const std::string& name, const manifest::Volume& volume) {
   VolumesInput input;
-  input.name = name, input.mesh_name = volume.mesh;
+  input.name = name, input.mesh_name = volume.reference;
   input.place = manifest::place(document, "/volumes/" + name);
   if (volume.file.empty()) throw Error(Exit::data, input.place, "names no file", "give the volume: \"file\": id");
   io::VolumeWish wish;
@@ -139,7 +139,7 @@ std::vector<std::filesystem::path> volumes_files(const manifest::Document& docum
     const std::string at = "/volumes/" + name;
     if (!volume.file.empty()) files.push_back(manifest::resolve(document, volume.file, at + "/file"));
     for (const std::string& slice : volume.slices) files.push_back(manifest::resolve(document, slice, at + "/slices"));
-    files.push_back(manifest::resolve(document, mesh->file, "/meshes/" + volume.mesh + "/file"));
+    files.push_back(manifest::resolve(document, mesh->file, "/meshes/" + volume.reference + "/file"));
   }
   return files;
 }
