@@ -8,15 +8,14 @@
 namespace gonio::tools::ct_mesh_clean {
 namespace {
 
-// Half-way between the two densest materials, the denser of which is the markers'.
+// Half-way between the object and the densest material, which is the markers'.
 double marker_threshold(const Work& work) {
   if (work.asked.marker_threshold) return *work.asked.marker_threshold;
   const auto& materials = work.look.mixture.materials;
-  if (materials.size() < 3)
-    throw Error(Exit::data, work.call.text("VOLUME"),
-                "shows " + std::to_string(materials.size()) + " materials: none of them is the markers'",
+  if (work.look.object == work.look.air || work.look.object + 1 >= materials.size())
+    throw Error(Exit::data, work.call.text("VOLUME"), "shows no material denser than the object: none is the markers'",
                 "give --marker-threshold VALUE");
-  return 0.5 * (materials[materials.size() - 2].mean + materials.back().mean);
+  return 0.5 * (materials[work.look.object].mean + materials.back().mean);
 }
 
 }  // namespace
