@@ -14,7 +14,7 @@ void correct(Work& work) {
   volume::CuppingField field;
   if (a.cupping) {
     field = volume::fit_cupping(*work.volume, work.look.mixture.materials[work.look.air].mean,
-                                work.look.mixture.materials[work.look.object].mean);
+                                work.look.mixture.materials[object_material(work)].mean);
     wish.cupping = &field;
     how = "cupping divided out by a polynomial of degree " + std::to_string(field.degree);
     figures["cupping_before"] = field.before, figures["cupping_after"] = field.after;
@@ -35,7 +35,7 @@ void correct(Work& work) {
   work.volume = work.derived.back().get();
   const volume::EdgeChange change =
       volume::edge_change(*before, *work.volume, work.look.mixture.materials[work.look.air].mean,
-                          work.look.mixture.materials[work.look.object].mean, work.look.noise_air);
+                          work.look.mixture.materials[object_material(work)].mean, work.look.noise_air);
   figures["edges"] = static_cast<double>(change.edges);
   figures["edge_width_before_voxels"] = change.width_before_voxels;
   figures["edge_width_after_voxels"] = change.width_after_voxels;

@@ -22,7 +22,7 @@ volume::Threshold by_reference(Work& work) {
   for (const volume::Marker& m : work.markers.found)
     inside += m.mean_value / static_cast<double>(work.markers.found.size());
   const double air = work.look.mixture.materials[work.look.air].mean,
-               step = work.look.mixture.materials[work.look.object].mean - air;
+               step = work.look.mixture.materials[object_material(work)].mean - air;
   const double share = (threshold.value - air) / (inside - air);
   threshold.sigma *= step / (inside - air), threshold.value = air + share * step;
   threshold.how += format(", at %.1f %% of the step from air to marker", 100 * share);
@@ -43,7 +43,7 @@ void cut(Work& work) {
       break;
     default:
       needs_object(work.look, place);
-      work.threshold = volume::half_way(*work.volume, work.look.mixture, work.look.air, work.look.object);
+      work.threshold = volume::half_way(*work.volume, work.look.mixture, work.look.air, object_material(work));
   }
   const volume::Histogram& h = work.look.histogram;
   if (work.threshold.value >= h.largest || work.threshold.value < h.smallest)

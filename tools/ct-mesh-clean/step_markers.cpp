@@ -12,10 +12,10 @@ namespace {
 double marker_threshold(const Work& work) {
   if (work.asked.marker_threshold) return *work.asked.marker_threshold;
   const auto& materials = work.look.mixture.materials;
-  if (work.look.object == work.look.air || work.look.object + 1 >= materials.size())
+  if (object_material(work) == work.look.air || object_material(work) + 1 >= materials.size())
     throw Error(Exit::data, work.call.text("VOLUME"), "shows no material denser than the object: none is the markers'",
                 "give --marker-threshold VALUE");
-  return 0.5 * (materials[work.look.object].mean + materials.back().mean);
+  return 0.5 * (materials[object_material(work)].mean + materials.back().mean);
 }
 
 }  // namespace

@@ -30,6 +30,16 @@ io::TriangleMesh in_metres(const Work& work, const volume::Contour& contour) {
   return mesh;
 }
 
+std::size_t object_material(const Work& work) {
+  const auto& materials = work.look.mixture.materials;
+  if (!work.asked.find_markers || work.asked.marker_threshold || materials.size() < work.look.air + 3)
+    return work.look.object;
+  std::size_t largest = work.look.air + 1;
+  for (std::size_t m = largest; m + 1 < materials.size(); ++m)
+    if (materials[m].share > materials[largest].share) largest = m;
+  return largest;
+}
+
 manifest::VolumeStep& step(Work& work, const char* name, std::string how) {
   return work.steps.emplace_back(
       manifest::VolumeStep{.name = name, .how = std::move(how), .figures = {}, .picture = ""});

@@ -97,6 +97,10 @@ Vec3 metres(const Work& work, Vec3 index);
 // The contour in metres, counter-clockwise seen from outside, with unit normals.
 io::TriangleMesh in_metres(const Work& work, const volume::Contour& contour);
 
+// The object's material: what the look says or, where markers are asked for, which are the densest, of the others
+// beside air the one with the most voxels. Equal to look.air: there is none.
+std::size_t object_material(const Work& work);
+
 manifest::VolumeStep& step(Work& work, const char* name, std::string how);
 
 // The steps, in their order.
