@@ -25,6 +25,7 @@ PIECE = "meshes": {"piece": {"file": "true"}}, "objects": [{"id": "piece", \
 
 .RECIPEPREFIX = >
 .DELETE_ON_ERROR:
+.SECONDARY:
 .PHONY: all clean
 all: run/table.txt
 

@@ -80,7 +80,11 @@ std::array<std::array<double, 3>, 2> box_of(const std::string& text) {
 }
 
 std::vector<cli::Option> file_options() {
-  return {{.name = "voxel",
+  return {{.name = "specimen",
+           .type = Type::choice,
+           .help = "Write a volume to try things with, and end: a hollow sphere of glass with three markers of 0.8 mm.",
+           .choices = {"ornament"}},
+          {.name = "voxel",
            .type = Type::text,
            .help = "Distance of voxel centres, one length or three; needed where the file does not say.",
            .metavar = "LENGTH"},

@@ -138,8 +138,7 @@ std::string page(const Work& work) {
   const std::string headline = !work.sound   ? "The mesh is not fit to be rendered as glass."
                                : work.missed ? "The mesh is sound, and misses a limit."
                                              : "The mesh is sound: closed, 2-manifold, free of self-intersections.";
-  report::Page page("ct-mesh-clean", headline,
-                    work.steps.empty() ? "" : work.call.text("VOLUME") + ": " + work.steps.front().how,
+  report::Page page("ct-mesh-clean", headline, work.steps.empty() ? "" : work.path + ": " + work.steps.front().how,
                     work.missed ? report::Tone::bad : report::Tone::good);
   page.key_numbers({{"triangles", std::to_string(work.mesh.triangles.size()), "", ""},
                     {"distance to the data", format("%.3f", figure(work, "verdict", "distance_rms_m") / voxel), "voxel",

@@ -8,8 +8,14 @@
 namespace gonio::tools::ct_mesh_clean {
 namespace {
 
+bool specimen_asked(const cli::Invocation& call) {
+  return call.given("specimen");
+}
+
 void check(cli::Invocation& call) {
   asked(call);
+  if (specimen_asked(call) && call.out.empty())
+    throw Error(Exit::usage, "--specimen", "has no folder to write to", "give --out DIR");
   for (const char* option : {"html", "csv"})
     if (call.given(option)) check_writable(call.text(option));
 }
@@ -22,9 +28,12 @@ std::string csv_of(const Work& work) {
 }
 
 Exit run(cli::Invocation& call) {
+  if (specimen_asked(call)) {
+    write_specimen(call);
+    return Exit::done;
+  }
   Work work(call, asked(call));
-  work.name =
-      call.given("name") ? call.text("name") : file_stem(std::filesystem::path(call.text("VOLUME")).stem().string());
+  choose(work);
   const std::filesystem::path html = call.given("html") ? std::filesystem::path(call.text("html"))
                                      : call.out.empty() ? std::filesystem::path()
                                                         : call.output_path("report.html");
@@ -37,7 +46,7 @@ Exit run(cli::Invocation& call) {
 }
 
 std::vector<std::string> synopsis() {
-  return {"[OPTION]... VOLUME", "--voxel LENGTH --markers DIAMETER --out DIR [OPTION]... VOLUME [-i FILE]"};
+  return {"[OPTION]... VOLUME [-i FILE]", "[OPTION]... [-i FILE | manifest.json]", "--specimen ornament --out DIR"};
 }
 
 }  // namespace
@@ -50,8 +59,8 @@ const cli::Program& gonio_program() {
       .options = options(),
       .operands = {{.name = "VOLUME",
                     .type = cli::Type::text,
-                    .help = "The volume: a file, or a folder of slices.",
-                    .required = true}},
+                    .help = "The volume: a file, or a folder of slices. Default: the manifest's."}},
+      .standalone = {"specimen"},
       .takes_out = true,
       .takes_seed = true,
       .sections_read = {"files", "meshes", "surfaces", "objects", "volumes", "markers"},
@@ -59,6 +68,7 @@ const cli::Program& gonio_program() {
       .files = {{"NAME.ply", "the mesh, metres, normals at its vertices"},
                 {"NAME-markers.ply", "the markers' surface"},
                 {"NAME-slices-*.png", "slices with the contour drawn over them"},
+                {"ornament.nrrd", "--specimen: the volume"},
                 {"report.html", "the report"}},
       .exits = {{Exit::quality, "the mesh is not sound, or a limit is missed"}},
       .references = {"Ju, Losasso, Schaefer & Warren, Dual contouring of Hermite data, SIGGRAPH 2002.",

@@ -33,7 +33,7 @@ volume::Threshold by_reference(Work& work) {
 
 void cut(Work& work) {
   const Asked& a = work.asked;
-  const std::string& place = work.call.text("VOLUME");
+  const std::string& place = work.path;
   switch (a.threshold_by) {
     case ThresholdBy::value: work.threshold = {.value = a.threshold, .how = "as asked"}; break;
     case ThresholdBy::otsu: work.threshold = volume::otsu(work.look.histogram); break;

@@ -13,7 +13,7 @@ double marker_threshold(const Work& work) {
   if (work.asked.marker_threshold) return *work.asked.marker_threshold;
   const auto& materials = work.look.mixture.materials;
   if (object_material(work) == work.look.air || object_material(work) + 1 >= materials.size())
-    throw Error(Exit::data, work.call.text("VOLUME"), "shows no material denser than the object: none is the markers'",
+    throw Error(Exit::data, work.path, "shows no material denser than the object: none is the markers'",
                 "give --marker-threshold VALUE");
   return 0.5 * (materials[object_material(work)].mean + materials.back().mean);
 }
@@ -24,7 +24,7 @@ void find_markers(Work& work) {
   if (!work.asked.find_markers || !work.markers.found.empty()) return;  // the threshold may have asked already
   const double threshold = marker_threshold(work);
   if (threshold >= work.look.histogram.largest)
-    throw Error(Exit::data, work.call.text("VOLUME"),
+    throw Error(Exit::data, work.path,
                 format("no value is above the markers' threshold of %.6g: the largest is %.6g", threshold,
                        work.look.histogram.largest),
                 "give a lower --marker-threshold");
@@ -46,7 +46,7 @@ void find_markers(Work& work) {
                    {"refused", static_cast<double>(work.markers.refused.size())},
                    {"worst_residual_m", worst * work.voxel_m()}};
   if (work.markers.found.empty())
-    throw Error(Exit::data, work.call.text("VOLUME"),
+    throw Error(Exit::data, work.path,
                 work.markers.refused.empty() ? "shows no sphere above a value of " + format("%.6g", threshold)
                                              : "shows no marker: " + work.markers.refused.front().why,
                 "check --markers and --marker-threshold, or leave --markers out");
@@ -57,7 +57,7 @@ void carve(Work& work) {
   std::vector<mesh::CarvedSphere> spheres;
   for (const volume::Marker& m : work.markers.found)
     spheres.push_back({metres(work, m.centre), m.radius * work.voxel_m()});
-  work.carved = mesh::carve(work.mesh, spheres, work.asked.eps, work.call.text("VOLUME"));
+  work.carved = mesh::carve(work.mesh, spheres, work.asked.eps, work.path);
   double worst = 0;
   for (const mesh::FilledHole& h : work.carved.holes) worst = std::max(worst, h.uncertainty_m);
   auto& entry = step(work, "carve",

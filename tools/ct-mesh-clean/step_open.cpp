@@ -12,7 +12,7 @@ double determinant(const Mat3& a) {
 }  // namespace
 
 void open(Work& work) {
-  const std::string& path = work.call.text("VOLUME");
+  const std::string& path = work.path;
   work.file = io::open_volume(path, work.asked.file);
   const io::VolumeHead& head = work.file->head();
   for (const auto& file : head.files) work.call.note_input(file);

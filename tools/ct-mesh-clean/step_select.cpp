@@ -14,7 +14,7 @@ void select(Work& work) {
   const std::size_t all = work.components.list.size();
   const auto stays = static_cast<std::size_t>(std::ranges::count(work.kept.keep, true));
   if (stays == 0)
-    throw Error(Exit::data, work.call.text("VOLUME"),
+    throw Error(Exit::data, work.path,
                 all == 0 ? "nothing is above the threshold"
                          : "none of its " + std::to_string(all) + " components stays: the largest is " +
                                work.kept.reason.front(),

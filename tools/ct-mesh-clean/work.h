@@ -64,6 +64,7 @@ struct Work {
   cli::Invocation& call;
   Asked asked;
   std::string name;                                        // of the volume, the mesh and the object
+  std::string path;                                        // of the volume
   std::unique_ptr<io::VolumeSource> file;                  // as stored
   std::vector<std::unique_ptr<io::VolumeSource>> derived;  // corrected, cleared of other components
   io::VolumeSource* volume = nullptr;                      // as the steps so far left it
@@ -118,6 +119,13 @@ void draw(Work& work);   // slices with the contour over them
 
 void enter(Work& work);  // files and sections of the manifest
 std::string page(const Work& work);
+
+// The volume that is asked for: VOLUME, else that of the manifest which --name names, else its only one. Sets name,
+// path, and what the manifest says of the file beside what the user says.
+void choose(Work& work);
+// The built-in volume: a hollow sphere of glass with three markers glued to it, blurred and with noise, as NRRD below
+// --out.
+void write_specimen(cli::Invocation& call);
 
 Asked asked(const cli::Invocation& call);
 std::vector<cli::Option> options();

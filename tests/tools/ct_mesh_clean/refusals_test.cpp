@@ -74,6 +74,8 @@ TEST_F(Refusals, CommandLines) {
   refused({"--faces", "3", "ball.nrrd"}, 64, "--faces");
   refused({"--index", "0.5", "ball.nrrd"}, 64, "--index");
   refused({}, 64, "VOLUME");
+  refused({"--specimen", "ornament"}, 64, "--out");
+  refused({"--specimen", "teapot", "--out", "o"}, 64, "--specimen");
 }
 
 TEST_F(Refusals, Files) {
