@@ -39,8 +39,8 @@ Distance distance(const io::TriangleMesh& from, const io::TriangleMesh& to, std:
 // From each point to the surface: positive outside, where it is closed.
 std::vector<double> signed_distances(const std::vector<Vec3>& points_m, const io::TriangleMesh& to);
 
-// rms angle between the normals of `mesh` (at the corners of its triangles, its own where it has them, weighted by area)
-// and those of the nearest point of `reference` (interpolated from its vertices' own or averaged normals).
+// rms angle between the normals of `mesh` (at the corners of its triangles, its own where it has them, weighted by
+// area) and those of the nearest point of `reference` (interpolated from its vertices' own or averaged normals).
 double normals_rms_rad(const io::TriangleMesh& mesh, const io::TriangleMesh& reference);
 
 // A ray through both walls: rays with `directions` spread over the sphere are refracted at every crossing by index

@@ -1,5 +1,5 @@
-// Views of surfaces: a WebGL canvas that one turns and brings nearer, buttons for the surfaces. Without script or WebGL the
-// picture stays.
+// Views of surfaces: a WebGL canvas that one turns and brings nearer, buttons for the surfaces. Without script or WebGL
+// the picture stays.
 #include "report/mesh_style.h"
 
 namespace gonio::report {

@@ -237,10 +237,12 @@ std::string Page::html() const {
          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
          "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
          "<title>" +
-         escape(title_) + "</title>\n<style>" + std::string(page_style) + (moving ? std::string(motion_style) : "") + (solid ? std::string(solid_style) : "") +
-         "</style></head>\n<body>" + head_ + navigation + "<main>" + body_ + (in_section_ ? "</section>" : "") +
-         "</main>\n" + (footer_.empty() ? std::string() : "<footer>" + footer_ + "</footer>\n") + "<script>" +
-         std::string(page_script) + (moving ? std::string(motion_script) : "") + (solid ? std::string(solid_script) : "") + "</script></body></html>\n";
+         escape(title_) + "</title>\n<style>" + std::string(page_style) + (moving ? std::string(motion_style) : "") +
+         (solid ? std::string(solid_style) : "") + "</style></head>\n<body>" + head_ + navigation + "<main>" + body_ +
+         (in_section_ ? "</section>" : "") + "</main>\n" +
+         (footer_.empty() ? std::string() : "<footer>" + footer_ + "</footer>\n") + "<script>" +
+         std::string(page_script) + (moving ? std::string(motion_script) : "") +
+         (solid ? std::string(solid_script) : "") + "</script></body></html>\n";
 }
 
 }  // namespace gonio::report

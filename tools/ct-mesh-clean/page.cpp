@@ -151,7 +151,7 @@ std::string page(const Work& work) {
   page.section("Slices");
   std::vector<report::Figure> slices;
   for (const StepPicture& p : work.pictures) slices.push_back({.png = p.png, .title = p.title, .caption = p.caption});
-  page.figures(slices, 420);
+  page.figures(slices, 300);
   stages(page, work);
   deviation(page, work);
   marker_table(page, work);

@@ -81,7 +81,8 @@ TEST(CtMeshClean, WhatItMakesPassesSceneCheckAndRendersWithStokesVectors) {
   write_file(folder / "scene.json", R"({"gonio": 1,
  "cameras": {"c": {"width_px": 24, "height_px": 24, "fx_px": 60, "fy_px": 60, "cx_px": 11.5, "cy_px": 11.5}},
  "lights": {"room": {"model": "uniform", "radiance": 1}},
- "images": [{"id": "v", "camera": "c", "world_from_camera": {"matrix": [[1, 0, 0, 0.002], [0, 1, 0, 0.002], [0, 0, 1, -0.006], [0, 0, 0, 1]]}}]})");
+ "images": [{"id": "v", "camera": "c", "world_from_camera":
+   {"matrix": [[1, 0, 0, 0.002], [0, 1, 0, 0.002], [0, 0, 1, -0.006], [0, 0, 0, 1]]}}]})");
   const Ended made = run({"ct-mesh-clean", "-i", "scene.json", "--out", "o", "ball.nrrd"}, folder.path());
   ASSERT_EQ(made.status, 0) << made.err;
   const Ended checked = run({"scene", "check"}, folder.path(), made.out);

@@ -26,9 +26,9 @@ inline io::VolumeData volume_of(std::size_t side, const std::vector<Shape>& shap
       for (std::size_t i = 0; i < side; ++i) {
         double value = 100;
         for (const Shape& s : shapes) {
-          const double inside = 0.5 * std::erfc(
-                                          s.distance({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)}) /
-                                          (0.8 * std::sqrt(2.0)));
+          const double inside =
+              0.5 * std::erfc(s.distance({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)}) /
+                              (0.8 * std::sqrt(2.0)));
           value += inside * (s.value - value);
         }
         out.values.push_back(static_cast<float>(std::round(std::max(0.0, value + noise * random.normal()))));
