@@ -7,7 +7,7 @@ namespace gonio::explain::domains {
 const Domain& volumes() {
   static const Domain domain{
       .name = "volumes",
-      .sentence = "CT volumes whose \"mesh\" names the shape that you believe in (a CAD model, a measured part)",
+      .sentence = "CT volumes whose \"reference\" names the shape that you believe in (a CAD model, a measured part)",
       .order = 7,
       .applies = has_volumes,
       .problems =
