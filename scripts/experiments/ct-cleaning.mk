@@ -62,7 +62,7 @@ run/table.txt: $(WAYS:%=run/%.compared)
 >   /"rmse":/ && !r {split($$0, x, ": "); r = x[2] + 0} \
 >   /"ssim":/ && !s {split($$1, x, ": "); s = x[2] + 0} \
 >   END {print w, n, a, b, m, d, r, s}' run/$$w.csv run/$$w.compared >> $@; done
-> column -t $@
+> cat $@
 
 run:
 > mkdir -p run
