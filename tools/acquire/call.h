@@ -6,6 +6,7 @@
 
 #include "acquisition/laboratory/laboratory.h"
 #include "acquisition/plan/planner.h"
+#include "acquisition/plan/view_pattern.h"
 #include "base/error.h"
 #include "cli/program.h"
 
