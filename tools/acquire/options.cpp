@@ -145,6 +145,10 @@ std::vector<cli::Option> running_options() {
            .preset = "64",
            .lower = 1,
            .upper = 65536},
+          {.name = "specimen",
+           .type = Type::choice,
+           .help = "Write a built-in laboratory: a simulated arm that holds a camera over a board.",
+           .choices = {"desk"}},
           cli::report_option()};
 }
 

@@ -13,6 +13,10 @@ bool plans(const cli::Invocation& call) {
 
 // With --check every device is asked how it is, and none moves.
 void check(cli::Invocation& call) {
+  if (call.given("specimen")) {
+    if (call.out.empty()) throw Error(Exit::usage, "--specimen", "has no folder to write to", "give --out DIR");
+    return;
+  }
   acquisition::believed_laboratory(call.document);
   if (plans(call)) scene_of(call);
   if (call.flag("go") && call.out.empty())
@@ -24,6 +28,10 @@ void check(cli::Invocation& call) {
 }
 
 Exit run(cli::Invocation& call) {
+  if (call.given("specimen")) {
+    call.document = acquisition::specimen_laboratory(call.out);
+    return Exit::done;
+  }
   const acquisition::Laboratory laboratory = acquisition::believed_laboratory(call.document);
   const manifest::Plan& chosen = plans(call) ? plan(call, laboratory) : chosen_plan(call);
   if (call.flag("dry-run") || plans(call)) log(LogLevel::info, summary(chosen));
