@@ -1,5 +1,6 @@
 // acquire: plans views of an instrument, moves it, lights, photographs, and knows of every frame what it is
 // (lib/acquisition).
+#include "acquisition/desk/specimen_laboratory.h"
 #include "acquisition/run/instrument.h"
 #include "base/progress.h"
 #include "tools/acquire/call.h"
@@ -49,10 +50,11 @@ const cli::Program& gonio_program() {
       .name = "acquire",
       .sentence = "plan views of an instrument, move it, light, photograph, and check every frame",
       .synopsis = {"--plan PATTERN [OPTION]... [-i FILE | lab.json]",
-                   "--go --out DIR [OPTION]... [-i FILE | plan.json]", "--dry-run [-i FILE | plan.json]",
-                   "--check [-i FILE | lab.json]"},
+                   "--go --out DIR [OPTION]... [-i FILE | plan.json]", "--specimen desk --out DIR",
+                   "--dry-run [-i FILE | plan.json]", "--check [-i FILE | lab.json]"},
       .options = options(),
-      .reads = cli::Reads::required,
+      .reads = cli::Reads::optional,
+      .standalone = {"specimen"},
       .takes_out = true,
       .takes_seed = true,
       .takes_resume = true,
