@@ -6,7 +6,7 @@
 //
 // Derivatives are motions of the flange seen in the base: `shift_m` of its origin and `turn_rad`, a rotation vector
 // applied on the left, R <- exp([turn]x) R, each per unit of what changes. They are exact, not differences. No gears,
-// no stops, no inverse kinematics: joint angles come with the recordings.
+// no stops (limits.h), no inverse kinematics (inverse/inverse_kinematics.h).
 #pragma once
 #include <span>
 #include <string>
@@ -44,7 +44,7 @@ std::vector<LinkMotions> link_motions(std::span<const Link> links, std::span<con
 // at the flange's origin makes, in m; positive where it turns the joint forwards.
 std::vector<double> weight_levers(std::span<const Link> links, std::span<const double> joints_rad);
 
-// Arms known by name, with nominal values: ur3, ur5, ur5e, ur10e, abb-irb-1600 (10/1.45), abb-irb-1600-1.2.
+// Arms known by name, with nominal values: ur3, ur3e, ur5, ur5e, ur10e, abb-irb-1600 (10/1.45), abb-irb-1600-1.2.
 std::span<const Arm> known_arms();
 // Error(data) at `place` that lists the names.
 const Arm& known_arm(const std::string& name, const std::string& place);
