@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stats/intervals.h"
 #include "volume/look_parts.h"
 #include "volume/threshold.h"
 
@@ -20,12 +21,12 @@ void look_at_edges(const std::vector<PatchPoint>& patches, const Sides& sides, L
   for (const PatchFit& fit : all_fitted(patches, sides, look.noise_air))
     if (fit.good) widths.push_back(fit.width);
   if (widths.size() < fewest_patches) return;
-  const double median = median_of(widths);
+  const double median = stats::median(widths);
   std::vector<double> off;
   for (const double w : widths) off.push_back(std::abs(w - median));
   look.edge_width_voxels = median;
   // Of a median; patches that share voxels count half.
-  look.sigma_edge_width = 1.2533 * 1.4826 * median_of(off) / std::sqrt(static_cast<double>(widths.size()) / 2);
+  look.sigma_edge_width = 1.2533 * 1.4826 * stats::median(off) / std::sqrt(static_cast<double>(widths.size()) / 2);
 }
 
 // Of one material: near the rim against far inside.

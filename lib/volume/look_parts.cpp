@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "stats/intervals.h"
 
 namespace gonio::volume {
 namespace {
@@ -99,30 +100,19 @@ Flags eroded(const Slab& slab, Flags flags, std::size_t r) {
   return flags;
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-double robust_sd(std::vector<float> values) {
+double robust_sd(std::span<const double> values) {
   if (values.size() < 2) return 0;
-  std::vector<float> deviations = values;
-  const auto middle = [](std::vector<float>& v) {
-    const auto at = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-    std::nth_element(v.begin(), at, v.end());
-    return static_cast<double>(*at);
-  };
-  const double centre = middle(deviations);
+  const double centre = stats::median(values);
+  std::vector<double> deviations;
   double squares = 0;
-  for (float& d : deviations) d = static_cast<float>(std::abs(d - centre)), squares += double{d} * d;
-  double sd = 1.4826 * middle(deviations);
+  for (const double v : values)
+    deviations.push_back(std::abs(v - centre)), squares += deviations.back() * deviations.back();
+  double sd = 1.4826 * stats::median(deviations);
   if (sd == 0) sd = std::sqrt(squares / static_cast<double>(values.size()));
   constexpr double kept_variance = 0.97334;  // of a normal law between -3 and 3 sd
   for (int round = 0; round < 20 && sd > 0; ++round) {
     double sum = 0, sum2 = 0, n = 0;
-    for (const float v : values)
+    for (const double v : values)
       if (std::abs(v - centre) <= 3 * sd) sum += v - centre, sum2 += (v - centre) * (v - centre), ++n;
     const double next = std::sqrt(std::max(0.0, sum2 / n - sum * sum / n / n) / kept_variance);
     if (std::abs(next - sd) < 1e-4 * sd) return next;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "volume/look.h"
@@ -40,8 +41,7 @@ using Flags = std::vector<std::uint8_t>;
 Flags eroded(const Slab& slab, Flags flags, std::size_t r);
 
 // sd of a normal law with foreign values among it: values beyond 3 sd are left out until nothing changes.
-double robust_sd(std::vector<float> values);
-double median_of(std::vector<double> values);
+double robust_sd(std::span<const double> values);
 
 // Keeps every n-th of what it is offered, n doubling whenever there are `most`.
 template <class T>

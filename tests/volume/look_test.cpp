@@ -140,7 +140,7 @@ TEST(Look, NoiseOfAScanIsThatOfItsPhotons) {
   const io::VolumeData clean = ct::scan(p, s);
   s.photons = 20000;
   io::VolumeData noisy = ct::scan(p, s);
-  std::vector<float> rest;
+  std::vector<double> rest;
   for (std::size_t v = 0; v < noisy.values.size(); ++v)
     if (clean.values[v] != 0 && std::abs(clean.values[v]) < 5) rest.push_back(noisy.values[v] - clean.values[v]);
   const double truth = robust_sd(rest);
