@@ -73,6 +73,14 @@ function(gonio_finish_library)
   gonio_registry(${GONIO_GENERATED}/volume_formats.cpp VolumeFormat io/volume.h
     "std::span<const gonio::io::VolumeFormat* const> gonio::io::all_volume_formats()" gonio::io::volumes
     ${volume_files})
+  file(GLOB driver_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/acquisition/device/drivers/*.cpp)
+  gonio_registry(${GONIO_GENERATED}/drivers.cpp Driver acquisition/device/devices.h
+    "std::span<const gonio::acquisition::Driver* const> gonio::acquisition::all_drivers()"
+    gonio::acquisition::drivers ${driver_files})
+  file(GLOB view_pattern_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/acquisition/plan/patterns/*.cpp)
+  gonio_registry(${GONIO_GENERATED}/view_patterns.cpp ViewPattern acquisition/plan/view_pattern.h
+    "std::span<const gonio::acquisition::ViewPattern* const> gonio::acquisition::all_view_patterns()"
+    gonio::acquisition::patterns ${view_pattern_files})
   # Where simulators bind to mechanisms (tests/meta/bindings_test knows these folders).
   gonio_bindings(scene/edits Edit scene/edit.h gonio::scene all_edits edits)
   gonio_bindings(render/links Link render/link.h gonio::render all_links links)
@@ -95,7 +103,7 @@ function(gonio_finish_library)
   set(registries ${GONIO_GENERATED}/mechanisms.cpp ${GONIO_GENERATED}/domains.cpp
       ${GONIO_GENERATED}/table_models.cpp ${bindings}
       ${GONIO_GENERATED}/nrsfm_solvers.cpp ${GONIO_GENERATED}/animatronics.cpp
-      ${GONIO_GENERATED}/volume_formats.cpp)
+      ${GONIO_GENERATED}/volume_formats.cpp ${GONIO_GENERATED}/drivers.cpp ${GONIO_GENERATED}/view_patterns.cpp)
   if(EXISTS ${CMAKE_SOURCE_DIR}/lib/surface/surface.h)
     list(APPEND registries ${GONIO_GENERATED}/surfaces.cpp ${GONIO_GENERATED}/laws.cpp)
   endif()

@@ -27,6 +27,7 @@
 #include "manifest/sections/frame_link.h"
 #include "manifest/sections/ground_noise.h"
 #include "manifest/sections/image.h"
+#include "manifest/sections/laboratory.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/light_position.h"
 #include "manifest/sections/mechanism_use.h"
@@ -34,6 +35,7 @@
 #include "manifest/sections/mounting.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/pattern.h"
+#include "manifest/sections/plan.h"
 #include "manifest/sections/provenance.h"
 #include "manifest/sections/reconstruction.h"
 #include "manifest/sections/relief.h"
@@ -80,6 +82,9 @@ void for_each_section(D& d, const Visit& visit) {
   visit("ground_noises", d.ground_noises);
   visit("volumes", d.volumes);
   visit("markers", d.markers);
+  visit("laboratory", d.laboratory);
+  visit("plans", d.plans);
+  visit("runs", d.runs);
   visit("sequences", d.sequences);
   visit("reconstructions", d.reconstructions);
   visit("evaluations", d.evaluations);
@@ -93,6 +98,11 @@ void read_section(std::map<std::string, T>& section, const Value& v, const std::
 template <class T>
 void read_section(std::vector<T>& section, const Value& v, const std::string& place) {
   section = Codec<std::vector<T>>::read(v, place);
+}
+
+template <class T>
+void read_section(AtMostOne<T>& section, const Value& v, const std::string& place) {
+  section.entry = {Codec<T>::read(v, place)};
 }
 
 // What is written where an entry was read: `before` is what the entry as read would print, `written` what it prints
@@ -157,6 +167,11 @@ Value write_section(const std::vector<T>& section, const Value* original) {
     out.push_back(write_entry(section[i], before));
   }
   return out;
+}
+
+template <class T>
+Value write_section(const AtMostOne<T>& section, const Value* original) {
+  return section.entry.empty() ? Value() : write_entry(section.entry.front(), original);
 }
 
 const std::vector<std::string>& section_names() {

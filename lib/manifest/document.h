@@ -13,6 +13,12 @@
 
 namespace gonio::manifest {
 
+// A section that is one object instead of many: absent, or one.
+template <class T>
+struct AtMostOne {
+  std::vector<T> entry;
+};
+
 // The sections' types are only declared here, so that their fields stay out of sources that do not touch them
 // (manifest/sections/forward.h). Containers of them are what GCC's and LLVM's libraries allow as members as long as no
 // member function is called; those that every user of Document would call are therefore defined in document.cpp.
@@ -50,6 +56,9 @@ struct Document {
   std::map<std::string, GroundNoiseFit> ground_noises;
   std::map<std::string, Volume> volumes;
   std::vector<Marker> markers;
+  AtMostOne<Laboratory> laboratory;
+  std::vector<Plan> plans;
+  std::vector<Run> runs;
   std::map<std::string, TrackSequence> sequences;
   std::vector<ShapeReconstruction> reconstructions;
   std::vector<Evaluation> evaluations;

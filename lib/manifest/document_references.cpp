@@ -14,11 +14,13 @@
 #include "manifest/sections/flat_patch.h"
 #include "manifest/sections/ground_noise.h"
 #include "manifest/sections/image.h"
+#include "manifest/sections/laboratory.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/light_position.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/pattern.h"
+#include "manifest/sections/plan.h"
 #include "manifest/sections/reconstruction.h"
 #include "manifest/sections/relief.h"
 #include "manifest/sections/rendering.h"
@@ -192,6 +194,70 @@ void check_nrsfm(const Document& d) {
   }
 }
 
+void check_solid(const Document& d, const SolidBody& body, const std::string& at) {
+  must_exist(d.files, "files", body.mesh, at + "/mesh");
+  if (!body.box_m.empty() + body.ball_m.has_value() + !body.cylinder_m.empty() + !body.mesh.empty() != 1)
+    throw Error(Exit::data, at, "needs exactly one of \"box_m\", \"ball_m\", \"cylinder_m\", \"mesh\"");
+  needs_numbers(body.box_m.size(), 3, at + "/box_m", "give the full sides [x, y, z]");
+  needs_numbers(body.cylinder_m.size(), 2, at + "/cylinder_m", "give [radius, length]");
+}
+
+void check_robots_of(const Document& d, const Laboratory& lab, const std::string& in) {
+  for (const auto& [name, robot] : lab.robots) {
+    const std::string at = in + "/robots/" + name;
+    must_exist(d.files, "files", robot.urdf, at + "/urdf");
+    must_exist(d.files, "files", robot.calibration, at + "/calibration");
+    must_exist(d.files, "files", robot.registers, at + "/registers");
+    needs_numbers(robot.payload_centre_m.size(), 3, at + "/payload_centre_m", "give a point [x, y, z]");
+    for (std::size_t i = 0; i < robot.carries.size(); ++i)
+      check_solid(d, robot.carries[i], at + "/carries/" + std::to_string(i));
+    for (std::size_t i = 0; i < robot.links.size(); ++i)
+      check_solid(d, robot.links[i], at + "/links/" + std::to_string(i));
+  }
+}
+
+void check_laboratory(const Document& d) {
+  for (const Laboratory& lab : d.laboratory.entry) {
+    const std::string at = place(d, "/laboratory");
+    check_robots_of(d, lab, at);
+    for (const auto& [name, camera] : lab.cameras) {
+      must_exist(lab.robots, "laboratory/robots", camera.robot, at + "/cameras/" + name + "/robot");
+      needs_numbers(camera.exposure_s.size(), 2, at + "/cameras/" + name + "/exposure_s", "give [shortest, longest]");
+    }
+    for (const auto& [name, lamp] : lab.lamps) {
+      const std::string where = at + "/lamps/" + name;
+      must_exist(lab.robots, "laboratory/robots", lamp.robot, where + "/robot");
+      must_exist(d.lights, "lights", lamp.light, where + "/light");
+      needs_numbers(lamp.in_tool_m.size(), 3, where + "/in_tool_m", "give a point [x, y, z]");
+      needs_numbers(lamp.in_world_m.size(), 3, where + "/in_world_m", "give a point [x, y, z]");
+    }
+    for (const auto& [name, table] : lab.turntables)
+      needs_numbers(table.range_rad.size(), 2, at + "/turntables/" + name + "/range_rad", "give [smallest, largest]");
+    for (std::size_t i = 0; i < lab.obstacles.size(); ++i)
+      check_solid(d, lab.obstacles[i], at + "/obstacles/" + std::to_string(i));
+    if (!lab.limits) continue;
+    needs_numbers(lab.limits->lower_m.size(), 3, at + "/limits/lower_m", "give a point [x, y, z]");
+    needs_numbers(lab.limits->upper_m.size(), 3, at + "/limits/upper_m", "give a point [x, y, z]");
+  }
+}
+
+void check_plans(const Document& d) {
+  unique_ids(d.plans, place(d, "/plans"));
+  for (std::size_t i = 0; i < d.plans.size(); ++i)
+    for (std::size_t k = 0; k < d.plans[i].steps.size(); ++k) {
+      const PlanStep& step = d.plans[i].steps[k];
+      const std::string at = place(d, "/plans/" + std::to_string(i) + "/steps/" + std::to_string(k));
+      needs_numbers(step.light_m.size(), 3, at + "/light_m", "give a point [x, y, z]");
+      for (const Laboratory& lab : d.laboratory.entry) {
+        must_exist(lab.cameras, "laboratory/cameras", step.camera, at + "/camera");
+        must_exist(lab.robots, "laboratory/robots", step.robot, at + "/robot");
+        for (const auto& lamp : step.lamps) must_exist(lab.lamps, "laboratory/lamps", lamp, at + "/lamps");
+      }
+    }
+  for (std::size_t i = 0; i < d.runs.size(); ++i)
+    must_exist(d.files, "files", d.runs[i].journal, place(d, "/runs/" + std::to_string(i) + "/journal"));
+}
+
 }  // namespace
 
 void check_references(const Document& d) {
@@ -199,6 +265,8 @@ void check_references(const Document& d) {
   check_goniometry(d);
   check_reliefs(d);
   check_volumes(d);
+  check_laboratory(d);
+  check_plans(d);
   check_nrsfm(d);
   unique_ids(d.objects, place(d, "/objects"));
   for (std::size_t i = 0; i < d.objects.size(); ++i) {

@@ -162,6 +162,29 @@ void add_volumes(List& all) {
   all.push_back(listed("markers", "Spheres glued to an object, found by ct-mesh-clean.", marker_fields()));
 }
 
+void add_acquisition(List& all) {
+  Described laboratory = part("laboratory", "The instrument as its owner believes it to be.", laboratory_fields());
+  laboratory.section = "laboratory";
+  laboratory.section_schema = Codec<Laboratory>::schema();
+  all.push_back(std::move(laboratory));
+  const std::string l = "laboratory: ";
+  all.push_back(part(l + "robots", "Keyed by name.", laboratory_robot_fields()));
+  all.push_back(part(l + "robots/limits", "One number a joint.", joint_limits_fields()));
+  all.push_back(part(l + "robots/cable", "One number a joint.", cable_slack_fields()));
+  all.push_back(part(l + "obstacles, robots/carries, robots/links",
+                     "Solids that nothing may touch; exactly one of box_m, ball_m, cylinder_m, mesh.",
+                     solid_body_fields()));
+  all.push_back(part(l + "cameras", "Keyed by name.", laboratory_camera_fields()));
+  all.push_back(part(l + "lamps", "Keyed by name.", laboratory_lamp_fields()));
+  all.push_back(part(l + "turntables", "Keyed by name.", laboratory_turntable_fields()));
+  all.push_back(part(l + "screens", "Keyed by name.", laboratory_screen_fields()));
+  all.push_back(part(l + "limits", "Enforced before a command is sent.", laboratory_limits_fields()));
+  all.push_back(listed("plans", "Written by acquire: what to photograph, by which motions.", plan_fields()));
+  all.push_back(part("plans: steps", "One photograph, or one bracket of them.", plan_step_fields()));
+  all.push_back(part("plans: unreachable", "Views that no arm reaches.", unreachable_view_fields()));
+  all.push_back(listed("runs", "Written by acquire: what was done of plans.", run_fields()));
+}
+
 void add_tracks(List& all) {
   all.push_back(keyed("sequences", "Points of shapes that deform, followed over frames.", track_sequence_fields()));
   all.push_back(listed("reconstructions", "Shapes that a solver made of a sequence.", shape_reconstruction_fields()));
@@ -233,6 +256,7 @@ List all_described() {
   add_goniometry(all);
   add_reliefs(all);
   add_volumes(all);
+  add_acquisition(all);
   add_tracks(all);
   add_explanations(all);
   Described provenance = part("provenance", "Written by the programs alone: which of them made the document, of what.",

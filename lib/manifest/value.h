@@ -1,5 +1,5 @@
-// A JSON value: what the pages, plans and field tables are made of. nlohmann-json parses and prints it in value.cpp; no other
-// source sees that library. Objects keep the order in which keys were written.
+// A JSON value: what the pages, plans and field tables are made of. nlohmann-json parses and prints it in value.cpp; no
+// other source sees that library. Objects keep the order in which keys were written.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -29,8 +29,16 @@ class Value {
   Value(const std::vector<double>& v);
   Value(const std::vector<std::string>& v);
   static Value array() { return Value(Array{}); }
-  static Value object() { Value v; v.data_ = Object{}; return v; }
-  static Value object(Object members) { Value v; v.data_ = std::move(members); return v; }
+  static Value object() {
+    Value v;
+    v.data_ = Object{};
+    return v;
+  }
+  static Value object(Object members) {
+    Value v;
+    v.data_ = std::move(members);
+    return v;
+  }
 
   bool is_null() const { return std::holds_alternative<std::monostate>(data_); }
   bool is_bool() const { return std::holds_alternative<bool>(data_); }
@@ -60,7 +68,8 @@ class Value {
 
 // Strict JSON (UTF-8, no duplicate keys, no NaN, depth at most 64). Error(data) at `place` with line and column.
 Value parse_json(std::string_view text, const std::string& place);
-// Shortest digits that read back to the same double. indent < 0: one line. NaN and infinities are refused: Error(internal).
+// Shortest digits that read back to the same double. indent < 0: one line. NaN and infinities are refused:
+// Error(internal).
 std::string print_json(const Value& value, int indent = 1);
 // One line, keys sorted: the form that content ids are computed from.
 std::string canonical_json(const Value& value);

@@ -36,6 +36,13 @@ struct LinkMotions {
 // `joints_rad`: one per link (not checked).
 Rigid<frame::Base, frame::Tool> flange(std::span<const Link> links, std::span<const double> joints_rad);
 
+// Of every link: frame 0 is the base, frame i stands behind i joints, the last is the flange.
+struct LinkFrame {
+  Mat3 rotation;  // of the frame's axes in the base
+  Vec3 origin_m;
+};
+std::vector<LinkFrame> link_frames(std::span<const Link> links, std::span<const double> joints_rad);
+
 // By each joint's angle; the same numbers as LinkMotions::theta.
 std::vector<Motion> joint_motions(std::span<const Link> links, std::span<const double> joints_rad);
 std::vector<LinkMotions> link_motions(std::span<const Link> links, std::span<const double> joints_rad);

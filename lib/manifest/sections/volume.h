@@ -32,7 +32,7 @@ struct Volume {                       // "volumes"
   std::string connectivity{};         // of the inside: "6" | "26"
   Sigmas sigma{};                     // of the threshold
   std::string mesh{};                 // name in meshes: the surface that was made
-  std::string reference{};  // name in meshes: its shape from elsewhere, which explain holds it against
+  std::string reference{};            // name in meshes: its shape from elsewhere, which explain holds it against
   std::string markers_mesh{};         // name in meshes: the markers' surface
   std::vector<VolumeStep> steps{};
   std::optional<bool> sound{};  // closed, 2-manifold, oriented, no self-intersection
