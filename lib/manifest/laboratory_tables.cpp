@@ -70,7 +70,10 @@ const std::vector<Field<LaboratoryCamera>>& laboratory_camera_fields() {
       field("exposure_s", &C::exposure_s, "s", "[shortest, longest] that it can").positive(),
       field("gain_db", &C::gain_db, "dB", "set before a run"),
       field("trigger", &C::trigger, "", "what starts an exposure").one_of({"software", "hardware"}),
-      field("white", &C::white, "", "code from which a pixel counts as saturated").positive()};
+      field("white", &C::white, "", "code from which a pixel counts as saturated").positive(),
+      field("codes_per_radiance_s", &C::codes_per_radiance_s, "m^2 sr/(W s)",
+            "of a linear camera: codes for a radiance of 1 W/(m^2 sr) in 1 s")
+          .positive()};
   return table;
 }
 

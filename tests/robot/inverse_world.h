@@ -1,7 +1,5 @@
 // What the tests of inverse kinematics share: random joints, arms with a factory calibration, what answers must be.
 #pragma once
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>

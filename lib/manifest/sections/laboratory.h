@@ -63,6 +63,7 @@ struct LaboratoryCamera {
   std::vector<double> exposure_s{};  // [shortest, longest] that it can
   std::optional<double> gain_db{};
   std::string trigger{};          // "software" | "hardware"
+  std::optional<double> codes_per_radiance_s{};  // of a linear camera: codes for 1 W/(m^2 sr) in 1 s
   std::optional<double> white{};  // code at which a pixel is saturated
 };
 
