@@ -98,6 +98,16 @@ double parse_quantity(std::string_view text, Dimension dimension, const std::str
   return number * *scale;
 }
 
+double parse_in_unit(std::string_view text, std::string_view unit, const std::string& place) {
+  const bool plain = text.find_first_not_of("0123456789.eE+-") == std::string_view::npos;
+  const Dimension dimension = plain           ? Dimension::none
+                              : unit == "m"   ? Dimension::length
+                              : unit == "rad" ? Dimension::angle
+                              : unit == "s"   ? Dimension::time
+                                              : Dimension::ratio;
+  return parse_quantity(text, dimension, place);
+}
+
 std::string_view si_unit(Dimension dimension) {
   return entry(dimension).si;
 }

@@ -12,6 +12,10 @@ enum class Dimension { none, length, angle, time, pixel, ratio };
 // Throws Error(usage) at `place` naming the units that would do.
 double parse_quantity(std::string_view text, Dimension dimension, const std::string& place);
 
+// Of what is measured in `unit`, "m", "rad", "s" or any other: a plain number is in that unit, and one with a unit of
+// the same kind is taken to it.
+double parse_in_unit(std::string_view text, std::string_view unit, const std::string& place);
+
 std::string_view si_unit(Dimension dimension);       // "m", "rad", "s", "px", "", ""
 std::string_view dimension_name(Dimension dimension);  // "length", ...
 

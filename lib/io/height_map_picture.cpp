@@ -8,6 +8,7 @@
 #include "io/exr.h"
 #include "io/height_map.h"
 #include "io/height_map_checks.h"
+#include "io/opencv_codecs.h"
 #include "io/raster_header.h"
 
 namespace gonio::io {
@@ -71,8 +72,7 @@ HeightMap of_tiff(std::string_view file, const std::string& place, const HeightP
                 "state it: --unit um; in a manifest reliefs/NAME/unit_m");
   cv::Mat picture;
   try {
-    const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
-    picture = cv::imdecode(buffer, cv::IMREAD_UNCHANGED);
+    decode_by_opencv(bytes, cv::IMREAD_UNCHANGED, picture);
   } catch (const cv::Exception&) {
   }
   if (picture.empty()) refuse_map(place, "cannot be decoded");

@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/error.h"
+#include "io/opencv_codecs.h"
 #include "io/raster_header.h"
 #include "io/tga.h"
 
@@ -16,10 +17,9 @@ namespace gonio::io {
 namespace {
 
 void decode(const std::string& bytes, const std::string& place, int flags, cv::Mat& picture) {
-  const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
   bool decoded = false;
   try {
-    decoded = !cv::imdecode(buffer, flags, &picture).empty();
+    decoded = !decode_by_opencv(bytes, flags, picture).empty();
   } catch (const cv::Exception& failure) {
     throw Error(Exit::data, place, "cannot be decoded (" + failure.err + ")", "export or copy it again");
   }
@@ -118,7 +118,7 @@ std::string encode_raster_png(const Image& image, int code_bits) {
   else
     fill<std::uint8_t>(image, sources, picture);
   std::vector<std::uint8_t> bytes;
-  if (picture.empty() || !cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6}))
+  if (picture.empty() || !encode_by_opencv(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6}))
     throw Error(Exit::internal, "PNG",
                 "a picture of " + std::to_string(image.width) + " x " + std::to_string(image.height) +
                     " pixels cannot be encoded");

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "io/opencv_codecs.h"
 #include "io/raster_header.h"
 #include "io/volume_grid.h"
 
@@ -11,10 +12,9 @@ namespace gonio::io {
 namespace {
 
 cv::Mat decoded_codes(const std::string& bytes, const std::string& place) {
-  const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
   cv::Mat picture;
   try {
-    cv::imdecode(buffer, cv::IMREAD_UNCHANGED, &picture);
+    decode_by_opencv(bytes, cv::IMREAD_UNCHANGED, picture);
   } catch (const cv::Exception& failure) {
     refuse_volume(place, "cannot be decoded (" + failure.err + ")");
   }

@@ -33,7 +33,7 @@ const std::vector<Field<DhRow>>& dh_row_fields() {
 
 const std::vector<Field<Robot>>& robot_fields() {
   static const std::vector<Field<Robot>> table{
-      field("model", &Robot::model, "", "ur3, ur5, ur5e, ur10e, abb-irb-1600, or dh with the rows below").needed(),
+      field("model", &Robot::model, "", "ur3, ur3e, ur5, ur5e, ur10e, abb-irb-1600, or dh with the rows below").needed(),
       field("dh", &Robot::dh, "", "standard Denavit-Hartenberg rows, base to flange"),
       field("calibration", &Robot::calibration, "", "file id of a UR controller's calibration.conf")};
   return table;

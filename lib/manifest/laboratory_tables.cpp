@@ -14,7 +14,9 @@ const std::vector<Field<SolidBody>>& solid_body_fields() {
       field("cylinder_m", &SolidBody::cylinder_m, "m", "a cylinder about its z: [radius, length]").positive(),
       field("mesh", &SolidBody::mesh, "", "file id of a PLY or STL file, in metres"),
       field("world_from_body", &SolidBody::world_from_body, "", "where it stands; left out: identity"),
-      field("tool_from_body", &SolidBody::tool_from_body, "", "carried by a robot: takes body to tool coordinates")};
+      field("tool_from_body", &SolidBody::tool_from_body, "", "carried by a robot: takes body to tool coordinates"),
+      field("base_from_body", &SolidBody::base_from_body, "",
+            "of a robot's link: takes body to base coordinates while all joints are at zero; left out: identity")};
   return table;
 }
 
@@ -52,7 +54,8 @@ const std::vector<Field<LaboratoryRobot>>& laboratory_robot_fields() {
       field("payload_centre_m", &R::payload_centre_m, "m", "centre of mass, tool coordinates"),
       field("home_rad", &R::home_rad, "rad", "joint angles at which a run begins and ends"),
       field("carries", &R::carries, "", "solids fixed to its tool"),
-      field("links", &R::links, "", "solids of its links, base first, instead of the model's")};
+      field("links", &R::links, "",
+            "solids of its links instead of the model's, named link-0 (its base), link-1, link-1-motor, ...")};
   return table;
 }
 
@@ -67,7 +70,10 @@ const std::vector<Field<LaboratoryCamera>>& laboratory_camera_fields() {
       field("exposure_s", &C::exposure_s, "s", "[shortest, longest] that it can").positive(),
       field("gain_db", &C::gain_db, "dB", "set before a run"),
       field("trigger", &C::trigger, "", "what starts an exposure").one_of({"software", "hardware"}),
-      field("white", &C::white, "", "code from which a pixel counts as saturated").positive()};
+      field("white", &C::white, "", "code from which a pixel counts as saturated").positive(),
+      field("codes_per_radiance_s", &C::codes_per_radiance_s, "m^2 sr/(W s)",
+            "of a linear camera: codes for a radiance of 1 W/(m^2 sr) in 1 s")
+          .positive()};
   return table;
 }
 

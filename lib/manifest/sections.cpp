@@ -124,6 +124,7 @@ const std::vector<Field<ImageEntry>>& image_fields() {
           [](const ImageEntry& r) {
             return r.light.empty() ? Value() : r.light.size() == 1 ? Value(r.light[0]) : Value(r.light);
           }),
+      field("dark", &ImageEntry::dark, "", "true: no light of the scene is on"),
       field("exposure_s", &ImageEntry::exposure_s, "s", "exposure time").positive(),
       field("time_s", &ImageEntry::time_s, "s", "when it was taken, counted from any moment common to all images"),
       field("temperature_K", &ImageEntry::temperature_K, "K", "of the instrument at that moment").positive(),

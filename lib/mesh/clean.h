@@ -11,8 +11,9 @@
 namespace gonio::mesh {
 
 // Half-edge collapses by quadric error (Garland & Heckbert 1997) that keep the mesh manifold and flip no normal, down
-// to `faces`. Returns how many are left (more where no collapse is allowed any more).
-std::size_t decimate(io::TriangleMesh& mesh, std::size_t faces);
+// to `faces`. Returns how many are left (more where no collapse is allowed any more). What stays, stays where it was;
+// `kept`: the vertices' numbers before, ascending.
+std::size_t decimate(io::TriangleMesh& mesh, std::size_t faces, std::vector<std::uint32_t>* kept = nullptr);
 
 // sqrt(3) subdivision (Kobbelt 2000), once.
 void subdivide_sqrt3(io::TriangleMesh& mesh);

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <vector>
 
+#include "base/union_find.h"
+
 namespace gonio::mesh {
 namespace {
 
@@ -25,28 +27,10 @@ struct Edge {
   bool same_place(const Edge& o) const { return low == o.low && high == o.high; }
 };
 
-class Pieces {  // union-find over vertices
- public:
-  explicit Pieces(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t of(std::uint32_t v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  bool join(std::uint32_t a, std::uint32_t b) {  // were they apart?
-    a = of(a);
-    b = of(b);
-    parent_[a] = b;
-    return a != b;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 // Pieces of the graph of boundary edges: its vertices less the joins that connect them.
 std::size_t count_holes(const std::vector<Edge>& boundary, std::size_t vertices) {
   if (boundary.empty()) return 0;
-  Pieces pieces(vertices);
+  UnionFind pieces(vertices);
   std::vector<bool> seen(vertices);
   std::size_t corners = 0, joins = 0;
   for (const Edge& edge : boundary) {

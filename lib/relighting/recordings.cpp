@@ -112,7 +112,7 @@ Recordings read_recordings(const manifest::Document& document) {
     image.entry = i;
     image.view = view_of(document, entry, recordings);
     for (std::size_t l = 0; l < recordings.lights.size(); ++l)
-      if (entry.light.empty() ||
+      if ((entry.light.empty() && !entry.dark.value_or(false)) ||
           std::find(entry.light.begin(), entry.light.end(), recordings.lights[l]) != entry.light.end())
         image.lights.push_back(l);
     read_pixels(document, manifest::picture_path(document, i), image);

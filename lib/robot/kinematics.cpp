@@ -6,25 +6,19 @@
 namespace gonio::robot {
 namespace {
 
-struct Frame {
-  Mat3 rotation;  // of the frame's axes in the base
-  Vec3 origin_m;
-  Vec3 x() const { return {rotation(0, 0), rotation(1, 0), rotation(2, 0)}; }
-  Vec3 z() const { return {rotation(0, 2), rotation(1, 2), rotation(2, 2)}; }
-};
+Vec3 x_of(const LinkFrame& frame) {
+  return {frame.rotation(0, 0), frame.rotation(1, 0), frame.rotation(2, 0)};
+}
 
-Frame behind(const Frame& before, const Link& link, double joint_rad) {
+Vec3 z_of(const LinkFrame& frame) {
+  return {frame.rotation(0, 2), frame.rotation(1, 2), frame.rotation(2, 2)};
+}
+
+LinkFrame behind(const LinkFrame& before, const Link& link, double joint_rad) {
   const double ct = std::cos(joint_rad + link.theta_rad), st = std::sin(joint_rad + link.theta_rad);
   const double ca = std::cos(link.alpha_rad), sa = std::sin(link.alpha_rad);
   const Mat3 turn{{ct, -st * ca, st * sa, st, ct * ca, -ct * sa, 0, sa, ca}};
   return {before.rotation * turn, before.origin_m + before.rotation * Vec3{link.a_m * ct, link.a_m * st, link.d_m}};
-}
-
-// Frame 0 is the base, frame n the flange.
-std::vector<Frame> frames_of(std::span<const Link> links, std::span<const double> joints_rad) {
-  std::vector<Frame> frames(1);
-  for (std::size_t i = 0; i < links.size(); ++i) frames.push_back(behind(frames.back(), links[i], joints_rad[i]));
-  return frames;
 }
 
 Motion turn_about(Vec3 axis, Vec3 through_m, Vec3 flange_m) {
@@ -33,19 +27,27 @@ Motion turn_about(Vec3 axis, Vec3 through_m, Vec3 flange_m) {
 
 }  // namespace
 
+std::vector<LinkFrame> link_frames(std::span<const Link> links, std::span<const double> joints_rad) {
+  std::vector<LinkFrame> frames;
+  frames.reserve(links.size() + 1);
+  frames.emplace_back();
+  for (std::size_t i = 0; i < links.size(); ++i) frames.push_back(behind(frames.back(), links[i], joints_rad[i]));
+  return frames;
+}
+
 Rigid<frame::Base, frame::Tool> flange(std::span<const Link> links, std::span<const double> joints_rad) {
-  const Frame last = frames_of(links, joints_rad).back();
+  const LinkFrame last = link_frames(links, joints_rad).back();
   return {quaternion_of(last.rotation), last.origin_m};
 }
 
 std::vector<LinkMotions> link_motions(std::span<const Link> links, std::span<const double> joints_rad) {
-  const std::vector<Frame> frames = frames_of(links, joints_rad);
+  const std::vector<LinkFrame> frames = link_frames(links, joints_rad);
   const Vec3 end = frames.back().origin_m;
   std::vector<LinkMotions> motions;
   for (std::size_t i = 0; i < links.size(); ++i) {
     // theta and d act about and along z of the frame before the link; a and alpha along and about x of the frame behind
     // it.
-    const Vec3 z = frames[i].z(), x = frames[i + 1].x();
+    const Vec3 z = z_of(frames[i]), x = x_of(frames[i + 1]);
     motions.push_back(
         {turn_about(z, frames[i].origin_m, end), {z, {}}, {x, {}}, turn_about(x, frames[i + 1].origin_m, end)});
   }

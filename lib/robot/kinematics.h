@@ -6,7 +6,7 @@
 //
 // Derivatives are motions of the flange seen in the base: `shift_m` of its origin and `turn_rad`, a rotation vector
 // applied on the left, R <- exp([turn]x) R, each per unit of what changes. They are exact, not differences. No gears,
-// no stops, no inverse kinematics: joint angles come with the recordings.
+// no stops (limits.h), no inverse kinematics (inverse/inverse_kinematics.h).
 #pragma once
 #include <span>
 #include <string>
@@ -36,6 +36,13 @@ struct LinkMotions {
 // `joints_rad`: one per link (not checked).
 Rigid<frame::Base, frame::Tool> flange(std::span<const Link> links, std::span<const double> joints_rad);
 
+// Of every link: frame 0 is the base, frame i stands behind i joints, the last is the flange.
+struct LinkFrame {
+  Mat3 rotation;  // of the frame's axes in the base
+  Vec3 origin_m;
+};
+std::vector<LinkFrame> link_frames(std::span<const Link> links, std::span<const double> joints_rad);
+
 // By each joint's angle; the same numbers as LinkMotions::theta.
 std::vector<Motion> joint_motions(std::span<const Link> links, std::span<const double> joints_rad);
 std::vector<LinkMotions> link_motions(std::span<const Link> links, std::span<const double> joints_rad);
@@ -44,7 +51,7 @@ std::vector<LinkMotions> link_motions(std::span<const Link> links, std::span<con
 // at the flange's origin makes, in m; positive where it turns the joint forwards.
 std::vector<double> weight_levers(std::span<const Link> links, std::span<const double> joints_rad);
 
-// Arms known by name, with nominal values: ur3, ur5, ur5e, ur10e, abb-irb-1600 (10/1.45), abb-irb-1600-1.2.
+// Arms known by name, with nominal values: ur3, ur3e, ur5, ur5e, ur10e, abb-irb-1600 (10/1.45), abb-irb-1600-1.2.
 std::span<const Arm> known_arms();
 // Error(data) at `place` that lists the names.
 const Arm& known_arm(const std::string& name, const std::string& place);

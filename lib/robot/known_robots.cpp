@@ -33,6 +33,7 @@ Arm irb_1600(const char* name, double upper_arm) {
 std::span<const Arm> known_arms() {
   static const std::vector<Arm> all = {
       universal("ur3", 0.1519, -0.24365, -0.21325, 0.11235, 0.08535, 0.0819),
+      universal("ur3e", 0.15185, -0.24355, -0.2132, 0.13105, 0.08535, 0.0921),
       universal("ur5", 0.089159, -0.425, -0.39225, 0.10915, 0.09465, 0.0823),
       universal("ur5e", 0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996),
       universal("ur10e", 0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655),

@@ -104,7 +104,11 @@ Arm arm_of(const manifest::Document& document, const std::string& robot) {
   const auto found = document.robots.find(robot);
   if (found == document.robots.end())
     throw Error(Exit::data, place, "is not described", "give its model, or its rows as dh");
-  const manifest::Robot& section = found->second;
+  return arm_of(document, found->second, pointer);
+}
+
+Arm arm_of(const manifest::Document& document, const manifest::Robot& section, const std::string& pointer) {
+  const std::string place = manifest::place(document, pointer);
   Arm arm;
   if (!section.dh.empty())
     arm = {section.model, section.dh, "the manifest"};

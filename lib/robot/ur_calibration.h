@@ -31,5 +31,7 @@ Arm calibrated(const Arm& nominal, const UrCalibration& calibration, const std::
 // The arm of the manifest's section "robots": known by name or given by its rows, with its calibration where it has
 // one.
 Arm arm_of(const manifest::Document& document, const std::string& robot);
+// Of a section like it, at `pointer` of the document.
+Arm arm_of(const manifest::Document& document, const manifest::Robot& section, const std::string& pointer);
 
 }  // namespace gonio::robot

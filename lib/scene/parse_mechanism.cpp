@@ -21,14 +21,8 @@ const mechanism::Parameter& parameter_of(const mechanism::Mechanism& mechanism, 
   throw Error(Exit::usage, place, mechanism.id + " has no parameter \"" + name + "\"", "it takes " + known);
 }
 
-// A plain number is in the parameter's SI unit; a unit of the same dimension may follow it.
 double number_of(const mechanism::Parameter& parameter, const std::string& text, const std::string& place) {
-  const bool plain = text.find_first_not_of("0123456789.eE+-") == std::string::npos;
-  const Dimension dimension = plain                     ? Dimension::none
-                              : parameter.unit == "m"   ? Dimension::length
-                              : parameter.unit == "rad" ? Dimension::angle
-                                                        : Dimension::ratio;
-  const double value = parse_quantity(text, dimension, place);
+  const double value = parse_in_unit(text, parameter.unit, place);
   if (!(value >= parameter.lower && value <= parameter.upper)) {
     std::ostringstream limits;
     limits << parameter.lower << " to " << parameter.upper << " " << parameter.unit;

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "base/error.h"
+#include "base/union_find.h"
 #include "volume/sample_window.h"
 #include "volume/topology.h"
 
@@ -17,29 +18,11 @@ namespace {
 
 using Run = Components::Run;  // while they are gathered, id is a label
 
-// Labels that turned out to be one: the smallest stands for all.
-class Labels {
- public:
-  std::uint32_t make() {
-    if (parent_.size() > std::numeric_limits<std::uint32_t>::max() - 1)
-      throw Error(Exit::data, "volume", "more than 4294967294 labels", "choose a threshold outside the noise");
-    parent_.push_back(static_cast<std::uint32_t>(parent_.size()));
-    return parent_.back();
-  }
-  std::uint32_t root(std::uint32_t label) {
-    while (parent_[label] != label) label = parent_[label] = parent_[parent_[label]];
-    return label;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-  std::size_t size() const { return parent_.size(); }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
+std::uint32_t new_label(UnionFind& labels) {
+  if (labels.size() > std::numeric_limits<std::uint32_t>::max() - 1)
+    throw Error(Exit::data, "volume", "more than 4294967294 labels", "choose a threshold outside the noise");
+  return labels.make();
+}
 
 // Calls body(a, b) for every run a of one row and run b of another that come within `reach` voxels along the row.
 template <class Body>
@@ -148,7 +131,7 @@ class Gathering {
     constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
     for (Run& run : row_.inside) run.id = none;
     for (Run& run : row_.outside) run.id = none;
-    const auto join = [](Labels& labels) {
+    const auto join = [](UnionFind& labels) {
       return [&labels](Run& run, const Run& other) {
         if (run.id == none)
           run.id = other.id;
@@ -165,11 +148,11 @@ class Gathering {
     });
     const bool border_row = j == 0 || j + 1 == size_[1] || k == 0 || k + 1 == size_[2];
     for (Run& run : row_.inside) {
-      if (run.id == none) run.id = inside_.make(), sums_.emplace_back();
+      if (run.id == none) run.id = new_label(inside_), sums_.emplace_back();
       add_sums(run, j, k, border_row);
     }
     for (Run& run : row_.outside) {
-      if (run.id == none) run.id = outside_.make(), open_.push_back(false);
+      if (run.id == none) run.id = new_label(outside_), open_.push_back(false);
       if (border_row || run.first == 0 || run.last + 1 == size_[0]) open_[run.id] = true;
     }
     note_contacts(j, k);
@@ -212,8 +195,8 @@ class Gathering {
 
   void thin_contacts() {
     for (std::uint64_t& pair : contacts_)
-      pair = std::uint64_t{inside_.root(static_cast<std::uint32_t>(pair >> 32))} << 32 |
-             outside_.root(static_cast<std::uint32_t>(pair));
+      pair = std::uint64_t{inside_.group(static_cast<std::uint32_t>(pair >> 32))} << 32 |
+             outside_.group(static_cast<std::uint32_t>(pair));
     std::sort(contacts_.begin(), contacts_.end());
     contacts_.erase(std::unique(contacts_.begin(), contacts_.end()), contacts_.end());
     contact_limit_ = std::max(contact_limit_, 2 * contacts_.size());
@@ -223,15 +206,15 @@ class Gathering {
     thin_contacts();
     std::vector<bool> open(outside_.size());
     for (std::uint32_t label = 0; label < outside_.size(); ++label)
-      if (open_[label]) open[outside_.root(label)] = true;
+      if (open_[label]) open[outside_.group(label)] = true;
     std::vector<bool> reached(inside_.size());
     for (const std::uint64_t pair : contacts_)
       if (open[static_cast<std::uint32_t>(pair)]) reached[static_cast<std::uint32_t>(pair >> 32)] = true;
     for (std::uint32_t label = 0; label < inside_.size(); ++label)
-      if (const std::uint32_t root = inside_.root(label); root != label) sums_[root].add(sums_[label]);
+      if (const std::uint32_t root = inside_.group(label); root != label) sums_[root].add(sums_[label]);
     std::vector<std::uint32_t> roots;
     for (std::uint32_t label = 0; label < inside_.size(); ++label)
-      if (inside_.root(label) == label) roots.push_back(label);
+      if (inside_.group(label) == label) roots.push_back(label);
     std::stable_sort(roots.begin(), roots.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return sums_[a].voxels > sums_[b].voxels; });
     std::vector<std::uint32_t> id(inside_.size());
@@ -240,7 +223,7 @@ class Gathering {
       found_.list.back().id = id[root] = static_cast<std::uint32_t>(found_.list.size());
       found_.list.back().enclosed = !reached[root] && !sums_[root].border;
     }
-    for (Run& run : found_.runs) run.id = id[inside_.root(run.id)];
+    for (Run& run : found_.runs) run.id = id[inside_.group(run.id)];
   }
 
   Component component_of(const Sums& sums) const {
@@ -263,7 +246,7 @@ class Gathering {
   Components found_;
   RowRuns row_;
   std::vector<std::vector<Run>> outside_here_, outside_below_;  // by row
-  Labels inside_, outside_;
+  UnionFind inside_, outside_;                                  // labels that turned out to be one
   std::vector<Sums> sums_;
   std::vector<bool> open_;
   std::vector<std::uint64_t> contacts_;

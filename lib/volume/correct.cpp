@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "stats/intervals.h"
 #include "volume/correct_parts.h"
 #include "volume/look_parts.h"
 
@@ -147,7 +148,7 @@ EdgeChange edge_change(io::VolumeSource& before, io::VolumeSource& after, double
   }
   if (change.edges == 0) return change;
   const auto n = static_cast<double>(change.edges);
-  change.width_before_voxels = median_of(widths_before), change.width_after_voxels = median_of(widths_after);
+  change.width_before_voxels = stats::median(widths_before), change.width_after_voxels = stats::median(widths_after);
   change.mean_shift_voxels = sum / n, change.rms_shift_voxels = std::sqrt(squares / n);
   change.sigma_mean_shift = std::sqrt(std::max(0.0, squares / n - sum * sum / n / n) / n);
   return change;

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "linear/solve.h"
+#include "stats/intervals.h"
 #include "volume/correct.h"
 #include "volume/look_parts.h"
 
@@ -78,7 +79,7 @@ Eigen::VectorXd polynomial_through(const std::vector<CupCell>& cells, const std:
     std::vector<double> rests;
     for (const CupCell& cell : cells)
       rests.push_back(std::abs(cell.share - monomials(degree, unit_place(size, cell.index)).dot(solution)));
-    bar = std::max(1e-9, 6 * median_of(rests));
+    bar = std::max(1e-9, 6 * stats::median(rests));
   }
   return solution;
 }
@@ -129,7 +130,7 @@ CuppingField fit_cupping(io::VolumeSource& source, double air, double object, in
     before.push_back(cell.share);
     fits.push_back(monomials(degree, unit_place(size, cell.index)).dot(solution));
   }
-  const double middle = median_of(fits);  // the material keeps its value
+  const double middle = stats::median(fits);  // the material keeps its value
   std::vector<double> after;
   field.lowest = HUGE_VAL, field.highest = -HUGE_VAL;
   for (std::size_t k = 0; k < cells.size(); ++k) {

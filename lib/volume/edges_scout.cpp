@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "stats/intervals.h"
 #include "volume/edge_profiles.h"
 
 namespace gonio::volume {
@@ -12,12 +13,6 @@ constexpr double box_edge = 10;               // voxels
 constexpr double least_count = 8;             // edges, weighted by how near their boxes are
 constexpr double width_share = 0.04;          // by which the width varies over a volume
 constexpr double least_plateau_share = 0.03;  // of the step: by which plateaus differ within a box
-
-double median_value(std::vector<double> v) {
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
 
 std::vector<Edge> fit_all(const std::vector<EdgeProfile>& profiles, const EdgeWish& wish, const EdgeCommon* common,
                           bool slopes) {
@@ -90,7 +85,7 @@ std::optional<double> common_width(const std::vector<EdgeProfile>& profiles, dou
   for (const auto& [kind, mean] : kinds)
     if (mean.members() >= least_members) conclude(kind, mean);
   if (all.empty()) return {};
-  return median_value(alone.size() >= 2 ? alone : all);
+  return stats::median(alone.size() >= 2 ? alone : all);
 }
 
 }  // namespace
@@ -179,9 +174,9 @@ EdgeCommon common_of(const std::vector<EdgeProfile>& scouts, const EdgeWish& wis
   EdgeCommon common;
   if (widths.empty()) return common;
   // The median of chi-square with the few degrees that a profile leaves is 0.85 of its mean.
-  common.noise = wish.noise > 0 ? wish.noise : std::sqrt(median_value(excess) / 0.85);
+  common.noise = wish.noise > 0 ? wish.noise : std::sqrt(stats::median(excess) / 0.85);
   common.width =
-      wish.width ? *wish.width : common_width(scouts, wish.step_voxels, common.noise).value_or(median_value(widths));
+      wish.width ? *wish.width : common_width(scouts, wish.step_voxels, common.noise).value_or(stats::median(widths));
   EdgeWish told = wish;
   told.noise = common.noise;
   edges = fit_all(scouts, told, &common, true);

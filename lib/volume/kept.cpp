@@ -1,17 +1,15 @@
 // Components that stay, and the volume without the others.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/text.h"
 #include "volume/topology.h"
 
 namespace gonio::volume {
 namespace {
 
 std::string figure(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+  return format("%.6g", value);
 }
 
 // By position in the list: has a voxel whose centre lies in the box.

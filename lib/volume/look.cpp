@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
+#include "stats/intervals.h"
 #include "volume/look_parts.h"
 #include "volume/threshold.h"
 
@@ -20,12 +22,12 @@ void look_at_edges(const std::vector<PatchPoint>& patches, const Sides& sides, L
   for (const PatchFit& fit : all_fitted(patches, sides, look.noise_air))
     if (fit.good) widths.push_back(fit.width);
   if (widths.size() < fewest_patches) return;
-  const double median = median_of(widths);
+  const double median = stats::median(widths);
   std::vector<double> off;
   for (const double w : widths) off.push_back(std::abs(w - median));
   look.edge_width_voxels = median;
   // Of a median; patches that share voxels count half.
-  look.sigma_edge_width = 1.2533 * 1.4826 * median_of(off) / std::sqrt(static_cast<double>(widths.size()) / 2);
+  look.sigma_edge_width = 1.2533 * 1.4826 * stats::median(off) / std::sqrt(static_cast<double>(widths.size()) / 2);
 }
 
 // Of one material: near the rim against far inside.
@@ -45,15 +47,18 @@ double cupping_of(const CoarseField& field, const Sides& sides) {
 
 // Beyond the circle that all views have seen, scanners store a constant: neither air nor free of noise.
 void leave_out_padding(const Slab& slab, Flags& air) {
-  const std::size_t w = slab.width, h = slab.height;
+  const std::size_t w = slab.width, h = slab.height, slice = w * h;
   const double radius = static_cast<double>(std::min(w, h)) / 2 - 2;
-  for (std::size_t at = 0, j = 0; at + w < air.size(); at += w, j = j + 1 < h ? j + 1 : 0)
-    for (std::size_t i = 0; i + 1 < w; ++i) {
-      const double x = static_cast<double>(i) - static_cast<double>(w - 1) / 2;
-      if (std::hypot(x, static_cast<double>(j) - static_cast<double>(h - 1) / 2) < radius) continue;
-      const float* v = slab.values.data() + at + i;
-      if (v[0] == v[1] || v[0] == v[w]) air[at + i] = 0;
-    }
+  const std::vector<double> radii = radii_of_slice(slab);
+  parallel_for(0, air.size() / slice, [&](std::size_t k) {
+    for (std::size_t j = 0; j < h && (k * h + j + 1) * w < air.size(); ++j)
+      for (std::size_t i = 0; i + 1 < w; ++i) {
+        if (radii[j * w + i] < radius) continue;
+        const std::size_t at = k * slice + j * w + i;
+        const float* v = slab.values.data() + at;
+        if (v[0] == v[1] || v[0] == v[w]) air[at] = 0;
+      }
+  });
 }
 
 }  // namespace
@@ -79,8 +84,10 @@ Look look(io::VolumeSource& source) {
   for_each_probe(source, wish, [&](const Slab& slab) {
     const std::vector<float> means = box_means(slab);
     Flags air(means.size()), object(means.size());
-    for (std::size_t v = 0; v < means.size(); ++v)
-      air[v] = sides.surely_air(means[v]), object[v] = sides.surely_object(means[v]);
+    parallel_for(
+        0, means.size(),
+        [&](std::size_t v) { air[v] = sides.surely_air(means[v]), object[v] = sides.surely_object(means[v]); },
+        std::size_t{1} << 16);
     leave_out_padding(slab, air);
     noise.take(slab, air, object);
     take_patches(slab, sides, patches);

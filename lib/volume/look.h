@@ -26,7 +26,8 @@ Histogram histogram(io::VolumeSource& source, std::size_t bins = 4096);
 // one material with a slope in it (cupping), and are not told apart.
 struct Material {
   double mean = 0, sd = 0, share = 0;
-  double sigma_mean = 0;  // standard error of the mean, from the effective number of voxels
+  double sigma_mean = 0;     // standard error of the mean, from the effective number of voxels
+  double partial_above = 0;  // share of the voxels that hold this one and the next denser
 };
 struct Mixture {
   std::vector<Material> materials;  // by mean

@@ -96,13 +96,14 @@ CoarseField coarse_field(io::VolumeSource& source, const Sides& sides) {
 std::size_t voxels_at_the_border(io::VolumeSource& source, const Sides& sides) {
   const auto& size = source.head().size;
   const double radius = static_cast<double>(std::min(size[0], size[1])) / 2;
-  const double ci = (static_cast<double>(size[0]) - 1) / 2, cj = (static_cast<double>(size[1]) - 1) / 2;
+  std::vector<double> radii;
   std::vector<std::size_t> face(size[2], 0), rim(size[2], 0);
   bool constant_outside = true;
   float outside = 0;
   for_each_slab(source, {32, 1, static_cast<float>(sides.air)}, [&](const Slab& slab) {
     const std::vector<float> means = box_means(slab);
     const std::size_t slice = slab.width * slab.height;
+    if (radii.empty()) radii = radii_of_slice(slab);
     if (slab.first == 0) outside = slab.values[slab.margin * slice];
     std::vector<std::uint8_t> same(slab.count, 1);
     parallel_for(0, slab.count, [&](std::size_t k) {
@@ -111,7 +112,7 @@ std::size_t voxels_at_the_border(io::VolumeSource& source, const Sides& sides) {
       for (std::size_t j = 0; j < slab.height; ++j)
         for (std::size_t i = 0; i < slab.width; ++i) {
           const std::size_t at = base + j * slab.width + i;
-          const double r = std::hypot(static_cast<double>(i) - ci, static_cast<double>(j) - cj);
+          const double r = radii[j * slab.width + i];
           if (r > radius + 1 && slab.values[at] != outside) same[k] = 0;
           // A mean over neighbours as well as the voxel: single noisy ones are no object.
           if (!(slab.values[at] > sides.half()) || !(means[at] > sides.half())) continue;

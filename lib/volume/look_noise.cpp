@@ -58,7 +58,7 @@ void NoiseProbe::finish(Look& look) {
     return tiers.back().all();
   };
   const auto here = [](const std::vector<Residual>& residuals) {
-    std::vector<float> values;
+    std::vector<double> values;
     for (const Residual& r : residuals) values.push_back(r.here);
     return values;
   };

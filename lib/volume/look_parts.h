@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "volume/look.h"
@@ -35,13 +36,15 @@ void for_each_probe(io::VolumeSource& source, const ProbeWish& wish, const std::
 
 // Arrays as large as the slab with its margins.
 std::vector<float> box_means(const Slab& slab);  // over 3 x 3 x 3; borders repeat
-using Flags = std::vector<std::uint8_t>;
+using Flags = std::vector<std::uint8_t>;         // 0 or 1
 // What is left after a cube of 2 r + 1 voxels has been rolled along inside; nothing within r of the array's ends.
 Flags eroded(const Slab& slab, Flags flags, std::size_t r);
 
+// Distances of a slice's pixels from its middle, so that no voxel asks for a root.
+std::vector<double> radii_of_slice(const Slab& slab);
+
 // sd of a normal law with foreign values among it: values beyond 3 sd are left out until nothing changes.
-double robust_sd(std::vector<float> values);
-double median_of(std::vector<double> values);
+double robust_sd(std::span<const double> values);
 
 // Keeps every n-th of what it is offered, n doubling whenever there are `most`.
 template <class T>

@@ -21,18 +21,30 @@ struct SliceSums {
   double products = 0, weights = 0;
 };
 
-SliceSums rings_of_slice(const Slab& slab, std::size_t at, const Flags& flags) {
+// Of every pixel of a slice: twice its radius in whole voxels, plus one where its sector is odd.
+std::vector<std::uint32_t> ring_and_sector(const Slab& slab) {
+  const double ci = (static_cast<double>(slab.width) - 1) / 2, cj = (static_cast<double>(slab.height) - 1) / 2;
+  std::vector<std::uint32_t> all(slab.width * slab.height);
+  parallel_for(0, slab.height, [&](std::size_t j) {
+    for (std::size_t i = 0; i < slab.width; ++i) {
+      const double x = static_cast<double>(i) - ci, y = static_cast<double>(j) - cj;
+      const auto sector = static_cast<std::size_t>((std::atan2(y, x) / pi + 1) / 2 * sectors) % 2;
+      all[j * slab.width + i] =
+          static_cast<std::uint32_t>(2 * static_cast<std::size_t>(std::hypot(x, y) + 0.5) + sector);
+    }
+  });
+  return all;
+}
+
+SliceSums rings_of_slice(const Slab& slab, std::size_t at, const Flags& flags,
+                         const std::vector<std::uint32_t>& places) {
   const double ci = (static_cast<double>(slab.width) - 1) / 2, cj = (static_cast<double>(slab.height) - 1) / 2;
   const auto radii = static_cast<std::size_t>(std::hypot(ci, cj)) + 2;
   std::vector<std::array<double, 2>> sum(radii), count(radii);
-  for (std::size_t j = 0; j < slab.height; ++j)
-    for (std::size_t i = 0; i < slab.width; ++i) {
-      const std::size_t v = at + j * slab.width + i;
-      if (!flags[v]) continue;
-      const double x = static_cast<double>(i) - ci, y = static_cast<double>(j) - cj;
-      const auto sector = static_cast<std::size_t>((std::atan2(y, x) / pi + 1) / 2 * sectors) % 2;
-      const auto r = static_cast<std::size_t>(std::hypot(x, y) + 0.5);
-      sum[r][sector] += slab.values[v], count[r][sector] += 1;
+  for (std::size_t v = 0; v < places.size(); ++v)
+    if (flags[at + v]) {
+      const std::size_t r = places[v] / 2, sector = places[v] % 2;
+      sum[r][sector] += slab.values[at + v], count[r][sector] += 1;
     }
   SliceSums result;
   for (std::size_t r = 3; r + 1 < radii; ++r) {
@@ -92,10 +104,11 @@ std::vector<std::array<double, 2>> hull_of(const Slab& slab, const float* means,
 void RingProbe::take(const Slab& slab, const Flags& air, const Flags& object) {
   const std::size_t slice = slab.width * slab.height;
   std::vector<SliceSums> sums(2 * slab.count);
+  const std::vector<std::uint32_t> places = ring_and_sector(slab);
   parallel_for(0, slab.count, [&](std::size_t k) {
     const std::size_t at = (slab.margin + k) * slice;
-    sums[2 * k] = rings_of_slice(slab, at, air);
-    sums[2 * k + 1] = rings_of_slice(slab, at, object);
+    sums[2 * k] = rings_of_slice(slab, at, air, places);
+    sums[2 * k + 1] = rings_of_slice(slab, at, object, places);
   });
   for (const SliceSums& s : sums) products_ += s.products, weights_ += s.weights;
 }
@@ -108,6 +121,7 @@ void StreakProbe::take(const Slab& slab, const std::vector<float>& means, const 
   const std::size_t w = slab.width, h = slab.height, slice = w * h;
   const double radius = static_cast<double>(std::min(w, h)) / 2 - 3,
                apart = std::max(5.0, 0.04 * static_cast<double>(w));
+  const std::vector<double> radii = radii_of_slice(slab);
   std::vector<std::array<std::array<double, 3>, 2>> sums(
       slab.count);  // count, sum, squares within and outside the hull
   parallel_for(0, slab.count, [&](std::size_t k) {
@@ -116,8 +130,8 @@ void StreakProbe::take(const Slab& slab, const std::vector<float>& means, const 
     for (std::size_t j = 0; j < h; ++j)
       for (std::size_t i = 0; i < w; ++i) {
         if (!deep_air[base + j * w + i]) continue;
-        const double x = static_cast<double>(i), off_i = x - static_cast<double>(w - 1) / 2;
-        const bool in_circle = std::hypot(off_i, static_cast<double>(j) - static_cast<double>(h - 1) / 2) < radius;
+        const double x = static_cast<double>(i);
+        const bool in_circle = radii[j * w + i] < radius;
         const bool empty = hull[j][0] > hull[j][1], within = !empty && x > hull[j][0] && x < hull[j][1];
         // Rows beyond the hull's ends are outside as a whole; within its rows, what lies well beside it.
         if (!within && (!in_circle || (!empty && x > hull[j][0] - apart && x < hull[j][1] + apart))) continue;

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "linear/symmetric_eigen.h"
+#include "stats/intervals.h"
 #include "volume/contour_shape.h"
 #include "volume/markers_parts.h"
 
@@ -17,19 +18,6 @@ namespace {
 constexpr double same_value = 0.15;  // of the step from air: values that agree so well are of one material
 constexpr double own_share = 0.06;   // of the directions: a sphere that goes on into its like so far grew there
 constexpr double least_flatness = 0.12;
-
-std::string say(const char* format, double a, double b = 0, double c = 0) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, a, b, c);
-  return text;
-}
-
-double middle_of(std::vector<double> v) {
-  if (v.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto at = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::ranges::nth_element(v, at);
-  return *at;
-}
 
 // Least eigenvalue of the mean of d d' over the directions with an edge.
 double flatness_of(const Sphere& s) {
@@ -59,8 +47,8 @@ Evidence evidence(const Sphere& s, const Crop& crop, Vec3 scale) {
   }
   std::ranges::sort(without);
   if (!without.empty()) e.air = without[without.size() / 5];  // air is what lies lowest round it
-  e.within = middle_of(shell);
-  e.centre = middle_of(core);
+  e.within = stats::median(shell);
+  e.centre = stats::median(core);
   e.flatness = s.edges.empty() ? 0 : flatness_of(s);
   return e;
 }
@@ -89,20 +77,21 @@ double grown_share(const Sphere& s, const Evidence& e, const Crop& crop, Vec3 sc
 
 std::string reason_against(const Sphere& s, const Evidence& e, const MarkerWish& wish) {
   if (std::abs(e.centre - e.within) > 0.4 * std::abs(e.within - e.air))
-    return say("is hollow: %.4g in the middle, %.4g beneath the surface", e.centre, e.within);
-  if (s.edges.size() < 12)
-    return say("shows an edge in %.0f directions only (limit 12)", static_cast<double>(s.edges.size()));
+    return format("is hollow: %.4g in the middle, %.4g beneath the surface", e.centre, e.within);
+  if (s.edges.size() < 12) return format("shows an edge in %zu directions only (limit 12)", s.edges.size());
   if (wish.radius && std::abs(s.radius - *wish.radius) > wish.radius_tolerance * *wish.radius)
-    return say("radius %.2f is not the known %.2f within %.0f %%", s.radius, *wish.radius, 100 * wish.radius_tolerance);
+    return format("radius %.2f is not the known %.2f within %.0f %%", s.radius, *wish.radius,
+                  100 * wish.radius_tolerance);
   const double slack = std::max(3 * s.sigma_radius, 0.02 * s.radius);
   if (!wish.radius && (s.radius < wish.smallest - slack || s.radius > wish.largest + slack))
-    return say("radius %.2f is not within %.2f to %.2f", s.radius, wish.smallest, wish.largest);
+    return format("radius %.2f is not within %.2f to %.2f", s.radius, wish.smallest, wish.largest);
   if (s.cover() < wish.least_cover)
-    return say("covers %.2f of the directions (limit %.2f)", s.cover(), wish.least_cover);
+    return format("covers %.2f of the directions (limit %.2f)", s.cover(), wish.least_cover);
   if (e.flatness < least_flatness)
-    return say("edges lie round a belt (least moment %.2f, limit %.2f): a tube or a ring", e.flatness, least_flatness);
+    return format("edges lie round a belt (least moment %.2f, limit %.2f): a tube or a ring", e.flatness,
+                  least_flatness);
   const double limit = std::max(0.25, 0.02 * s.radius) + 0.5 * s.edges[s.edges.size() / 2].sigma;
-  if (s.rms > limit) return say("is not round: edges are off by %.2f voxel rms (limit %.2f)", s.rms, limit);
+  if (s.rms > limit) return format("is not round: edges are off by %.2f voxel rms (limit %.2f)", s.rms, limit);
   return {};
 }
 
@@ -149,9 +138,8 @@ void judge_together(std::vector<Judged>& all, const MarkerWish& wish) {
   for (const Judged& j : all) free_standing += j.why.empty() && !grew(j) ? 1 : 0;
   for (Judged& j : all) {
     if (!j.why.empty() || !grew(j)) continue;
-    const std::string grown =
-        marker::say("goes on into what it sits on with its own value %.4g over %.2f of the directions",
-                    j.evidence.within, j.evidence.grown);
+    const std::string grown = format("goes on into what it sits on with its own value %.4g over %.2f of the directions",
+                                     j.evidence.within, j.evidence.grown);
     if (free_standing > 0) {
       j.why = grown + ": part of the object";
       continue;
@@ -198,13 +186,13 @@ Marker stated(const Judged& j, Vec3 scale) {
 void demand(const Contour& surface, double threshold, const MarkerWish& wish) {
   if (surface.positions.empty())
     throw Error(Exit::data, "markers",
-                marker::say("no surface at the threshold %.6g: every value lies on one side of it", threshold),
+                format("no surface at the threshold %.6g: every value lies on one side of it", threshold),
                 "choose a threshold between air and the markers");
   const double least = std::min({wish.scale.x, wish.scale.y, wish.scale.z});
   if (!(least > 0) || !(wish.smallest > 0) || !(wish.largest > wish.smallest) || (wish.radius && !(*wish.radius > 1.5)))
     throw Error(Exit::data, "markers",
-                wish.radius ? marker::say("a radius of %.3g voxels is none that can be seen (limit 1.5)", *wish.radius)
-                            : marker::say("radii from %.3g to %.3g voxels are no range", wish.smallest, wish.largest),
+                wish.radius ? format("a radius of %.3g voxels is none that can be seen (limit 1.5)", *wish.radius)
+                            : format("radii from %.3g to %.3g voxels are no range", wish.smallest, wish.largest),
                 "state the markers' radius as a length, and the size of a voxel");
 }
 

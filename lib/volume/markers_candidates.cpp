@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "linear/solve.h"
+#include "stats/intervals.h"
 #include "volume/contour_shape.h"
 #include "volume/markers_parts.h"
 
@@ -124,9 +125,7 @@ Candidate fitted_round(const Cloud& cloud, Candidate c, const std::vector<std::u
     Eigen::Vector4d g = Eigen::Vector4d::Zero();
     std::vector<double> off;
     for (const std::uint32_t v : vertices) off.push_back(std::abs(norm(cloud.place(v) - c.centre) - radius));
-    std::vector<double> sorted = off;
-    std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
-    const double limit = std::max(0.15, 3 * sorted[sorted.size() / 2]);
+    const double limit = std::max(0.15, 3 * stats::median(off));
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       const Vec3 d = cloud.place(vertices[i]) - c.centre;
       const double r = norm(d), w = off[i] <= limit ? 1 : limit / off[i];

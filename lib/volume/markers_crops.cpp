@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stats/intervals.h"
 #include "volume/contour_shape.h"
 #include "volume/markers_parts.h"
 #include "volume/slabs.h"
@@ -52,12 +53,6 @@ std::vector<Crop> crops(io::VolumeSource& source, const std::vector<Candidate>& 
 
 namespace {
 
-double median_of_differences(std::vector<double>& d) {
-  const auto at = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
-  std::ranges::nth_element(d, at);
-  return *at;
-}
-
 // Sums of (v - v')^2 / 2 over voxels `lag` apart, both within.
 struct Differences {
   std::array<double, 4> squares{}, count{};
@@ -105,7 +100,7 @@ Differences differences_without(const Candidate& sphere, const Crop& crop, Vec3 
         d.push_back(std::abs(static_cast<double>(crop.values[v]) - crop.values[v + lag * stride[axis]]));
       }
     if (d.size() < 20) return {};
-    const double sd = median_of_differences(d) / 0.6745;
+    const double sd = stats::median(d) / 0.6745;
     result.count[lag] = static_cast<double>(d.size()), result.squares[lag] = result.count[lag] * sd * sd / 2;
   }
   return result;

@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "linear/solve.h"
 #include "linear/symmetric_eigen.h"
+#include "stats/intervals.h"
 #include "volume/contour_shape.h"
 #include "volume/markers_parts.h"
 #include "volume/threshold.h"
@@ -22,14 +23,6 @@ namespace {
 constexpr double reach = 3, step = 0.5;  // voxels
 constexpr double width_guess = 0.85;
 constexpr double model_sd = 0.02;  // voxels: what an edge is off by, whatever its noise
-
-double quantile(std::vector<double> v, double share) {
-  if (v.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto at = v.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                  v.size() - 1, static_cast<std::size_t>(share * static_cast<double>(v.size()))));
-  std::ranges::nth_element(v, at);
-  return *at;
-}
 
 // Correlation of errors as far apart along one axis as the table's index says, in twentieths of a voxel.
 class Sharing {
@@ -71,7 +64,7 @@ class Rays {
       if (std::isfinite(v)) within.push_back(v);
       if (std::isfinite(w)) without.push_back(w);
     }
-    return {quantile(without, 0.2), quantile(within, 0.5)};
+    return {stats::quantile(without, 0.2), stats::median(within)};
   }
 
   // The edge along one radius; sigma 0: none.
@@ -145,9 +138,9 @@ void collect(Sphere& s, const Rays& rays, std::optional<double> width, const std
   std::vector<double> widths, excess;
   for (std::size_t n = 0; n < count; ++n)
     if (all[n].sigma > 0) widths.push_back(all[n].width), excess.push_back(all[n].excess);
-  s.width = quantile(widths, 0.5);
+  s.width = stats::median(widths);
   // Misfits that all directions share are the model's or the scanner's (streaks); only what stands out is another body.
-  const double most = known ? 4 * std::max(1.0, quantile(excess, 0.5)) : HUGE_VAL;
+  const double most = known ? 4 * std::max(1.0, stats::median(excess)) : HUGE_VAL;
   for (std::size_t n = 0; n < count; ++n)
     s.covered[n] =
         all[n].sigma > 0 && all[n].width < 1.8 * s.width && all[n].width > 0.45 * s.width && all[n].excess < most;
@@ -160,7 +153,7 @@ void collect(Sphere& s, const Rays& rays, std::optional<double> width, const std
 Levels levels_of(const std::vector<RadialEdge>& edges) {
   std::vector<double> air, object;
   for (const RadialEdge& e : edges) air.push_back(e.air), object.push_back(e.object);
-  return {quantile(air, 0.5), quantile(object, 0.5)};
+  return {stats::median(air), stats::median(object)};
 }
 
 using Slope = Eigen::Vector4d;
@@ -177,7 +170,7 @@ std::vector<double> solve(Sphere& s, const std::vector<Vec3>& places, bool held)
     std::vector<double> z;
     for (std::size_t i = 0; i < places.size(); ++i)
       z.push_back(std::abs(norm(places[i] - s.centre) - s.radius) / std::hypot(s.edges[i].sigma, model_sd));
-    const double limit = 2.5 * std::max(1.0, quantile(z, 0.5) / 0.6745);
+    const double limit = 2.5 * std::max(1.0, stats::median(z) / 0.6745);
     Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
     Slope g = Slope::Zero();
     double sum = 0, all = 0;

@@ -21,6 +21,9 @@ constexpr double voxels_per_fact = 27;
 // Two normal components of which neither has a mode of its own are one material with a slope in it (Ashman, Bird & Zepf
 // 1994: D = |m1 - m2| / rms(s1, s2) > 2).
 constexpr double least_separation = 2.2, least_share = 2e-5;
+// What lies between two materials is where they meet, and no volume is mostly that: two heaps with more between them
+// are the ends of noise that is spread evenly (dithered, or clipped).
+constexpr double most_partial = 0.5;
 
 struct Bins {
   std::vector<double> at, weight;  // centre, share of all voxels
@@ -138,8 +141,9 @@ Mixture mixture_of(const Model& m, const Bins& bins) {
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return m.mean[a] < m.mean[b]; });
   for (const std::size_t c : order) {
     const double variance = std::max(m.sd[c] * m.sd[c] - bins.width * bins.width / 12, 0.0);
-    mixture.materials.push_back(
-        {m.mean[c], std::sqrt(variance), m.share[c], m.sd[c] / std::sqrt(std::max(1.0, m.share[c] * facts))});
+    mixture.materials.push_back({m.mean[c], std::sqrt(variance), m.share[c],
+                                 m.sd[c] / std::sqrt(std::max(1.0, m.share[c] * facts)),
+                                 c < m.mixed.size() ? m.mixed[c] : 0});
   }
   mixture.partial_share = std::accumulate(m.mixed.begin(), m.mixed.end(), 0.0);
   const double numbers = 4 * static_cast<double>(m.mean.size()) - 2;  // means, widths, shares, mixed shares, sum 1
@@ -153,6 +157,7 @@ bool is_of_separate_materials(const Mixture& mixture) {
     if (b.share < least_share) return false;
     if (c == 0) continue;
     const Material& a = mixture.materials[c - 1];
+    if (a.partial_above > most_partial) return false;
     if (!(b.mean - a.mean > least_separation * std::sqrt((a.sd * a.sd + b.sd * b.sd) / 2))) return false;
   }
   return true;

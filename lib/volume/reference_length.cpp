@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "stats/intervals.h"
 #include "volume/contour_shape.h"
 #include "volume/markers_parts.h"
 #include "volume/threshold.h"
@@ -27,12 +28,6 @@ struct Rays {
   double low = 0, high = 0;  // air and object
 };
 
-double median_ray(std::vector<double> v) {
-  const auto at = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), at, v.end());
-  return *at;
-}
-
 // Radii whose ends have the values that most have: within a quarter of the step.
 Rays rays_of(const ReferenceSphere& sphere, const Crop& crop, Vec3 scale) {
   Rays all;
@@ -50,7 +45,7 @@ Rays rays_of(const ReferenceSphere& sphere, const Crop& crop, Vec3 scale) {
     all.rays.push_back(std::move(ray));
   }
   if (all.rays.empty()) return all;
-  all.high = median_ray(first);
+  all.high = stats::median(first);
   std::ranges::sort(last);
   all.low = last[last.size() / 5];
   const double slack = 0.25 * std::abs(all.high - all.low);

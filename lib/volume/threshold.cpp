@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "volume/contour_shape.h"
 #include "volume/slabs.h"
 
@@ -13,9 +13,7 @@ namespace gonio::volume {
 namespace {
 
 std::string short_number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", x);
-  return text;
+  return format("%.4g", x);
 }
 
 void demand_two(const Mixture& mixture, std::size_t lower, std::size_t upper) {

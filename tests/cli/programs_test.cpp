@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "base/atomic_file.h"
@@ -153,30 +154,71 @@ std::vector<std::string> examples_of(const std::string& prose) {
   return blocks;
 }
 
-class Examples : public testing::TestWithParam<std::string> {};
-std::vector<std::string> names_of_programs() {
-  std::vector<std::string> names;
-  for (const auto* program : cli::all_programs()) names.push_back(program->name);
-  return names;
+std::vector<std::string> examples_of_page(const std::string& program) {
+  return examples_of(read_file(std::filesystem::path(GONIO_SOURCE) / "man" / "prose" / (program + ".md")));
 }
-std::string as_identifier(const testing::TestParamInfo<std::string>& program) {
-  std::string name = program.param;
+
+// Pages that begin with the same command, and what they begin with: whole lines that all of them have. It runs once,
+// and each page goes on in a copy of the folder that it left. Four pages photograph the built-in board, a quarter of a
+// minute.
+struct Pages {
+  std::vector<std::string> programs;
+  std::string beginning;
+};
+std::vector<Pages> pages_by_beginning() {
+  std::map<std::string, Pages> by_line;
+  for (const auto* program : cli::all_programs()) {
+    const auto blocks = examples_of_page(program->name);
+    const std::string block = blocks.empty() ? program->name : blocks[0], line = block.substr(0, block.find('\n') + 1);
+    Pages& pages = by_line[line];
+    if (pages.programs.empty()) pages.beginning = block;
+    const auto parted = std::ranges::mismatch(pages.beginning, block).in1 - pages.beginning.begin();
+    pages.beginning.resize(pages.beginning.substr(0, static_cast<std::size_t>(parted)).rfind('\n') + 1);
+    pages.programs.push_back(program->name);
+  }
+  std::vector<Pages> all;
+  for (auto& [line, pages] : by_line) {
+    // Not in the middle of a command that goes on.
+    if (pages.programs.size() == 1 || pages.beginning.find_first_of("|\\{") != std::string::npos) pages.beginning = "";
+    all.push_back(pages);
+  }
+  return all;
+}
+
+void PrintTo(const Pages& pages, std::ostream* out) {
+  *out << testing::PrintToString(pages.programs);
+}
+
+class Examples : public testing::TestWithParam<Pages> {};
+std::string as_identifier(const testing::TestParamInfo<Pages>& pages) {
+  std::string name;
+  for (const std::string& program : pages.param.programs) name += (name.empty() ? "" : "_") + program;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 }
 
 TEST_P(Examples, OfTheManPageRun) {
-  const std::string path = std::string("PATH=") + GONIO_BIN + ":$PATH\n";
-  const auto blocks =
-      examples_of(read_file(std::filesystem::path(GONIO_SOURCE) / "man" / "prose" / (GetParam() + ".md")));
-  EXPECT_FALSE(blocks.empty());
-  ScratchFolder folder;  // the examples of one page build on each other
-  for (const auto& block : blocks) {
-    const Ended ended = run({"bash", "-euc", path + block}, folder.path());
+  const auto& [programs, beginning] = GetParam();
+  const ScratchFolder scratch;
+  const auto shell = [&](const std::string& block, const std::filesystem::path& folder) {
+    const Ended ended = run({"bash", "-euc", std::string("PATH=") + GONIO_BIN + ":$PATH\n" + block}, folder);
     EXPECT_EQ(ended.status, 0) << block << ended.err;
+  };
+  const auto begun = scratch / "begun";
+  std::filesystem::create_directory(begun);
+  shell(beginning, begun);
+  for (const std::string& program : programs) {
+    SCOPED_TRACE(program);
+    const auto folder = scratch / program;  // the examples of one page build on each other
+    std::filesystem::copy(begun, folder, std::filesystem::copy_options::recursive);
+    auto blocks = examples_of_page(program);
+    ASSERT_FALSE(blocks.empty());
+    ASSERT_TRUE(blocks[0].starts_with(beginning));
+    blocks[0].erase(0, beginning.size());
+    for (const auto& block : blocks) shell(block, folder);
   }
 }
-INSTANTIATE_TEST_SUITE_P(Programs, Examples, testing::ValuesIn(names_of_programs()), as_identifier);
+INSTANTIATE_TEST_SUITE_P(Programs, Examples, testing::ValuesIn(pages_by_beginning()), as_identifier);
 
 }  // namespace
 }  // namespace gonio::tests

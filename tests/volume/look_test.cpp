@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -112,12 +113,66 @@ TEST(Mixture, ACupIsNotASecondMaterial) {
   EXPECT_EQ(materials(h).materials.size(), 2u);
 }
 
+// A top hat is two narrow heaps with what lies between them, to a mixture that knows no better.
+TEST(Mixture, NoiseThatIsSpreadEvenlyIsOneMaterial) {
+  Histogram h;
+  h.low = 19850, h.high = 40150, h.counts.assign(4060, 0);
+  Random random(13);
+  const auto add = [&](double value) { ++h.counts[static_cast<std::size_t>((value - 19850) / 5)]; };
+  for (int k = 0; k < 2'000'000; ++k) add(20000 + 300 * (random.uniform() - 0.5));
+  for (int k = 0; k < 15'000; ++k) add(39770 + 300 * (random.uniform() - 0.5));
+  for (int k = 0; k < 15'000; ++k) add(random.uniform(20000, 39800));
+  const Mixture m = materials(h);
+  ASSERT_EQ(m.materials.size(), 2u);
+  EXPECT_NEAR(m.materials[0].mean, 20000, 10);
+  EXPECT_NEAR(m.materials[1].mean, 39770, 60);
+}
+
 TEST(Mixture, OneValueIsSaidToBeOne) {
   const io::VolumeData v = empty_volume(8);
   const Look l = looked(v);
   EXPECT_EQ(l.mixture.materials.size(), 1u);
   EXPECT_EQ(l.noise_air, 0);
   EXPECT_THROW(materials(l.histogram, 2), Error);
+}
+
+// Rows are worked on many samples at a time: against every voxel's own neighbours, sizes that fill no register.
+TEST(LookParts, MeansAndErosionAreWhatEveryVoxelsNeighboursSay) {
+  Random random(14);
+  Slab slab{21, 13, 0, 9, 2, {}};
+  const std::size_t depth = slab.count + 2 * slab.margin, w = slab.width, h = slab.height;
+  slab.values.resize(w * h * depth);
+  Flags flags(slab.values.size());
+  for (float& v : slab.values) v = static_cast<float>(random.uniform(-1, 1));
+  for (auto& f : flags) f = random.uniform() < 0.97;
+  const std::vector<float> means = box_means(slab);
+  const auto held = [](std::ptrdiff_t x, std::size_t n) {
+    return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(x, 0, static_cast<std::ptrdiff_t>(n) - 1));
+  };
+  const auto around = [&](std::size_t at, std::ptrdiff_t r, const auto& body) {
+    const auto i = static_cast<std::ptrdiff_t>(at % w), j = static_cast<std::ptrdiff_t>(at / w % h),
+               k = static_cast<std::ptrdiff_t>(at / (w * h));
+    for (std::ptrdiff_t c = k - r; c <= k + r; ++c)
+      for (std::ptrdiff_t b = j - r; b <= j + r; ++b)
+        for (std::ptrdiff_t a = i - r; a <= i + r; ++a) {
+          const std::size_t near = (held(c, depth) * h + held(b, h)) * w + held(a, w);
+          body(near, held(a, w) == static_cast<std::size_t>(a) && held(b, h) == static_cast<std::size_t>(b) &&
+                         held(c, depth) == static_cast<std::size_t>(c));
+        }
+  };
+  for (std::size_t at = 0; at < slab.values.size(); ++at) {
+    double sum = 0;
+    around(at, 1, [&](std::size_t near, bool) { sum += slab.values[near] / 27.0; });
+    ASSERT_NEAR(means[at], sum, 1e-6) << at;
+  }
+  for (const std::ptrdiff_t r : {1, 2, 4}) {
+    const Flags left = eroded(slab, flags, static_cast<std::size_t>(r));
+    for (std::size_t at = 0; at < flags.size(); ++at) {
+      bool all = true;
+      around(at, r, [&](std::size_t near, bool inside) { all = all && inside && flags[near] != 0; });
+      ASSERT_EQ(left[at] != 0, all) << at << " " << r;
+    }
+  }
 }
 
 TEST(Look, NoiseIsWithinThreePercentOfWhatWasAdded) {
@@ -140,7 +195,7 @@ TEST(Look, NoiseOfAScanIsThatOfItsPhotons) {
   const io::VolumeData clean = ct::scan(p, s);
   s.photons = 20000;
   io::VolumeData noisy = ct::scan(p, s);
-  std::vector<float> rest;
+  std::vector<double> rest;
   for (std::size_t v = 0; v < noisy.values.size(); ++v)
     if (clean.values[v] != 0 && std::abs(clean.values[v]) < 5) rest.push_back(noisy.values[v] - clean.values[v]);
   const double truth = robust_sd(rest);

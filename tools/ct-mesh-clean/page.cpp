@@ -24,18 +24,44 @@ double figure(const Work& work, const char* step, const char* name) {
   return 0;
 }
 
-report::ViewedMesh viewed(const std::string& name, io::TriangleMesh mesh) {
-  if (mesh.triangles.size() > viewed_faces) mesh::decimate(mesh, viewed_faces);
-  report::ViewedMesh out{.name = name, .positions = {}, .triangles = mesh.triangles, .value = {}};
-  for (const Vec3& p : mesh.positions_m)
+// What a page can hold of the mesh: with which of its vertices.
+struct Shown {
+  io::TriangleMesh mesh;
+  std::vector<std::uint32_t> kept;
+};
+Shown shown_of(io::TriangleMesh mesh) {
+  Shown shown{std::move(mesh), {}};
+  mesh::decimate(shown.mesh, viewed_faces, &shown.kept);
+  return shown;
+}
+
+report::ViewedMesh viewed(const std::string& name, const std::vector<Vec3>& positions_m,
+                          const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  report::ViewedMesh out{.name = name, .positions = {}, .triangles = triangles, .value = {}};
+  for (const Vec3& p : positions_m)
     out.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
   return out;
 }
 
-void stages(report::Page& page, const Work& work) {
+// Earlier stages of the same triangles are shown with those that are shown of the last, so that the difference is the
+// surface's alone.
+report::ViewedMesh viewed(const Stage& stage, const Work& work, const Shown& last) {
+  if (stage.triangles != work.mesh.triangles || stage.positions_m.size() != work.mesh.positions_m.size()) {
+    io::TriangleMesh own;
+    own.positions_m = stage.positions_m, own.triangles = stage.triangles;
+    own = shown_of(std::move(own)).mesh;
+    return viewed(stage.name, own.positions_m, own.triangles);
+  }
+  std::vector<Vec3> positions;
+  positions.reserve(last.kept.size());
+  for (const std::uint32_t v : last.kept) positions.push_back(stage.positions_m[v]);
+  return viewed(stage.name, positions, last.mesh.triangles);
+}
+
+void stages(report::Page& page, const Work& work, const Shown& last) {
   report::MeshView view{.name = work.name, .meshes = {}, .label = "", .unit = ""};
   for (auto stage = work.stages.rbegin(); stage != work.stages.rend(); ++stage)
-    view.meshes.push_back(viewed(stage->first, stage->second));
+    view.meshes.push_back(viewed(*stage, work, last));
   page.section("The surface, step by step");
   page.figures({{.svg = report::html(view),
                  .title = "",
@@ -44,12 +70,10 @@ void stages(report::Page& page, const Work& work) {
                640);
 }
 
-void deviation(report::Page& page, const Work& work) {
+void deviation(report::Page& page, const Work& work, const Shown& last) {
   const double voxel = work.voxel_m();
-  io::TriangleMesh shown = work.mesh;
-  if (shown.triangles.size() > viewed_faces) mesh::decimate(shown, viewed_faces);
-  report::ViewedMesh coloured = viewed("deviation", shown);
-  for (const double d : mesh::signed_distances(shown.positions_m, work.data))
+  report::ViewedMesh coloured = viewed("deviation", last.mesh.positions_m, last.mesh.triangles);
+  for (const double d : mesh::signed_distances(last.mesh.positions_m, work.data))
     coloured.value.push_back(static_cast<float>(d / voxel));
   std::vector<float> sizes;
   for (const float v : coloured.value) sizes.push_back(std::abs(v));
@@ -152,8 +176,9 @@ std::string page(const Work& work) {
   std::vector<report::Figure> slices;
   for (const StepPicture& p : work.pictures) slices.push_back({.png = p.png, .title = p.title, .caption = p.caption});
   page.figures(slices, 300);
-  stages(page, work);
-  deviation(page, work);
+  const Shown last = shown_of(work.mesh);
+  stages(page, work, last);
+  deviation(page, work, last);
   marker_table(page, work);
   histogram(page, work);
   steps(page, work);

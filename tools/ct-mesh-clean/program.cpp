@@ -1,8 +1,13 @@
 // ct-mesh-clean: from a CT volume to a mesh that can be rendered as glass (lib/volume,
 // lib/mesh/{carve,clean,verdict}.h).
+#include <functional>
+#include <utility>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/progress.h"
 #include "base/text.h"
+#include "base/usage.h"
 #include "tools/ct-mesh-clean/work.h"
 
 namespace gonio::tools::ct_mesh_clean {
@@ -27,6 +32,13 @@ std::string csv_of(const Work& work) {
   return csv;
 }
 
+// What a step costs, for who asks with --log-level debug.
+void timed(const char* step, const std::function<void()>& body) {
+  const Usage before = usage_so_far();
+  body();
+  log(LogLevel::debug, std::string(step) + ": " + usage_since(before));
+}
+
 Exit run(cli::Invocation& call) {
   if (specimen_asked(call)) {
     write_specimen(call);
@@ -37,11 +49,14 @@ Exit run(cli::Invocation& call) {
   const std::filesystem::path html = call.given("html") ? std::filesystem::path(call.text("html"))
                                      : call.out.empty() ? std::filesystem::path()
                                                         : call.output_path("report.html");
-  for (const auto take : {open, look, correct, cut, select, contour, find_markers, carve, clean, judge}) take(work);
-  draw(work);
-  enter(work);
+  work.with_page = !html.empty();
+  constexpr std::pair<const char*, void (*)(Work&)> steps[] = {
+      {"open", open},       {"look", look},     {"correct", correct},      {"cut", cut},     {"select", select},
+      {"contour", contour}, {"refine", refine}, {"markers", find_markers}, {"carve", carve}, {"clean", clean},
+      {"judge", judge},     {"draw", draw},     {"enter", enter}};
+  for (const auto& [name, take] : steps) timed(name, [&] { take(work); });
   if (call.given("csv")) write_file(call.text("csv"), csv_of(work));
-  if (!html.empty()) write_file(html, page(work));
+  if (!html.empty()) timed("page", [&] { write_file(html, page(work)); });
   return work.missed ? Exit::quality : Exit::done;
 }
 

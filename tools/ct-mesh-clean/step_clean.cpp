@@ -54,12 +54,13 @@ void clean(Work& work) {
       break;
     case CleanBy::none: break;
   }
+  work.edges = {};
   if (work.asked.faces > 0 && work.mesh.triangles.size() > work.asked.faces) {
     const std::size_t before = work.mesh.triangles.size(), left = mesh::decimate(work.mesh, work.asked.faces);
     step(work, "decimate", "quadric edge collapse").figures = {{"triangles_before", static_cast<double>(before)},
                                                                {"triangles", static_cast<double>(left)}};
   }
-  if (work.asked.clean != CleanBy::none || work.asked.faces > 0) work.stages.emplace_back("cleaned", work.mesh);
+  if (work.asked.clean != CleanBy::none || work.asked.faces > 0) show(work, "cleaned", work.mesh);
 }
 
 }  // namespace gonio::tools::ct_mesh_clean

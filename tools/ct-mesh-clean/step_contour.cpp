@@ -17,7 +17,11 @@ void contour(Work& work) {
     entry.figures["sigma_wall_m"] = work.threshold.sigma_wall_voxels() * work.voxel_m();
     entry.figures["sigma_length_m"] = 2 * work.threshold.sigma_wall_voxels() * work.voxel_m();
   }
-  work.stages.emplace_back("contour", in_metres(work, work.contour));
+  if (work.with_page) show(work, "contour", in_metres(work, work.contour));
+}
+
+void refine(Work& work) {
+  auto& entry = work.steps.back();
   const Vec3 scale = work.spacing_m / work.voxel_m();
   work.edges =
       volume::edges(*work.volume, work.contour,
@@ -36,9 +40,11 @@ void contour(Work& work) {
                      {"rms_shift_m", refined.rms_shift * work.voxel_m()},
                      {"largest_shift_m", refined.largest_shift * work.voxel_m()},
                      {"sigma_position_m", refined.sigma_position * work.voxel_m()}};
-    work.stages.emplace_back("steepest gradient", in_metres(work, work.contour));
   }
-  work.data = work.mesh = in_metres(work, work.contour);
+  work.data = in_metres(work, work.contour);
+  work.contour = {};
+  work.mesh = work.data;
+  if (work.asked.threshold_by == ThresholdBy::gradient) show(work, "steepest gradient", work.data);
 }
 
 }  // namespace gonio::tools::ct_mesh_clean

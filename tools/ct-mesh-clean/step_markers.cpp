@@ -67,7 +67,7 @@ void carve(Work& work) {
                    {"removed_triangles", static_cast<double>(work.carved.removed_triangles)},
                    {"untouched_markers", static_cast<double>(work.carved.untouched.size())},
                    {"worst_fill_sigma_m", worst}};
-  work.stages.emplace_back("carved", work.mesh);
+  show(work, "carved", work.mesh);
 }
 
 }  // namespace gonio::tools::ct_mesh_clean

@@ -40,6 +40,10 @@ std::size_t object_material(const Work& work) {
   return largest;
 }
 
+void show(Work& work, const char* stage, const io::TriangleMesh& mesh) {
+  if (work.with_page) work.stages.push_back({stage, mesh.positions_m, mesh.triangles});
+}
+
 manifest::VolumeStep& step(Work& work, const char* name, std::string how) {
   return work.steps.emplace_back(
       manifest::VolumeStep{.name = name, .how = std::move(how), .figures = {}, .picture = ""});

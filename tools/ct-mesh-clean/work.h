@@ -59,6 +59,13 @@ struct StepPicture {
   std::string step, title, caption, png;
 };
 
+// A surface on its way, for the viewer.
+struct Stage {
+  std::string name;
+  std::vector<Vec3> positions_m;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
 struct Work {
   Work(cli::Invocation& of, Asked what) : call(of), asked(std::move(what)) {}
   cli::Invocation& call;
@@ -78,8 +85,8 @@ struct Work {
   volume::Components components;
   volume::Kept kept;
   std::int64_t euler = 0;           // of the solid, from the voxels
-  volume::Contour contour;          // of the object
-  std::vector<volume::Edge> edges;  // at its vertices, where they were asked for
+  volume::Contour contour;          // of the object, until it is in metres
+  std::vector<volume::Edge> edges;  // at its vertices, until they are cleaned
   volume::Markers markers;
   io::TriangleMesh data;  // the surface where the data put it, metres
   io::TriangleMesh mesh;  // what becomes of it
@@ -89,7 +96,8 @@ struct Work {
   bool missed = false;  // not sound, or beyond a limit of the user
 
   std::vector<manifest::VolumeStep> steps;
-  std::vector<std::pair<std::string, io::TriangleMesh>> stages;  // for the viewer
+  bool with_page = false;
+  std::vector<Stage> stages;  // where there is a page
   std::vector<StepPicture> pictures;
   std::vector<report::Plot> plots;
 };
@@ -103,6 +111,7 @@ io::TriangleMesh in_metres(const Work& work, const volume::Contour& contour);
 std::size_t object_material(const Work& work);
 
 manifest::VolumeStep& step(Work& work, const char* name, std::string how);
+void show(Work& work, const char* stage, const io::TriangleMesh& mesh);
 
 // The steps, in their order.
 void open(Work& work);  // volume_from_index is complete, or Error(data) says what to give
@@ -110,7 +119,8 @@ void look(Work& work);
 void correct(Work& work);
 void cut(Work& work);      // the threshold
 void select(Work& work);   // components
-void contour(Work& work);  // the surface, at the steepest gradient where asked
+void contour(Work& work);  // the surface
+void refine(Work& work);   // its edges; vertices at the steepest gradient where asked
 void find_markers(Work& work);
 void carve(Work& work);
 void clean(Work& work);

@@ -62,6 +62,7 @@ struct RawFrame {
   std::vector<std::uint16_t> samples;                                       // row by row
   std::uint64_t frame_id = 0;                                               // the camera's count
   std::optional<double> camera_time_s, exposure_s, gain_db, temperature_K;  // as the camera says of this very frame
+  std::optional<std::uint64_t> chunk_frame_id;  // of the frame that those figures belong to, where the camera says
   std::int64_t incomplete_packets = 0;
 };
 struct Shot {  // what is asked for

@@ -4,27 +4,26 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "acquisition/laboratory/solid.h"
 #include "geom/rigid.h"
 #include "manifest/sections/forward.h"
 #include "robot/kinematics.h"
+#include "robot/limits.h"
 
 namespace gonio::acquisition {
 
 using Joints = std::vector<double>;           // one angle a joint, turns counted: not folded into one circle
-using State = std::map<std::string, Joints>;  // where every arm stands, by its name
-
-struct ArmLimits {  // one number a joint
-  std::vector<double> lower_rad, upper_rad, speed_rad_per_s, acceleration_rad_per_s2;
-};
+using State = std::map<std::string, Joints>;  // where the arms stand, by name; an arm that is not named is at home
 
 struct LaboratoryArm {
   std::string name, model;
   std::vector<robot::Link> links;  // calibrated, where the laboratory has a calibration
   Rigid<frame::World, frame::Base> world_from_base{};
-  ArmLimits limits;  // the tightest of the joints' ranges and of what the cable allows
+  // One a joint: the range that the section gives, or else the model's, and no more than the cable allows.
+  std::vector<robot::JointLimit> limits;
   Joints home;
   std::vector<Solid> solids;  // of its links and of what it carries
 };
@@ -33,17 +32,20 @@ struct Laboratory {
   std::map<std::string, LaboratoryArm> arms;
   std::vector<Solid> obstacles;
   double speed_m_per_s = 0.25, margin_m = 0.01, smallest_singular_m = 0.01;
-  std::optional<std::pair<Vec3, Vec3>> workspace;  // corners of the box that no tool leaves
+  std::optional<std::pair<Vec3, Vec3>> workspace;  // corners of the box that no flange leaves
 };
 
 // Error(data) at the section's places: no section, unknown model, counts that are not the joints', a home outside its
-// limits, limits that are empty, a solid's file that is none.
+// limits, limits that are empty, a solid's file that is none, an arm whose solids nobody knows.
 Laboratory believed_laboratory(const manifest::Document& document);
 
-// The flange, and what sits on it. Error(data) for a camera that is neither held nor placed.
+// Where arm `name` stands; Error(internal) for counts of joints that are not the arm's.
+const Joints& joints_of(const LaboratoryArm& arm, const State& state);
+// The flange, and what sits on it. Error(data) for a camera or a lamp that is neither held nor placed.
 Rigid<frame::World, frame::Tool> world_from_tool(const LaboratoryArm& arm, const Joints& joints);
 Rigid<frame::World, frame::Camera> world_from_camera(const manifest::Document& document, const Laboratory& laboratory,
                                                      const std::string& camera, const State& state);
+// A standing lamp without a place of its own stands where its light does.
 Vec3 lamp_position(const manifest::Document& document, const Laboratory& laboratory, const std::string& lamp,
                    const State& state);
 

@@ -1,6 +1,8 @@
 // Ways of arms from one state to another, and what is to be feared on them. Between neighbouring states of a way every
 // joint moves in proportion: straight lines in joint space, all arms at once.
 #pragma once
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,17 +14,31 @@ namespace gonio::acquisition {
 
 using Way = std::vector<State>;
 
-// Distance between the two nearest solids that may not meet (neighbouring links of one arm may).
+// Distance between the two nearest solids that may not meet.
 struct Clearance {
   double distance_m = 0;  // 0 where they meet
   std::string first, second;
 };
+// Which solids may not meet: those of different arms, of arms and obstacles, and of one arm what is two or more links
+// apart, or is carried and not on the link that holds it. Bases and obstacles do not move: what they do to each other
+// is nobody's business here.
 class Surroundings {
  public:
-  explicit Surroundings(const Laboratory& laboratory);
+  explicit Surroundings(const Laboratory& laboratory);  // keeps a copy
   ~Surroundings();
-  Clearance clearance(const State& state) const;         // exact, however far
+  Surroundings(const Surroundings&) = delete;
+  Surroundings& operator=(const Surroundings&) = delete;
+  // Exact below `enough_m`; beyond, some two solids that are at least `enough_m` apart. May be called from several
+  // threads at once.
+  Clearance clearance(const State& state, double enough_m = std::numeric_limits<double>::infinity()) const;
   bool free(const State& state, double margin_m) const;  // faster: is it more than the margin?
+  // Pairs that are not watched, with the smallest distance seen in 1000 random postures: what is within the
+  // laboratory's margin in 95 % of them, such as a wrist's housings or a shoulder and the table that it stands on; and
+  // links of one arm, two apart, that never touch, for which a margin means nothing.
+  const std::vector<Clearance>& left_out() const;
+  // No two solids that may not meet come nearer or go apart by more, while the arms go from one state to the other in a
+  // straight line in joint space.
+  double change_m(const State& from, const State& to) const;
 
  private:
   struct Parts;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "geom/vector.h"
+#include "geom/angle.h"
 #include "manifest/sections/plan.h"
 
 namespace gonio::acquisition {
@@ -29,6 +29,7 @@ struct PatternScene {
   std::string camera;
   std::vector<std::string> lamps;  // the first is the one that is moved, where an arm holds it
   std::vector<double> exposures_s;
+  std::string turntable{};  // that a series turns
 };
 
 struct ViewPattern {
@@ -36,9 +37,16 @@ struct ViewPattern {
   std::string sentence;  // what it is, in one plain sentence
   std::string source;    // who uses it
   std::vector<PatternParameter> parameters;
-  // Steps without joints, in the order in which a person would name them; cameras stand by render/looking_at.h.
+  // Steps without joints, in the order in which a person would name them; cameras stand by render/looking_at.h. Error
+  // (usage) where the scene lacks what the pattern needs: lamps, a turntable.
   std::vector<manifest::PlanStep> (*make)(const PatternScene& scene, const PatternNumbers& numbers);
 };
 std::span<const ViewPattern* const> all_view_patterns();  // by name; defined in a generated source
+
+// The pattern's presets with `given` over them. Error(usage) at `place` for names that the pattern does not have and
+// for values out of their bounds.
+PatternNumbers pattern_numbers(const ViewPattern& pattern, const PatternNumbers& given, const std::string& place);
+// Error(usage) at `place` that lists the names there are.
+const ViewPattern& find_view_pattern(const std::string& name, const std::string& place);
 
 }  // namespace gonio::acquisition

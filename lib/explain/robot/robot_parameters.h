@@ -7,16 +7,12 @@
 
 #include "explain/robot/pose_matrix.h"
 #include "explain/robot/robot_problem.h"
+#include "robot/chain/role.h"
 
 namespace gonio::explain {
 
-struct RobotRole {
-  enum class Part { hand, fixed, pinhole, distortion, joint, a, d, sag, warp, scale, backlash, growth, lag };
-  Part part = Part::hand;
-  std::size_t index = 0;
-};
-// What a parameter of a mechanism moves here, by its name; nothing for names that this domain does not know.
-std::optional<RobotRole> role_of(const std::string& parameter);
+using robot::role_of;
+using RobotRole = robot::ChainRole;
 bool moves_camera_or_board(RobotRole::Part part);  // and with it the measured pose, not the chain
 Eigen::Index slope_column(const RobotRole& role);  // of measured_slopes(), for those
 

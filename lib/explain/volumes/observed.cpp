@@ -14,6 +14,8 @@
 #include "explain/volumes/sites.h"
 #include "linear/solve.h"
 #include "stats/intervals.h"
+#include "volume/mechanisms/ct_beam_hardening.h"
+#include "volume/mechanisms/ct_streak.h"
 
 namespace gonio::explain::volumes {
 namespace {
@@ -160,8 +162,8 @@ void add_paths(const VolumesInput& input, const Body& body, const Values& values
   o.longest_path_m = longest;
   const double per_m = input.attenuation ? std::max(1e-3, values.material - values.air) : nominal_attenuation / longest;
   const std::vector<double> path = tomograph.mean_path(places);
-  const auto squares = [](double most) { return [most](double p) { return p * p / most; }; };
-  const std::vector<double> hardening = tomograph.reconstructed(squares(longest), places);
+  const std::vector<double> hardening =
+      tomograph.reconstructed([&](double p) { return equation::ct_beam_hardening_lacks(p, longest); }, places);
   const std::vector<std::vector<double>> scatter = tomograph.scattered(per_m, scatter_shares, places);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].path_m = path[i], rows[i].hardening = hardening[i];
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -172,8 +174,10 @@ void add_paths(const VolumesInput& input, const Body& body, const Values& values
   for (const VolumesInput::Ball& ball : input.markers) add_ball(markers, ball.centre_m, ball.radius_m);
   const Tomograph through(markers);
   if (!(through.longest_m() > 0)) return;
-  const std::vector<double> streak = through.reconstructed(squares(through.longest_m()), places),
-                            marker_path = through.mean_path(places);
+  const double most = through.longest_m();
+  const std::vector<double> streak =
+      through.reconstructed([&](double m) { return equation::ct_streak_lacks(m, most); }, places);
+  const std::vector<double> marker_path = through.mean_path(places);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].markers = streak[i], rows[i].marker_path_m = marker_path[i];
 }
 

@@ -19,6 +19,9 @@ namespace gonio::explain::volumes {
 
 enum class Reading : std::uint8_t { wall, width, inside, outside };
 inline constexpr std::size_t readings = 4;
+inline bool is_grey(Reading reading) {
+  return reading == Reading::inside || reading == Reading::outside;
+}
 inline constexpr std::array<double, 4> scatter_shares{0.03, 0.1, 0.3, 1};
 
 struct Row {

@@ -87,7 +87,7 @@ double add_rings(const Sampled& sampled, const Body& body, const Values& values,
   });
   double squares = 0, count = 0;
   for (Row& row : rows) {
-    if (row.reading != Reading::inside && row.reading != Reading::outside) continue;
+    if (!is_grey(row.reading)) continue;
     const Vec3 index = sampled.index_of(row.at_m);
     const double radius = std::hypot(row.at_m.x, row.at_m.y) / sampled.voxel_m();
     const std::size_t s = sector_of(row.at_m.x, row.at_m.y), r = static_cast<std::size_t>(radius);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "volume/mechanisms/ct_scatter.h"
 
 namespace gonio::explain::volumes {
 namespace {
@@ -132,8 +133,7 @@ std::vector<std::vector<double>> Tomograph::scattered(double per_m, std::span<co
                                                       std::span<const Vec3> places_m) const {
   std::vector<float> lines(paths_.size());
   std::ranges::transform(paths_, lines.begin(), [&](float path) {
-    const double p = per_m * static_cast<double>(path);
-    return static_cast<float>(p * std::exp(-p));
+    return static_cast<float>(equation::ct_scatter_lost(per_m * static_cast<double>(path)));
   });
   const double sd = static_cast<double>(across_) / 8;
   const auto half = static_cast<std::size_t>(0.5 * (std::sqrt(4 * sd * sd + 1) - 1) + 0.5);
@@ -148,12 +148,12 @@ std::vector<std::vector<double>> Tomograph::scattered(double per_m, std::span<co
   });
   std::vector<std::vector<double>> result;
   for (const double share : shares) {
-    std::vector<float> lost(lines.size());
+    std::vector<float> lacking(lines.size());
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      const double over = std::exp(per_m * static_cast<double>(paths_[i])) * static_cast<double>(lines[i]);
-      lost[i] = static_cast<float>(std::log1p(share * over) / (share * per_m));
+      const double p = per_m * static_cast<double>(paths_[i]);
+      lacking[i] = static_cast<float>(equation::ct_scatter_lacks(p, share, static_cast<double>(lines[i])) / per_m);
     }
-    result.push_back(back_projected(lost, places_m));
+    result.push_back(back_projected(lacking, places_m));
   }
   return result;
 }

@@ -12,10 +12,6 @@ namespace {
 using volumes::Observed, volumes::Reading, volumes::Row;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-bool is_grey(const Row& row) {
-  return row.reading == Reading::inside || row.reading == Reading::outside;
-}
-
 }  // namespace
 
 std::vector<Condition> volume_conditions(const Observed& o) {
@@ -47,7 +43,9 @@ std::vector<Condition> volume_conditions(const Observed& o) {
   add("volume.edge-tilt", "1", "voxel",
       of(Reading::width, [&](const Row& row) { return std::abs(row.normal.z) + 0.1 * phase(row); }));
   add("volume.depth", "voxel", "share", of(Reading::inside, [](const Row& row) { return row.depth; }));
-  const auto grey = [](auto value) { return [=](const Row& row) { return is_grey(row) ? value(row) : none; }; };
+  const auto grey = [](auto value) {
+    return [=](const Row& row) { return volumes::is_grey(row.reading) ? value(row) : none; };
+  };
   add("volume.radius", "radius of the field", "share",
       grey([&](const Row& row) { return std::hypot(row.at_m.x, row.at_m.y) / o.field_m; }));
   add("volume.path", "mm", "share", grey([](const Row& row) { return 1e3 * row.path_m; }));

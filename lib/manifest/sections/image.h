@@ -20,6 +20,7 @@ struct ImageEntry {  // "images"
   std::string id, file, camera;
   std::optional<Pose<frame::World, frame::Camera>> world_from_camera;  // absent: the camera sits at the world's origin
   std::vector<std::string> light;  // one name or a list; empty: every light of the scene is on
+  std::optional<bool> dark{};      // true: none is
   std::optional<double> exposure_s;
   std::optional<double> time_s{}, temperature_K{};  // when it was taken, counted from any moment; of the instrument
   Value response;    // "linear" (default for EXR), "srgb", or a table [[code, linear], ...]

@@ -13,8 +13,10 @@
 
 namespace gonio::manifest {
 
-// A solid that nothing may touch: a box, a ball, a cylinder or the hull of a mesh. Its frame: the middle of a box, ball
-// or cylinder (whose axis is z), the file's own frame of a mesh. It stands in the world, or is fixed to a robot's tool.
+// A solid that nothing may touch: a box, a ball, a cylinder or a mesh with all that it encloses. Its frame: the middle
+// of a box, ball or cylinder (whose axis is z), the file's own frame of a mesh. It stands in the world, is fixed to a
+// robot's tool, or to one of its links: then it is given in base coordinates while all joints are at zero, because the
+// frames of Denavit and Hartenberg are not where anybody would look for them.
 struct SolidBody {
   std::string name{};
   std::vector<double> box_m{};       // full sides [x, y, z]
@@ -23,6 +25,7 @@ struct SolidBody {
   std::string mesh{};                // file id: PLY or STL
   std::optional<Pose<frame::World, frame::Object>> world_from_body{};
   std::optional<Pose<frame::Tool, frame::Object>> tool_from_body{};
+  std::optional<Pose<frame::Base, frame::Object>> base_from_body{};
 };
 
 struct JointLimits {  // one number a joint; left out: the model's
@@ -48,7 +51,7 @@ struct LaboratoryRobot {
   std::vector<double> payload_centre_m{};  // in the tool's frame
   std::vector<double> home_rad{};          // where a run begins and ends
   std::vector<SolidBody> carries{};        // fixed to its tool
-  std::vector<SolidBody> links{};          // solids of its links instead of the model's, named "link-0" ..
+  std::vector<SolidBody> links{};  // solids of its links instead of the model's: "link-0", "link-1", "link-1-motor"
 };
 
 struct LaboratoryCamera {
@@ -60,6 +63,7 @@ struct LaboratoryCamera {
   std::vector<double> exposure_s{};  // [shortest, longest] that it can
   std::optional<double> gain_db{};
   std::string trigger{};          // "software" | "hardware"
+  std::optional<double> codes_per_radiance_s{};  // of a linear camera: codes for 1 W/(m^2 sr) in 1 s
   std::optional<double> white{};  // code at which a pixel is saturated
 };
 

@@ -1,32 +1,14 @@
 // Edges and fans of a mesh whose vertices at one place count as one. The triangles at a vertex form one fan where their
 // far edges, taken as a graph of the vertex's neighbours, hang together.
 #include <algorithm>
-#include <numeric>
 
+#include "base/union_find.h"
 #include "mesh/adjacency.h"
 #include "mesh/topology.h"
 #include "mesh/verdict.h"
 
 namespace gonio::mesh {
 namespace {
-
-class Groups {  // union-find
- public:
-  explicit Groups(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
-  std::size_t of(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  bool join(std::size_t a, std::size_t b) {  // were they apart?
-    a = of(a);
-    b = of(b);
-    parent_[a] = b;
-    return a != b;
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 // Triangles with three different corners, by welded vertices; collapsed and flat ones are counted.
 std::vector<Corners> proper_triangles(const io::TriangleMesh& mesh, Soundness& sound) {
@@ -81,9 +63,9 @@ std::size_t fans_at(std::uint32_t v, const std::vector<Corners>& triangles, cons
   std::sort(ring.begin(), ring.end());
   ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
   const auto place = [&](std::uint32_t w) {
-    return static_cast<std::size_t>(std::lower_bound(ring.begin(), ring.end(), w) - ring.begin());
+    return static_cast<std::uint32_t>(std::lower_bound(ring.begin(), ring.end(), w) - ring.begin());
   };
-  Groups groups(ring.size());
+  UnionFind groups(ring.size());
   std::size_t fans = ring.size();
   for (const std::uint32_t f : around.of(v)) {
     const Corners& t = triangles[f];
@@ -101,7 +83,7 @@ Soundness soundness(const io::TriangleMesh& mesh) {
   const std::size_t count = mesh.positions_m.size();
   const VertexFaces around = faces_of_vertices(triangles, count);
   const std::size_t edges = count_all_edges(triangles, around, sound);
-  Groups pieces(count);
+  UnionFind pieces(count);
   std::size_t vertices = 0, joins = 0;
   for (const Corners& t : triangles) joins += pieces.join(t[0], t[1]) + pieces.join(t[1], t[2]);
   for (std::uint32_t v = 0; v < count; ++v) {

@@ -1,4 +1,4 @@
-// The six virtual camera paths of Jensen et al. 2018, figure 4, and what a camera on them sees.
+// What virtual cameras see on the six paths of Jensen et al. 2018, figure 4 (geom/view_path.h).
 #pragma once
 #include <string>
 #include <vector>
@@ -7,8 +7,6 @@
 
 namespace gonio::nrsfm {
 
-// circle: around the scene; half-circle: half of that, on one side; line: sideways, past the scene; flyby: past and
-// over it; zigzag: to and fro with changes of depth; tricky: a small motion, mostly along the optical axis.
 const std::vector<std::string>& path_names();
 
 struct PathOptions {

@@ -1,5 +1,5 @@
-// ct.axis-tilt: the rotation axis leans against the detector. Equation: explain/volumes/terms/ct_axis_tilt.cpp.
-#include "mechanism/mechanism.h"
+// ct.axis-tilt: the rotation axis leans against the detector.
+#include "volume/mechanisms/ct_axis_tilt.h"
 
 namespace gonio::mechanism {
 

@@ -1,5 +1,5 @@
-// ct.beam-hardening: soft X-rays are absorbed first. Equation: explain/volumes/terms/ct_beam_hardening.cpp.
-#include "mechanism/mechanism.h"
+// ct.beam-hardening: soft X-rays are absorbed first.
+#include "volume/mechanisms/ct_beam_hardening.h"
 
 namespace gonio::mechanism {
 

@@ -1,5 +1,5 @@
-// ct.blur: edges wider than voxels warrant. Equation: explain/volumes/terms/ct_blur.cpp.
-#include "mechanism/mechanism.h"
+// ct.blur: edges wider than voxels warrant.
+#include "volume/mechanisms/ct_blur.h"
 
 namespace gonio::mechanism {
 

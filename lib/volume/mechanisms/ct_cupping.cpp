@@ -1,5 +1,5 @@
-// ct.cupping: one material, several values. Equation: explain/volumes/terms/ct_cupping.cpp.
-#include "mechanism/mechanism.h"
+// ct.cupping: one material, several values.
+#include "volume/mechanisms/ct_cupping.h"
 
 namespace gonio::mechanism {
 

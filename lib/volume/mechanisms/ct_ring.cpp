@@ -1,5 +1,5 @@
-// ct.ring: a pixel that always reads wrong. Equation: explain/volumes/terms/ct_ring.cpp.
-#include "mechanism/mechanism.h"
+// ct.ring: a pixel that always reads wrong.
+#include "volume/mechanisms/ct_ring.h"
 
 namespace gonio::mechanism {
 

@@ -1,5 +1,5 @@
-// ct.scale: voxels are not as large as the file says. Equation: explain/volumes/terms/ct_scale.cpp.
-#include "mechanism/mechanism.h"
+// ct.scale: voxels are not as large as the file says.
+#include "volume/mechanisms/ct_scale.h"
 
 namespace gonio::mechanism {
 

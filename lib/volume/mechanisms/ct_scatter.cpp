@@ -1,5 +1,5 @@
-// ct.scatter: photons that changed their way. Equation: explain/volumes/terms/ct_scatter.cpp.
-#include "mechanism/mechanism.h"
+// ct.scatter: photons that changed their way.
+#include "volume/mechanisms/ct_scatter.h"
 
 namespace gonio::mechanism {
 

@@ -1,5 +1,5 @@
-// ct.streak: bright and dark bands between dense parts. Equation: explain/volumes/terms/ct_streak.cpp.
-#include "mechanism/mechanism.h"
+// ct.streak: bright and dark bands between dense parts.
+#include "volume/mechanisms/ct_streak.h"
 
 namespace gonio::mechanism {
 

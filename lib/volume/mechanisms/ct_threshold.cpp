@@ -1,6 +1,5 @@
-// ct.threshold: a surface that was cut at another value than half-way. Equation:
-// explain/volumes/terms/ct_threshold.cpp.
-#include "mechanism/mechanism.h"
+// ct.threshold: a surface that was cut at another value than half-way.
+#include "volume/mechanisms/ct_threshold.h"
 
 namespace gonio::mechanism {
 

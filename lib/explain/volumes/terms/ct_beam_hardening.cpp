@@ -1,22 +1,17 @@
-// ct.beam-hardening on grey values: what the squares of the line integrals are reconstructed to.
-#include <algorithm>
-#include <cmath>
+// ct.beam-hardening on grey values: what line integrals lack, reconstructed (observed.h).
+#include "volume/mechanisms/ct_beam_hardening.h"
 
 #include "explain/volumes/volume_term.h"
-
-namespace gonio::mechanism {
-const Mechanism& ct_beam_hardening();
-}
 
 namespace gonio::explain::volumes::terms {
 
 const Term& ct_beam_hardening() {
-  static const Term term{
-      .mechanism = mechanism::ct_beam_hardening,
-      .order = 200,
-      .act = [](double value, const Row& row, const Observed&, std::span<const double> p) {
-        return row.reading == Reading::inside || row.reading == Reading::outside ? value - p[0] * row.hardening : value;
-      }};
+  static const Term term{.mechanism = mechanism::ct_beam_hardening,
+                         .order = 200,
+                         .act = [](double value, const Row& row, const Observed&, std::span<const double> p) {
+                           return is_grey(row.reading) ? equation::ct_beam_hardening(value, p[0], row.hardening)
+                                                       : value;
+                         }};
   return term;
 }
 

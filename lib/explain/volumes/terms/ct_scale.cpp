@@ -1,12 +1,7 @@
 // ct.scale on walls: they move with their distance from the middle, seen along the normal.
-#include <algorithm>
-#include <cmath>
+#include "volume/mechanisms/ct_scale.h"
 
 #include "explain/volumes/volume_term.h"
-
-namespace gonio::mechanism {
-const Mechanism& ct_scale();
-}
 
 namespace gonio::explain::volumes::terms {
 
@@ -16,8 +11,7 @@ const Term& ct_scale() {
                          .forms = {{{"scale"}, false}, {{"scale", "axial"}, true}},
                          .act = [](double value, const Row& row, const Observed& o, std::span<const double> p) {
                            if (row.reading != Reading::wall) return value;
-                           return value +
-                                  (p[0] * dot(row.at_m, row.normal) + p[1] * row.at_m.z * row.normal.z) / o.voxel_m;
+                           return equation::ct_scale(value, p[0], p[1], row.at_m, row.normal, o.voxel_m);
                          }};
   return term;
 }

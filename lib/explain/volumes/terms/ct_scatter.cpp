@@ -1,18 +1,16 @@
-// ct.scatter on grey values: what the scatter of single scattering is reconstructed to.
+// ct.scatter on grey values: what line integrals lack, reconstructed at some shares (observed.h).
+#include "volume/mechanisms/ct_scatter.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "explain/volumes/volume_term.h"
 
-namespace gonio::mechanism {
-const Mechanism& ct_scatter();
-}
-
 namespace gonio::explain::volumes::terms {
 namespace {
 
 // Between the shares at which it was reconstructed, linear in the logarithm of the share.
-double per_share(const Row& row, double share) {
+double lacks(const Row& row, double share) {
   if (!(share > scatter_shares.front())) return row.scatter.front();
   std::size_t k = 0;
   while (k + 2 < scatter_shares.size() && share > scatter_shares[k + 1]) ++k;
@@ -26,8 +24,7 @@ const Term& ct_scatter() {
   static const Term term{.mechanism = mechanism::ct_scatter,
                          .order = 200,
                          .act = [](double value, const Row& row, const Observed&, std::span<const double> p) {
-                           if (row.reading != Reading::inside && row.reading != Reading::outside) return value;
-                           return value - p[0] * per_share(row, p[0]);
+                           return is_grey(row.reading) ? equation::ct_scatter(value, p[0], lacks(row, p[0])) : value;
                          }};
   return term;
 }

@@ -1,12 +1,9 @@
-// ct.streak on grey values: what the squares of the paths through markers are reconstructed to.
+// ct.streak on grey values: what line integrals through markers lack, reconstructed (observed.h).
+#include "volume/mechanisms/ct_streak.h"
+
 #include <algorithm>
-#include <cmath>
 
 #include "explain/volumes/volume_term.h"
-
-namespace gonio::mechanism {
-const Mechanism& ct_streak();
-}
 
 namespace gonio::explain::volumes::terms {
 
@@ -18,8 +15,7 @@ const Term& ct_streak() {
           [](const Observed& o) { return std::ranges::any_of(o.rows, [](const Row& r) { return r.markers != 0; }); },
       .act =
           [](double value, const Row& row, const Observed&, std::span<const double> p) {
-            return row.reading == Reading::inside || row.reading == Reading::outside ? value - p[0] * row.markers
-                                                                                     : value;
+            return is_grey(row.reading) ? equation::ct_streak(value, p[0], row.markers) : value;
           }};
   return term;
 }

@@ -1,0 +1,61 @@
+#include "acquisition/desk/specimen_laboratory.h"
+
+#include "manifest/document.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/laboratory.h"
+#include "render/specimen_board.h"
+
+namespace gonio::acquisition {
+namespace {
+
+manifest::SolidBody box(const char* name, std::vector<double> sides, Vec3 middle) {
+  manifest::SolidBody body;
+  body.name = name;
+  body.box_m = std::move(sides);
+  body.world_from_body.emplace().translation_m = middle;
+  return body;
+}
+
+// The base is turned half about, so that the arm reaches over the board with its first joint near 0.
+manifest::LaboratoryRobot arm() {
+  manifest::LaboratoryRobot robot;
+  robot.url = "sim://";
+  robot.model = "ur5";
+  robot.world_from_base.emplace() = {{{0, 0, 0, 1}, {-0.45, 0, 0}}, {}};
+  robot.home_rad = {0, -1.9, 1.9, -1.5707963267948966, -1.5707963267948966, 0};
+  manifest::SolidBody body;
+  body.name = "camera";
+  body.box_m = {0.06, 0.06, 0.09};
+  body.tool_from_body.emplace().translation_m = {0, 0, 0.045};
+  robot.carries = {body};
+  return robot;
+}
+
+}  // namespace
+
+manifest::Document specimen_laboratory(const std::filesystem::path& out) {
+  manifest::Document document = render::board_specimen(out);
+  document.images.clear();
+  manifest::Camera& lens = document.cameras.at("camera");
+  lens.width_px = 640;  // pictures that a desk computer renders while one waits
+  lens.height_px = 480;
+  lens.fx_px = lens.fy_px = 720;
+  lens.cx_px = 324;
+  lens.cy_px = 237;
+  manifest::Laboratory& lab = document.laboratory.entry.emplace_back();
+  lab.robots["arm"] = arm();
+  manifest::LaboratoryCamera& camera = lab.cameras["camera"];
+  camera.url = "sim://";
+  camera.robot = "arm";
+  camera.tool_from_camera.emplace() = {{quaternion_of_rotation_vector({0.01, -0.02, 0.8}), {0.01, -0.02, 0.07}}, {}};
+  camera.pixel_format = "Mono12";
+  camera.white = 4095;
+  camera.codes_per_radiance_s = 4e5;
+  lab.lamps["lamp"].url = "sim://";
+  lab.obstacles = {box("table", {2, 2, 0.05}, {0, 0, -0.035})};
+  lab.limits.emplace().speed_m_per_s = 0.25;
+  return document;
+}
+
+}  // namespace gonio::acquisition

@@ -1,0 +1,171 @@
+// See frame_record.h.
+#include "acquisition/run/frame_record.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/text.h"
+#include "manifest/document.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/file.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/laboratory.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/plan.h"
+#include "manifest/sections/robot.h"
+#include "robot/kinematics.h"
+
+namespace gonio::acquisition {
+namespace {
+
+using manifest::Value;
+
+Value numbers_by_name(const State& state) {
+  Value out = Value::object();
+  for (const auto& [name, joints] : state) out[name] = Value(joints);
+  return out;
+}
+
+std::vector<double> numbers_in(const Value& v) {
+  std::vector<double> out;
+  for (const Value& number : v.as_array()) out.push_back(number.as_number());
+  return out;
+}
+
+std::optional<double> number_in(const Value& event, const char* key) {
+  const Value* v = event.find(key);
+  return v == nullptr ? std::nullopt : std::optional(v->as_number());
+}
+
+std::string text_in(const Value& event, const char* key) {
+  const Value* v = event.find(key);
+  return v == nullptr ? std::string() : v->as_string();
+}
+
+void enter_robots(manifest::Document& d) {
+  for (const manifest::Laboratory& lab : d.laboratory.entry)
+    for (const auto& [name, robot] : lab.robots) {
+      if (d.robots.contains(name) || robot.model == "urdf") continue;
+      manifest::Robot entry;
+      entry.model = robot.model;
+      entry.dh = robot.dh;
+      entry.calibration = robot.calibration;
+      d.robots[name] = entry;
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> images_of(const manifest::PlanStep& step) {
+  if (step.exposures_s.size() < 2) return {step.image};
+  std::vector<std::string> ids;
+  for (std::size_t k = 0; k < step.exposures_s.size(); ++k) ids.push_back(step.image + "-" + std::to_string(k + 1));
+  return ids;
+}
+
+Value to_event(const FrameRecord& r) {
+  Value e = Value::object({{"what", "frame"},
+                           {"image", r.image},
+                           {"group", r.group},
+                           {"camera", r.camera},
+                           {"file", r.file},
+                           {"sha256", r.sha256},
+                           {"bytes", r.bytes},
+                           {"lamps", r.lamps},
+                           {"exposure_s", r.exposure_s},
+                           {"time_s", r.time_s},
+                           {"robot", r.robot},
+                           {"joints_rad", numbers_by_name(r.joints)},
+                           {"frame_id", r.frame_id},
+                           {"saturated_share", r.figures.saturated_share},
+                           {"mean_code", r.figures.mean_code},
+                           {"bright_code", r.figures.bright_code},
+                           {"noise", r.figures.noise},
+                           {"focus", r.figures.focus},
+                           {"tries", r.tries}});
+  if (r.gain_db) e["gain_db"] = *r.gain_db;
+  if (r.temperature_K) e["temperature_K"] = *r.temperature_K;
+  if (!r.turntables.empty()) {
+    Value tables = Value::object();
+    for (const auto& [name, angle] : r.turntables) tables[name] = angle;
+    e["turntable_rad"] = tables;
+  }
+  return e;
+}
+
+FrameRecord frame_of(const Value& e) {
+  FrameRecord r;
+  r.image = text_in(e, "image");
+  r.group = text_in(e, "group");
+  r.camera = text_in(e, "camera");
+  r.file = text_in(e, "file");
+  r.sha256 = text_in(e, "sha256");
+  r.robot = text_in(e, "robot");
+  r.bytes = static_cast<std::uint64_t>(number_in(e, "bytes").value_or(0));
+  if (const Value* lamps = e.find("lamps"))
+    for (const Value& lamp : lamps->as_array()) r.lamps.push_back(lamp.as_string());
+  r.exposure_s = number_in(e, "exposure_s").value_or(0);
+  r.gain_db = number_in(e, "gain_db");
+  r.temperature_K = number_in(e, "temperature_K");
+  r.time_s = number_in(e, "time_s").value_or(0);
+  if (const Value* joints = e.find("joints_rad"))
+    for (const auto& [name, angles] : joints->as_object()) r.joints[name] = numbers_in(angles);
+  if (const Value* tables = e.find("turntable_rad"))
+    for (const auto& [name, angle] : tables->as_object()) r.turntables[name] = angle.as_number();
+  r.frame_id = static_cast<std::uint64_t>(number_in(e, "frame_id").value_or(0));
+  r.figures = {number_in(e, "saturated_share").value_or(0), number_in(e, "mean_code").value_or(0),
+               number_in(e, "bright_code").value_or(0), number_in(e, "noise").value_or(0),
+               number_in(e, "focus").value_or(0)};
+  r.tries = static_cast<int>(number_in(e, "tries").value_or(1));
+  return r;
+}
+
+std::string words_of(const FrameRecord& r) {
+  std::string out = r.image + format(": %.4g ms, mean code %.0f", 1e3 * r.exposure_s, r.figures.mean_code);
+  if (r.figures.saturated_share > 0) out += format(", %.2g %% saturated", 100 * r.figures.saturated_share);
+  if (r.tries > 1) out += format(", %d tries", r.tries);
+  return out;
+}
+
+void enter_frames(manifest::Document& d, const Laboratory& laboratory, const manifest::Plan& plan,
+                  const std::map<std::string, FrameRecord>& records, const std::filesystem::path& folder) {
+  enter_robots(d);
+  const manifest::Laboratory lab = d.laboratory.entry.empty() ? manifest::Laboratory{} : d.laboratory.entry.front();
+  for (const manifest::PlanStep& step : plan.steps)
+    for (const std::string& id : images_of(step)) {
+      const auto found = records.find(id);
+      if (found == records.end()) continue;
+      const FrameRecord& r = found->second;
+      manifest::ImageEntry image;
+      image.id = r.image;
+      image.file = manifest::add_file(d, folder / r.file, r.image);
+      image.exposure_s = r.exposure_s;
+      image.time_s = r.time_s;
+      image.temperature_K = r.temperature_K;
+      image.group = r.group;
+      if (d.cameras.contains(r.camera)) image.camera = r.camera;
+      for (const std::string& lamp : r.lamps) {
+        const auto named = lab.lamps.find(lamp);
+        const std::string light = named == lab.lamps.end() || named->second.light.empty() ? lamp : named->second.light;
+        if (d.lights.contains(light)) image.light.push_back(light);
+      }
+      if (r.lamps.empty() && !lab.lamps.empty()) image.dark = true;
+      if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())
+        if (camera->second.tool_from_camera || camera->second.world_from_camera)
+          static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
+              world_from_camera(d, laboratory, r.camera, r.joints);
+      if (const auto arm = laboratory.arms.find(r.robot); arm != laboratory.arms.end() && d.robots.contains(r.robot)) {
+        image.robot = r.robot;
+        image.joints_rad = r.joints.at(r.robot);
+        static_cast<Rigid<frame::Base, frame::Tool>&>(image.base_from_tool.emplace()) =
+            robot::flange(arm->second.links, image.joints_rad);
+      }
+      const auto there = std::ranges::find(d.images, image.id, &manifest::ImageEntry::id);
+      if (there != d.images.end())
+        *there = image;
+      else
+        d.images.push_back(image);
+    }
+}
+
+}  // namespace gonio::acquisition

@@ -1,0 +1,44 @@
+// A frame as the journal has it: everything that the manifest will say of it.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acquisition/laboratory/laboratory.h"
+#include "acquisition/run/frame_check.h"
+#include "manifest/sections/forward.h"
+#include "manifest/value.h"
+
+namespace gonio::acquisition {
+
+struct FrameRecord {
+  std::string image, group;  // group: the step
+  std::string camera, file;  // relative to --out
+  std::string sha256;
+  std::uint64_t bytes = 0;
+  std::vector<std::string> lamps;  // that were read back as on
+  double exposure_s = 0;           // as the camera says, else as asked
+  std::optional<double> gain_db, temperature_K;
+  double time_s = 0;  // since the run began
+  std::string robot;  // that holds the camera
+  State joints;       // of all arms, as read back
+  std::map<std::string, double> turntables;
+  std::uint64_t frame_id = 0;
+  FrameFigures figures;
+  int tries = 1;
+};
+
+manifest::Value to_event(const FrameRecord& record);  // {"what": "frame", ...}
+FrameRecord frame_of(const manifest::Value& event);   // of such an event
+std::string words_of(const FrameRecord& record);      // "v017: 8 ms, 0.2 % saturated"
+
+// Enters images, files and robots of the records, in the order of the plan. `folder`: of --out.
+void enter_frames(manifest::Document& document, const Laboratory& laboratory, const manifest::Plan& plan,
+                  const std::map<std::string, FrameRecord>& records, const std::filesystem::path& folder);
+
+// The pictures that a step makes, one an exposure: their ids.
+std::vector<std::string> images_of(const manifest::PlanStep& step);
+
+}  // namespace gonio::acquisition

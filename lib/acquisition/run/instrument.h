@@ -1,0 +1,33 @@
+// The devices of a laboratory, opened.
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "acquisition/device/devices.h"
+#include "manifest/sections/forward.h"
+
+namespace gonio::acquisition {
+
+struct Instrument {
+  std::map<std::string, std::unique_ptr<RobotDevice>> robots;
+  std::map<std::string, std::unique_ptr<CameraDevice>> cameras;
+  std::map<std::string, std::unique_ptr<LampDevice>> lamps;
+  std::map<std::string, std::unique_ptr<TurntableDevice>> turntables;
+  std::map<std::string, std::unique_ptr<ScreenDevice>> screens;
+};
+
+// By the URLs of the section "laboratory"; nothing moves. Error(data) where a device has none, Error(unavailable) where
+// one does not answer.
+Instrument open_instrument(const manifest::Document& document);
+std::vector<std::string> urls_of(const manifest::Document& document);
+
+// Does any URL reach something outside this program and this computer's loopback? Then nothing moves without --go.
+bool is_real(const manifest::Document& document);
+
+// What each device answered, one line each, for people: "robot left (modbus://...): stands, remote control, 31 deg C".
+// A device that does not answer is a line, too, and `all_well` becomes false.
+std::vector<std::string> inspect(const manifest::Document& document, bool* all_well);
+
+}  // namespace gonio::acquisition

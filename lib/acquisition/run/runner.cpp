@@ -1,0 +1,380 @@
+// See runner.h.
+#include "acquisition/run/runner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <thread>
+
+#include "acquisition/plan/planner.h"
+#include "acquisition/run/arm_mover.h"
+#include "acquisition/run/frame_record.h"
+#include "acquisition/run/journal.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/text.h"
+#include "io/codes.h"
+#include "io/image.h"
+#include "manifest/document.h"
+#include "manifest/sections/laboratory.h"
+#include "manifest/sections/plan.h"
+#include "stats/intervals.h"
+
+namespace gonio::acquisition {
+namespace {
+
+using manifest::Value;
+namespace fs = std::filesystem;
+
+constexpr double arm_stands_rad = 1e-3;  // between before and after an exposure
+
+double seconds_since(Clock::time_point zero) {
+  return std::chrono::duration<double>(Clock::now() - zero).count();
+}
+
+// Ctrl-C stops the arms first: looks for an interrupt while motions block.
+class StopWatch {
+ public:
+  explicit StopWatch(ArmMover& mover)
+      : thread_([&mover](const std::stop_token& over) {
+          while (!over.stop_requested()) {
+            if (interrupted()) return mover.stop_all();
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+          }
+        }) {}
+
+ private:
+  std::jthread thread_;
+};
+
+bool is_mosaic(const std::string& pixel_format) {
+  return pixel_format.find("Bayer") != std::string::npos || pixel_format.find("Polarized") != std::string::npos;
+}
+
+// A kept frame's file is what the journal says of it.
+bool file_stands(const fs::path& out, const FrameRecord& record) {
+  std::error_code error;
+  const fs::path path = out / record.file;
+  return fs::file_size(path, error) == record.bytes && !error && sha256_of_file(path) == record.sha256;
+}
+
+io::Image picture_of(const RawFrame& frame, int code_bits) {
+  io::Image picture(frame.width_px, frame.height_px, {"Y"});
+  const auto full = static_cast<float>((1 << code_bits) - 1);
+  for (std::size_t i = 0; i < frame.samples.size(); ++i) picture.data[i] = static_cast<float>(frame.samples[i]) / full;
+  return picture;
+}
+
+class PlanRun {
+ public:
+  PlanRun(manifest::Document& document, const Laboratory& laboratory, const manifest::Plan& plan,
+          Instrument& instrument, const RunOptions& options)
+      : document_(document),
+        laboratory_(laboratory),
+        plan_(plan),
+        instrument_(instrument),
+        options_(options),
+        section_(document.laboratory.entry.front()),
+        surroundings_(laboratory),
+        mover_(laboratory, surroundings_, instrument),
+        journal_(options.out / "journal.jsonl", Value::object({{"what", "run"}, {"plan", plan.id}}), options.resume) {
+    for (const Value& event : journal_.earlier()) take_over(event);
+    for (const manifest::PlanStep& step : plan.steps) total_ += images_of(step).size();
+  }
+
+  RunReport carry_out() {
+    StopWatch watch(mover_);
+    try {
+      for (std::size_t i = 0; i < plan_.steps.size(); ++i) take_step(i);
+      switch_lamps({});
+    } catch (...) {
+      mover_.stop_all();
+      if (interrupted()) throw Error(Exit::try_again, "run", "was interrupted; the arms stand", "go on with --resume");
+      throw;
+    }
+    report_.frames = static_cast<std::int64_t>(records_.size());
+    doubt_pictures();
+    enter_frames(document_, laboratory_, plan_, records_, options_.out);
+    return report_;
+  }
+
+ private:
+  void take_over(const Value& event) {
+    const std::string what = event.find("what") == nullptr ? "" : event.find("what")->as_string();
+    if (what == "frame") {
+      FrameRecord record = frame_of(event);
+      time_before_s_ = std::max(time_before_s_, record.time_s);
+      if (file_stands(options_.out, record)) records_[record.image] = std::move(record);
+    } else if (what == "retake") {
+      ++report_.retaken;
+    }
+  }
+
+  // Saturated: more than 1 % of a picture that is no member of a bracket. Dark: its brightest percentile within ten
+  // times the noise of the lamps-off frame's. Out of focus: less than a quarter of the median of that camera's views.
+  void doubt_pictures() {
+    std::map<std::string, std::vector<double>> focus;
+    for (const auto& [id, r] : records_) focus[r.camera].push_back(r.figures.focus);
+    for (const auto& [id, r] : records_) {
+      const bool single = r.group == r.image;
+      if (single && r.figures.saturated_share > 0.01)
+        report_.words.push_back(words_of(r) + ": saturated; ask a bracket, or a shorter exposure");
+      const auto dark = dark_.find({r.camera, r.exposure_s});
+      if (single && dark != dark_.end() && !r.lamps.empty() &&
+          r.figures.bright_code < dark->second.bright_code + 10 * std::max(0.5, r.figures.noise))
+        report_.words.push_back(words_of(r) + ": underexposed; ask a bracket, or a longer exposure");
+      const double usual = stats::median(focus[r.camera]);
+      if (!r.lamps.empty() && r.figures.focus < 0.25 * usual && focus[r.camera].size() >= 5)
+        report_.words.push_back(words_of(r) + ": less sharp than the others");
+    }
+  }
+
+  void take_step(std::size_t index) {
+    const manifest::PlanStep& step = plan_.steps[index];
+    const auto images = images_of(step);
+    if (std::ranges::all_of(images, [this](const auto& id) { return records_.contains(id); })) return;
+    throw_if_interrupted();
+    journal_.write(Value::object({{"what", "intent"}, {"step", static_cast<std::int64_t>(index)}}));
+    move_to(index);
+    turn_tables(step);
+    for (const auto& [name, shown] : step.screens) instrument_.screens.at(name)->show(shown);
+    std::vector<BracketFrame> bracket;
+    for (std::size_t k = 0; k < images.size(); ++k) {
+      if (const auto kept = records_.find(images[k]); kept != records_.end()) {
+        bracket.push_back({step.exposures_s[k], kept->second.figures});
+        continue;
+      }
+      const Shot shot{step.exposures_s.empty() ? 0.01 : step.exposures_s[k], camera_of(step).gain_db};
+      if (options_.lamp_check && !step.lamps.empty()) know_dark(step, shot);
+      switch_lamps(step.lamps);
+      keep(step, images[k], shot, &bracket);
+    }
+    take_stray_again(step, images, bracket);
+  }
+
+  // A bracket's frame that does not follow its neighbours is taken once more.
+  void take_stray_again(const manifest::PlanStep& step, const std::vector<std::string>& images,
+                        std::vector<BracketFrame>& bracket) {
+    if (bracket.size() != images.size()) return;
+    const auto stray = stray_of_bracket(bracket);
+    if (!stray) return;
+    const std::string why = "its codes do not follow the bracket's exposures";
+    journal_.write(Value::object({{"what", "retake"}, {"image", images[*stray]}, {"why", why}}));
+    ++report_.retaken;
+    records_.erase(images[*stray]);
+    std::vector<BracketFrame> again;
+    keep(step, images[*stray], {step.exposures_s[*stray], camera_of(step).gain_db}, &again);
+    if (again.empty()) return;
+    bracket[*stray] = again.front();
+    if (stray_of_bracket(bracket)) report_.words.push_back(images[*stray] + ": " + why);
+  }
+
+  const manifest::LaboratoryCamera& camera_of(const manifest::PlanStep& step) const {
+    const auto found = section_.cameras.find(step.camera);
+    if (found == section_.cameras.end())
+      throw Error(Exit::data, "plan step " + step.image, "names no camera of the laboratory: \"" + step.camera + "\"");
+    return found->second;
+  }
+
+  // Arms stand where the step wants them, by the plan's way where they stand at its beginning.
+  void move_to(std::size_t index) {
+    if (laboratory_.arms.empty()) return;
+    const Way way = way_to(laboratory_, plan_, index);
+    if (way.empty()) return;
+    const State now = mover_.stands();
+    const auto stands_at = [&now](const State& state) {
+      for (const auto& [name, joints] : state) {
+        const auto arm = now.find(name);
+        if (arm == now.end()) continue;
+        for (std::size_t j = 0; j < joints.size(); ++j)
+          if (std::abs(joints[j] - arm->second[j]) > arm_stands_rad) return false;
+      }
+      return true;
+    };
+    if (stands_at(way.back())) return;
+    if (!stands_at(way.front())) mover_.return_to(way.front(), options_.seed + index);
+    mover_.go(way);
+  }
+
+  void turn_tables(const manifest::PlanStep& step) {
+    for (const auto& [name, angle] : step.turntable_rad) {
+      const double reached = instrument_.turntables.at(name)->turn_to(angle);
+      if (std::abs(reached - angle) > 1e-3)
+        throw Error(Exit::unavailable, "turntable " + name,
+                    format("stands at %.3f deg, %.3f were asked", reached * 57.29578, angle * 57.29578));
+    }
+  }
+
+  void switch_lamps(const std::vector<std::string>& on) {
+    double settle_s = 0;
+    for (const auto& [name, lamp] : instrument_.lamps) {
+      const bool wanted = std::ranges::find(on, name) != on.end();
+      if (lamp->is_on() == wanted) continue;
+      lamp->set(wanted);
+      if (lamp->is_on() != wanted)
+        throw Error(Exit::unavailable, "lamp " + name, wanted ? "does not switch on" : "does not switch off");
+      settle_s = std::max(settle_s, section_.lamps.at(name).settle_s.value_or(0));
+    }
+    std::this_thread::sleep_for(std::chrono::duration<double>(settle_s));
+  }
+
+  std::vector<std::string> lamps_on() {
+    std::vector<std::string> on;
+    for (const auto& [name, lamp] : instrument_.lamps)
+      if (lamp->is_on()) on.push_back(name);
+    return on;
+  }
+
+  // One frame of `shot`; why it is none, in words.
+  std::string take(const manifest::PlanStep& step, const Shot& shot, RawFrame& frame, FrameFigures& figures) {
+    const manifest::LaboratoryCamera& camera = camera_of(step);
+    const double asked = seconds_since(zero_);
+    try {
+      frame = instrument_.cameras.at(step.camera)->take(shot);
+    } catch (const Error& e) {
+      throw_if_interrupted();
+      return e.problem();
+    }
+    const double came = seconds_since(zero_);
+    auto& before = before_[step.camera];
+    const std::string wrong = disagreement(frame, shot, camera.pixel_format, before, asked, came);
+    if (!before || frame.frame_id > before->frame_id) before = {frame.frame_id, frame.camera_time_s, asked, came};
+    if (!wrong.empty()) return wrong;
+    figures = figures_of(frame, camera.white.value_or((1 << frame.bits) - 1), is_mosaic(frame.pixel_format));
+    return {};
+  }
+
+  // As take(), with what else has to be as the step asks.
+  std::string take_lit(const manifest::PlanStep& step, const Shot& shot, RawFrame& frame, FrameFigures& figures,
+                       FrameRecord& record) {
+    record.joints = laboratory_.arms.empty() ? State{} : mover_.stands();
+    const std::string wrong = take(step, shot, frame, figures);
+    if (!wrong.empty()) return wrong;
+    record.lamps = lamps_on();
+    if (auto wanted = step.lamps;
+        std::set(wanted.begin(), wanted.end()) != std::set(record.lamps.begin(), record.lamps.end()))
+      return "other lamps are on than were asked";
+    const State after = laboratory_.arms.empty() ? State{} : mover_.stands();
+    for (const auto& [name, joints] : record.joints)
+      for (std::size_t j = 0; j < joints.size(); ++j)
+        if (std::abs(joints[j] - after.at(name)[j]) > arm_stands_rad) return "robot " + name + " moved during it";
+    const auto dark = dark_.find({step.camera, shot.exposure_s});
+    if (!step.lamps.empty() && dark != dark_.end() && looks_dark(figures, dark->second) &&
+        figures.saturated_share < 0.5)
+      return "it is as dark as with the lamps off";
+    return {};
+  }
+
+  // With all lamps off, once a camera and exposure.
+  void know_dark(const manifest::PlanStep& step, const Shot& shot) {
+    const std::pair key{step.camera, shot.exposure_s};
+    if (dark_.contains(key)) return;
+    switch_lamps({});
+    RawFrame frame;
+    FrameFigures figures;
+    for (int n = 0; n <= options_.retakes; ++n)
+      if (take(step, shot, frame, figures).empty()) {
+        dark_[key] = figures;
+        return;
+      }
+  }
+
+  void keep(const manifest::PlanStep& step, const std::string& image, const Shot& shot,
+            std::vector<BracketFrame>* bracket) {
+    FrameRecord record;
+    RawFrame frame;
+    std::string why;
+    std::optional<FrameFigures> doubtful;  // a good frame after a bad one waits for its like
+    bool doubt = false;
+    for (record.tries = 1; record.tries <= 2 * (options_.retakes + 1); ++record.tries) {
+      throw_if_interrupted();
+      FrameFigures figures;
+      const std::string wrong = take_lit(step, shot, frame, figures, record);
+      if (wrong.empty() && (!doubt || (doubtful && differing(*doubtful, figures).empty()))) {
+        record.figures = figures;
+        write_frame(step, image, shot, frame, record);
+        bracket->push_back({shot.exposure_s, figures});
+        return;
+      }
+      if (wrong.empty()) {
+        doubtful = figures;
+        continue;
+      }
+      doubt = true;
+      doubtful.reset();
+      why = wrong;
+      ++report_.retaken;
+      journal_.write(Value::object({{"what", "retake"}, {"image", image}, {"why", why}}));
+      if (why == "it is as dark as with the lamps off") switch_lamps({});
+      switch_lamps(step.lamps);
+    }
+    ++report_.refused;
+    report_.words.push_back(image + ": refused after " + std::to_string(record.tries - 1) + " tries: " + why);
+    journal_.write(Value::object({{"what", "refused"}, {"image", image}, {"why", why}}));
+  }
+
+  void write_frame(const manifest::PlanStep& step, const std::string& image, const Shot& shot, const RawFrame& frame,
+                   FrameRecord& record) {
+    record.image = image;
+    record.group = step.image;
+    record.camera = step.camera;
+    record.robot = section_.cameras.at(step.camera).robot;
+    record.exposure_s = frame.exposure_s.value_or(shot.exposure_s);
+    record.gain_db = frame.gain_db;
+    record.temperature_K = frame.temperature_K;
+    record.time_s = time_before_s_ + seconds_since(zero_);
+    record.frame_id = frame.frame_id;
+    for (const auto& [name, angle] : step.turntable_rad) record.turntables[name] = angle;
+    record.file = "frames/" + file_stem(image) + ".png";
+    const fs::path path = options_.out / record.file;
+    const int code_bits = frame.bits > 8 ? 16 : 8;
+    io::write_png(path, picture_of(frame, code_bits), code_bits);
+    record.bytes = fs::file_size(path);
+    record.sha256 = sha256_of_file(path);
+    journal_.write(to_event(record));
+    records_[image] = record;
+    if (options_.on_frame) options_.on_frame(path, words_of(record), records_.size(), total_);
+  }
+
+  manifest::Document& document_;
+  const Laboratory& laboratory_;
+  const manifest::Plan& plan_;
+  Instrument& instrument_;
+  const RunOptions& options_;
+  const manifest::Laboratory section_;
+  Surroundings surroundings_;
+  ArmMover mover_;
+  Journal journal_;
+  RunReport report_;
+  std::map<std::string, FrameRecord> records_;
+  std::map<std::string, std::optional<FrameBefore>> before_;
+  std::map<std::pair<std::string, double>, FrameFigures> dark_;
+  std::size_t total_ = 0;
+  double time_before_s_ = 0;
+  Clock::time_point zero_ = Clock::now();
+};
+
+}  // namespace
+
+RunReport run_plan(manifest::Document& document, const Laboratory& laboratory, const manifest::Plan& plan,
+                   Instrument& instrument, const RunOptions& options) {
+  if (document.laboratory.entry.empty())
+    throw Error(Exit::data, manifest::place(document, "/laboratory"), "is missing", "describe the instrument there");
+  if (plan.id != plan_id(document, plan))
+    throw Error(Exit::data, manifest::place(document, "/plans"), "was made for another laboratory, or changed by hand",
+                "plan again");
+  make_folder(options.out / "frames");
+  PlanRun run(document, laboratory, plan, instrument, options);
+  const RunReport report = run.carry_out();
+  manifest::Run entry;
+  entry.plan = plan.id;
+  entry.journal = manifest::add_file(document, options.out / "journal.jsonl", "journal");
+  entry.frames = report.frames;
+  entry.retaken = report.retaken;
+  entry.refused = report.refused;
+  document.runs.push_back(entry);
+  return report;
+}
+
+}  // namespace gonio::acquisition

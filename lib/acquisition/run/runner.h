@@ -1,0 +1,48 @@
+// A plan is carried out: motions, lamps, photographs, each checked, each in the journal before the next.
+//
+// The order of one frame: "intent" in the journal; arms, turntables, screens and lamps as the step asks, read back; the
+// photograph; its figures against what was asked (frame_check.h), arms and lamps read back again; the file, flushed
+// to the disk; "frame" in the journal. A frame that disagrees is taken again; after any disagreement the next good
+// frame is only believed once a second one like it was taken. What stays wrong is "refused" with its reason. So a file
+// without its line is worth nothing, a line without its file is seen by the file's hash, and a run that was killed at
+// any moment goes on with the first frame that has not both.
+//
+// Every camera takes, before its first lit frame at an exposure, one with all lamps off: a lit frame as dark as that is
+// a lamp that does not light.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "acquisition/laboratory/laboratory.h"
+#include "acquisition/motion/way.h"
+#include "acquisition/run/instrument.h"
+#include "manifest/sections/forward.h"
+
+namespace gonio::acquisition {
+
+struct RunOptions {
+  std::filesystem::path out;  // frames/IMAGE.png, journal.jsonl
+  bool resume = false;
+  int retakes = 4;         // of one frame, after which it is refused
+  bool lamp_check = true;  // the dark frames above
+  std::uint64_t seed = 1;  // of ways back to the plan
+  // After every frame that was kept: its file, its words ("v017: 8 ms, 0.2 % saturated"), how many of how many.
+  std::function<void(const std::filesystem::path&, const std::string&, std::size_t, std::size_t)> on_frame{};
+};
+
+struct RunReport {
+  std::int64_t frames = 0, retaken = 0, refused = 0;
+  std::vector<std::string> words;  // of what was refused, and of what looks doubtful: saturated, dark, out of focus
+};
+
+// Carries out `plan` and enters images, files, robots and the run into `document`, all of it as the journal has it: a
+// resumed run's entries are those of one that was never interrupted, but for times. Interrupted (base/atomic_file.h):
+// the arms are stopped first, then Error(try_again). Error(unavailable) where an arm or a device gives up;
+// Error(data) where the plan is another laboratory's or breaks a limit.
+RunReport run_plan(manifest::Document& document, const Laboratory& laboratory, const manifest::Plan& plan,
+                   Instrument& instrument, const RunOptions& options);
+
+}  // namespace gonio::acquisition

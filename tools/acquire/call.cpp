@@ -1,0 +1,130 @@
+// See call.h.
+#include "tools/acquire/call.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "acquisition/desk/true_laboratory.h"
+#include "acquisition/plan/asked_steps.h"
+#include "acquisition/plan/parse_pattern.h"
+#include "acquisition/run/instrument_lock.h"
+#include "acquisition/run/runner.h"
+#include "base/atomic_file.h"
+#include "base/progress.h"
+#include "base/text.h"
+#include "manifest/sections/laboratory.h"
+#include "manifest/sections/plan.h"
+
+namespace gonio::tools::acquire {
+namespace {
+
+using namespace gonio::acquisition;
+
+struct Asked {
+  std::vector<manifest::PlanStep> steps;
+  std::string words;
+};
+
+Asked asked_of(cli::Invocation& call) {
+  const PatternScene scene = scene_of(call);
+  if (call.flag("next")) {
+    AskedSteps next = next_steps(call.document, scene);
+    for (const std::string& left : next.left) log(LogLevel::warning, left);
+    if (next.steps.empty())
+      throw Error(Exit::data, manifest::place(call.document, "/explanations"),
+                  "propose no measurement that a plan can hold", "run explain first");
+    return {std::move(next.steps), "next measurements"};
+  }
+  if (call.given("pairs")) {
+    const std::string file = call.text("pairs");
+    call.note_input(file);
+    return {pair_steps(scene, read_pairs(read_file(file), file), {}), "pairs of directions"};
+  }
+  const PatternCall pattern = parse_pattern(call.text("plan"), "--plan");
+  return {pattern.pattern->make(scene, pattern.numbers), pattern.words};
+}
+
+bool all_simulated(const manifest::Document& document) {
+  const auto urls = urls_of(document);
+  const auto simulated = [](const std::string& url) { return url.starts_with("sim:"); };
+  if (std::ranges::none_of(urls, simulated)) return false;
+  if (std::ranges::all_of(urls, simulated)) return true;
+  throw Error(Exit::data, manifest::place(document, "/laboratory"), "has simulated devices beside others",
+              "give all of them sim://, or none");
+}
+
+Instrument instrument_of(cli::Invocation& call) {
+  if (!all_simulated(call.document)) {
+    if (call.given("truth")) throw Error(Exit::usage, "--truth", "is for sim:// devices", "leave it out");
+    return open_instrument(call.document);
+  }
+  DeskOptions options;
+  options.seed = call.seed;
+  options.spp = static_cast<int>(call.integer("spp"));
+  if (!call.given("truth")) return desk_instrument(call.document, nullptr, options);
+  call.note_input(call.text("truth"));
+  const manifest::Document truth = manifest::read_document(call.text("truth"));
+  return desk_instrument(call.document, &truth, options);
+}
+
+}  // namespace
+
+const manifest::Plan& plan(cli::Invocation& call, const Laboratory& laboratory) {
+  const Asked asked = asked_of(call);
+  Progress progress("planning", asked.steps.size());
+  manifest::Plan made =
+      make_plan(call.document, laboratory, asked.steps, asked.words, plan_options_of(call), &progress);
+  const auto same = std::ranges::find(call.document.plans, made.id, &manifest::Plan::id);
+  if (same != call.document.plans.end()) {
+    *same = std::move(made);
+    return *same;
+  }
+  return call.document.plans.emplace_back(std::move(made));
+}
+
+const manifest::Plan& chosen_plan(const cli::Invocation& call) {
+  const auto& plans = call.document.plans;
+  const std::string at = manifest::place(call.document, "/plans");
+  if (plans.empty()) throw Error(Exit::data, at, "is empty", "plan first: acquire --plan hemisphere lab.json");
+  if (!call.given("plan-id")) return plans.back();
+  const auto found =
+      std::ranges::find_if(plans, [&call](const manifest::Plan& p) { return p.id.starts_with(call.text("plan-id")); });
+  if (found == plans.end()) throw Error(Exit::usage, "--plan-id", "no plan's id begins with " + call.text("plan-id"));
+  return *found;
+}
+
+std::string summary(const manifest::Plan& plan) {
+  std::string out = plan.id.substr(0, 12) + ": " + plan.pattern + "; " + std::to_string(plan.steps.size()) + " steps";
+  if (!plan.unreachable.empty()) out += ", " + std::to_string(plan.unreachable.size()) + " views out of reach";
+  for (const auto& [name, value] : plan.figures) out += format("\n  %s %.4g", name.c_str(), value);
+  for (const auto& view : plan.unreachable) out += "\n  " + view.image + ": " + view.why;
+  return out;
+}
+
+Exit go(cli::Invocation& call, const Laboratory& laboratory, const manifest::Plan& chosen) {
+  const manifest::Plan plan = chosen;  // the document changes while it is carried out
+  std::vector<std::string> urls;
+  for (const std::string& url : urls_of(call.document))
+    if (!url.starts_with("sim:")) urls.push_back(url);
+  const InstrumentLock lock(urls, std::chrono::duration<double>(wait_of(call)));
+  Instrument instrument = instrument_of(call);
+  RunOptions options;
+  options.out = call.out;
+  options.resume = call.resume;
+  options.retakes = static_cast<int>(call.integer("retakes"));
+  options.seed = call.seed;
+  std::optional<Progress> progress;
+  options.on_frame = [&progress](const std::filesystem::path&, const std::string& words, std::size_t done,
+                                 std::size_t total) {
+    if (!progress) progress.emplace("frames", total - done + 1);
+    progress->advance();
+    log(LogLevel::debug, words);
+  };
+  const RunReport report = run_plan(call.document, laboratory, plan, instrument, options);
+  for (const std::string& words : report.words) log(LogLevel::warning, words);
+  log(LogLevel::info, format("%lld frames, %lld retaken, %lld refused", static_cast<long long>(report.frames),
+                             static_cast<long long>(report.retaken), static_cast<long long>(report.refused)));
+  return report.refused > 0 ? Exit::quality : Exit::done;
+}
+
+}  // namespace gonio::tools::acquire

@@ -1,0 +1,31 @@
+// acquire behind its description: what is asked for, and its parts in the order in which they are taken.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acquisition/laboratory/laboratory.h"
+#include "acquisition/plan/planner.h"
+#include "acquisition/plan/view_pattern.h"
+#include "base/error.h"
+#include "cli/program.h"
+
+namespace gonio::tools::acquire {
+
+std::vector<cli::Option> options();
+
+// What is looked at and lit, by which camera; checked against the laboratory. Error(usage) at the option.
+acquisition::PatternScene scene_of(const cli::Invocation& call);
+acquisition::PlanOptions plan_options_of(const cli::Invocation& call);
+double wait_of(const cli::Invocation& call);  // s
+
+// --plan: enters a plan into the document.
+const manifest::Plan& plan(cli::Invocation& call, const acquisition::Laboratory& laboratory);
+// The plan that is to be carried out: --plan-id, or the document's last.
+const manifest::Plan& chosen_plan(const cli::Invocation& call);
+// --go: exit 2 where frames were refused.
+Exit go(cli::Invocation& call, const acquisition::Laboratory& laboratory, const manifest::Plan& plan);
+
+std::string summary(const manifest::Plan& plan);  // of a plan, for people
+
+}  // namespace gonio::tools::acquire

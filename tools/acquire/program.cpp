@@ -1,0 +1,76 @@
+// acquire: plans views of an instrument, moves it, lights, photographs, and knows of every frame what it is
+// (lib/acquisition).
+#include "acquisition/desk/specimen_laboratory.h"
+#include "acquisition/run/instrument.h"
+#include "base/progress.h"
+#include "tools/acquire/call.h"
+
+namespace gonio::tools::acquire {
+namespace {
+
+bool plans(const cli::Invocation& call) {
+  return call.given("plan") || call.flag("next") || call.given("pairs");
+}
+
+// With --check every device is asked how it is, and none moves.
+void check(cli::Invocation& call) {
+  if (call.given("specimen")) {
+    if (call.out.empty()) throw Error(Exit::usage, "--specimen", "has no folder to write to", "give --out DIR");
+    return;
+  }
+  acquisition::believed_laboratory(call.document);
+  if (plans(call)) scene_of(call);
+  if (call.flag("go") && call.out.empty())
+    throw Error(Exit::usage, "--go", "has no folder for its frames", "give --out DIR");
+  if (!call.flag("check")) return;
+  bool all_well = true;
+  for (const std::string& line : acquisition::inspect(call.document, &all_well)) log(LogLevel::info, line);
+  if (!all_well) throw Error(Exit::unavailable, "laboratory", "not all of its devices answer");
+}
+
+Exit run(cli::Invocation& call) {
+  if (call.given("specimen")) {
+    call.document = acquisition::specimen_laboratory(call.out);
+    return Exit::done;
+  }
+  const acquisition::Laboratory laboratory = acquisition::believed_laboratory(call.document);
+  const manifest::Plan& chosen = plans(call) ? plan(call, laboratory) : chosen_plan(call);
+  if (call.flag("dry-run") || plans(call)) log(LogLevel::info, summary(chosen));
+  if (call.flag("go")) return go(call, laboratory, chosen);
+  if (!plans(call) && !call.flag("dry-run"))
+    throw Error(Exit::usage, "--go", "is not given, and nothing else is asked for",
+                "plan (--plan), look (--dry-run), or let it move (--go)");
+  return chosen.unreachable.empty() ? Exit::done : Exit::quality;
+}
+
+}  // namespace
+
+const cli::Program& gonio_program() {
+  static const cli::Program program{
+      .name = "acquire",
+      .sentence = "plan views of an instrument, move it, light, photograph, and check every frame",
+      .synopsis = {"--plan PATTERN [OPTION]... [-i FILE | lab.json]",
+                   "--go --out DIR [OPTION]... [-i FILE | plan.json]", "--specimen desk --out DIR",
+                   "--dry-run [-i FILE | plan.json]", "--check [-i FILE | lab.json]"},
+      .options = options(),
+      .reads = cli::Reads::optional,
+      .standalone = {"specimen"},
+      .takes_out = true,
+      .takes_seed = true,
+      .takes_resume = true,
+      .sections_read = {"files", "laboratory", "plans", "cameras", "lights", "explanations", "images"},
+      .sections_written = {"files", "plans", "runs", "images", "robots"},
+      .files = {{"frames/IMAGE.png", "raw frames, the sensor's own numbers, 8 or 16 bit"},
+                {"journal.jsonl", "what was intended and what came of it, a line each; what --resume goes by"}},
+      .exits = {{Exit::quality, "views are out of reach, or frames were refused"}},
+      .references = {"Elias & Wen, IK-Geo: Unified robot inverse kinematics using subproblem decomposition, 2025.",
+                     "Kuffner & LaValle, RRT-Connect, ICRA 2000.",
+                     "Universal Robots, Real-Time Data Exchange (RTDE) guide.",
+                     "EMVA, GenICam standard features naming convention 2.7."},
+      .see_also = {"calib-charuco(1)", "handeye(1)", "develop(1)", "render(1)", "explain(1)", "gonio-manifest(5)"},
+      .check = check,
+      .run = run};
+  return program;
+}
+
+}  // namespace gonio::tools::acquire
