@@ -99,7 +99,7 @@ bool is_real(const Document& d) {
   for_each_device(d, [&](const char* kind, const std::string& name, const std::string& text) {
     if (text.empty()) return;
     const Url url = parse_url(text, url_place(d, kind, name));
-    const bool here = url.host == "localhost" || url.host.starts_with("127.") || url.host == "[::1]";
+    const bool here = url.host == "localhost" || url.host.starts_with("127.") || url.host == "::1";
     real = real || (url.scheme != "sim" && url.scheme != "folder" && !here);
   });
   return real;
