@@ -97,6 +97,21 @@ DicomStream jpeg_stream(std::string_view stored, bool ls, const std::string& pla
   refuse_volume(place, "has no JPEG of its kind where its pixels belong");
 }
 
+// Without what applications put before the scan (APPn, comments, fill): no decoder needs it, and GDCM has an assertion
+// where a revision of JFIF or Adobe's transform is unknown to it.
+std::string bare_jpeg(std::string_view stored) {
+  std::string bare(stored.substr(0, 2));
+  for (std::size_t at = 2; at + 4 <= stored.size();) {
+    const auto marker = static_cast<unsigned char>(stored[at + 1]);
+    if (marker == 0xda) return bare.append(stored.substr(at));
+    const std::size_t length = marker == 0xff ? 1 : std::size_t{2} + big16(stored, at + 2);
+    const bool of_application = (marker >= 0xe0 && marker <= 0xef) || marker == 0xfe || marker == 0xff;
+    if (!of_application) bare.append(stored.substr(at, length));
+    at += length;
+  }
+  return bare;
+}
+
 // ISO 15444-1, annex A: SIZ states the size; COD, whether the wavelet is the one that rounds (5-3) and can be undone.
 DicomStream jpeg_2000_stream(std::string_view stored, const std::string& place) {
   DicomStream stream;
@@ -201,6 +216,7 @@ std::string dicom_frame(const DicomFile& file, const DicomPieces& pieces) {
       refuse_volume(place, "states samples without a sign, and the stream in it has them with one",
                     "export the series without compression");
     bits = stream.bits;
+    if (file.pixels == DicomPixels::jpeg_lossless) stored = bare_jpeg(stored);
     stored = decode_by_gdcm(file, stored, stream.bits, stream.is_signed);
   }
   to_this_machine(stored, sample, file.big_endian);

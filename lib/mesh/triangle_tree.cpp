@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
+
 namespace gonio::mesh {
 namespace {
 
@@ -74,44 +76,103 @@ TriangleTree::Box TriangleTree::box_of(std::uint32_t triangle) const {
 TriangleTree::TriangleTree(const std::vector<Vec3>& positions_m,
                            const std::vector<std::array<std::uint32_t, 3>>& triangles)
     : positions_(positions_m), triangles_(triangles) {
-  std::vector<Box> boxes(triangles.size());
-  order_.reserve(triangles.size());
+  std::vector<Centre> centres;
+  centres.reserve(triangles.size());
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     const auto& [a, b, c] = triangles[t];
     if (!is_finite(positions_m[a]) || !is_finite(positions_m[b]) || !is_finite(positions_m[c])) continue;
-    boxes[t] = box_of(t);
-    order_.push_back(t);
+    const Box box = box_of(t);
+    const Vec3 twice = box.low + box.high;
+    centres.push_back({{twice.x, twice.y, twice.z}, t});
   }
-  if (order_.empty()) return;
-  nodes_.reserve(order_.size());
-  build(0, static_cast<std::uint32_t>(order_.size()), boxes);
+  if (centres.empty()) return;
+  const auto count = static_cast<std::uint32_t>(centres.size());
+  nodes_.resize(nodes_of(count));
+  order_.resize(count);
+  // The upper levels one after the other, each in parallel; what hangs below them each by itself.
+  std::vector<Range> level{{0, 0, count}}, below;
+  std::vector<std::uint32_t> upper;
+  for (int depth = 0; depth < 5; ++depth) {
+    std::vector<std::array<Range, 2>> halves(level.size());
+    std::vector<std::uint8_t> is_split(level.size(), 0);
+    parallel_for(0, level.size(),
+                 [&](std::size_t n) { is_split[n] = split(level[n], centres, halves[n][0], halves[n][1]); });
+    std::vector<Range> next;
+    for (std::size_t n = 0; n < level.size(); ++n)
+      if (is_split[n] != 0) {
+        upper.push_back(level[n].node);
+        next.insert(next.end(), halves[n].begin(), halves[n].end());
+      } else {
+        below.push_back(level[n]);
+      }
+    level.swap(next);
+  }
+  below.insert(below.end(), level.begin(), level.end());
+  parallel_for(0, below.size(), [&](std::size_t n) { build(below[n], centres); });
+  for (auto node = upper.rbegin(); node != upper.rend(); ++node) enclose(*node);
+  for (std::uint32_t n = 0; n < nodes_.size(); ++n)
+    if (nodes_[n].count > 0) leaves_.push_back(n);
 }
 
-void TriangleTree::build(std::uint32_t first, std::uint32_t last, const std::vector<Box>& boxes) {
-  Box box = boxes[order_[first]];
-  Vec3 least = box.low + box.high, most = least;  // twice the centres
-  for (std::uint32_t i = first + 1; i < last; ++i) {
-    const Box& one = boxes[order_[i]];
-    box = {lower(box.low, one.low), upper(box.high, one.high)};
-    least = lower(least, one.low + one.high);
-    most = upper(most, one.low + one.high);
-  }
-  const std::size_t here = nodes_.size();
-  nodes_.push_back({box, first, last - first});
-  if (last - first <= leaf_triangles) return;
-  const Vec3 extent = most - least;
-  const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+// How many nodes a tree of so many triangles has: halves are as large as each other or one apart, so that a level knows
+// two sizes only.
+std::uint32_t TriangleTree::nodes_of(std::uint32_t triangles) {
+  struct Pair {
+    std::uint32_t here, next;  // of n, and of n + 1 triangles
+  };
+  const auto pair_of = [](const auto& self, std::uint32_t n) -> Pair {
+    if (n < leaf_triangles) return {1, 1};
+    const Pair half = self(self, n / 2);
+    const std::uint32_t even = 1 + 2 * half.here, odd = 1 + half.here + half.next, after = 1 + 2 * half.next;
+    if (n % 2 == 1) return {odd, after};
+    return {n == leaf_triangles ? 1 : even, odd};
+  };
+  return pair_of(pair_of, triangles).here;
+}
+
+// False where the range is a leaf's.
+bool TriangleTree::split(const Range& range, std::vector<Centre>& centres, Range& left, Range& right) {
+  const auto [node, first, last] = range;
+  if (last - first <= leaf_triangles) return false;
+  std::array<double, 3> least = centres[first].twice, most = least;
+  for (std::uint32_t i = first + 1; i < last; ++i)
+    for (std::size_t a = 0; a < 3; ++a) {
+      least[a] = std::min(least[a], centres[i].twice[a]);
+      most[a] = std::max(most[a], centres[i].twice[a]);
+    }
+  const std::array<double, 3> extent{most[0] - least[0], most[1] - least[1], most[2] - least[2]};
+  const std::size_t axis = extent[0] >= extent[1] && extent[0] >= extent[2] ? 0 : extent[1] >= extent[2] ? 1 : 2;
   const std::uint32_t middle = first + (last - first) / 2;
-  std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last,
-                   [&](std::uint32_t a, std::uint32_t b) {
-                     const double x = boxes[a].low[axis] + boxes[a].high[axis];
-                     const double y = boxes[b].low[axis] + boxes[b].high[axis];
-                     return x != y ? x < y : a < b;
+  std::nth_element(centres.begin() + first, centres.begin() + middle, centres.begin() + last,
+                   [axis](const Centre& a, const Centre& b) {
+                     return a.twice[axis] != b.twice[axis] ? a.twice[axis] < b.twice[axis] : a.triangle < b.triangle;
                    });
-  build(first, middle, boxes);
-  nodes_[here].count = 0;
-  nodes_[here].first = static_cast<std::uint32_t>(nodes_.size());
-  build(middle, last, boxes);
+  left = {node + 1, first, middle};
+  right = {node + 1 + nodes_of(middle - first), middle, last};
+  nodes_[node].first = right.node;
+  return true;
+}
+
+void TriangleTree::build(const Range& range, std::vector<Centre>& centres) {
+  Range left{}, right{};
+  if (split(range, centres, left, right)) {
+    build(left, centres);
+    build(right, centres);
+    enclose(range.node);
+    return;
+  }
+  Node& leaf = nodes_[range.node];
+  leaf.first = range.first, leaf.count = range.last - range.first;
+  for (std::uint32_t i = range.first; i < range.last; ++i) {
+    order_[i] = centres[i].triangle;
+    const Box box = box_of(order_[i]);
+    leaf.box = i == range.first ? box : Box{lower(leaf.box.low, box.low), upper(leaf.box.high, box.high)};
+  }
+}
+
+void TriangleTree::enclose(std::uint32_t node) {
+  const Box &left = nodes_[node + 1].box, &right = nodes_[nodes_[node].first].box;
+  nodes_[node].box = {lower(left.low, right.low), upper(left.high, right.high)};
 }
 
 TriangleTree::Nearest TriangleTree::nearest(Vec3 point_m, double within_m) const {
@@ -189,27 +250,39 @@ std::optional<TriangleTree::Hit> TriangleTree::first_hit(Vec3 origin_m, Vec3 dir
   return best;
 }
 
-void TriangleTree::overlapping_after(std::uint32_t triangle, const std::function<void(std::uint32_t)>& visit) const {
-  if (nodes_.empty()) return;
-  const Box box = box_of(triangle);
-  const auto apart = [&](const Box& o) {
-    return o.high.x < box.low.x || box.high.x < o.low.x || o.high.y < box.low.y || box.high.y < o.low.y ||
-           o.high.z < box.low.z || box.high.z < o.low.z;
-  };
+bool TriangleTree::touch(const Box& a, const Box& b) {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
+         a.low.z <= b.high.z && b.low.z <= a.high.z;
+}
+
+void TriangleTree::overlapping_pairs(std::size_t leaf,
+                                     const std::function<void(std::uint32_t, std::uint32_t)>& visit) const {
+  const std::uint32_t own = leaves_[leaf];
+  const Node& mine = nodes_[own];
+  std::array<Box, leaf_triangles> boxes{};
+  for (std::uint32_t i = 0; i < mine.count; ++i) boxes[i] = box_of(order_[mine.first + i]);
+  for (std::uint32_t i = 0; i < mine.count; ++i)
+    for (std::uint32_t j = i + 1; j < mine.count; ++j)
+      if (touch(boxes[i], boxes[j])) visit(order_[mine.first + i], order_[mine.first + j]);
   std::array<std::uint32_t, deepest> stack;
   std::size_t height = 0;
   stack[height++] = 0;
   while (height > 0) {
     const std::uint32_t at = stack[--height];
     const Node& node = nodes_[at];
-    if (apart(node.box)) continue;
+    if (!touch(node.box, mine.box)) continue;
     if (node.count == 0) {
       stack[height++] = node.first;
-      stack[height++] = at + 1;
+      if (node.first > own) stack[height++] = at + 1;  // else all that is to the left comes before
       continue;
     }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-      if (order_[i] > triangle && !apart(box_of(order_[i]))) visit(order_[i]);
+    if (at <= own) continue;
+    for (std::uint32_t j = node.first; j < node.first + node.count; ++j) {
+      const Box other = box_of(order_[j]);
+      if (!touch(other, mine.box)) continue;
+      for (std::uint32_t i = 0; i < mine.count; ++i)
+        if (touch(boxes[i], other)) visit(order_[mine.first + i], order_[j]);
+    }
   }
 }
 

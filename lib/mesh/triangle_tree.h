@@ -42,8 +42,10 @@ class TriangleTree {
   };
   std::optional<Hit> first_hit(Vec3 origin_m, Vec3 direction, double t_least) const;
 
-  // Triangles whose boxes touch that of `triangle` and that come after it.
-  void overlapping_after(std::uint32_t triangle, const std::function<void(std::uint32_t)>& visit) const;
+  // All pairs of triangles whose boxes touch, each once: those of which one is in a leaf and the other in it or in a
+  // later one.
+  std::size_t leaves() const { return leaves_.size(); }
+  void overlapping_pairs(std::size_t leaf, const std::function<void(std::uint32_t, std::uint32_t)>& visit) const;
 
  private:
   struct Box {
@@ -53,13 +55,25 @@ class TriangleTree {
     Box box{};
     std::uint32_t first = 0, count = 0;  // count 0: children are the next node and node `first`
   };
+  struct Centre {
+    std::array<double, 3> twice{};
+    std::uint32_t triangle = 0;
+  };
+  struct Range {  // of the order that a node, and what is below it, is made of
+    std::uint32_t node, first, last;
+  };
+  static std::uint32_t nodes_of(std::uint32_t triangles);
+  static bool touch(const Box& a, const Box& b);
   Box box_of(std::uint32_t triangle) const;
-  void build(std::uint32_t first, std::uint32_t last, const std::vector<Box>& boxes);
+  bool split(const Range& range, std::vector<Centre>& centres, Range& left, Range& right);
+  void build(const Range& range, std::vector<Centre>& centres);
+  void enclose(std::uint32_t node);
 
   const std::vector<Vec3>& positions_;
   const std::vector<std::array<std::uint32_t, 3>>& triangles_;
   std::vector<std::uint32_t> order_;
-  std::vector<Node> nodes_;
+  std::vector<Node> nodes_;  // depth first
+  std::vector<std::uint32_t> leaves_;
 };
 
 }  // namespace gonio::mesh

@@ -38,6 +38,30 @@ struct Expected {
   double lowest, highest, mean;  // before slope and intercept
 };
 
+// JFIF 85.82 and Adobe's segment with a transform nobody knows: nothing that the pixels need.
+TEST(VolumeDicom, WhatApplicationsPutIntoAJpegIsPassedOver) {
+  const tests::ScratchFolder folder;
+  const std::filesystem::path own = std::filesystem::path(GONIO_SOURCE) / "tests/io/data/volumes/dicom/slice5.dcm";
+  std::string bytes = read_file(own);
+  const std::size_t jfif = bytes.find(std::string("JFIF\0", 5));
+  ASSERT_NE(jfif, std::string::npos);
+  write_file(folder / "plain.dcm", bytes);
+  const VolumeData plain = read_volume(folder / "plain.dcm");
+  std::filesystem::remove(folder / "plain.dcm");
+  bytes[jfif + 5] = 0x55, bytes[jfif + 6] = 0x52;
+  write_file(folder / "jfif.dcm", bytes);
+  EXPECT_EQ(read_volume(folder / "jfif.dcm").values, plain.values);
+  std::filesystem::remove(folder / "jfif.dcm");
+  // The segment of 16 bytes becomes Adobe's of 14 (12 after its length) and two bytes of fill.
+  std::string adobe(
+      "\xff\xee\0\x0e"
+      "Adobe\0\x65\0\0\0\0\x7f",
+      16);
+  bytes.replace(jfif - 4, 18, adobe + "\xff\xff");
+  write_file(folder / "adobe.dcm", bytes);
+  EXPECT_EQ(read_volume(folder / "adobe.dcm").values, plain.values);
+}
+
 // expected.csv beside the set: python3-pydicom with GDCM.
 TEST(VolumeDicom, EveryRecordedSyntaxHasThePixelsOfPydicom) {
   GONIO_NEEDS_DATA("ct/dicom_format/expected.csv");

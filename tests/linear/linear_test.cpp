@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "linear/positive.h"
 #include "linear/qr.h"
 #include "linear/solve.h"
 #include "linear/svd.h"
@@ -108,6 +109,21 @@ TEST(Linear, LeastSquares) {
   EXPECT_LT((shortest.pseudo_inverse() * b.col(0) - x).norm(), 1e-12);
   const linear::HouseholderQr plain(a);
   EXPECT_LT((plain.thin_q() * plain.upper() - a).norm(), 1e-13 * a.norm());
+}
+
+TEST(Positive, InverseMultipliesToOneAndWhatIsSingularIsSaid) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Eigen::Matrix<double, 6, 6> a = positive(6, seed);
+    std::array<double, 36> rows{}, inverse{};
+    for (std::size_t k = 0; k < 36; ++k) rows[k] = a(static_cast<int>(k / 6), static_cast<int>(k % 6));
+    ASSERT_TRUE(linear::positive_inverse<6>(rows, inverse));
+    Eigen::Matrix<double, 6, 6> back;
+    for (std::size_t k = 0; k < 36; ++k) back(static_cast<int>(k / 6), static_cast<int>(k % 6)) = inverse[k];
+    EXPECT_LT((a * back - Matrix::Identity(6, 6)).norm(), 1e-9);
+  }
+  std::array<double, 9> flat{1, 1, 2, 1, 1, 2, 2, 2, 7}, none{};
+  EXPECT_FALSE(linear::positive_inverse<3>(flat, none));
+  EXPECT_FALSE(linear::positive_inverse<3>({-1, 0, 0, 0, 1, 0, 0, 0, 1}, none));
 }
 
 }  // namespace

@@ -88,16 +88,33 @@ TEST(TriangleTree, OverlappingBoxesAreAllVisitedOnce) {
     const auto& [a, b, c] = raw.triangles[t];
     return std::minmax({raw.positions_m[a][axis], raw.positions_m[b][axis], raw.positions_m[c][axis]});
   };
-  for (const std::uint32_t one : {0u, 100u, 300u}) {
-    std::multiset<std::uint32_t> found, expected;
-    tree.overlapping_after(one, [&](std::uint32_t other) { found.insert(other); });
+  std::multiset<std::pair<std::uint32_t, std::uint32_t>> found, expected;
+  for (std::size_t leaf = 0; leaf < tree.leaves(); ++leaf)
+    tree.overlapping_pairs(leaf, [&](std::uint32_t a, std::uint32_t b) { found.insert(std::minmax(a, b)); });
+  for (std::uint32_t one = 0; one < raw.triangles.size(); ++one)
     for (std::uint32_t other = one + 1; other < raw.triangles.size(); ++other) {
       bool touch = true;
       for (int axis = 0; axis < 3; ++axis)
         touch &= box(one, axis).first <= box(other, axis).second && box(other, axis).first <= box(one, axis).second;
-      if (touch) expected.insert(other);
+      if (touch) expected.insert({one, other});
     }
-    EXPECT_EQ(found, expected);
+  EXPECT_EQ(found, expected);
+}
+
+// Halves of every size, down to none: all triangles are found from above themselves.
+TEST(TriangleTree, IsWholeWhateverTheNumberOfTriangles) {
+  const io::TriangleMesh raw = shapes::ball(1, 3);
+  for (std::size_t n = 0; n <= 150; ++n) {
+    const std::vector<std::array<std::uint32_t, 3>> some(raw.triangles.begin(),
+                                                         raw.triangles.begin() + static_cast<std::ptrdiff_t>(n));
+    const TriangleTree tree(raw.positions_m, some);
+    for (std::uint32_t t = 0; t < n; ++t) {
+      const auto& [a, b, c] = some[t];
+      const Vec3 middle = (raw.positions_m[a] + raw.positions_m[b] + raw.positions_m[c]) / 3;
+      const auto hit = tree.first_hit(middle * 2, middle * -1, 0);
+      ASSERT_TRUE(hit) << n;
+      ASSERT_EQ(hit->triangle, t) << n;
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 // The command line of ct-mesh-clean.
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include "base/error.h"
 #include "base/quantity.h"
@@ -73,7 +74,7 @@ std::array<std::array<double, 3>, 2> box_of(const std::string& text) {
   for (std::size_t n = 0; n < 6; ++n) {
     double& to = box[n / 3][n % 3];
     const auto [end, error] = std::from_chars(parts[n].data(), parts[n].data() + parts[n].size(), to);
-    if (error != std::errc() || end != parts[n].data() + parts[n].size())
+    if (error != std::errc() || end != parts[n].data() + parts[n].size() || std::isnan(to))
       throw Error(Exit::usage, "--box", "\"" + parts[n] + "\" is no number", "give i0,j0,k0,i1,j1,k1 in voxels");
   }
   return box;
@@ -256,7 +257,7 @@ void threshold_asked(const std::string& text, Asked& a) {
   else {
     a.threshold_by = ThresholdBy::value;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), a.threshold);
-    if (error != std::errc() || end != text.data() + text.size())
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(a.threshold))
       throw Error(Exit::usage, "--threshold", "\"" + text + "\" is neither a value nor a way to find one",
                   "gradient, materials, otsu, reference, or a number");
   }

@@ -1,7 +1,8 @@
 // What an instrument is made of, one small interface a kind. A driver is one file in device/drivers, chosen by the
 // scheme of its URL; the build gathers them. Every call says what it found, never what it hopes: a motion is over when
-// the state that was read back says so. All calls block, at most until their `until`; Error(device) says which device,
-// what it answered and what to look at. No driver moves anything that it was not told to move.
+// the state that was read back says so. All calls block, none for ever: a device that falls silent is given up after
+// the `timeout` of its URL. Error(unavailable) says which device, what it answered and what to look at. No driver moves
+// anything that it was not told to move, and one that gives up on a motion stops it first.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -18,29 +19,37 @@ namespace gonio::acquisition {
 
 using Clock = std::chrono::steady_clock;
 
-// "modbus://host:502/coil/3?unit=1": scheme, host, port, path, query. Error(usage) at `place` for what is none.
+// "modbus://host:502/coil/3?unit=1": scheme, host, port, path, query. %41 is A, in host, path and query; a plus is a
+// plus. Error(usage) at `place` for what is none: no scheme, a port outside 1 .. 65535, a key that is given twice,
+// blanks, user names and fragments.
 struct Url {
   std::string text, scheme, host, path;
   std::optional<int> port;
   std::map<std::string, std::string> query;
 };
 Url parse_url(const std::string& text, const std::string& place);
+// The same with one more key in its query: what the laboratory holds beside the URL (`registers`, the path of a
+// register map). Error(usage) where the key is there.
+std::string with_query(const std::string& url, const std::string& key, const std::string& value,
+                       const std::string& place);
 
 struct RobotState {
   double time_s = 0;               // controller's clock
   std::vector<double> joints_rad;  // actual, turns counted
   std::vector<double> speed_rad_per_s, temperature_K;
   std::optional<Rigid<frame::Base, frame::Tool>> base_from_tool;  // as the controller says
-  bool powered = false, standing = false, protective_stop = false, emergency_stop = false, remote_control = false;
-  std::string mode;  // the controller's own word
+  bool powered = false, standing = false, protective_stop = false, emergency_stop = false;
+  bool remote_control = false;  // the controller does not say that it obeys its pendant alone
+  std::string mode;             // the controller's own word
 };
 class RobotDevice {
  public:
   virtual ~RobotDevice() = default;
   virtual RobotState state() = 0;
-  // Along straight lines in joint space through `way` (the first is where it stands), each joint within the speeds and
-  // accelerations given. Returns once the arm stands at the last within 1e-4 rad, or throws: protective stop, joint
-  // that did not arrive, connection lost. `speeds`, `accelerations`: one a joint.
+  // Along straight lines in joint space through `way` (the first is where it stands, within 1e-3 rad), each joint
+  // within the speeds and accelerations given; it stands for a moment at each. Returns once the arm stands at the last
+  // within 1e-4 rad, or stops it and throws: protective stop, joint that did not arrive, connection lost. `speeds`,
+  // `accelerations`: one a joint, above 0.
   virtual RobotState move(std::span<const std::vector<double>> way, std::span<const double> speeds,
                           std::span<const double> accelerations) = 0;
   virtual void stop() = 0;  // at once, also from another thread; returns when it stands
@@ -64,7 +73,7 @@ class CameraDevice {
  public:
   virtual ~CameraDevice() = default;
   virtual std::string identity() = 0;  // maker, model, serial number
-  // One frame whose exposure began after the call. Error(device) where none came in time.
+  // One frame whose exposure began after the call. Error(unavailable) where none came in time.
   virtual RawFrame take(const Shot& shot) = 0;
 };
 
@@ -100,7 +109,7 @@ struct Driver {
 };
 std::span<const Driver* const> all_drivers();  // by scheme; defined in a generated source
 
-// By scheme. Error(usage) at `place` that lists the schemes there are.
+// By scheme. Error(usage) at `place` that lists the schemes there are for this kind of device.
 std::unique_ptr<RobotDevice> open_robot(const std::string& url, const std::string& place);
 std::unique_ptr<CameraDevice> open_camera(const std::string& url, const std::string& place);
 std::unique_ptr<LampDevice> open_lamp(const std::string& url, const std::string& place);

@@ -4,14 +4,11 @@
 // some of them hundreds of metres away, robot/ur_calibration.h.)
 #include "acquisition/motion/reach.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "acquisition/motion/body.h"
 
 namespace gonio::acquisition {
 
-std::vector<double> reaches(const LaboratoryArm& arm) {
+std::vector<std::vector<double>> reaches(const LaboratoryArm& arm) {
   const std::size_t joints = arm.links.size();
   const std::vector<robot::LinkFrame> frames = robot::link_frames(arm.links, Joints(joints));
   std::vector<Vec3> points;
@@ -20,22 +17,21 @@ std::vector<double> reaches(const LaboratoryArm& arm) {
     const Vec3 before = points.empty() ? Vec3{} : points.back();
     points.push_back(frames[j].origin_m + axis * dot(before - frames[j].origin_m, axis));
   }
-  // Outermost link first: what lies on link j + 1 and beyond is as far from point j as from point j + 1, and their
-  // distance.
-  std::vector<double> reach(joints);
-  double beyond = 0;
-  for (std::size_t j = joints; j-- > 0;) {
-    if (j + 1 < joints) beyond += norm(points[j + 1] - points[j]);
-    for (const Solid& solid : arm.solids) {
-      if (solid.link != static_cast<int>(j) + 1) continue;
-      const Body body = body_of(solid, 0);
-      const robot::LinkFrame& frame = frames[j + 1];
-      const Vec3 middle = frame.rotation * (body.rotation * body.middle_m + body.origin_m) + frame.origin_m;
-      beyond = std::max(beyond, norm(middle - points[j]) + body.radius_m);
+  std::vector<std::vector<double>> all;
+  for (const Solid& solid : arm.solids) {
+    std::vector<double>& reach = all.emplace_back(joints);
+    const Body body = body_of(solid, 0);
+    const robot::LinkFrame& frame = frames[static_cast<std::size_t>(solid.link)];
+    const Vec3 middle = frame.rotation * (body.rotation * body.middle_m + body.origin_m) + frame.origin_m;
+    double beyond = body.radius_m;
+    Vec3 last = middle;
+    for (auto j = static_cast<std::size_t>(solid.link); j-- > 0;) {
+      beyond += norm(last - points[j]);
+      last = points[j];
+      reach[j] = beyond;
     }
-    reach[j] = beyond;
   }
-  return reach;
+  return all;
 }
 
 }  // namespace gonio::acquisition

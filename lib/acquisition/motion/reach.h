@@ -6,7 +6,8 @@
 
 namespace gonio::acquisition {
 
-// For each joint a length: no point of the arm's solids is farther from the joint's axis, in whatever posture.
-std::vector<double> reaches(const LaboratoryArm& arm);
+// For each solid of the arm and each joint a length: no point of the solid is farther from the joint's axis, in
+// whatever posture. 0 for joints that do not move it.
+std::vector<std::vector<double>> reaches(const LaboratoryArm& arm);
 
 }  // namespace gonio::acquisition

@@ -4,6 +4,7 @@
 
 #include "acquisition/motion/body.h"
 #include "acquisition/motion/exact_distance.h"
+#include "acquisition/motion/line.h"
 #include "acquisition/motion/reach.h"
 #include "acquisition/motion/way.h"
 #include "base/random.h"
@@ -43,10 +44,12 @@ struct Surroundings::Parts {
   ExactDistances exact;
   std::vector<WatchedPair> pairs;
   std::vector<Clearance> left_out;
-  std::map<std::string, std::vector<double>> reach;
+  std::vector<std::vector<double>> reach;  // of every body, by joint; empty: it stands
 
   explicit Parts(const Laboratory& given) : laboratory(given), bodies(bodies_of(laboratory)), exact(bodies) {
-    for (const auto& [name, arm] : laboratory.arms) reach[name] = reaches(arm);
+    for (const auto& [name, arm] : laboratory.arms)
+      for (std::vector<double>& of_solid : reaches(arm)) reach.push_back(std::move(of_solid));
+    reach.resize(bodies.size());
     for (std::size_t a = 0; a < bodies.size(); ++a)
       for (std::size_t b = a + 1; b < bodies.size(); ++b)
         if (!may_meet(bodies[a], bodies[b])) pairs.push_back({a, b});
@@ -75,6 +78,15 @@ struct Surroundings::Parts {
     return a.arm == b.arm && !a.solid->carried && !b.solid->carried && std::abs(a.solid->link - b.solid->link) == 2;
   }
 
+  void note_left_out(const Clearance& pair) {
+    for (Clearance& known : left_out)
+      if (known.first == pair.first && known.second == pair.second) {
+        known.distance_m = std::min(known.distance_m, pair.distance_m);
+        return;
+      }
+    left_out.push_back(pair);
+  }
+
   void leave_out(const LaboratoryArm& arm, int index) {
     std::vector<WatchedPair> own;
     for (const WatchedPair& pair : pairs)
@@ -97,9 +109,75 @@ struct Surroundings::Parts {
     for (std::size_t i = 0; i < own.size(); ++i) {
       const bool never = touching[i] == 0 && mere_neighbours(own[i]);
       if (near[i] < nearly_every * postures && !never) continue;
-      left_out.push_back(named(own[i], smallest[i]));
+      note_left_out(named(own[i], smallest[i]));
       std::erase_if(pairs, [&](const WatchedPair& p) { return p.a == own[i].a && p.b == own[i].b; });
     }
+  }
+};
+
+namespace {
+
+struct TravellingPair {
+  WatchedPair pair;
+  double travel_m = 0;  // how much the distance of the two changes at most, all along the line
+};
+
+}  // namespace
+
+// Conservative advancement (Mirtich 1996) by halving: of a stretch, its middle is looked at; pairs that cannot come
+// near on either side of it are done with, the others are looked at in both halves.
+struct Surroundings::LineLook {
+  const Parts& p;
+  const State &from, &to;
+  double stop_m, allowance_m;
+  std::vector<std::vector<double>> turns;  // by arm and joint
+  Nearest nearest;
+
+  double travel(const WatchedPair& pair) const {
+    const Body &a = p.bodies[pair.a], &b = p.bodies[pair.b];
+    const auto moved = [&](std::size_t body, int first_joint) {
+      double sum = 0;
+      if (p.bodies[body].arm < 0) return sum;
+      const std::vector<double>& joints = turns[static_cast<std::size_t>(p.bodies[body].arm)];
+      for (auto j = static_cast<std::size_t>(first_joint); j < joints.size(); ++j) sum += joints[j] * p.reach[body][j];
+      return sum;
+    };
+    if (a.arm != b.arm) return moved(pair.a, 0) + moved(pair.b, 0);
+    // Seen from the inner one, only joints beyond it move the outer one.
+    return a.solid->link < b.solid->link ? moved(pair.b, a.solid->link) : moved(pair.a, b.solid->link);
+  }
+
+  void halve(double t0, double t1, const std::vector<TravellingPair>& pairs) {
+    const double middle = (t0 + t1) / 2, share = (t1 - t0) / 2;
+    const std::vector<PlacedBody> at =
+        placed(p.laboratory, p.bodies, acquisition::between(p.laboratory, from, to, middle));
+    std::vector<std::pair<double, const TravellingPair*>> near;  // with a bound of their distance in the middle
+    for (const TravellingPair& t : pairs) {
+      if (harmless(ball_gap(p.bodies[t.pair.a], at[t.pair.a], p.bodies[t.pair.b], at[t.pair.b]), share * t.travel_m))
+        continue;
+      const double bound = p.lower_bound(t.pair, at);
+      if (!harmless(bound, share * t.travel_m)) near.emplace_back(bound, &t);
+    }
+    std::sort(near.begin(), near.end(), [](const auto& x, const auto& y) {
+      return x.first != y.first ? x.first < y.first : x.second < y.second;
+    });
+    std::vector<TravellingPair> left;
+    for (const auto& [bound, t] : near) {
+      if (harmless(bound, share * t->travel_m)) continue;
+      const double distance = p.exactly(t->pair, at);
+      if (distance < nearest.clearance.distance_m) nearest = {p.named(t->pair, distance), middle};
+      if (nearest.clearance.distance_m <= 0 || nearest.clearance.distance_m < stop_m) return;
+      if (!harmless(distance, share * t->travel_m)) left.push_back(*t);
+    }
+    for (const auto& [low, high] : {std::pair{t0, middle}, std::pair{middle, t1}}) {
+      if (left.empty() || nearest.clearance.distance_m <= 0 || nearest.clearance.distance_m < stop_m) return;
+      halve(low, high, left);
+    }
+  }
+
+  bool harmless(double distance, double travel) const {
+    const double least = distance - travel;
+    return least > 0 && least >= nearest.clearance.distance_m - allowance_m;
   }
 };
 
@@ -147,14 +225,18 @@ const std::vector<Clearance>& Surroundings::left_out() const {
   return parts_->left_out;
 }
 
-double Surroundings::change_m(const State& from, const State& to) const {
-  double sum = 0;
+Surroundings::Nearest Surroundings::nearest_between(const State& from, const State& to, double enough_m, double stop_m,
+                                                    double allowance_m) const {
+  LineLook look{*parts_, from, to, stop_m, std::max(allowance_m, 1e-7), {}, {{enough_m, "", ""}, 0}};
+  std::vector<TravellingPair> pairs;
   for (const auto& [name, arm] : parts_->laboratory.arms) {
+    std::vector<double>& turns = look.turns.emplace_back();
     const Joints &a = joints_of(arm, from), &b = joints_of(arm, to);
-    const std::vector<double>& reach = parts_->reach.at(name);
-    for (std::size_t i = 0; i < a.size(); ++i) sum += std::fabs(b[i] - a[i]) * reach[i];
+    for (std::size_t i = 0; i < a.size(); ++i) turns.push_back(std::fabs(b[i] - a[i]));
   }
-  return sum;
+  for (const WatchedPair& pair : parts_->pairs) pairs.push_back({pair, look.travel(pair)});
+  look.halve(0, 1, pairs);
+  return look.nearest;
 }
 
 }  // namespace gonio::acquisition

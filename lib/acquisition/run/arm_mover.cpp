@@ -65,7 +65,7 @@ double slower_for_tool(const Laboratory& lab, const LaboratoryArm& arm, const Jo
   for (std::size_t j = 0; j < from.size(); ++j)
     if (const double turn = std::abs(to[j] - from[j]); turn > 1e-12) {
       const double peak =
-          std::min(arm.limits.speed_rad_per_s[j], std::sqrt(turn * arm.limits.acceleration_rad_per_s2[j]));
+          std::min(arm.limits[j].speed_rad_per_s, std::sqrt(turn * arm.limits[j].acceleration_rad_per_s2));
       shares_per_s = std::min(shares_per_s, peak / turn);
     }
   return std::max(1.0, per_share * shares_per_s / lab.speed_m_per_s);
@@ -104,9 +104,11 @@ void ArmMover::stop_all() noexcept {
 
 void ArmMover::move_one(const std::string& name, const State& from, const State& to, double slower) {
   const LaboratoryArm& arm = laboratory_.arms.at(name);
-  Joints speeds = arm.limits.speed_rad_per_s, accelerations = arm.limits.acceleration_rad_per_s2;
-  for (double& v : speeds) v /= slower;  // a motion stretched in time: speeds fall by the factor, accelerations by its
-  for (double& a : accelerations) a /= slower * slower;  // square
+  Joints speeds, accelerations;  // a motion stretched in time: speeds fall by the factor, accelerations by its square
+  for (const robot::JointLimit& limit : arm.limits) {
+    speeds.push_back(limit.speed_rad_per_s / slower);
+    accelerations.push_back(limit.acceleration_rad_per_s2 / (slower * slower));
+  }
   const std::vector<Joints> way{from.at(name), to.at(name)};
   const RobotState reached = instrument_.robots.at(name)->move(way, speeds, accelerations);
   const double off = farthest(reached.joints_rad, to.at(name));

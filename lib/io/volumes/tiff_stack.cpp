@@ -140,6 +140,8 @@ class TiffFile {
   std::uint64_t first_byte() { return TIFFGetStrileOffset(tiff_, 0); }
   [[noreturn]] void refuse(const std::string& problem) const {
     std::string why = said_;
+    constexpr std::string_view no_row = "Read error at scanline 4294967295; ";  // libtiff's, of a whole strip
+    if (why.starts_with(no_row)) why.erase(0, no_row.size());
     for (char& c : why)
       if (c < ' ' || c > '~') c = ' ';
     refuse_volume(place_, problem + (why.empty() ? "" : " (" + why + ")"));

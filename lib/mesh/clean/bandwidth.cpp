@@ -28,9 +28,12 @@ struct Place {
 class Frame {
  public:
   Frame(const NoisySurface& surface, std::uint32_t face)
-      : basis_(surface.guide[face]), centre_(surface.centroids[face]), edge_(surface.edge_m) {}
+      : basis_(surface.faces[face].guide),
+        centre_(surface.faces[face].centroid),
+        edge_(surface.edge_m),
+        per_edge_(1 / surface.edge_m) {}
   Place of(Vec3 p) const {
-    const Vec3 local = basis_.to_local(p - centre_) / edge_;
+    const Vec3 local = basis_.to_local(p - centre_) * per_edge_;
     return {local.x, local.y, local.z};
   }
   Vec3 out(double u, double v, double h) const { return centre_ + basis_.to_world({u, v, h}) * edge_; }
@@ -39,7 +42,7 @@ class Frame {
  private:
   Basis basis_;
   Vec3 centre_;
-  double edge_;
+  double edge_, per_edge_;
 };
 
 double weight_of(const std::vector<double>& weights, std::uint32_t v) {

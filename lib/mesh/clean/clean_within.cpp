@@ -34,35 +34,86 @@ double doubled_area_of(const NoisySurface& surface, std::size_t f) {
 void guide_by_neighbours(NoisySurface& surface) {
   std::vector<double> area(surface.triangles.size());
   for (std::size_t f = 0; f < area.size(); ++f) area[f] = doubled_area_of(surface, f);
-  std::vector<Vec3> next(area.size());
+  std::vector<Vec3> guide(area.size()), next(area.size());
+  for (std::size_t f = 0; f < area.size(); ++f) guide[f] = surface.faces[f].guide;
   for (int round = 0; round < guiding_rounds; ++round) {
     parallel_for(
         0, area.size(),
         [&](std::size_t f) {
-          Vec3 sum = surface.guide[f] * area[f];
-          for (const std::uint32_t other : surface.behind[f]) {
+          const Vec3 own = guide[f];
+          Vec3 sum = own * area[f];
+          for (const std::uint32_t other : surface.faces[f].behind) {
             if (other == nobody) continue;
-            const Vec3 gap = surface.guide[other] - surface.guide[f];
+            const Vec3 there = guide[other], gap = there - own;
             const double weight = std::exp(-dot(gap, gap) / (2 * guiding_width_rad * guiding_width_rad));
-            sum += surface.guide[other] * (weight * area[other]);
+            sum += there * (weight * area[other]);
           }
-          next[f] = norm(sum) > 0 ? normalized(sum) : surface.guide[f];
+          next[f] = norm(sum) > 0 ? normalized(sum) : own;
         },
         4096);
-    surface.guide.swap(next);
+    guide.swap(next);
   }
+  for (std::size_t f = 0; f < area.size(); ++f) surface.faces[f].guide = guide[f];
+}
+
+Vec3 own_normal(const NoisySurface& surface, std::size_t f) {
+  const auto& [a, b, c] = surface.triangles[f];
+  const Vec3 p = surface.positions_m[a], n = cross(surface.positions_m[b] - p, surface.positions_m[c] - p);
+  return norm(n) > 0 ? normalized(n) : Vec3{0, 0, 1};
+}
+
+// normal_noise_rad() of a surface that is guided already.
+double noise_of_normals(const NoisySurface& surface) {
+  const std::size_t count = surface.faces.size(), step = std::max<std::size_t>(1, count / most_noise_faces);
+  std::vector<double> angles((count + step - 1) / step, -1);
+  constexpr std::size_t block = 256;
+  parallel_for(0, (angles.size() + block - 1) / block, [&](std::size_t b) {
+    Neighbourhood around(surface);
+    for (std::size_t i = b * block; i < std::min(angles.size(), (b + 1) * block); ++i) {
+      const auto f = static_cast<std::uint32_t>(i * step);
+      around.start(f);
+      around.grow(3 * surface.edge_m);
+      const Basis basis(surface.faces[f].guide);
+      LocalQuadratic quadratic;
+      for (const std::uint32_t v : around.vertices()) {
+        const Vec3 at = basis.to_local(surface.positions_m[v] - surface.faces[f].centroid) / surface.edge_m;
+        quadratic.add(at.x, at.y, at.z);
+      }
+      const auto fit = quadratic.fit();
+      if (!fit.good || quadratic.points() < 10) continue;
+      const Vec3 n = basis.to_world(normalized(Vec3{-fit.c[1], -fit.c[2], 1}));
+      const Vec3 own = own_normal(surface, f);
+      angles[i] = std::atan2(norm(cross(n, own)), dot(n, own));
+    }
+  });
+  std::erase_if(angles, [](double a) { return a < 0; });
+  if (angles.empty()) return 0;
+  std::sort(angles.begin(), angles.end());
+  // An angle of two normal components has the median 1.177 sd each, 0.8326 of its rms.
+  const double limit = 4 * angles[angles.size() / 2] / 1.1774;
+  double squares = 0, n = 0;
+  for (const double a : angles)
+    if (a <= limit || limit == 0) {
+      squares += a * a;
+      ++n;
+    }
+  return std::sqrt(squares / n);
 }
 
 // The surface that a triangle shows beside p; its own plane where nothing was fitted.
 SurfacePoint shown_at(const NoisySurface& surface, const std::vector<LocalSurface>& local, std::uint32_t f, Vec3 p) {
   if (local[f].radius > 0) return over(surface, local[f], f, p);
-  return {p, surface.guide[f]};
+  return {p, surface.faces[f].guide};
 }
 
 void guide_by_surfaces(NoisySurface& surface, const std::vector<LocalSurface>& local) {
-  std::vector<Vec3> next(surface.guide.size());
-  for (std::uint32_t f = 0; f < next.size(); ++f) next[f] = shown_at(surface, local, f, surface.centroids[f]).normal;
-  surface.guide.swap(next);
+  parallel_for(
+      0, local.size(),
+      [&](std::size_t i) {
+        const auto f = static_cast<std::uint32_t>(i);  // its own guide is all that a face's surface is told by
+        surface.faces[f].guide = shown_at(surface, local, f, surface.faces[f].centroid).normal;
+      },
+      4096);
 }
 
 struct Placed {
@@ -90,7 +141,8 @@ Placed placed(const NoisySurface& surface, const std::vector<LocalSurface>& loca
   if (!(weights > 0)) return {data, {0, 0, 1}};
   a.diagonal().array() += hold_tangentially * weights;
   const Column move = linear::solve_ldlt(a, right);
-  return {data + Vec3{move[0], move[1], move[2]}, norm(normals) > 0 ? normalized(normals) : surface.guide[faces[0]]};
+  return {data + Vec3{move[0], move[1], move[2]},
+          norm(normals) > 0 ? normalized(normals) : surface.faces[faces[0]].guide};
 }
 
 // Where triangles meet that did not in the data, what moved goes back, and what is beside it, until none does.
@@ -151,11 +203,11 @@ void move_vertices(io::TriangleMesh& mesh, const NoisySurface& surface, const st
 BoundedResult clean_within(io::TriangleMesh& mesh, const BoundedWish& wish) {
   if (!(wish.within_m >= 0)) throw Error(Exit::usage, "mesh", "a bound on the distance must not be negative");
   BoundedResult result;
-  result.normal_noise_before_rad = normal_noise_rad(mesh);
   const std::vector<Vec3> data = mesh.positions_m;
   const std::vector<double> weights = weights_of(wish, data.size());
-  NoisySurface surface = surface_of(data, mesh.triangles);
+  NoisySurface surface(data, mesh.triangles);
   guide_by_neighbours(surface);
+  result.normal_noise_before_rad = noise_of_normals(surface);
   std::vector<LocalSurface> local;
   for (result.rounds = 0; result.rounds < wish.rounds; ++result.rounds) {
     if (result.rounds > 0) guide_by_surfaces(surface, local);
@@ -182,42 +234,9 @@ BoundedResult clean_within(io::TriangleMesh& mesh, const BoundedWish& wish) {
 }
 
 double normal_noise_rad(const io::TriangleMesh& mesh) {
-  const NoisySurface surface = surface_of(mesh.positions_m, mesh.triangles);
-  const std::size_t count = mesh.triangles.size(), step = std::max<std::size_t>(1, count / most_noise_faces);
-  std::vector<double> angles((count + step - 1) / step, -1);
-  NoisySurface guided = surface;
-  guide_by_neighbours(guided);
-  constexpr std::size_t block = 256;
-  parallel_for(0, (angles.size() + block - 1) / block, [&](std::size_t b) {
-    Neighbourhood around(guided);
-    for (std::size_t i = b * block; i < std::min(angles.size(), (b + 1) * block); ++i) {
-      const auto f = static_cast<std::uint32_t>(i * step);
-      around.start(f);
-      around.grow(3 * surface.edge_m);
-      const Basis basis(guided.guide[f]);
-      LocalQuadratic quadratic;
-      for (const std::uint32_t v : around.vertices()) {
-        const Vec3 at = basis.to_local(mesh.positions_m[v] - surface.centroids[f]) / surface.edge_m;
-        quadratic.add(at.x, at.y, at.z);
-      }
-      const auto fit = quadratic.fit();
-      if (!fit.good || quadratic.points() < 10) continue;
-      const Vec3 n = basis.to_world(normalized(Vec3{-fit.c[1], -fit.c[2], 1}));
-      angles[i] = std::atan2(norm(cross(n, surface.guide[f])), dot(n, surface.guide[f]));
-    }
-  });
-  std::erase_if(angles, [](double a) { return a < 0; });
-  if (angles.empty()) return 0;
-  std::sort(angles.begin(), angles.end());
-  // An angle of two normal components has the median 1.177 sd each, 0.8326 of its rms.
-  const double limit = 4 * angles[angles.size() / 2] / 1.1774;
-  double squares = 0, n = 0;
-  for (const double a : angles)
-    if (a <= limit || limit == 0) {
-      squares += a * a;
-      ++n;
-    }
-  return std::sqrt(squares / n);
+  NoisySurface surface(mesh.positions_m, mesh.triangles);
+  guide_by_neighbours(surface);
+  return noise_of_normals(surface);
 }
 
 }  // namespace gonio::mesh

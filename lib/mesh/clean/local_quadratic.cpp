@@ -3,43 +3,30 @@
 #include <algorithm>
 #include <cmath>
 
-#include "linear/solve.h"
+#include "linear/positive.h"
 
 namespace gonio::mesh {
-
-void LocalQuadratic::add(double u, double v, double h, double weight) {
-  const Terms t = terms(u, v);
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < 6; ++i) {
-    const double w = weight * t[i];
-    for (std::size_t j = 0; j <= i; ++j) normal_[k++] += w * t[j];
-    right_[i] += w * h;
-  }
-  squares_ += weight * h * h;
-  points_ += 1;
-}
 
 LocalQuadratic::Fit LocalQuadratic::fit() const {
   Fit fit;
   if (points_ < 7) return fit;
-  using Six = Eigen::Matrix<double, 6, 6>;
-  Six a, unit;
-  std::size_t k = 0;
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j <= i; ++j) a(i, j) = a(j, i) = normal_[k++];
-  unit.setIdentity();
-  const Six inverse = linear::solve_ldlt(a, unit);
-  fit.good = true;
+  // Which moment stands where: of the terms 1, u, v, u2, uv, v2 with one another.
+  constexpr std::array<std::size_t, 36> places{0, 1, 2, 3,  4,  5,  1, 3, 4, 6,  7,  8,  2, 4, 5, 7,  8,  9,
+                                               3, 6, 7, 10, 11, 12, 4, 7, 8, 11, 12, 13, 5, 8, 9, 12, 13, 14};
+  std::array<double, 36> a{};
+  for (std::size_t k = 0; k < a.size(); ++k) a[k] = moments_[places[k]];
+  fit.good = linear::positive_inverse<6>(a, fit.inverse);
+  if (!fit.good) return fit;
   double explained = 0;
-  for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < 6; ++j) {
-      fit.inverse[static_cast<std::size_t>(6 * i + j)] = inverse(i, j);
-      fit.c[static_cast<std::size_t>(i)] += inverse(i, j) * right_[static_cast<std::size_t>(j)];
+  for (std::size_t i = 0; i < 6; ++i) {
+    double one = 0;
+    for (std::size_t j = 0; j < 6; ++j) {
+      fit.c[i] += fit.inverse[6 * i + j] * right_[j];
+      one += a[6 * i + j] * fit.inverse[6 * i + j];
     }
     // A direction that the points leave open has an inverse that is not the inverse.
-    fit.good = fit.good && inverse(i, i) > 0 && std::isfinite(inverse(i, i)) &&
-               std::abs(a.row(i).dot(inverse.col(i)) - 1) < 1e-6;
-    explained += fit.c[static_cast<std::size_t>(i)] * right_[static_cast<std::size_t>(i)];
+    fit.good = fit.good && std::isfinite(one) && std::abs(one - 1) < 1e-6;
+    explained += fit.c[i] * right_[i];
   }
   fit.residual = std::max(0.0, squares_ - explained);
   return fit;

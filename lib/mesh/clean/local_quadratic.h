@@ -11,7 +11,17 @@ class LocalQuadratic {
   using Terms = std::array<double, 6>;
   static Terms terms(double u, double v) { return {1, u, v, u * u, u * v, v * v}; }
 
-  void add(double u, double v, double h, double weight = 1);
+  void add(double u, double v, double h, double weight = 1) {
+    const double uu = u * u, uv = u * v, vv = v * v, wu = weight * u, wv = weight * v, wh = weight * h;
+    const double wuu = weight * uu, wuv = weight * uv, wvv = weight * vv;
+    const std::array<double, 15> more{weight,  wu,      wv,       wuu,      wuv,      wvv,      wuu * u, wuu * v,
+                                      wvv * u, wvv * v, wuu * uu, wuu * uv, wuu * vv, wuv * vv, wvv * vv};
+    for (std::size_t k = 0; k < more.size(); ++k) moments_[k] += more[k];
+    const Terms t{wh, wh * u, wh * v, wh * uu, wh * uv, wh * vv};
+    for (std::size_t k = 0; k < t.size(); ++k) right_[k] += t[k];
+    squares_ += wh * h;
+    points_ += 1;
+  }
   double points() const { return points_; }
 
   struct Fit {
@@ -26,7 +36,8 @@ class LocalQuadratic {
   Fit fit() const;
 
  private:
-  std::array<double, 21> normal_{};  // lower triangle, row by row
+  // Sums of w u^a v^b: 1, u, v, u2, uv, v2, u3, u2v, uv2, v3, u4, u3v, u2v2, uv3, v4.
+  std::array<double, 15> moments_{};
   Terms right_{};
   double squares_ = 0, points_ = 0;
 };

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/parallel.h"
+
 namespace gonio::mesh {
 
 namespace {
@@ -10,93 +12,93 @@ constexpr double least_agreement = 0.4;  // cosine
 
 }  // namespace
 
-NoisySurface surface_of(const std::vector<Vec3>& positions_m, const std::vector<Corners>& triangles) {
-  NoisySurface surface{positions_m, triangles, neighbours_of_faces(triangles, positions_m.size()), {}, {}, {}};
-  const std::size_t count = triangles.size();
-  surface.centroids.resize(count);
-  surface.guide.resize(count);
-  surface.sharp.assign(count, 0);
+NoisySurface::NoisySurface(const std::vector<Vec3>& positions, const std::vector<Corners>& corners)
+    : positions_m(positions), triangles(corners), faces(corners.size()) {
+  const std::vector<Corners> behind = neighbours_of_faces(triangles, positions_m.size());
   double sum = 0;
-  for (std::size_t t = 0; t < count; ++t) {
+  for (std::size_t t = 0; t < faces.size(); ++t) {
     const Vec3 a = positions_m[triangles[t][0]], b = positions_m[triangles[t][1]], c = positions_m[triangles[t][2]];
-    surface.centroids[t] = (a + b + c) / 3;
     const Vec3 n = cross(b - a, c - a);
-    surface.guide[t] = norm(n) > 0 ? normalized(n) : Vec3{0, 0, 1};
+    faces[t] = {(a + b + c) / 3, norm(n) > 0 ? normalized(n) : Vec3{0, 0, 1}, triangles[t], behind[t], 0};
     sum += norm(b - a) + norm(c - b) + norm(a - c);
   }
-  surface.edge_m = count > 0 ? sum / (3 * static_cast<double>(count)) : 0;
-  return surface;
+  edge_m = faces.empty() ? 0 : sum / (3 * static_cast<double>(faces.size()));
+}
+
+std::unique_ptr<FaceAndVertexMarks> NoisySurface::borrow_marks() const {
+  {
+    const std::lock_guard hold(lock_);
+    if (!marks_.empty()) {
+      auto marks = std::move(marks_.back());
+      marks_.pop_back();
+      return marks;
+    }
+  }
+  return std::make_unique<FaceAndVertexMarks>(FaceAndVertexMarks{Marks(faces.size()), Marks(positions_m.size())});
+}
+
+void NoisySurface::give_back(std::unique_ptr<FaceAndVertexMarks> marks) const {
+  const std::lock_guard hold(lock_);
+  marks_.push_back(std::move(marks));
 }
 
 std::size_t mark_sharp(NoisySurface& surface, double angle_rad) {
   std::size_t sharp = 0;
   const double cosine = std::cos(angle_rad);
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    surface.sharp[t] = 0;
+  for (NoisyFace& face : surface.faces) {
+    face.sharp = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t other = surface.behind[t][c];
-      if (other == nobody || dot(surface.guide[t], surface.guide[other]) >= cosine) continue;
-      surface.sharp[t] = static_cast<std::uint8_t>(surface.sharp[t] | 1u << c);
+      const std::uint32_t other = face.behind[c];
+      if (other == nobody || dot(face.guide, surface.faces[other].guide) >= cosine) continue;
+      face.sharp |= 1U << c;
       ++sharp;
     }
   }
   return sharp / 2;
 }
 
-void SeenNumbers::clear() {
-  ++stamp_;
-  count_ = 0;
-}
-
-bool SeenNumbers::insert(std::uint32_t number) {
-  if (2 * count_ > slots_.size()) grow();
-  const std::size_t mask = slots_.size() - 1;
-  for (std::size_t i = (number * 0x9e3779b1u) & mask;; i = (i + 1) & mask) {
-    Slot& slot = slots_[i];
-    if (slot.stamp != stamp_) {
-      slot = {number, stamp_};
-      ++count_;
-      return true;
-    }
-    if (slot.number == number) return false;
-  }
-}
-
-void SeenNumbers::grow() {
-  std::vector<Slot> old(2 * slots_.size());
-  old.swap(slots_);
-  count_ = 0;
-  for (const Slot& slot : old)
-    if (slot.stamp == stamp_) insert(slot.number);
+void Neighbourhood::add_vertex(std::uint32_t v) {
+  if (marks_->vertices.has(v)) return;
+  marks_->vertices.set(v);
+  vertices_.push_back(v);
 }
 
 void Neighbourhood::start(std::uint32_t face) {
   face_ = face;
-  seen_faces_.clear();
-  seen_vertices_.clear();
+  marks_->faces.clear();
+  marks_->vertices.clear();
   vertices_.clear();
-  beyond_.assign(1, face);
-  seen_faces_.insert(face);
+  beyond_.assign(1, {face, nobody, nobody});
+  marks_->faces.set(face);
 }
 
 void Neighbourhood::grow(double radius_m) {
-  const Vec3 centre = surface_.centroids[face_], normal = surface_.guide[face_];
+  const Vec3 centre = surface_.faces[face_].centroid, normal = surface_.faces[face_].guide;
+  const double squared = radius_m * radius_m;
   queue_.clear();
   later_.clear();
-  const auto sort_in = [&](std::uint32_t f) {
-    const Vec3 gap = surface_.centroids[f] - centre;
-    (dot(gap, gap) <= radius_m * radius_m ? queue_ : later_).push_back(f);
+  const auto sort_in = [&](const NoisyFace& face, const Reached& how) {
+    const Vec3 gap = face.centroid - centre;
+    (dot(gap, gap) <= squared ? queue_ : later_).push_back(how);
   };
-  for (const std::uint32_t f : beyond_) sort_in(f);
+  for (const Reached& how : beyond_) sort_in(surface_.faces[how.face], how);
   for (std::size_t i = 0; i < queue_.size(); ++i) {
-    const std::uint32_t f = queue_[i];
-    for (const std::uint32_t v : surface_.triangles[f])
-      if (seen_vertices_.insert(v)) vertices_.push_back(v);
+    const Reached here = queue_[i];
+    const NoisyFace& face = surface_.faces[here.face];
+    if (here.apex != nobody)
+      add_vertex(here.apex);
+    else
+      for (const std::uint32_t v : face.corners) add_vertex(v);
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t other = surface_.behind[f][c];
-      if (other == nobody || (surface_.sharp[f] >> c & 1) != 0) continue;
-      if (dot(surface_.guide[other], normal) < least_agreement || !seen_faces_.insert(other)) continue;
-      sort_in(other);
+      const std::uint32_t other = face.behind[c];
+      if (other == nobody || other == here.from || (face.sharp >> c & 1) != 0 || marks_->faces.has(other)) continue;
+      const NoisyFace& next = surface_.faces[other];
+      if (dot(next.guide, normal) < least_agreement) continue;
+      marks_->faces.set(other);
+      // The corner that is not on the edge: what three have beside two.
+      const std::uint32_t apex =
+          next.corners[0] ^ next.corners[1] ^ next.corners[2] ^ face.corners[c] ^ face.corners[(c + 1) % 3];
+      sort_in(next, {other, here.face, apex});
     }
   }
   beyond_.swap(later_);

@@ -6,6 +6,7 @@
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("rounding-math")  // CGAL's interval arithmetic turns the processor's rounding
 #endif
+#define CGAL_NDEBUG 1  // do_intersect() asks exactly whether a triangle is one: those that are none are left out here
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
@@ -51,7 +52,6 @@ bool meet(const ThreePlaces& a, const ThreePlaces& b) {
         partner[i] = j;
         ++shared;
       }
-  if (without_area(a) || without_area(b)) return false;
   if (shared == 3) return true;
   if (shared == 2) {
     const std::size_t alone = partner[0] == 3 ? 0 : partner[1] == 3 ? 1 : 2;
@@ -76,26 +76,31 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(const io
     const auto& [a, b, c] = mesh.triangles[t];
     return ThreePlaces{mesh.positions_m[a], mesh.positions_m[b], mesh.positions_m[c]};
   };
-  // Stretches of triangles one after the other: who comes first does not depend on threads, and a mesh full of
+  std::vector<std::uint8_t> flat(mesh.triangles.size(), 0);
+  parallel_for(
+      0, flat.size(),
+      [&](std::size_t t) {
+        const ThreePlaces here = places(static_cast<std::uint32_t>(t));
+        flat[t] = is_finite(here[0]) && is_finite(here[1]) && is_finite(here[2]) && without_area(here);
+      },
+      4096);
+  // Stretches of leaves one after the other: who comes first does not depend on threads, and a mesh full of
   // intersections is not searched to its end.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> all;
-  constexpr std::size_t stretch = 1 << 18;
-  for (std::size_t first = 0; first < mesh.triangles.size() && all.size() < at_most; first += stretch) {
-    const std::size_t last = std::min(first + stretch, mesh.triangles.size());
+  constexpr std::size_t stretch = 1 << 16;
+  for (std::size_t first = 0; first < tree.leaves() && all.size() < at_most; first += stretch) {
+    const std::size_t last = std::min(first + stretch, tree.leaves());
     std::mutex lock;
     parallel_for(
         first, last,
-        [&](std::size_t i) {
-          const auto one = static_cast<std::uint32_t>(i);
-          const ThreePlaces mine = places(one);
-          if (!is_finite(mine[0]) || !is_finite(mine[1]) || !is_finite(mine[2])) return;
-          tree.overlapping_after(one, [&](std::uint32_t other) {
-            if (!meet(mine, places(other))) return;
+        [&](std::size_t leaf) {
+          tree.overlapping_pairs(leaf, [&](std::uint32_t one, std::uint32_t other) {
+            if (flat[one] != 0 || flat[other] != 0 || !meet(places(one), places(other))) return;
             const std::lock_guard hold(lock);
-            all.emplace_back(one, other);
+            all.push_back(std::minmax(one, other));
           });
         },
-        1024);
+        256);
     std::sort(all.begin(), all.end());
   }
   if (all.size() > at_most) all.resize(at_most);

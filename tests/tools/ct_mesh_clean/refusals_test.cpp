@@ -65,7 +65,10 @@ TEST_F(Refusals, CommandLines) {
   refused({"--type", "uint7", "ball.nrrd"}, 64, "--type");
   refused({"--threshold", "somewhere", "ball.nrrd"}, 64, "--threshold");
   refused({"--threshold", "reference", "ball.nrrd"}, 64, "known diameter");
+  refused({"--threshold", "nan", "ball.nrrd"}, 64, "--threshold");
+  refused({"--threshold", "inf", "ball.nrrd"}, 64, "--threshold");
   refused({"--box", "1,2,3", "ball.nrrd"}, 64, "--box");
+  refused({"--box", "nan,0,0,9,9,9", "ball.nrrd"}, 64, "--box");
   refused({"--markers", "-1mm", "ball.nrrd"}, 64, "--markers");
   refused({"--marker-threshold", "4", "ball.nrrd"}, 64, "--markers");
   refused({"--within", "0.2", "ball.nrrd"}, 64, "--within");

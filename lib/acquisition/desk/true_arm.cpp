@@ -1,0 +1,215 @@
+#include "acquisition/desk/true_arm.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gonio::acquisition::desk {
+namespace {
+
+constexpr double kHardStopRadPerS2 = 20;
+
+double longest_turn(const SixJoints& from, const SixJoints& to) {
+  double longest = 0;
+  for (std::size_t i = 0; i < 6; ++i) longest = std::max(longest, std::abs(to[i] - from[i]));
+  return longest;
+}
+
+}  // namespace
+
+double Trapezoid::duration() const {
+  if (distance <= 0) return 0;
+  const double ramp = speed / acceleration;
+  if (distance < speed * ramp) return 2 * std::sqrt(distance / acceleration);
+  return distance / speed + ramp;
+}
+
+double Trapezoid::gone(double t) const {
+  const double whole = duration();
+  if (t <= 0) return 0;
+  if (t >= whole) return distance;
+  const double ramp = std::min(speed / acceleration, whole / 2);
+  if (t < ramp) return acceleration * t * t / 2;
+  if (t > whole - ramp) return distance - acceleration * (whole - t) * (whole - t) / 2;
+  return acceleration * ramp * ramp / 2 + acceleration * ramp * (t - ramp);
+}
+
+double Trapezoid::speed_at(double t) const {
+  const double whole = duration();
+  if (t <= 0 || t >= whole) return 0;
+  const double ramp = std::min(speed / acceleration, whole / 2);
+  return acceleration * std::min({t, whole - t, ramp});
+}
+
+TrueArm::TrueArm(const TrueArmSettings& settings, Faults& faults)
+    : settings_(settings),
+      faults_(faults),
+      began_(std::chrono::steady_clock::now()),
+      rest_rad_(settings.joints_rad),
+      noise_(17) {}
+
+double TrueArm::simulated_now() const {
+  return 10 + settings_.time_factor * std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+}
+
+SixJoints TrueArm::joints_at(double t) const {
+  if (!leg_) return rest_rad_;
+  const double share = leg_->profile.distance > 0 ? leg_->profile.gone(t - leg_->begin_s) / leg_->profile.distance : 1;
+  SixJoints joints{};
+  for (std::size_t i = 0; i < 6; ++i) joints[i] = leg_->from[i] + share * (leg_->to[i] - leg_->from[i]);
+  return joints;
+}
+
+SixJoints TrueArm::speeds_at(double t) const {
+  SixJoints speeds{};
+  if (!leg_ || leg_->profile.distance <= 0) return speeds;
+  const double share = leg_->profile.speed_at(t - leg_->begin_s) / leg_->profile.distance;
+  for (std::size_t i = 0; i < 6; ++i) speeds[i] = share * (leg_->to[i] - leg_->from[i]);
+  return speeds;
+}
+
+// Braking from speed v takes v^2 / 2a along the line: the second half of a motion without cruise, of length v^2 / a.
+void TrueArm::brake(double t, double acceleration) {
+  if (!leg_) return;
+  const SixJoints here = joints_at(t);
+  const double v = leg_->profile.speed_at(t - leg_->begin_s), longest = leg_->profile.distance;
+  if (v <= 0 || longest <= 0) {
+    rest_rad_ = here;
+    leg_.reset();
+    return;
+  }
+  Leg rest;
+  const double half = v * v / (2 * acceleration);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const double direction = (leg_->to[i] - leg_->from[i]) / longest;
+    rest.from[i] = here[i] - direction * half;
+    rest.to[i] = here[i] + direction * half;
+  }
+  rest.profile = {2 * half, v, acceleration};
+  rest.begin_s = t - v / acceleration;
+  leg_ = rest;
+}
+
+// What follows at time t, the arm at rest. Marks take no time.
+void TrueArm::next_step(double t) {
+  while (step_ < program_.size() && !leg_) {
+    const ArmStep& step = program_[step_++];
+    if (step.kind == ArmStep::Kind::mark) flags_.output_registers.at(step.output_register) = step.value;
+    if (step.kind != ArmStep::Kind::move) continue;
+    bool beyond = faults_.strikes(Fault::joint_limit);
+    for (std::size_t i = 0; i < 6; ++i)
+      beyond = beyond || step.target_rad[i] < settings_.lower_rad[i] || step.target_rad[i] > settings_.upper_rad[i];
+    if (beyond) {
+      flags_.protective_stop = true;
+      program_.clear();
+      step_ = 0;
+      break;
+    }
+    leg_ =
+        Leg{rest_rad_, step.target_rad, t, {longest_turn(rest_rad_, step.target_rad), step.speed, step.acceleration}};
+    if (faults_.strikes(Fault::protective_stop))
+      stop_at_s_ = t + faults_.share(Fault::protective_stop) * leg_->profile.duration();
+  }
+  if (step_ >= program_.size() && !leg_) program_.clear(), step_ = 0;
+  flags_.program_running = !program_.empty();
+}
+
+void TrueArm::advance(double t) {
+  for (;;) {
+    if (stop_at_s_ >= 0 && leg_ && stop_at_s_ <= t) {
+      flags_.protective_stop = true;
+      halt(stop_at_s_);
+      continue;
+    }
+    if (!leg_ || leg_->end_s() > t) return;
+    const double ended = leg_->end_s();
+    rest_rad_ = leg_->to;
+    leg_.reset();
+    stop_at_s_ = -1;
+    next_step(ended);
+    if (!leg_) return;
+  }
+}
+
+ArmSnapshot TrueArm::now() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const double t = simulated_now();
+  advance(t);
+  ArmSnapshot snapshot = flags_;
+  snapshot.time_s = t;
+  snapshot.joints_rad = joints_at(t);
+  snapshot.speed_rad_per_s = speeds_at(t);
+  if (settings_.tool_pose) snapshot.tool = settings_.tool_pose(snapshot.joints_rad);
+  if (settings_.encoder_noise_rad > 0)
+    for (double& angle : snapshot.joints_rad) angle += settings_.encoder_noise_rad * noise_.normal();
+  snapshot.temperature_C.fill(settings_.ambient_C + settings_.warm_rise_C * (1 - std::exp(-t / settings_.warm_time_s)));
+  return snapshot;
+}
+
+void TrueArm::run(const std::vector<ArmStep>& program) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const double t = simulated_now();
+  advance(t);
+  if (!flags_.powered || flags_.protective_stop || flags_.emergency_stop || !flags_.remote_control) return;
+  ++programs_;
+  program_ = program;
+  step_ = 0;
+  stop_at_s_ = -1;
+  double acceleration = kHardStopRadPerS2;
+  for (const ArmStep& step : program)
+    if (step.kind == ArmStep::Kind::brake) acceleration = step.acceleration;
+  // What comes before the first motion is done at once, while the arm still brakes.
+  while (step_ < program_.size() && program_[step_].kind == ArmStep::Kind::mark) {
+    flags_.output_registers.at(program_[step_].output_register) = program_[step_].value;
+    ++step_;
+  }
+  brake(t, acceleration);
+  flags_.program_running = true;
+  if (!leg_) next_step(t);
+}
+
+void TrueArm::halt(double t) {
+  program_.clear();
+  step_ = 0;
+  flags_.program_running = false;
+  stop_at_s_ = -1;
+  brake(t, kHardStopRadPerS2);
+}
+
+void TrueArm::protective_stop() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const double t = simulated_now();
+  advance(t);
+  flags_.protective_stop = true;
+  halt(t);
+}
+
+void TrueArm::emergency_stop() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const double t = simulated_now();
+  advance(t);
+  flags_.emergency_stop = true;
+  halt(t);
+}
+
+void TrueArm::clear_stops() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  advance(simulated_now());
+  flags_.protective_stop = flags_.emergency_stop = false;
+}
+
+void TrueArm::set_powered(bool powered) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  flags_.powered = powered;
+}
+
+void TrueArm::set_remote_control(bool remote) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  flags_.remote_control = remote;
+}
+
+std::int64_t TrueArm::programs() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return programs_;
+}
+
+}  // namespace gonio::acquisition::desk
