@@ -21,7 +21,7 @@ constexpr std::size_t site_count = 3000, alignment_count = 800, fewest_walls = 2
 constexpr double least_plateau = 3.5, deepest_voxels = 40, highest_voxels = 20;
 constexpr double least_reach = 3, largest_reach = 8, reach_in_widths = 3.5, plateau_in_widths = 4.5;
 constexpr std::size_t rough_cells = 48;
-constexpr double marker_margin = 5, sharpest_blur = 0.8, most_displaced = 1.5;        // voxels
+constexpr double marker_margin = 5, sharpest_blur = 0.8, most_displaced = 1.5;  // voxels
 constexpr double nominal_attenuation = 2;  // of the longest path, where values are no attenuation
 
 Body body_for(const VolumesInput& input, const Sampled& sampled, const mesh::Mesh& mesh) {
