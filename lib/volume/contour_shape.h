@@ -2,7 +2,9 @@
 //
 // A place is index * scale, in voxels of the smallest spacing; there normals are normals and lengths lengths.
 #pragma once
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "geom/vector.h"
@@ -31,9 +33,30 @@ inline Place place_of(const Contour& contour, std::size_t vertex, Vec3 scale) {
 }
 double area_of(const Contour& contour, Vec3 scale);  // voxels^2
 
-// Mean curvature at the vertices, 1 / voxel, positive where the surface is convex: over the edges of the triangles
-//   sum (n_b - n_a) . (p_b - p_a) / sum |p_b - p_a|^2,
-// sums taken over some three voxels round, so that the noise of the normals averages out.
-std::vector<float> mean_curvature(const Contour& contour, Vec3 scale);
+// The surface round a vertex in places: heights over its tangent plane are -(kuu u^2 + 2 kuv u v + kvv v^2) / 2, u and
+// v along t and b of Basis(normal); curvatures in 1 / voxel, positive where the surface is convex.
+struct LocalShape {
+  Vec3 normal{};
+  double kuu = 0, kuv = 0, kvv = 0;
+  double mean_curvature() const { return (kuu + kvv) / 2; }
+  double sharpest() const {  // the larger of the two principal ones, without its sign
+    return std::abs(kuu + kvv) / 2 + std::hypot((kuu - kvv) / 2, kuv);
+  }
+};
+
+// From the normals of the vertices round, up to three edges away and turned by less than 37 degrees:
+//   n_j - n = S (p_j - p), n and S by least squares,
+// so that the noise of single normals averages out without flattening what is round. Curvatures are held to what
+// voxels can show.
+class ContourShapes {
+ public:
+  ContourShapes(const Contour& contour, Vec3 scale);
+  LocalShape at(std::size_t vertex) const;
+
+ private:
+  const Contour& contour_;
+  Vec3 scale_;
+  std::vector<std::uint32_t> first_{}, neighbours_{};  // of vertex v: neighbours_[first_[v]] ... before first_[v + 1]
+};
 
 }  // namespace gonio::volume

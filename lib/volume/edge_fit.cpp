@@ -7,7 +7,8 @@
 // one width for all. What the profile then says least of, priors say: air behind is like air before, the other object
 // like this one, each within 0.15 of the step. Weights are equal; that samples are correlated is counted in the
 // covariance, (J'J + P)^-1 (J'CJ + P) (J'J + P)^-1, not in the weights: the correlation of interpolated samples is
-// nearly singular, and its inverse would weigh up whatever the model lacks.
+// nearly singular, and its inverse would weigh up whatever the model lacks. Samples that are means of so many voxels
+// are weighed by how many.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -48,7 +49,8 @@ double slanted(double s, double p, double w) {
 
 struct EdgeProblem {
   std::span<const double> s, values;
-  double mean_curvature = 0, sample_sd = 1;  // of one sample, as far as it is independent
+  std::span<const double> sample_sd;  // of each sample, as far as it is independent
+  double mean_curvature = 0;
   double plateau_sd = 1, log_width_mean = 0, log_width_sd = 0;
   bool has_inner = false, has_outer = false;
   double air_mean = 0, object_mean = 0, air_sd = 0, object_sd = 0;  // sd 0: not known
@@ -92,7 +94,7 @@ class EdgeDescent final : public optim::Descent {
     if (std::abs(x[EdgeAt::log_width]) > 3) return HUGE_VAL;  // narrower than a twentieth of a voxel, wider than twenty
     double sum = 0;
     for (std::size_t i = 0; i < problem_.s.size(); ++i) {
-      const double r = (problem_.values[i] - value(x, i, nullptr)) / problem_.sample_sd;
+      const double r = (problem_.values[i] - value(x, i, nullptr)) / problem_.sample_sd[i];
       sum += r * r;
     }
     for_priors([&](Index a, Index b, double mean, double sd) {
@@ -107,8 +109,8 @@ class EdgeDescent final : public optim::Descent {
     downhill_.setZero();
     Vector j;
     for (std::size_t i = 0; i < problem_.s.size(); ++i) {
-      const double r = (problem_.values[i] - value(x_, i, &j)) / problem_.sample_sd;
-      j /= problem_.sample_sd;
+      const double r = (problem_.values[i] - value(x_, i, &j)) / problem_.sample_sd[i];
+      j /= problem_.sample_sd[i];
       h_ += j * j.transpose();
       downhill_ += j * r;
     }
@@ -194,13 +196,14 @@ EdgeStart start_alone(std::span<const double> s, std::span<const double> v, std:
   EdgeStart start;
   start.object = mean_of_samples(v.first(end));
   start.air = mean_of_samples(v.last(end));
-  const double rise = start.object - start.air, step = (s[n - 1] - s[0]) / static_cast<double>(n - 1);
+  const double rise = start.object - start.air;
   if (rise == 0) return start;
+  const auto share = [&](std::size_t i) { return 0.5 * (s[std::min(i + 1, n - 1)] - s[i > 0 ? i - 1 : 0]); };
   double area = 0, between = 0;
-  for (const double x : v) area += std::clamp((x - start.air) / rise, -0.5, 1.5) * step;
-  start.position = std::clamp(s[0] - step / 2 + area, s[0], s[n - 1]);
+  for (std::size_t i = 0; i < n; ++i) area += std::clamp((v[i] - start.air) / rise, -0.5, 1.5) * share(i);
+  start.position = std::clamp(s[0] + area, s[0], s[n - 1]);
   for (std::size_t i = 0; i < n; ++i)
-    between += std::abs((v[i] - start.air) / rise - (s[i] < start.position ? 1 : 0)) * step;
+    between += std::abs((v[i] - start.air) / rise - (s[i] < start.position ? 1 : 0)) * share(i);
   start.width = width.value_or(std::clamp(between * std::sqrt(std::numbers::pi / 2), 0.3, 2.5));
   return start;
 }
@@ -228,11 +231,14 @@ EdgeStart start_between(std::span<const double> s, std::span<const double> v, co
 struct SampleNoise {
   double variance = 1, repeated = 1;
 };
-SampleNoise sample_noise(std::span<const double> covariance, std::size_t n) {
+SampleNoise sample_noise(std::span<const double> covariance, const std::vector<double>& root_weight) {
   if (covariance.empty()) return {};
+  const std::size_t n = root_weight.size();
   double trace = 0, all = 0;
-  for (std::size_t i = 0; i < n; ++i) trace += covariance[i * n + i];
-  for (const double c : covariance) all += c;
+  for (std::size_t a = 0; a < n; ++a) {
+    trace += covariance[a * n + a] * root_weight[a] * root_weight[a];
+    for (std::size_t b = 0; b < n; ++b) all += covariance[a * n + b] * root_weight[a] * root_weight[b];
+  }
   return {trace / static_cast<double>(n), std::clamp(all / trace, 1.0, static_cast<double>(n))};
 }
 
@@ -253,26 +259,28 @@ Edge fitted_edge(const EdgeProblem& problem, const ProfileWish& wish, const Eige
   const Vector x = descent.x();
 
   Eigen::Matrix<double, Eigen::Dynamic, N, Eigen::ColMajor, 64, N> j(n, N);
-  double squares = 0;
+  double squares = 0, misfit = 0;
   for (std::size_t i = 0; i < n; ++i) {
     Vector row;
-    const double r = problem.values[i] - descent.value(x, i, &row);
-    squares += r * r;
-    j.row(static_cast<Index>(i)) = row.transpose() / problem.sample_sd;
+    const double r = problem.values[i] - descent.value(x, i, &row), sd = problem.sample_sd[i];
+    misfit += r * r;
+    squares += r * r / (sd * sd);
+    j.row(static_cast<Index>(i)) = row.transpose() / sd;
   }
-  // S = J'CJ, C the samples' covariance for a voxel's noise of one.
+  // S = J'CJ, C the samples' covariance over their sd for a voxel's noise of one.
   Matrix s = Matrix::Zero();
-  double trace = static_cast<double>(n);
-  if (wish.covariance.empty()) {
-    s = j.transpose() * j;
-  } else {
-    trace = 0;
-    for (std::size_t a = 0; a < n; ++a) {
-      Vector cj = Vector::Zero();
-      for (std::size_t b = 0; b < n; ++b) cj += wish.covariance[a * n + b] * j.row(static_cast<Index>(b)).transpose();
-      s += j.row(static_cast<Index>(a)).transpose() * cj.transpose();
-      trace += wish.covariance[a * n + a];
-    }
+  double trace = 0;
+  const auto covariance = [&](std::size_t a, std::size_t b) {
+    const double own = wish.weights.empty() ? 1 : 1 / wish.weights[a];
+    const double c = wish.covariance.empty() ? (a == b ? own : 0) : wish.covariance[a * n + b];
+    return c / (problem.sample_sd[a] * problem.sample_sd[b]);
+  };
+  for (std::size_t a = 0; a < n; ++a) {
+    Vector cj = Vector::Zero();
+    for (std::size_t b = 0; b < n; ++b)
+      if (const double c = covariance(a, b); c != 0) cj += c * j.row(static_cast<Index>(b)).transpose();
+    s += j.row(static_cast<Index>(a)).transpose() * cj.transpose();
+    trace += covariance(a, a);
   }
   const auto& h = descent.matrix();
   const Matrix priors = descent.prior_matrix();
@@ -287,19 +295,18 @@ Edge fitted_edge(const EdgeProblem& problem, const ProfileWish& wish, const Eige
   edge.air = x[EdgeAt::air];
   edge.object = x[EdgeAt::object];
   const double rise = edge.object - edge.air;
-  edge.misfit = std::sqrt(squares / static_cast<double>(n)) / std::abs(rise);
+  edge.misfit = std::sqrt(misfit / static_cast<double>(n)) / std::abs(rise);
   const double variance = wish.noise > 0 ? wish.noise * wish.noise : squares / expected;
   edge.excess = wish.noise > 0 ? squares / expected / variance : variance;
   const double inflated = wish.noise > 0 ? variance * std::max(1.0, edge.excess / 2) : variance;
-  // s is in units of 1 / sample_sd^2: W C W of the sandwich.
-  const double unit2 = problem.sample_sd * problem.sample_sd;
   const auto sigma_of = [&](Index k) {
     const Vector a = linear::solve_ldlt(h, Vector(Vector::Unit(k)));
-    return std::sqrt(a.dot(s * a) * inflated / unit2 + a.dot(priors * a));
+    return std::sqrt(a.dot(s * a) * inflated + a.dot(priors * a));
   };
   edge.sigma = sigma_of(EdgeAt::position);
   edge.sigma_air = sigma_of(EdgeAt::air);
   edge.sigma_object = sigma_of(EdgeAt::object);
+  edge.sigma_width = edge.width * sigma_of(EdgeAt::log_width);
   if (N == 5) edge.slope = x[EdgeAt::slope % N];
   const double noise = std::sqrt(variance);
   edge.good = end.settled() && std::isfinite(edge.sigma) && std::abs(rise) > 3 * noise &&
@@ -312,15 +319,20 @@ Edge fitted_edge(const EdgeProblem& problem, const ProfileWish& wish, const Eige
 Edge fit_edge(std::span<const double> s, std::span<const double> values, const ProfileWish& wish) {
   constexpr double widest_sigma = 1;  // voxels: an edge known no better is none
   const bool alone = !wish.inner && !wish.outer;
-  if (s.size() < (alone ? 6u : 9u) || s.size() > 64 || values.size() != s.size()) return {};
+  if (s.size() < (alone ? 6u : 9u) || s.size() > 64 || values.size() != s.size() ||
+      (!wish.weights.empty() && wish.weights.size() != s.size()))
+    return {};
   for (const double v : values)
     if (!std::isfinite(v)) return {};
   const EdgeStart start = alone ? start_alone(s, values, wish.width) : start_between(s, values, wish);
   const double rise = std::abs(start.object - start.air);
   if (!(rise > 0)) return {};
-  const SampleNoise sample = sample_noise(wish.covariance, s.size());
-  EdgeProblem problem{s, values, wish.mean_curvature, 1, plateau_share * rise};
-  problem.sample_sd = (wish.noise > 0 ? wish.noise : 0.03 * rise) * std::sqrt(sample.variance * sample.repeated);
+  std::vector<double> root_weight(s.size(), 1.0), sample_sd(s.size());
+  for (std::size_t i = 0; i < wish.weights.size(); ++i) root_weight[i] = std::sqrt(wish.weights[i]);
+  const SampleNoise sample = sample_noise(wish.covariance, root_weight);
+  const double noise = (wish.noise > 0 ? wish.noise : 0.03 * rise) * std::sqrt(sample.variance * sample.repeated);
+  for (std::size_t i = 0; i < s.size(); ++i) sample_sd[i] = noise / root_weight[i];
+  EdgeProblem problem{s, values, sample_sd, wish.mean_curvature, plateau_share * rise};
   problem.has_inner = wish.inner.has_value();
   problem.has_outer = wish.outer.has_value();
   problem.slope = wish.slope;

@@ -14,9 +14,8 @@
 namespace gonio::volume {
 namespace {
 
-constexpr double smear = 2.5;                // widths: what a step still moves is a hundredth of it
-constexpr double near_by = 0.75;             // voxels from the vertex that are not searched for another wall
-constexpr float sharpest_curvature = 0.35F;  // 1 / voxel
+constexpr double smear = 2.5;     // widths: what a step still moves is a hundredth of it
+constexpr double near_by = 0.75;  // voxels from the vertex that are not searched for another wall
 constexpr double guessed_width = 0.8;
 constexpr std::size_t scouts = 30000;  // vertices that tell what all share
 
@@ -82,16 +81,18 @@ class Profiles {
   Profiles(const Contour& at, const EdgeWish& wish)
       : at_(at),
         wish_(wish),
-        curvature_(mean_curvature(at, wish.scale)),
-        half_(static_cast<std::size_t>(std::ceil(2 * wish.reach_voxels / wish.step_voxels))) {
-    for (float& h : curvature_) h = std::clamp(h, -sharpest_curvature, sharpest_curvature);
-  }
+        shapes_(at, wish.scale),
+        half_(static_cast<std::size_t>(std::ceil(2 * wish.reach_voxels / wish.step_voxels))) {}
   std::size_t margin() const {
-    return static_cast<std::size_t>(std::ceil(static_cast<double>(half_) * wish_.step_voxels / wish_.scale.z)) + 2;
+    const double reach = static_cast<double>(half_) * wish_.step_voxels + pool_radius;
+    return static_cast<std::size_t>(std::ceil(reach / wish_.scale.z)) + 2;
   }
 
   EdgeProfile at(const Block& block, std::size_t vertex, double width) const {
-    EdgeProfile profile{vertex, place_of(at_, vertex, wish_.scale), curvature_[vertex]};
+    const LocalShape shape = shapes_.at(vertex);
+    EdgeProfile profile{vertex, place_of(at_, vertex, wish_.scale), shape.mean_curvature(), shape.sharpest()};
+    if (!is_finite(shape.normal)) return profile;
+    profile.place.normal = shape.normal, profile.place.along = divided(shape.normal, wish_.scale);
     std::vector<double> values(2 * half_ + 1);
     const auto s = [&](std::size_t n) {
       return (static_cast<double>(n) - static_cast<double>(half_)) * wish_.step_voxels;
@@ -99,10 +100,7 @@ class Profiles {
     for (std::size_t n = 0; n < values.size(); ++n)
       values[n] = block.at(profile.place.index + profile.place.along * s(n));
     const Walk walk = walk_of(values, values[half_], wish_.reach_voxels, wish_.step_voxels, width);
-    std::size_t first = half_, last = half_ + 1;
-    while (first > 0 && s(first - 1) > walk.first - 1e-9 && std::isfinite(values[first - 1])) --first;
-    while (last < values.size() && s(last) < walk.last + 1e-9 && std::isfinite(values[last])) ++last;
-    for (std::size_t n = first; n < last; ++n) profile.s.push_back(s(n)), profile.values.push_back(values[n]);
+    pool_voxels(block, shape, walk.first, walk.last, wish_.scale, wish_.noise_correlation, profile);
     profile.inward = walk.inward;
     profile.outward = walk.outward;
     profile.inner = walk.inner;
@@ -113,7 +111,7 @@ class Profiles {
  private:
   const Contour& at_;
   const EdgeWish& wish_;
-  std::vector<float> curvature_;
+  ContourShapes shapes_;
   std::size_t half_;
 };
 
@@ -160,9 +158,9 @@ std::vector<Edge> edges(io::VolumeSource& source, const Contour& at, const EdgeW
   const EdgeCommon common = common_of(some, wish);
   every = std::max<std::size_t>(1, every);
   std::vector<Edge> result((at.positions.size() + every - 1) / every);
-  if (!(common.width > 0)) return result;  // no scout saw an edge
+  if (!(common.spread.across2 > 0)) return result;  // no scout saw an edge
   stream(source, at, profiles.margin(), every, [&](const Block& block, std::size_t n) {
-    result[n] = fit_profile(profiles.at(block, n * every, common.width), wish, &common);
+    result[n] = fit_profile(profiles.at(block, n * every, std::sqrt(common.spread.across2)), wish, &common);
   });
   return result;
 }

