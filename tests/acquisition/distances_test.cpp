@@ -123,7 +123,9 @@ TEST(Distances, LieWhereProjectionsAndPlanesPutThem) {
     EXPECT_LE(exactly, bracket.above + 1e-7) << i;
     EXPECT_LE(two.by_balls(), exactly + 1e-9) << i;
     EXPECT_LE(two.by_planes(), exactly + 1e-9) << i;
-    if (bracket.above <= 0) EXPECT_LT(exactly, 1e-7) << i;
+    if (bracket.above <= 0) {
+      EXPECT_LT(exactly, 1e-7) << i;
+    }
     apart += exactly > 0;
     narrow += exactly > 0 && bracket.above - bracket.below < 1e-5;
   }
