@@ -19,8 +19,9 @@ using namespace volumes;
 // Readings are logarithms of intensities that a pixel averages over its area, so that they fall short where the path
 // changes within a pixel, the more the larger the wall's radius of curvature: walls stand some hundredths of a voxel
 // too far in (Glover & Pelc, Medical Physics 7 (1980) 238-248). No tomograph is free of it; what it does to a wall of
-// any radius, and to one of thirty voxels beside that, is free within these bounds.
-constexpr double usual_bias = 0.03, largest_bias = 0.05, usual_radius = 30, least_radius = 4, largest_radius = 120;
+// any radius, and to one of thirty voxels beside that, is free within these bounds: what pixels do that are voxels was
+// simulated.
+constexpr double usual_bias = 0.015, largest_bias = 0.03, usual_radius = 30, least_radius = 4, largest_radius = 120;
 constexpr double largest_variance = 3, variance_sigma = 0.5;
 constexpr double value_sigma = 0.3;  // no reading may be deep enough to tell
 constexpr double ideal_sigma = 0.15, narrowest = 0.25, widest = 0.8;
