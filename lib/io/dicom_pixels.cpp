@@ -97,16 +97,16 @@ DicomStream jpeg_stream(std::string_view stored, bool ls, const std::string& pla
   refuse_volume(place, "has no JPEG of its kind where its pixels belong");
 }
 
-// Without what applications put before the scan (APPn, comments, fill): no decoder needs it, and GDCM has an assertion
-// where a revision of JFIF or Adobe's transform is unknown to it.
+// Of what stands before the scan only what a lossless JPEG needs (ITU-T T.81, annex H): its frame SOF3, its Huffman
+// tables and the restart interval. GDCM has assertions where it meets a revision of JFIF, a transform of Adobe's or a
+// marker that it does not know.
 std::string bare_jpeg(std::string_view stored) {
   std::string bare(stored.substr(0, 2));
   for (std::size_t at = 2; at + 4 <= stored.size();) {
     const auto marker = static_cast<unsigned char>(stored[at + 1]);
     if (marker == 0xda) return bare.append(stored.substr(at));
     const std::size_t length = marker == 0xff ? 1 : std::size_t{2} + big16(stored, at + 2);
-    const bool of_application = (marker >= 0xe0 && marker <= 0xef) || marker == 0xfe || marker == 0xff;
-    if (!of_application) bare.append(stored.substr(at, length));
+    if (marker == 0xc3 || marker == 0xc4 || marker == 0xdd) bare.append(stored.substr(at, length));
     at += length;
   }
   return bare;

@@ -60,6 +60,10 @@ TEST(VolumeDicom, WhatApplicationsPutIntoAJpegIsPassedOver) {
   bytes.replace(jfif - 4, 18, adobe + "\xff\xff");
   write_file(folder / "adobe.dcm", bytes);
   EXPECT_EQ(read_volume(folder / "adobe.dcm").values, plain.values);
+  std::filesystem::remove(folder / "adobe.dcm");
+  bytes[jfif - 3] = 0;  // a marker that there is not
+  write_file(folder / "none.dcm", bytes);
+  EXPECT_EQ(read_volume(folder / "none.dcm").values, plain.values);
 }
 
 // expected.csv beside the set: python3-pydicom with GDCM.

@@ -37,6 +37,18 @@ std::string url_place(const Document& d, const std::string& kind, const std::str
   return manifest::place(d, "/laboratory/" + kind + "/" + name + "/url");
 }
 
+// With the URL that its driver opens: a register map stands beside it in the description.
+std::map<std::string, manifest::LaboratoryRobot> reachable_robots(const Document& d) {
+  auto robots = section_of(d).robots;
+  for (auto& [name, robot] : robots) {
+    if (robot.registers.empty() || robot.url.empty()) continue;
+    const std::string user = "/laboratory/robots/" + name + "/registers";
+    const std::string path = manifest::resolve(d, robot.registers, user).string();
+    robot.url = with_query(robot.url, "registers", path, url_place(d, "robots", name));
+  }
+  return robots;
+}
+
 template <class Device, class Members, class Open>
 void open_all(const Document& d, const std::string& kind, const Members& members,
               std::map<std::string, std::unique_ptr<Device>>& opened, const Open& open) {
@@ -78,7 +90,7 @@ void inspect_one(std::vector<std::string>& lines, bool* all_well, const std::str
 Instrument open_instrument(const Document& d) {
   const manifest::Laboratory& lab = section_of(d);
   Instrument instrument;
-  open_all(d, "robots", lab.robots, instrument.robots, open_robot);
+  open_all(d, "robots", reachable_robots(d), instrument.robots, open_robot);
   open_all(d, "cameras", lab.cameras, instrument.cameras, open_camera);
   open_all(d, "lamps", lab.lamps, instrument.lamps, open_lamp);
   open_all(d, "turntables", lab.turntables, instrument.turntables, open_turntable);
@@ -99,7 +111,7 @@ bool is_real(const Document& d) {
   for_each_device(d, [&](const char* kind, const std::string& name, const std::string& text) {
     if (text.empty()) return;
     const Url url = parse_url(text, url_place(d, kind, name));
-    const bool here = url.host == "localhost" || url.host.starts_with("127.") || url.host == "[::1]";
+    const bool here = url.host == "localhost" || url.host.starts_with("127.") || url.host == "::1";
     real = real || (url.scheme != "sim" && url.scheme != "folder" && !here);
   });
   return real;
@@ -109,7 +121,7 @@ std::vector<std::string> inspect(const Document& d, bool* all_well) {
   const manifest::Laboratory& lab = section_of(d);
   std::vector<std::string> lines;
   if (all_well != nullptr) *all_well = true;
-  for (const auto& [name, robot] : lab.robots)
+  for (const auto& [name, robot] : reachable_robots(d))
     inspect_one(lines, all_well, "robot " + name, robot.url,
                 [&, &n = name, &u = robot.url] { return told(open_robot(u, url_place(d, "robots", n))->state()); });
   for (const auto& [name, camera] : lab.cameras)
