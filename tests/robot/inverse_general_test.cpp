@@ -98,6 +98,14 @@ TEST(InverseGeneral, TwoAxesParallelOrMeeting) {
       0);
   EXPECT_EQ(tally_of("axes 5, 6 meet", Family::general, [](auto& axes) { axes[5].through_m = axes[4].through_m; }).lost,
             0);
+  EXPECT_EQ(tally_of("axes 1, 2 meet, 2, 3 parallel, 4, 5 meet", Family::general,
+                     [](auto& axes) {
+                       axes[1].through_m = axes[0].through_m;
+                       axes[2].direction = axes[1].direction;
+                       axes[4].through_m = axes[3].through_m;
+                     })
+                .lost,
+            0);
 }
 
 }  // namespace

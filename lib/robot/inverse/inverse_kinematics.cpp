@@ -79,6 +79,9 @@ struct InverseKinematics::Parts {
   double apart_rad = 0;                      // closed_form::Hints
   std::optional<general::AllRoots> general;  // without a closed form, and where the one beside loses answers
 
+  std::optional<general::AllRoots>
+      backwards;  // the same from the flange: special geometry may keep what the other loses
+
   bool take(const screws::Screws& s, bool reverse);
   std::vector<JointAnswer> candidates(const screws::Pose& wanted, const closed_form::Hints& hints) const;
   std::vector<JointAnswer> all_round(const screws::Pose& wanted) const;
@@ -146,6 +149,9 @@ std::vector<JointAnswer> InverseKinematics::Parts::all_round(const screws::Pose&
 std::vector<JointAnswer> InverseKinematics::Parts::roots(const screws::Pose& wanted) const {
   std::vector<JointAnswer> all;
   for (const Joints& joints : general->starts(wanted)) all.push_back({joints, -1, 0, 0, false, false});
+  if (backwards)
+    for (const Joints& joints : backwards->starts(screws::inverse(wanted)))
+      all.push_back({in_reverse(joints), -1, 0, 0, false, false});
   return all;
 }
 
@@ -176,7 +182,7 @@ InverseKinematics::InverseKinematics(std::span<const Link> links, const std::str
   auto parts = std::make_unique<Parts>();
   parts->arm = screws::screws_of(links);
   if (!parts->take(parts->arm, false) && !parts->take(screws::reversed(parts->arm), true))
-    parts->general.emplace(parts->arm);
+    parts->general.emplace(parts->arm), parts->backwards.emplace(screws::reversed(parts->arm));
   parts_ = std::move(parts);
 }
 InverseKinematics::~InverseKinematics() = default;
