@@ -121,8 +121,8 @@ struct EdgeWish {
 // profiles: of thin walls the mean of widths fitted one by one is too small), the noise, and place for place the
 // plateaus and the slope of the object's values beneath the surface (a cup); then every edge is fitted with these known
 // as well as they are. Of walls thinner than 2.5 widths thickness and width can hardly be told apart by their profile:
-// a width that is wrong by a hundredth moves both walls of 2.2 widths by a hundredth of a width or two. What stands
-// alone elsewhere tells it best. Error(data) where the contour is empty.
+// where a wall is 2.2 widths thick, a width that is wrong by some amount moves both its sides by 2.4 times as much.
+// What stands alone elsewhere tells it best. Error(data) where the contour is empty.
 std::vector<Edge> edges(io::VolumeSource& source, const Contour& at, const EdgeWish& wish, std::size_t every = 1);
 
 // What the edges themselves say of half-way: by it a global threshold can be judged. bias and rms: of wall positions

@@ -24,6 +24,11 @@ struct Ellipsoid {
   bool hollow = false;
 };
 
+struct Marker {
+  Vec3 centre_m;
+  double radius_m = 0;
+};
+
 class Tomograph final : public World {
  public:
   std::vector<EffectKind> effects() const override {
@@ -52,6 +57,9 @@ class Tomograph final : public World {
         .as_drawn()
         .nearly("tilt_rad");
     add({"scatter", "ct.scatter", stage, {"volume.path", "volume.depth", "volume.radius"}, 0.08, 0.3}).as_drawn();
+    add({"streaks", "ct.streak", stage, {"volume.marker-path", "volume.path"}, 0.03, 0.12})
+        .as_drawn()
+        .only_for("markers");
     add({"offset axis", "", stage, {}, 0.7, 2}).as_drawn();
     add({"drifting source", "", stage, {}, 0.05, 0.3}).as_drawn();
     return k;
@@ -75,18 +83,14 @@ class Tomograph final : public World {
       const Vec3 radii{random.uniform(0.3, 0.4) * extent, random.uniform(0.26, 0.36) * extent,
                        random.uniform(0.3, 0.42) * extent};
       const Ellipsoid outer{near(0.03), radii, turned(), false};
-      const double wall = random.uniform(0.09, 0.13) * extent;
-      const double least = std::min({radii.x, radii.y, radii.z}) - wall;
-      // A large hollow to one side, and a small one opposite.
-      const Vec3 way = normalized({random.normal(), random.normal(), random.normal()});
-      const double large = 0.62 * least, small = 0.26 * least;
-      const Ellipsoid hollow{outer.centre + way * (least - large),
-                             {large, large * random.uniform(0.7, 0.95), large * random.uniform(0.7, 0.95)},
-                             turned(),
-                             true};
-      const Ellipsoid bubble{outer.centre - way * (least - small), {small, small, small}, {}, true};
-      bodies_ = {outer, hollow, bubble};
+      const double wall = (variant == "thin" ? random.uniform(0.032, 0.05) : random.uniform(0.09, 0.13)) * extent;
+      if (variant == "thin") {  // a shell of 3.1 to 4.8 voxels
+        bodies_ = {outer, {outer.centre, radii - Vec3{1, 1, 1} * wall, outer.turn, true}};
+      } else {
+        bodies_ = with_hollows(outer, wall, turned, random);
+      }
     }
+    if (variant == "markers") glue_markers(random);
     photons_ = std::exp(random.uniform(std::log(4e4), std::log(4e5)));
     turn_ =
         ct::rotation_about(normalized({random.normal(), random.normal(), random.normal()}), random.uniform(0, 0.02));
@@ -186,17 +190,51 @@ class Tomograph final : public World {
     Value m = Value::object();
     m["meshes"]["piece"] = Value::object({{"file", "piece"}});
     m["volumes"]["v"] = Value::object({{"file", "scan"}, {"reference", "piece"}, {"value", "attenuation"}});
+    if (!markers_.empty()) m["markers"] = Value::array();
+    for (std::size_t k = 0; k < markers_.size(); ++k) {
+      const Vec3 c = markers_[k].centre_m;
+      Value marker = Value::object({{"id", format("m%zu", k)}, {"volume", "v"}, {"radius_m", markers_[k].radius_m}});
+      marker["centre_m"] = Value(Value::Array{Value(c.x), Value(c.y), Value(c.z)});
+      m["markers"].as_array().push_back(std::move(marker));
+    }
     finish(m, into);
   }
 
  private:
+  // A large hollow to one side, and a small one opposite.
+  template <class Turned>
+  static std::vector<Ellipsoid> with_hollows(const Ellipsoid& outer, double wall, const Turned& turned,
+                                             Random& random) {
+    const double least = std::min({outer.radii.x, outer.radii.y, outer.radii.z}) - wall;
+    const Vec3 way = normalized({random.normal(), random.normal(), random.normal()});
+    const double large = 0.62 * least, small = 0.26 * least;
+    const Ellipsoid hollow{outer.centre + way * (least - large),
+                           {large, large * random.uniform(0.7, 0.95), large * random.uniform(0.7, 0.95)},
+                           turned(),
+                           true};
+    const Ellipsoid bubble{outer.centre - way * (least - small), {small, small, small}, {}, true};
+    return {outer, hollow, bubble};
+  }
+  // Iron balls that stand on the piece.
+  void glue_markers(Random& random) {
+    const Ellipsoid& piece = bodies_.front();
+    for (int k = 0; k < 3; ++k) {
+      const double height = random.uniform(-0.7, 0.7), angle = 2 * pi * k / 3 + random.uniform(-0.6, 0.6);
+      const double level = std::sqrt(1 - height * height), radius = random.uniform(2.5, 4) * voxel_m_;
+      const Vec3 unit{level * std::cos(angle), level * std::sin(angle), height};
+      const Vec3 outward = normalized({unit.x / piece.radii.x, unit.y / piece.radii.y, unit.z / piece.radii.z});
+      markers_.push_back({piece.turn * (unit * piece.radii + outward * radius) + piece.centre, radius});
+    }
+  }
   ct::Scanner scanner_of(const Sizes& sizes) const {
     ct::Scanner s = scanner_;
     s.voxels = side, s.voxel_m = voxel_m_;
     s.samples = {2, 2};
-    s.spectrum = ct::tube(120, 2, 0, 16);
+    // Iron hardens a beam whatever is left out: with markers one energy.
+    s.spectrum = markers_.empty() ? ct::tube(120, 2, 0, 16) : ct::mono(70);
     s.imperfections["beam-hardening"] = size_of(sizes, "hardening");
-    constexpr std::array<std::pair<const char*, const char*>, 7> names{{{"blur", "blur"},
+    constexpr std::array<std::pair<const char*, const char*>, 8> names{{{"blur", "blur"},
+                                                                        {"streaks", "streak"},
                                                                         {"cupping", "cupping"},
                                                                         {"rings", "ring"},
                                                                         {"tilt", "axis-tilt"},
@@ -213,11 +251,13 @@ class Tomograph final : public World {
       const ct::ShapePtr own = ct::turned(ct::ellipsoid({}, e.radii), e.turn, e.centre);
       shape = !shape ? own : e.hollow ? ct::without(shape, own) : ct::united({shape, own});
     }
-    return {"piece", {{"piece", shape, glass_ ? ct::glass() : ct::aluminium()}}, {}};
+    ct::Phantom phantom{"piece", {{"piece", shape, glass_ ? ct::glass() : ct::aluminium()}}, {}};
+    for (const Marker& m : markers_) phantom.parts.push_back({"marker", ct::ball(m.centre_m, m.radius_m), ct::iron()});
+    return phantom;
   }
   double value_of_material() const {
     Numbers v = scanned_.front().second;
-    const auto near = v.begin() + static_cast<std::ptrdiff_t>(v.size() - v.size() / 20);
+    const auto near = v.begin() + static_cast<std::ptrdiff_t>(v.size() - v.size() / 50);
     std::nth_element(v.begin(), near, v.end());
     return *near;
   }
@@ -289,6 +329,7 @@ class Tomograph final : public World {
   }
 
   std::vector<Ellipsoid> bodies_;
+  std::vector<Marker> markers_;
   ct::Scanner scanner_;
   double voxel_m_ = 3e-4, photons_ = 1e5;
   bool glass_ = true;

@@ -7,6 +7,7 @@
 
 #include "acquisition/laboratory/known_solids.h"
 #include "acquisition/laboratory/solid_bodies.h"
+#include "acquisition/laboratory/urdf_arm.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "manifest/document.h"
@@ -73,13 +74,16 @@ void tighten_by_cable(const Placed& at, std::vector<robot::JointLimit>& limits) 
   }
 }
 
-std::vector<robot::JointLimit> limits_of(const Placed& at, std::size_t joints) {
-  std::vector<robot::JointLimit> limits(joints);
+std::vector<robot::JointLimit> models_limits(const Placed& at, std::size_t joints) {
   for (const robot::ArmLimits& known : robot::known_limits())
-    if (known.name == at.robot.model && known.joints.size() == joints) limits = known.joints;
-  limits = given_limits(at, std::move(limits));
+    if (known.name == at.robot.model && known.joints.size() == joints) return known.joints;
+  return std::vector<robot::JointLimit>(joints);
+}
+
+std::vector<robot::JointLimit> limits_of(const Placed& at, const std::vector<robot::JointLimit>& models) {
+  std::vector<robot::JointLimit> limits = given_limits(at, models);
   tighten_by_cable(at, limits);
-  for (std::size_t i = 0; i < joints; ++i) {
+  for (std::size_t i = 0; i < limits.size(); ++i) {
     const robot::JointLimit& limit = limits[i];
     const std::string joint = "joint " + std::to_string(i + 1);
     if (!(limit.lower_rad < limit.upper_rad))
@@ -166,45 +170,77 @@ std::vector<LinkSolid> link_solids(const Placed& at, std::size_t joints) {
   return solids;
 }
 
-std::vector<Solid> solids_of(const Placed& at, const LaboratoryArm& arm, const std::vector<robot::Link>& nominal) {
+// Of the links, placed in the arm's frames. Known with all joints at zero, seen from `seen_from`.
+std::vector<Solid> link_solids_in_frames(const Placed& at, const LaboratoryArm& arm,
+                                         const std::vector<robot::Link>& nominal,
+                                         const Rigid<frame::Base, frame::Base>& seen_from) {
   const std::vector<Displacement> moved = displacements(nominal, arm.links);
   const std::vector<robot::LinkFrame> frames = robot::link_frames(arm.links, Joints(arm.links.size()));
   std::vector<Solid> solids;
   for (LinkSolid& link : link_solids(at, arm.links.size())) {
     const auto i = static_cast<std::size_t>(link.solid.link);
-    const auto in_frame = inverse(rigid_of(frames[i])) * (moved[i].moved * link.base_from_body);
+    const auto in_frame = inverse(rigid_of(frames[i])) * (moved[i].moved * (seen_from * link.base_from_body));
     link.solid.placed = {in_frame.rotation, in_frame.translation_m};
     solids.push_back(std::move(link.solid));
   }
+  return solids;
+}
+
+void put_solids(const Placed& at, std::vector<Solid> of_links, LaboratoryArm& arm) {
+  arm.solids = std::move(of_links);
   for (std::size_t i = 0; i < at.robot.carries.size(); ++i) {
     const manifest::SolidBody& body = at.robot.carries[i];
     Solid solid = solid_of(at.document, body, at.pointer + "/carries/" + std::to_string(i));
     solid.link = static_cast<int>(arm.links.size());
     solid.carried = true;
-    if (body.tool_from_body) solid.placed = {body.tool_from_body->rotation, body.tool_from_body->translation_m};
-    solids.push_back(std::move(solid));
+    Rigid<frame::Tool, frame::Object> in_tool{};
+    if (body.tool_from_body) in_tool = *body.tool_from_body;
+    const auto in_last = arm.last_from_tool * in_tool;
+    solid.placed = {in_last.rotation, in_last.translation_m};
+    arm.solids.push_back(std::move(solid));
   }
-  for (Solid& solid : solids) {
+  for (Solid& solid : arm.solids) {
     solid.arm = arm.name;
     solid.name = arm.name + "/" + solid.name;
   }
-  return solids;
+}
+
+void put_known_arm(const Placed& at, LaboratoryArm& arm) {
+  const robot::Arm nominal = arm_without_calibration(at);
+  arm.links = calibrated_arm(at, nominal).links;
+  arm.limits = limits_of(at, models_limits(at, arm.links.size()));
+  put_solids(at, link_solids_in_frames(at, arm, nominal.links, {}), arm);
+}
+
+void put_described_arm(const Placed& at, LaboratoryArm& arm) {
+  if (!at.robot.calibration.empty())
+    throw Error(Exit::data, at.place + "/calibration", "is for arms whose rows are known, not for a URDF",
+                "put it into the URDF, or name the model");
+  DescribedArm described = described_arm(at.document, at.robot.urdf, at.pointer);
+  arm.links = described.kinematics.arm.links;
+  arm.world_from_base = arm.world_from_base * described.kinematics.base_from_first;
+  arm.last_from_tool = described.kinematics.last_from_flange;
+  arm.limits = limits_of(at, described.kinematics.limits);
+  put_solids(at,
+             at.robot.links.empty()
+                 ? std::move(described.solids)
+                 : link_solids_in_frames(at, arm, arm.links, inverse(described.kinematics.base_from_first)),
+             arm);
+  if (arm.solids.empty())
+    throw Error(Exit::data, at.place + "/urdf", "has no collision shapes", "give the solids of its links as links");
 }
 
 LaboratoryArm arm_of(const manifest::Document& document, const std::string& name, const LaboratoryRobot& robot) {
   const std::string pointer = "/laboratory/robots/" + name;
   const Placed at{document, robot, pointer, manifest::place(document, pointer)};
-  const robot::Arm nominal = arm_without_calibration(at);
   LaboratoryArm arm;
   arm.name = name;
   arm.model = robot.model;
-  arm.links = calibrated_arm(at, nominal).links;
   if (robot.world_from_base) arm.world_from_base = *robot.world_from_base;
-  arm.limits = limits_of(at, arm.links.size());
+  robot.model == "urdf" ? put_described_arm(at, arm) : put_known_arm(at, arm);
   arm.home = home_of(at, arm.links.size());
   if (const std::string broken = broken_limit(arm, arm.home); !broken.empty())
     throw Error(Exit::data, at.place + "/home_rad", broken, "give a home within the limits of joints and cable");
-  arm.solids = solids_of(at, arm, nominal.links);
   return arm;
 }
 

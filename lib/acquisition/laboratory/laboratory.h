@@ -20,8 +20,10 @@ using State = std::map<std::string, Joints>;  // where the arms stand, by name; 
 
 struct LaboratoryArm {
   std::string name, model;
-  std::vector<robot::Link> links;  // calibrated, where the laboratory has a calibration
-  Rigid<frame::World, frame::Base> world_from_base{};
+  std::vector<robot::Link> links;                      // calibrated, where the laboratory has a calibration
+  Rigid<frame::World, frame::Base> world_from_base{};  // the base from which the links count
+  // From the links' last frame; the identity but for arms from a URDF, whose flange lies as its author put it.
+  Rigid<frame::Tool, frame::Tool> last_from_tool{};
   // One a joint: the range that the section gives, or else the model's, and no more than the cable allows.
   std::vector<robot::JointLimit> limits;
   Joints home;
@@ -43,6 +45,9 @@ Laboratory believed_laboratory(const manifest::Document& document);
 const Joints& joints_of(const LaboratoryArm& arm, const State& state);
 // The flange, and what sits on it. Error(data) for a camera or a lamp that is neither held nor placed.
 Rigid<frame::World, frame::Tool> world_from_tool(const LaboratoryArm& arm, const Joints& joints);
+// Where the links have to end (robot::flange) for the flange to be there: what inverse kinematics are asked.
+Rigid<frame::Base, frame::Tool> wanted_of_links(const LaboratoryArm& arm,
+                                                const Rigid<frame::World, frame::Tool>& world_from_tool);
 Rigid<frame::World, frame::Camera> world_from_camera(const manifest::Document& document, const Laboratory& laboratory,
                                                      const std::string& camera, const State& state);
 // A standing lamp without a place of its own stands where its light does.

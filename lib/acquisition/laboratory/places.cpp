@@ -55,7 +55,12 @@ const Joints& joints_of(const LaboratoryArm& arm, const State& state) {
 }
 
 Rigid<frame::World, frame::Tool> world_from_tool(const LaboratoryArm& arm, const Joints& joints) {
-  return arm.world_from_base * robot::flange(arm.links, joints);
+  return arm.world_from_base * robot::flange(arm.links, joints) * arm.last_from_tool;
+}
+
+Rigid<frame::Base, frame::Tool> wanted_of_links(const LaboratoryArm& arm,
+                                                const Rigid<frame::World, frame::Tool>& world_from_tool) {
+  return inverse(arm.world_from_base) * world_from_tool * inverse(arm.last_from_tool);
 }
 
 Rigid<frame::World, frame::Camera> world_from_camera(const manifest::Document& document, const Laboratory& laboratory,

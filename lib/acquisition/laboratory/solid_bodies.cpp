@@ -35,15 +35,18 @@ Solid solid_of(const manifest::Document& document, const manifest::SolidBody& bo
     solid.shape = Solid::Shape::cylinder;
     solid.sides_m = {body.cylinder_m[0], body.cylinder_m[1], 0};
   } else {
-    solid.shape = Solid::Shape::mesh;
-    const std::filesystem::path path = manifest::resolve(document, body.mesh, pointer + "/mesh");
-    const std::string file = read_file(path), name = path.filename().string();
-    io::TriangleMesh mesh = file.starts_with("ply") ? io::parse_ply(file, name) : io::parse_stl(file, name);
-    if (mesh.triangles.empty()) throw Error(Exit::data, name, "has no triangles", "export it again");
-    solid.vertices_m = std::move(mesh.positions_m);
-    solid.triangles = std::move(mesh.triangles);
+    put_mesh(manifest::resolve(document, body.mesh, pointer + "/mesh"), solid);
   }
   return solid;
+}
+
+void put_mesh(const std::filesystem::path& path, Solid& solid) {
+  const std::string file = read_file(path), name = path.filename().string();
+  io::TriangleMesh mesh = file.starts_with("ply") ? io::parse_ply(file, name) : io::parse_stl(file, name);
+  if (mesh.triangles.empty()) throw Error(Exit::data, name, "has no triangles", "export it again");
+  solid.shape = Solid::Shape::mesh;
+  solid.vertices_m = std::move(mesh.positions_m);
+  solid.triangles = std::move(mesh.triangles);
 }
 
 }  // namespace gonio::acquisition

@@ -61,7 +61,7 @@ class StraightLine {
   }
 
   std::optional<robot::Joints> joints_at(double share) {
-    const auto answers = inverse_.solve(inverse(arm_.world_from_base) * at(share), now_);
+    const auto answers = inverse_.solve(wanted_of_links(arm_, at(share)), now_);
     std::optional<robot::Joints> best;
     double best_turn = std::numeric_limits<double>::infinity();
     why_ = answers.empty() || !answers.front().exact ? "out of reach" : "";

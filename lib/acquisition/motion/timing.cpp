@@ -37,8 +37,10 @@ double flange_rate(const LaboratoryArm& arm, const Joints& from, const Joints& t
     Joints joints(from);
     for (std::size_t i = 0; i < joints.size(); ++i) joints[i] += k / 8.0 * (to[i] - from[i]);
     const std::vector<robot::Motion> motions = robot::joint_motions(arm.links, joints);
+    const Vec3 beyond = robot::flange(arm.links, joints).rotate(arm.last_from_tool.translation_m);
     Vec3 rate{};
-    for (std::size_t i = 0; i < joints.size(); ++i) rate += motions[i].shift_m * ((to[i] - from[i]) / length_rad);
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      rate += (motions[i].shift_m + cross(motions[i].turn_rad, beyond)) * ((to[i] - from[i]) / length_rad);
     largest = std::max(largest, norm(rate));
   }
   return largest;

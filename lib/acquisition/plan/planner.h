@@ -1,11 +1,12 @@
 // From views that are asked for to a plan: joints for every arm, ways between, an order that saves time.
 //
-// Every view has all its inverse branches and turns as candidates (plan/candidates.h); those that break a limit, wind a
-// cable, come near a singularity or touch something are dropped, and a view without candidates is unreachable, with the
-// reason that stopped most of them and the nearest view that can be reached. Order and candidates are chosen together
-// (plan/tour.h), the cost the time of the slowest joint; the ways between are then walked (plan/edges.h): a line in
-// joint space where that is free, a straight line of the camera where asked, else a way that is found; what cannot be
-// walked costs so much that the next round chooses other candidates or another order.
+// Every view has its inverse solutions and their turns as candidates (plan/candidates.h), those that no singular
+// posture parts from home; those that break a limit, wind a cable, come near a singularity or touch something are
+// dropped, and a view without candidates is unreachable, with the reason that stopped most of them and the nearest view
+// that can be reached. Order and candidates are chosen together (plan/tour.h), the cost the time of the slowest joint;
+// the ways between are then walked (plan/edges.h): a line in joint space where that is free, a straight line of the
+// camera where asked, else a way that is found; what cannot be walked costs so much that the next round chooses other
+// candidates or another order.
 //
 // Steps that ask the same of the arms and turntables are taken one after the other without moving, unless the order is
 // to be kept. Arms of which a step asks nothing stand at home.

@@ -137,23 +137,4 @@ Body body_of(const mesh::Mesh& mesh, std::array<std::size_t, 3> size, Vec3 exten
   return body;
 }
 
-void add_ball(Body& body, Vec3 centre_m, double radius_m) {
-  constexpr int fine = 3;
-  for (std::size_t k = 0; k < body.size[2]; ++k)
-    for (std::size_t j = 0; j < body.size[1]; ++j)
-      for (std::size_t i = 0; i < body.size[0]; ++i) {
-        const Vec3 p =
-            body.first_m + body.cell_m * Vec3{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)};
-        if (norm(p - centre_m) > radius_m + max_component(body.cell_m)) continue;
-        int inside = 0;
-        for (int s = 0; s < fine * fine * fine; ++s) {
-          const Vec3 shift{(s % fine + 0.5) / fine - 0.5, (s / fine % fine + 0.5) / fine - 0.5,
-                           (s / fine / fine + 0.5) / fine - 0.5};
-          inside += norm(p + body.cell_m * shift - centre_m) < radius_m;
-        }
-        float& share = body.share[(k * body.size[1] + j) * body.size[0] + i];
-        share = std::min(1.0f, share + static_cast<float>(inside) / (fine * fine * fine));
-      }
-}
-
 }  // namespace gonio::explain::volumes

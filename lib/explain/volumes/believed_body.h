@@ -19,6 +19,5 @@ struct Body {
 // `size` cells that fill the box of the given full extent about the origin. Error(data) at `place` where the mesh is
 // open or faces inwards.
 Body body_of(const mesh::Mesh& mesh, std::array<std::size_t, 3> size, Vec3 extent_m, const std::string& place);
-void add_ball(Body& body, Vec3 centre_m, double radius_m);
 
 }  // namespace gonio::explain::volumes

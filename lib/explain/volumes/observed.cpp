@@ -7,15 +7,12 @@
 #include <tuple>
 
 #include "base/error.h"
-#include "base/parallel.h"
 #include "base/random.h"
 #include "explain/volumes/row_noise.h"
-#include "explain/volumes/simulated_tomograph.h"
+#include "explain/volumes/simulated_readings.h"
 #include "explain/volumes/sites.h"
 #include "linear/solve.h"
 #include "stats/intervals.h"
-#include "volume/mechanisms/ct_beam_hardening.h"
-#include "volume/mechanisms/ct_streak.h"
 
 namespace gonio::explain::volumes {
 namespace {
@@ -23,6 +20,8 @@ namespace {
 constexpr std::size_t site_count = 3000, alignment_count = 800, fewest_walls = 200, most_cells = 160;
 constexpr double least_plateau = 3.5, deepest_voxels = 40, highest_voxels = 20;
 constexpr double least_reach = 3, largest_reach = 8, reach_in_widths = 3.5, plateau_in_widths = 4.5;
+constexpr std::size_t rough_cells = 48;
+constexpr double marker_margin = 5, sharpest_blur = 0.8, most_displaced = 1.5;  // voxels
 constexpr double nominal_attenuation = 2;  // of the longest path, where values are no attenuation
 
 Body body_for(const VolumesInput& input, const Sampled& sampled, const mesh::Mesh& mesh) {
@@ -63,22 +62,15 @@ Pose better_pose(const std::vector<Site>& sites, const std::vector<volume::Edge>
   return {Vec3{x[3], x[4], x[5]} / lever, {x[0], x[1], x[2]}};
 }
 
-std::vector<volume::Edge> edges_of(const Sampled& sampled, const std::vector<Site>& sites, const Values& values,
-                                   double reach) {
-  std::vector<volume::Edge> edges(sites.size());
-  parallel_for(
-      0, sites.size(), [&](std::size_t i) { edges[i] = edge_at(sampled, sites[i], values, reach); }, 32);
-  return edges;
-}
-
 // The believed shape where the volume has it: from a wide look to a narrow one.
 mesh::Mesh aligned(const VolumesInput& input, const Sampled& sampled, Observed& o) {
   mesh::Mesh mesh = input.mesh;
   Quaternion turned;
   for (const double reach : {6.0, 4.0, 3.0, 3.0}) {
     const Body body = body_for(input, sampled, mesh);
-    const Values values = values_of(sampled, body, input.place);
-    const std::vector<Site> sites = sites_of(mesh, body, sampled.voxel_m(), alignment_count);
+    const mesh::TriangleTree tree(mesh.positions_m, mesh.triangles);
+    const std::vector<Site> sites = sites_of(mesh, tree, sampled.voxel_m(), alignment_count);
+    const Values values = values_of(sampled, body, sites, input.place);
     const std::vector<volume::Edge> edges = edges_of(sampled, sites, values, reach);
     const auto good = std::ranges::count_if(edges, [](const volume::Edge& e) { return e.good; });
     if (good < 50) continue;
@@ -92,30 +84,42 @@ mesh::Mesh aligned(const VolumesInput& input, const Sampled& sampled, Observed& 
   return mesh;
 }
 
-bool is_plain(const Body& body, Vec3 at, double share, double voxel_m) {
-  for (const Vec3 way : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}})
-    if (std::abs(body.at(at + way * (2.5 * voxel_m)) - share) > 0.001) return false;
-  return true;
-}
+// A grey value along the normal at a depth that is drawn; half-way through what is thinner than two plateaus; nothing
+// where the next wall is too near.
+class Greys {
+ public:
+  Greys(const Sampled& sampled, const mesh::TriangleTree& tree, const Values& values, double plateau, bool thin)
+      : sampled_(sampled), tree_(tree), values_(values), plateau_(plateau), thin_(thin) {}
+  void add(const Site& site, std::uint32_t number, bool inside, std::vector<Row>& rows) {
+    const double room = inside ? site.behind : site.before, share = random_.uniform();
+    const bool between = room < 2 * plateau_;
+    if (between && (!thin_ || room < least_room)) return;
+    const double most = std::min(room - plateau_, inside ? deepest_voxels : highest_voxels);
+    const double depth = between ? 0.5 * room : plateau_ + share * (most - plateau_);
+    Row row;
+    row.reading = inside ? Reading::inside : Reading::outside;
+    row.site = number;
+    row.at_m = site.at_m + site.normal * ((inside ? -depth : depth) * sampled_.voxel_m());
+    if (!sampled_.within(row.at_m, 2)) return;
+    row.depth = std::min(depth, room - depth);
+    const double clear_m = std::min(clear_voxels, clear_share * row.depth) * sampled_.voxel_m();
+    if (tree_.nearest(row.at_m, clear_m).distance_m < clear_m) return;
+    row.normal = site.normal;
+    const double rise = values_.material - values_.air;
+    row.value = (sampled_.at(row.at_m) - values_.air) / rise;
+    row.sigma = values_.noise / std::abs(rise);
+    rows.push_back(row);
+  }
 
-// A grey value along the normal at a depth that is drawn; nothing where the next wall is too near.
-void add_grey(const Sampled& sampled, const Body& body, const Values& values, const Site& site, bool inside,
-              double plateau, Random& random, std::vector<Row>& rows) {
-  const double free = (inside ? site.behind : site.before) - plateau;
-  const double most = std::min(free, inside ? deepest_voxels : highest_voxels), share = random.uniform();
-  if (!(most >= plateau)) return;
-  const double depth = plateau + share * (most - plateau);
-  Row row;
-  row.reading = inside ? Reading::inside : Reading::outside;
-  row.at_m = site.at_m + site.normal * ((inside ? -depth : depth) * sampled.voxel_m());
-  if (!sampled.within(row.at_m, 2) || !is_plain(body, row.at_m, inside ? 1 : 0, sampled.voxel_m())) return;
-  row.normal = site.normal;
-  row.depth = std::min(depth, std::max(plateau, free + plateau - depth));
-  const double rise = values.material - values.air;
-  row.value = (sampled.at(row.at_m) - values.air) / rise;
-  row.sigma = values.noise / std::abs(rise);
-  rows.push_back(row);
-}
+ private:
+  static constexpr double least_room = 4, clear_voxels = 2.5, clear_share = 0.8;
+  const Sampled& sampled_;
+  const mesh::TriangleTree& tree_;
+  const Values& values_;
+  double plateau_;
+  bool thin_;
+  Random random_{1, 0x67726579};
+};
 
 // The width of most edges; what is read next to them stands clear of it.
 double typical_width(const Sampled& sampled, const std::vector<Site>& sites, const Values& values) {
@@ -129,17 +133,17 @@ double typical_width(const Sampled& sampled, const std::vector<Site>& sites, con
   return widths.empty() ? 1 : stats::median(widths);
 }
 
-std::vector<Row> rows_of(const Sampled& sampled, const Body& body, const Values& values, const std::vector<Site>& sites,
-                         double width) {
-  const double plateau = std::max(least_plateau, plateau_in_widths * width);
-  const std::vector<volume::Edge> edges =
-      edges_of(sampled, sites, values, std::clamp(reach_in_widths * width, least_reach, largest_reach));
+std::vector<Row> rows_of(const Sampled& sampled, const mesh::TriangleTree& tree, const Values& values,
+                         const std::vector<Site>& sites, double width, double reach, bool fine) {
+  const std::vector<volume::Edge> edges = edges_of(sampled, sites, values, reach);
   std::vector<Row> rows;
-  Random random(1, 0x67726579);
+  Greys greys(sampled, tree, values, std::max(least_plateau, plateau_in_widths * width), fine);
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const volume::Edge& e = edges[i];
+    const auto number = static_cast<std::uint32_t>(i);
     if (e.good) {
       Row row;
+      row.site = number;
       row.at_m = sites[i].at_m, row.normal = sites[i].normal, row.curvature = sites[i].curvature;
       row.value = e.position, row.sigma = e.sigma;
       rows.push_back(row);
@@ -148,61 +152,87 @@ std::vector<Row> rows_of(const Sampled& sampled, const Body& body, const Values&
       row.value = e.width, row.sigma = std::sqrt(2.0) * e.sigma;
       rows.push_back(row);
     }
-    add_grey(sampled, body, values, sites[i], true, plateau, random, rows);
-    add_grey(sampled, body, values, sites[i], false, plateau, random, rows);
+    greys.add(sites[i], number, true, rows);
+    greys.add(sites[i], number, false, rows);
   }
   return rows;
 }
 
-void add_paths(const VolumesInput& input, const Body& body, const Values& values, std::vector<Row>& rows, Observed& o) {
-  std::vector<Vec3> places;
-  for (const Row& row : rows) places.push_back(row.at_m);
-  const Tomograph tomograph(body);
-  const double longest = tomograph.longest_m();
-  o.longest_path_m = longest;
-  const double per_m = input.attenuation ? std::max(1e-3, values.material - values.air) : nominal_attenuation / longest;
-  const std::vector<double> path = tomograph.mean_path(places);
-  const std::vector<double> hardening =
-      tomograph.reconstructed([&](double p) { return equation::ct_beam_hardening_lacks(p, longest); }, places);
-  const std::vector<std::vector<double>> scatter = tomograph.scattered(per_m, scatter_shares, places);
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].path_m = path[i], rows[i].hardening = hardening[i];
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t s = 0; s < scatter_shares.size(); ++s) rows[i].scatter[s] = scatter[s][i];
-  if (input.markers.empty()) return;
-  Body markers = body;
-  std::ranges::fill(markers.share, 0.0f);
-  for (const VolumesInput::Ball& ball : input.markers) add_ball(markers, ball.centre_m, ball.radius_m);
-  const Tomograph through(markers);
-  if (!(through.longest_m() > 0)) return;
-  const double most = through.longest_m();
-  const std::vector<double> streak =
-      through.reconstructed([&](double m) { return equation::ct_streak_lacks(m, most); }, places);
-  const std::vector<double> marker_path = through.mean_path(places);
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].markers = streak[i], rows[i].marker_path_m = marker_path[i];
+// Of the largest line integral, where values are no attenuation.
+double attenuation_per_m(const VolumesInput& input, const mesh::Mesh& mesh, const Values& values) {
+  if (input.attenuation) return std::max(1e-3, values.material - values.air);
+  const Tomograph rough(mesh, input.volume.head.size, input.spacing_m, 1, rough_cells);
+  return nominal_attenuation / std::max(1e-9, rough.longest_m());
+}
+
+// Walls that stand off by about this much everywhere: what is simulated stands there, too, for an edge errs with its
+// place between voxels. Blurred edges err too little, and may not be off by their geometry.
+struct Displacement {
+  double offset = 0, scale = 0;  // voxels, share of the distance from the middle
+  double at(const Row& row, double voxel_m) const { return offset + scale * dot(row.at_m, row.normal) / voxel_m; }
+};
+Displacement displacement(const std::vector<Row>& rows, const Observed& o) {
+  if (o.typical_width > sharpest_blur) return {};
+  const double lever = o.field_m / o.voxel_m;
+  Eigen::Matrix2d h = Eigen::Matrix2d::Identity();
+  Eigen::Vector2d b = Eigen::Vector2d::Zero();
+  for (const Row& row : rows) {
+    if (row.reading != Reading::wall || !(std::abs(row.value) < most_displaced)) continue;
+    const Eigen::Vector2d j(1, dot(row.at_m, row.normal) / o.field_m);
+    h += j * j.transpose();
+    b += j * row.value;
+  }
+  const Eigen::Vector2d x = linear::solve_ldlt(h, b);
+  return {x[0], x[1] / lever};
+}
+mesh::Mesh displaced(mesh::Mesh mesh, const Displacement& by, double voxel_m) {
+  for (std::size_t v = 0; v < mesh.positions_m.size(); ++v)
+    mesh.positions_m[v] = mesh.positions_m[v] * (1 + by.scale) + mesh.normals[v] * (by.offset * voxel_m);
+  return mesh;
+}
+
+// What is near a marker shows the marker.
+void leave_out_markers(const std::vector<Ball>& markers, double voxel_m, std::vector<Row>& rows) {
+  std::erase_if(rows, [&](const Row& row) {
+    return std::ranges::any_of(markers, [&](const Ball& ball) {
+      return norm(row.at_m - ball.centre_m) < ball.radius_m + marker_margin * voxel_m;
+    });
+  });
 }
 
 }  // namespace
 
 Observed observed(const VolumesInput& input) {
-  const Sampled sampled(input);
+  const Sampled sampled(input.volume, input.spacing_m);
   Observed o;
   o.voxel_m = sampled.voxel_m(), o.field_m = sampled.field_m(), o.half_height_m = 0.5 * sampled.extent_m().z;
   const mesh::Mesh mesh = aligned(input, sampled, o);
   const Body body = body_for(input, sampled, mesh);
-  const Values values = values_of(sampled, body, input.place);
+  const mesh::TriangleTree tree(mesh.positions_m, mesh.triangles);
+  const std::vector<Site> sites = sites_of(mesh, tree, sampled.voxel_m(), site_count);
+  const Values values = values_of(sampled, body, sites, input.place);
   o.air = values.air, o.material = values.material;
   o.voxel_noise = values.noise / std::abs(values.material - values.air);
-  const std::vector<Site> sites = sites_of(mesh, body, sampled.voxel_m(), site_count);
   o.sites = sites.size();
   o.typical_width = typical_width(sampled, sites, values);
-  std::vector<Row> rows = rows_of(sampled, body, values, sites, o.typical_width);
+  const double reach = std::clamp(reach_in_widths * o.typical_width, least_reach, largest_reach);
+  std::vector<Row> rows =
+      rows_of(sampled, tree, values, sites, o.typical_width, reach, Tomograph::is_fine_for(input.volume.head.size));
+  leave_out_markers(input.markers, o.voxel_m, rows);
+  const Displacement by = displacement(rows, o);
+  const Tomograph tomograph(displaced(mesh, by, o.voxel_m), input.volume.head.size, input.spacing_m,
+                            attenuation_per_m(input, mesh, values));
+  o.longest_path_m = tomograph.longest_m();
+  add_simulated(tomograph, sampled, values, sites, input.markers, reach, rows, o);
+  if (tomograph.is_fine())
+    for (Row& row : rows)
+      if (row.reading == Reading::wall) row.simulated -= by.at(row, o.voxel_m);
   const auto walls = std::ranges::count(rows, Reading::wall, &Row::reading);
   if (walls < static_cast<std::ptrdiff_t>(fewest_walls))
     throw Error(Exit::data, input.place,
                 "shows an edge at " + std::to_string(walls) + " of " + std::to_string(sites.size()) +
                     " places of the believed surface (at least " + std::to_string(fewest_walls) + ")",
                 "give the object's pose in the volume, or a finer scan");
-  add_paths(input, body, values, rows, o);
   o.ring_rms = add_rings(sampled, body, values, rows);
   o.left_out = settle_row_noise(rows, o.voxel_m);
   std::tie(o.groups, o.blocks) = group_rows(rows, o.voxel_m);

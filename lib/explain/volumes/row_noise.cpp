@@ -13,28 +13,65 @@
 namespace gonio::explain::volumes {
 namespace {
 
-constexpr std::size_t neighbours = 6, halvings = 4;
+constexpr std::size_t neighbours = 6, further = 18, halvings = 4;
 constexpr double beyond = 6, cell_voxels = 8;
 
-// Differences of every row of a kind from the median of its neighbours, over sigma.
-std::vector<double> differences(const std::vector<Row>& rows, const std::vector<std::size_t>& kind) {
-  std::vector<double> result(kind.size());
+// The nearest rows of the same kind to each row of it, of edges those that face alike; nearest first.
+using Near = std::vector<std::vector<std::uint32_t>>;
+Near nearest_rows(const std::vector<Row>& rows, const std::vector<std::size_t>& kind) {
+  Near result(kind.size());
   parallel_for(
       0, kind.size(),
       [&](std::size_t n) {
         const Row& own = rows[kind[n]];
-        std::vector<std::pair<double, double>> near;  // distance, value
-        for (const std::size_t m : kind) {
-          if (m == kind[n] || (own.reading <= Reading::width && dot(rows[m].normal, own.normal) < 0.7)) continue;
-          near.emplace_back(dot(rows[m].at_m - own.at_m, rows[m].at_m - own.at_m), rows[m].value);
+        std::vector<std::pair<double, std::uint32_t>> near;
+        for (std::size_t m = 0; m < kind.size(); ++m) {
+          const Row& other = rows[kind[m]];
+          if (m == n || (!is_grey(own.reading) && dot(other.normal, own.normal) < 0.7)) continue;
+          near.emplace_back(dot(other.at_m - own.at_m, other.at_m - own.at_m), static_cast<std::uint32_t>(m));
         }
-        const std::size_t count = std::min(neighbours, near.size());
+        const std::size_t count = std::min(neighbours + further, near.size());
         std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
-        std::vector<double> values;
-        for (std::size_t k = 0; k < count; ++k) values.push_back(near[k].second);
-        result[n] = values.empty() ? 0 : (own.value - stats::median(values)) / own.sigma;
+        for (std::size_t k = 0; k < count; ++k) result[n].push_back(near[k].second);
       },
       32);
+  return result;
+}
+
+// How far readings are off, beyond what was simulated, against those near them; over sigma.
+struct Differences {
+  std::vector<double> own;   // less the median of the six nearest
+  std::vector<double> near;  // the mean of the six nearest less that of the next eighteen
+};
+
+Differences differences(const std::vector<Row>& rows, const std::vector<std::size_t>& kind, const Near& near,
+                        const std::vector<double>& simulated) {
+  Differences result{std::vector<double>(kind.size()), std::vector<double>(kind.size())};
+  const auto off = [&](std::size_t n) { return rows[kind[n]].value - simulated[n]; };
+  for (std::size_t n = 0; n < kind.size(); ++n) {
+    std::vector<double> values;
+    double sum = 0, beyond_sum = 0;
+    for (std::size_t k = 0; k < near[n].size(); ++k) {
+      const double value = off(near[n][k]);
+      if (k < neighbours) values.push_back(value);
+      (k < neighbours ? sum : beyond_sum) += value;
+    }
+    const double sigma = rows[kind[n]].sigma;
+    result.own[n] = values.empty() ? 0 : (off(n) - stats::median(values)) / sigma;
+    if (near[n].size() == neighbours + further)
+      result.near[n] = (sum / neighbours - beyond_sum / static_cast<double>(further)) / sigma;
+  }
+  return result;
+}
+
+// What was simulated, less the ripples that edges have with their places on the grid of voxels.
+std::vector<double> without_ripples(const std::vector<double>& simulated, const Near& near) {
+  std::vector<double> result;
+  for (std::size_t n = 0; n < simulated.size(); ++n) {
+    double sum = simulated[n];
+    for (const std::uint32_t m : near[n]) sum += simulated[m];
+    result.push_back(sum / static_cast<double>(near[n].size() + 1));
+  }
   return result;
 }
 
@@ -55,11 +92,26 @@ std::size_t settle_row_noise(std::vector<Row>& rows, double) {
     for (const std::size_t i : own) stated.push_back(rows[i].sigma);
     const double typical = stats::median(stated);
     for (const std::size_t i : own) rows[i].sigma = std::clamp(rows[i].sigma, 0.7 * typical, 3 * typical);
-    const std::vector<double> d = differences(rows, own);
-    const double factor = std::max(1e-3, stats::robust_sigma(d)) / std::sqrt(1 + median_variance);
+    const Near near = nearest_rows(rows, own);
+    std::vector<double> simulated;
+    for (const std::size_t i : own) simulated.push_back(rows[i].simulated);
+    Differences d = differences(rows, own, near, simulated);
+    // Walls that stand elsewhere than believed, or pixels that lay elsewhere, have other ripples: rather none, then.
+    if (kind <= static_cast<std::size_t>(Reading::width)) {
+      const std::vector<double> smooth = without_ripples(simulated, near);
+      Differences other = differences(rows, own, near, smooth);
+      if (stats::robust_sigma(other.own) < stats::robust_sigma(d.own)) {
+        d = std::move(other);
+        for (std::size_t n = 0; n < own.size(); ++n) rows[own[n]].simulated = smooth[n];
+      }
+    }
+    const double factor = std::max(1e-3, stats::robust_sigma(d.own)) / std::sqrt(1 + median_variance);
+    // What neighbours share counts as if every reading had it for itself.
+    const double alone = factor * std::sqrt(1.0 / neighbours + 1.0 / static_cast<double>(further));
+    const double shared = std::max(1.0, stats::robust_sigma(d.near) / alone);
     for (std::size_t n = 0; n < own.size(); ++n) {
-      out[own[n]] = std::abs(d[n]) > beyond * factor * std::sqrt(1 + median_variance);
-      rows[own[n]].sigma *= factor;
+      out[own[n]] = std::abs(d.own[n]) > beyond * factor * std::sqrt(1 + median_variance);
+      rows[own[n]].sigma *= factor * shared;
     }
   }
   const std::size_t before = rows.size();

@@ -1,12 +1,15 @@
 // See simulated_tomograph.h.
 #include "explain/volumes/simulated_tomograph.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "base/parallel.h"
+#include "volume/mechanisms/ct_beam_hardening.h"
 #include "volume/mechanisms/ct_scatter.h"
+#include "volume/mechanisms/ct_streak.h"
+#include "volume/spectrum.h"
 
 namespace gonio::explain::volumes {
 namespace {
@@ -22,145 +25,197 @@ void smooth(float* values, std::size_t n, std::size_t stride, std::size_t half) 
     }
   }
 }
+// Three running means of the same width have the variance of one Gaussian: (width^2 - 1) / 4.
+std::size_t half_of(double sd) {
+  return static_cast<std::size_t>(0.5 * (std::sqrt(4 * sd * sd + 1) - 1) + 0.5);
+}
+
+// A Gaussian along `n` numbers that lie `stride` apart; beyond the ends there is nothing.
+void blur(float* values, std::size_t n, std::size_t stride, const std::vector<float>& half) {
+  std::vector<float> line(n + 2 * half.size(), 0.0f);
+  for (std::size_t i = 0; i < n; ++i) line[i + half.size()] = values[i * stride];
+  for (std::size_t i = 0; i < n; ++i) {
+    const float* at = line.data() + i + half.size();
+    float sum = half[0] * at[0];
+    for (std::size_t m = 1; m < half.size(); ++m) {
+      const auto k = static_cast<std::ptrdiff_t>(m);
+      sum += half[m] * (at[k] + at[-k]);
+    }
+    values[i * stride] = sum;
+  }
+}
+std::vector<float> gaussian(double sd) {
+  std::vector<float> half;
+  double sum = 0;
+  for (int m = 0; m <= static_cast<int>(std::ceil(4 * sd)); ++m) {
+    half.push_back(static_cast<float>(std::exp(-0.5 * m * m / (sd * sd))));
+    sum += (m > 0 ? 2 : 1) * static_cast<double>(half.back());
+  }
+  for (float& w : half) w = static_cast<float>(static_cast<double>(w) / sum);
+  return half;
+}
+
+template <class Function>
+Readings transformed(const std::vector<float>& values, const Function& function) {
+  Readings result(values.size());
+  std::ranges::transform(values, result.begin(),
+                         [&](float v) { return static_cast<float>(function(static_cast<double>(v))); });
+  return result;
+}
 
 }  // namespace
 
-Tomograph::Tomograph(const Body& body, std::size_t views)
-    : slices_(body.size[2]),
-      views_(views),
-      across_(body.size[0]),
-      cell_(std::min(body.cell_m.x, body.cell_m.y)),
-      first_z_(body.first_m.z),
-      cell_z_(body.cell_m.z) {
-  const double reach = std::hypot(body.first_m.x, body.first_m.y);
-  bins_ = 2 * (static_cast<std::size_t>(reach / cell_) + 3) + 1;
-  for (std::size_t a = 0; a < views; ++a) {
-    const double angle = pi * static_cast<double>(a) / static_cast<double>(views);
-    cosine_.push_back(std::cos(angle)), sine_.push_back(std::sin(angle));
-  }
-  paths_.assign(slices_ * views_ * bins_, 0);
-  const double middle = static_cast<double>(bins_ / 2), length = body.cell_m.x * body.cell_m.y / cell_;
-  parallel_for(0, slices_, [&](std::size_t k) {
-    for (std::size_t j = 0; j < body.size[1]; ++j)
-      for (std::size_t i = 0; i < body.size[0]; ++i) {
-        const float share = body.share[(k * body.size[1] + j) * body.size[0] + i];
-        if (!(share > 0)) continue;
-        const double x = (body.first_m.x + body.cell_m.x * static_cast<double>(i)) / cell_,
-                     y = (body.first_m.y + body.cell_m.y * static_cast<double>(j)) / cell_;
-        for (std::size_t a = 0; a < views_; ++a) {
-          const double u = x * cosine_[a] + y * sine_[a] + middle;
-          const auto low = static_cast<std::size_t>(u);
-          const auto f = static_cast<float>(u - static_cast<double>(low));
-          float* row = paths_.data() + (k * views_ + a) * bins_ + low;
-          row[0] += (1 - f) * share * static_cast<float>(length);
-          row[1] += f * share * static_cast<float>(length);
-        }
-      }
-  });
-  // Cells that are shared out to bins beat with them, most along the diagonals, and a ramp makes much of that: twice
-  // (1 2 1) / 4 takes it away. Nothing is asked of the reconstruction next to a wall.
-  parallel_for(0, slices_ * views_, [&](std::size_t line) {
-    float* p = paths_.data() + line * bins_;
-    for (int pass = 0; pass < 2; ++pass) {
-      float before = 0;
-      for (std::size_t n = 0; n + 1 < bins_; ++n) {
-        const float own = p[n];
-        p[n] = 0.25f * before + 0.5f * own + 0.25f * p[n + 1];
-        before = own;
-      }
-    }
-  });
-  for (const float p : paths_) longest_ = std::max(longest_, static_cast<double>(p));
+Tomograph::Tomograph(const mesh::Mesh& mesh, std::array<std::size_t, 3> size, Vec3 spacing_m, double per_m,
+                     std::size_t most)
+    : per_m_(per_m) {
+  const double larger = std::max(1.0, static_cast<double>(std::ranges::max(size)) / static_cast<double>(most));
+  fine_ = larger == 1;
+  const auto across = [&](std::size_t a) { return static_cast<double>(size[a]) * spacing_m[static_cast<int>(a)]; };
+  detector_.bin_m = larger * std::min(spacing_m.x, spacing_m.y);
+  detector_.slices = static_cast<std::size_t>(std::ceil(static_cast<double>(size[2]) / larger));
+  detector_.slice_m = across(2) / static_cast<double>(detector_.slices);
+  const double widest = std::max(across(0), across(1)) / detector_.bin_m;
+  across_ = static_cast<std::size_t>(widest);
+  detector_.bins = static_cast<std::size_t>(std::hypot(across(0), across(1)) / detector_.bin_m) + 4;
+  detector_.bins += (detector_.bins + across_) % 2;
+  detector_.views = static_cast<std::size_t>(std::ceil(pi / 2 * widest));
+  intensity_ = intensities(mesh, detector_, per_m);
+  for (const float i : intensity_) longest_ = std::max(longest_, -std::log(static_cast<double>(i)) / per_m);
 }
 
-// Linear between bins and between slices, summed over the views.
-std::vector<double> Tomograph::gathered(const std::vector<float>& sinogram, std::span<const Vec3> places_m) const {
-  std::vector<double> result(places_m.size(), 0.0);
-  const double middle = static_cast<double>(bins_ / 2), last = static_cast<double>(slices_) - 1;
+Readings Tomograph::read() const {
+  return transformed(intensity_, [&](double i) { return -std::log(i) / per_m_; });
+}
+
+Readings Tomograph::lack_by_hardening() const {
+  return transformed(intensity_, [&](double i) {
+    return equation::ct_beam_hardening_lacks(-std::log(i), longest_ * per_m_) / per_m_;
+  });
+}
+
+Readings Tomograph::lack_by_streak(std::span<const Ball> markers) const {
+  const std::vector<float> path = paths(markers, detector_);
+  const double longest = path.empty() ? 0 : static_cast<double>(std::ranges::max(path));
+  return transformed(path, [&](double m) { return longest > 0 ? equation::ct_streak_lacks(m, longest) : 0; });
+}
+
+Readings Tomograph::lack_by_blur(double spread, double variance) const {
+  std::vector<float> taken =
+      transformed(intensity_, [&](double i) { return 1 - volume::intensity_behind(-std::log(i), variance); });
+  const std::vector<float> within = gaussian(spread), across = gaussian(spread * detector_.bin_m / detector_.slice_m);
+  const std::size_t bins = detector_.bins, views = detector_.views;
+  parallel_for(
+      0, detector_.slices * views, [&](std::size_t line) { blur(taken.data() + line * bins, bins, 1, within); }, 64);
+  parallel_for(
+      0, views * bins, [&](std::size_t column) { blur(taken.data() + column, detector_.slices, views * bins, across); },
+      64);
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    const double blurred = volume::line_integral_of(1 - static_cast<double>(taken[i]), variance);
+    taken[i] = static_cast<float>((-std::log(static_cast<double>(intensity_[i])) - blurred) / per_m_);
+  }
+  return taken;
+}
+
+std::vector<Readings> Tomograph::lack_by_scatter(std::span<const double> shares) const {
+  const std::vector<float> behind =
+      transformed(intensity_, [](double i) { return volume::intensity_behind(-std::log(i), volume::usual_variance); });
+  std::vector<float> spread = transformed(behind, [](double i) { return equation::ct_scatter_lost(i); });
+  const std::size_t bins = detector_.bins, views = detector_.views;
+  const double sd = static_cast<double>(across_) / 8, slices = sd * detector_.bin_m / detector_.slice_m;
+  parallel_for(
+      0, detector_.slices * views, [&](std::size_t line) { smooth(spread.data() + line * bins, bins, 1, half_of(sd)); },
+      64);
+  parallel_for(
+      0, views * bins,
+      [&](std::size_t column) { smooth(spread.data() + column, detector_.slices, views * bins, half_of(slices)); }, 64);
+  std::vector<Readings> result;
+  for (const double share : shares) {
+    Readings& lacks = result.emplace_back(spread.size());
+    for (std::size_t i = 0; i < lacks.size(); ++i)
+      lacks[i] = static_cast<float>(equation::ct_scatter_lacks(-std::log(static_cast<double>(intensity_[i])), share,
+                                                               static_cast<double>(behind[i]),
+                                                               static_cast<double>(spread[i])) /
+                                    per_m_);
+  }
+  return result;
+}
+
+std::vector<std::array<float, 4>> Tomograph::reconstructed(std::span<const Readings> four,
+                                                           std::span<const Vec3> places_m) const {
+  using Four = Eigen::Array4f;
+  const Detector& d = detector_;
+  std::vector<float> ramp(d.bins, 0.0f);  // by distance
+  ramp[0] = static_cast<float>(1 / (4 * d.bin_m));
+  for (std::size_t n = 1; n < d.bins; n += 2)
+    ramp[n] = static_cast<float>(-1 / (pi * pi * static_cast<double>(n * n) * d.bin_m));
+  std::vector<float> filtered(4 * d.size(), 0.0f);
+  parallel_for(
+      0, d.slices * d.views,
+      [&](std::size_t line) {
+        float* q = filtered.data() + 4 * line * d.bins;
+        for (std::size_t m = 0; m < d.bins; ++m) {
+          Four value = Four::Zero();
+          for (std::size_t r = 0; r < four.size(); ++r)
+            value[static_cast<Eigen::Index>(r)] = four[r][line * d.bins + m];
+          if ((value == 0).all()) continue;
+          Four::Map(q + 4 * m) += value * ramp[0];
+          for (std::size_t n = (m + 1) % 2; n < d.bins; n += 2)
+            Four::Map(q + 4 * n) += value * ramp[n > m ? n - m : m - n];
+        }
+      },
+      16);
+  std::vector<std::array<double, 2>> turn;
+  for (std::size_t a = 0; a < d.views; ++a) {
+    const double angle = pi * static_cast<double>(a) / static_cast<double>(d.views);
+    turn.push_back({std::cos(angle) / d.bin_m, std::sin(angle) / d.bin_m});
+  }
+  std::vector<std::array<float, 4>> result(places_m.size());
+  const double last = static_cast<double>(d.slices) - 1, end = static_cast<double>(d.bins) - 1.001;
   parallel_for(
       0, places_m.size(),
       [&](std::size_t n) {
-        const double z = std::clamp((places_m[n].z - first_z_) / cell_z_, 0.0, last);
-        const auto k = std::min(static_cast<std::size_t>(z), slices_ - 1);
+        const Vec3 p = places_m[n];
+        const double z = std::clamp(p.z / d.slice_m + d.half_height(), 0.0, last);
+        const auto k = static_cast<std::size_t>(z + 1e-9);
+        const double above = std::max(0.0, z - static_cast<double>(k));
+        Four sum = Four::Zero();
         for (std::size_t s = 0; s < 2; ++s) {
-          const double weight = s == 0 ? 1 - (z - static_cast<double>(k)) : z - static_cast<double>(k);
-          if (!(weight > 0) || k + s >= slices_) continue;
-          double sum = 0;
-          for (std::size_t a = 0; a < views_; ++a) {
-            const double u = std::clamp((places_m[n].x * cosine_[a] + places_m[n].y * sine_[a]) / cell_ + middle, 0.0,
-                                        static_cast<double>(bins_) - 1.001);
+          const double weight = s == 0 ? 1 - above : above;
+          if (!(weight > 1e-9) || k + s >= d.slices) continue;
+          Four own = Four::Zero();
+          for (std::size_t a = 0; a < d.views; ++a) {
+            const double u = std::clamp(p.x * turn[a][0] + p.y * turn[a][1] + d.middle(), 0.0, end);
             const auto low = static_cast<std::size_t>(u);
-            const double f = u - static_cast<double>(low);
-            const float* row = sinogram.data() + ((k + s) * views_ + a) * bins_ + low;
-            sum += (1 - f) * static_cast<double>(row[0]) + f * static_cast<double>(row[1]);
+            const auto f = static_cast<float>(u - static_cast<double>(low));
+            const float* row = filtered.data() + 4 * (d.line(k + s, a) + low);
+            own += (1 - f) * Four::Map(row) + f * Four::Map(row + 4);
           }
-          result[n] += weight * sum;
+          sum += static_cast<float>(weight) * own;
         }
+        sum *= static_cast<float>(pi / static_cast<double>(d.views));
+        result[n] = {sum[0], sum[1], sum[2], sum[3]};
       },
       64);
   return result;
 }
 
-std::vector<double> Tomograph::back_projected(const std::vector<float>& lines, std::span<const Vec3> places_m) const {
-  std::vector<float> filtered(lines.size());
-  parallel_for(0, slices_ * views_, [&](std::size_t line) {
-    const float* value = lines.data() + line * bins_;
-    float* q = filtered.data() + line * bins_;
-    if (std::all_of(value, value + bins_, [](float v) { return v == 0; })) return;
-    for (std::size_t n = 0; n < bins_; ++n) {
-      double sum = static_cast<double>(value[n]) / 4;
-      for (std::size_t m = (n + 1) % 2; m < bins_; m += 2) {
-        const double d = static_cast<double>(n) - static_cast<double>(m);
-        sum -= static_cast<double>(value[m]) / (pi * pi * d * d);
-      }
-      q[n] = static_cast<float>(sum / cell_);
-    }
-  });
-  std::vector<double> result = gathered(filtered, places_m);
-  for (double& v : result) v *= pi / static_cast<double>(views_);
-  return result;
-}
-
-std::vector<double> Tomograph::reconstructed(const std::function<double(double)>& g,
-                                             std::span<const Vec3> places_m) const {
-  std::vector<float> lines(paths_.size());
-  std::ranges::transform(paths_, lines.begin(), [&](float p) { return static_cast<float>(g(static_cast<double>(p))); });
-  return back_projected(lines, places_m);
-}
-
-// Three running means of the same width have the variance of one Gaussian: (width^2 - 1) / 4.
-std::vector<std::vector<double>> Tomograph::scattered(double per_m, std::span<const double> shares,
-                                                      std::span<const Vec3> places_m) const {
-  std::vector<float> lines(paths_.size());
-  std::ranges::transform(paths_, lines.begin(), [&](float path) {
-    return static_cast<float>(equation::ct_scatter_lost(per_m * static_cast<double>(path)));
-  });
-  const double sd = static_cast<double>(across_) / 8;
-  const auto half = static_cast<std::size_t>(0.5 * (std::sqrt(4 * sd * sd + 1) - 1) + 0.5);
-  parallel_for(0, views_ * slices_, [&](std::size_t line) {
-    const std::size_t k = line / views_, a = line % views_;
-    smooth(lines.data() + (k * views_ + a) * bins_, bins_, 1, half);
-  });
-  const double scale = cell_ / cell_z_;
-  parallel_for(0, views_ * bins_, [&](std::size_t line) {
-    smooth(lines.data() + line, slices_, views_ * bins_,
-           static_cast<std::size_t>(static_cast<double>(half) * scale + 0.5));
-  });
-  std::vector<std::vector<double>> result;
-  for (const double share : shares) {
-    std::vector<float> lacking(lines.size());
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      const double p = per_m * static_cast<double>(paths_[i]);
-      lacking[i] = static_cast<float>(equation::ct_scatter_lacks(p, share, static_cast<double>(lines[i])) / per_m);
-    }
-    result.push_back(back_projected(lacking, places_m));
-  }
-  return result;
-}
-
-std::vector<double> Tomograph::mean_path(std::span<const Vec3> places_m) const {
-  std::vector<double> result = gathered(paths_, places_m);
-  for (double& v : result) v /= static_cast<double>(views_);
+std::vector<double> Tomograph::mean_reading(const Readings& values, std::span<const Vec3> places_m) const {
+  const Detector& d = detector_;
+  std::vector<double> result(places_m.size(), 0.0);
+  parallel_for(
+      0, places_m.size(),
+      [&](std::size_t n) {
+        const Vec3 p = places_m[n];
+        const auto k = static_cast<std::size_t>(
+            std::clamp(p.z / d.slice_m + d.half_height() + 0.5, 0.0, static_cast<double>(d.slices) - 1));
+        for (std::size_t a = 0; a < d.views; ++a) {
+          const double angle = pi * static_cast<double>(a) / static_cast<double>(d.views);
+          const double u = (p.x * std::cos(angle) + p.y * std::sin(angle)) / d.bin_m + d.middle();
+          const auto bin = static_cast<std::size_t>(std::clamp(u + 0.5, 0.0, static_cast<double>(d.bins) - 1));
+          result[n] += static_cast<double>(values[d.line(k, a) + bin]) / static_cast<double>(d.views);
+        }
+      },
+      64);
   return result;
 }
 

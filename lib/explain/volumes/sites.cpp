@@ -6,11 +6,9 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "mesh/curvature.h"
-#include "stats/intervals.h"
 #include "volume/sampling.h"
 
 namespace gonio::explain::volumes {
@@ -19,23 +17,22 @@ namespace {
 constexpr double smooth_cosine = 0.97;  // between a triangle's normal and its vertices': more, and the mesh has an edge
 constexpr double flat_voxels = 2.5, off_wall_voxels = 1.5;
 
-// Distance along `direction` from `at` to where the body's share passes one half.
-double to_next_wall(const Body& body, Vec3 at, Vec3 direction, double voxel_m) {
-  const double step = 0.25;
-  const bool inside = body.at(at + direction * (off_wall_voxels * voxel_m)) > 0.5;
-  for (double s = off_wall_voxels; s < far_voxels; s += step)
-    if ((body.at(at + direction * (s * voxel_m)) > 0.5) != inside) return s - step / 2;
-  return far_voxels;
+// Distance along `direction` to the next wall, voxels.
+double to_next_wall(const mesh::TriangleTree& tree, Vec3 at, Vec3 direction, double voxel_m) {
+  const auto hit = tree.first_hit(at, direction, 0.05 * voxel_m);
+  return hit ? std::min(far_voxels, hit->t / voxel_m) : far_voxels;
 }
 
-bool is_wall(const Body& body, const Site& site, double voxel_m) {
+// The surface round the place is met within off_wall_voxels of its plane, and has material behind it.
+bool is_wall(const mesh::TriangleTree& tree, const Site& site, double voxel_m) {
+  if (site.behind < thinnest_voxels || site.before < thinnest_voxels) return false;
   const Basis basis(site.normal);
-  const double reach = std::max(voxel_m, max_component(body.cell_m));
-  for (int k = -1; k < 8; ++k) {
-    const double angle = k * pi / 4, radius = k < 0 ? 0 : flat_voxels * reach;
+  const double off = std::min(off_wall_voxels, 0.5 * site.before);
+  for (int k = 0; k < 8; ++k) {
+    const double angle = k * pi / 4, radius = flat_voxels * voxel_m;
     const Vec3 at = site.at_m + basis.t * (radius * std::cos(angle)) + basis.b * (radius * std::sin(angle));
-    if (!(body.at(at - site.normal * (off_wall_voxels * reach)) > 0.7)) return false;
-    if (!(body.at(at + site.normal * (off_wall_voxels * reach)) < 0.3)) return false;
+    const auto hit = tree.first_hit(at + site.normal * (off * voxel_m), -site.normal, 0);
+    if (!hit || hit->t > (off + std::min(off_wall_voxels, 0.5 * site.behind)) * voxel_m) return false;
   }
   return true;
 }
@@ -118,7 +115,7 @@ class Spread {
 }  // namespace
 
 // Dart throwing: with places no nearer than 0.7 of the side of their share of the surface, it holds them all.
-std::vector<Site> sites_of(const mesh::Mesh& mesh, const Body& body, double voxel_m, std::size_t count) {
+std::vector<Site> sites_of(const mesh::Mesh& mesh, const mesh::TriangleTree& tree, double voxel_m, std::size_t count) {
   const Surface surface(mesh);
   const double side = std::sqrt(surface.area() / static_cast<double>(count));
   Spread spread(std::max(0.7 * side, 1.5 * voxel_m));
@@ -132,10 +129,9 @@ std::vector<Site> sites_of(const mesh::Mesh& mesh, const Body& body, double voxe
   parallel_for(
       0, sites.size(),
       [&](std::size_t s) {
-        walls[s] = is_wall(body, sites[s], voxel_m);
-        if (!walls[s]) return;
-        sites[s].behind = to_next_wall(body, sites[s].at_m, -sites[s].normal, voxel_m);
-        sites[s].before = to_next_wall(body, sites[s].at_m, sites[s].normal, voxel_m);
+        sites[s].behind = to_next_wall(tree, sites[s].at_m, -sites[s].normal, voxel_m);
+        sites[s].before = to_next_wall(tree, sites[s].at_m, sites[s].normal, voxel_m);
+        walls[s] = is_wall(tree, sites[s], voxel_m);
       },
       64);
   std::vector<Site> kept;
@@ -151,7 +147,7 @@ mesh::Mesh moved(mesh::Mesh mesh, Vec3 turn_rad, Vec3 shift_m) {
   return mesh;
 }
 
-Sampled::Sampled(const VolumesInput& input) : volume_(input.volume), spacing_m_(input.spacing_m) {
+Sampled::Sampled(const io::VolumeData& volume, Vec3 spacing_m) : volume_(volume), spacing_m_(spacing_m) {
   const auto& n = volume_.head.size;
   const Vec3 size{static_cast<double>(n[0]), static_cast<double>(n[1]), static_cast<double>(n[2])};
   middle_ = (size - Vec3{1, 1, 1}) * 0.5;
@@ -177,56 +173,15 @@ bool Sampled::within(Vec3 p, double margin) const {
   return std::hypot(p.x, p.y) < field_m_ - margin * voxel_m_;
 }
 
-Values values_of(const Sampled& sampled, const Body& body, const std::string& place) {
-  const auto& n = sampled.volume().head.size;
-  std::vector<double> inside, outside, differences;
-  Random random(1, 0x76616c75);
-  for (int k = 0; k < 200000; ++k) {
-    const std::array<std::size_t, 3> i{random.below(static_cast<std::uint32_t>(n[0])),
-                                       random.below(static_cast<std::uint32_t>(n[1])),
-                                       random.below(static_cast<std::uint32_t>(n[2]))};
-    if (i[0] + 2 >= n[0]) continue;
-    const Vec3 at =
-        sampled.place_of({static_cast<double>(i[0]) + 1, static_cast<double>(i[1]), static_cast<double>(i[2])});
-    if (!sampled.within(at, 3)) continue;
-    double least = 1, most = 0;
-    for (const Vec3 way :
-         {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
-      const double share = body.at(at + way * (3 * sampled.voxel_m()));
-      least = std::min(least, share), most = std::max(most, share);
-    }
-    if (least < 0.999 && most > 0.001) continue;
-    const double a = sampled.volume().at(i[0], i[1], i[2]), b = sampled.volume().at(i[0] + 2, i[1], i[2]);
-    (most > 0.5 ? inside : outside).push_back(a);
-    differences.push_back((a - b) / std::sqrt(2.0));
-  }
-  if (inside.size() < 100 || outside.size() < 100)
-    throw Error(Exit::data, place,
-                "has " + std::to_string(inside.size()) +
-                    " of 200000 voxels deep in the believed shape "
-                    "and " +
-                    std::to_string(outside.size()) + " outside of it (at least 100 each)",
-                "its walls are thinner than six voxels, or the shape's pose or unit is another");
-  const Values values{stats::median(outside), stats::median(inside), stats::robust_sigma(differences)};
-  if (!(std::abs(values.material - values.air) > 3 * values.noise))
-    throw Error(Exit::data, place,
-                "does not show the believed shape: voxels in it and outside of it differ by less than "
-                "three widths of the noise",
-                "give the object's pose in the volume");
-  return values;
-}
-
 volume::Edge edge_at(const Sampled& sampled, const Site& site, const Values& values, double reach) {
-  constexpr double step = 0.5, thinnest = 2;
-  if (site.behind < thinnest || site.before < thinnest) return {};
   volume::ProfileWish wish;
   wish.noise = values.noise;
   wish.mean_curvature = site.curvature;
-  double low = -reach, high = reach;
-  if (site.behind < 2 * reach) wish.inner = -site.behind, low = -std::min(2 * reach, site.behind + reach);
-  if (site.before < 2 * reach) wish.outer = site.before, high = std::min(2 * reach, site.before + reach);
+  if (site.behind < 2 * reach) wish.inner = -site.behind;
+  if (site.before < 2 * reach) wish.outer = site.before;
+  const ProfileRange range = profile_range(site, reach);
   std::vector<double> s, v;
-  for (double x = low; x <= high + 1e-9; x += step) {
+  for (double x = range.low; x <= range.high + 1e-9; x += profile_step) {
     s.push_back(x);
     v.push_back(sampled.at(site.at_m + site.normal * (x * sampled.voxel_m())));
     if (!std::isfinite(v.back())) return {};

@@ -19,7 +19,9 @@ struct Term {
   int order = 0;                                        // terms act in this order
   std::vector<Form> forms{};                            // each is a candidate of its own; empty: all parameters at once
   bool (*applies)(const Observed& observed) = nullptr;  // null: always
-  // The value of a row with the mechanism, of the one without it. `p`: all parameters of the declaration, in order.
+  // The value of a row with the mechanism, of the one without it. `p`: all parameters of the declaration, in order, and
+  // behind them, where it asks for that, the spectrum's variance, which the base model holds.
+  bool of_spectrum = false;
   double (*act)(double value, const Row& row, const Observed& observed, std::span<const double> p) = nullptr;
 };
 std::span<const Term* const> all_terms();  // sorted by name; defined in a generated source

@@ -8,6 +8,7 @@
 #include "explain/volumes/volume_term.h"
 #include "explain/volumes/volumes_outcome.h"
 #include "inference/explanation.h"
+#include "volume/spectrum.h"
 
 namespace gonio::explain {
 namespace {
@@ -20,7 +21,9 @@ using namespace volumes;
 // too far in (Glover & Pelc, Medical Physics 7 (1980) 238-248). No tomograph is free of it; what it does to a wall of
 // any radius, and to one of thirty voxels beside that, is free within these bounds.
 constexpr double usual_bias = 0.03, largest_bias = 0.05, usual_radius = 30, least_radius = 4, largest_radius = 120;
-constexpr double ideal_width = 0.55, ideal_sigma = 0.15, narrowest = 0.25, widest = 0.8;
+constexpr double largest_variance = 3, variance_sigma = 0.5;
+constexpr double value_sigma = 0.3;  // no reading may be deep enough to tell
+constexpr double ideal_sigma = 0.15, narrowest = 0.25, widest = 0.8;
 
 class VolumesProblem final : public Problem {
  public:
@@ -40,6 +43,7 @@ class VolumesProblem final : public Problem {
       std::vector<double> p(values.begin() + static_cast<std::ptrdiff_t>(use.first),
                             values.begin() + static_cast<std::ptrdiff_t>(use.first + use.neutral.size()));
       if (p == use.neutral) continue;
+      if (use.term->of_spectrum) p.push_back(values[Base::spectrum]);
       active.push_back(&use);
       parameters.push_back(std::move(p));
     }
@@ -82,9 +86,16 @@ class VolumesProblem final : public Problem {
       width_between,
       width_by_curvature,
       bias,
-      bias_by_radius
+      bias_by_radius,
+      spectrum
     };
   };
+
+  // What a wider edge than the simulated one does to walls and grey values: as a slight blur.
+  double widened(const Row& row, double width) const {
+    const double plain = observed_.simulated_width;
+    return row.blur.front() / (blur_spreads.front() * blur_spreads.front()) * (width * width - plain * plain);
+  }
 
   double base_value(const Row& row, std::span<const double> v) const {
     switch (row.reading) {
@@ -92,19 +103,22 @@ class VolumesProblem final : public Problem {
         const Vec3 shift{v[Base::shift], v[Base::shift + 1], v[Base::shift + 2]},
             turn{v[Base::turn], v[Base::turn + 1], v[Base::turn + 2]};
         const double radius = std::clamp(1 / std::max(1e-9, std::abs(row.curvature)), least_radius, largest_radius);
-        return dot(row.normal, shift + cross(turn, row.at_m)) / observed_.voxel_m + v[Base::bias] +
+        return row.simulated - widened(row, v[Base::width_within]) +
+               dot(row.normal, shift + cross(turn, row.at_m)) / observed_.voxel_m + v[Base::bias] +
                v[Base::bias_by_radius] * (std::sqrt(radius / usual_radius) - 1);
       }
       case Reading::width: {
         const double across = row.normal.z * row.normal.z;
-        return v[Base::width_within] * (1 - across) + v[Base::width_across] * across +
+        return row.simulated + (v[Base::width_within] - observed_.simulated_width) * (1 - across) +
+               (v[Base::width_across] - observed_.simulated_width) * across +
                v[Base::width_between] * 4 * across * (1 - across) +
                v[Base::width_by_curvature] * std::min(1.0, least_radius * std::abs(row.curvature));
       }
-      case Reading::inside: return v[Base::material];
+      case Reading::inside:
       case Reading::outside: break;
     }
-    return v[Base::air];
+    const double share = row.simulated - widened(row, v[Base::width_within]);
+    return v[Base::air] + (v[Base::material] - v[Base::air]) * share;
   }
 
   std::size_t add(Parameter p) {
@@ -125,19 +139,17 @@ class VolumesProblem final : public Problem {
       free(std::string("translation_") + axis + "_m", "m", 0, -infinity, infinity, size, 50 * size);
     for (const char* axis : {"x", "y", "z"})
       free(std::string("rotation_") + axis + "_rad", "rad", 0, -infinity, infinity, size / observed_.field_m, 0.5);
-    free("air", "1", 0, -infinity, infinity, 0.01, {});
-    free("material", "1", 1, -infinity, infinity, 0.01, {});
+    free("air", "1", 0, -infinity, infinity, 0.01, value_sigma);
+    free("material", "1", 1, -infinity, infinity, 0.01, value_sigma);
+    const double width = std::clamp(observed_.simulated_width, narrowest, widest);
     for (const char* name : {"edge_width_within_slices", "edge_width_across_slices"})
-      free(name, "voxel", ideal_width, narrowest, widest, 0.1, ideal_sigma);
+      free(name, "voxel", width, narrowest, widest, 0.1, ideal_sigma);
     for (const char* name : {"edge_width_between", "edge_width_by_curvature"})
       free(name, "voxel", 0, -0.3, 0.3, 0.05, ideal_sigma);
-    // What a reading averages over is a pixel's width (sd 0.29) or, where blur came before the logarithm, that of the
-    // blur; along a wall that rays touch the shortfall goes with its power of 3/2.
-    constexpr double pixel = 0.29, plain_width = 0.65;
-    const double blurred = std::max(0.0, observed_.typical_width * observed_.typical_width - plain_width * plain_width);
-    const double wider = std::pow(1 + blurred / (pixel * pixel), 0.75);
     for (const char* name : {"wall_bias", "wall_bias_by_radius"})
-      free(name, "voxel", 0, -largest_bias * wider, largest_bias * wider, 0.02, usual_bias * wider);
+      free(name, "voxel", 0, -largest_bias, largest_bias, 0.02, usual_bias);
+    // Says something where edges are blurred alone.
+    free("spectrum_variance", "1", volume::usual_variance, 0, largest_variance, 0.1, variance_sigma);
   }
 
   void enter(const Term& term) {

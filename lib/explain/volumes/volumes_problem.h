@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "explain/engine.h"
+#include "explain/volumes/line_integrals.h"
 #include "geom/rigid.h"
 #include "io/volume.h"
 #include "manifest/parameter.h"
@@ -33,13 +34,9 @@ struct VolumesInput {
   std::string mesh_name;
   io::VolumeData volume;
   Vec3 spacing_m{};
-  mesh::Mesh mesh;           // in the scanner's frame
-  bool attenuation = false;  // values are 1/m
-  struct Ball {
-    Vec3 centre_m;  // in the scanner's frame
-    double radius_m = 0;
-  };
-  std::vector<Ball> markers;
+  mesh::Mesh mesh;                                    // in the scanner's frame
+  bool attenuation = false;                           // values are 1/m
+  std::vector<volumes::Ball> markers;                 // in the scanner's frame
   std::map<std::string, manifest::Parameters> given;  // mechanisms that the manifest has switched on
 };
 

@@ -78,6 +78,7 @@ struct InverseKinematics::Parts {
   bool take(const screws::Screws& s, bool reverse);
   std::vector<JointAnswer> candidates(const screws::Pose& wanted, const closed_form::Hints& hints) const;
   std::vector<JointAnswer> all_round(const screws::Pose& wanted) const;
+  bool is_plausible(const JointAnswer& start, const screws::Pose& wanted) const;
   std::vector<JointAnswer> roots(const screws::Pose& wanted) const;
   JointAnswer led(const JointAnswer& start, const screws::Pose& wanted, int steps) const;
 };
@@ -108,6 +109,13 @@ std::vector<JointAnswer> InverseKinematics::Parts::candidates(const screws::Pose
     answers.push_back({joints, from_flange ? -1 : c.branch, 0, 0, false, c.undetermined && !departs});
   }
   return answers;
+}
+
+// Of the arm beside the true one: within what the two may differ by. A stretched elbow opens by the root of what is
+// missing, a wrist by as much as its axes are off.
+bool InverseKinematics::Parts::is_plausible(const JointAnswer& start, const screws::Pose& wanted) const {
+  const screws::Refined at = screws::measured(arm, wanted, start.joints_rad);
+  return at.position_error_m < 4 * apart_rad * apart_rad * arm.size_m && at.rotation_error_rad < 2 * apart_rad;
 }
 
 // Where the wrist's axes come into line the arm beside the true one does not tell how joints 4 and 6 share their turn:
@@ -202,10 +210,7 @@ std::vector<JointAnswer> InverseKinematics::solve(const Rigid<frame::Base, frame
   };
   for (const JointAnswer& start : starts) {
     lead(start);
-    const JointAnswer at = p.led(start, wanted, 0);
-    // A stretched elbow opens by the root of what is missing, a wrist by as much as its axes are off.
-    expected += p.departs && at.position_error_m < 4 * p.apart_rad * p.apart_rad * p.arm.size_m &&
-                at.rotation_error_rad < 2 * p.apart_rad;
+    expected += p.departs && p.is_plausible(start, wanted);
   }
   // Of a calibrated arm, near singular postures: answers come in pairs, and 8 that the arm beside it has may be 10.
   const auto complete = [&] { return answers.size() >= expected && answers.size() % 2 == 0; };

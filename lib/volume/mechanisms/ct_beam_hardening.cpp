@@ -11,12 +11,13 @@ const Mechanism& ct_beam_hardening() {
           "inside, air darkens or lightens between thick parts.",
       .typical = "5 to 30 % at the longest path",
       .equation =
-          "p' = p (1 - hardening p / p_max) for the line integral p of the believed shape, p_max its longest; grey "
-          "value: the filtered back-projection of p'",
+          "p' = p - hardening p_max (p - q(p)) / (p_max - q(p_max)), q = ln(1 + v p) / v, v = 0.8, for the line "
+          "integral "
+          "p of the believed shape in attenuation lengths, p_max its longest; readings: those of the filtered "
+          "back-projection of p'",
       .source =
           "Brooks & Di Chiro, Physics in Medicine and Biology 21 (1976) 390-398; Herman, same journal 24 (1979) "
-          "81-106: "
-          "the polychromatic line integral to second order",
+          "81-106: the polychromatic line integral; here attenuations over the spectrum are gamma-distributed",
       .stage = "tomograph",
       .target = Target::scene,
       .domains = {"volumes"},

@@ -1,4 +1,4 @@
-// ct.blur on the standard deviation of an edge, voxels: variances add up.
+// ct.blur on the standard deviation of an edge: variances add up. What it does to line integrals: spectrum.h.
 #pragma once
 #include <cmath>
 
@@ -10,8 +10,8 @@ const Mechanism& ct_blur();
 
 namespace gonio::equation {
 
+// Voxels.
 inline double ct_blur(double width, double spread_voxels) {
   return std::hypot(width, spread_voxels);
 }
-
 }  // namespace gonio::equation

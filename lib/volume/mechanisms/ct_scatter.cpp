@@ -10,9 +10,10 @@ const Mechanism& ct_scatter() {
           "Scattered photons reach the detector everywhere: thick parts look thinner than they are, and hollows fill.",
       .typical = "5 to 50 % of what the primary beam lost",
       .equation =
-          "p' = -ln(exp(-p) + scatter G * (p exp(-p))) for the line integrals p of the believed shape: G a Gaussian "
-          "over "
-          "the detector, an eighth of the field wide; grey value: the filtered back-projection of p'",
+          "p' = L(T + scatter G * (T ln(1/T))) for the line integrals p of the believed shape in attenuation lengths: "
+          "T = (1 + v p)^(-1/v) the intensity, L its inverse, v = 0.8, G a Gaussian over the detector, an eighth of "
+          "the "
+          "field wide; readings: those of the filtered back-projection of p'",
       .source =
           "Ohnesorge, Flohr & Klingenbeck-Regn, European Radiology 9 (1999) 563-569, equation 3: what the primary beam "
           "lost is scattered once and spread",

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mechanism/mechanism.h"
+#include "volume/spectrum.h"
 
 namespace gonio::mechanism {
 const Mechanism& ct_scatter();
@@ -10,14 +11,14 @@ const Mechanism& ct_scatter();
 
 namespace gonio::equation {
 
-// What the primary beam lost and single scattering spreads: p exp(-p).
-inline double ct_scatter_lost(double p) {
-  return p * std::exp(-p);
+// What the primary beam lost and single scattering spreads.
+inline double ct_scatter_lost(double intensity) {
+  return -intensity * std::log(intensity);
 }
-// What a line integral p lacks for each share of `scatter`: p + ln(exp(-p) + scatter spread), over scatter; spread: the
-// above, spread over the detector.
-inline double ct_scatter_lacks(double p, double scatter, double spread) {
-  return std::log1p(scatter * std::exp(p) * spread) / scatter;
+// What a line integral p lacks for each share of `scatter`; intensity: behind p; spread: the above, spread over the
+// detector.
+inline double ct_scatter_lacks(double p, double scatter, double intensity, double spread) {
+  return (p - volume::line_integral_of(intensity + scatter * spread, volume::usual_variance)) / scatter;
 }
 // lacks: the above, or its reconstruction, with `value` accordingly.
 inline double ct_scatter(double value, double scatter, double lacks) {

@@ -1,4 +1,4 @@
-// ct.beam-hardening on grey values: what line integrals lack, reconstructed (observed.h).
+// ct.beam-hardening on all readings: what line integrals lack, reconstructed (observed.h).
 #include "volume/mechanisms/ct_beam_hardening.h"
 
 #include "explain/volumes/volume_term.h"
@@ -9,8 +9,7 @@ const Term& ct_beam_hardening() {
   static const Term term{.mechanism = mechanism::ct_beam_hardening,
                          .order = 200,
                          .act = [](double value, const Row& row, const Observed&, std::span<const double> p) {
-                           return is_grey(row.reading) ? equation::ct_beam_hardening(value, p[0], row.hardening)
-                                                       : value;
+                           return equation::ct_beam_hardening(value, p[0], row.hardening);
                          }};
   return term;
 }

@@ -1,4 +1,4 @@
-// ct.scatter on grey values: what line integrals lack, reconstructed at some shares (observed.h).
+// ct.scatter on all readings: what line integrals lack, reconstructed at some shares (observed.h).
 #include "volume/mechanisms/ct_scatter.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ const Term& ct_scatter() {
   static const Term term{.mechanism = mechanism::ct_scatter,
                          .order = 200,
                          .act = [](double value, const Row& row, const Observed&, std::span<const double> p) {
-                           return is_grey(row.reading) ? equation::ct_scatter(value, p[0], lacks(row, p[0])) : value;
+                           return equation::ct_scatter(value, p[0], lacks(row, p[0]));
                          }};
   return term;
 }

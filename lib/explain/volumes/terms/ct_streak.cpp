@@ -1,4 +1,4 @@
-// ct.streak on grey values: what line integrals through markers lack, reconstructed (observed.h).
+// ct.streak on all readings: what line integrals through markers lack, reconstructed (observed.h).
 #include "volume/mechanisms/ct_streak.h"
 
 #include <algorithm>
@@ -13,10 +13,8 @@ const Term& ct_streak() {
       .order = 200,
       .applies =
           [](const Observed& o) { return std::ranges::any_of(o.rows, [](const Row& r) { return r.markers != 0; }); },
-      .act =
-          [](double value, const Row& row, const Observed&, std::span<const double> p) {
-            return is_grey(row.reading) ? equation::ct_streak(value, p[0], row.markers) : value;
-          }};
+      .act = [](double value, const Row& row, const Observed&,
+                std::span<const double> p) { return equation::ct_streak(value, p[0], row.markers); }};
   return term;
 }
 
