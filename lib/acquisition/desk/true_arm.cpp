@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/motion/way.h"
+
 namespace gonio::acquisition::desk {
 namespace {
 
@@ -17,10 +19,7 @@ double longest_turn(const SixJoints& from, const SixJoints& to) {
 }  // namespace
 
 double Trapezoid::duration() const {
-  if (distance <= 0) return 0;
-  const double ramp = speed / acceleration;
-  if (distance < speed * ramp) return 2 * std::sqrt(distance / acceleration);
-  return distance / speed + ramp;
+  return trapezoid_time(distance, speed, acceleration);
 }
 
 double Trapezoid::gone(double t) const {
