@@ -187,11 +187,11 @@ Surroundings::~Surroundings() = default;
 Clearance Surroundings::clearance(const State& state, double enough_m) const {
   const Parts& p = *parts_;
   const std::vector<PlacedBody> at = placed(p.laboratory, p.bodies, state);
-  struct Bounded {
+  struct Candidate {
     double least_m;
     std::size_t pair;
   };
-  std::vector<Bounded> near;
+  std::vector<Candidate> near;
   Clearance best{enough_m, "", ""};
   for (std::size_t i = 0; i < p.pairs.size(); ++i) {
     const WatchedPair& pair = p.pairs[i];
@@ -199,10 +199,10 @@ Clearance Surroundings::clearance(const State& state, double enough_m) const {
     const double least = p.lower_bound(pair, at);
     if (least < enough_m) near.push_back({least, i});
   }
-  std::sort(near.begin(), near.end(), [](const Bounded& x, const Bounded& y) {
+  std::sort(near.begin(), near.end(), [](const Candidate& x, const Candidate& y) {
     return x.least_m != y.least_m ? x.least_m < y.least_m : x.pair < y.pair;
   });
-  for (const Bounded& candidate : near) {
+  for (const Candidate& candidate : near) {
     if (candidate.least_m >= best.distance_m || best.distance_m <= 0) break;
     const double distance = p.exactly(p.pairs[candidate.pair], at);
     if (distance < best.distance_m) best = p.named(p.pairs[candidate.pair], distance);
