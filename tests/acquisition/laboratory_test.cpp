@@ -65,9 +65,9 @@ TEST(Laboratory, WhatIsHeldMovesWithTheFlange) {
   const auto flange = world_from_tool(arm, joints);
   const auto camera = world_from_camera(document, laboratory, "eye", {{"camera-arm", joints}});
   EXPECT_NEAR(norm(camera.translation_m - flange * Vec3{0, 0, 0.1}), 0, 1e-12);
-  // The base is turned by half a turn about z and stands at 0.45, 0, -0.25.
+  // The base is turned by half a turn about z and stands at 0.38, 0, 0.1.
   const Vec3 in_base = robot::flange(arm.links, joints).translation_m;
-  EXPECT_NEAR(norm(flange.translation_m - Vec3{0.45 - in_base.x, -in_base.y, in_base.z - 0.25}), 0, 1e-12);
+  EXPECT_NEAR(norm(flange.translation_m - Vec3{0.38 - in_base.x, -in_base.y, in_base.z + 0.1}), 0, 1e-12);
   // An arm that is not named stands at home.
   const LaboratoryArm& light = laboratory.arms.at("light-arm");
   EXPECT_NEAR(
