@@ -13,6 +13,7 @@
 // xyzt_units, NRRD's units and space units; millimetres, too, in an NRRD with one of the patient's frames, as ITK and
 // Slicer write them. All ones without a unit are what programs write that know no spacing: they state nothing.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -47,6 +48,22 @@ struct VolumeHead {
 };
 // The spacing, or Error(data) that says what the file has instead and how to say it.
 Vec3 stated_spacing(const VolumeHead& head);
+
+// Where voxels lie: p_m = origin_m + axes * diag(spacing_m) * index.
+struct VolumeGrid {
+  Vec3 spacing_m{1, 1, 1}, origin_m{};
+  Mat3 axes{};
+  Vec3 metres(Vec3 index) const { return origin_m + axes * (spacing_m * index); }
+  Vec3 along_axes(Vec3 p_m) const { return transposed(axes) * (p_m - origin_m); }  // metres from voxel (0, 0, 0)
+  Vec3 index(Vec3 p_m) const {
+    const Vec3 along = along_axes(p_m);
+    return {along.x / spacing_m.x, along.y / spacing_m.y, along.z / spacing_m.z};
+  }
+  Vec3 axis(int c) const { return {axes(0, c), axes(1, c), axes(2, c)}; }
+  bool left_handed() const { return dot(cross(axis(0), axis(1)), axis(2)) < 0; }  // meshes turn inside out
+  double smallest_m() const { return std::min({spacing_m.x, spacing_m.y, spacing_m.z}); }
+};
+VolumeGrid grid_of(const VolumeHead& head);  // Error(data) as stated_spacing; origin 0 and straight axes where not said
 
 // What the user says beside the files. A statement that contradicts the file is Error(data).
 struct VolumeWish {

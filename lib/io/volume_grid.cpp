@@ -157,6 +157,10 @@ void check_wish_of_described(const VolumeHead& head, const VolumeWish& wish, con
   if (wish.tiles) refuse_volume(place, "is " + head.format + ", which has no tiles", "leave --tiles out");
 }
 
+VolumeGrid grid_of(const VolumeHead& head) {
+  return {stated_spacing(head), head.origin_m.value_or(Vec3{}), head.axes.value_or(Mat3{})};
+}
+
 Vec3 stated_spacing(const VolumeHead& head) {
   if (head.spacing_m) return *head.spacing_m;
   const std::string place = head.files.empty() ? "volume" : head.files.front().string();

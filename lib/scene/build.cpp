@@ -306,7 +306,8 @@ class Builder {
       lights.push_back(static_cast<std::size_t>(found - all.begin()));
     }
     for (std::size_t i = 0; i < all.size(); ++i)
-      if ((image.light.empty() && !image.dark.value_or(false)) || all[i].id == mechanism::light_second_source().id) lights.push_back(i);
+      if ((image.light.empty() && !image.dark.value_or(false)) || all[i].id == mechanism::light_second_source().id)
+        lights.push_back(i);
     return lights;
   }
 

@@ -8,6 +8,10 @@
 namespace gonio::volume {
 namespace {
 
+constexpr double nearly_enclosed = 0.9;
+constexpr std::size_t most_surrounded = 1000;  // the largest: specks are told by their size
+constexpr int directions = 200;
+
 std::string figure(double value) {
   return format("%.6g", value);
 }
@@ -31,7 +35,7 @@ std::vector<bool> in_box(const Components& all, const std::array<std::array<doub
 }
 
 // Why a component goes; empty where it stays.
-std::string reason_to_drop(const Component& one, const KeepRule& rule, bool touches_box) {
+std::string reason_to_drop(const Component& one, const KeepRule& rule, bool touches_box, bool surrounded) {
   const std::string voxels = std::to_string(one.voxels);
   if (rule.largest > 0 && one.id > rule.largest)
     return voxels + " voxels, not among the largest " + std::to_string(rule.largest);
@@ -42,6 +46,7 @@ std::string reason_to_drop(const Component& one, const KeepRule& rule, bool touc
     return "mean " + figure(one.mean_value) + ", not below " + figure(*rule.below_mean);
   if (!touches_box) return "no voxel in the box";
   if (rule.drop_enclosed && one.enclosed) return "enclosed by another";
+  if (rule.drop_enclosed && surrounded) return "surrounded by another";
   if (rule.drop_touching_border && one.touches_border) return "touches the volume's border";
   return {};
 }
@@ -102,12 +107,39 @@ class OnlyKept : public io::VolumeSource {
 
 }  // namespace
 
+double surrounded_share(const Components& all, const Component& one) {
+  const auto at = [&](Vec3 p) {
+    return all.at(static_cast<std::size_t>(p.x), static_cast<std::size_t>(p.y), static_cast<std::size_t>(p.z));
+  };
+  const std::uint32_t middle = at(one.centroid + Vec3{0.5, 0.5, 0.5});
+  if (middle != 0 && middle != one.id) return 0;  // it surrounds rather
+  const double golden = pi * (3 - std::sqrt(5.0));
+  int crossed = 0;
+  for (int n = 0; n < directions; ++n) {
+    const double z = 1 - (2 * n + 1.0) / directions, r = std::sqrt(1 - z * z), turn = golden * n;
+    const Vec3 step = Vec3{r * std::cos(turn), r * std::sin(turn), z} * 0.5;
+    for (Vec3 p = one.centroid;; p += step) {
+      const Vec3 voxel = p + Vec3{0.5, 0.5, 0.5};
+      if (!(voxel.x >= 0 && voxel.y >= 0 && voxel.z >= 0 && voxel.x < static_cast<double>(all.size[0]) &&
+            voxel.y < static_cast<double>(all.size[1]) && voxel.z < static_cast<double>(all.size[2])))
+        break;
+      const std::uint32_t id = at(voxel);
+      if (id == 0 || id == one.id) continue;
+      ++crossed;
+      break;
+    }
+  }
+  return static_cast<double>(crossed) / directions;
+}
+
 Kept chosen(const Components& all, const KeepRule& rule) {
   const std::vector<bool> touched =
       rule.touching_box ? in_box(all, *rule.touching_box) : std::vector<bool>(all.list.size(), true);
   Kept kept;
   for (std::size_t n = 0; n < all.list.size(); ++n) {
-    const std::string why = reason_to_drop(all.list[n], rule, touched[n]);
+    const bool asked = rule.drop_enclosed && n < most_surrounded && !all.list[n].enclosed;
+    const bool surrounded = asked && surrounded_share(all, all.list[n]) > nearly_enclosed;
+    const std::string why = reason_to_drop(all.list[n], rule, touched[n], surrounded);
     kept.keep.push_back(why.empty());
     if (!why.empty())
       kept.reason.push_back("dropped: " + why);

@@ -25,6 +25,7 @@ struct Component {
   double mean_value = 0, sd_value = 0;
   bool touches_border = false;
   bool enclosed = false;  // every way from it to the volume's border crosses another component
+  bool light = false;     // split off: nothing of it is near a core
 };
 
 // Runs of voxels and a union-find over them: memory grows with the number of runs, not of voxels.
@@ -41,13 +42,26 @@ struct Components {
 };
 Components components(io::VolumeSource& source, double threshold, Connectivity inside);
 
+// The same of what is farther than `reach` steps over faces, all above the threshold, from values above `core`, and of
+// what is not, each by itself: a lighter table apart from the piece that stands on it.
+struct SplitWish {
+  double core = 0;
+  std::size_t reach = 3;  // voxels within which an edge falls from `core` to the threshold
+};
+Components split_components(io::VolumeSource& source, double threshold, Connectivity inside, const SplitWish& wish);
+
+// Of directions spread over the sphere, the share in which straight ways from the component's middle to the volume's
+// border cross another component: 1 where it is enclosed, and nearly so in a pot whose spout is open.
+double surrounded_share(const Components& all, const Component& one);
+
 // Which components stay. Rules are tried in the order of the members; empty rules keep everything.
 struct KeepRule {
   std::size_t largest = 0;  // 0: all
   std::uint64_t at_least_voxels = 0;
   std::optional<double> above_mean{}, below_mean{};                    // of the component's values
   std::optional<std::array<std::array<double, 3>, 2>> touching_box{};  // index coordinates: low, high
-  bool drop_enclosed = false, drop_touching_border = false;
+  bool drop_enclosed = false;                                          // and what is surrounded for nine tenths
+  bool drop_touching_border = false;
 };
 struct Kept {
   std::vector<bool> keep;           // by position in Components::list

@@ -231,11 +231,14 @@ void run_with_faults(std::uint64_t seed, int motions, int* arrived, int* refused
       while (world.arm.now().program_running || world.arm.now().speed_rad_per_s != desk::SixJoints{})
         std::this_thread::yield();
     }
+    const auto before = world.arm.now();
     try {
       const RobotState state = robot->state();
       const auto truth = world.arm.now();
-      EXPECT_EQ(state.joints_rad, tests::joints_of(truth));
+      EXPECT_TRUE(state.time_s > before.time_s && state.time_s < truth.time_s);
       EXPECT_EQ(state.protective_stop, truth.protective_stop);
+      EXPECT_EQ(before.joints_rad, truth.joints_rad) << "it moves although nobody asked";
+      EXPECT_EQ(state.joints_rad, tests::joints_of(truth));
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), Exit::unavailable) << error.what();
     }

@@ -120,13 +120,32 @@ TEST(DeviceRtde, ScriptsKeepEveryJointWithinItsLimits) {
       fullest = std::max(fullest, leading.speed_rad_per_s * share / speeds[i]);
     }
     EXPECT_NEAR(fullest, 1, 1e-12);  // and no slower than that
-    const auto steps = desk::steps_of_script(motion_script({round + 1, 24}, way, speeds, accelerations));
-    ASSERT_EQ(steps.size(), 3u);
-    EXPECT_EQ(steps[0].value, 2 * (round + 1));
-    EXPECT_EQ(steps[2].value, 2 * (round + 1) + 1);
-    for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(steps[1].target_rad[i], way[1][i], 1e-12);
-    EXPECT_NEAR(steps[1].speed, leading.speed_rad_per_s, 1e-9);
+    const auto steps = desk::steps_of_script(motion_script({round + 1, 24, -5}, way, speeds, accelerations));
+    ASSERT_EQ(steps.size(), 4u);
+    EXPECT_EQ(steps[0].kind, desk::ArmStep::Kind::only_if);
+    EXPECT_EQ(steps[0].value, -5);
+    EXPECT_EQ(steps[1].value, 2 * (round + 1));
+    EXPECT_EQ(steps[3].value, 2 * (round + 1) + 1);
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(steps[2].target_rad[i], way[1][i], 1e-12);
+    EXPECT_NEAR(steps[2].speed, leading.speed_rad_per_s, 1e-9);
   }
+}
+
+// A motion that was given up and stopped, and whose program comes after the one that stopped it.
+TEST(DeviceRtde, ALateProgramMovesNothing) {
+  DeskWorld world;
+  const auto start = tests::joints_of(world.arm.now());
+  std::vector<std::vector<double>> way{start, start};
+  way[1][0] += 0.5;
+  const auto late = desk::steps_of_script(motion_script({5, 24, 0}, way, tests::kSpeeds, tests::kAccelerations));
+  world.arm.run(desk::steps_of_script(stop_script({6, 24}, 2)));
+  world.arm.run(late);
+  EXPECT_EQ(world.arm.now().output_registers[24], 13);
+  EXPECT_FALSE(world.arm.now().program_running);
+  EXPECT_EQ(tests::joints_of(world.arm.now()), start);
+  const auto due = desk::steps_of_script(motion_script({7, 24, 13}, way, tests::kSpeeds, tests::kAccelerations));
+  world.arm.run(due);
+  EXPECT_EQ(world.arm.now().output_registers[24] / 2, 7);
 }
 
 // The simulated arm's trapezoid: its speed is the derivative of its way, within its limits, from rest to rest.

@@ -123,12 +123,35 @@ TEST(Distances, LieWhereProjectionsAndPlanesPutThem) {
     EXPECT_LE(exactly, bracket.above + 1e-7) << i;
     EXPECT_LE(two.by_balls(), exactly + 1e-9) << i;
     EXPECT_LE(two.by_planes(), exactly + 1e-9) << i;
-    if (bracket.above <= 0) EXPECT_LT(exactly, 1e-7) << i;
+    if (bracket.above <= 0) {
+      EXPECT_LT(exactly, 1e-7) << i;
+    }
     apart += exactly > 0;
     narrow += exactly > 0 && bracket.above - bracket.below < 1e-5;
   }
   EXPECT_GT(apart, 150);
   EXPECT_GT(narrow, 0.9 * apart);
+}
+
+// As parts stand in laboratories: turned by right angles, on one axis or face to face. (FCL alone fails here.)
+TEST(Distances, HoldWherePartsAreInLine) {
+  Random random(5);
+  int apart = 0;
+  for (int i = 0; i < 400; ++i) {
+    const auto step = [&] { return 0.05 * static_cast<double>(random.below(5)); };
+    const auto one = [&](Vec3 at) {
+      const Vec3 turn = (pi / 2) * Vec3{double(random.below(2)), double(random.below(2)) * 0, 0};
+      return solid(static_cast<Shape>(random.below(3)), {0.05 + step(), 0.05 + step(), 0.05 + step()}, at, turn);
+    };
+    const Vec3 axis = std::array{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}[random.below(3)];
+    const Solid a = one({}), b = one(axis * 0.6 + Vec3{step(), step(), 0} * double(random.below(2)));
+    const double exactly = Two(a, b).exactly();
+    const Bracket bracket = bracket_of(a, b);
+    EXPECT_LE(exactly, bracket.above + 1e-6) << i;
+    EXPECT_GE(exactly, bracket.below - 1e-6) << i;
+    apart += exactly > 0 && bracket.above - bracket.below < 1e-5;
+  }
+  EXPECT_GT(apart, 300);
 }
 
 State random_state(const Laboratory& laboratory, Random& random) {

@@ -77,7 +77,7 @@ TEST(Laboratory, WhatIsHeldMovesWithTheFlange) {
 
 TEST(Laboratory, StandingLampsStandWhereTheirLightDoes) {
   const std::string text = R"({"gonio": 1, "lights": {"sun": {"model": "point", "position_m": [1, 2, 3],
-      "intensity": 1}}, "laboratory": {"lamps": {"a": {"light": "sun"}, "b": {}, "c": {"in_world_m": [3, 2, 1]}}}})";
+      "watt_per_sr": 1}}, "laboratory": {"lamps": {"a": {"light": "sun"}, "b": {}, "c": {"in_world_m": [3, 2, 1]}}}})";
   const manifest::Document document = tests::laboratory_document(text);
   const Laboratory laboratory = believed_laboratory(document);
   EXPECT_EQ(lamp_position(document, laboratory, "a", {}), (Vec3{1, 2, 3}));
@@ -89,7 +89,7 @@ TEST(Laboratory, StandingLampsStandWhereTheirLightDoes) {
 TEST(Laboratory, RefusesWhatCannotBe) {
   const std::string good = tests::two_ur5_text();
   EXPECT_THAT(complaint(R"({"gonio": 1})"), HasSubstr("/laboratory: is missing"));
-  EXPECT_THAT(complaint(replaced(good, "\"ur5\"", "\"ur6\"")), HasSubstr("camera-arm: \"ur6\" is no known arm"));
+  EXPECT_THAT(complaint(replaced(good, "\"ur5\"", "\"ur6\"")), HasSubstr("camera-arm/model: \"ur6\" is no known arm"));
   EXPECT_THAT(complaint(replaced(good, "[0, -1.9, 1.9, -1.6, -1.5708, 0]", "[0, 3, 0, 0, 0, 0]")),
               HasSubstr("camera-arm/home_rad: joint 2 at 171.9 deg, limit 70.4 deg"));
   EXPECT_THAT(complaint(replaced(good, "[0, -1.9, 1.9, -1.6, -1.5708, 0]", "[0, 3]")),
@@ -97,7 +97,7 @@ TEST(Laboratory, RefusesWhatCannotBe) {
   EXPECT_THAT(complaint(replaced(good, "\"free_rad\": [0,", "\"free_rad\": [11,")),
               HasSubstr("camera-arm/cable: joint 1 may turn from 7.5 to"));
   EXPECT_THAT(complaint(replaced(good, "\"box_m\": [0.06, 0.06, 0.09]", "\"ball_m\": 1, \"box_m\": [1, 1, 1]")),
-              HasSubstr("camera-arm/carries/0: has 2 shapes where 1 is expected"));
+              HasSubstr("camera-arm/carries/0: needs exactly one of"));
   EXPECT_THAT(complaint(replaced(good, "\"upper_m\": [1.2, 1.2, 1.3]", "\"upper_m\": [1.2, -1.2, 1.3]")),
               HasSubstr("limits: lower_m is not below upper_m"));
   const std::string rows = R"({"a_m": 0.1, "d_m": 0.1, "alpha_rad": 0, "theta_rad": 0})";

@@ -58,6 +58,8 @@ WayCheck check_way(const Laboratory& laboratory, const acquisition::Way& way, do
   const auto add = [&](const Solid& s) {
     if (s.shape == Solid::Shape::mesh) return;
     Checked c{&s, surface_points(s, spacing_m)};
+    if (c.points.size() > 3000 && s.arm.empty()) c.points.clear();  // a table: arms' points in it tell
+    c.radius_m = s.shape == Solid::Shape::box ? norm(s.sides_m) / 2 : 0;
     for (const Vec3& p : c.points) c.radius_m = std::max(c.radius_m, norm(p));
     solids.push_back(std::move(c));
   };
@@ -73,7 +75,10 @@ WayCheck check_way(const Laboratory& laboratory, const acquisition::Way& way, do
         if (a == b || may_meet(*solids[a].solid, *solids[b].solid)) continue;
         const double apart = norm(at[a].origin_m - at[b].origin_m) - solids[a].radius_m - solids[b].radius_m;
         if (apart > std::min(check.nearest_m, 0.03)) continue;
+        const double reach = solids[b].radius_m + 0.03;
         for (const Vec3& p : solids[a].points) {
+          const Vec3 off = at[a].world(p) - at[b].origin_m;
+          if (dot(off, off) > reach * reach) continue;
           const double d = signed_distance(*solids[b].solid, at[b].local(at[a].world(p)));
           if (d < check.nearest_m)
             check.nearest_m = d, check.first = solids[a].solid->name, check.second = solids[b].solid->name;
@@ -89,7 +94,7 @@ WayCheck check_way(const Laboratory& laboratory, const acquisition::Way& way, do
       }
       return places(laboratory, solids, state);
     };
-    // As far as the corners of the solids' bounding boxes say, on a hundredth of the line: the fastest point.
+    // The fastest point, looked for on sixteen stretches of the line.
     double fastest = 0;
     std::vector<At> before = mixed(0);
     for (int k = 1; k <= 16; ++k) {

@@ -172,22 +172,24 @@ TEST(StraightWay, SaysWhereTheLineEnds) {
   EXPECT_FALSE(straight_way(w.laboratory, {}, "camera-arm", far, 1e-4, nullptr));
 }
 
-// From one side of an arm to the other, with a pillar between that the arm cannot pass in a straight line.
-const World& pillar() {
-  static const World world([] {
-    std::string text = tests::ur3_and_turntable_text();
-    const std::string list = "\"obstacles\": [";
-    text.insert(text.find(list) + list.size(),
-                R"({"name": "pillar", "cylinder_m": [0.04, 0.5], "world_from_body": {"rotation": [1, 0, 0, 0],
-                   "translation_m": [-0.05, 0, 0.1]}}, )");
-    return text;
-  }());
-  return world;
-}
-
+// A pillar stands where the flange is in the middle of the straight line, and ends a little above it.
 TEST(JointWay, LeadsRoundAPillarTheSameWayForTheSameSeed) {
-  const World& w = pillar();
-  const State left{{"arm", {0.75, -1.6, 1.6, -1.6, -1.5708, 0}}}, right{{"arm", {-0.75, -1.6, 1.6, -1.6, -1.5708, 0}}};
+  const World open(tests::ur3_and_turntable_text());
+  const auto turned = [&](double by) {
+    State state{{"arm", open.laboratory.arms.at("arm").home}};
+    state["arm"][0] += by;
+    return state;
+  };
+  const State left = turned(0.8), right = turned(-0.8), middle = turned(0);
+  const Vec3 flange = world_from_tool(open.laboratory.arms.at("arm"), middle.at("arm")).translation_m;
+  std::string text = tests::ur3_and_turntable_text();
+  const std::string list = "\"obstacles\": [";
+  text.insert(text.find(list) + list.size(),
+              R"({"name": "pillar", "cylinder_m": [0.03, 0.5], "world_from_body": {"rotation": [1, 0, 0, 0],
+                 "translation_m": [)" +
+                  std::to_string(flange.x) + ", " + std::to_string(flange.y) + ", " + std::to_string(flange.z - 0.22) +
+                  "]}}, ");
+  const World w(text);
   ASSERT_EQ(judge(w.laboratory, w.surroundings, {left}).fault, "");
   ASSERT_EQ(judge(w.laboratory, w.surroundings, {right}).fault, "");
   EXPECT_THAT(judge(w.laboratory, w.surroundings, {left, right}).fault, HasSubstr("pillar"));
@@ -199,9 +201,9 @@ TEST(JointWay, LeadsRoundAPillarTheSameWayForTheSameSeed) {
   EXPECT_EQ(way->front().at("arm"), left.at("arm"));
   EXPECT_EQ(way->back().at("arm"), right.at("arm"));
   EXPECT_EQ(joint_way(w.laboratory, w.surroundings, left, right, 3), way);
-  EXPECT_GT(tests::check_way(w.laboratory, *way, 0.004, 0.012).nearest_m, 0);
+  EXPECT_GT(tests::check_way(w.laboratory, *way, 0.01, 0.02).nearest_m, 0);
   // What stands in the pillar goes nowhere.
-  EXPECT_FALSE(joint_way(w.laboratory, w.surroundings, left, {{"arm", {0, -1.2, 1.9, -1.6, -1.5708, 0}}}, 3, 50));
+  EXPECT_FALSE(joint_way(w.laboratory, w.surroundings, left, middle, 3, 50));
 }
 
 // Lines from home into all directions, of both arms: what the judge passes, the checker passes; where the judge sees
@@ -210,24 +212,24 @@ TEST(Judge, AgreesWithAnIndependentWalk) {
   const World& w = two_ur5();
   Random random(77);
   int passed = 0, met = 0;
-  for (int k = 0; passed + met < 8 && k < 200; ++k) {
+  for (int k = 0; passed + met < 5 && k < 200; ++k) {
     State to{{"camera-arm", w.laboratory.arms.at("camera-arm").home},
              {"light-arm", w.laboratory.arms.at("light-arm").home}};
     for (auto& [name, joints] : to)
       for (double& q : joints) q += random.uniform(-0.8, 0.8);
     const Way way{{}, to};
     const WayFigures figures = judge(w.laboratory, w.surroundings, way);
-    if (figures.fault.empty() && passed < 4) {
+    if (figures.fault.empty() && passed < 3) {
       ++passed;
-      const tests::WayCheck check = tests::check_way(w.laboratory, way, 0.003, 0.015);
+      const tests::WayCheck check = tests::check_way(w.laboratory, way, 0.008, 0.02);
       EXPECT_GT(check.nearest_m, 0) << check.first << " and " << check.second;
-    } else if (figures.clearance_m <= 0 && met < 4) {
+    } else if (figures.clearance_m <= 0 && met < 2) {
       ++met;
-      const tests::WayCheck check = tests::check_way(w.laboratory, way, 0.003, 0.015);
-      EXPECT_LT(check.nearest_m, 0.01) << figures.fault;
+      const tests::WayCheck check = tests::check_way(w.laboratory, way, 0.008, 0.02);
+      EXPECT_LT(check.nearest_m, 0.015) << figures.fault;
     }
   }
-  EXPECT_EQ(passed, 4);
+  EXPECT_EQ(passed, 3);
 }
 
 }  // namespace

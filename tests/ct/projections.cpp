@@ -207,12 +207,7 @@ Image primary(const Phantom& phantom, const Scanner& s, const Transmission& tran
               std::size_t columns, std::size_t rows) {
   const View rays(s, view, columns, rows);
   const std::vector<Spot> spots = spots_of(s.amplitude("focal-spot"));
-  // Every other view mirrors the one before, or the mean place within a pixel drifts over some fifty views by a
-  // sixteenth of it, and walls with it.
-  const auto turn = [&](double ratio) {
-    const double at = std::fmod((static_cast<double>(view / 2) + 0.5) * ratio, 1.0);
-    return view % 2 == 0 ? at : 1 - at;
-  };
+  const auto turn = [&](double ratio) { return std::fmod((static_cast<double>(view) + 0.5) * ratio, 1.0); };
   const double shift_u = turn(0.61803398874989485), shift_v = turn(0.75487766624669276);
   Image image(columns * rows);
   std::vector<double> lengths(phantom.parts.size());

@@ -57,7 +57,7 @@ class Tomograph final : public World {
         .as_drawn()
         .nearly("tilt_rad");
     add({"scatter", "ct.scatter", stage, {"volume.path", "volume.depth", "volume.radius"}, 0.08, 0.3}).as_drawn();
-    add({"streaks", "ct.streak", stage, {"volume.marker-path", "volume.path"}, 0.03, 0.12})
+    add({"streaks", "ct.streak", stage, {"volume.marker-path", "volume.path"}, 0.02, 0.05})
         .as_drawn()
         .only_for("markers");
     add({"offset axis", "", stage, {}, 0.7, 2}).as_drawn();
@@ -220,7 +220,7 @@ class Tomograph final : public World {
     const Ellipsoid& piece = bodies_.front();
     for (int k = 0; k < 3; ++k) {
       const double height = random.uniform(-0.7, 0.7), angle = 2 * pi * k / 3 + random.uniform(-0.6, 0.6);
-      const double level = std::sqrt(1 - height * height), radius = random.uniform(2.5, 4) * voxel_m_;
+      const double level = std::sqrt(1 - height * height), radius = random.uniform(4, 6) * voxel_m_;
       const Vec3 unit{level * std::cos(angle), level * std::sin(angle), height};
       const Vec3 outward = normalized({unit.x / piece.radii.x, unit.y / piece.radii.y, unit.z / piece.radii.z});
       markers_.push_back({piece.turn * (unit * piece.radii + outward * radius) + piece.centre, radius});

@@ -116,7 +116,7 @@ ct::Scanner scanner_of(std::size_t voxels, double blur, double cupping, std::uin
 
 // 2.5 voxels of glass seen with a spread of 1.1: no plateau, and a threshold half-way up is off by 0.4.
 TEST(Scans, WallsOfTwoAndAHalfVoxelsAreFoundThroughABlur) {
-  ct::Scanner s = scanner_of(44, 1.0, 0.2, 11);
+  ct::Scanner s = scanner_of(38, 1.0, 0.2, 11);
   const WallErrors e = walls(ct::glass_tube({s.voxels, s.voxel_m}), s);
   EXPECT_GT(e.counted, 3000u);
   EXPECT_LT(e.rms, 0.14);

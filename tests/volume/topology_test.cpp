@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -204,6 +205,58 @@ TEST(Topology, EulerNumbersOfSimpleBodies) {
   };
   EXPECT_EQ(euler(corner, Connectivity::six), 2);
   EXPECT_EQ(euler(corner, Connectivity::twenty_six), 1);
+}
+
+// A piece of value 100 stands on a table of value 50, both smeared over a voxel: one component at 30, and two parts.
+TEST(SplitComponents, ATableIsApartFromWhatStandsOnIt) {
+  const auto step = [](double inside) { return 0.5 * std::erfc(-inside / std::sqrt(2.0)); };  // voxels within
+  tests::MemoryVolume volume({48, 40, 56}, [&](double i, double j, double k) {
+    const double table = step(std::min(k - 8, 16 - k));
+    const double piece = step(std::min({k - 16, 44 - k, 9 - std::abs(std::hypot(i - 24, j - 20) - 9)}));
+    return std::max(50 * table, 100 * piece);
+  });
+  for (const Connectivity inside : {Connectivity::six, Connectivity::twenty_six}) {
+    const Components joined = components(volume, 30, inside);
+    ASSERT_EQ(joined.list.size(), 1u);
+    const Components parts = split_components(volume, 30, inside, {75, 3});
+    ASSERT_EQ(parts.list.size(), 2u);
+    EXPECT_EQ(parts.list[0].voxels + parts.list[1].voxels, joined.list[0].voxels);
+    const std::size_t table = parts.list[0].light ? 0 : 1;
+    EXPECT_TRUE(parts.list[table].light);
+    EXPECT_FALSE(parts.list[1 - table].light);
+    EXPECT_LE(parts.list[table].high[2], 17u);
+    EXPECT_GE(parts.list[1 - table].low[2], 13u);
+    EXPECT_LT(parts.list[table].mean_value, 55);
+    Kept kept;
+    kept.keep = {table != 0, table == 0};
+    const auto piece = only(volume, parts, kept, 0);
+    const Components left = components(*piece, 30, inside);
+    ASSERT_EQ(left.list.size(), 1u);
+    EXPECT_EQ(left.list[0].voxels, parts.list[1 - table].voxels);
+    for (std::size_t k = 0; k < 56; ++k)
+      for (std::size_t j = 0; j < 40; ++j)
+        for (std::size_t i = 0; i < 48; ++i) ASSERT_EQ(parts.at(i, j, k) != 0, joined.at(i, j, k) != 0);
+  }
+}
+
+// Straight ways out of a pot: of a closed one all are barred, of one with a hole in the lid nearly all.
+TEST(SurroundedShare, IsThatOfTheDirectionsInWhichAnotherComponentStands) {
+  for (const double hole : {0.0, 4.0, 30.0}) {
+    tests::MemoryVolume volume({41, 41, 41}, [&](double i, double j, double k) {
+      const double x = i - 20, y = j - 20, z = k - 20, r = std::sqrt(x * x + y * y + z * z);
+      return r < 4 || (r > 13 && r < 17 && !(z > 0 && std::hypot(x, y) < hole)) ? 1 : 0;
+    });
+    const Components all = components(volume, 0.5, Connectivity::twenty_six);
+    ASSERT_EQ(all.list.size(), 2u);
+    const double share = surrounded_share(all, all.list[1]);
+    EXPECT_EQ(all.list[1].enclosed, hole == 0);
+    // A hole of radius h in a ball of radius 13 takes (1 - cos(asin(h / 13))) / 2 of the directions.
+    const double open = hole >= 13 ? 0.5 : (1 - std::sqrt(1 - hole * hole / 169)) / 2;
+    EXPECT_NEAR(share, 1 - open, 0.03) << hole;
+    const Kept kept = chosen(all, {.drop_enclosed = true});
+    EXPECT_EQ(kept.keep[1], hole == 30);
+    EXPECT_TRUE(kept.keep[0]);
+  }
 }
 
 }  // namespace

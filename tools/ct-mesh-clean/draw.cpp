@@ -82,8 +82,8 @@ io::Image upright(io::Image image, const Plane& p) {
 
 // Index coordinates of a point in metres.
 std::array<double, 3> index_of(const Work& work, Vec3 p) {
-  const Vec3 local = transposed(work.axes) * (p - work.origin_m);
-  return {local.x / work.spacing_m.x, local.y / work.spacing_m.y, local.z / work.spacing_m.z};
+  const Vec3 at = work.grid.index(p);
+  return {at.x, at.y, at.z};
 }
 
 void outline(io::Image& image, const Plane& p, const Work& work, const io::TriangleMesh& mesh, const Colour& colour) {

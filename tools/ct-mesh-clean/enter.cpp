@@ -24,8 +24,8 @@ std::string enter_mesh(Work& work, const std::string& name, const io::TriangleMe
 }
 
 std::vector<std::vector<double>> matrix_of(const Work& work) {
-  const Mat3& a = work.axes;
-  const Vec3 s = work.spacing_m, o = work.origin_m;
+  const Mat3& a = work.grid.axes;
+  const Vec3 s = work.grid.spacing_m, o = work.grid.origin_m;
   return {{a(0, 0) * s.x, a(0, 1) * s.y, a(0, 2) * s.z, o.x},
           {a(1, 0) * s.x, a(1, 1) * s.y, a(1, 2) * s.z, o.y},
           {a(2, 0) * s.x, a(2, 1) * s.y, a(2, 2) * s.z, o.z},
@@ -37,7 +37,7 @@ std::vector<double> covariance_in_metres(const Work& work, const std::array<doub
   Mat3 a, c;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
-      a(i, j) = work.axes(i, j) * work.spacing_m[j];
+      a(i, j) = work.grid.axes(i, j) * work.grid.spacing_m[j];
       c(i, j) = index[static_cast<std::size_t>(3 * i + j)];
     }
   const Mat3 turned = a * c * transposed(a);
@@ -49,7 +49,7 @@ void enter_markers(Work& work) {
   std::erase_if(all, [&](const manifest::Marker& m) { return m.volume == work.name; });
   for (std::size_t i = 0; i < work.markers.found.size(); ++i) {
     const volume::Marker& m = work.markers.found[i];
-    const Vec3 centre = metres(work, m.centre);
+    const Vec3 centre = work.grid.metres(m.centre);
     all.push_back({.id = work.name + "-" + std::to_string(i + 1),
                    .object = work.name,
                    .volume = work.name,
@@ -94,7 +94,7 @@ void enter(Work& work) {
       entry.slices.push_back(id);
   }
   for (const std::size_t n : head.size) entry.size.push_back(static_cast<std::int64_t>(n));
-  entry.spacing_m = {work.spacing_m.x, work.spacing_m.y, work.spacing_m.z};
+  entry.spacing_m = {work.grid.spacing_m.x, work.grid.spacing_m.y, work.grid.spacing_m.z};
   entry.volume_from_index = manifest::IndexMap{matrix_of(work)};
   entry.type = io::name_of(head.type), entry.value = head.value;
   if (work.asked.file.tiles)

@@ -136,6 +136,21 @@ std::vector<cli::Option> surface_options() {
        .help = "Smooth what is no edge before the threshold.",
        .preset = "none",
        .choices = {"none", "anisotropic", "non-local"}},
+      {.name = "core",
+       .type = Type::text,
+       .help =
+           "Before components are chosen, split off what is lighter than the object, as the table that it stands on: "
+           "what is farther than --reach from any value above this; materials: half-way between the object's "
+           "material and the next lighter one.",
+       .metavar = "VALUE"},
+      {.name = "reach",
+       .type = Type::integer,
+       .help = "Voxels within which an edge falls from --core to the threshold.",
+       .metavar = "VOXELS",
+       .preset = "3",
+       .lower = 1,
+       .upper = 64,
+       .needs = {"core"}},
       {.name = "largest",
        .type = Type::integer,
        .help = "Keep so many of the largest components; 0: all.",
@@ -161,7 +176,9 @@ std::vector<cli::Option> surface_options() {
        .type = Type::text,
        .help = "Keep components that touch this box of voxels.",
        .metavar = "I,J,K,I,J,K"},
-      {.name = "drop-enclosed", .type = Type::flag, .help = "Drop components that another one encloses."},
+      {.name = "drop-enclosed",
+       .type = Type::flag,
+       .help = "Drop components that another one encloses, or surrounds for nine tenths."},
       {.name = "drop-cut", .type = Type::flag, .help = "Drop components that the volume's border cuts."}};
 }
 
@@ -263,6 +280,14 @@ void threshold_asked(const std::string& text, Asked& a) {
   }
 }
 
+double core_of(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw Error(Exit::usage, "--core", "\"" + text + "\" is no value", "give a number, or materials");
+  return value;
+}
+
 }  // namespace
 
 std::vector<cli::Option> options() {
@@ -294,6 +319,12 @@ Asked asked(const cli::Invocation& call) {
   a.denoise = denoise == "anisotropic" ? volume::Denoise::anisotropic
               : denoise == "non-local" ? volume::Denoise::non_local
                                        : volume::Denoise::none;
+  if (call.given("core")) {
+    a.core_by_materials = call.text("core") == "materials";
+    volume::SplitWish& split = a.split.emplace();
+    split.reach = static_cast<std::size_t>(call.integer("reach"));
+    if (!a.core_by_materials) split.core = core_of(call.text("core"));
+  }
   a.keep.largest = static_cast<std::size_t>(call.integer("largest"));
   if (call.given("at-least")) a.keep.at_least_voxels = static_cast<std::uint64_t>(call.integer("at-least"));
   if (call.given("brighter")) a.keep.above_mean = call.number("brighter");

@@ -136,7 +136,7 @@ void marker_table(report::Page& page, const Work& work) {
                    {"sigma of the centre", "um"}, {"residual", "um"}, {"cover", "%"}};
   for (std::size_t i = 0; i < work.markers.found.size(); ++i) {
     const volume::Marker& m = work.markers.found[i];
-    const Vec3 c = metres(work, m.centre) * 1e3;
+    const Vec3 c = work.grid.metres(m.centre) * 1e3;
     const double sigma = std::sqrt(std::max({m.covariance[0], m.covariance[4], m.covariance[8]})) * work.voxel_m();
     table.rows.push_back({work.name + "-" + std::to_string(i + 1), format("%.4f", c.x), format("%.4f", c.y),
                           format("%.4f", c.z), format("%.4f", m.radius * work.voxel_m() * 1e3),

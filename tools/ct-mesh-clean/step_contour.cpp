@@ -13,7 +13,7 @@ void contour(Work& work) {
                    {"shared_cells", static_cast<double>(work.contour.shared_cells)}};
   if (work.threshold.sigma > 0) {  // what a threshold that is wrong by its sigma does to a wall, and to a length
     work.threshold.voxels_per_value = volume::voxels_per_value(work.look.histogram, work.contour, work.threshold.value,
-                                                               work.spacing_m / work.voxel_m());
+                                                               work.grid.spacing_m / work.voxel_m());
     entry.figures["sigma_wall_m"] = work.threshold.sigma_wall_voxels() * work.voxel_m();
     entry.figures["sigma_length_m"] = 2 * work.threshold.sigma_wall_voxels() * work.voxel_m();
   }
@@ -22,7 +22,7 @@ void contour(Work& work) {
 
 void refine(Work& work) {
   auto& entry = work.steps.back();
-  const Vec3 scale = work.spacing_m / work.voxel_m();
+  const Vec3 scale = work.grid.spacing_m / work.voxel_m();
   work.edges =
       volume::edges(*work.volume, work.contour,
                     {.noise = work.look.noise_air, .noise_correlation = work.look.noise_correlation, .scale = scale});

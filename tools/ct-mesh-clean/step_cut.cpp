@@ -17,7 +17,7 @@ volume::Threshold by_reference(Work& work) {
   std::vector<volume::ReferenceSphere> spheres;
   for (const volume::Marker& m : work.markers.found)
     spheres.push_back({m.centre, *work.asked.marker_radius_m / work.voxel_m(), 0});
-  volume::Threshold threshold = volume::reference_length(*work.volume, spheres, work.spacing_m / work.voxel_m());
+  volume::Threshold threshold = volume::reference_length(*work.volume, spheres, work.grid.spacing_m / work.voxel_m());
   double inside = 0;
   for (const volume::Marker& m : work.markers.found)
     inside += m.mean_value / static_cast<double>(work.markers.found.size());

@@ -31,7 +31,7 @@ void find_markers(Work& work) {
   const volume::Contour surface =
       volume::contour(*work.file, {.threshold = threshold, .inside = volume::Connectivity::twenty_six});
   volume::MarkerWish wish{.seed = work.call.seed};  // the noise within the markers is not that of the air
-  wish.scale = work.spacing_m / work.voxel_m();
+  wish.scale = work.grid.spacing_m / work.voxel_m();
   if (work.asked.marker_radius_m) wish.radius = *work.asked.marker_radius_m / work.voxel_m();
   work.markers = volume::markers(*work.file, surface, threshold, wish);
   work.markers_mesh = in_metres(work, surface);
@@ -56,7 +56,7 @@ void carve(Work& work) {
   if (work.markers.found.empty()) return;
   std::vector<mesh::CarvedSphere> spheres;
   for (const volume::Marker& m : work.markers.found)
-    spheres.push_back({metres(work, m.centre), m.radius * work.voxel_m()});
+    spheres.push_back({work.grid.metres(m.centre), m.radius * work.voxel_m()});
   work.carved = mesh::carve(work.mesh, spheres, work.asked.eps, work.path);
   double worst = 0;
   for (const mesh::FilledHole& h : work.carved.holes) worst = std::max(worst, h.uncertainty_m);

@@ -8,8 +8,37 @@
 
 namespace gonio::tools::ct_mesh_clean {
 
+namespace {
+
+// Half-way between the object's material and the next lighter one that is not air.
+double core_of_materials(const Work& work) {
+  const auto& materials = work.look.mixture.materials;
+  const std::size_t object = object_material(work);
+  if (object < work.look.air + 2)
+    throw Error(Exit::data, work.path, "shows no material between air and the object", "give --core VALUE");
+  return 0.5 * (materials[object - 1].mean + materials[object].mean);
+}
+
+// All components, or those of the object's material and of what is lighter each by themselves.
+void find_components(Work& work) {
+  if (!work.asked.split) {
+    work.components = volume::components(*work.volume, work.threshold.value, work.asked.inside);
+    return;
+  }
+  volume::SplitWish& wish = *work.asked.split;
+  if (work.asked.core_by_materials) wish.core = core_of_materials(work);
+  if (!(wish.core > work.threshold.value && wish.core < work.look.histogram.largest))
+    throw Error(Exit::data, work.path,
+                format("a core of %.6g is not between the threshold of %.6g and the largest value of %.6g", wish.core,
+                       work.threshold.value, work.look.histogram.largest),
+                "give a --core between them");
+  work.components = volume::split_components(*work.volume, work.threshold.value, work.asked.inside, wish);
+}
+
+}  // namespace
+
 void select(Work& work) {
-  work.components = volume::components(*work.volume, work.threshold.value, work.asked.inside);
+  find_components(work);
   work.kept = volume::chosen(work.components, work.asked.keep);
   const std::size_t all = work.components.list.size();
   const auto stays = static_cast<std::size_t>(std::ranges::count(work.kept.keep, true));
@@ -26,6 +55,11 @@ void select(Work& work) {
                    {"kept", static_cast<double>(stays)},
                    {"kept_voxels", static_cast<double>(voxels)},
                    {"dropped_voxels", static_cast<double>(dropped)}};
+  if (work.asked.split) {
+    entry.figures["core"] = work.asked.split->core;
+    entry.figures["light"] =
+        static_cast<double>(std::ranges::count_if(work.components.list, [](const auto& c) { return c.light; }));
+  }
   const float air =
       static_cast<float>(std::min(work.look.mixture.materials.empty() ? work.look.histogram.smallest
                                                                       : work.look.mixture.materials[work.look.air].mean,

@@ -5,27 +5,20 @@
 
 namespace gonio::tools::ct_mesh_clean {
 
-double Work::voxel_m() const {
-  return std::min({spacing_m.x, spacing_m.y, spacing_m.z});
-}
-
-Vec3 metres(const Work& work, Vec3 index) {
-  return work.origin_m + work.axes * (work.spacing_m * index);
-}
-
 io::TriangleMesh in_metres(const Work& work, const volume::Contour& contour) {
   io::TriangleMesh mesh;
   mesh.positions_m.reserve(contour.positions.size());
   mesh.normals.reserve(contour.normals.size());
-  for (const auto& p : contour.positions) mesh.positions_m.push_back(metres(work, {p[0], p[1], p[2]}));
-  const Vec3 shrink{1 / work.spacing_m.x, 1 / work.spacing_m.y, 1 / work.spacing_m.z};  // gradients are covariant
+  for (const auto& p : contour.positions) mesh.positions_m.push_back(work.grid.metres({p[0], p[1], p[2]}));
+  const Vec3 shrink{1 / work.grid.spacing_m.x, 1 / work.grid.spacing_m.y,
+                    1 / work.grid.spacing_m.z};  // gradients are covariant
   for (const auto& n : contour.normals) {
-    const Vec3 turned = work.axes * (shrink * Vec3{n[0], n[1], n[2]});
+    const Vec3 turned = work.grid.axes * (shrink * Vec3{n[0], n[1], n[2]});
     const double length = norm(turned);
     mesh.normals.push_back(length > 0 ? turned / length : Vec3{0, 0, 1});
   }
   mesh.triangles = contour.triangles;
-  if (work.left_handed)
+  if (work.grid.left_handed())
     for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;
 }

@@ -42,6 +42,8 @@ struct Asked {
   volume::Connectivity inside = volume::Connectivity::twenty_six;
   bool cupping = false, rings = false;
   volume::Denoise denoise = volume::Denoise::none;
+  std::optional<volume::SplitWish> split;
+  bool core_by_materials = false;
   volume::KeepRule keep;
   bool find_markers = false;
   std::optional<double> marker_radius_m, marker_threshold;
@@ -75,10 +77,8 @@ struct Work {
   std::unique_ptr<io::VolumeSource> file;                  // as stored
   std::vector<std::unique_ptr<io::VolumeSource>> derived;  // corrected, cleared of other components
   io::VolumeSource* volume = nullptr;                      // as the steps so far left it
-  Vec3 spacing_m{}, origin_m{};
-  Mat3 axes{};
-  bool left_handed = false;
-  double voxel_m() const;  // the smallest spacing
+  io::VolumeGrid grid;
+  double voxel_m() const { return grid.smallest_m(); }
 
   volume::Look look;
   volume::Threshold threshold;
@@ -102,7 +102,6 @@ struct Work {
   std::vector<report::Plot> plots;
 };
 
-Vec3 metres(const Work& work, Vec3 index);
 // The contour in metres, counter-clockwise seen from outside, with unit normals.
 io::TriangleMesh in_metres(const Work& work, const volume::Contour& contour);
 

@@ -123,6 +123,26 @@ std::string trimmed(const std::string& line) {
   return line.substr(first, line.find_last_not_of(" \t\r\n") - first + 1);
 }
 
+// "if read_output_integer_register(R) == V:" around all that follows.
+std::optional<ArmStep> step_of_condition(const std::string& line) {
+  const auto equals = line.find("==");
+  if (line.rfind("if ", 0) != 0 || line.back() != ':' || equals == std::string::npos) return {};
+  const auto call = CallReader(line.substr(3, equals - 3)).read();
+  const auto value = CallReader("value(" + line.substr(equals + 2, line.size() - equals - 3) + ")").read();
+  if (!call || !value || call->name != "read_output_integer_register" || call->plain.size() != 1 ||
+      value->plain.size() != 1 || call->plain[0] < 0 || call->plain[0] > 47)
+    return {};
+  ArmStep step;
+  step.kind = ArmStep::Kind::only_if;
+  step.output_register = static_cast<int>(call->plain[0]);
+  step.value = static_cast<int>(value->plain[0]);
+  return step;
+}
+
+bool opens_block(const std::string& line) {
+  return line.rfind("def ", 0) == 0 || line.rfind("if ", 0) == 0;
+}
+
 }  // namespace
 
 std::vector<ArmStep> steps_of_script(const std::string& program) {
@@ -132,7 +152,7 @@ std::vector<ArmStep> steps_of_script(const std::string& program) {
     line = trimmed(line.substr(0, line.find('#')));
     if (line.empty() || line == "end" || line.rfind("def ", 0) == 0) continue;
     const auto call = CallReader(line).read();
-    const auto step = call ? step_of_call(*call) : std::nullopt;
+    const auto step = call ? step_of_call(*call) : step_of_condition(line);
     if (!step) return {};  // a program that does not compile does nothing at all
     steps.push_back(*step);
   }
@@ -144,19 +164,19 @@ void serve_script(Peer& peer, TrueArm& arm, Faults& faults) {
   const std::string state_message("\x00\x00\x00\x05\x10", 5);
   peer.write(state_message);
   std::string pending, program;
-  for (bool within = false;;) {
+  for (int depth = 0;;) {
     pending += peer.read(4096, 20);
     for (auto end = pending.find('\n'); end != std::string::npos; end = pending.find('\n')) {
       const std::string line = pending.substr(0, end + 1);
       pending.erase(0, end + 1);
       program += line;
-      within = within || line.rfind("def ", 0) == 0;
-      if (within && trimmed(line) != "end") continue;
+      depth += opens_block(trimmed(line)) ? 1 : trimmed(line) == "end" ? -1 : 0;
+      if (depth > 0) continue;
       if (faults.strikes(Fault::script_reset)) peer.reset();
       if (!faults.strikes(Fault::script_lost))
         if (const auto steps = steps_of_script(program); !steps.empty()) arm.run(steps);
       program.clear();
-      within = false;
+      depth = 0;
       peer.write(state_message);
     }
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/motion/way.h"
+
 namespace gonio::acquisition::desk {
 namespace {
 
@@ -17,10 +19,7 @@ double longest_turn(const SixJoints& from, const SixJoints& to) {
 }  // namespace
 
 double Trapezoid::duration() const {
-  if (distance <= 0) return 0;
-  const double ramp = speed / acceleration;
-  if (distance < speed * ramp) return 2 * std::sqrt(distance / acceleration);
-  return distance / speed + ramp;
+  return trapezoid_time(distance, speed, acceleration);
 }
 
 double Trapezoid::gone(double t) const {
@@ -158,12 +157,19 @@ void TrueArm::run(const std::vector<ArmStep>& program) {
   for (const ArmStep& step : program)
     if (step.kind == ArmStep::Kind::brake) acceleration = step.acceleration;
   // What comes before the first motion is done at once, while the arm still brakes.
-  while (step_ < program_.size() && program_[step_].kind == ArmStep::Kind::mark) {
-    flags_.output_registers.at(program_[step_].output_register) = program_[step_].value;
-    ++step_;
+  for (; step_ < program_.size(); ++step_) {
+    const ArmStep& step = program_[step_];
+    std::int32_t& held = flags_.output_registers.at(static_cast<std::size_t>(step.output_register));
+    if (step.kind == ArmStep::Kind::mark)
+      held = step.value;
+    else if (step.kind == ArmStep::Kind::only_if && held != step.value)
+      program_.clear(), step_ = 0;
+    else if (step.kind != ArmStep::Kind::only_if)
+      break;
+    if (program_.empty()) break;
   }
   brake(t, acceleration);
-  flags_.program_running = true;
+  flags_.program_running = !program_.empty();
   if (!leg_) next_step(t);
 }
 

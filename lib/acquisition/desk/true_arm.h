@@ -41,8 +41,8 @@ struct TrueArmSettings {
 
 // One statement of a program.
 struct ArmStep {
-  enum class Kind { mark, move, brake } kind = Kind::mark;
-  int output_register = 0, value = 0;       // mark
+  enum class Kind { mark, move, brake, only_if } kind = Kind::mark;
+  int output_register = 0, value = 0;       // mark; only_if: the rest is done where the register holds the value
   SixJoints target_rad{};                   // move
   double speed = 1.05, acceleration = 1.4;  // of the leading axis; brake: acceleration
 };

@@ -104,29 +104,19 @@ class UrRobot : public RobotDevice {
       if (const auto astray = farthest_joint(end.joints_rad, way.back(), kArrivedRad); !astray.empty())
         throw unavailable("left the end of its way: " + astray, "see what pushes it");
       return end;
+    } catch (const Error& error) {
+      if (stops_ != stops_before || halted()) throw;
+      throw Error(error.code(), error.place(), error.problem() + "; and it did not take the program that stops it",
+                  "press the emergency stop");
     } catch (...) {
-      if (stops_ == stops_before) brake();
+      halted();
       throw;
     }
   }
 
   void stop() override {  // may be called while move() waits: connections of its own
     ++stops_;
-    const ProgramMark mark = next_mark(0);
-    Connection line;
-    std::string unsent;
-    for (int attempt = 0; attempt < 3 && !line.is_open(); ++attempt) {
-      try {
-        line = script_line();
-        send_script(line, stop_script(mark, kStopRadPerS2));
-      } catch (const Error& error) {
-        unsent = error.problem();
-        line.close();
-      }
-    }
-    const auto until = after(line.is_open() ? address_.begin_s : 0);
-    RtdeClient rtde(rtde_address(), place_);
-    rtde.follow([&](const RtdeState& now, bool) { return stopped(now, mark, line, until, unsent); });
+    halt();
   }
 
  private:
@@ -138,7 +128,7 @@ class UrRobot : public RobotDevice {
   }
 
   ProgramMark next_mark(int seen) {
-    ProgramMark mark{number_++, address_.program_register};
+    ProgramMark mark{number_++, address_.program_register, seen};
     if (mark.begun() == (seen & ~1)) mark.number = number_++;
     return mark;
   }
@@ -210,14 +200,40 @@ class UrRobot : public RobotDevice {
       throw unavailable(std::string(lost.what()) + " while a program was sent", "try again");
     }
   }
-  void brake() noexcept {  // whatever became of the program: nothing moves later
+  // Returns when it stands: true where the controller took the program that stops it, so that none sent before will
+  // begin; false where it did not, as in local control, and no program runs.
+  bool halt() {
+    const ProgramMark mark = next_mark(0);
+    Connection line;
+    std::string unsent;
+    for (int attempt = 0; attempt < 3 && !line.is_open(); ++attempt) {
+      try {
+        line = script_line();
+        send_script(line, stop_script(mark, kStopRadPerS2));
+      } catch (const Error& error) {
+        unsent = error.problem();
+        line.close();
+      }
+    }
+    const auto until = after(line.is_open() ? address_.begin_s : 0);
+    bool taken = false;
+    RtdeClient rtde(rtde_address(), place_);
+    rtde.follow([&](const RtdeState& now, bool) {
+      line.discard();
+      taken = now.program == mark.ended() || !ur_obstacle(now).empty();
+      return stopped(now, mark, taken, until, unsent);
+    });
+    return taken;
+  }
+  bool halted() noexcept {
     try {
-      stop();
+      return halt();
     } catch (...) {
+      return false;
     }
   }
 
-  bool stopped(const RtdeState& now, const ProgramMark& mark, Connection& line, Clock::time_point until,
+  bool stopped(const RtdeState& now, const ProgramMark& mark, bool taken, Clock::time_point until,
                const std::string& unsent) const;
   RtdeState watch(Connection& line, const ProgramMark& mark, const std::vector<double>& target, int stops_before);
   void judge_running(const RtdeState& now, const ProgramMark& mark, const std::vector<double>& target) const;
@@ -232,13 +248,10 @@ class UrRobot : public RobotDevice {
   std::atomic<int> number_{1}, stops_{0};
 };
 
-bool UrRobot::stopped(const RtdeState& now, const ProgramMark& mark, Connection& line, Clock::time_point until,
+bool UrRobot::stopped(const RtdeState& now, const ProgramMark& mark, bool taken, Clock::time_point until,
                       const std::string& unsent) const {
-  line.discard();
-  const bool taken = now.program == mark.ended() || !ur_obstacle(now).empty();
   if (taken && ur_stands(now)) return true;
   if (Clock::now() < until || (now.program == mark.begun() && !ur_stands(now))) return false;
-  // The program was not taken, as in local control: nothing of ours moves where none runs.
   if (ur_stands(now) && (now.robot_bits & kProgramRuns) == 0) return true;
   throw unavailable("cannot be stopped: " + (unsent.empty() ? "it did not take the program that stops it" : unsent),
                     "press the emergency stop");
@@ -270,6 +283,7 @@ RtdeState UrRobot::watch(Connection& line, const ProgramMark& mark, const std::v
     if (stops_ != stops_before) throw unavailable("was stopped on request", {});
     if (reopened || sent_time_s < 0) sent_time_s = moved_time_s = now.time_s, arrived = idle = 0;
     if (!begun && (now.program & ~1) != mark.begun()) {
+      if (now.program != mark.before) judge_running(now, mark, target);
       if (const auto obstacle = ur_obstacle(now); !obstacle.empty())
         throw unavailable("cannot move: " + obstacle, "clear it at the pendant");
       if (Clock::now() > sent + std::chrono::duration<double>(address_.begin_s))

@@ -147,4 +147,46 @@ double plane_gap(const Body& a, const PlacedBody& at_a, const Body& b, const Pla
   return best;
 }
 
+namespace {
+
+// The point of the body nearest to a point of the world.
+Vec3 nearest_in(const Body& body, const PlacedBody& at, Vec3 world) {
+  const Vec3 p = transposed(at.rotation) * (world - at.origin_m), h = body.half_m;
+  Vec3 q{};
+  switch (body.solid->shape) {
+    case Solid::Shape::ball: {
+      const double r = norm(p);
+      q = r > body.radius_m ? p * (body.radius_m / r) : p;
+      break;
+    }
+    case Solid::Shape::cylinder: {
+      const double r = std::hypot(p.x, p.y), share = r > h.x ? h.x / r : 1;
+      q = {p.x * share, p.y * share, std::clamp(p.z, -h.z, h.z)};
+      break;
+    }
+    default: q = {std::clamp(p.x, -h.x, h.x), std::clamp(p.y, -h.y, h.y), std::clamp(p.z, -h.z, h.z)};
+  }
+  return at.rotation * q + at.origin_m;
+}
+
+}  // namespace
+
+Bounded bounded_distance(const Body& a, const PlacedBody& at_a, const Body& b, const PlacedBody& at_b, Vec3 on_b_m) {
+  constexpr double settled_m = 1e-7;
+  double below = std::max(ball_gap(a, at_a, b, at_b), plane_gap(a, at_a, b, at_b));
+  double above = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 on_a = nearest_in(a, at_a, on_b_m);
+    on_b_m = nearest_in(b, at_b, on_a);
+    const Vec3 across = on_b_m - on_a;
+    const double length = norm(across);
+    above = std::min(above, length);
+    if (!(length > settled_m)) return {0, 0};
+    const Vec3 n = across / length;
+    below = std::max(below, dot(n, at_b.middle_m - at_a.middle_m) - reach_along(a, at_a, n) - reach_along(b, at_b, n));
+    if (above - below < settled_m) break;
+  }
+  return {above, std::max(above - below, 0.0)};
+}
+
 }  // namespace gonio::acquisition

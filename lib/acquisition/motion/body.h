@@ -32,4 +32,12 @@ std::vector<PlacedBody> placed(const Laboratory& laboratory, const std::vector<B
 double ball_gap(const Body& a, const PlacedBody& at_a, const Body& b, const PlacedBody& at_b);
 double plane_gap(const Body& a, const PlacedBody& at_a, const Body& b, const PlacedBody& at_b);
 
+// For boxes, balls and cylinders: from points of either that are near to each other, the distance of the two and how
+// far it may be too large at most. Alternating projections (Cheney & Goldstein 1959) bound it from above, planes from
+// below.
+struct Bounded {
+  double distance_m = 0, too_large_m = 0;
+};
+Bounded bounded_distance(const Body& a, const PlacedBody& at_a, const Body& b, const PlacedBody& at_b, Vec3 on_b_m);
+
 }  // namespace gonio::acquisition

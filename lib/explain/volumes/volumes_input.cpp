@@ -20,23 +20,15 @@ const manifest::Mesh* mesh_of(const manifest::Document& document, const manifest
   return found == document.meshes.end() || found->second.file.empty() ? nullptr : &found->second;
 }
 
-// Indices to metres: p = origin + axes diag(spacing) index, axes with unit columns at right angles.
-struct Grid {
-  Mat3 axes;
-  Vec3 spacing_m, origin_m;
-  // scanner = axes' (p - origin) - diag(spacing) (size - 1) / 2
-  Vec3 scanner_from_volume(Vec3 p, const std::array<std::size_t, 3>& size) const {
-    const Vec3 last{static_cast<double>(size[0]) - 1, static_cast<double>(size[1]) - 1,
-                    static_cast<double>(size[2]) - 1};
-    return transposed(axes) * (p - origin_m) - spacing_m * last * 0.5;
-  }
-  Vec3 axis(int c) const { return {axes(0, c), axes(1, c), axes(2, c)}; }
-  bool turns_over() const { return dot(cross(axis(0), axis(1)), axis(2)) < 0; }
-};
+// scanner = axes' (p - origin) - diag(spacing) (size - 1) / 2
+Vec3 scanner_from_volume(const io::VolumeGrid& grid, Vec3 p, const std::array<std::size_t, 3>& size) {
+  const Vec3 last{static_cast<double>(size[0]) - 1, static_cast<double>(size[1]) - 1, static_cast<double>(size[2]) - 1};
+  return grid.along_axes(p) - grid.spacing_m * last * 0.5;
+}
 
 // What the manifest says, else the file.
-Grid grid_of(const manifest::Volume& volume, const io::VolumeHead& head, const std::string& place) {
-  Grid grid;
+io::VolumeGrid grid_of(const manifest::Volume& volume, const io::VolumeHead& head, const std::string& place) {
+  io::VolumeGrid grid;
   if (volume.volume_from_index) {
     const std::vector<std::vector<double>>& rows = volume.volume_from_index->matrix;
     const auto column = [&](std::size_t c) { return Vec3{rows.at(0).at(c), rows.at(1).at(c), rows.at(2).at(c)}; };
@@ -50,7 +42,7 @@ Grid grid_of(const manifest::Volume& volume, const io::VolumeHead& head, const s
     if (!head.spacing_m)
       throw Error(Exit::data, place, "says no voxel size, and neither does its file",
                   "give spacing_m or volume_from_index");
-    grid = {head.axes.value_or(Mat3{}), *head.spacing_m, head.origin_m.value_or(Vec3{})};
+    grid = io::grid_of(head);
   }
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < a; ++b)
@@ -106,11 +98,11 @@ VolumesInput read_input(const manifest::Document& document, const std::string& n
   if (volume.tiles.size() == 2)
     wish.tiles = {static_cast<std::size_t>(volume.tiles[0]), static_cast<std::size_t>(volume.tiles[1])};
   input.volume = io::read_volume(manifest::resolve(document, volume.file, "/volumes/" + name + "/file"), wish);
-  const Grid grid = grid_of(volume, input.volume.head, input.place);
-  const auto led = [&](Vec3 p) { return grid.scanner_from_volume(p, input.volume.head.size); };
+  const io::VolumeGrid grid = grid_of(volume, input.volume.head, input.place);
+  const auto led = [&](Vec3 p) { return scanner_from_volume(grid, p, input.volume.head.size); };
   input.spacing_m = grid.spacing_m;
   input.attenuation = volume.value == "attenuation";
-  input.mesh = believed(document, volume, grid.turns_over(), led);
+  input.mesh = believed(document, volume, grid.left_handed(), led);
   for (const manifest::Marker& marker : document.markers)
     if ((marker.volume.empty() || marker.volume == name) && marker.centre_m.size() == 3 && marker.radius_m)
       input.markers.push_back({led({marker.centre_m[0], marker.centre_m[1], marker.centre_m[2]}), *marker.radius_m});

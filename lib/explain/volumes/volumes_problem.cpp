@@ -19,8 +19,10 @@ using namespace volumes;
 // Readings are logarithms of intensities that a pixel averages over its area, so that they fall short where the path
 // changes within a pixel, the more the larger the wall's radius of curvature: walls stand some hundredths of a voxel
 // too far in (Glover & Pelc, Medical Physics 7 (1980) 238-248). No tomograph is free of it; what it does to a wall of
-// any radius, and to one of thirty voxels beside that, is free within these bounds.
-constexpr double usual_bias = 0.03, largest_bias = 0.05, usual_radius = 30, least_radius = 4, largest_radius = 120;
+// any radius, and to one of thirty voxels beside that, is free within these bounds: what pixels do that are voxels was
+// simulated.
+constexpr double usual_bias = 0.015, largest_bias = 0.03, usual_radius = 30, least_radius = 4, largest_radius = 120;
+constexpr double sharper = 0.1;  // than simulated a tomograph may be whose pixels are smaller than its voxels
 constexpr double largest_variance = 3, variance_sigma = 0.5;
 constexpr double value_sigma = 0.3;  // no reading may be deep enough to tell
 constexpr double ideal_sigma = 0.15, narrowest = 0.25, widest = 0.8;
@@ -143,7 +145,7 @@ class VolumesProblem final : public Problem {
     free("material", "1", 1, -infinity, infinity, 0.01, value_sigma);
     const double width = std::clamp(observed_.simulated_width, narrowest, widest);
     for (const char* name : {"edge_width_within_slices", "edge_width_across_slices"})
-      free(name, "voxel", width, narrowest, widest, 0.1, ideal_sigma);
+      free(name, "voxel", width, std::max(narrowest, width - sharper), widest, 0.1, ideal_sigma);
     for (const char* name : {"edge_width_between", "edge_width_by_curvature"})
       free(name, "voxel", 0, -0.3, 0.3, 0.05, ideal_sigma);
     for (const char* name : {"wall_bias", "wall_bias_by_radius"})

@@ -5,8 +5,10 @@
 // Instead of writing out the coefficients they are interpolated: every equation is linear in 1, cos q, sin q of each
 // joint that it holds, so that its values at three angles of each determine it.
 //
-// Good to about 1e-8 before refinement. Where an arm's geometry is special (parallel or meeting axes in threes) the six
-// equations become dependent and roots are lost: those arms have closed forms (closed_forms.h).
+// Good to about 1e-8 before refinement. Where an arm's geometry is special in several ways at once (axes 1 and 2 meet,
+// 2 and 3 are parallel, 4 and 5 meet) the six equations become dependent and roots are lost, for every seventh pose of
+// such arms; read from the flange the same arms kept all, hence both are asked for. Parallel or meeting axes in threes
+// have closed forms (closed_forms.h).
 #pragma once
 #include <memory>
 #include <vector>

@@ -18,7 +18,7 @@ constexpr double same_rad = 1e-6;             // two answers are one
 constexpr double good_enough = 1e-12;         // m, rad: closed forms that come so near are not refined
 constexpr double rounding_at_meeting = 1e-6;  // m, rad
 constexpr double exactly_so = 1e-10;          // rad, and of the arm's size: rounding of the rows that describe it
-constexpr int newton_steps = 30, descent_steps = 200;
+constexpr int newton_steps = 30, few_steps = 10, descent_steps = 200;
 
 bool is_same(const Joints& a, const Joints& b, double limit_rad) {
   for (std::size_t i = 0; i < 6; ++i)
@@ -28,6 +28,10 @@ bool is_same(const Joints& a, const Joints& b, double limit_rad) {
 
 class Answers {
  public:
+  template <class Test>
+  bool any(const Test& test) const {
+    return std::any_of(kept_.begin(), kept_.end(), test);
+  }
   int size() const { return static_cast<int>(kept_.size()); }
   void keep(const JointAnswer& answer, double same_within_rad) {
     for (JointAnswer& known : kept_)
@@ -75,10 +79,14 @@ struct InverseKinematics::Parts {
   double apart_rad = 0;                      // closed_form::Hints
   std::optional<general::AllRoots> general;  // without a closed form, and where the one beside loses answers
 
+  std::optional<general::AllRoots>
+      backwards;  // the same from the flange: special geometry may keep what the other loses
+
   bool take(const screws::Screws& s, bool reverse);
   std::vector<JointAnswer> candidates(const screws::Pose& wanted, const closed_form::Hints& hints) const;
   std::vector<JointAnswer> all_round(const screws::Pose& wanted) const;
   bool is_plausible(const JointAnswer& start, const screws::Pose& wanted) const;
+  bool is_delicate(const std::optional<SingularFactors>& factors) const;
   std::vector<JointAnswer> roots(const screws::Pose& wanted) const;
   JointAnswer led(const JointAnswer& start, const screws::Pose& wanted, int steps) const;
 };
@@ -118,10 +126,17 @@ bool InverseKinematics::Parts::is_plausible(const JointAnswer& start, const scre
   return at.position_error_m < 4 * apart_rad * apart_rad * arm.size_m && at.rotation_error_rad < 2 * apart_rad;
 }
 
+// So near to a singular posture that the true arm may have other answers than the one beside it.
+bool InverseKinematics::Parts::is_delicate(const std::optional<SingularFactors>& factors) const {
+  const double off = apart_rad * apart_rad;
+  return factors && (std::abs(factors->wrist) < 8 * off || std::abs(factors->elbow) < 2 * apart_rad ||
+                     std::abs(factors->shoulder_m) < 8 * off * arm.size_m);
+}
+
 // Where the wrist's axes come into line the arm beside the true one does not tell how joints 4 and 6 share their turn:
 // they start all round. Where elbow or shoulder stretch, from further apart.
 std::vector<JointAnswer> InverseKinematics::Parts::all_round(const screws::Pose& wanted) const {
-  constexpr int count = 12;
+  constexpr int count = 8;
   std::vector<JointAnswer> all;
   for (int i = 0; i < count; ++i) {
     const double turn = 2 * pi * i / count - pi;
@@ -134,6 +149,9 @@ std::vector<JointAnswer> InverseKinematics::Parts::all_round(const screws::Pose&
 std::vector<JointAnswer> InverseKinematics::Parts::roots(const screws::Pose& wanted) const {
   std::vector<JointAnswer> all;
   for (const Joints& joints : general->starts(wanted)) all.push_back({joints, -1, 0, 0, false, false});
+  if (backwards)
+    for (const Joints& joints : backwards->starts(screws::inverse(wanted)))
+      all.push_back({in_reverse(joints), -1, 0, 0, false, false});
   return all;
 }
 
@@ -164,7 +182,7 @@ InverseKinematics::InverseKinematics(std::span<const Link> links, const std::str
   auto parts = std::make_unique<Parts>();
   parts->arm = screws::screws_of(links);
   if (!parts->take(parts->arm, false) && !parts->take(screws::reversed(parts->arm), true))
-    parts->general.emplace(parts->arm);
+    parts->general.emplace(parts->arm), parts->backwards.emplace(screws::reversed(parts->arm));
   parts_ = std::move(parts);
 }
 InverseKinematics::~InverseKinematics() = default;
@@ -201,22 +219,25 @@ std::vector<JointAnswer> InverseKinematics::solve(const Rigid<frame::Base, frame
       p.candidates(wanted, {p.from_flange ? in_reverse(near_rad) : near_rad, p.apart_rad});
   Answers answers;
   int expected = 0;
-  const auto lead = [&](const JointAnswer& start) {
-    JointAnswer answer = p.led(start, wanted, newton_steps);
+  const auto lead = [&](const JointAnswer& start, int steps) {
+    JointAnswer answer = p.led(start, wanted, steps);
     // Newton's method may cross to another branch where two meet.
     if (p.departs && answer.exact && (answer.branch < 0 || !is_same(answer.joints_rad, start.joints_rad, p.apart_rad)))
       answer.branch = branch_of(answer.joints_rad);
     if (answer.exact) answers.keep(answer, same_rad);
   };
   for (const JointAnswer& start : starts) {
-    lead(start);
+    lead(start, newton_steps);
     expected += p.departs && p.is_plausible(start, wanted);
   }
-  // Of a calibrated arm, near singular postures: answers come in pairs, and 8 that the arm beside it has may be 10.
+  // Of a calibrated arm, near singular postures: 8 answers that the arm beside it has may be 10, and some that it has
+  // may not be there. Answers come in pairs: an odd count lacks one.
   const auto complete = [&] { return answers.size() >= expected && answers.size() % 2 == 0; };
-  for (const auto more : {&Parts::roots, &Parts::all_round})
-    if (p.departs && !complete())
-      for (const JointAnswer& start : (p.*more)(wanted)) lead(start);
+  if (p.departs &&
+      (!complete() || answers.any([&](const JointAnswer& a) { return p.is_delicate(factors_at(a.joints_rad)); })))
+    for (const JointAnswer& start : p.roots(wanted)) lead(start, newton_steps);
+  if (p.departs && !complete())
+    for (const JointAnswer& start : p.all_round(wanted)) lead(start, few_steps);
   if (answers.size() > 0) return answers.by_branch();
   const bool descend = p.departs || p.general;
   for (const JointAnswer& start : starts)

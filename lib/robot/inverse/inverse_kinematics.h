@@ -10,7 +10,9 @@
 // 16 roots of one equation in the tangent of half of joint 3 (Raghavan & Roth, J. Mech. Design 115, 1993; Manocha &
 // Canny, IEEE Trans. Robotics and Automation 10, 1994). A calibrated arm is no longer exactly parallel anywhere: it is
 // solved as the nearest arm that is, and each answer is then led to the true one by Newton's method on exact
-// derivatives.
+// derivatives. Beside its singular postures (a wrist within a degree or so of straight) it may have 10 or 12 answers,
+// which the general method looks for; two of them may then carry the same branch, and one in some 10,000 poses lacks
+// one.
 //
 // Out of reach (no exact answer): the least-squares ones of the subproblems, arm stretched towards the target, whose
 // angles go over continuously into the exact ones as the target comes into reach. Angles lie in (-pi, pi]; turns and
@@ -80,8 +82,8 @@ class InverseKinematics {
   std::unique_ptr<const Parts> parts_;
 };
 
-// "shoulder left, elbow up, wrist flipped": bits 4, 2, 1 of the number. They are signs of
-// SingularFactors, so that none changes unless joints pass through a singular posture.
+// "shoulder left, elbow up, wrist flipped": bits 4, 2, 1 of the number. They are signs of SingularFactors, so that none
+// changes unless joints pass through a singular posture.
 //   shoulder  left (0): axis 2 points to the left, seen from axis 1 towards the wrist's centre; right (4)
 //   elbow     up (0): the elbow lies on the side of axis 1's direction, seen from the line from shoulder to wrist; down
 //   wrist     not flipped (0): turning joint 5 forwards takes axis 6 further from axis 4 (spherical wrist) or from the

@@ -1,3 +1,4 @@
+// The camera once round the target, 20 degrees over its horizon. (geom/view_path.h)
 #include "acquisition/plan/view_steps.h"
 
 namespace gonio::acquisition::patterns {

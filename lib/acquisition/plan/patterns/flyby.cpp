@@ -1,3 +1,4 @@
+// The camera past the target and over it. (geom/view_path.h)
 #include "acquisition/plan/view_steps.h"
 
 namespace gonio::acquisition::patterns {

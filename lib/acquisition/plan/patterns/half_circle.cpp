@@ -1,3 +1,4 @@
+// The camera half round the target, on one side. (geom/view_path.h)
 #include "acquisition/plan/view_steps.h"
 
 namespace gonio::acquisition::patterns {

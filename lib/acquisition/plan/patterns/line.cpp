@@ -1,3 +1,4 @@
+// The camera sideways past the target. (geom/view_path.h)
 #include "acquisition/plan/view_steps.h"
 
 namespace gonio::acquisition::patterns {

@@ -1,3 +1,4 @@
+// The camera a little towards the target and back, mostly along its axis. (geom/view_path.h)
 #include "acquisition/plan/view_steps.h"
 
 namespace gonio::acquisition::patterns {

@@ -1,3 +1,4 @@
+// The camera to and fro past the target, nearer and farther by turns. (geom/view_path.h)
 #include "acquisition/plan/view_steps.h"
 
 namespace gonio::acquisition::patterns {
