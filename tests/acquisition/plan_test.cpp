@@ -27,17 +27,8 @@ std::vector<manifest::PlanStep> asked(const std::string& name, PatternNumbers gi
   return pattern.make(ur5_scene(), pattern_numbers(pattern, given, "--pattern"));
 }
 
-// Nearer to the object than elsewhere, on stands: the arms then reach most of a hemisphere of 0.3 m.
-manifest::Document near_document() {
-  manifest::Document document = tests::laboratory_document(tests::two_ur5_text());
-  auto& robots = document.laboratory.entry.front().robots;
-  robots.at("camera-arm").world_from_base->translation_m = {0.3, 0, -0.1};
-  robots.at("light-arm").world_from_base->translation_m = {-0.5, 0, -0.1};
-  return document;
-}
-
 struct Instrument {
-  manifest::Document document = near_document();
+  manifest::Document document = tests::laboratory_document(tests::two_ur5_text());
   Laboratory laboratory = believed_laboratory(document);
   Surroundings surroundings{laboratory};
 
@@ -174,7 +165,7 @@ TEST(Plan, InterleavesFramesThatTellDriftFromTheSurface) {
 
 TEST(Plan, StraightWaysStayOnTheirLine) {
   const Instrument ur5;
-  const auto steps = asked("line", {{"views", 4}, {"distance", 0.35}, {"spread", 0.2}});
+  const auto steps = asked("line", {{"views", 4}, {"distance", 0.3}, {"spread", 0.2}});
   const manifest::Plan plan = make_plan(ur5.document, ur5.laboratory, steps, "line", {.straight = "eye"});
   ASSERT_EQ(plan.steps.size(), 4u);
   ur5.expect_sound(plan);

@@ -4,6 +4,8 @@
 // solution nearest to where it stands (largest joint step), the lamp's tool turned about its axis in one fixed way; it
 // knows of limits and of nothing else. Both are walked by the same judge in steps of 1 mm, whose time knows joints'
 // speeds and accelerations and the tools' speed limit.
+#include "manifest/sections/plan.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -17,7 +19,6 @@
 #include "acquisition/plan/view_steps.h"
 #include "base/parallel.h"
 #include "geom/angle.h"
-#include "manifest/sections/laboratory.h"
 #include "robot/inverse/inverse_kinematics.h"
 #include "robot/inverse/turns.h"
 
@@ -144,11 +145,7 @@ void compare(const char* name, const manifest::Document& document, const Laborat
 int run(int argc, char** argv) {
   const double step = (argc > 1 ? std::atof(argv[1]) : 10) * degree;
   const auto places = static_cast<std::size_t>(argc > 2 ? std::atoi(argv[2]) : 2);
-  manifest::Document document = tests::laboratory_document(tests::two_ur5_text());
-  // Nearer to the object than in the tests, on stands: of a hemisphere of 0.3 m the arms then reach most.
-  auto& robots = document.laboratory.entry.front().robots;
-  robots.at("camera-arm").world_from_base->translation_m = {0.3, 0, -0.1};
-  robots.at("light-arm").world_from_base->translation_m = {-0.5, 0, -0.1};
+  const manifest::Document document = tests::laboratory_document(tests::two_ur5_text());
   const Laboratory laboratory = believed_laboratory(document);
   PatternScene scene;
   scene.camera = "eye", scene.lamps = {"led"}, scene.exposures_s = {0.01};

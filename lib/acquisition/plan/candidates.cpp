@@ -21,7 +21,7 @@ namespace {
 // Kept of each arm alone; pairs that are tried.
 constexpr std::size_t most_camera_postures = 16, most_lamp_postures = 24, most_tries = 384;
 constexpr double same_place_m = 1e-6, same_turn_rad = 1e-6;
-constexpr int lamp_rolls = 24, bare_lamp_rolls = 8;
+constexpr int lamp_rolls = 36, bare_lamp_rolls = 8;
 
 using WorldTool = Rigid<frame::World, frame::Tool>;
 

@@ -14,7 +14,6 @@ namespace {
 constexpr double feared_detour_s = 1;
 constexpr double straight_deviation_m = 5e-5;  // half of what is promised
 constexpr int straight_attempts = 6;
-constexpr double walking_step_m = 0.001;
 constexpr int middle_draws = 48, middle_enough = 3;
 // A joint that turns by more than a quarter turn between two views drags its cable along: what it turns beyond costs as
 // if it took so much longer, so that it happens where nothing else does.

@@ -17,6 +17,9 @@
 
 namespace gonio::acquisition {
 
+// Ways are judged in steps of this: nothing on them is nearer than their clearance by more (motion/way.h).
+inline constexpr double walking_step_m = 0.001;
+
 struct PlanCandidate {
   Configurations::Placed at;
   std::size_t station = 0;

@@ -1,3 +1,4 @@
+// The way home from a plan's step (planner.h).
 #include "acquisition/plan/planner.h"
 #include "base/error.h"
 #include "base/text.h"

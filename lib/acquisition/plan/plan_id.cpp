@@ -1,3 +1,4 @@
+// What decides a plan, written canonically and hashed (planner.h).
 #include <algorithm>
 
 #include "acquisition/plan/planner.h"

@@ -1,3 +1,4 @@
+// Where the arms stand at a plan's steps, and the ways between them (planner.h).
 #include "acquisition/plan/planner.h"
 #include "base/error.h"
 

@@ -22,9 +22,20 @@ constexpr int most_rounds = 12;
 constexpr std::size_t tour_rounds_each = 8, most_tour_rounds = 6000;  // of ruin and recreate, per view
 constexpr double forbidden_s = 1e7;
 
+// With as much more margin as a walk may overlook, so that the margin itself holds everywhere; no more than home has.
+Laboratory careful(const Laboratory& laboratory) {
+  Laboratory with = laboratory;
+  const double wanted = laboratory.margin_m + walking_step_m;
+  State home;
+  for (const auto& [name, arm] : laboratory.arms) home[name] = arm.home;
+  const double there = Surroundings(laboratory).clearance(home, wanted).distance_m;
+  with.margin_m = std::clamp((1 - 1e-9) * there, laboratory.margin_m, wanted);
+  return with;
+}
+
 struct Planner {
   const manifest::Document& document;
-  const Laboratory& laboratory;
+  const Laboratory laboratory;
   const std::vector<manifest::PlanStep>& asked;
   const PlanOptions& options;
   Surroundings surroundings;
@@ -43,13 +54,13 @@ struct Planner {
   Planner(const manifest::Document& d, const Laboratory& l, const std::vector<manifest::PlanStep>& a,
           const PlanOptions& o)
       : document(d),
-        laboratory(l),
+        laboratory(careful(l)),
         asked(a),
         options(o),
-        surroundings(l),
-        configurations(l),
+        surroundings(laboratory),
+        configurations(laboratory),
         target_m(o.target_m.value_or(common_target(a))),
-        search(d, l, surroundings, target_m),
+        search(d, laboratory, surroundings, target_m),
         stations(stations_of(a, o)) {}
 
   bool as_asked() const { return options.keep_order || !options.straight.empty(); }

@@ -45,7 +45,7 @@ struct Stopped {
 
 struct Posture {
   Joints joints;
-  double far = 0;  // largest joint's way from home
+  double far = 0;  // from home: length of the joints' difference, so that a joint that is free stays near home too
 };
 
 }  // namespace
@@ -75,7 +75,7 @@ struct PostureSearch::Parts {
     }
     for (std::size_t k = 0; k < std::min(turned.size(), turns_of_one); ++k) {
       Posture p{{turned[k].begin(), turned[k].end()}, 0};
-      for (std::size_t j = 0; j < home.size(); ++j) p.far = std::max(p.far, std::abs(turned[k][j] - home[j]));
+      for (std::size_t j = 0; j < home.size(); ++j) p.far = std::hypot(p.far, turned[k][j] - home[j]);
       found.push_back(std::move(p));
     }
   }
