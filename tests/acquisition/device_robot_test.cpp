@@ -67,7 +67,7 @@ TEST(DeviceRobot, GoesThroughAWayAndStandsAtItsEnd) {
 
 TEST(DeviceRobot, DoesNotMoveWhereItMayNot) {
   DeskWorld world;
-  const auto robot = open_robot(world.robot_url("&begin=200ms"), "here");
+  const auto robot = open_robot(world.robot_url("&begin=2s"), "here");
   const auto start = tests::joints_of(world.arm.now());
   Way way{start, start};
   way[1][0] += 0.2;
@@ -114,7 +114,7 @@ TEST(DeviceRobot, AProgramThatDoesNotBeginIsNoticed) {
 
 TEST(DeviceRobot, AProtectiveStopOnTheWaySaysWhere) {
   DeskWorld world;
-  const auto robot = open_robot(world.robot_url("&begin=200ms"), "here");
+  const auto robot = open_robot(world.robot_url("&begin=2s"), "here");
   const auto start = tests::joints_of(world.arm.now());
   Way way{start, start};
   way[1][0] += 1;
@@ -130,7 +130,7 @@ TEST(DeviceRobot, AProtectiveStopOnTheWaySaysWhere) {
 
 TEST(DeviceRobot, ATargetBeyondTheRangeIsNotReached) {
   DeskWorld world;
-  const auto robot = open_robot(world.robot_url("&begin=200ms"), "here");
+  const auto robot = open_robot(world.robot_url("&begin=2s"), "here");
   const auto start = tests::joints_of(world.arm.now());
   world.faults.set(Fault::joint_limit, 1);
   Way way{start, start};
