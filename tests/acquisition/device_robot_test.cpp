@@ -177,6 +177,21 @@ TEST(DeviceRobot, AnotherProgramsEndIsNotOurs) {
   EXPECT_THAT(moved, testing::HasSubstr("another program took the place of ours"));
 }
 
+// The stop key of the pendant ends the program, and no flag tells of it.
+TEST(DeviceRobot, AProgramThatEndsOnItsWayHasNotArrived) {
+  DeskWorld world(20);
+  const auto robot = open_robot(world.robot_url("&stall=50ms"), "here");
+  const auto start = tests::joints_of(world.arm.now());
+  Way way{start, start};
+  way[1][0] += 2;
+  std::string moved;
+  std::thread mover([&] { moved = problem_of([&] { robot->move(way, tests::kSpeeds, tests::kAccelerations); }); });
+  while (world.arm.now().speed_rad_per_s[0] == 0) std::this_thread::yield();
+  world.arm.end_program();
+  mover.join();
+  EXPECT_THAT(moved, testing::HasSubstr("its program ended on the way: joint 1 stands at"));
+}
+
 TEST(DeviceRobot, RegistersOfAnotherArmAreNoticed) {
   DeskWorld world, other;
   other.arm.run({{desk::ArmStep::Kind::move, 0, 0, {0.1, -1.2, 1.3, -1.5, -1.6, 0.3}, 10, 100}});
