@@ -124,8 +124,19 @@ TEST(DeviceRobot, AProtectiveStopOnTheWaySaysWhere) {
   EXPECT_GT(tests::farthest(tests::joints_of(world.arm.now()), way[1]), 1e-4);
   world.arm.clear_stops();
   world.faults.set(Fault::protective_stop, 0);
-  way[0] = robot->state().joints_rad;  // on it goes from where it stands
-  EXPECT_LE(tests::farthest(robot->move(way, tests::kSpeeds, tests::kAccelerations).joints_rad, way[1]), 1e-4);
+  // On it goes from where it stands. The program that was to stop it may come only now and stop this motion too: an
+  // error, and asked once more it goes.
+  RobotState end;
+  for (int tries = 3; end.joints_rad.empty() && tries > 0; --tries) {
+    const std::string again = problem_of([&] {
+      way[0] = robot->state().joints_rad;
+      end = robot->move(way, tests::kSpeeds, tests::kAccelerations);
+    });
+    if (end.joints_rad.empty()) {
+      EXPECT_THAT(again, testing::HasSubstr("program"));
+    }
+  }
+  EXPECT_LE(tests::farthest(end.joints_rad, way[1]), 1e-4);
 }
 
 TEST(DeviceRobot, ATargetBeyondTheRangeIsNotReached) {
