@@ -69,7 +69,7 @@ TEST(DeviceModbus, FaultsNeverGiveAnotherRegistersValue) {
   ModbusClient patient({"127.0.0.1", server.port(), 1}, "here");
   ModbusClient device({"127.0.0.1", server.port(), 1, 0.02, 3}, "here");
   for (std::uint16_t i = 0; i < 64; ++i) {
-    const std::uint16_t value = 1000 + 7 * i;
+    const auto value = static_cast<std::uint16_t>(1000 + 7 * i);
     patient.write_words(i, std::span(&value, 1));
   }
   for (const auto kind :
@@ -111,7 +111,7 @@ TEST(DeviceModbus, WhatTheDeviceRefusesIsSaid) {
 TEST(DeviceModbus, LampsAreReadBack) {
   DeskWorld world;
   const auto coil = open_lamp(world.host() + "/coil/3", "here");
-  const auto seen = open_lamp(world.host() + "/coil/4?answer=4&timeout=20ms", "here");
+  const auto seen = open_lamp(world.host() + "/coil/4?answer=4&timeout=200ms", "here");
   const auto inverse = open_lamp(world.host() + "/coil/5?inverse=yes", "here");
   coil->set(true);
   EXPECT_TRUE(coil->is_on() && world.lamps.lit(3) && !world.lamps.lit(4));
@@ -192,7 +192,7 @@ TEST(DeviceModbus, AnotherControllerMovesByItsRegisterMap) {
   tests::ScratchFolder folder;
   std::ofstream(folder / "my map.json") << kOtherMap;
   const std::string url =
-      with_query(world.host() + "?stall=300ms", "registers", (folder / "my map.json").string(), "here");
+      with_query(world.host() + "?stall=3000ms", "registers", (folder / "my map.json").string(), "here");
   const auto robot = open_robot(url, "here");
   const std::vector<std::vector<double>> way{{0, 0}, {0.5, -1}, {1.5, 2}};
   const std::vector<double> two{1, 1};
@@ -202,7 +202,8 @@ TEST(DeviceModbus, AnotherControllerMovesByItsRegisterMap) {
     EXPECT_LE(tests::farthest(state.joints_rad, way.back()), 1e-4);
     EXPECT_TRUE(state.standing);
   }
-  const auto silent = open_robot(url.substr(0, url.find("300ms")) + "20ms" + url.substr(url.find("300ms") + 5), "here");
+  const auto silent =
+      open_robot(url.substr(0, url.find("3000ms")) + "20ms" + url.substr(url.find("3000ms") + 6), "here");
   const std::vector<std::vector<double>> back{{1.5, 2}, {0, 0}};
   try {
     silent->move(back, two, two);
@@ -245,7 +246,7 @@ TEST(DeviceModbus, MapsThatAreNoneAreRefusedInWords) {
 // their address.
 constexpr const char* kPymodbusServer = R"(
 import asyncio, sys, types
-for name in ('serial', 'serial_asyncio'):  # it imports them for lines of that kind; Debian's package only recommends them
+for name in ('serial', 'serial_asyncio'):  # imported for lines of that kind; Debian's package only recommends them
     try:
         __import__(name)
     except ImportError:
@@ -256,7 +257,8 @@ from pymodbus.datastore import ModbusSequentialDataBlock, ModbusSlaveContext, Mo
 store = ModbusSlaveContext(di=ModbusSequentialDataBlock(0, [0, 1] * 50), co=ModbusSequentialDataBlock(0, [0] * 100),
                            hr=ModbusSequentialDataBlock(0, [3 * i for i in range(100)]),
                            ir=ModbusSequentialDataBlock(0, [0xFFFF - i for i in range(100)]), zero_mode=True)
-asyncio.run(StartAsyncTcpServer(ModbusServerContext(slaves=store, single=True), address=('127.0.0.1', int(sys.argv[1]))))
+context = ModbusServerContext(slaves=store, single=True)
+asyncio.run(StartAsyncTcpServer(context, address=('127.0.0.1', int(sys.argv[1]))))
 )";
 
 TEST(DeviceModbus, SpeaksWithAServerThatIsNotOurs) {

@@ -67,7 +67,7 @@ TEST(DeviceRobot, GoesThroughAWayAndStandsAtItsEnd) {
 
 TEST(DeviceRobot, DoesNotMoveWhereItMayNot) {
   DeskWorld world;
-  const auto robot = open_robot(world.robot_url("&begin=200ms"), "here");
+  const auto robot = open_robot(world.robot_url("&begin=2s"), "here");
   const auto start = tests::joints_of(world.arm.now());
   Way way{start, start};
   way[1][0] += 0.2;
@@ -114,7 +114,7 @@ TEST(DeviceRobot, AProgramThatDoesNotBeginIsNoticed) {
 
 TEST(DeviceRobot, AProtectiveStopOnTheWaySaysWhere) {
   DeskWorld world;
-  const auto robot = open_robot(world.robot_url("&begin=200ms"), "here");
+  const auto robot = open_robot(world.robot_url("&begin=2s"), "here");
   const auto start = tests::joints_of(world.arm.now());
   Way way{start, start};
   way[1][0] += 1;
@@ -124,13 +124,24 @@ TEST(DeviceRobot, AProtectiveStopOnTheWaySaysWhere) {
   EXPECT_GT(tests::farthest(tests::joints_of(world.arm.now()), way[1]), 1e-4);
   world.arm.clear_stops();
   world.faults.set(Fault::protective_stop, 0);
-  way[0] = robot->state().joints_rad;  // on it goes from where it stands
-  EXPECT_LE(tests::farthest(robot->move(way, tests::kSpeeds, tests::kAccelerations).joints_rad, way[1]), 1e-4);
+  // On it goes from where it stands. The program that was to stop it may come only now and stop this motion too: an
+  // error, and asked once more it goes.
+  RobotState end;
+  for (int tries = 3; end.joints_rad.empty() && tries > 0; --tries) {
+    const std::string again = problem_of([&] {
+      way[0] = robot->state().joints_rad;
+      end = robot->move(way, tests::kSpeeds, tests::kAccelerations);
+    });
+    if (end.joints_rad.empty()) {
+      EXPECT_THAT(again, testing::HasSubstr("program"));
+    }
+  }
+  EXPECT_LE(tests::farthest(end.joints_rad, way[1]), 1e-4);
 }
 
 TEST(DeviceRobot, ATargetBeyondTheRangeIsNotReached) {
   DeskWorld world;
-  const auto robot = open_robot(world.robot_url("&begin=200ms"), "here");
+  const auto robot = open_robot(world.robot_url("&begin=2s"), "here");
   const auto start = tests::joints_of(world.arm.now());
   world.faults.set(Fault::joint_limit, 1);
   Way way{start, start};
@@ -175,6 +186,21 @@ TEST(DeviceRobot, AnotherProgramsEndIsNotOurs) {
   world.arm.run({{desk::ArmStep::Kind::mark, 24, 12345}, theirs, {desk::ArmStep::Kind::mark, 24, 12346}});
   mover.join();
   EXPECT_THAT(moved, testing::HasSubstr("another program took the place of ours"));
+}
+
+// The stop key of the pendant ends the program, and no flag tells of it.
+TEST(DeviceRobot, AProgramThatEndsOnItsWayHasNotArrived) {
+  DeskWorld world(20);
+  const auto robot = open_robot(world.robot_url("&stall=50ms"), "here");
+  const auto start = tests::joints_of(world.arm.now());
+  Way way{start, start};
+  way[1][0] += 2;
+  std::string moved;
+  std::thread mover([&] { moved = problem_of([&] { robot->move(way, tests::kSpeeds, tests::kAccelerations); }); });
+  while (world.arm.now().speed_rad_per_s[0] == 0) std::this_thread::yield();
+  world.arm.end_program();
+  mover.join();
+  EXPECT_THAT(moved, testing::HasSubstr("its program ended on the way: joint 1 stands at"));
 }
 
 TEST(DeviceRobot, RegistersOfAnotherArmAreNoticed) {

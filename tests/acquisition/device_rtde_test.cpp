@@ -169,7 +169,7 @@ TEST(DeviceRtde, FaultsNeverGiveAStaleState) {
   DeskWorld world(100, 13);
   for (const auto kind : {Fault::rtde_dropped, Fault::rtde_reordered, Fault::rtde_short, Fault::rtde_reset})
     world.faults.set(kind, 0.05);
-  RtdeClient client({"127.0.0.1", world.controller.rtde_port(), 24, 0.05, 125}, "here");
+  RtdeClient client({"127.0.0.1", world.controller.rtde_port(), 24, 1, 125}, "here");
   int seen = 0, refused = 0;
   for (int k = 0; k < 300; ++k) {
     desk::SixJoints target{0.1 * (k % 7), -1, 1, -1, -1, 0.1 * (k % 5)};

@@ -197,6 +197,13 @@ void TrueArm::emergency_stop() {
   halt(t);
 }
 
+void TrueArm::end_program() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const double t = simulated_now();
+  advance(t);
+  halt(t);
+}
+
 void TrueArm::clear_stops() {
   const std::lock_guard<std::mutex> lock(mutex_);
   advance(simulated_now());

@@ -62,6 +62,7 @@ class TrueArm {
       const std::vector<ArmStep>& program);  // replaces the one that runs; braking first. Ignored where it may not.
   void protective_stop();
   void emergency_stop();
+  void end_program();  // as by the stop key of its pendant: it brakes, and nothing else shows
   void clear_stops();
   void set_powered(bool powered);
   void set_remote_control(bool remote);
