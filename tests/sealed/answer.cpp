@@ -110,7 +110,7 @@ std::vector<std::string> split(const std::string& line) {
 
 // What explain calls the domain of a world.
 std::string domain_of(const Spec& spec) {
-  for (const char* same : {"boards", "robot", "images", "heights"})
+  for (const char* same : {"boards", "robot", "images", "heights", "volumes"})
     if (spec.domain == same) return spec.domain;
   return spec.domain == "exposures" || spec.domain == "photometric" ? "stacks" : "tables";
 }

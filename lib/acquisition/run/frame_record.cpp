@@ -54,6 +54,15 @@ void enter_robots(manifest::Document& d) {
     }
 }
 
+// From a radiance to what the file says, 0 to 1 for its codes: known of a camera whose sensitivity is known.
+manifest::Parameter gain_of(const manifest::LaboratoryCamera& camera, const FrameRecord& r) {
+  const double full = r.bits > 8 ? 65535 : 255;
+  if (camera.codes_per_radiance_s) return *camera.codes_per_radiance_s * r.exposure_s / full;
+  manifest::Parameter gain(1.0);
+  gain.free = true;
+  return gain;
+}
+
 }  // namespace
 
 std::vector<std::string> images_of(const manifest::PlanStep& step) {
@@ -82,7 +91,8 @@ Value to_event(const FrameRecord& r) {
                            {"bright_code", r.figures.bright_code},
                            {"noise", r.figures.noise},
                            {"focus", r.figures.focus},
-                           {"tries", r.tries}});
+                           {"tries", r.tries},
+                           {"bits", r.bits}});
   if (r.gain_db) e["gain_db"] = *r.gain_db;
   if (r.temperature_K) e["temperature_K"] = *r.temperature_K;
   if (!r.turntables.empty()) {
@@ -116,6 +126,7 @@ FrameRecord frame_of(const Value& e) {
   r.figures = {number_in(e, "saturated_share").value_or(0), number_in(e, "mean_code").value_or(0),
                number_in(e, "bright_code").value_or(0), number_in(e, "noise").value_or(0),
                number_in(e, "focus").value_or(0)};
+  r.bits = static_cast<int>(number_in(e, "bits").value_or(16));
   r.tries = static_cast<int>(number_in(e, "tries").value_or(1));
   return r;
 }
@@ -143,12 +154,15 @@ void enter_frames(manifest::Document& d, const Laboratory& laboratory, const man
       image.time_s = r.time_s;
       image.temperature_K = r.temperature_K;
       image.group = r.group;
+      image.response = "linear";  // a sensor's own numbers
       if (d.cameras.contains(r.camera)) image.camera = r.camera;
       for (const std::string& lamp : r.lamps) {
         const auto named = lab.lamps.find(lamp);
         const std::string light = named == lab.lamps.end() || named->second.light.empty() ? lamp : named->second.light;
         if (d.lights.contains(light)) image.light.push_back(light);
       }
+      if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())
+        image.gain = gain_of(camera->second, r);
       if (r.lamps.empty() && !lab.lamps.empty()) image.dark = true;
       if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())
         if (camera->second.tool_from_camera || camera->second.world_from_camera)

@@ -27,6 +27,7 @@ struct FrameRecord {
   std::map<std::string, double> turntables;
   std::uint64_t frame_id = 0;
   FrameFigures figures;
+  int bits = 16;  // used ones of a sample
   int tries = 1;
 };
 

@@ -325,6 +325,7 @@ class PlanRun {
     record.temperature_K = frame.temperature_K;
     record.time_s = time_before_s_ + seconds_since(zero_);
     record.frame_id = frame.frame_id;
+    record.bits = frame.bits;
     for (const auto& [name, angle] : step.turntable_rad) record.turntables[name] = angle;
     record.file = "frames/" + file_stem(image) + ".png";
     const fs::path path = options_.out / record.file;
