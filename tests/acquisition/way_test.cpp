@@ -82,6 +82,13 @@ TEST(Timing, OfALineIsTheSlowestJointsAndCuttingItChangesNothing) {
   EXPECT_GT(way_time(laboratory, {start, end}), norm(a.translation_m - b.translation_m) / 0.1);
 }
 
+TEST(Judge, FindsNoFaultWithAnyHome) {
+  for (const std::string& text : {tests::two_ur5_text(), tests::abb_and_arc_text(), tests::ur3_and_turntable_text()}) {
+    const World w(text);
+    EXPECT_EQ(judge(w.laboratory, w.surroundings, {{}}).fault, "");
+  }
+}
+
 TEST(Judge, NamesWhatIsBroken) {
   const World& w = two_ur5();
   const State home{};

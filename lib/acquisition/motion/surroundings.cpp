@@ -108,9 +108,12 @@ struct Surroundings::Parts {
         if (distance <= 0) ++touching[i];
       }
     }
+    const std::vector<PlacedBody> home = placed(laboratory, bodies, {});
     for (std::size_t i = 0; i < own.size(); ++i) {
+      const bool at_home = mere_neighbours(own[i]) && exactly(own[i], home) <= 0;
+      if (at_home) smallest[i] = 0;
       const bool never = touching[i] == 0 && close[i] > often_close * postures && mere_neighbours(own[i]);
-      if (near[i] < nearly_every * postures && !never) continue;
+      if (near[i] < nearly_every * postures && !never && !at_home) continue;
       note_left_out(named(own[i], smallest[i]));
       std::erase_if(pairs, [&](const WatchedPair& p) { return p.a == own[i].a && p.b == own[i].b; });
     }
