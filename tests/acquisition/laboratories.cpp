@@ -55,11 +55,11 @@ std::string arc_lamps(std::string& obstacles) {
 std::string two_ur5_text() {
   return R"({"gonio": 1, "laboratory": {"robots": {
     "camera-arm": {"url": "sim://", "model": "ur5", )" +
-         std::string(cable()) + ", " + standing("world_from_base", 0.45, 0, -0.25, pi) + R"(,
+         std::string(cable()) + ", " + standing("world_from_base", 0.38, 0, 0.1, pi) + R"(,
       "home_rad": [0, -1.9, 1.9, -1.6, -1.5708, 0], "carries": [)" +
          camera_body() + R"(]},
     "light-arm": {"url": "sim://", "model": "ur5", )" +
-         cable() + ", " + standing("world_from_base", -0.55, 0, -0.25) + R"(,
+         cable() + ", " + standing("world_from_base", -0.42, 0, 0.1) + R"(,
       "home_rad": [0, -1.9, 1.9, -1.6, -1.5708, 0],
       "carries": [)" +
          cylinder("led", 0, 0, 0.026, 0.02, 0.05, "tool_from_body") + R"(]}},
@@ -68,7 +68,9 @@ std::string two_ur5_text() {
     "lamps": {"led": {"url": "sim://", "robot": "light-arm", "in_tool_m": [0, 0, 0.052], "settle_s": 0.02}},
     "obstacles": [)" +
          cylinder("pedestal", 0, 0, -0.165, 0.06, 0.17) + ", " + cylinder("object", 0, 0, -0.03, 0.05, 0.1) + ", " +
-         box("table", 0, 0, -0.275, 1.8, 1.2, 0.05) + R"(],
+         cylinder("camera-column", 0.38, 0, -0.085, 0.08, 0.33) + ", " +
+         cylinder("light-column", -0.42, 0, -0.085, 0.08, 0.33) + ", " + box("table", 0, 0, -0.275, 1.8, 1.2, 0.05) +
+         R"(],
     "limits": {"speed_m_per_s": 0.5, "lower_m": [-1.2, -1.2, -0.25], "upper_m": [1.2, 1.2, 1.3], "margin_m": 0.01}}})";
 }
 
@@ -78,7 +80,7 @@ std::string abb_and_arc_text() {
   const std::string lamps = arc_lamps(obstacles);
   return R"({"gonio": 1, "laboratory": {"robots": {
     "arm": {"url": "sim://", "model": "abb-irb-1600", )" +
-         standing("world_from_base", 0.95, 0, -0.8, pi) + R"(,
+         standing("world_from_base", 0.85, 0, -0.4, pi) + R"(,
       "home_rad": [0, -0.3, 0.2, 0, 1.2, 0],
       "carries": [)" +
          box("scanner", 0, 0, 0.056, 0.3, 0.1, 0.1, "tool_from_body") + R"(]}},
@@ -87,14 +89,15 @@ std::string abb_and_arc_text() {
     "lamps": {)" +
          lamps + R"(},
     "obstacles": [)" +
-         obstacles + ", " + box("floor", 0, 0, -0.83, 4, 3, 0.05) + R"(],
+         obstacles + ", " + box("plinth", 0.85, 0, -0.61, 0.6, 0.45, 0.38) + ", " +
+         box("floor", 0, 0, -0.83, 4, 3, 0.05) + R"(],
     "limits": {"speed_m_per_s": 0.5, "margin_m": 0.01}}})";
 }
 
 std::string ur3_and_turntable_text() {
   return R"({"gonio": 1, "laboratory": {"robots": {
     "arm": {"url": "sim://", "model": "ur3", )" +
-         standing("world_from_base", 0.3, 0, -0.15, pi) + R"(,
+         standing("world_from_base", 0.27, 0, 0.05, pi) + R"(,
       "home_rad": [0, -1.9, 1.9, -1.6, -1.5708, 0], "carries": [)" +
          camera_body() + R"(]}},
     "cameras": {"moving": )" +

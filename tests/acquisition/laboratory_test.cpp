@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "acquisition/laboratories.h"
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/random.h"
 #include "data.h"
@@ -65,9 +66,9 @@ TEST(Laboratory, WhatIsHeldMovesWithTheFlange) {
   const auto flange = world_from_tool(arm, joints);
   const auto camera = world_from_camera(document, laboratory, "eye", {{"camera-arm", joints}});
   EXPECT_NEAR(norm(camera.translation_m - flange * Vec3{0, 0, 0.1}), 0, 1e-12);
-  // The base is turned by half a turn about z and stands at 0.45, 0, -0.25.
+  // The base is turned by half a turn about z and stands at 0.38, 0, 0.1.
   const Vec3 in_base = robot::flange(arm.links, joints).translation_m;
-  EXPECT_NEAR(norm(flange.translation_m - Vec3{0.45 - in_base.x, -in_base.y, in_base.z - 0.25}), 0, 1e-12);
+  EXPECT_NEAR(norm(flange.translation_m - Vec3{0.38 - in_base.x, -in_base.y, in_base.z + 0.1}), 0, 1e-12);
   // An arm that is not named stands at home.
   const LaboratoryArm& light = laboratory.arms.at("light-arm");
   EXPECT_NEAR(
@@ -120,6 +121,52 @@ TEST(Laboratory, LinksAreTakenFromTheSection) {
   EXPECT_NEAR(norm(frame.rotation * tube.placed.translation_m + frame.origin_m - Vec3{0.3, 0, 0.1}), 0, 1e-12);
   EXPECT_THAT(complaint(replaced(text, "link-1-tube", "link-2")), HasSubstr("\"link-2\" names no link"));
   EXPECT_THAT(complaint(replaced(text, "link-1-tube", "tube")), HasSubstr("\"tube\" names no link"));
+}
+
+// Two joints: a turntable about z, an arm about y that begins 0.3 m above it and ends 0.5 m further along x.
+TEST(Laboratory, ArmsComeFromTheirUrdf) {
+  const tests::ScratchFolder folder;
+  write_file(folder / "arm.urdf", R"(<robot name="two">
+    <link name="base"><collision><origin xyz="0 0 0.05"/><geometry><box size="0.2 0.2 0.1"/></geometry></collision></link>
+    <link name="turn"/>
+    <link name="arm"><collision><origin xyz="0.25 0 0" rpy="0 1.5707963267948966 0"/>
+      <geometry><cylinder radius="0.04" length="0.5"/></geometry></collision></link>
+    <link name="tip"/>
+    <joint name="one" type="revolute"><parent link="base"/><child link="turn"/><axis xyz="0 0 1"/>
+      <limit lower="-2" upper="2" velocity="1" effort="1"/></joint>
+    <joint name="two" type="revolute"><parent link="turn"/><child link="arm"/><origin xyz="0 0 0.3"/>
+      <axis xyz="0 1 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint>
+    <joint name="end" type="fixed"><parent link="arm"/><child link="tip"/><origin xyz="0.5 0 0"/></joint></robot>)");
+  manifest::Document document = manifest::parse_document(R"({"gonio": 1, "laboratory": {}})", "m.json", folder.path());
+  const std::string file = manifest::add_file(document, folder / "arm.urdf", "urdf");
+  manifest::LaboratoryRobot robot;
+  robot.model = "urdf";
+  robot.urdf = file;
+  robot.home_rad = {0.2, 0.1};
+  EXPECT_THROW(
+      {
+        document.laboratory.entry.front().robots["r"] = robot;
+        believed_laboratory(document);
+      },
+      Error);  // a URDF knows no accelerations
+  robot.limits.emplace();
+  robot.limits->acceleration_rad_per_s2 = {2, 2};
+  document.laboratory.entry.front().robots["r"] = robot;
+  const LaboratoryArm arm = believed_laboratory(document).arms.at("r");
+  EXPECT_DOUBLE_EQ(arm.limits[1].upper_rad, 1);
+  for (const Joints& q : {Joints{0, 0}, Joints{0.7, -0.4}, Joints{-1.2, 0.9}}) {
+    const Vec3 tip = world_from_tool(arm, q).translation_m;
+    const double reach = 0.5 * std::cos(q[1]);
+    EXPECT_NEAR(norm(tip - Vec3{reach * std::cos(q[0]), reach * std::sin(q[0]), 0.3 - 0.5 * std::sin(q[1])}), 0, 1e-9);
+    const auto wanted = wanted_of_links(arm, world_from_tool(arm, q));
+    EXPECT_NEAR(norm(wanted.translation_m - robot::flange(arm.links, q).translation_m), 0, 1e-9);
+    // The middle of the arm's cylinder lies half way out.
+    ASSERT_EQ(arm.solids.size(), 2u);
+    const Solid& tube = arm.solids[1];
+    const auto frame = robot::link_frames(arm.links, q)[static_cast<std::size_t>(tube.link)];
+    const Vec3 middle = arm.world_from_base * (frame.rotation * tube.placed.translation_m + frame.origin_m);
+    EXPECT_NEAR(norm(middle - (tip + Vec3{0, 0, 0.3}) / 2), 0, 1e-9);
+  }
 }
 
 }  // namespace

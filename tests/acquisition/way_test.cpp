@@ -51,7 +51,8 @@ TEST(Timing, TrapezoidsTakeAsLongAsTheirIntegral) {
   for (const auto& [distance, speed, acceleration] :
        {std::array{1.0, 0.5, 2.0}, {0.05, 1.0, 2.0}, {3.0, 1.5, 0.4}, {0.5, 1.0, 2.0}, {-1.0, 0.5, 2.0}})
     EXPECT_NEAR(trapezoid_time(distance, speed, acceleration),
-                integrated_time(std::fabs(distance), speed, acceleration), 2e-3);
+                integrated_time(std::fabs(distance), speed, acceleration),
+                0.002 + 0.003 * trapezoid_time(distance, speed, acceleration));
   EXPECT_EQ(trapezoid_time(0, 1, 1), 0);
 }
 
@@ -92,7 +93,7 @@ TEST(Judge, NamesWhatIsBroken) {
   };
   EXPECT_THAT(with(0, 4).fault, HasSubstr("camera-arm: joint 1 at 2"));
   EXPECT_THAT(with(0, 4).fault, HasSubstr("limit 200.5 deg"));
-  EXPECT_THAT(with(1, 1.2).fault, ::testing::ContainsRegex("mm apart, limit 10.0 mm|meet|z = "));
+  EXPECT_THAT(with(1, 1.8).fault, ::testing::ContainsRegex("mm apart, limit 10.0 mm|meet|z = "));
   EXPECT_THAT(with(4, 1.5).fault, HasSubstr("smallest singular value"));
   const WayFigures good = with(0, 0.2);
   EXPECT_EQ(good.fault, "");

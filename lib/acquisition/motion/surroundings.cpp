@@ -14,6 +14,7 @@ namespace {
 
 constexpr int postures = 1000;         // in which pairs of one arm are looked at
 constexpr double nearly_every = 0.95;  // of them
+constexpr double often_close = 0.2;    // what is close so often and never touches is a joint's two housings
 
 struct WatchedPair {
   std::size_t a = 0, b = 0;
@@ -91,7 +92,7 @@ struct Surroundings::Parts {
     std::vector<WatchedPair> own;
     for (const WatchedPair& pair : pairs)
       if (moved_by(pair, index)) own.push_back(pair);
-    std::vector<int> near(own.size()), touching(own.size());
+    std::vector<int> near(own.size()), close(own.size()), touching(own.size());
     std::vector<double> smallest(own.size(), std::numeric_limits<double>::infinity());
     Random random(1, static_cast<std::uint64_t>(index));
     for (int k = 0; k < postures; ++k) {
@@ -100,14 +101,15 @@ struct Surroundings::Parts {
         const bool ever_far = near[i] < k - static_cast<int>((1 - nearly_every) * postures);
         if (ever_far && (touching[i] > 0 || !mere_neighbours(own[i]))) continue;  // it is watched
         const double bound = lower_bound(own[i], at);
-        const double distance = bound > laboratory.margin_m ? bound : exactly(own[i], at);
+        const double distance = bound > 1.5 * laboratory.margin_m ? bound : exactly(own[i], at);
         smallest[i] = std::min(smallest[i], distance);
         if (distance <= laboratory.margin_m) ++near[i];
+        if (distance <= 1.5 * laboratory.margin_m) ++close[i];
         if (distance <= 0) ++touching[i];
       }
     }
     for (std::size_t i = 0; i < own.size(); ++i) {
-      const bool never = touching[i] == 0 && mere_neighbours(own[i]);
+      const bool never = touching[i] == 0 && close[i] > often_close * postures && mere_neighbours(own[i]);
       if (near[i] < nearly_every * postures && !never) continue;
       note_left_out(named(own[i], smallest[i]));
       std::erase_if(pairs, [&](const WatchedPair& p) { return p.a == own[i].a && p.b == own[i].b; });
@@ -187,11 +189,11 @@ Surroundings::~Surroundings() = default;
 Clearance Surroundings::clearance(const State& state, double enough_m) const {
   const Parts& p = *parts_;
   const std::vector<PlacedBody> at = placed(p.laboratory, p.bodies, state);
-  struct Bounded {
+  struct Candidate {
     double least_m;
     std::size_t pair;
   };
-  std::vector<Bounded> near;
+  std::vector<Candidate> near;
   Clearance best{enough_m, "", ""};
   for (std::size_t i = 0; i < p.pairs.size(); ++i) {
     const WatchedPair& pair = p.pairs[i];
@@ -199,10 +201,10 @@ Clearance Surroundings::clearance(const State& state, double enough_m) const {
     const double least = p.lower_bound(pair, at);
     if (least < enough_m) near.push_back({least, i});
   }
-  std::sort(near.begin(), near.end(), [](const Bounded& x, const Bounded& y) {
+  std::sort(near.begin(), near.end(), [](const Candidate& x, const Candidate& y) {
     return x.least_m != y.least_m ? x.least_m < y.least_m : x.pair < y.pair;
   });
-  for (const Bounded& candidate : near) {
+  for (const Candidate& candidate : near) {
     if (candidate.least_m >= best.distance_m || best.distance_m <= 0) break;
     const double distance = p.exactly(p.pairs[candidate.pair], at);
     if (distance < best.distance_m) best = p.named(p.pairs[candidate.pair], distance);

@@ -34,8 +34,9 @@ class Surroundings {
   bool free(const State& state, double margin_m) const;  // faster: is it more than the margin?
   // Solids that are not watched, with the smallest distance seen in 1000 random postures: what is within the
   // laboratory's margin in 95 % of them, such as a shoulder and the table that it stands on; and parts of links, two
-  // apart in one arm, that never touch (a margin means nothing to them). Links have several solids of one name: of a
-  // pair of names in this list, others may be watched.
+  // apart in one arm, that never touch but are within one and a half margins in 20 %: the housings of a wrist, to which
+  // a margin means nothing. (What comes near in few postures touches in others: it is watched.) Links have several
+  // solids of one name: of a pair of names in this list, others may be watched.
   const std::vector<Clearance>& left_out() const;
 
   // On a straight line in joint space: the nearest that two solids come below `enough_m`, and on which share of the
