@@ -63,7 +63,7 @@ struct RawFrame {
   std::uint64_t frame_id = 0;                                               // the camera's count
   std::optional<double> camera_time_s, exposure_s, gain_db, temperature_K;  // as the camera says of this very frame
   std::optional<std::uint64_t> chunk_frame_id;  // of the frame that those figures belong to, where the camera says
-  std::int64_t incomplete_packets = 0;
+  std::int64_t incomplete_packets = 0;          // that never came; there may be no samples then
 };
 struct Shot {  // what is asked for
   double exposure_s = 0;

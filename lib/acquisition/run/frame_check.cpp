@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "acquisition/device/unpack.h"
 #include "base/text.h"
 #include "stats/intervals.h"
 
@@ -70,7 +71,7 @@ std::string disagreement(const RawFrame& frame, const Shot& shot, const std::str
   if (frame.width_px <= 0 || frame.height_px <= 0 ||
       frame.samples.size() != static_cast<std::size_t>(frame.width_px) * static_cast<std::size_t>(frame.height_px))
     return format("it has %zu samples for %d x %d pixels", frame.samples.size(), frame.width_px, frame.height_px);
-  if (!pixel_format.empty() && frame.pixel_format != pixel_format)
+  if (!pixel_format.empty() && frame.pixel_format != unpacked_name(pixel_format))
     return "it came as " + frame.pixel_format + ", " + pixel_format + " was asked";
   if (frame.chunk_frame_id && *frame.chunk_frame_id != frame.frame_id)
     return format("it is frame %llu and carries the figures of frame %llu",

@@ -49,7 +49,7 @@ class StopWatch {
 };
 
 bool is_mosaic(const std::string& pixel_format) {
-  return pixel_format.find("Bayer") != std::string::npos || pixel_format.find("Polarized") != std::string::npos;
+  return pixel_format.find("Bayer") != std::string::npos || pixel_format.find("Polariz") != std::string::npos;
 }
 
 // A kept frame's file is what the journal says of it.

@@ -53,6 +53,7 @@ TEST(FrameCheck, EveryDisagreementIsSaid) {
   f = good;
   f.pixel_format = "Mono8";
   EXPECT_NE(said(f).find("Mono8"), std::string::npos);
+  EXPECT_EQ(disagreement(good, shot, "Mono12Packed", before, 10.0, 10.05), "");  // frames come unpacked
   f = good;
   f.camera_time_s = 99.1;  // exposed before it was asked for
   EXPECT_NE(said(f).find("time stamp"), std::string::npos);
