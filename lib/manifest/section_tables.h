@@ -3,10 +3,13 @@
 #pragma once
 #include <vector>
 
+#include "geom/dh_row.h"
 #include "manifest/fields.h"
 #include "manifest/sections/forward.h"
 
 namespace gonio::manifest {
+
+using gonio::DhRow;
 
 struct Provenance;  // sections/provenance.h; nobody passes them on
 struct ProvenanceRun;

@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "geom/dh_row.h"
 #include "geom/rigid.h"
 #include "manifest/sections/forward.h"
-#include "manifest/sections/robot.h"
 
 namespace gonio::robot {
 
-using Link = manifest::DhRow;  // a_m, d_m, alpha_rad, theta_rad
+using Link = DhRow;  // a_m, d_m, alpha_rad, theta_rad
 
 struct Arm {
   std::string name;

@@ -8,6 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "manifest/document.h"
+#include "manifest/sections/robot.h"
 
 namespace gonio::robot {
 namespace {

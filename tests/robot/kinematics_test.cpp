@@ -13,6 +13,7 @@
 #include "base/random.h"
 #include "data.h"
 #include "manifest/document.h"
+#include "manifest/sections/robot.h"
 #include "robot/ur_calibration.h"
 
 namespace gonio::robot {

@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "manifest/document.h"
 #include "manifest/sections/laboratory.h"
+#include "manifest/sections/robot.h"
 #include "robot/ur_calibration.h"
 
 namespace gonio::acquisition {

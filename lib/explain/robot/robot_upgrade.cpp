@@ -12,6 +12,7 @@
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/mounting.h"
+#include "manifest/sections/robot.h"
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {

@@ -22,7 +22,6 @@ struct CameraQuality;
 struct Comparison;
 struct Contrast;
 struct DetectedFlip;
-struct DhRow;
 struct DroppedRows;
 struct EvaluatedError;
 struct Evaluation;

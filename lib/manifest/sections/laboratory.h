@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "geom/dh_row.h"
 #include "manifest/pose.h"
-#include "manifest/sections/robot.h"
 
 namespace gonio::manifest {
 
@@ -62,9 +62,9 @@ struct LaboratoryCamera {
   std::string pixel_format{};        // "Mono8", "BayerRG12Packed", "BayerRGPolarized..." as GenICam names them
   std::vector<double> exposure_s{};  // [shortest, longest] that it can
   std::optional<double> gain_db{};
-  std::string trigger{};          // "software" | "hardware"
+  std::string trigger{};                         // "software" | "hardware"
   std::optional<double> codes_per_radiance_s{};  // of a linear camera: codes for 1 W/(m^2 sr) in 1 s
-  std::optional<double> white{};  // code at which a pixel is saturated
+  std::optional<double> white{};                 // code at which a pixel is saturated
 };
 
 struct LaboratoryLamp {

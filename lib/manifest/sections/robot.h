@@ -3,11 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "geom/dh_row.h"
+
 namespace gonio::manifest {
 
-struct DhRow {  // standard Denavit-Hartenberg: T = Rz(theta) Tz(d) Tx(a) Rx(alpha)
-  double a_m = 0, d_m = 0, alpha_rad = 0, theta_rad = 0;
-};
+using gonio::DhRow;
+
 struct Robot {              // "robots"
   std::string model;        // a known arm (robot/kinematics.h), or "dh" with `dh`
   std::vector<DhRow> dh;    // instead of the model's nominal values

@@ -11,6 +11,7 @@
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/mounting.h"
+#include "manifest/sections/robot.h"
 #include "manifest/sections/table.h"
 #include "robot/ur_calibration.h"
 

@@ -11,6 +11,7 @@
 #include "geom/angle.h"
 #include "manifest/document.h"
 #include "manifest/sections/mounting.h"
+#include "manifest/sections/robot.h"
 #include "robot/handeye/consensus.h"
 #include "robot/handeye_document.h"
 
