@@ -127,7 +127,8 @@ TEST(Laboratory, LinksAreTakenFromTheSection) {
 TEST(Laboratory, ArmsComeFromTheirUrdf) {
   const tests::ScratchFolder folder;
   write_file(folder / "arm.urdf", R"(<robot name="two">
-    <link name="base"><collision><origin xyz="0 0 0.05"/><geometry><box size="0.2 0.2 0.1"/></geometry></collision></link>
+    <link name="base"><collision><origin xyz="0 0 0.05"/>
+      <geometry><box size="0.2 0.2 0.1"/></geometry></collision></link>
     <link name="turn"/>
     <link name="arm"><collision><origin xyz="0.25 0 0" rpy="0 1.5707963267948966 0"/>
       <geometry><cylinder radius="0.04" length="0.5"/></geometry></collision></link>
