@@ -1,4 +1,6 @@
 // Hand-eye sets: board poses against the robot's own.
+#include "manifest/sections/robot.h"
+
 #include "explain/domain.h"
 #include "explain/robot/robot_problem.h"
 #include "manifest/document.h"
