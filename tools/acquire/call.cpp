@@ -25,6 +25,27 @@ struct Asked {
   std::string words;
 };
 
+// The pattern's views, as frames of `purpose` where one is given; their ids stay apart from those that are there.
+void add_pattern(const PatternScene& scene, const std::string& text, const std::string& place,
+                 const std::string& purpose, Asked& asked) {
+  const PatternCall pattern = parse_pattern(text, place);
+  asked.words += (asked.words.empty() ? "" : "; ") + (purpose.empty() ? "" : purpose + " ") + pattern.words;
+  const auto taken = [&asked](const std::string& image) {
+    return std::ranges::find(asked.steps, image, &manifest::PlanStep::image) != asked.steps.end();
+  };
+  std::vector<manifest::PlanStep> steps = pattern.pattern->make(scene, pattern.numbers);
+  int copy = 1;
+  const auto ending = [&copy, &purpose] {
+    return (purpose.empty() ? "" : "-" + purpose) + (copy > 1 ? "-" + std::to_string(copy) : "");
+  };
+  while (std::ranges::any_of(steps, [&](const manifest::PlanStep& s) { return taken(s.image + ending()); })) ++copy;
+  for (manifest::PlanStep& step : steps) {
+    step.image += ending();
+    if (!purpose.empty()) step.purpose = purpose;
+    asked.steps.push_back(std::move(step));
+  }
+}
+
 Asked asked_of(cli::Invocation& call) {
   const PatternScene scene = scene_of(call);
   if (call.flag("next")) {
@@ -40,8 +61,10 @@ Asked asked_of(cli::Invocation& call) {
     call.note_input(file);
     return {pair_steps(scene, read_pairs(read_file(file), file), {}), "pairs of directions"};
   }
-  const PatternCall pattern = parse_pattern(call.text("plan"), "--plan");
-  return {pattern.pattern->make(scene, pattern.numbers), pattern.words};
+  Asked asked;
+  for (const std::string& text : call.texts("plan")) add_pattern(scene, text, "--plan", "", asked);
+  if (call.given("reference")) add_pattern(scene, call.text("reference"), "--reference", "reference", asked);
+  return asked;
 }
 
 bool all_simulated(const manifest::Document& document) {

@@ -45,7 +45,8 @@ std::vector<cli::Option> planning_options() {
   return {{.name = "plan",
            .type = Type::text,
            .help = "Plan a pattern of views: NAME or NAME:NUMBER=VALUE,...: " + pattern_names() + ".",
-           .metavar = "PATTERN"},
+           .metavar = "PATTERN",
+           .repeat = true},
           {.name = "next",
            .type = Type::flag,
            .help = "Plan the measurements that explain, calib-charuco or handeye would take next.",
@@ -81,6 +82,16 @@ std::vector<cli::Option> planning_options() {
            .lower = 1e-7,
            .upper = 3600,
            .repeat = true},
+          {.name = "turntable",
+           .type = Type::text,
+           .help = "Which turntable turns, where the laboratory has several.",
+           .metavar = "NAME"},
+          {.name = "reference",
+           .type = Type::text,
+           .help = "Pattern of the views that --reference-every comes back to.",
+           .metavar = "PATTERN",
+           .needs = {"reference-every"}},
+          {.name = "straight", .type = Type::flag, .help = "The camera follows straight lines, in the order as asked."},
           {.name = "keep-order",
            .type = Type::flag,
            .help = "Take the views as they are asked for.",
@@ -97,7 +108,7 @@ std::vector<cli::Option> planning_options() {
            .upper = 1},
           {.name = "reference-every",
            .type = Type::integer,
-           .help = "Views between frames of the reference.",
+           .help = "Views between frames of the --reference.",
            .metavar = "N",
            .lower = 1},
           {.name = "dark-every",
@@ -107,7 +118,7 @@ std::vector<cli::Option> planning_options() {
            .lower = 1},
           {.name = "board-every",
            .type = Type::integer,
-           .help = "Views between frames of the board.",
+           .help = "Views between frames of the board, of --plan board.",
            .metavar = "N",
            .lower = 1}};
 }
@@ -180,6 +191,12 @@ acquisition::PatternScene scene_of(const cli::Invocation& call) {
   for (const std::string& lamp : scene.lamps)
     if (!lab.lamps.contains(lamp))
       throw Error(Exit::usage, "--lamp", "\"" + lamp + "\" is none of the laboratory's", names_of(lab.lamps));
+  scene.turntable = call.given("turntable")      ? call.text("turntable")
+                    : lab.turntables.size() == 1 ? lab.turntables.begin()->first
+                                                 : std::string();
+  if (!scene.turntable.empty() && !lab.turntables.contains(scene.turntable))
+    throw Error(Exit::usage, "--turntable", "\"" + scene.turntable + "\" is none of the laboratory's",
+                names_of(lab.turntables));
   for (const std::string& exposure : call.texts("exposure"))
     scene.exposures_s.push_back(parse_quantity(exposure, Dimension::time, "--exposure"));
   return scene;
@@ -195,6 +212,9 @@ acquisition::PlanOptions plan_options_of(const cli::Invocation& call) {
   options.reference_every = every("reference-every");
   options.dark_every = every("dark-every");
   options.board_every = every("board-every");
+  const acquisition::PatternScene scene = scene_of(call);
+  options.target_m = scene.target_m;
+  if (call.flag("straight")) options.straight = scene.camera;
   return options;
 }
 

@@ -1,7 +1,9 @@
 // acquire: plans views of an instrument, moves it, lights, photographs, and knows of every frame what it is
 // (lib/acquisition).
 #include "acquisition/desk/specimen_laboratory.h"
+#include "acquisition/plan/plan_page.h"
 #include "acquisition/run/instrument.h"
+#include "base/atomic_file.h"
 #include "base/progress.h"
 #include "tools/acquire/call.h"
 
@@ -36,10 +38,11 @@ Exit run(cli::Invocation& call) {
   const acquisition::Laboratory laboratory = acquisition::believed_laboratory(call.document);
   const manifest::Plan& chosen = plans(call) ? plan(call, laboratory) : chosen_plan(call);
   if (call.flag("dry-run") || plans(call)) log(LogLevel::info, summary(chosen));
+  if (call.given("html")) write_file(call.text("html"), acquisition::plan_page(laboratory, chosen));
   if (call.flag("go")) return go(call, laboratory, chosen);
-  if (!plans(call) && !call.flag("dry-run"))
+  if (!plans(call) && !call.flag("dry-run") && !call.given("html"))
     throw Error(Exit::usage, "--go", "is not given, and nothing else is asked for",
-                "plan (--plan), look (--dry-run), or let it move (--go)");
+                "plan (--plan), look (--dry-run, --html), or let it move (--go)");
   return chosen.unreachable.empty() ? Exit::done : Exit::quality;
 }
 

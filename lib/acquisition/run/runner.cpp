@@ -88,6 +88,7 @@ class PlanRun {
     try {
       for (std::size_t i = 0; i < plan_.steps.size(); ++i) take_step(i);
       switch_lamps({});
+      if (last_step_) mover_.go(way_home(laboratory_, plan_, *last_step_));
     } catch (...) {
       mover_.stop_all();
       if (interrupted()) throw Error(Exit::try_again, "run", "was interrupted; the arms stand", "go on with --resume");
@@ -192,6 +193,7 @@ class PlanRun {
       }
       return true;
     };
+    last_step_ = index;
     if (stands_at(way.back())) return;
     if (!stands_at(way.front())) mover_.return_to(way.front(), options_.seed + index);
     mover_.go(way);
@@ -352,6 +354,7 @@ class PlanRun {
   std::map<std::string, std::optional<FrameBefore>> before_;
   std::map<std::pair<std::string, double>, FrameFigures> dark_;
   std::size_t total_ = 0;
+  std::optional<std::size_t> last_step_;  // that the arms were moved for
   double time_before_s_ = 0;
   Clock::time_point zero_ = Clock::now();
 };
