@@ -77,7 +77,7 @@ void inspect_one(std::vector<std::string>& lines, bool* all_well, const std::str
                  const Ask& ask) {
   std::string answer;
   try {
-    answer = ask();
+    answer = url.starts_with("sim:") ? "is simulated" : ask();
   } catch (const Error& e) {
     answer = "DOES NOT ANSWER: " + e.problem() + (e.remedy().empty() ? "" : "; " + e.remedy());
     if (all_well != nullptr) *all_well = false;
