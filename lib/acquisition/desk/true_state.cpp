@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -179,6 +180,7 @@ RawFrame TrueState::expose(const std::string& camera, const Shot& shot) {
   how.seed = options.seed;
   how.spp = options.spp;
   how.geometry = false;
+  how.checkpoint_s = std::numeric_limits<double>::infinity();  // a frame is rendered in one go
   const render::Session session(scene, how, [](const std::filesystem::path&) {});
   const std::string& id = scene.images.front().id;
   const io::Image picture = session.render(0, id + ".exr").picture;

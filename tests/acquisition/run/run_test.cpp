@@ -15,6 +15,7 @@
 #include "acquisition/run/runner.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "data.h"
 #include "io/picture.h"
 #include "manifest/document.h"
 #include "manifest/sections/file.h"
@@ -29,19 +30,6 @@ namespace fs = std::filesystem;
 using testing::Book;
 using testing::Faults;
 using testing::faulty_instrument;
-
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "gonio-run-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 // A turntable, two lamps one at a time, a bracket each: steps * exposures frames.
 manifest::Document turning(int steps, const std::vector<double>& exposures, const fs::path& folder) {
@@ -97,7 +85,7 @@ int number_from(const char* variable, int otherwise) {
 // GONIO_FRAMES=10000 for the whole of it. Each kind of fault strikes in 1 to 3 % of the frames.
 TEST(Run, NoFrameBearsAWrongLabel) {
   const int steps = number_from("GONIO_FRAMES", 240) / 4;
-  const Folder folder;
+  const tests::ScratchFolder folder;
   manifest::Document d = turning(steps, {0.002, 0.004, 0.008, 0.016}, folder.path());
   const auto book = std::make_shared<Book>();
   const Faults faults{.stuck_exposure = 0.03,
@@ -130,7 +118,7 @@ TEST(Run, NoFrameBearsAWrongLabel) {
 }
 
 TEST(Run, WithoutFaultsNothingIsTakenTwice) {
-  const Folder folder;
+  const tests::ScratchFolder folder;
   manifest::Document d = turning(10, {0.002, 0.004, 0.008, 0.016}, folder.path());
   Instrument instrument = instrument_of({}, 3, std::make_shared<Book>());
   const RunReport report = carry_out(d, instrument, folder.path());
@@ -180,13 +168,13 @@ bool run_and_kill(const fs::path& folder, int steps, int frames, bool resume) {
 // GONIO_KILLS=200 for the whole of it.
 TEST(Run, KilledAtAnyMomentItGoesOnAsIfItHadNot) {
   const int steps = 8;
-  const Folder whole;
+  const tests::ScratchFolder whole;
   manifest::Document expected = turning(steps, {0.004, 0.008}, whole.path());
   Instrument instrument = instrument_of({}, testing::same_noise, std::make_shared<Book>());
   carry_out(expected, instrument, whole.path());
   Random random(11);
   for (int kills = 0, budget = number_from("GONIO_KILLS", 6); kills < budget;) {
-    const Folder folder;
+    const tests::ScratchFolder folder;
     bool resume = false;
     while (!run_and_kill(folder.path(), steps, 1 + static_cast<int>(random.below(6)), resume)) {
       resume = true;
@@ -205,7 +193,7 @@ TEST(Run, KilledAtAnyMomentItGoesOnAsIfItHadNot) {
 }
 
 TEST(Run, AnotherPlansJournalIsRefused) {
-  const Folder folder;
+  const tests::ScratchFolder folder;
   manifest::Document d = turning(2, {0.004}, folder.path());
   Instrument instrument = instrument_of({}, 3, std::make_shared<Book>());
   carry_out(d, instrument, folder.path());
@@ -221,7 +209,7 @@ TEST(Run, AnotherPlansJournalIsRefused) {
 }
 
 TEST(Run, APlanThatWasChangedByHandIsRefused) {
-  const Folder folder;
+  const tests::ScratchFolder folder;
   manifest::Document d = turning(2, {0.004}, folder.path());
   d.plans.front().steps.front().exposures_s = {0.008};
   Instrument instrument = instrument_of({}, 3, std::make_shared<Book>());
@@ -229,7 +217,7 @@ TEST(Run, APlanThatWasChangedByHandIsRefused) {
 }
 
 TEST(Journal, ATornEndIsCutOffAndNothingElse) {
-  const Folder folder;
+  const tests::ScratchFolder folder;
   const fs::path path = folder.path() / "journal.jsonl";
   const manifest::Value head = manifest::Value::object({{"what", "run"}, {"plan", "p"}});
   {
