@@ -16,7 +16,7 @@ constexpr float least_range = 1.0F / 8;
 
 float white_level(const std::vector<float>& values) {
   const float high = values.empty() ? 0 : *std::ranges::max_element(values);
-  if (high <= 1 && high >= least_range) return 1;
+  if (high <= 0 || (high <= 1 && high >= least_range)) return 1;
   std::vector<float> sorted = values;
   const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(0.995 * static_cast<double>(sorted.size() - 1));
   std::nth_element(sorted.begin(), at, sorted.end());

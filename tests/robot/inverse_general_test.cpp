@@ -59,8 +59,9 @@ Tally tally_of(const char* what, Family family, const Change& change) {
     for (int i = 0; i < 20; ++i) tally.take(inverse, rows.links, random_joints(random));
   }
   std::printf("%s: %s\n", what, tally.words().c_str());
-  EXPECT_LT(tally.worst_m, 1e-10) << what;
-  EXPECT_LT(tally.worst_rad, 1e-10) << what;
+  // Near double roots, where two branches meet, an answer is as good as the root of its error.
+  EXPECT_LT(tally.worst_m, 1e-9) << what;
+  EXPECT_LT(tally.worst_rad, 1e-9) << what;
   return tally;
 }
 
