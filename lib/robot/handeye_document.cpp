@@ -197,6 +197,7 @@ HandEyeInput handeye_input(const manifest::Document& document, const HandEyeRequ
   const camera::CornerTable table = camera::read_corners(document, request.table);
   input.camera = the_one(request.camera, table.camera, keys(document.cameras), "camera", document);
   input.board = the_one(request.board, table.board, keys(document.boards), "board", document);
+  input.robot = request.robot;
   input.setup = setup_of(document, request, input);
   std::map<std::string, const camera::ImageCorners*> corners;
   for (const camera::ImageCorners& group : table.images) corners[group.image] = &group;
@@ -222,6 +223,11 @@ HandEyeInput handeye_input(const manifest::Document& document, const HandEyeRequ
       throw Error(Exit::data, image_place(document, i, "/base_from_tool"), "missing",
                   "give the robot's pose of every image with a board, here or by --poses");
     }
+    if (!input.robot.empty() && !image.robot.empty() && image.robot != input.robot)
+      throw Error(Exit::data, image_place(document, i, "/robot"),
+                  "is \"" + image.robot + "\", that of earlier images \"" + input.robot + "\"",
+                  "name one of them with --robot");
+    if (!image.robot.empty()) input.robot = image.robot;
     handeye::View view{image.id, *image.base_from_tool, *pose, {}};
     for (const camera::TableCorner& c : found->second->corners)
       view.corners.push_back({c.board_m, c.pixel, c.sigma_px});
@@ -236,7 +242,7 @@ void enter_mounting(const HandEyeInput& input, const HandEyeRequest& request, co
                     manifest::Document& document) {
   manifest::Mounting m;
   m.kind = handeye::name_of(request.kind);
-  m.robot = request.robot;
+  m.robot = input.robot;
   m.camera = input.camera;
   m.board = input.board;
   m.method =

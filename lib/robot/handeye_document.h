@@ -19,7 +19,7 @@ struct HandEyeRequest {
 struct HandEyeInput {
   handeye::Setup setup;
   std::vector<handeye::View> views;
-  std::string camera, board;
+  std::string camera, board, robot;   // robot: empty where no image names it
   std::vector<std::string> left_out;  // images that show no board or were dropped: "id: why"
 };
 
@@ -27,7 +27,8 @@ struct HandEyeInput {
 // differ, a name is missing, or an image has another pose already.
 void enter_poses(const PoseList& list, bool by_name, manifest::Document& document);
 
-// Error(data) for missing poses, boards, corners; for fewer than three poses, and poses that do not move.
+// Error(data) for missing poses, boards, corners, images of several robots; for fewer than three poses, and poses that
+// do not move.
 HandEyeInput handeye_input(const manifest::Document& document, const HandEyeRequest& request);
 
 // `mountings` (under the camera's name) and `frames`. What the poses do not determine is left out.

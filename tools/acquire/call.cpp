@@ -7,13 +7,19 @@
 #include "acquisition/desk/true_laboratory.h"
 #include "acquisition/plan/asked_steps.h"
 #include "acquisition/plan/parse_pattern.h"
+#include "acquisition/run/frame_record.h"
 #include "acquisition/run/instrument_lock.h"
 #include "acquisition/run/runner.h"
 #include "base/atomic_file.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "manifest/sections/comparison.h"
+#include "manifest/sections/image.h"
 #include "manifest/sections/laboratory.h"
+#include "manifest/sections/light.h"
 #include "manifest/sections/plan.h"
+#include "manifest/sections/rendering.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::tools::acquire {
 namespace {
@@ -90,13 +96,34 @@ Instrument instrument_of(cli::Invocation& call) {
   return desk_instrument(call.document, &truth, options);
 }
 
+// What was measured from the pictures stays, the pictures of another thing do not.
+void start_fresh(manifest::Document& d) {
+  d.images.clear();
+  d.tables.clear();
+  d.renderings.clear();
+  d.comparisons.clear();
+  d.plans.clear();
+  d.runs.clear();
+  d.explanations.clear();
+  for (const auto& [name, lamp] : d.laboratory.entry.front().lamps)
+    std::erase_if(d.lights,
+                  [&](const auto& e) { return is_light_at_step(e.first, lamp.light.empty() ? name : lamp.light); });
+}
+
 }  // namespace
 
 const manifest::Plan& plan(cli::Invocation& call, const Laboratory& laboratory) {
+  if (call.flag("fresh")) start_fresh(call.document);
   const Asked asked = asked_of(call);
   Progress progress("planning", asked.steps.size());
   manifest::Plan made =
       make_plan(call.document, laboratory, asked.steps, asked.words, plan_options_of(call), &progress);
+  if (made.steps.empty()) {
+    log(LogLevel::info, summary(made));
+    throw Error(Exit::data, manifest::place(call.document, "/laboratory"),
+                format("lets no view be taken of the %zu that are asked", asked.steps.size()),
+                "move what is looked at (--target), come nearer, or ask for other views; each one's reason is above");
+  }
   const auto same = std::ranges::find(call.document.plans, made.id, &manifest::Plan::id);
   if (same != call.document.plans.end()) {
     *same = std::move(made);

@@ -1,4 +1,5 @@
 // The command line of acquire.
+#include "acquisition/desk/specimen_laboratory.h"
 #include "acquisition/plan/view_pattern.h"
 #include "base/assignment.h"
 #include "base/quantity.h"
@@ -15,6 +16,19 @@ std::string pattern_names() {
   std::string names;
   for (const auto* pattern : acquisition::all_view_patterns()) names += (names.empty() ? "" : ", ") + pattern->name;
   return names;
+}
+
+std::vector<std::string> specimen_names() {
+  std::vector<std::string> names;
+  for (const auto& lab : acquisition::specimen_laboratories()) names.push_back(lab.name);
+  return names;
+}
+
+std::string specimen_sentences() {
+  std::string all;
+  for (const auto& lab : acquisition::specimen_laboratories())
+    all += (all.empty() ? "" : "; ") + lab.name + ": " + lab.sentence;
+  return all + ".";
 }
 
 Vec3 vector_of(const std::string& text, Dimension dimension, const char* option) {
@@ -55,6 +69,11 @@ std::vector<cli::Option> planning_options() {
            .type = Type::input_file,
            .help = "Plan pairs of directions, as brdf-fit --plan lists them.",
            .conflicts = {"plan"}},
+          {.name = "fresh",
+           .type = Type::flag,
+           .help = "Plan for another thing: images, tables and plans that are there are left out; lenses and mountings "
+                   "stay.",
+           .conflicts = {"next"}},
           {.name = "target",
            .type = Type::text,
            .help = "What is looked at, world.",
@@ -158,8 +177,8 @@ std::vector<cli::Option> running_options() {
            .upper = 65536},
           {.name = "specimen",
            .type = Type::choice,
-           .help = "Write a built-in laboratory: a simulated arm that holds a camera over a board.",
-           .choices = {"desk"}},
+           .help = "Write a built-in laboratory, all of it simulated. " + specimen_sentences(),
+           .choices = specimen_names()},
           cli::report_option()};
 }
 

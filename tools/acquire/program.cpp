@@ -32,7 +32,7 @@ void check(cli::Invocation& call) {
 
 Exit run(cli::Invocation& call) {
   if (call.given("specimen")) {
-    call.document = acquisition::specimen_laboratory(call.out);
+    call.document = acquisition::specimen_laboratory(call.text("specimen"), call.out);
     return Exit::done;
   }
   const acquisition::Laboratory laboratory = acquisition::believed_laboratory(call.document);
@@ -53,7 +53,7 @@ const cli::Program& gonio_program() {
       .name = "acquire",
       .sentence = "plan views of an instrument, move it, light, photograph, and check every frame",
       .synopsis = {"--plan PATTERN [OPTION]... [-i FILE | lab.json]",
-                   "--go --out DIR [OPTION]... [-i FILE | plan.json]", "--specimen desk --out DIR",
+                   "--go --out DIR [OPTION]... [-i FILE | plan.json]", "--specimen NAME --out DIR",
                    "--dry-run [-i FILE | plan.json]", "--check [-i FILE | lab.json]"},
       .options = options(),
       .operands = {{.name = "MANIFEST",

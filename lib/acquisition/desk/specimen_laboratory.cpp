@@ -1,61 +1,72 @@
+// The list of built-in laboratories, and their common parts.
 #include "acquisition/desk/specimen_laboratory.h"
 
+#include <algorithm>
+#include <array>
+
+#include "base/error.h"
 #include "manifest/document.h"
-#include "manifest/sections/camera.h"
-#include "manifest/sections/image.h"
-#include "manifest/sections/laboratory.h"
-#include "render/specimen_board.h"
 
 namespace gonio::acquisition {
-namespace {
 
-manifest::SolidBody box(const char* name, std::vector<double> sides, Vec3 middle) {
+std::span<const SpecimenLaboratory> specimen_laboratories() {
+  static const std::array<SpecimenLaboratory, 3> all{
+      {{"desk", "a UR5 that holds a camera over a board", specimen_desk},
+       {"arc", "an IRB 1600 that holds a camera over a flat sample and a white tile, and a light arc of 11 lamps",
+        specimen_arc},
+       {"studio", "two UR5, one with a camera, one with a lamp, round a knot on a table with a board beside it",
+        specimen_studio}}};
+  return all;
+}
+
+manifest::Document specimen_laboratory(const std::string& name, const std::filesystem::path& out) {
+  const auto found = std::ranges::find(specimen_laboratories(), name, &SpecimenLaboratory::name);
+  if (found != specimen_laboratories().end()) return found->make(out);
+  std::string names;
+  for (const SpecimenLaboratory& lab : specimen_laboratories()) names += (names.empty() ? "" : ", ") + lab.name;
+  throw Error(Exit::usage, "--specimen", "there is no laboratory \"" + name + "\"", "there are " + names);
+}
+
+manifest::SolidBody box_body(const char* name, std::vector<double> sides_m, Vec3 middle_m) {
   manifest::SolidBody body;
   body.name = name;
-  body.box_m = std::move(sides);
-  body.world_from_body.emplace().translation_m = middle;
+  body.box_m = std::move(sides_m);
+  body.world_from_body.emplace().translation_m = middle_m;
   return body;
 }
 
-// The base is turned half about, so that the arm reaches over the board with its first joint near 0.
-manifest::LaboratoryRobot arm() {
+manifest::SolidBody ball_body(const char* name, double radius_m, Vec3 middle_m) {
+  manifest::SolidBody body;
+  body.name = name;
+  body.ball_m = radius_m;
+  body.world_from_body.emplace().translation_m = middle_m;
+  return body;
+}
+
+manifest::LaboratoryRobot simulated_arm(const char* model, Vec3 base_m, double turn_rad, std::vector<double> home_rad) {
   manifest::LaboratoryRobot robot;
   robot.url = "sim://";
-  robot.model = "ur5";
-  robot.world_from_base.emplace() = {{{0, 0, 0, 1}, {-0.45, 0, 0}}, {}};
-  robot.home_rad = {0, -1.9, 1.9, -1.5707963267948966, -1.5707963267948966, 0};
-  manifest::SolidBody body;
-  body.name = "camera";
-  body.box_m = {0.06, 0.06, 0.09};
-  body.tool_from_body.emplace().translation_m = {0, 0, 0.045};
-  robot.carries = {body};
+  robot.model = model;
+  robot.world_from_base.emplace() = {{quaternion_of_rotation_vector({0, 0, turn_rad}), base_m}, {}};
+  robot.home_rad = std::move(home_rad);
   return robot;
 }
 
-}  // namespace
-
-manifest::Document specimen_laboratory(const std::filesystem::path& out) {
-  manifest::Document document = render::board_specimen(out);
-  document.images.clear();
-  manifest::Camera& lens = document.cameras.at("camera");
-  lens.width_px = 640;  // pictures that a desk computer renders while one waits
-  lens.height_px = 480;
-  lens.fx_px = lens.fy_px = 720;
-  lens.cx_px = 324;
-  lens.cy_px = 237;
-  manifest::Laboratory& lab = document.laboratory.entry.emplace_back();
-  lab.robots["arm"] = arm();
-  manifest::LaboratoryCamera& camera = lab.cameras["camera"];
+manifest::LaboratoryCamera simulated_camera(double full_s) {
+  manifest::LaboratoryCamera camera;
   camera.url = "sim://";
-  camera.robot = "arm";
-  camera.tool_from_camera.emplace() = {{quaternion_of_rotation_vector({0.01, -0.02, 0.8}), {0.01, -0.02, 0.07}}, {}};
   camera.pixel_format = "Mono12";
   camera.white = 4095;
-  camera.codes_per_radiance_s = 4e5;
-  lab.lamps["lamp"].url = "sim://";
-  lab.obstacles = {box("table", {2, 2, 0.05}, {0, 0, -0.035})};
-  lab.limits.emplace().speed_m_per_s = 0.25;
-  return document;
+  camera.codes_per_radiance_s = 4095 / full_s;
+  return camera;
+}
+
+void give_housing(manifest::LaboratoryRobot& robot, const char* name, std::vector<double> sides_m) {
+  manifest::SolidBody body;
+  body.name = name;
+  body.tool_from_body.emplace().translation_m = {0, 0, sides_m[2] / 2};
+  body.box_m = std::move(sides_m);
+  robot.carries.push_back(std::move(body));
 }
 
 }  // namespace gonio::acquisition

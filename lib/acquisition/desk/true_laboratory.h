@@ -2,7 +2,7 @@
 //
 // What is really so is the description, changed by a second document that no client sees: its mechanisms (any of the
 // registry: those of robots act on the arms, all others on the pictures), and where it has them its own lights,
-// surfaces, cameras and laboratory (mounts, lamps' places, the turntable's axis). Arms report the joints that they were
+// surfaces, meshes, cameras, objects (all of them) and laboratory (mounts, lamps' places, the turntable's axis). Arms report the joints that they were
 // sent to; cameras see from where the true arm holds them. Pictures are rendered by room render at that state, through
 // the whole sensor chain, and become codes: code = codes_per_radiance_s * exposure * radiance, rounded, clipped at
 // `white`. Time is simulated: motions and exposures take what they would, and nobody waits.

@@ -5,15 +5,18 @@
 #include <cmath>
 #include <limits>
 
+#include "acquisition/run/frame_record.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/text.h"
 #include "io/image.h"
 #include "manifest/sections/camera.h"
+#include "manifest/sections/file.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/laboratory.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
 #include "mechanism/mechanism.h"
@@ -31,6 +34,20 @@ constexpr double usual_exposure_s = 0.01;  // at which a radiance of 1 saturates
 template <class Section>
 void replace(Section& section, const Section& truth) {
   for (const auto& [name, entry] : truth) section[name] = entry;
+}
+
+// Objects are taken as a whole: what lies on the table is what the truth says, or what the description says.
+void take_truth(manifest::Document& document, const manifest::Document& other) {
+  const manifest::Document truth = manifest::parse_document(manifest::print_document(other, document.folder),
+                                                            other.name, document.folder, {document.allow_outside});
+  replace(document.files, truth.files);
+  replace(document.mechanisms, truth.mechanisms);
+  replace(document.lights, truth.lights);
+  replace(document.meshes, truth.meshes);
+  replace(document.surfaces, truth.surfaces);
+  replace(document.cameras, truth.cameras);
+  if (!truth.objects.empty()) document.objects = truth.objects;
+  if (!truth.laboratory.entry.empty()) document.laboratory = truth.laboratory;
 }
 
 bool is_of_robots(const mechanism::Mechanism& m) {
@@ -71,13 +88,7 @@ double warmth_K(double time_s) {
 
 TrueState::TrueState(const manifest::Document& believed, const manifest::Document* truth, const DeskOptions& wanted)
     : document(believed), options(wanted) {
-  if (truth != nullptr) {
-    replace(document.mechanisms, truth->mechanisms);
-    replace(document.lights, truth->lights);
-    replace(document.surfaces, truth->surfaces);
-    replace(document.cameras, truth->cameras);
-    if (!truth->laboratory.entry.empty()) document.laboratory = truth->laboratory;
-  }
+  if (truth != nullptr) take_truth(document, *truth);
   laboratory = believed_laboratory(document);
   chain = chain_of(document);
   const manifest::Laboratory& lab = document.laboratory.entry.front();
@@ -86,6 +97,7 @@ TrueState::TrueState(const manifest::Document& believed, const manifest::Documen
     if (!document.lights.contains(light_of(name, lamp)))
       throw Error(Exit::data, manifest::place(document, "/laboratory/lamps/" + name),
                   "lights no light of the scene: \"" + light_of(name, lamp) + "\"", "enter it in lights");
+    std::erase_if(document.lights, [&](const auto& e) { return is_light_at_step(e.first, light_of(name, lamp)); });
     lit[name] = false;
   }
   for (const auto& [name, table] : lab.turntables) angle_rad[name] = 0;

@@ -48,6 +48,9 @@ Rigid<frame::World, frame::Tool> world_from_tool(const LaboratoryArm& arm, const
 // Where the links have to end (robot::flange) for the flange to be there: what inverse kinematics are asked.
 Rigid<frame::Base, frame::Tool> wanted_of_links(const LaboratoryArm& arm,
                                                 const Rigid<frame::World, frame::Tool>& world_from_tool);
+// Where a held camera sits on its tool: as handeye measured it (section "mountings"), else as the laboratory believes.
+std::optional<Rigid<frame::Tool, frame::Camera>> tool_from_camera(const manifest::Document& document,
+                                                                  const std::string& camera);
 Rigid<frame::World, frame::Camera> world_from_camera(const manifest::Document& document, const Laboratory& laboratory,
                                                      const std::string& camera, const State& state);
 // A standing lamp without a place of its own stands where its light does.

@@ -8,6 +8,7 @@
 #include "manifest/document.h"
 #include "manifest/sections/laboratory.h"
 #include "manifest/sections/light.h"
+#include "manifest/sections/mounting.h"
 
 namespace gonio::acquisition {
 namespace {
@@ -63,16 +64,27 @@ Rigid<frame::Base, frame::Tool> wanted_of_links(const LaboratoryArm& arm,
   return inverse(arm.world_from_base) * world_from_tool * inverse(arm.last_from_tool);
 }
 
+std::optional<Rigid<frame::Tool, frame::Camera>> tool_from_camera(const manifest::Document& document,
+                                                                  const std::string& camera) {
+  const auto& part = part_named(document, &manifest::Laboratory::cameras, "cameras", camera);
+  for (const auto& [name, mounting] : document.mountings)
+    if (mounting.tool_from_camera && mounting.camera == camera && mounting.robot == part.robot)
+      return *mounting.tool_from_camera;
+  if (part.tool_from_camera) return *part.tool_from_camera;
+  return std::nullopt;
+}
+
 Rigid<frame::World, frame::Camera> world_from_camera(const manifest::Document& document, const Laboratory& laboratory,
                                                      const std::string& camera, const State& state) {
   const std::string place = manifest::place(document, "/laboratory/cameras/" + camera);
   const auto& part = part_named(document, &manifest::Laboratory::cameras, "cameras", camera);
   if (!part.robot.empty()) {
-    if (!part.tool_from_camera)
+    const auto mount = tool_from_camera(document, camera);
+    if (!mount)
       throw Error(Exit::data, place, "is held by " + part.robot + " without tool_from_camera",
                   "give it, or run handeye");
     const LaboratoryArm& arm = arm_named(laboratory, part.robot, place + "/robot");
-    return world_from_tool(arm, joints_of(arm, state)) * *part.tool_from_camera;
+    return world_from_tool(arm, joints_of(arm, state)) * *mount;
   }
   if (!part.world_from_camera)
     throw Error(Exit::data, place, "is neither held by a robot nor placed", "give robot or world_from_camera");

@@ -163,7 +163,7 @@ CandidateSearch::Parts::Request CandidateSearch::Parts::request(const manifest::
         r.why = format("no arm holds the camera, which stands %.3g m and %.3g deg off", off, turned / degree);
     } else {
       const Rigid<frame::Tool, frame::Camera> mount =
-          camera.tool_from_camera.value_or(manifest::Pose<frame::Tool, frame::Camera>{});
+          tool_from_camera(document, step.camera).value_or(Rigid<frame::Tool, frame::Camera>{});
       r.camera_arm = arm;
       r.camera_tools = {*step.world_from_camera * inverse(mount)};
       r.camera_key = key_of(step.camera, numbers_of(*step.world_from_camera));

@@ -116,12 +116,44 @@ std::vector<PatternParameter> path_parameters() {
           {"spread", "1", 1, 0.01, 1, "of the way about its middle; below 1 it is that much smaller"}};
 }
 
-std::vector<PatternParameter> sphere_parameters() {
+std::vector<manifest::PlanStep> grid_steps(const std::string& pattern, const PatternScene& scene,
+                                           const PatternNumbers& n, double first_azimuth_rad, double span_rad) {
+  const std::vector<Direction> views =
+      directions({n.at("step"), pi / 2 - n.at("highest"), pi / 2 - n.at("lowest"), first_azimuth_rad,
+                  first_azimuth_rad + span_rad, n.at("even") > 0.5});
+  std::vector<std::vector<double>> places{{}};
+  if (n.at("lamp-radius") > 0) {
+    need_lamps(scene, pattern);
+    places.clear();
+    const double first = n.at("lamp-azimuth");
+    for (const Direction d :
+         directions({n.at("lamp-step"), 0, pi / 2 - n.at("lamp-lowest"), first, first + n.at("lamp-span"), true})) {
+      const Vec3 p = place_at(scene, d, n.at("lamp-radius"));
+      places.push_back({p.x, p.y, p.z});
+    }
+  }
+  std::vector<manifest::PlanStep> steps;
+  for (const std::vector<double>& place : places)
+    for (const Direction view : views) {
+      manifest::PlanStep step = view_step(scene, image_name(pattern, steps.size()));
+      step.world_from_camera = camera_at(scene, view, n.at("radius"));
+      step.light_m = place;
+      steps.push_back(std::move(step));
+    }
+  return steps;
+}
+
+std::vector<PatternParameter> grid_parameters() {
   return {{"radius", "m", 0.5, 0.01, 100, "of the camera from the target"},
           {"step", "rad", 10 * degree, 0.1 * degree, 90 * degree, "between neighbouring directions"},
           {"lowest", "rad", 10 * degree, 0, 90 * degree, "elevation over the plane across the pole"},
           {"highest", "rad", 90 * degree, 0, 90 * degree, "elevation at which the grid begins"},
-          {"even", "1", 0, 0, 1, "1: rings near the pole have fewer views, so that all lie about equally dense"}};
+          {"even", "1", 0, 0, 1, "1: rings near the pole have fewer views, so that all lie about equally dense"},
+          {"lamp-radius", "m", 0, 0, 100, "of the first lamp from the target; 0: the lamp is not moved"},
+          {"lamp-step", "rad", 30 * degree, degree, 90 * degree, "between the lamp's directions, about evenly"},
+          {"lamp-lowest", "rad", 30 * degree, 0, 90 * degree, "the lamp's lowest elevation"},
+          {"lamp-azimuth", "rad", 0, -2 * pi, 2 * pi, "at which the lamp's places begin"},
+          {"lamp-span", "rad", 2 * pi, 0, 2 * pi, "of the lamp's azimuths"}};
 }
 
 PatternNumbers pattern_numbers(const ViewPattern& pattern, const PatternNumbers& given, const std::string& place) {

@@ -46,6 +46,11 @@ void need_lamps(const PatternScene& scene, const std::string& pattern, std::size
 std::vector<manifest::PlanStep> path_steps(const std::string& path, const PatternScene& scene,
                                            const PatternNumbers& numbers);
 std::vector<PatternParameter> path_parameters();
-std::vector<PatternParameter> sphere_parameters();  // radius, step, lowest, highest, even
+
+// The camera on a grid between two azimuths, under every place of the first lamp where that is given a radius.
+std::vector<manifest::PlanStep> grid_steps(const std::string& pattern, const PatternScene& scene,
+                                           const PatternNumbers& numbers, double first_azimuth_rad, double span_rad);
+// radius, step, lowest, highest, even; lamp-radius, lamp-step, lamp-lowest, lamp-azimuth, lamp-span
+std::vector<PatternParameter> grid_parameters();
 
 }  // namespace gonio::acquisition

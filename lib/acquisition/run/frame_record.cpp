@@ -63,7 +63,37 @@ manifest::Parameter gain_of(const manifest::LaboratoryCamera& camera, const Fram
   return gain;
 }
 
+// The light that a lamp is in this frame. One that an arm held is a light of its own for every place: the same power,
+// another position. Empty: the scene knows nothing of it.
+std::string light_there(manifest::Document& d, const Laboratory& laboratory, const std::string& lamp,
+                        const FrameRecord& r) {
+  if (d.laboratory.entry.empty()) return d.lights.contains(lamp) ? lamp : "";
+  const auto& lamps = d.laboratory.entry.front().lamps;
+  const auto named = lamps.find(lamp);
+  const std::string light = named == lamps.end() || named->second.light.empty() ? lamp : named->second.light;
+  if (!d.lights.contains(light)) return "";
+  if (named == lamps.end() || named->second.robot.empty() || named->second.in_tool_m.empty() ||
+      !d.lights.at(light).parameters.contains("position_m"))
+    return light;
+  manifest::Light there = d.lights.at(light);
+  const Vec3 p = lamp_position(d, laboratory, lamp, r.joints);
+  there.parameters["position_m"].value = {p.x, p.y, p.z};
+  for (auto& [name, parameter] : there.parameters)
+    if (name != "position_m" && parameter.share.empty()) parameter.share = light + "." + name;
+  const std::string id = light_at_step(light, r.group);
+  d.lights[id] = there;
+  return id;
+}
+
 }  // namespace
+
+std::string light_at_step(const std::string& light, const std::string& step) {
+  return light + "@" + step;
+}
+
+bool is_light_at_step(const std::string& id, const std::string& light) {
+  return id.starts_with(light + "@");
+}
 
 std::vector<std::string> images_of(const manifest::PlanStep& step) {
   if (step.exposures_s.size() < 2) return {step.image};
@@ -157,9 +187,8 @@ void enter_frames(manifest::Document& d, const Laboratory& laboratory, const man
       image.response = "linear";  // a sensor's own numbers
       if (d.cameras.contains(r.camera)) image.camera = r.camera;
       for (const std::string& lamp : r.lamps) {
-        const auto named = lab.lamps.find(lamp);
-        const std::string light = named == lab.lamps.end() || named->second.light.empty() ? lamp : named->second.light;
-        if (d.lights.contains(light)) image.light.push_back(light);
+        const std::string light = light_there(d, laboratory, lamp, r);
+        if (!light.empty()) image.light.push_back(light);
       }
       if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())
         image.gain = gain_of(camera->second, r);

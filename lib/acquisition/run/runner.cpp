@@ -122,7 +122,7 @@ class PlanRun {
       if (single && r.figures.saturated_share > 0.01)
         report_.words.push_back(words_of(r) + ": saturated; ask a bracket, or a shorter exposure");
       const auto dark = dark_.find({r.camera, r.exposure_s});
-      if (single && dark != dark_.end() && !r.lamps.empty() &&
+      if (single && r.figures.saturated_share <= 0.01 && dark != dark_.end() && !r.lamps.empty() &&
           r.figures.bright_code < dark->second.bright_code + 10 * std::max(0.5, r.figures.noise))
         report_.words.push_back(words_of(r) + ": underexposed; ask a bracket, or a longer exposure");
       const double usual = stats::median(focus[r.camera]);

@@ -22,7 +22,7 @@ struct WorkIn {
 TEST(Desk, AFrameTakenAgainIsTheSameAndLeavesNoFile) {
   const tests::ScratchFolder folder;
   const WorkIn here(folder.path());
-  const manifest::Document lab = specimen_laboratory(folder.path());
+  const manifest::Document lab = specimen_laboratory("desk", folder.path());
   Instrument instrument = desk_instrument(lab, nullptr, {.seed = 3, .spp = 1});
   instrument.lamps.at("lamp")->set(true);
   const RawFrame first = instrument.cameras.at("camera")->take({0.01, {}});
@@ -38,7 +38,7 @@ TEST(Desk, AFrameTakenAgainIsTheSameAndLeavesNoFile) {
 TEST(Desk, AMechanismMovesTheCameraAndNotTheReport) {
   const tests::ScratchFolder folder;
   const WorkIn here(folder.path());
-  const manifest::Document lab = specimen_laboratory(folder.path());
+  const manifest::Document lab = specimen_laboratory("desk", folder.path());
   manifest::Document truth;
   truth.mechanisms["robot.joint-offset"].parameters["joint_1_rad"] = 0.02;
   Instrument believed = desk_instrument(lab, nullptr, {.seed = 3, .spp = 1});
