@@ -175,7 +175,8 @@ void undistort_image(manifest::Document& document, std::size_t index, const Undi
   request.note_input(work.path);
   const auto mask = manifest::mask_path(document, index);
   if (!mask.empty()) request.note_input(mask);
-  const double saturation = request.saturation ? *request.saturation : photograph::saturated_from(source_bits);
+  const double saturation =
+      request.saturation ? *request.saturation : photograph::saturated_from(source_bits, image.saturation);
   const std::vector<std::uint8_t> good = good_pixels(stored, saturation, mask);
   const photograph::Response response = response_of(image.response, place, bits != 0);
   for (std::size_t i = 0; i < stored.data.size(); ++i)

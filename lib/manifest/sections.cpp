@@ -128,6 +128,9 @@ const std::vector<Field<ImageEntry>>& image_fields() {
       field("exposure_s", &ImageEntry::exposure_s, "s", "exposure time").positive(),
       field("time_s", &ImageEntry::time_s, "s", "when it was taken, counted from any moment common to all images"),
       field("temperature_K", &ImageEntry::temperature_K, "K", "of the instrument at that moment").positive(),
+      field("saturation", &ImageEntry::saturation, "",
+            "stored value from which on a pixel is saturated, 1 for a file's highest code; left out: that code")
+          .positive(),
       field("response", &ImageEntry::response, "", "linear, srgb, or a table [[code, linear], ...]"),
       field("mask", &ImageEntry::mask, "", "file id; pixels above 0.5 count"),
       field("board", &ImageEntry::board, "", "name of the board it shows"),

@@ -28,6 +28,7 @@ std::vector<Entry> entries(const manifest::Document& document) {
     entry.rendering = manifest::resolve(document, rendering.file, at + "/file");
     entry.mask = manifest::mask_path(document, *listed);
     entry.response = image.response;
+    entry.saturation = image.saturation;
     entry.photograph_place = manifest::place(document, "/images/" + std::to_string(*listed));
     entry.rendering_place = manifest::place(document, at);
     entry.noise = image.noise;
@@ -47,6 +48,7 @@ manifest::Document document_of(const Entry& entry) {
   image.id = entry.image;
   image.file = manifest::add_file(document, entry.photograph, entry.image);
   image.response = entry.response;
+  image.saturation = entry.saturation;
   image.noise = entry.noise;
   if (!entry.mask.empty()) image.mask = manifest::add_file(document, entry.mask, entry.image + "-mask");
   document.images.push_back(std::move(image));
@@ -58,7 +60,8 @@ manifest::Document document_of(const Entry& entry) {
 Overlay lay_over(const Entry& entry, Channels channels) {
   std::optional<Mask> mask;
   if (!entry.mask.empty()) mask = photograph::read_mask(entry.mask);
-  return lay_over(entry.image, photograph::read_linear(entry.photograph, entry.response, entry.photograph_place),
+  return lay_over(entry.image,
+                  photograph::read_linear(entry.photograph, entry.response, entry.photograph_place, entry.saturation),
                   photograph::read_linear(entry.rendering, entry.rendering_response, entry.rendering_place),
                   mask ? &*mask : nullptr, channels, entry.noise);
 }

@@ -15,6 +15,7 @@ struct Entry {
   std::string image;                                  // id
   std::filesystem::path photograph, rendering, mask;  // mask empty: every pixel counts
   manifest::Value response, rendering_response;       // null: EXR, linear
+  std::optional<double> saturation{};                 // of the photograph
   std::string photograph_place, rendering_place;      // for messages
   std::optional<manifest::Noise> noise;
 };

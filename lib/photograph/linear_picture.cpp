@@ -34,8 +34,8 @@ io::Image select(const io::Image& raw, const std::vector<std::string>& names, co
 
 }  // namespace
 
-LinearPicture read_linear(const std::filesystem::path& path, const manifest::Value& response,
-                          const std::string& place) {
+LinearPicture read_linear(const std::filesystem::path& path, const manifest::Value& response, const std::string& place,
+                          std::optional<double> saturation) {
   LinearPicture picture;
   picture.name = path.string();
   picture.code_bits = io::code_bits(path);
@@ -50,7 +50,7 @@ LinearPicture read_linear(const std::filesystem::path& path, const manifest::Val
   picture.variance = select(raw, names, "variance.");
   picture.clipped.assign(raw.pixels(), 0);
   picture.dark.assign(picture.colour.data.size(), 0);
-  const double highest = saturated_from(picture.code_bits), lowest = dark_below(picture.code_bits);
+  const double highest = saturated_from(picture.code_bits, saturation), lowest = dark_below(picture.code_bits);
   const std::size_t channels = names.size();
   for (std::size_t i = 0; i < picture.colour.data.size(); ++i) {
     float& value = picture.colour.data[i];

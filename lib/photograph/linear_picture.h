@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,9 @@ struct LinearPicture {
   bool integer_codes() const { return code_bits > 0; }
 };
 
-// Error(data) at `place` where the response is missing or the file has neither R, G, B nor Y.
-LinearPicture read_linear(const std::filesystem::path& path, const manifest::Value& response, const std::string& place);
+// `saturation`: as the image states it (saturation.h). Error(data) at `place` where the response is missing or the file
+// has neither R, G, B nor Y.
+LinearPicture read_linear(const std::filesystem::path& path, const manifest::Value& response, const std::string& place,
+                          std::optional<double> saturation = {});
 
 }  // namespace gonio::photograph

@@ -14,7 +14,8 @@ double half_code(int code_bits) {
   return 0.5 / (std::pow(2.0, code_bits) - 1);
 }
 
-double saturated_from(int code_bits) {
+double saturated_from(int code_bits, std::optional<double> stated) {
+  if (stated) return *stated;
   return code_bits > 0 ? 1 - half_code(code_bits) : std::numeric_limits<double>::infinity();
 }
 

@@ -29,7 +29,7 @@ namespace {
 void read_pixels(const manifest::Document& document, const std::filesystem::path& path, Recording& image) {
   const manifest::ImageEntry& entry = document.images[image.entry];
   const std::string place = manifest::place(document, "/images/" + std::to_string(image.entry) + "/response");
-  const photograph::LinearPicture read = photograph::read_linear(path, entry.response, place);
+  const photograph::LinearPicture read = photograph::read_linear(path, entry.response, place, entry.saturation);
   const io::Image& colour = read.colour;
   const std::size_t channels = colour.channels.size();
   image.picture = io::Image(colour.width, colour.height, {"R", "G", "B"});

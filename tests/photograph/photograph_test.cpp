@@ -70,6 +70,16 @@ TEST(LinearPicture, OnlyTheHighestCodeIsSaturatedWhateverTheBits) {
   }
 }
 
+// A sensor of 12 bits in a file of 16: its codes end at 4095.
+TEST(LinearPicture, ASensorsCodesMayEndBelowTheFiles) {
+  const tests::ScratchFolder folder;
+  io::Image image(3, 1, {"Y"});
+  image.data = {4095 / 65535.0f, 4094 / 65535.0f, 0.5f};
+  io::write_png(folder / "a.png", image, 16);
+  const LinearPicture picture = read_linear(folder / "a.png", "linear", "here", 4094.5 / 65535);
+  EXPECT_EQ(picture.clipped, (std::vector<std::uint8_t>{1, 0, 1}));
+}
+
 TEST(LinearPicture, FloatsHaveNoHighestCode) {
   const tests::ScratchFolder folder;
   io::Image image(2, 1, {"Y"});

@@ -16,10 +16,10 @@ manifest::Document specimen_arc(const std::filesystem::path&) {
   document.images.clear();
   manifest::Laboratory& lab = document.laboratory.entry.emplace_back();
   lab.robots["arm"] = simulated_arm("abb-irb-1600", {0, 1.05, -0.55}, -pi / 2, {0, 0, 0, 0, pi / 2, 0});
-  give_housing(lab.robots["arm"], "camera", {0.06, 0.06, 0.12});
+  give_housing(lab.robots["arm"], "camera", {0.06, 0.06, 0.1}, 0.04);
   manifest::LaboratoryCamera& camera = lab.cameras["camera"] = simulated_camera(0.02);
   camera.robot = "arm";
-  camera.tool_from_camera.emplace().translation_m = {0, 0, 0.1};
+  camera.tool_from_camera.emplace().translation_m = {0, 0, 0.12};
   for (const auto& [name, light] : document.lights) {
     lab.lamps[name].url = "sim://";
     lab.obstacles.push_back(ball_body(name.c_str(), 0.015, light.parameters.at("position_m").vector()));

@@ -61,10 +61,10 @@ manifest::LaboratoryCamera simulated_camera(double full_s) {
   return camera;
 }
 
-void give_housing(manifest::LaboratoryRobot& robot, const char* name, std::vector<double> sides_m) {
+void give_housing(manifest::LaboratoryRobot& robot, const char* name, std::vector<double> sides_m, double above_m) {
   manifest::SolidBody body;
   body.name = name;
-  body.tool_from_body.emplace().translation_m = {0, 0, sides_m[2] / 2};
+  body.tool_from_body.emplace().translation_m = {0, 0, above_m + sides_m[2] / 2};
   body.box_m = std::move(sides_m);
   robot.carries.push_back(std::move(body));
 }

@@ -27,8 +27,8 @@ manifest::SolidBody ball_body(const char* name, double radius_m, Vec3 middle_m);
 manifest::LaboratoryRobot simulated_arm(const char* model, Vec3 base_m, double turn_rad, std::vector<double> home_rad);
 // 12 bits, saturated by a radiance of 1 W/(m^2 sr) in `full_s`.
 manifest::LaboratoryCamera simulated_camera(double full_s);
-// A camera's housing on a flange, its lens along z.
-void give_housing(manifest::LaboratoryRobot& robot, const char* name, std::vector<double> sides_m);
+// A camera's housing on a flange, its lens along z, `above_m` over the flange.
+void give_housing(manifest::LaboratoryRobot& robot, const char* name, std::vector<double> sides_m, double above_m = 0);
 
 manifest::Document specimen_desk(const std::filesystem::path& out);
 manifest::Document specimen_arc(const std::filesystem::path& out);

@@ -54,10 +54,13 @@ void enter_robots(manifest::Document& d) {
     }
 }
 
+double full_code(const FrameRecord& r) {
+  return r.bits > 8 ? 65535 : 255;
+}
+
 // From a radiance to what the file says, 0 to 1 for its codes: known of a camera whose sensitivity is known.
 manifest::Parameter gain_of(const manifest::LaboratoryCamera& camera, const FrameRecord& r) {
-  const double full = r.bits > 8 ? 65535 : 255;
-  if (camera.codes_per_radiance_s) return *camera.codes_per_radiance_s * r.exposure_s / full;
+  if (camera.codes_per_radiance_s) return *camera.codes_per_radiance_s * r.exposure_s / full_code(r);
   manifest::Parameter gain(1.0);
   gain.free = true;
   return gain;
@@ -190,8 +193,10 @@ void enter_frames(manifest::Document& d, const Laboratory& laboratory, const man
         const std::string light = light_there(d, laboratory, lamp, r);
         if (!light.empty()) image.light.push_back(light);
       }
-      if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())
+      if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end()) {
         image.gain = gain_of(camera->second, r);
+        if (camera->second.white) image.saturation = (*camera->second.white - 0.5) / full_code(r);
+      }
       if (r.lamps.empty() && !lab.lamps.empty()) image.dark = true;
       if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())
         if (camera->second.tool_from_camera || camera->second.world_from_camera)

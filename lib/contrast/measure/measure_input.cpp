@@ -307,7 +307,7 @@ GreyView read_view(const manifest::Document& document, const InputView& view, co
   const manifest::ImageEntry& entry = document.images[view.image];
   const auto path = manifest::picture_path(document, view.image);
   if (options.note_input) options.note_input(path);
-  const photograph::LinearPicture picture = photograph::read_linear(path, entry.response, view.place);
+  const photograph::LinearPicture picture = photograph::read_linear(path, entry.response, view.place, entry.saturation);
   const io::Image& colour = picture.colour;
   if (view.camera && (colour.width != view.camera->width_px() || colour.height != view.camera->height_px()))
     throw Error(Exit::data, path.string(),

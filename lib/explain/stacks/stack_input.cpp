@@ -83,7 +83,7 @@ void read_image(const Document& document, StackImage& image, Stack& stack) {
   const ImageEntry& entry = document.images[image.entry];
   const std::string at = manifest::place(document, pointer(image.entry, "/response"));
   photograph::LinearPicture read =
-      photograph::read_linear(manifest::picture_path(document, image.entry), entry.response, at);
+      photograph::read_linear(manifest::picture_path(document, image.entry), entry.response, at, entry.saturation);
   stack.integer = read.integer_codes();
   if (stack.integer && entry.response.is_string() && entry.response.as_string() == "linear")
     stack.quantum = std::max(stack.quantum, 1 / (std::pow(2.0, read.code_bits) - 1));
@@ -91,7 +91,8 @@ void read_image(const Document& document, StackImage& image, Stack& stack) {
     const photograph::Response response(photograph::response_of_channel(entry.response, channel, at), at);
     const bool first = stack.images.empty() && &channel == &read.colour.channels[0];
     stack.lowest = std::max(response(0), first ? response(0) : static_cast<float>(stack.lowest));
-    stack.highest = std::min(response(1), first ? response(1) : static_cast<float>(stack.highest));
+    const float full = response(static_cast<float>(entry.saturation.value_or(1)));
+    stack.highest = std::min(full, first ? full : static_cast<float>(stack.highest));
   }
   image.picture = std::move(read.colour);
   image.counts.resize(image.picture.data.size());

@@ -65,8 +65,8 @@ PictureReading read_picture(const Recording& recording, std::size_t number_of_vi
     if (tile) result.tile = refused;
     return result;
   }
-  const photograph::LinearPicture picture =
-      photograph::read_linear(manifest::picture_path(*recording.document, listed), image.response, place);
+  const photograph::LinearPicture picture = photograph::read_linear(manifest::picture_path(*recording.document, listed),
+                                                                    image.response, place, image.saturation);
   check_size(picture.colour, seen.camera.width_px(), seen.camera.height_px(), "the picture", place);
   result.channels = picture.colour.channels.size();
   std::optional<photograph::Mask> mask;

@@ -23,8 +23,9 @@ struct ImageEntry {  // "images"
   std::optional<bool> dark{};      // true: none is
   std::optional<double> exposure_s;
   std::optional<double> time_s{}, temperature_K{};  // when it was taken, counted from any moment; of the instrument
-  Value response;    // "linear" (default for EXR), "srgb", or a table [[code, linear], ...]
-  std::string mask;  // file id: pixels > 0.5 count
+  std::optional<double> saturation{};  // stored value from which on a pixel is saturated; absent: the highest code
+  Value response;                      // "linear" (default for EXR), "srgb", or a table [[code, linear], ...]
+  std::string mask;                    // file id: pixels > 0.5 count
   std::string board;
   std::optional<Pose<frame::Camera, frame::Board>> camera_from_board;
   std::optional<double> rms_px;
