@@ -52,6 +52,9 @@ manifest::Document specimen_laboratory(const std::filesystem::path& out) {
   camera.pixel_format = "Mono12";
   camera.white = 4095;
   camera.codes_per_radiance_s = 4e5;
+  camera.black_code = 64;
+  camera.electrons_per_code = 2.5;
+  camera.read_electrons = 3;
   lab.lamps["lamp"].url = "sim://";
   lab.obstacles = {box("table", {2, 2, 0.05}, {0, 0, -0.035})};
   lab.limits.emplace().speed_m_per_s = 0.25;

@@ -2,6 +2,7 @@
 #include "acquisition/run/frame_record.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "base/text.h"
@@ -54,13 +55,33 @@ void enter_robots(manifest::Document& d) {
     }
 }
 
+double full_code(const FrameRecord& r) {
+  return r.bits > 8 ? 65535 : 255;
+}
+
 // From a radiance to what the file says, 0 to 1 for its codes: known of a camera whose sensitivity is known.
 manifest::Parameter gain_of(const manifest::LaboratoryCamera& camera, const FrameRecord& r) {
-  const double full = r.bits > 8 ? 65535 : 255;
-  if (camera.codes_per_radiance_s) return *camera.codes_per_radiance_s * r.exposure_s / full;
+  if (camera.codes_per_radiance_s) return *camera.codes_per_radiance_s * r.exposure_s / full_code(r);
   manifest::Parameter gain(1.0);
   gain.free = true;
   return gain;
+}
+
+// A sensor's own numbers, above what it reads in the dark.
+Value response_of(const manifest::LaboratoryCamera& camera, const FrameRecord& r) {
+  const double black = camera.black_code.value_or(0) / full_code(r);
+  if (black == 0) return "linear";
+  Value table = Value::array();
+  table.push_back(Value(std::vector<double>{0, -black}));
+  table.push_back(Value(std::vector<double>{1, 1 - black}));
+  return table;
+}
+
+// In the unit of the linear values, code / full: shot noise, and read noise with that of rounding (1 / 12 code^2).
+std::optional<manifest::Noise> noise_of(const manifest::LaboratoryCamera& camera, const FrameRecord& r) {
+  if (!camera.electrons_per_code) return std::nullopt;
+  const double full = full_code(r), read = camera.read_electrons.value_or(0) / *camera.electrons_per_code;
+  return manifest::Noise{.gain = full * *camera.electrons_per_code, .read = std::sqrt(read * read + 1.0 / 12) / full};
 }
 
 }  // namespace
@@ -161,8 +182,11 @@ void enter_frames(manifest::Document& d, const Laboratory& laboratory, const man
         const std::string light = named == lab.lamps.end() || named->second.light.empty() ? lamp : named->second.light;
         if (d.lights.contains(light)) image.light.push_back(light);
       }
-      if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())
+      if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end()) {
         image.gain = gain_of(camera->second, r);
+        image.response = response_of(camera->second, r);
+        image.noise = noise_of(camera->second, r);
+      }
       if (r.lamps.empty() && !lab.lamps.empty()) image.dark = true;
       if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())
         if (camera->second.tool_from_camera || camera->second.world_from_camera)
