@@ -73,7 +73,12 @@ const std::vector<Field<LaboratoryCamera>>& laboratory_camera_fields() {
       field("white", &C::white, "", "code from which a pixel counts as saturated").positive(),
       field("codes_per_radiance_s", &C::codes_per_radiance_s, "m^2 sr/(W s)",
             "of a linear camera: codes for a radiance of 1 W/(m^2 sr) in 1 s")
-          .positive()};
+          .positive(),
+      field("black_code", &C::black_code, "", "mean code without light; left out: 0").range(0, infinite),
+      field("electrons_per_code", &C::electrons_per_code, "", "whose shot noise a code has (EMVA 1288: 1 / K)")
+          .positive(),
+      field("read_electrons", &C::read_electrons, "", "noise without light, one standard deviation")
+          .range(0, infinite)};
   return table;
 }
 

@@ -164,7 +164,7 @@ void ImageModel::compose_from(const ViewCache& cache, const SceneState& state, s
     for (std::size_t k = 0; k < pixel.facets; ++k, ++slot) {
       const std::size_t f = pixel.first_facet + k, first_source = f * (lights + 1);
       const Facet& facet = cache.facets[f];
-      const Rgb albedo = albedos[facet.surface];
+      const Rgb albedo = albedos[facet.surface] * facet.tint;
       const Scattered& sent_on = shading.indirect[slot];
       const bool glossy = max_component(sent_on.gloss) > 0;
       Rgb irradiance, mirrored;
@@ -199,7 +199,7 @@ void ImageModel::variance(const SceneState& state, std::size_t number, std::span
       const std::size_t f = pixel.first_facet + k;
       const Facet& facet = cache.facets[f];
       const SurfaceState& surface = state.surfaces[facet.surface];
-      const Rgb albedo = surface.model->albedo(surface.values, {0, 0, 1});
+      const Rgb albedo = surface.model->albedo(surface.values, {0, 0, 1}) * facet.tint;
       Rgb level;
       for (const std::size_t l : image.lights) {
         const Rgb unit = albedo * state.lights[l].intensity * (1 / pi);

@@ -50,6 +50,7 @@ struct Facet {
   std::uint32_t surface = 0;
   float weight = 0;  // share of the pixel
   std::uint32_t first_patch = 0, patches = 0;
+  Rgb tint{1, 1, 1};  // of a textured surface: its albedo here over the texture's mean (relighting/textures.h)
 };
 struct Pixel {
   int x = 0, y = 0;

@@ -159,6 +159,7 @@ void lend_indirect(const ViewCache& from, ViewCache& to) {
       const std::size_t f = to.pixels[p].first_facet + k;
       const auto found = last.find(to.facets[f].surface);
       if (found == last.end()) continue;
+      to.facets[f].tint = from.facets[found->second].tint;
       lend(from.indirect, to.indirect, from.facets.size(), to.facets.size(), found->second, f);
       lend(from.mirrored, to.mirrored, from.facets.size(), to.facets.size(), found->second, f);
       lend(from.indirect_sigma, to.indirect_sigma, from.facets.size(), to.facets.size(), found->second, f);

@@ -33,6 +33,7 @@ void read_pixels(const manifest::Document& document, const std::filesystem::path
   const io::Image& colour = read.colour;
   const std::size_t channels = colour.channels.size();
   image.picture = io::Image(colour.width, colour.height, {"R", "G", "B"});
+  image.grey = channels == 1;
   image.counts.assign(colour.pixels(), 1);
   for (std::size_t i = 0; i < colour.pixels(); ++i)
     for (std::size_t c = 0; c < 3; ++c) {

@@ -32,6 +32,7 @@ struct Recording {
   std::size_t view = 0;
   std::vector<std::size_t> lights;   // that were on: places in Recordings::lights
   io::Image picture;                 // linear, channels R, G, B
+  bool grey = false;                 // these are one reading
   Rgb mean;                          // of all finite pixels of the picture
   std::vector<std::uint8_t> counts;  // one per pixel: 1 where the pixel may be used
   manifest::Noise noise;             // variance of a linear value v: v / gain + read^2 (gain 0: no shot noise)

@@ -21,11 +21,16 @@ namespace {
 SurfaceState surface_state(const manifest::Document& document, const std::string& name) {
   const manifest::Surface& entry = document.surfaces.at(name);
   const std::string place = manifest::place(document, "/surfaces/" + name);
-  if (!entry.textures.empty())
-    throw Error(Exit::data, place, "has a texture, which explain cannot refit", "give a uniform value");
+  manifest::Parameters parameters = entry.parameters;
+  for (const auto& [parameter, file] : entry.textures) {
+    if (parameter != "albedo")
+      throw Error(Exit::data, place + "/textures/" + parameter, "is a texture, which explain knows of albedos alone",
+                  "give a uniform value");
+    parameters[parameter] = manifest::Parameter(0.5);  // until the picture is read (relighting/textures.h)
+  }
   const surface::Model* own = surface::find(entry.model);
   if (!own) throw Error(Exit::data, place, "has the unknown model \"" + entry.model + "\"", "see gonio-manifest(5)");
-  const surface::Values values = surface::values_of(*own, entry.parameters, place);
+  const surface::Values values = surface::values_of(*own, parameters, place);
   if (entry.model != "diffuse") return {own, values};
   SurfaceState state{surface::find("coated-diffuse"), {}};
   for (std::size_t i = 0; i < state.model->info().parameters.size(); ++i) {

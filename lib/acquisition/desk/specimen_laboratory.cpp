@@ -58,6 +58,9 @@ manifest::LaboratoryCamera simulated_camera(double full_s) {
   camera.pixel_format = "Mono12";
   camera.white = 4095;
   camera.codes_per_radiance_s = 4095 / full_s;
+  camera.black_code = 64;
+  camera.electrons_per_code = 2.5;
+  camera.read_electrons = 3;
   return camera;
 }
 

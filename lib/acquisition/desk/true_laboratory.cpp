@@ -141,6 +141,10 @@ Instrument desk_instrument(const manifest::Document& believed, const manifest::D
   for (const auto& [name, table] : lab.turntables)
     instrument.turntables[name] = std::make_unique<DeskTurntable>(state, name);
   for (const auto& [name, screen] : lab.screens) instrument.screens[name] = std::make_unique<DeskScreen>(name);
+  instrument.clock_s = [state] {
+    const std::lock_guard lock(state->busy);
+    return state->time_s;
+  };
   return instrument;
 }
 

@@ -27,8 +27,9 @@
 namespace gonio::acquisition {
 namespace {
 
-constexpr double full_well_electrons = 10000, read_electrons = 3;
-constexpr double usual_exposure_s = 0.01;  // at which a radiance of 1 saturates where no sensitivity is said
+// Where the description says nothing of them:
+constexpr double full_well_electrons = 10000, usual_read_electrons = 3;
+constexpr double usual_exposure_s = 0.01;  // at which a radiance of 1 saturates
 
 // Entries of `truth` take the place of those of the same name.
 template <class Section>
@@ -78,6 +79,25 @@ int bits_of(const std::string& pixel_format) {
   for (const int bits : {16, 14, 12, 10, 8})
     if (pixel_format.find(std::to_string(bits)) != std::string::npos) return bits;
   return 12;
+}
+
+// What turns a radiance into codes: code = black + per_radiance * radiance, up to white; noise in radiance.
+struct DeskSensor {
+  int bits = 12;
+  double white = 4095, black = 0, per_radiance = 1;
+  manifest::Noise noise;
+};
+
+DeskSensor sensor_at(const manifest::LaboratoryCamera& entry, double exposure_s) {
+  DeskSensor sensor;
+  sensor.bits = bits_of(entry.pixel_format);
+  sensor.white = entry.white.value_or((1 << sensor.bits) - 1);
+  sensor.black = entry.black_code.value_or(0);
+  sensor.per_radiance = entry.codes_per_radiance_s.value_or(sensor.white / usual_exposure_s) * exposure_s;
+  const double electrons =
+      entry.electrons_per_code.value_or(full_well_electrons / sensor.white) * sensor.per_radiance;
+  sensor.noise = {.gain = electrons, .read = entry.read_electrons.value_or(usual_read_electrons) / electrons};
+  return sensor;
 }
 
 }  // namespace
@@ -167,10 +187,7 @@ manifest::Document TrueState::scene_of(const std::string& camera, const Shot& sh
   for (const auto& [name, light] : document.lights)
     if (const auto found = of_lamps.find(name); found == of_lamps.end() || found->second) image.light.push_back(name);
   if (image.light.empty()) image.dark = true;
-  const double white = entry.white.value_or((1 << bits_of(entry.pixel_format)) - 1);
-  const double codes = entry.codes_per_radiance_s.value_or(white / usual_exposure_s) * shot.exposure_s;
-  const double gain = full_well_electrons * codes / white;
-  image.noise = manifest::Noise{.gain = gain, .read = read_electrons / gain};
+  image.noise = sensor_at(entry, shot.exposure_s).noise;
   image.id = "frame";
   image.id = sha256(manifest::print_document(
                         [&] {
@@ -183,6 +200,10 @@ manifest::Document TrueState::scene_of(const std::string& camera, const Shot& sh
                         scene.folder))
                  .substr(0, 16);
   scene.images = {image};
+  // What drifts with time counts from the beginning of the run.
+  scene.images.push_back(image);
+  scene.images.back().id = "beginning";
+  scene.images.back().time_s = 0;
   return scene;
 }
 
@@ -202,16 +223,16 @@ RawFrame TrueState::expose(const std::string& camera, const Shot& shot) {
   RawFrame frame;
   frame.width_px = seen.width;
   frame.height_px = seen.height;
-  frame.bits = bits_of(entry.pixel_format);
+  const DeskSensor chip = sensor_at(entry, shot.exposure_s);
+  frame.bits = chip.bits;
   frame.pixel_format = entry.pixel_format.empty() ? "Mono12" : entry.pixel_format;
-  const double white = entry.white.value_or((1 << frame.bits) - 1);
-  const double codes = entry.codes_per_radiance_s.value_or(white / usual_exposure_s) * shot.exposure_s;
   const std::size_t channels = seen.channels.size();
   frame.samples.resize(seen.pixels());
   for (std::size_t i = 0; i < frame.samples.size(); ++i) {
     double radiance = 0;
     for (std::size_t c = 0; c < channels; ++c) radiance += seen.data[i * channels + c] / static_cast<double>(channels);
-    frame.samples[i] = static_cast<std::uint16_t>(std::clamp(std::round(radiance * codes), 0.0, white));
+    const double code = std::round(chip.black + radiance * chip.per_radiance);
+    frame.samples[i] = static_cast<std::uint16_t>(std::clamp(code, 0.0, chip.white));
   }
   time_s += shot.exposure_s;
   frame.frame_id = ++frames[camera];

@@ -2,6 +2,7 @@
 #include "acquisition/run/frame_record.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "base/text.h"
@@ -86,6 +87,23 @@ std::string light_there(manifest::Document& d, const Laboratory& laboratory, con
   const std::string id = light_at_step(light, r.group);
   d.lights[id] = there;
   return id;
+}
+
+// A sensor's own numbers, above what it reads in the dark.
+Value response_of(const manifest::LaboratoryCamera& camera, const FrameRecord& r) {
+  const double black = camera.black_code.value_or(0) / full_code(r);
+  if (black == 0) return "linear";
+  Value table = Value::array();
+  table.push_back(Value(std::vector<double>{0, -black}));
+  table.push_back(Value(std::vector<double>{1, 1 - black}));
+  return table;
+}
+
+// In the unit of the linear values, code / full: shot noise, and read noise with that of rounding (1 / 12 code^2).
+std::optional<manifest::Noise> noise_of(const manifest::LaboratoryCamera& camera, const FrameRecord& r) {
+  if (!camera.electrons_per_code) return std::nullopt;
+  const double full = full_code(r), read = camera.read_electrons.value_or(0) / *camera.electrons_per_code;
+  return manifest::Noise{.gain = full * *camera.electrons_per_code, .read = std::sqrt(read * read + 1.0 / 12) / full};
 }
 
 }  // namespace
@@ -196,6 +214,8 @@ void enter_frames(manifest::Document& d, const Laboratory& laboratory, const man
       if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end()) {
         image.gain = gain_of(camera->second, r);
         if (camera->second.white) image.saturation = (*camera->second.white - 0.5) / full_code(r);
+        image.response = response_of(camera->second, r);
+        image.noise = noise_of(camera->second, r);
       }
       if (r.lamps.empty() && !lab.lamps.empty()) image.dark = true;
       if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())

@@ -1,5 +1,6 @@
 // The devices of a laboratory, opened.
 #pragma once
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -16,6 +17,8 @@ struct Instrument {
   std::map<std::string, std::unique_ptr<LampDevice>> lamps;
   std::map<std::string, std::unique_ptr<TurntableDevice>> turntables;
   std::map<std::string, std::unique_ptr<ScreenDevice>> screens;
+  // Where time is simulated: seconds since the instrument began. Else the host's clock counts.
+  std::function<double()> clock_s;
 };
 
 // By the URLs of the section "laboratory"; nothing moves. Error(data) where a device has none, Error(unavailable) where

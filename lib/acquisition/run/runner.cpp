@@ -325,7 +325,7 @@ class PlanRun {
     record.exposure_s = frame.exposure_s.value_or(shot.exposure_s);
     record.gain_db = frame.gain_db;
     record.temperature_K = frame.temperature_K;
-    record.time_s = time_before_s_ + seconds_since(zero_);
+    record.time_s = time_before_s_ + (instrument_.clock_s ? instrument_.clock_s() : seconds_since(zero_));
     record.frame_id = frame.frame_id;
     record.bits = frame.bits;
     for (const auto& [name, angle] : step.turntable_rad) record.turntables[name] = angle;

@@ -10,6 +10,7 @@
 #include "inference/explanation.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "relighting/textures.h"
 
 namespace gonio::explain::images {
 namespace {
@@ -88,6 +89,7 @@ Illustration ImagesProblem::illustrate(const Explanation& explanation, const std
     for (int y = 0; y < view.model.height_px(); y += strides.back())
       for (int x = 0; x < view.model.width_px(); x += strides.back()) grid.push_back({x, y});
     caches.push_back(build_cache(*caster_, view, layout_.lights, *monomials_, grid, coarse));
+    tint_facets(*scene_, *caster_, view, caches.back());
   }
   ImageModel model(recordings_, layout_, *monomials_, std::move(caches));
   const SceneState before = raw_state(explanation.base_values), after = raw_state(explanation.values);

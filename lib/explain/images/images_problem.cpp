@@ -11,6 +11,7 @@
 #include "inference/explanation.h"
 #include "manifest/document.h"
 #include "relighting/repeats.h"
+#include "relighting/textures.h"
 #include "relighting/uses.h"
 #include "scene/scene.h"
 
@@ -67,13 +68,16 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
   std::vector<std::string> surfaces;
   for (const scene::Surface& surface : scene.appearance.surfaces) surfaces.push_back(surface.id);
   layout_ = read_scene(document, recordings_, surfaces, scene.centre_m);
+  settle_textures(scene, layout_);
   monomials_ = std::make_unique<render::Monomials>(surfaces.size(), degree_for(surfaces.size()));
   std::vector<std::vector<std::array<int, 2>>> chosen(recordings_.views.size());
   choose_pixels(options.pixels, chosen);
   std::vector<ViewCache> caches;
-  for (std::size_t v = 0; v < chosen.size(); ++v)
+  for (std::size_t v = 0; v < chosen.size(); ++v) {
     caches.push_back(
         build_cache(*caster_, recordings_.views[v], layout_.lights, *monomials_, chosen[v], cache_options_));
+    tint_facets(scene, *caster_, recordings_.views[v], caches.back());
+  }
   model_ = std::make_unique<ImageModel>(recordings_, layout_, *monomials_, std::move(caches));
   bind(document);
   fill_rows();
@@ -120,10 +124,13 @@ void ImagesProblem::choose_pixels(std::size_t pixels, std::vector<std::vector<st
                                       static_cast<std::uint64_t>(left));
         // share of the tile, rounded up or down at random so that the mean is exact
         const auto take = static_cast<std::size_t>(share * static_cast<double>(tile.size()) + random.uniform());
-        for (std::size_t k = 0; k < std::min(take, tile.size()); ++k) {
+        std::size_t taken = 0;
+        for (std::size_t k = 0; k < tile.size() && taken < take; ++k) {
           const std::size_t other = k + random.below(static_cast<std::uint32_t>(tile.size() - k));
           std::swap(tile[k], tile[other]);
+          if (!is_even(*scene_, *caster_, recordings_.views[v], tile[k][0], tile[k][1])) continue;
           chosen[v].push_back(tile[k]);
+          ++taken;
         }
       }
   }
@@ -160,7 +167,8 @@ void ImagesProblem::fill_rows() {
       const Rgb mean = local_mean(image, pixel.x, pixel.y);
       for (std::size_t k = 0; k < 3; ++k) {
         const double y = image.picture.at(pixel.x, pixel.y, static_cast<int>(k));
-        const double scale = ff[k] > 0 ? yf[k] / ff[k] : 1, noise = noise_sigma(image, mean[static_cast<int>(k)]);
+        const double scale = ff[k] > 0 ? yf[k] / ff[k] : 1, grey = image.grey ? std::sqrt(3.0) : 1,
+                     noise = grey * noise_sigma(image, mean[static_cast<int>(k)]);
         o.value.push_back(y);
         o.sigma.push_back(std::sqrt(noise * noise + scale * scale * own[3 * i + k]));
         o.norm.push_back(y * y);

@@ -65,6 +65,8 @@ struct LaboratoryCamera {
   std::string trigger{};                         // "software" | "hardware"
   std::optional<double> codes_per_radiance_s{};  // of a linear camera: codes for 1 W/(m^2 sr) in 1 s
   std::optional<double> white{};                 // code at which a pixel is saturated
+  std::optional<double> black_code{};            // mean code without light; left out: 0
+  std::optional<double> electrons_per_code{}, read_electrons{};  // its noise, as EMVA 1288 measures it
 };
 
 struct LaboratoryLamp {

@@ -1,0 +1,28 @@
+// Surfaces whose albedo is a picture: a printed board, a label. The picture is taken as it is: nothing of it is fitted.
+// The surface's albedo is the texture's mean, and every facet has a tint, the albedo there over that mean.
+//
+// Where the texture changes, a pixel's brightness follows from the pose by the pixel and says nothing of light or
+// camera that the even places beside it do not: only these are asked. A place is even where all rays within
+// `even_margin_px` of the pixel's middle meet one instance at albedos that differ by no more than `even_change`.
+#pragma once
+#include <array>
+
+#include "relighting/light_cache.h"
+#include "relighting/recordings.h"
+#include "relighting/scene_state.h"
+#include "render/ray_caster.h"
+#include "scene/scene.h"
+
+namespace gonio::relighting {
+
+inline constexpr double even_margin_px = 2.5, even_change = 0.01;
+
+// Albedos of textured surfaces become the means of their pictures.
+void settle_textures(const scene::Scene& scene, SceneLayout& layout);
+
+// True where no textured surface is met.
+bool is_even(const scene::Scene& scene, const render::RayCaster& caster, const View& view, int x, int y);
+
+void tint_facets(const scene::Scene& scene, const render::RayCaster& caster, const View& view, ViewCache& cache);
+
+}  // namespace gonio::relighting
