@@ -32,7 +32,7 @@ enum class Fault {
 class Faults {
  public:
   explicit Faults(std::uint64_t seed = 1) {
-    for (std::size_t i = 0; i < kKinds; ++i) random_.emplace_back(seed, i);
+    for (std::size_t i = 0; i < kinds; ++i) random_.emplace_back(seed, i);
   }
   double late_s = 0.05;
   void set(Fault kind, double probability) {
@@ -61,12 +61,12 @@ class Faults {
   }
 
  private:
-  static constexpr std::size_t kKinds = static_cast<std::size_t>(Fault::count);
+  static constexpr std::size_t kinds = static_cast<std::size_t>(Fault::count);
   static std::size_t index(Fault kind) { return static_cast<std::size_t>(kind); }
   mutable std::mutex mutex_;
   std::vector<Random> random_;
-  std::array<double, kKinds> probability_{};
-  std::array<std::int64_t, kKinds> occasions_{}, struck_{};
+  std::array<double, kinds> probability_{};
+  std::array<std::int64_t, kinds> occasions_{}, struck_{};
 };
 
 }  // namespace gonio::acquisition::desk

@@ -7,7 +7,7 @@
 namespace gonio::acquisition::desk {
 namespace {
 
-constexpr std::uint8_t kOutputRecipe = 1;
+constexpr std::uint8_t output_recipe = 1;
 
 class Bytes {  // network order
  public:
@@ -118,7 +118,7 @@ class RtdeSession {
       const std::string types = rtde_types(names_);
       const bool known = types.find("NOT_FOUND") == std::string::npos;
       if (!known) names_.clear();
-      peer_.write(framed('O', Bytes().u8(known ? kOutputRecipe : 0).text(types).all()));
+      peer_.write(framed('O', Bytes().u8(known ? output_recipe : 0).text(types).all()));
     } else if (type == 'S' || type == 'P') {
       flowing_ = type == 'S' && !names_.empty();
       peer_.write(framed(type, Bytes().u8(type == 'P' || flowing_ ? 1 : 0).all()));
@@ -128,7 +128,7 @@ class RtdeSession {
     }
   }
   void send_data() {
-    std::string packet = framed('U', Bytes().u8(kOutputRecipe).text(rtde_data_bytes(arm_.now(), names_)).all());
+    std::string packet = framed('U', Bytes().u8(output_recipe).text(rtde_data_bytes(arm_.now(), names_)).all());
     if (faults_.strikes(Fault::rtde_reset)) peer_.reset();
     if (faults_.strikes(Fault::rtde_dropped)) return;
     if (faults_.strikes(Fault::rtde_short)) packet = framed('U', packet.substr(3, packet.size() - 3 - 5));

@@ -8,7 +8,7 @@
 namespace gonio::acquisition::desk {
 namespace {
 
-constexpr double kHardStopRadPerS2 = 20;
+constexpr double hard_stop_rad_per_s2 = 20;
 
 double longest_turn(const SixJoints& from, const SixJoints& to) {
   double longest = 0;
@@ -153,7 +153,7 @@ void TrueArm::run(const std::vector<ArmStep>& program) {
   program_ = program;
   step_ = 0;
   stop_at_s_ = -1;
-  double acceleration = kHardStopRadPerS2;
+  double acceleration = hard_stop_rad_per_s2;
   for (const ArmStep& step : program)
     if (step.kind == ArmStep::Kind::brake) acceleration = step.acceleration;
   // What comes before the first motion is done at once, while the arm still brakes.
@@ -178,7 +178,7 @@ void TrueArm::halt(double t) {
   step_ = 0;
   flags_.program_running = false;
   stop_at_s_ = -1;
-  brake(t, kHardStopRadPerS2);
+  brake(t, hard_stop_rad_per_s2);
 }
 
 void TrueArm::protective_stop() {

@@ -16,15 +16,15 @@
 namespace gonio::acquisition {
 namespace {
 
-constexpr std::array<std::uint8_t, 8> kDiscovery{0x42, 0x01, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01};  // request 1
-constexpr std::array<std::uint8_t, 4> kFound{0x00, 0x00, 0x00, 0x03};  // success, DISCOVERY_ACK
+constexpr std::array<std::uint8_t, 8> discovery_bytes{0x42, 0x01, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01};  // request 1
+constexpr std::array<std::uint8_t, 4> found_bytes{0x00, 0x00, 0x00, 0x03};  // success, DISCOVERY_ACK
 
 bool is_found(const std::uint8_t* bytes, std::int64_t count) {
-  return count >= 8 && std::equal(kFound.begin(), kFound.end(), bytes) && bytes[6] == 0 && bytes[7] == 1;
+  return count >= 8 && std::equal(found_bytes.begin(), found_bytes.end(), bytes) && bytes[6] == 0 && bytes[7] == 1;
 }
 
 bool answers_once(int file, Clock::time_point until) {
-  ::send(file, kDiscovery.data(), kDiscovery.size(), MSG_NOSIGNAL);
+  ::send(file, discovery_bytes.data(), discovery_bytes.size(), MSG_NOSIGNAL);
   for (;;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()).count();
     pollfd wanted{file, POLLIN, 0};

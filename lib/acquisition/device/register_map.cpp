@@ -16,11 +16,11 @@ namespace {
 using Type = Register::Type;
 using Table = Register::Table;
 
-constexpr std::array<const char*, 7> kTypeWords{"bit", "uint16", "int16", "uint32", "int32", "float32", "float64"};
-constexpr std::array<const char*, 4> kTableWords{"holding", "input", "coil", "discrete"};
-constexpr std::array<const char*, 6> kJointWords{"joint",  "turn",        "speed",
+constexpr std::array<const char*, 7> type_words{"bit", "uint16", "int16", "uint32", "int32", "float32", "float64"};
+constexpr std::array<const char*, 4> table_words{"holding", "input", "coil", "discrete"};
+constexpr std::array<const char*, 6> joint_words{"joint",  "turn",        "speed",
                                                  "target", "speed-limit", "acceleration-limit"};
-constexpr std::array<const char*, 9> kOtherWords{
+constexpr std::array<const char*, 9> other_words{
     "powered", "standing", "protective-stop", "emergency-stop", "remote-control", "mode", "command", "done", "stop"};
 
 int words_of_type(Type type) {
@@ -37,14 +37,14 @@ bool is_joint_word(const std::string& name, int joints) {
   for (int joint = 1; joint <= joints; ++joint) {
     const std::string end = "-" + std::to_string(joint);
     if (name == "temperature" + end) return true;
-    for (const char* word : kJointWords)
+    for (const char* word : joint_words)
       if (name == word + end) return true;
   }
   return false;
 }
 
 bool is_register_word(const std::string& name, int joints) {
-  for (const char* word : kOtherWords)
+  for (const char* word : other_words)
     if (name == word) return true;
   return is_joint_word(name, joints);
 }
@@ -106,7 +106,7 @@ const Register* RegisterMap::find(const std::string& name, int joint) const {
 }
 
 const RegisterMap& ur_register_map() {
-  static const RegisterMap kMap = [] {
+  static const RegisterMap ur_map = [] {
     RegisterMap map;
     const auto add = [&](const std::string& name, int address, Type type, double scale = 1, double offset = 0) {
       map.registers[name] = {address, type, Table::holding, WordOrder::high_first, scale, offset};
@@ -124,7 +124,7 @@ const RegisterMap& ur_register_map() {
     add("emergency-stop", 262, Type::uint16);
     return map;
   }();
-  return kMap;
+  return ur_map;
 }
 
 double read_register(ModbusClient& device, const Register& which) {
@@ -209,9 +209,9 @@ Register read_one_register(const manifest::Value& value, const std::string& plac
   if (address == nullptr || !address->is_integer() || address->as_integer() < 0 || address->as_integer() > 65535)
     bad_map(place + "/address", "is no address", "a whole number from 0 to 65535, counted from 0");
   one.address = static_cast<int>(address->as_integer());
-  one.type = static_cast<Type>(word_index(value.find("type"), kTypeWords, 1, place + "/type"));
+  one.type = static_cast<Type>(word_index(value.find("type"), type_words, 1, place + "/type"));
   const int preset_table = one.type == Type::bit ? 2 : 0;
-  one.table = static_cast<Table>(word_index(value.find("table"), kTableWords, preset_table, place + "/table"));
+  one.table = static_cast<Table>(word_index(value.find("table"), table_words, preset_table, place + "/table"));
   const std::array<const char*, 2> orders{"high-first", "low-first"};
   one.order = static_cast<WordOrder>(word_index(value.find("words"), orders, 0, place + "/words"));
   one.scale = finite_number(value.find("scale"), 1, place + "/scale");
@@ -243,8 +243,8 @@ RegisterMap read_register_map(const std::string& path, const std::string& place)
     const std::string at = path + "#/registers/" + name;
     if (!is_register_word(name, map.joints))
       bad_map(at, "is not known",
-              "with -1 .. -" + std::to_string(map.joints) + ": temperature, " + list_of(kJointWords) + "; or " +
-                  list_of(kOtherWords));
+              "with -1 .. -" + std::to_string(map.joints) + ": temperature, " + list_of(joint_words) + "; or " +
+                  list_of(other_words));
     map.registers[name] = read_one_register(one, at);
   }
   for (int joint = 1; joint <= map.joints; ++joint)

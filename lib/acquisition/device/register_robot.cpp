@@ -14,7 +14,7 @@
 namespace gonio::acquisition {
 namespace {
 
-constexpr double kSamePlaceRad = 1e-4;  // devices.h; coarser where the registers are
+constexpr double same_place_rad = 1e-4;  // devices.h; coarser where the registers are
 
 class RegisterRobot : public RobotDevice {
  public:
@@ -160,7 +160,7 @@ class RegisterRobot : public RobotDevice {
   ModbusClient device_;
   RegisterMap map_;
   std::string host_, place_;
-  double stall_s_, tolerance_rad_ = kSamePlaceRad;
+  double stall_s_, tolerance_rad_ = same_place_rad;
   std::mutex one_at_a_time_;
   std::atomic<int> number_{1}, stops_{0};
 };

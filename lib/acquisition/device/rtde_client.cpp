@@ -8,7 +8,7 @@
 namespace gonio::acquisition {
 namespace {
 
-constexpr int kRtdeTries = 3;
+constexpr int rtde_tries = 3;
 
 double rtde_one(const RtdeFields& fields, const std::string& name) {
   const double value = fields.at(name).at(0);
@@ -133,7 +133,7 @@ auto RtdeClient::with_connection(const Work& work) {
     }
     connection_.close();
     ++reconnections_;
-    if (++failures < kRtdeTries) continue;
+    if (++failures < rtde_tries) continue;
     if (!last_text_.empty()) problem += "; the controller said '" + last_text_ + "'";
     throw Error(
         Exit::unavailable, place_, problem + format(" (%d times in a row)", failures),

@@ -26,20 +26,20 @@ struct RtdeType {
   int bytes, count;
   enum Kind { whole, with_sign, real } kind;
 };
-constexpr std::array<RtdeType, 11> kRtdeTypes{{{"BOOL", 1, 1, RtdeType::whole},
-                                               {"UINT8", 1, 1, RtdeType::whole},
-                                               {"UINT16", 2, 1, RtdeType::whole},
-                                               {"UINT32", 4, 1, RtdeType::whole},
-                                               {"UINT64", 8, 1, RtdeType::whole},
-                                               {"INT32", 4, 1, RtdeType::with_sign},
-                                               {"DOUBLE", 8, 1, RtdeType::real},
-                                               {"VECTOR3D", 8, 3, RtdeType::real},
-                                               {"VECTOR6D", 8, 6, RtdeType::real},
-                                               {"VECTOR6INT32", 4, 6, RtdeType::with_sign},
-                                               {"VECTOR6UINT32", 4, 6, RtdeType::whole}}};
+constexpr std::array<RtdeType, 11> rtde_type_table{{{"BOOL", 1, 1, RtdeType::whole},
+                                                    {"UINT8", 1, 1, RtdeType::whole},
+                                                    {"UINT16", 2, 1, RtdeType::whole},
+                                                    {"UINT32", 4, 1, RtdeType::whole},
+                                                    {"UINT64", 8, 1, RtdeType::whole},
+                                                    {"INT32", 4, 1, RtdeType::with_sign},
+                                                    {"DOUBLE", 8, 1, RtdeType::real},
+                                                    {"VECTOR3D", 8, 3, RtdeType::real},
+                                                    {"VECTOR6D", 8, 6, RtdeType::real},
+                                                    {"VECTOR6INT32", 4, 6, RtdeType::with_sign},
+                                                    {"VECTOR6UINT32", 4, 6, RtdeType::whole}}};
 
 const RtdeType* rtde_type(std::string_view name) {
-  for (const auto& type : kRtdeTypes)
+  for (const auto& type : rtde_type_table)
     if (type.name == name) return &type;
   return nullptr;
 }

@@ -14,12 +14,12 @@ using Packing = PixelFormat::Packing;
 
 // "Bayer.." stands for its four orders. Polarized: FLIR's; Polarize: Lucid's; in both a Bayer filter over the grid of
 // polarizers is named as well.
-constexpr std::array<std::string_view, 6> kMosaics{"Mono",         "Bayer..",          "Polarized",
-                                                   "PolarizeMono", "Bayer..Polarized", "PolarizeBayer.."};
-constexpr std::array<std::string_view, 4> kOrders{"RG", "GR", "GB", "BG"};
+constexpr std::array<std::string_view, 6> mosaic_names{"Mono",         "Bayer..",          "Polarized",
+                                                       "PolarizeMono", "Bayer..Polarized", "PolarizeBayer.."};
+constexpr std::array<std::string_view, 4> bayer_orders{"RG", "GR", "GB", "BG"};
 
 bool is_mosaic_name(std::string_view name) {
-  for (const std::string_view pattern : kMosaics) {
+  for (const std::string_view pattern : mosaic_names) {
     if (name.size() != pattern.size()) continue;
     const auto dots = pattern.find("..");
     if (dots == std::string_view::npos) {
@@ -27,7 +27,7 @@ bool is_mosaic_name(std::string_view name) {
       continue;
     }
     const std::string_view order = name.substr(dots, 2);
-    if (std::find(kOrders.begin(), kOrders.end(), order) != kOrders.end() &&
+    if (std::find(bayer_orders.begin(), bayer_orders.end(), order) != bayer_orders.end() &&
         name.substr(0, dots) == pattern.substr(0, dots) && name.substr(dots + 2) == pattern.substr(dots + 2))
       return true;
   }

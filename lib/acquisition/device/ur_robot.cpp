@@ -18,45 +18,47 @@
 namespace gonio::acquisition {
 namespace {
 
-constexpr double kArrivedRad = 1e-4;       // devices.h
-constexpr double kAtBeginningRad = 1e-3;   // devices.h
-constexpr double kStandingRadPerS = 2e-3;  // encoders' noise in actual_qd stays below
-constexpr double kRegisterRad = 2e-3;      // registers hold mrad, cut or rounded, a little older than the packet
-constexpr double kStopRadPerS2 = 2;        // of the leading axis, as `stopj` of the manual's examples
+constexpr double arrived_rad = 1e-4;         // devices.h
+constexpr double at_beginning_rad = 1e-3;    // devices.h
+constexpr double standing_rad_per_s = 2e-3;  // encoders' noise in actual_qd stays below
+constexpr double register_slack_rad = 2e-3;  // registers hold mrad, cut or rounded, a little older than the packet
+constexpr double stop_rad_per_s2 = 2;        // of the leading axis, as `stopj` of the manual's examples
 
 // RTDE guide: "Robot Mode", "Safety Mode".
 const char* robot_mode_word(int mode) {
-  static constexpr const char* kWords[] = {"DISCONNECTED", "CONFIRM_SAFETY", "BOOTING", "POWER_OFF",        "POWER_ON",
-                                           "IDLE",         "BACKDRIVE",      "RUNNING", "UPDATING_FIRMWARE"};
-  return mode == -1 ? "NO_CONTROLLER" : mode >= 0 && mode <= 8 ? kWords[mode] : "UNKNOWN_MODE";
+  static constexpr const char* mode_words[] = {"DISCONNECTED", "CONFIRM_SAFETY", "BOOTING",
+                                               "POWER_OFF",    "POWER_ON",       "IDLE",
+                                               "BACKDRIVE",    "RUNNING",        "UPDATING_FIRMWARE"};
+  return mode == -1 ? "NO_CONTROLLER" : mode >= 0 && mode <= 8 ? mode_words[mode] : "UNKNOWN_MODE";
 }
 const char* safety_mode_word(int mode) {
-  static constexpr const char* kWords[] = {"NORMAL",
-                                           "REDUCED",
-                                           "PROTECTIVE_STOP",
-                                           "RECOVERY",
-                                           "SAFEGUARD_STOP",
-                                           "SYSTEM_EMERGENCY_STOP",
-                                           "ROBOT_EMERGENCY_STOP",
-                                           "VIOLATION",
-                                           "FAULT"};
-  return mode >= 1 && mode <= 9 ? kWords[mode - 1] : "UNDEFINED_SAFETY_MODE";
+  static constexpr const char* mode_words[] = {"NORMAL",
+                                               "REDUCED",
+                                               "PROTECTIVE_STOP",
+                                               "RECOVERY",
+                                               "SAFEGUARD_STOP",
+                                               "SYSTEM_EMERGENCY_STOP",
+                                               "ROBOT_EMERGENCY_STOP",
+                                               "VIOLATION",
+                                               "FAULT"};
+  return mode >= 1 && mode <= 9 ? mode_words[mode - 1] : "UNDEFINED_SAFETY_MODE";
 }
-constexpr int kRunning = 7;                                           // robot mode
-constexpr std::uint32_t kPowerOn = 1u << 0, kProgramRuns = 1u << 1;   // robot_status_bits
-constexpr std::uint32_t kProtective = 1u << 2, kSafeguard = 1u << 4;  // safety_status_bits
-constexpr std::uint32_t kEmergency = 1u << 5 | 1u << 6 | 1u << 7, kFault = 1u << 8 | 1u << 9;
-constexpr std::uint32_t kStoppedForSafety = 1u << 10;
+constexpr int mode_running = 7;                                              // robot mode
+constexpr std::uint32_t bit_power_on = 1u << 0, bit_program_runs = 1u << 1;  // robot_status_bits
+constexpr std::uint32_t bit_protective = 1u << 2, bit_safeguard = 1u << 4;   // safety_status_bits
+constexpr std::uint32_t bits_emergency = 1u << 5 | 1u << 6 | 1u << 7, bits_fault = 1u << 8 | 1u << 9;
+constexpr std::uint32_t bit_stopped_for_safety = 1u << 10;
 
 bool ur_stands(const RtdeState& state) {
   return std::all_of(state.speed_rad_per_s.begin(), state.speed_rad_per_s.end(),
-                     [](double speed) { return std::abs(speed) <= kStandingRadPerS; });
+                     [](double speed) { return std::abs(speed) <= standing_rad_per_s; });
 }
 
 // What keeps the arm from moving, in the controller's words; empty: nothing.
 std::string ur_obstacle(const RtdeState& state) {
-  if (state.robot_mode != kRunning) return std::string("robot mode ") + robot_mode_word(state.robot_mode);
-  if ((state.safety_bits & (kProtective | kSafeguard | kEmergency | kFault | kStoppedForSafety)) != 0 ||
+  if (state.robot_mode != mode_running) return std::string("robot mode ") + robot_mode_word(state.robot_mode);
+  if ((state.safety_bits & (bit_protective | bit_safeguard | bits_emergency | bits_fault | bit_stopped_for_safety)) !=
+          0 ||
       state.safety_mode > 2 || state.safety_mode < 1)
     return std::string("safety mode ") + safety_mode_word(state.safety_mode);
   return {};
@@ -101,7 +103,7 @@ class UrRobot : public RobotDevice {
       Connection line = script_line();
       send_script(line, motion_script(mark, way, speeds, accelerations));
       const RobotState end = whole_state(watch(line, mark, way.back(), stops_before));
-      if (const auto astray = farthest_joint(end.joints_rad, way.back(), kArrivedRad); !astray.empty())
+      if (const auto astray = farthest_joint(end.joints_rad, way.back(), arrived_rad); !astray.empty())
         throw unavailable("left the end of its way: " + astray, "see what pushes it");
       return end;
     } catch (const Error& error) {
@@ -153,10 +155,10 @@ class UrRobot : public RobotDevice {
   void check_ready(const RtdeState& state, const std::vector<double>& first) {
     if (const auto obstacle = ur_obstacle(state); !obstacle.empty())
       throw unavailable("cannot move: " + obstacle, "clear it at the pendant");
-    if ((state.robot_bits & kProgramRuns) != 0)
+    if ((state.robot_bits & bit_program_runs) != 0)
       throw unavailable("another program runs on it", "end that one at the pendant");
     if (!ur_stands(state)) throw unavailable("moves although no program of ours runs", "wait until it stands");
-    if (const auto astray = farthest_joint(state.joints_rad, first, kAtBeginningRad); !astray.empty())
+    if (const auto astray = farthest_joint(state.joints_rad, first, at_beginning_rad); !astray.empty())
       throw unavailable("is not where the way begins: " + astray, "read its state and plan from there");
     if (!remote_control())
       throw unavailable("is not in remote control", "switch it at the pendant: Local -> Remote Control");
@@ -209,7 +211,7 @@ class UrRobot : public RobotDevice {
     for (int attempt = 0; attempt < 3 && !line.is_open(); ++attempt) {
       try {
         line = script_line();
-        send_script(line, stop_script(mark, kStopRadPerS2));
+        send_script(line, stop_script(mark, stop_rad_per_s2));
       } catch (const Error& error) {
         unsent = error.problem();
         line.close();
@@ -252,7 +254,7 @@ bool UrRobot::stopped(const RtdeState& now, const ProgramMark& mark, bool taken,
                       const std::string& unsent) const {
   if (taken && ur_stands(now)) return true;
   if (Clock::now() < until || (now.program == mark.begun() && !ur_stands(now))) return false;
-  if (ur_stands(now) && (now.robot_bits & kProgramRuns) == 0) return true;
+  if (ur_stands(now) && (now.robot_bits & bit_program_runs) == 0) return true;
   throw unavailable("cannot be stopped: " + (unsent.empty() ? "it did not take the program that stops it" : unsent),
                     "press the emergency stop");
 }
@@ -260,7 +262,7 @@ bool UrRobot::stopped(const RtdeState& now, const ProgramMark& mark, bool taken,
 // Throws where this state says that the program will not arrive.
 void UrRobot::judge_running(const RtdeState& now, const ProgramMark& mark, const std::vector<double>& target) const {
   const auto where = [&] {
-    const auto astray = farthest_joint(now.joints_rad, target, kArrivedRad);
+    const auto astray = farthest_joint(now.joints_rad, target, arrived_rad);
     return astray.empty() ? std::string("it stands at the end of its way") : astray;
   };
   if (const auto obstacle = ur_obstacle(now); !obstacle.empty())
@@ -293,9 +295,9 @@ RtdeState UrRobot::watch(Connection& line, const ProgramMark& mark, const std::v
     }
     begun = true;
     judge_running(now, mark, target);
-    const bool stands = ur_stands(now), runs = (now.robot_bits & kProgramRuns) != 0;
+    const bool stands = ur_stands(now), runs = (now.robot_bits & bit_program_runs) != 0;
     if (!stands) moved = Clock::now(), moved_time_s = now.time_s;
-    const bool there = farthest_joint(now.joints_rad, target, kArrivedRad).empty();
+    const bool there = farthest_joint(now.joints_rad, target, arrived_rad).empty();
     arrived = now.program == mark.ended() && !runs && stands && there ? arrived + 1 : 0;
     if (arrived >= 2) return true;
     idle = stands && !runs ? idle + 1 : 0;
@@ -317,10 +319,10 @@ RtdeState UrRobot::watch(Connection& line, const ProgramMark& mark, const std::v
 std::string UrRobot::registers_disagree(const RtdeState& seen) {
   const RegisterReading reading = read_registers(*registers_, ur_register_map());
   for (std::size_t i = 0; i < 6; ++i)
-    if (std::abs(reading.joints_rad.at(i) - seen.joints_rad[i]) > kRegisterRad)
+    if (std::abs(reading.joints_rad.at(i) - seen.joints_rad[i]) > register_slack_rad)
       return format("its registers say %.4f rad of joint %d, RTDE %.4f (limit %g)", reading.joints_rad[i],
-                    static_cast<int>(i + 1), seen.joints_rad[i], kRegisterRad);
-  if (reading.protective_stop.value_or(false) != ((seen.safety_bits & kProtective) != 0))
+                    static_cast<int>(i + 1), seen.joints_rad[i], register_slack_rad);
+  if (reading.protective_stop.value_or(false) != ((seen.safety_bits & bit_protective) != 0))
     return "its registers and RTDE disagree on a protective stop";
   return {};
 }
@@ -343,10 +345,10 @@ RobotState UrRobot::whole_state(const RtdeState& first) {
   const auto& tool = seen.tool;
   state.base_from_tool = Rigid<frame::Base, frame::Tool>{quaternion_of_rotation_vector({tool[3], tool[4], tool[5]}),
                                                          {tool[0], tool[1], tool[2]}};
-  state.powered = (seen.robot_bits & kPowerOn) != 0;
+  state.powered = (seen.robot_bits & bit_power_on) != 0;
   state.standing = ur_stands(seen);
-  state.protective_stop = (seen.safety_bits & (kProtective | kSafeguard)) != 0;
-  state.emergency_stop = (seen.safety_bits & kEmergency) != 0;
+  state.protective_stop = (seen.safety_bits & (bit_protective | bit_safeguard)) != 0;
+  state.emergency_stop = (seen.safety_bits & bits_emergency) != 0;
   state.remote_control = remote_control();
   state.mode = robot_mode_word(seen.robot_mode);
   if (seen.safety_mode != 1) state.mode += std::string(", ") + safety_mode_word(seen.safety_mode);

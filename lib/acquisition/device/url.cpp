@@ -11,12 +11,12 @@
 namespace gonio::acquisition {
 namespace {
 
-constexpr const char* kUrlShape = "write scheme://host:port/path?key=value&key=value; blanks and the like as %20";
+constexpr const char* url_shape = "write scheme://host:port/path?key=value&key=value; blanks and the like as %20";
 
 [[noreturn]] void no_url(const std::string& text, const std::string& place, const std::string& problem) {
   std::string shown;
   for (const char c : text.substr(0, 120)) shown += std::isprint(static_cast<unsigned char>(c)) ? c : '?';
-  throw Error(Exit::usage, place, "'" + shown + "' is no URL of a device: " + problem, kUrlShape);
+  throw Error(Exit::usage, place, "'" + shown + "' is no URL of a device: " + problem, url_shape);
 }
 
 int hex_digit(char c) {

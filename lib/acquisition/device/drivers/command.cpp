@@ -155,7 +155,7 @@ std::unique_ptr<ScreenDevice> command_screen(const Url& url, const std::string& 
 }  // namespace
 
 const Driver& command() {
-  static const Driver kDriver = [] {
+  static const Driver its_driver = [] {
     Driver driver;
     driver.scheme = "command";
     driver.sentence =
@@ -167,7 +167,7 @@ const Driver& command() {
     driver.screen = command_screen;
     return driver;
   }();
-  return kDriver;
+  return its_driver;
 }
 
 }  // namespace gonio::acquisition::drivers

@@ -160,7 +160,7 @@ std::unique_ptr<CameraDevice> folder_camera(const Url& url, const std::string& p
 }  // namespace
 
 const Driver& folder() {
-  static const Driver kDriver = [] {
+  static const Driver its_driver = [] {
     Driver driver;
     driver.scheme = "folder";
     driver.sentence =
@@ -170,7 +170,7 @@ const Driver& folder() {
     driver.camera = folder_camera;
     return driver;
   }();
-  return kDriver;
+  return its_driver;
 }
 
 }  // namespace gonio::acquisition::drivers

@@ -20,7 +20,7 @@
 namespace gonio::acquisition::drivers {
 namespace {
 
-constexpr const char* kRemedy = "is it on, and in this network?";
+constexpr const char* camera_remedy = "is it on, and in this network?";
 
 struct Unref {
   void operator()(void* object) const { g_object_unref(object); }
@@ -137,7 +137,7 @@ class GenicamCamera : public CameraDevice, AravisCamera {
 
   void knock() {
     if (!answers_as_gige_camera(settings_.address, settings_.timeout_s))
-      throw failure("does not answer within " + shortest_text(settings_.timeout_s) + " s", kRemedy);
+      throw failure("does not answer within " + shortest_text(settings_.timeout_s) + " s", camera_remedy);
   }
 
   void open() {
@@ -145,7 +145,7 @@ class GenicamCamera : public CameraDevice, AravisCamera {
     knock();
     Wrong wrong;
     camera_.reset(arv_camera_new(settings_.address.c_str(), &wrong.error));
-    if (!camera_) throw failure(wrong.error != nullptr ? wrong.error->message : "there is none", kRemedy);
+    if (!camera_) throw failure(wrong.error != nullptr ? wrong.error->message : "there is none", camera_remedy);
     if (ARV_IS_GV_DEVICE(device()) && !arv_gv_device_is_controller(ARV_GV_DEVICE(device())))
       throw failure("another program holds it", "close that program");
     quietly(arv_camera_stop_acquisition);  // whoever had it before may have left it running
@@ -384,7 +384,7 @@ std::unique_ptr<CameraDevice> genicam_camera(const Url& url, const std::string& 
 }  // namespace
 
 const Driver& genicam() {
-  static const Driver kDriver = [] {
+  static const Driver its_driver = [] {
     Driver driver;
     driver.scheme = "genicam";
     driver.sentence =
@@ -394,7 +394,7 @@ const Driver& genicam() {
     driver.camera = genicam_camera;
     return driver;
   }();
-  return kDriver;
+  return its_driver;
 }
 
 }  // namespace gonio::acquisition::drivers

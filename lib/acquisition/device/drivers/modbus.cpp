@@ -95,7 +95,7 @@ std::unique_ptr<TurntableDevice> modbus_turntable(const Url& url, const std::str
 }  // namespace
 
 const Driver& modbus() {
-  static const Driver kDriver = [] {
+  static const Driver its_driver = [] {
     Driver driver;
     driver.scheme = "modbus";
     driver.sentence =
@@ -110,7 +110,7 @@ const Driver& modbus() {
     driver.turntable = modbus_turntable;
     return driver;
   }();
-  return kDriver;
+  return its_driver;
 }
 
 }  // namespace gonio::acquisition::drivers

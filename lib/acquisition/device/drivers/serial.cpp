@@ -18,9 +18,9 @@
 namespace gonio::acquisition::drivers {
 namespace {
 
-constexpr std::pair<int, speed_t> kBauds[] = {{1200, B1200},     {2400, B2400},     {4800, B4800},    {9600, B9600},
-                                              {19200, B19200},   {38400, B38400},   {57600, B57600},  {115200, B115200},
-                                              {230400, B230400}, {460800, B460800}, {921600, B921600}};
+constexpr std::pair<int, speed_t> baud_codes[] = {
+    {1200, B1200},   {2400, B2400},     {4800, B4800},     {9600, B9600},     {19200, B19200},  {38400, B38400},
+    {57600, B57600}, {115200, B115200}, {230400, B230400}, {460800, B460800}, {921600, B921600}};
 
 struct SerialSettings {
   std::string path, end = "\n";
@@ -65,7 +65,7 @@ class SerialLine {
     if (::tcgetattr(file_, &line) != 0) fail("is no serial line", "name a device as /dev/ttyUSB0");
     ::cfmakeraw(&line);
     line.c_cflag |= CLOCAL | CREAD;
-    for (const auto& [baud, code] : kBauds)
+    for (const auto& [baud, code] : baud_codes)
       if (baud == settings_.baud) ::cfsetspeed(&line, code);
     if (::tcsetattr(file_, TCSANOW, &line) != 0) fail(std::strerror(errno), "does it know this baud rate?");
   }
@@ -128,7 +128,7 @@ TextLine serial_text_line(const Url& url, UrlQuery& query, const std::string& pl
   settings.path = url.path;
   settings.baud = query.integer("baud", 9600, 1200, 921600);
   bool known = false;
-  for (const auto& [baud, code] : kBauds) known = known || baud == settings.baud;
+  for (const auto& [baud, code] : baud_codes) known = known || baud == settings.baud;
   if (!known)
     throw Error(Exit::usage, place, url.text + ": no line runs at " + std::to_string(settings.baud) + " baud",
                 "as 9600, 19200, 115200");
@@ -153,7 +153,7 @@ std::unique_ptr<TurntableDevice> serial_turntable(const Url& url, const std::str
 }  // namespace
 
 const Driver& serial() {
-  static const Driver kDriver = [] {
+  static const Driver its_driver = [] {
     Driver driver;
     driver.scheme = "serial";
     driver.sentence =
@@ -165,7 +165,7 @@ const Driver& serial() {
     driver.turntable = serial_turntable;
     return driver;
   }();
-  return kDriver;
+  return its_driver;
 }
 
 }  // namespace gonio::acquisition::drivers
