@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "manifest/sections/image.h"
 #include "manifest/sections/sequence.h"
 #include "nrsfm/files.h"
 #include "nrsfm/make/factorial.h"
@@ -36,8 +37,30 @@ std::vector<std::string> levels(const cli::Invocation& call, const char* option,
   return call.given(option) ? call.texts(option) : all;
 }
 
+// --seen-from: where the images were taken from, in the order of their names, about the world's origin and in units of
+// their mean distance from there. Empty: not asked for.
+std::vector<Vec3> places_asked(const cli::Invocation& call) {
+  if (!call.given("seen-from")) return {};
+  std::map<std::string, Vec3> eyes;
+  for (const manifest::ImageEntry& image : call.document.images)
+    if (image.world_from_camera) eyes[image.id] = image.world_from_camera->translation_m;
+  double sum = 0;
+  std::vector<Vec3> places;
+  for (const auto& [id, eye] : eyes) places.push_back(eye), sum += norm(eye);
+  if (places.size() < 2 || sum == 0)
+    throw Error(Exit::data, manifest::place(call.document, "/images"),
+                std::to_string(places.size()) + " of them say where their camera stood, two are needed",
+                "take them with acquire, or leave --seen-from out");
+  for (Vec3& place : places) place = place * (static_cast<double>(places.size()) / sum);
+  return places;
+}
+
+Eigen::Index frames_asked(const cli::Invocation& call) {
+  return call.given("seen-from") ? static_cast<Eigen::Index>(places_asked(call).size()) : call.integer("frames");
+}
+
 AnimatronicOptions size_asked(const cli::Invocation& call) {
-  return {call.integer("frames"), call.integer("points"), call.seed};
+  return {frames_asked(call), call.integer("points"), call.seed};
 }
 
 bool is_file_name(const std::string& name) {
@@ -92,7 +115,7 @@ class Stage {
 
 ViewOptions view_asked(const cli::Invocation& call) {
   return {call.number("distance"), call.number("least-seen"),
-          by_flow(call) ? static_cast<int>(call.integer("flow-width")) : 0};
+          by_flow(call) ? static_cast<int>(call.integer("flow-width")) : 0, places_asked(call)};
 }
 
 // What decides the content of a file, for --resume: all options that do, with the scans' files.
@@ -100,8 +123,10 @@ std::string made_with(const cli::Invocation& call) {
   std::string said = "distance " + call.text("distance") + ", least seen " + call.text("least-seen");
   if (call.flag("one-sided")) said += ", one-sided";
   if (by_flow(call)) said += ", optical flow at " + call.text("flow-width");
+  for (const Vec3& place : places_asked(call))
+    said += ", from " + shortest_text(place.x) + " " + shortest_text(place.y) + " " + shortest_text(place.z);
   if (!call.given("meshes"))
-    return said + ", frames " + call.text("frames") + ", points " + call.text("points") + ", seed " +
+    return said + ", frames " + std::to_string(frames_asked(call)) + ", points " + call.text("points") + ", seed " +
            std::to_string(call.seed);
   return said + ", meshes " + call.text("meshes") + ", tracks " + call.text("tracks") + ", unit " + call.text("unit") +
          ", tolerance " + call.text("tolerance");
@@ -164,8 +189,10 @@ std::vector<std::string> deformations(const cli::Invocation& call) {
 }  // namespace
 
 Exit run(cli::Invocation& call) {
-  const auto cells = design(deformations(call), levels(call, "path", path_names()), levels(call, "camera", cameras),
-                            by_flow(call) ? std::vector<std::string>{"with"} : levels(call, "missing", missing));
+  const auto cells =
+      design(deformations(call), levels(call, call.given("seen-from") ? "seen-from" : "path", path_names()),
+             levels(call, "camera", cameras),
+             by_flow(call) ? std::vector<std::string>{"with"} : levels(call, "missing", missing));
   std::vector<std::filesystem::path> paths;  // refused before anything is simulated
   std::vector<std::string> needed;
   for (const Cell& cell : cells) {
@@ -201,6 +228,9 @@ void check(cli::Invocation& call) {
                 "leave it out beside --meshes");
   if (by_flow(call) && call.given("missing") && std::ranges::count(call.texts("missing"), "without") > 0)
     throw Error(Exit::usage, "--missing", "is without, which optical flow has not", "leave it out: tracks get lost");
+  if (call.given("seen-from") && !is_file_name(call.text("seen-from")))
+    throw Error(Exit::usage, "--seen-from", "is \"" + call.text("seen-from") + "\", which no file can be called",
+                "take letters, digits, -, _ and dots");
   for (const char* option : {"frames", "points", "kind"})
     if (call.given("meshes") && call.given(option))
       throw Error(Exit::usage, std::string("--") + option, "is that of the scans", "leave it out beside --meshes");
@@ -218,6 +248,12 @@ std::vector<cli::Option> options() {
        .help = "Path of the camera; may be repeated. Left out: all.",
        .choices = path_names(),
        .repeat = true},
+      {.name = "seen-from",
+       .type = Type::text,
+       .help = "Instead of a path by name: the camera stands where the manifest's images were taken from, in the order "
+               "of their names, about the world's origin; the path is called NAME.",
+       .metavar = "NAME",
+       .conflicts = {"path", "frames", "meshes"}},
       {.name = "camera",
        .type = Type::choice,
        .help = "Projection; may be repeated. Left out: both.",

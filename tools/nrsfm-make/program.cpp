@@ -13,7 +13,7 @@ const cli::Program& gonio_program() {
       .takes_out = true,
       .takes_seed = true,
       .takes_resume = true,
-      .sections_read = {"files", "sequences"},
+      .sections_read = {"files", "images", "sequences"},
       .sections_written = {"files", "sequences"},
       .files = {{"KIND-PATH-CAMERA-MISSING.mat", "a sequence: tracks W, visibility V, truth S, cameras R, T, K"}},
       .references = {"Jensen, Doest, Aanaes & Del Bue, A benchmark and evaluation of non-rigid structure from motion, "

@@ -94,8 +94,7 @@ DeskSensor sensor_at(const manifest::LaboratoryCamera& entry, double exposure_s)
   sensor.white = entry.white.value_or((1 << sensor.bits) - 1);
   sensor.black = entry.black_code.value_or(0);
   sensor.per_radiance = entry.codes_per_radiance_s.value_or(sensor.white / usual_exposure_s) * exposure_s;
-  const double electrons =
-      entry.electrons_per_code.value_or(full_well_electrons / sensor.white) * sensor.per_radiance;
+  const double electrons = entry.electrons_per_code.value_or(full_well_electrons / sensor.white) * sensor.per_radiance;
   sensor.noise = {.gain = electrons, .read = entry.read_electrons.value_or(usual_read_electrons) / electrons};
   return sensor;
 }
@@ -152,10 +151,7 @@ void TrueState::place_lamps(manifest::Document& scene) const {
 // Objects on a turntable turn about its z.
 void TrueState::turn_objects(manifest::Document& scene) const {
   for (const auto& [name, table] : document.laboratory.entry.front().turntables) {
-    const auto world_from_table = table.world_from_table ? Rigid<frame::World, frame::Object>(*table.world_from_table)
-                                                         : Rigid<frame::World, frame::Object>{};
-    const Rigid<frame::Object, frame::Object> turn{quaternion_of_rotation_vector({0, 0, angle_rad.at(name)}), {}};
-    const Rigid<frame::World, frame::World> motion = world_from_table * turn * inverse(world_from_table);
+    const Rigid<frame::World, frame::World> motion = turntable_motion(table, angle_rad.at(name));
     for (manifest::Object& object : scene.objects) {
       if (std::ranges::find(table.carries, object.id) == table.carries.end()) continue;
       if (!object.world_from_object) object.world_from_object.emplace();
@@ -213,6 +209,7 @@ RawFrame TrueState::expose(const std::string& camera, const Shot& shot) {
   how.seed = options.seed;
   how.spp = options.spp;
   how.geometry = false;
+  how.transport.stokes = document.cameras.at(camera).mosaic == "polarizers";
   how.checkpoint_s = std::numeric_limits<double>::infinity();  // a frame is rendered in one go
   const render::Session session(scene, how, [](const std::filesystem::path&) {});
   const std::string& id = scene.images.front().id;

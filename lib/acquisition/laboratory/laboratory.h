@@ -53,6 +53,8 @@ std::optional<Rigid<frame::Tool, frame::Camera>> tool_from_camera(const manifest
                                                                   const std::string& camera);
 Rigid<frame::World, frame::Camera> world_from_camera(const manifest::Document& document, const Laboratory& laboratory,
                                                      const std::string& camera, const State& state);
+// How what stands on a turntable has moved since its angle was 0, world coordinates.
+Rigid<frame::World, frame::World> turntable_motion(const manifest::LaboratoryTurntable& table, double angle_rad);
 // A standing lamp without a place of its own stands where its light does.
 Vec3 lamp_position(const manifest::Document& document, const Laboratory& laboratory, const std::string& lamp,
                    const State& state);

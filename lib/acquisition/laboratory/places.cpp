@@ -91,6 +91,13 @@ Rigid<frame::World, frame::Camera> world_from_camera(const manifest::Document& d
   return *part.world_from_camera;
 }
 
+Rigid<frame::World, frame::World> turntable_motion(const manifest::LaboratoryTurntable& table, double angle_rad) {
+  Rigid<frame::World, frame::Object> world_from_table;
+  if (table.world_from_table) world_from_table = *table.world_from_table;
+  const Rigid<frame::Object, frame::Object> turn{quaternion_of_rotation_vector({0, 0, angle_rad}), {}};
+  return world_from_table * turn * inverse(world_from_table);
+}
+
 Vec3 lamp_position(const manifest::Document& document, const Laboratory& laboratory, const std::string& lamp,
                    const State& state) {
   const std::string place = manifest::place(document, "/laboratory/lamps/" + lamp);

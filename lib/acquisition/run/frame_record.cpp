@@ -67,23 +67,40 @@ manifest::Parameter gain_of(const manifest::LaboratoryCamera& camera, const Fram
   return gain;
 }
 
-// The light that a lamp is in this frame. One that an arm held is a light of its own for every place: the same power,
-// another position. Empty: the scene knows nothing of it.
-std::string light_there(manifest::Document& d, const Laboratory& laboratory, const std::string& lamp,
-                        const FrameRecord& r) {
-  if (d.laboratory.entry.empty()) return d.lights.contains(lamp) ? lamp : "";
-  const auto& lamps = d.laboratory.entry.front().lamps;
-  const auto named = lamps.find(lamp);
-  const std::string light = named == lamps.end() || named->second.light.empty() ? lamp : named->second.light;
+// The scene's world turns with what stands on the turntable: seen from there, cameras and lamps have gone round the
+// other way.
+Rigid<frame::World, frame::World> seen_from_table(const manifest::Laboratory& lab, const FrameRecord& r) {
+  Rigid<frame::World, frame::World> motion{};
+  for (const auto& [name, angle] : r.turntables)
+    if (const auto table = lab.turntables.find(name); table != lab.turntables.end())
+      motion = turntable_motion(table->second, angle) * motion;
+  return inverse(motion);
+}
+
+bool has_turned(const FrameRecord& r) {
+  return std::ranges::any_of(r.turntables, [](const auto& table) { return table.second != 0; });
+}
+
+// The light that a lamp is in this frame. One that an arm held, or that went round a turntable, is a light of its own
+// for every place: the same power, another position. Empty: the scene knows nothing of it.
+std::string light_there(manifest::Document& d, const Laboratory& laboratory, const manifest::Laboratory& lab,
+                        const std::string& lamp, const FrameRecord& r) {
+  const auto named = lab.lamps.find(lamp);
+  const bool known = named != lab.lamps.end();
+  const std::string light = !known || named->second.light.empty() ? lamp : named->second.light;
   if (!d.lights.contains(light)) return "";
-  if (named == lamps.end() || named->second.robot.empty() || named->second.in_tool_m.empty() ||
-      !d.lights.at(light).parameters.contains("position_m"))
-    return light;
+  const bool held = known && !named->second.robot.empty() && !named->second.in_tool_m.empty();
   manifest::Light there = d.lights.at(light);
-  const Vec3 p = lamp_position(d, laboratory, lamp, r.joints);
-  there.parameters["position_m"].value = {p.x, p.y, p.z};
+  const auto position = there.parameters.find("position_m"), towards = there.parameters.find("towards");
+  const bool placed = position != there.parameters.end();
+  if (!(held && placed) && !(has_turned(r) && (placed || towards != there.parameters.end()))) return light;
+  const Rigid<frame::World, frame::World> seen = seen_from_table(lab, r);
+  const auto put = [](manifest::Parameter& parameter, Vec3 v) { parameter.value = {v.x, v.y, v.z}; };
+  if (placed)
+    put(position->second, seen * (held ? lamp_position(d, laboratory, lamp, r.joints) : position->second.vector()));
+  if (towards != there.parameters.end()) put(towards->second, seen.rotate(towards->second.vector()));
   for (auto& [name, parameter] : there.parameters)
-    if (name != "position_m" && parameter.share.empty()) parameter.share = light + "." + name;
+    if (name != "position_m" && name != "towards" && parameter.share.empty()) parameter.share = light + "." + name;
   const std::string id = light_at_step(light, r.group);
   d.lights[id] = there;
   return id;
@@ -208,7 +225,7 @@ void enter_frames(manifest::Document& d, const Laboratory& laboratory, const man
       image.response = "linear";  // a sensor's own numbers
       if (d.cameras.contains(r.camera)) image.camera = r.camera;
       for (const std::string& lamp : r.lamps) {
-        const std::string light = light_there(d, laboratory, lamp, r);
+        const std::string light = light_there(d, laboratory, lab, lamp, r);
         if (!light.empty()) image.light.push_back(light);
       }
       if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end()) {
@@ -219,9 +236,9 @@ void enter_frames(manifest::Document& d, const Laboratory& laboratory, const man
       }
       if (r.lamps.empty() && !lab.lamps.empty()) image.dark = true;
       if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())
-        if (camera->second.tool_from_camera || camera->second.world_from_camera)
+        if (tool_from_camera(d, r.camera) || camera->second.world_from_camera)
           static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
-              world_from_camera(d, laboratory, r.camera, r.joints);
+              seen_from_table(lab, r) * world_from_camera(d, laboratory, r.camera, r.joints);
       if (const auto arm = laboratory.arms.find(r.robot); arm != laboratory.arms.end() && d.robots.contains(r.robot)) {
         image.robot = r.robot;
         image.joints_rad = r.joints.at(r.robot);

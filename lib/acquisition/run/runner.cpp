@@ -126,7 +126,7 @@ class PlanRun {
           r.figures.bright_code < dark->second.bright_code + 10 * std::max(0.5, r.figures.noise))
         report_.words.push_back(words_of(r) + ": underexposed; ask a bracket, or a longer exposure");
       const double usual = stats::median(focus[r.camera]);
-      if (!r.lamps.empty() && r.figures.focus < 0.25 * usual && focus[r.camera].size() >= 5)
+      if (single && !r.lamps.empty() && r.figures.focus < 0.25 * usual && focus[r.camera].size() >= 5)
         report_.words.push_back(words_of(r) + ": less sharp than the others");
     }
   }

@@ -1,6 +1,7 @@
 #include "nrsfm/make/camera_paths.h"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <limits>
 
 #include "base/error.h"
@@ -19,6 +20,13 @@ CameraFromObject looking(Vec3 eye, Vec3 centre) {
   return camera;
 }
 
+// At s, 0 to 1, of straight lines between the places, each of which takes as long.
+Vec3 place_on(const std::vector<Vec3>& places, double s) {
+  const double at = s * static_cast<double>(places.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(at), places.size() - 1), next = std::min(k + 1, places.size() - 1);
+  return places[k] + (at - static_cast<double>(k)) * (places[next] - places[k]);
+}
+
 }  // namespace
 
 const std::vector<std::string>& path_names() {
@@ -27,14 +35,15 @@ const std::vector<std::string>& path_names() {
 }
 
 std::vector<CameraFromObject> camera_path(const std::string& name, Eigen::Index frames, const PathOptions& options) {
-  view_path(name, 0);  // an unknown name is said first
+  if (options.places.empty()) view_path(name, 0);  // an unknown name is said first
   if (options.distance_m * 0.7 <= options.scene_radius_m)
     throw Error(Exit::usage, "--distance", "leads the camera into the scene", "take at least twice its radius");
   const Vec3 centre{options.centre_m.x(), options.centre_m.y(), options.centre_m.z()};
   std::vector<CameraFromObject> cameras;
   for (Eigen::Index f = 0; f < frames; ++f) {
     const double s = frames > 1 ? static_cast<double>(f) / static_cast<double>(frames - 1) : 0;
-    cameras.push_back(looking(centre + options.distance_m * view_path(name, s), centre));
+    const Vec3 place = options.places.empty() ? view_path(name, s) : place_on(options.places, s);
+    cameras.push_back(looking(centre + options.distance_m * place, centre));
   }
   return cameras;
 }

@@ -96,7 +96,7 @@ Take take_of(const Motion& motion, const std::string& path, const std::string& c
   Take take;
   take.path = path, take.camera = camera;
   take.pinhole = view_pinhole(distance_m, ball.radius_m);
-  take.place = {distance_m, ball.radius_m, ball.centre_m};
+  take.place = {distance_m, ball.radius_m, ball.centre_m, options.places};
   if (camera == "perspective") take.projection = Projection::perspective;
   take.cameras = camera_path(path, motion.frames(), take.place);
   const Visible visible = visible_points(motion, take.cameras, take.projection);

@@ -29,6 +29,7 @@ struct ViewOptions {
   double distance = 4.3;
   double least_seen = 0.1;
   int flow_width_px = 0;
+  std::vector<Vec3> places{};  // of the camera, PathOptions::places
 };
 
 // Neither a cell's points nor what a tracker finds of them make a sequence.

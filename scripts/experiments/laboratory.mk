@@ -1,0 +1,81 @@
+# make -j2 -f laboratory.mk     four acquisitions on simulated instruments
+# a  a light arc round a sample, into brdf-fit: run/sample.json
+# b  two arms, calibrated on a board, then a knot into render and compare:
+#    run/compared.json
+# c  six paths of a camera, from them a sheet that bends, into the solvers:
+#    run/shapes.json
+# Smaller than the real ones, which are STEP=7.5deg EDGES='' (2,783 views),
+# SPP=256 and VIEWS=60.
+STEP  = 22.5deg
+EDGES = ,steepest=22.5deg,flattest=67.5deg,nearest=22.5deg
+SPP   = 16
+VIEWS = 24
+SOLVERS = rigid csf
+PATHS = circle half-circle line flyby zigzag tricky
+BOARD = --charuco 9x7 --square 20mm --marker 15mm --dictionary 4X4_50
+KNOT  = azimuth=200deg,span=60deg,step=30deg,lowest=50deg,highest=50deg$\
+        ,radius=36cm,lamp-radius=42cm,lamp-step=40deg,lamp-lowest=50deg$\
+        ,lamp-azimuth=-30deg,lamp-span=60deg
+
+.RECIPEPREFIX = >
+.DELETE_ON_ERROR:
+.SECONDARY:
+.PHONY: all clean
+all: run/sample.json run/compared.json run/shapes.json
+
+run/arc.json run/studio.json: run/%.json: | run
+> acquire --specimen $* --out run/$* --force -o $@
+
+# a: two exposures, since a varnish is bright in its mirror direction.
+run/arc-plan.json: run/arc.json
+> acquire $< --plan arc:step=$(STEP)$(EDGES) --target 0m,4.25mm,0m \
+>   --exposure 2ms --exposure 16ms --html run/arc-plan.html -o $@
+
+run/arc-frames.json: run/arc-plan.json
+> acquire $< --go --spp $(SPP) --resume --out run/arc-frames -o $@
+
+run/sample.json: run/arc-frames.json
+> brdf-fit $< --sample sample --isotropic --html run/sample.html -o $@
+
+# b: 2: some views of the board are out of reach.
+run/board-plan.json: run/studio.json
+> acquire $< --plan board:views=14,tilt=30deg,nearest=25cm,farthest=35cm \
+>   -o $@ || test $$? -eq 2
+
+run/mounted.json: run/board-plan.json
+> acquire $< --go --truth run/studio/board.json --spp $(SPP) --resume \
+>   --out run/board | calib-charuco $(BOARD) --force --out run/corners | \
+>   handeye --html run/handeye.html -o $@
+
+run/knot-plan.json: run/mounted.json
+> acquire $< --fresh --plan octant:$(KNOT) --target 0m,0m,3cm -o $@
+
+run/knot.json: run/knot-plan.json run/studio.json
+> acquire $< --go --truth run/studio.json --spp $(SPP) --resume \
+>   --out run/knot -o $@
+
+run/compared.json: run/knot.json
+> render $< --spp $(SPP) --resume --out run/rendered | \
+>   compare --html run/compared.html -o $@
+
+# c
+$(PATHS:%=run/%-frames.json): run/%-frames.json: run/studio.json
+> acquire $< --plan $*:views=$(VIEWS),distance=36cm,spread=0.5 -o run/$*-plan.json \
+>   || test $$? -eq 2
+> acquire run/$*-plan.json --go --spp 1 --resume --out run/$* -o $@
+
+$(PATHS:%=run/%-shapes.json): run/%-shapes.json: run/%-frames.json
+> nrsfm-make --seen-from $* --kind bending --camera perspective \
+>   --missing with --resume --out run/tracks -i $< | \
+>   nrsfm-solve $(SOLVERS:%=--solver %) --resume --out run/shapes -o $@ || test $$? -eq 2
+
+run/shapes.json: $(PATHS:%=run/%-shapes.json)
+> for p in $(PATHS); do nrsfm-eval --centre --measure robust-rms --draws 0 \
+>   --csv run/$$p.csv --force -i run/$$p-shapes.json > /dev/null || exit 1; done
+> nrsfm-eval $(PATHS:%=--table run/%.csv) --model main --html run/shapes.html -o $@
+
+run:
+> mkdir -p run
+
+clean:
+> rm -rf run
