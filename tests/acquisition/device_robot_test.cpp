@@ -254,7 +254,7 @@ void run_with_faults(std::uint64_t seed, int motions, int* arrived, int* refused
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), Exit::unavailable) << error.what();
       ++*refused;
-      while (world.arm.now().program_running || world.arm.now().speed_rad_per_s != desk::SixJoints{})
+      while (world.arm.now().program_running || world.arm.now().speed_rad_per_s != desk::JointAngles(6))
         std::this_thread::yield();
     }
     const auto before = world.arm.now();
