@@ -1,4 +1,5 @@
-// The simulated laboratory behind its network, as a user runs it: the program serves, another call of it acquires.
+// The simulated laboratory behind its network, as a user runs it: the program of GONIO_BIN serves, another call of it
+// acquires.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -82,7 +83,7 @@ TEST(Served, ThePicturesAreThoseOfTheLaboratoryWithinOneProgramAndFaultsChangeNo
   ASSERT_EQ(first.status, 0) << first.err;
 
   Serving server(folder.path(), {"--truth", "truth.json", "--faults",
-                                 "rtde-dropped=5%,rtde-reordered=5%,rtde-short=1%,modbus-exception=2%,modbus-busy=2%,"
+                                 "rtde-dropped=5%,rtde-reordered=5%,rtde-short=1%,modbus-busy=2%,"
                                  "modbus-reset=2%,frame-dropped=15%,frame-reordered=40%,chunk-late=20%,"
                                  "stuck-exposure=20%,lamp-dark=15%"});
   EXPECT_EQ(read_file(folder / "served.json").find("joint-offset"), std::string::npos);  // the truth stays inside

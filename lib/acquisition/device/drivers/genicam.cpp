@@ -139,6 +139,9 @@ class GenicamCamera : public CameraDevice, AravisCamera {
       ask(arv_camera_set_acquisition_mode, ARV_ACQUISITION_MODE_SINGLE_FRAME);
       return;
     }
+    if (!commanded_ &&
+        !arv_device_is_enumeration_entry_available(device(), "TriggerSource", settings_.trigger.c_str(), nullptr))
+      throw impossible("has no trigger " + settings_.trigger, "trigger=software, or a line that it has");
     ask(arv_camera_set_acquisition_mode, ARV_ACQUISITION_MODE_CONTINUOUS);
     ask(arv_camera_set_trigger, commanded_ ? "Software" : settings_.trigger.c_str());
   }
