@@ -1,5 +1,6 @@
 // From argv to exit code: the frame of every program. Nothing but the manifest reaches stdout; every failure is one
 // line.
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -41,6 +42,13 @@ Exit to_stdout(std::string_view text) {
     text.remove_prefix(static_cast<std::size_t>(n));
   }
   return Exit::done;
+}
+
+// Whoever reads it sees its end; nothing that is opened later gets its number.
+void close_stdout() {
+  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO);
+  if (nowhere > STDOUT_FILENO) ::close(nowhere);
 }
 
 LogLevel level_of(const std::string& word) {
@@ -237,7 +245,10 @@ Exit run(const Program& program, int argc, char** argv) {
   if (call.flag("check")) return Exit::done;
   prepare_places(call);
   const Exit result = program.run(call);
-  return deliver(call, result, input_id);
+  const Exit delivered = deliver(call, result, input_id);
+  if (!call.afterwards || delivered != result) return delivered;
+  close_stdout();
+  return call.afterwards();
 }
 
 }  // namespace

@@ -88,6 +88,9 @@ class Invocation {
   manifest::Document document;  // read; what run leaves here is written
   bool has_document = false;
   bool writes_document = true;  // run may turn it off (a drawing on stdout, a list)
+  // Set by run: called once the manifest has been written, with standard output closed, so that its reader may begin;
+  // its result is the program's. For programs that serve until they are interrupted.
+  std::function<Exit()> afterwards{};
   std::uint64_t seed = 0;
   std::filesystem::path out;  // --out (created before run), empty where not given
   bool force = false, resume = false;

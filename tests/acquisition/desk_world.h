@@ -12,6 +12,7 @@
 namespace gonio::tests {
 
 struct DeskWorld {
+  acquisition::desk::DeskClock clock;
   acquisition::desk::Faults faults;
   acquisition::desk::TrueArm arm;
   acquisition::desk::TrueLamps lamps;
@@ -19,19 +20,21 @@ struct DeskWorld {
   acquisition::desk::UrController controller;
   acquisition::desk::ModbusDesk registers;
 
-  static acquisition::desk::TrueArmSettings settings(double time_factor) {
+  static acquisition::desk::TrueArmSettings settings() {
     acquisition::desk::TrueArmSettings made;
-    made.time_factor = time_factor;
+    made.lower_rad.assign(6, -6.2832);
+    made.upper_rad.assign(6, 6.2832);
     made.joints_rad = {0.1, -1.2, 1.3, -1.5, -1.6, 0.2};
-    made.tool_pose = [](const acquisition::desk::SixJoints& q) {
-      return acquisition::desk::SixJoints{0.3 + 0.1 * q[0], -0.2, 0.4, 0.1, -0.2, q[5]};
+    made.tool_pose = [](const acquisition::desk::JointAngles& q) {
+      return acquisition::desk::ToolPose{0.3 + 0.1 * q[0], -0.2, 0.4, 0.1, -0.2, q[5]};
     };
     return made;
   }
   explicit DeskWorld(double time_factor = 200, std::uint64_t seed = 1)
-      : faults(seed),
-        arm(settings(time_factor), faults),
-        table(0.5, time_factor),
+      : clock(time_factor),
+        faults(seed),
+        arm(settings(), clock, faults),
+        table(clock, 0.5, 50),
         controller(arm, faults),
         registers(faults) {
     registers.hold_arm(arm);

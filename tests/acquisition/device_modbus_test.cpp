@@ -55,7 +55,7 @@ TEST(DeviceModbus, URsRegistersAreTheArms) {
   EXPECT_EQ(reading.mode, 7);
   EXPECT_TRUE(*reading.powered);
   EXPECT_FALSE(*reading.protective_stop || *reading.emergency_stop);
-  EXPECT_NEAR(reading.temperature_K[3], 273.15 + 22, 1);
+  EXPECT_NEAR(reading.temperature_K[3], 273.15 + world.arm.now().temperature_C[3], 1);
   world.arm.protective_stop();
   EXPECT_TRUE(*read_registers(device, ur_register_map()).protective_stop);
   EXPECT_EQ(device.reconnections(), 0);

@@ -182,7 +182,7 @@ TEST(DeviceRobot, AnotherProgramsEndIsNotOurs) {
   while (world.arm.now().speed_rad_per_s[0] == 0) std::this_thread::yield();
   desk::ArmStep theirs;
   theirs.kind = desk::ArmStep::Kind::move;
-  std::copy(way[1].begin(), way[1].end(), theirs.target_rad.begin());
+  theirs.target_rad = way[1];
   world.arm.run({{desk::ArmStep::Kind::mark, 24, 12345}, theirs, {desk::ArmStep::Kind::mark, 24, 12346}});
   mover.join();
   EXPECT_THAT(moved, testing::HasSubstr("another program took the place of ours"));
@@ -254,7 +254,7 @@ void run_with_faults(std::uint64_t seed, int motions, int* arrived, int* refused
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), Exit::unavailable) << error.what();
       ++*refused;
-      while (world.arm.now().program_running || world.arm.now().speed_rad_per_s != desk::SixJoints{})
+      while (world.arm.now().program_running || world.arm.now().speed_rad_per_s != desk::JointAngles(6))
         std::this_thread::yield();
     }
     const auto before = world.arm.now();

@@ -172,7 +172,7 @@ TEST(DeviceRtde, FaultsNeverGiveAStaleState) {
   RtdeClient client({"127.0.0.1", world.controller.rtde_port(), 24, 1, 125}, "here");
   int seen = 0, refused = 0;
   for (int k = 0; k < 300; ++k) {
-    desk::SixJoints target{0.1 * (k % 7), -1, 1, -1, -1, 0.1 * (k % 5)};
+    desk::JointAngles target{0.1 * (k % 7), -1, 1, -1, -1, 0.1 * (k % 5)};
     world.arm.run({{desk::ArmStep::Kind::mark, 24, k}, {desk::ArmStep::Kind::move, 0, 0, target, 20, 400}});
     const double asked = world.arm.now().time_s;
     try {

@@ -26,6 +26,9 @@ const manifest::Plan& chosen_plan(const cli::Invocation& call);
 // --go: exit 2 where frames were refused.
 Exit go(cli::Invocation& call, const acquisition::Laboratory& laboratory, const manifest::Plan& plan);
 
+// --serve: the servers, and the description that reaches them in the document; they go on once it has been written.
+Exit serve(cli::Invocation& call);
+
 std::string summary(const manifest::Plan& plan);  // of a plan, for people
 
 }  // namespace gonio::tools::acquire

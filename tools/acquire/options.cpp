@@ -1,4 +1,5 @@
 // The command line of acquire.
+#include "acquisition/desk/served_laboratory.h"
 #include "acquisition/desk/specimen_laboratory.h"
 #include "acquisition/plan/view_pattern.h"
 #include "base/assignment.h"
@@ -168,10 +169,11 @@ std::vector<cli::Option> running_options() {
            .upper = 100},
           {.name = "truth",
            .type = Type::input_file,
-           .help = "sim:// devices: what is really so, a manifest with mechanisms that the description leaves out."},
+           .help = "sim:// devices, --serve: what is really so, a manifest with mechanisms that the description "
+                   "leaves out."},
           {.name = "spp",
            .type = Type::integer,
-           .help = "sim:// cameras: samples a pixel of their pictures.",
+           .help = "sim:// cameras, --serve: samples a pixel of their pictures.",
            .preset = "64",
            .lower = 1,
            .upper = 65536},
@@ -182,10 +184,45 @@ std::vector<cli::Option> running_options() {
           cli::report_option()};
 }
 
+std::vector<cli::Option> serving_options() {
+  return {
+      {.name = "serve",
+       .type = Type::flag,
+       .help = "Serve the laboratory on loopback until interrupted: arms, lamps, turntables and cameras, simulated. "
+               "Writes the description whose URLs reach them.",
+       .conflicts = {"plan", "next", "pairs", "go", "dry-run", "html", "specimen"}},
+      {.name = "scene",
+       .type = Type::input_file,
+       .help = "--serve: what stands in the laboratory, a manifest with objects, surfaces, lights.",
+       .needs = {"serve"}},
+      {.name = "faults",
+       .type = Type::text,
+       .help = "--serve: what goes wrong and how often, NAME=PROBABILITY,...: " + acquisition::fault_list() + ".",
+       .metavar = "FAULTS",
+       .needs = {"serve"}},
+      {.name = "pace",
+       .type = Type::number,
+       .help = "--serve: how many times faster than ours the laboratory's time runs.",
+       .metavar = "N",
+       .preset = "1",
+       .lower = 0.01,
+       .upper = 1000,
+       .needs = {"serve"}},
+      {.name = "port",
+       .type = Type::integer,
+       .help = "--serve: the first port, others follow it; 0 takes any that are free.",
+       .metavar = "N",
+       .preset = "0",
+       .lower = 0,
+       .upper = 65000,
+       .needs = {"serve"}}};
+}
+
 }  // namespace
 
 std::vector<cli::Option> options() {
   std::vector<cli::Option> all = planning_options();
+  for (cli::Option& option : serving_options()) all.push_back(std::move(option));
   for (cli::Option& option : running_options()) all.push_back(std::move(option));
   return all;
 }

@@ -35,6 +35,7 @@ Exit run(cli::Invocation& call) {
     call.document = acquisition::specimen_laboratory(call.text("specimen"), call.out);
     return Exit::done;
   }
+  if (call.flag("serve")) return serve(call);
   const acquisition::Laboratory laboratory = acquisition::believed_laboratory(call.document);
   const manifest::Plan& chosen = plans(call) ? plan(call, laboratory) : chosen_plan(call);
   if (call.flag("dry-run") || plans(call)) log(LogLevel::info, summary(chosen));
@@ -54,7 +55,8 @@ const cli::Program& gonio_program() {
       .sentence = "plan views of an instrument, move it, light, photograph, and check every frame",
       .synopsis = {"--plan PATTERN [OPTION]... [-i FILE | lab.json]",
                    "--go --out DIR [OPTION]... [-i FILE | plan.json]", "--specimen NAME --out DIR",
-                   "--dry-run [-i FILE | plan.json]", "--check [-i FILE | lab.json]"},
+                   "--serve [OPTION]... [-i FILE | lab.json]", "--dry-run [-i FILE | plan.json]",
+                   "--check [-i FILE | lab.json]"},
       .options = options(),
       .operands = {{.name = "MANIFEST",
                     .type = cli::Type::text,
@@ -65,14 +67,15 @@ const cli::Program& gonio_program() {
       .takes_out = true,
       .takes_seed = true,
       .takes_resume = true,
-      .sections_read = {"files", "laboratory", "plans", "cameras", "lights", "explanations", "images"},
-      .sections_written = {"files", "plans", "runs", "images", "robots"},
+      .sections_read = {"files", "laboratory", "plans", "cameras", "lights", "objects", "surfaces", "mechanisms",
+                        "explanations", "images"},
+      .sections_written = {"files", "laboratory", "plans", "runs", "images", "robots"},
       .files = {{"frames/IMAGE.png", "raw frames, the sensor's own numbers, 8 or 16 bit"},
                 {"journal.jsonl", "what was intended and what came of it, a line each; what --resume goes by"}},
       .exits = {{Exit::quality, "views are out of reach, or frames were refused"}},
       .references = {"Elias & Wen, IK-Geo: Unified robot inverse kinematics using subproblem decomposition, 2025.",
                      "Kuffner & LaValle, RRT-Connect, ICRA 2000.",
-                     "Universal Robots, Real-Time Data Exchange (RTDE) guide.",
+                     "Universal Robots, Real-Time Data Exchange (RTDE) guide.", "AIA, GigE Vision 1.2.",
                      "EMVA, GenICam standard features naming convention 2.7."},
       .see_also = {"calib-charuco(1)", "handeye(1)", "develop(1)", "render(1)", "explain(1)", "gonio-manifest(5)"},
       .check = check,

@@ -1,4 +1,5 @@
-// What goes wrong in the simulated laboratory, and how often: one place for all of it. Each kind has a probability per
+// What goes wrong in the simulated laboratory, and how often: one place for all of it, command line and manual page
+// included. Each kind has a probability per
 // occasion (a packet, a request, a program) and a stream of seeded numbers of its own, so that the n-th occasion of a
 // kind has the same fate whatever the others do. Threads may ask at once.
 #pragma once
@@ -12,22 +13,55 @@
 namespace gonio::acquisition::desk {
 
 enum class Fault {
-  rtde_dropped,      // a data packet is not sent
-  rtde_reordered,    // a data packet is sent after its successor
-  rtde_short,        // a data packet lacks its last bytes, its head says so
-  rtde_reset,        // the connection is reset instead of a data packet
-  script_lost,       // a program arrives and is not run
-  script_reset,      // the connection is reset before the program is run
-  protective_stop,   // within a motion
-  joint_limit,       // a target is taken for one beyond the joints' range: protective stop before the motion
-  modbus_exception,  // server failure is answered
-  modbus_busy,       // server busy is answered
-  modbus_late,       // the answer comes after `late_s`
-  modbus_dropped,    // no answer
-  modbus_reset,      // the connection is reset instead of an answer
-  lamp_dark,         // a lamp does not light although its coil is set
+  rtde_dropped,
+  rtde_reordered,
+  rtde_short,
+  rtde_reset,
+  script_lost,
+  script_reset,
+  protective_stop,
+  joint_limit,
+  modbus_exception,
+  modbus_busy,
+  modbus_late,
+  modbus_dropped,
+  modbus_reset,
+  lamp_dark,
+  gige_dropped,
+  frame_dropped,
+  frame_reordered,
+  trigger_lost,
+  chunk_late,
+  stuck_exposure,
   count
 };
+
+// By its number. The sentence says per what occasion it strikes.
+struct FaultKind {
+  const char *name, *sentence;
+};
+inline constexpr std::array<FaultKind, static_cast<std::size_t>(Fault::count)> fault_kinds{{
+    {"rtde-dropped", "an arm's data packet is not sent"},
+    {"rtde-reordered", "an arm's data packet is sent after its successor"},
+    {"rtde-short", "an arm's data packet lacks its last bytes"},
+    {"rtde-reset", "the connection is reset instead of an arm's data packet"},
+    {"script-lost", "a program arrives at an arm and is not run"},
+    {"script-reset", "the connection is reset before an arm's program is run"},
+    {"protective-stop", "an arm stops within a motion"},
+    {"joint-limit", "an arm takes a target for one beyond its joints' range, and stops"},
+    {"modbus-exception", "a request is answered with a failure"},
+    {"modbus-busy", "a request is answered with busy"},
+    {"modbus-late", "a request is answered late"},
+    {"modbus-dropped", "a request is not answered"},
+    {"modbus-reset", "the connection is reset instead of an answer"},
+    {"lamp-dark", "a lamp that is switched on does not light"},
+    {"gige-dropped", "a camera's answer to a command is not sent"},
+    {"frame-dropped", "one packet of a picture is not sent"},
+    {"frame-reordered", "two packets of a picture change places"},
+    {"trigger-lost", "a camera does not hear a trigger"},
+    {"chunk-late", "a picture carries the figures of the one before"},
+    {"stuck-exposure", "a picture is taken with the exposure of the one before"},
+}};
 
 class Faults {
  public:

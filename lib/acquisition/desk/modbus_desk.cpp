@@ -12,26 +12,6 @@
 
 namespace gonio::acquisition::desk {
 
-double TrueTurntable::reached() const {
-  const double t = std::chrono::duration<double>(std::chrono::steady_clock::now() - since_).count();
-  const double way = target_ - from_;
-  return std::abs(way) <= speed_ * t ? target_ : from_ + std::copysign(speed_ * t, way);
-}
-double TrueTurntable::angle_rad() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return reached();
-}
-double TrueTurntable::target_rad() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return target_;
-}
-void TrueTurntable::turn_to(double angle_rad) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  from_ = reached();
-  target_ = angle_rad;
-  since_ = std::chrono::steady_clock::now();
-}
-
 struct ModbusDesk::Registers {
   modbus_t* context = nullptr;
   modbus_mapping_t* map = nullptr;
@@ -68,8 +48,8 @@ void ModbusDesk::hold_arm(TrueArm& arm) {
                      r[256] = 5, r[257] = 9;
                      r[258] = now.powered ? 7 : 3;
                      r[260] = now.powered, r[261] = now.protective_stop, r[262] = now.emergency_stop;
-                     for (int i = 0; i < 6; ++i) {
-                       const double angle = now.joints_rad[i];
+                     for (std::size_t i = 0; i < 6; ++i) {
+                       const double angle = now.joints_rad.at(i);
                        r[320 + i] = angle < 0 ? 1 : 0;
                        r[270 + i] =
                            static_cast<std::uint16_t>((angle < 0 ? angle + 2 * std::numbers::pi : angle) * 1000);

@@ -4,7 +4,6 @@
 #pragma once
 #include <atomic>
 #include <functional>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -12,43 +11,9 @@
 
 #include "acquisition/desk/faults.h"
 #include "acquisition/desk/true_arm.h"
+#include "acquisition/desk/true_devices.h"
 
 namespace gonio::acquisition::desk {
-
-// What the lamps of the laboratory truly do. Threads may ask at once.
-class TrueLamps {
- public:
-  void set(int lamp, bool lit) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    lit_[lamp] = lit;
-  }
-  bool lit(int lamp) const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    const auto at = lit_.find(lamp);
-    return at != lit_.end() && at->second;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::map<int, bool> lit_;
-};
-
-// Turns towards its target at a steady speed, in simulated time.
-class TrueTurntable {
- public:
-  TrueTurntable(double speed_rad_per_s, double time_factor)
-      : speed_(speed_rad_per_s * time_factor), since_(std::chrono::steady_clock::now()) {}
-  double angle_rad() const;
-  double target_rad() const;
-  void turn_to(double angle_rad);
-  void stop() { turn_to(angle_rad()); }
-
- private:
-  double reached() const;
-  mutable std::mutex mutex_;
-  double speed_, from_ = 0, target_ = 0;
-  std::chrono::steady_clock::time_point since_;
-};
 
 class ModbusDesk {
  public:

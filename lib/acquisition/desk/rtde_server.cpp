@@ -1,7 +1,7 @@
 // RTDE as the controller speaks it, protocol 2, after the maker's guide; the packing of bytes is its own.
-#include <cstring>
 #include <optional>
 
+#include "acquisition/desk/network_bytes.h"
 #include "acquisition/desk/ur_controller.h"
 
 namespace gonio::acquisition::desk {
@@ -9,34 +9,7 @@ namespace {
 
 constexpr std::uint8_t output_recipe = 1;
 
-class Bytes {  // network order
- public:
-  Bytes& u8(unsigned v) { return push(v & 255u); }
-  Bytes& u16(unsigned v) { return u8(v >> 8).u8(v); }
-  Bytes& u32(std::uint32_t v) { return u16(v >> 16).u16(v & 0xFFFFu); }
-  Bytes& i32(std::int32_t v) { return u32(static_cast<std::uint32_t>(v)); }
-  Bytes& real(double v) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &v, sizeof bits);
-    return u32(static_cast<std::uint32_t>(bits >> 32)).u32(static_cast<std::uint32_t>(bits));
-  }
-  Bytes& six(const SixJoints& v) {
-    for (const double x : v) real(x);
-    return *this;
-  }
-  Bytes& text(const std::string& v) {
-    bytes_ += v;
-    return *this;
-  }
-  const std::string& all() const { return bytes_; }
-
- private:
-  Bytes& push(unsigned v) {
-    bytes_.push_back(static_cast<char>(v));
-    return *this;
-  }
-  std::string bytes_;
-};
+using Bytes = NetworkBytes;
 
 std::string framed(char type, const std::string& payload) {
   return Bytes()

@@ -108,9 +108,9 @@ std::optional<ArmStep> step_of_call(const CallText& call) {
     if (step.acceleration <= 0) return {};
     return step;
   }
-  if (call.name != "movej" || call.list.size() != 6) return {};
+  if (call.name != "movej" || call.list.empty()) return {};
   step.kind = ArmStep::Kind::move;
-  for (std::size_t i = 0; i < 6; ++i) step.target_rad[i] = call.list[i];
+  step.target_rad = call.list;
   step.acceleration = call.argument("a", 0).value_or(1.4);  // the manual's presets
   step.speed = call.argument("v", 1).value_or(1.05);
   if (step.acceleration <= 0 || step.speed <= 0) return {};

@@ -3,73 +3,48 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/motion/way.h"
-
 namespace gonio::acquisition::desk {
 namespace {
 
-constexpr double hard_stop_rad_per_s2 = 20;
+constexpr double hard_stop_rad_per_s2 = 20, limit_slack_rad = 1e-6;
 
-double longest_turn(const SixJoints& from, const SixJoints& to) {
+double longest_turn(const JointAngles& from, const JointAngles& to) {
   double longest = 0;
-  for (std::size_t i = 0; i < 6; ++i) longest = std::max(longest, std::abs(to[i] - from[i]));
+  for (std::size_t i = 0; i < to.size(); ++i) longest = std::max(longest, std::abs(to[i] - from[i]));
   return longest;
 }
 
 }  // namespace
 
-double Trapezoid::duration() const {
-  return trapezoid_time(distance, speed, acceleration);
-}
-
-double Trapezoid::gone(double t) const {
-  const double whole = duration();
-  if (t <= 0) return 0;
-  if (t >= whole) return distance;
-  const double ramp = std::min(speed / acceleration, whole / 2);
-  if (t < ramp) return acceleration * t * t / 2;
-  if (t > whole - ramp) return distance - acceleration * (whole - t) * (whole - t) / 2;
-  return acceleration * ramp * ramp / 2 + acceleration * ramp * (t - ramp);
-}
-
-double Trapezoid::speed_at(double t) const {
-  const double whole = duration();
-  if (t <= 0 || t >= whole) return 0;
-  const double ramp = std::min(speed / acceleration, whole / 2);
-  return acceleration * std::min({t, whole - t, ramp});
-}
-
-TrueArm::TrueArm(const TrueArmSettings& settings, Faults& faults)
+TrueArm::TrueArm(const TrueArmSettings& settings, const DeskClock& clock, Faults& faults)
     : settings_(settings),
       faults_(faults),
-      began_(std::chrono::steady_clock::now()),
+      clock_(clock),
       rest_rad_(settings.joints_rad),
+      approach_(settings.joints_rad.size()),
       noise_(17) {}
 
-double TrueArm::simulated_now() const {
-  return 10 + settings_.time_factor * std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
-}
-
-SixJoints TrueArm::joints_at(double t) const {
+JointAngles TrueArm::joints_at(double t) const {
   if (!leg_) return rest_rad_;
   const double share = leg_->profile.distance > 0 ? leg_->profile.gone(t - leg_->begin_s) / leg_->profile.distance : 1;
-  SixJoints joints{};
-  for (std::size_t i = 0; i < 6; ++i) joints[i] = leg_->from[i] + share * (leg_->to[i] - leg_->from[i]);
+  if (share >= 1) return leg_->to;
+  JointAngles joints(leg_->to.size());
+  for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = leg_->from[i] + share * (leg_->to[i] - leg_->from[i]);
   return joints;
 }
 
-SixJoints TrueArm::speeds_at(double t) const {
-  SixJoints speeds{};
+JointAngles TrueArm::speeds_at(double t) const {
+  JointAngles speeds(rest_rad_.size());
   if (!leg_ || leg_->profile.distance <= 0) return speeds;
   const double share = leg_->profile.speed_at(t - leg_->begin_s) / leg_->profile.distance;
-  for (std::size_t i = 0; i < 6; ++i) speeds[i] = share * (leg_->to[i] - leg_->from[i]);
+  for (std::size_t i = 0; i < speeds.size(); ++i) speeds[i] = share * (leg_->to[i] - leg_->from[i]);
   return speeds;
 }
 
 // Braking from speed v takes v^2 / 2a along the line: the second half of a motion without cruise, of length v^2 / a.
 void TrueArm::brake(double t, double acceleration) {
   if (!leg_) return;
-  const SixJoints here = joints_at(t);
+  const JointAngles here = joints_at(t);
   const double v = leg_->profile.speed_at(t - leg_->begin_s), longest = leg_->profile.distance;
   if (v <= 0 || longest <= 0) {
     rest_rad_ = here;
@@ -78,7 +53,8 @@ void TrueArm::brake(double t, double acceleration) {
   }
   Leg rest;
   const double half = v * v / (2 * acceleration);
-  for (std::size_t i = 0; i < 6; ++i) {
+  rest.from = rest.to = here;
+  for (std::size_t i = 0; i < here.size(); ++i) {
     const double direction = (leg_->to[i] - leg_->from[i]) / longest;
     rest.from[i] = here[i] - direction * half;
     rest.to[i] = here[i] + direction * half;
@@ -95,14 +71,19 @@ void TrueArm::next_step(double t) {
     if (step.kind == ArmStep::Kind::mark) flags_.output_registers.at(step.output_register) = step.value;
     if (step.kind != ArmStep::Kind::move) continue;
     bool beyond = faults_.strikes(Fault::joint_limit);
-    for (std::size_t i = 0; i < 6; ++i)
-      beyond = beyond || step.target_rad[i] < settings_.lower_rad[i] || step.target_rad[i] > settings_.upper_rad[i];
+    beyond = beyond || step.target_rad.size() != rest_rad_.size();
+    for (std::size_t i = 0; !beyond && i < settings_.lower_rad.size(); ++i)
+      beyond = step.target_rad[i] < settings_.lower_rad[i] - limit_slack_rad ||
+               step.target_rad[i] > settings_.upper_rad[i] + limit_slack_rad;
     if (beyond) {
       flags_.protective_stop = true;
       program_.clear();
       step_ = 0;
       break;
     }
+    for (std::size_t i = 0; i < rest_rad_.size(); ++i)
+      if (const double turn = step.target_rad[i] - rest_rad_[i]; std::abs(turn) > 1e-9)
+        approach_[i] = turn > 0 ? 1 : -1;
     leg_ =
         Leg{rest_rad_, step.target_rad, t, {longest_turn(rest_rad_, step.target_rad), step.speed, step.acceleration}};
     if (faults_.strikes(Fault::protective_stop))
@@ -131,7 +112,7 @@ void TrueArm::advance(double t) {
 
 ArmSnapshot TrueArm::now() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const double t = simulated_now();
+  const double t = clock_.now_s();
   advance(t);
   ArmSnapshot snapshot = flags_;
   snapshot.time_s = t;
@@ -140,13 +121,14 @@ ArmSnapshot TrueArm::now() {
   if (settings_.tool_pose) snapshot.tool = settings_.tool_pose(snapshot.joints_rad);
   if (settings_.encoder_noise_rad > 0)
     for (double& angle : snapshot.joints_rad) angle += settings_.encoder_noise_rad * noise_.normal();
-  snapshot.temperature_C.fill(settings_.ambient_C + settings_.warm_rise_C * (1 - std::exp(-t / settings_.warm_time_s)));
+  snapshot.approach = approach_;
+  snapshot.temperature_C.assign(rest_rad_.size(), room_K - 273.15 + warmth_K(t));
   return snapshot;
 }
 
 void TrueArm::run(const std::vector<ArmStep>& program) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const double t = simulated_now();
+  const double t = clock_.now_s();
   advance(t);
   if (!flags_.powered || flags_.protective_stop || flags_.emergency_stop || !flags_.remote_control) return;
   ++programs_;
@@ -173,6 +155,13 @@ void TrueArm::run(const std::vector<ArmStep>& program) {
   if (!leg_) next_step(t);
 }
 
+double TrueArm::time_left_s() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const double t = clock_.now_s();
+  advance(t);
+  return leg_ ? std::max(0.0, leg_->end_s() - t) : 0;
+}
+
 void TrueArm::halt(double t) {
   program_.clear();
   step_ = 0;
@@ -183,7 +172,7 @@ void TrueArm::halt(double t) {
 
 void TrueArm::protective_stop() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const double t = simulated_now();
+  const double t = clock_.now_s();
   advance(t);
   flags_.protective_stop = true;
   halt(t);
@@ -191,7 +180,7 @@ void TrueArm::protective_stop() {
 
 void TrueArm::emergency_stop() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const double t = simulated_now();
+  const double t = clock_.now_s();
   advance(t);
   flags_.emergency_stop = true;
   halt(t);
@@ -199,14 +188,14 @@ void TrueArm::emergency_stop() {
 
 void TrueArm::end_program() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const double t = simulated_now();
+  const double t = clock_.now_s();
   advance(t);
   halt(t);
 }
 
 void TrueArm::clear_stops() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  advance(simulated_now());
+  advance(clock_.now_s());
   flags_.protective_stop = flags_.emergency_stop = false;
 }
 

@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "acquisition/desk/true_state.h"
-#include "acquisition/motion/way.h"
+#include "acquisition/desk/ur_controller.h"
+#include "acquisition/device/urscript.h"
 #include "base/error.h"
 #include "manifest/sections/laboratory.h"
 
@@ -20,39 +21,43 @@ class DeskRobot : public RobotDevice {
 
   RobotState state() override {
     const std::lock_guard lock(state_->busy);
+    const desk::ArmSnapshot now = arm().now();
     RobotState s;
-    s.time_s = state_->time_s;
-    s.joints_rad = state_->joints.at(name_);
-    s.speed_rad_per_s.assign(s.joints_rad.size(), 0);
-    s.temperature_K.assign(s.joints_rad.size(), 293.15 + warmth_K(state_->time_s));
+    s.time_s = now.time_s;
+    s.joints_rad = now.joints_rad;
+    s.speed_rad_per_s = now.speed_rad_per_s;
+    for (const double celsius : now.temperature_C) s.temperature_K.push_back(celsius + 273.15);
     s.base_from_tool = robot::flange(state_->laboratory.arms.at(name_).links, s.joints_rad);
     s.powered = s.standing = s.remote_control = true;
     s.mode = "simulated";
     return s;
   }
 
+  // The arm runs the very program that it would get over the network: its joints end at the same bits.
   RobotState move(std::span<const Joints> way, std::span<const double> speeds,
                   std::span<const double> accelerations) override {
     {
       const std::lock_guard lock(state_->busy);
-      Joints& now = state_->joints.at(name_);
-      for (const Joints& to : way) {
-        if (to.size() != now.size()) throw Error(Exit::data, "robot " + name_, "is sent to joints that it has not");
-        double longest = 0;
-        for (std::size_t j = 0; j < now.size(); ++j) {
-          const double turn = to[j] - now[j];
-          longest = std::max(longest, trapezoid_time(std::abs(turn), speeds[j], accelerations[j]));
-          if (std::abs(turn) > 1e-9 && j < 6) state_->approach[name_][j] = turn > 0 ? 1 : -1;
-        }
-        state_->time_s += longest;
-        now = to;
-      }
+      for (const Joints& to : way)
+        if (to.size() != arm().now().joints_rad.size())
+          throw Error(Exit::data, "robot " + name_, "is sent to joints that it has not");
+      ProgramMark mark;
+      mark.before = arm().now().output_registers.at(static_cast<std::size_t>(mark.output_register));
+      mark.number = mark.before / 2 + 1;
+      arm().run(desk::steps_of_script(motion_script(mark, way, speeds, accelerations)));
+      while (arm().now().program_running) state_->clock.pass(std::max(arm().time_left_s(), 1e-9));
     }
-    return state();
+    RobotState end = state();
+    double off = 0;
+    for (std::size_t j = 0; !way.empty() && j < end.joints_rad.size(); ++j)
+      off = std::max(off, std::abs(end.joints_rad[j] - way.back()[j]));
+    if (off <= 1e-9) return end;
+    throw Error(Exit::unavailable, "robot " + name_, "did not arrive where it was sent");
   }
   void stop() override {}
 
  private:
+  desk::TrueArm& arm() { return *state_->arms.at(name_); }
   Shared state_;
   std::string name_;
 };
@@ -76,12 +81,14 @@ class DeskLamp : public LampDevice {
   DeskLamp(Shared state, std::string name) : state_(std::move(state)), name_(std::move(name)) {}
   void set(bool on) override {
     const std::lock_guard lock(state_->busy);
-    state_->lit.at(name_) = on;
+    state_->lamps.set(state_->lamp_number.at(name_), on);
   }
   bool is_on() override {
     const std::lock_guard lock(state_->busy);
-    return state_->lit.at(name_);
+    return state_->lamps.lit(state_->lamp_number.at(name_));
   }
+
+  bool answers() const override { return true; }
 
  private:
   Shared state_;
@@ -93,14 +100,14 @@ class DeskTurntable : public TurntableDevice {
   DeskTurntable(Shared state, std::string name) : state_(std::move(state)), name_(std::move(name)) {}
   double angle_rad() override {
     const std::lock_guard lock(state_->busy);
-    return state_->angle_rad.at(name_);
+    return state_->tables.at(name_)->angle_rad();
   }
   double turn_to(double angle) override {
     const std::lock_guard lock(state_->busy);
-    const auto& table = state_->document.laboratory.entry.front().turntables.at(name_);
-    state_->time_s += trapezoid_time(std::abs(angle - state_->angle_rad.at(name_)), table.speed_rad_per_s.value_or(0.5),
-                                     table.acceleration_rad_per_s2.value_or(1));
-    return state_->angle_rad.at(name_) = angle;
+    desk::TrueTurntable& table = *state_->tables.at(name_);
+    table.turn_to(angle);
+    while (table.time_left_s() > 0) state_->clock.pass(std::max(table.time_left_s(), 1e-9));
+    return table.angle_rad();
   }
   void stop() override {}
 

@@ -75,51 +75,107 @@ std::string light_of(const std::string& lamp, const manifest::LaboratoryLamp& en
   return entry.light.empty() ? lamp : entry.light;
 }
 
-int bits_of(const std::string& pixel_format) {
-  for (const int bits : {16, 14, 12, 10, 8})
-    if (pixel_format.find(std::to_string(bits)) != std::string::npos) return bits;
-  return 12;
+// Which of the picture's channels a pixel's filter lets through; below 0: the mean of all. "BayerRG": rows R G, G B.
+int channel_of_filter(const std::string& mosaic, std::size_t row, std::size_t column) {
+  if (!mosaic.starts_with("Bayer")) return -1;
+  const std::string rows = mosaic.substr(5), second = rows == "RG"   ? "GB"
+                                                      : rows == "BG" ? "GR"
+                                                      : rows == "GR" ? "BG"
+                                                                     : "RG";
+  const char filter = (row % 2 == 0 ? rows : second)[column % 2];
+  return filter == 'R' ? 0 : filter == 'G' ? 1 : 2;
+}
+
+// As the simulated camera's registers hold it.
+Shot told(const Shot& shot) {
+  Shot kept;
+  kept.exposure_s = std::max(1.0, std::round(shot.exposure_s * 1e6)) / 1e6;
+  kept.gain_db = std::round(shot.gain_db.value_or(0) * 100) / 100;
+  return kept;
+}
+
+// What decides a picture, hashed: its noise is drawn by it, so that a frame taken again is the same frame, whatever
+// else stands in the document and wherever its files lie.
+std::string content_of(const manifest::Document& scene, manifest::ImageEntry image) {
+  manifest::Document decides;
+  decides.folder = scene.folder;
+  decides.files = scene.files;
+  for (auto& [id, file] : decides.files)
+    if (!file.sha256.empty()) file.path = file.sha256;
+  decides.cameras = scene.cameras;
+  decides.meshes = scene.meshes;
+  decides.surfaces = scene.surfaces;
+  decides.lights = scene.lights;
+  decides.objects = scene.objects;
+  decides.mechanisms = scene.mechanisms;
+  image.time_s.reset();
+  image.temperature_K.reset();
+  decides.images = {image};
+  return sha256(manifest::print_document(decides, decides.folder));
 }
 
 // What turns a radiance into codes: code = black + per_radiance * radiance, up to white; noise in radiance.
 struct DeskSensor {
-  int bits = 12;
   double white = 4095, black = 0, per_radiance = 1;
   manifest::Noise noise;
 };
 
-DeskSensor sensor_at(const manifest::LaboratoryCamera& entry, double exposure_s) {
+DeskSensor sensor_at(const manifest::LaboratoryCamera& entry, int bits, const Shot& shot) {
   DeskSensor sensor;
-  sensor.bits = bits_of(entry.pixel_format);
-  sensor.white = entry.white.value_or((1 << sensor.bits) - 1);
+  sensor.white = entry.white.value_or((1 << bits) - 1);
   sensor.black = entry.black_code.value_or(0);
-  sensor.per_radiance = entry.codes_per_radiance_s.value_or(sensor.white / usual_exposure_s) * exposure_s;
+  sensor.per_radiance = entry.codes_per_radiance_s.value_or(sensor.white / usual_exposure_s) * shot.exposure_s;
   const double electrons = entry.electrons_per_code.value_or(full_well_electrons / sensor.white) * sensor.per_radiance;
   sensor.noise = {.gain = electrons, .read = entry.read_electrons.value_or(usual_read_electrons) / electrons};
+  sensor.per_radiance *= amplification(shot.gain_db);
   return sensor;
 }
 
 }  // namespace
 
-double warmth_K(double time_s) {
-  return 10 * (1 - std::exp(-time_s / 1800));
-}
-
-TrueState::TrueState(const manifest::Document& believed, const manifest::Document* truth, const DeskOptions& wanted)
-    : document(believed), options(wanted) {
+TrueState::TrueState(const manifest::Document& believed, const manifest::Document* truth, const DeskOptions& wanted,
+                     double pace)
+    : document(believed), options(wanted), clock(pace), faults(wanted.seed) {
   if (truth != nullptr) take_truth(document, *truth);
   laboratory = believed_laboratory(document);
   chain = chain_of(document);
   const manifest::Laboratory& lab = document.laboratory.entry.front();
-  for (const auto& [name, arm] : laboratory.arms) joints[name] = arm.home;
+  for (const auto& [name, arm] : laboratory.arms) {
+    desk::TrueArmSettings settings;
+    settings.joints_rad = arm.home;
+    for (const robot::JointLimit& limit : arm.limits) {
+      settings.lower_rad.push_back(limit.lower_rad);
+      settings.upper_rad.push_back(limit.upper_rad);
+    }
+    settings.tool_pose = [links = arm.links](const desk::JointAngles& joints) {
+      const auto pose = robot::flange(links, joints);
+      const Vec3 turn = rotation_vector_of(pose.rotation);
+      return desk::ToolPose{pose.translation_m.x, pose.translation_m.y, pose.translation_m.z, turn.x, turn.y, turn.z};
+    };
+    arms[name] = std::make_unique<desk::TrueArm>(settings, clock, faults);
+  }
   for (const auto& [name, lamp] : lab.lamps) {
     if (!document.lights.contains(light_of(name, lamp)))
       throw Error(Exit::data, manifest::place(document, "/laboratory/lamps/" + name),
                   "lights no light of the scene: \"" + light_of(name, lamp) + "\"", "enter it in lights");
     std::erase_if(document.lights, [&](const auto& e) { return is_light_at_step(e.first, light_of(name, lamp)); });
-    lit[name] = false;
+    lamp_number.emplace(name, static_cast<int>(lamp_number.size()));
   }
-  for (const auto& [name, table] : lab.turntables) angle_rad[name] = 0;
+  for (const auto& [name, table] : lab.turntables)
+    tables[name] = std::make_unique<desk::TrueTurntable>(clock, table.speed_rad_per_s.value_or(0.5),
+                                                         table.acceleration_rad_per_s2.value_or(1));
+  for (const auto& [name, camera] : lab.cameras) format_of(name);
+}
+
+PixelFormat TrueState::format_of(const std::string& camera) const {
+  const std::string& name = section().cameras.at(camera).pixel_format;
+  const auto format = parse_pixel_format(name.empty() ? "Mono12" : name);
+  if (!format || (format->mosaic != "Mono" && !format->mosaic.starts_with("Bayer")) ||
+      format->mosaic.ends_with("Polarized"))
+    throw Error(Exit::data, manifest::place(document, "/laboratory/cameras/" + camera + "/pixel_format"),
+                "\"" + name + "\" is no format of a simulated camera",
+                "Mono or BayerRG, BayerGR, BayerGB, BayerBG with 8 to 16 bits, as Mono12, BayerRG12Packed");
+  return *format;
 }
 
 Rigid<frame::World, frame::Tool> TrueState::world_from_tool(const std::string& name) const {
@@ -127,11 +183,13 @@ Rigid<frame::World, frame::Tool> TrueState::world_from_tool(const std::string& n
   robot::ChainInput input;
   input.links = arm.links;
   robot::ChainInput::View view;
-  view.joints_rad = joints.at(name);
+  const desk::ArmSnapshot now = arms.at(name)->now();
+  view.joints_rad = now.joints_rad;
   view.base_from_tool = robot::flange(arm.links, view.joints_rad);
-  if (const auto found = approach.find(name); found != approach.end()) view.approach = found->second;
-  view.warmer_K = warmth_K(time_s);
-  view.later_s = time_s;
+  for (std::size_t j = 0; j < std::min(now.approach.size(), view.approach.size()); ++j)
+    view.approach[j] = now.approach[j];
+  view.warmer_K = desk::warmth_K(now.time_s);
+  view.later_s = now.time_s;
   return arm.world_from_base * robot::tool_pose(input, view, chain);
 }
 
@@ -151,7 +209,7 @@ void TrueState::place_lamps(manifest::Document& scene) const {
 // Objects on a turntable turn about its z.
 void TrueState::turn_objects(manifest::Document& scene) const {
   for (const auto& [name, table] : document.laboratory.entry.front().turntables) {
-    const Rigid<frame::World, frame::World> motion = turntable_motion(table, angle_rad.at(name));
+    const Rigid<frame::World, frame::World> motion = turntable_motion(table, tables.at(name)->angle_rad());
     for (manifest::Object& object : scene.objects) {
       if (std::ranges::find(table.carries, object.id) == table.carries.end()) continue;
       if (!object.world_from_object) object.world_from_object.emplace();
@@ -171,30 +229,21 @@ manifest::Document TrueState::scene_of(const std::string& camera, const Shot& sh
   manifest::ImageEntry image;
   image.camera = camera;
   image.exposure_s = shot.exposure_s;
-  image.time_s = time_s;
-  image.temperature_K = 293.15 + warmth_K(time_s);
+  image.time_s = clock.now_s();
+  image.temperature_K = desk::room_K + desk::warmth_K(*image.time_s);
   auto& pose = static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace());
   if (!entry.robot.empty() && entry.tool_from_camera)
     pose = world_from_tool(entry.robot) * Rigid<frame::Tool, frame::Camera>(*entry.tool_from_camera);
   else if (entry.world_from_camera)
     pose = *entry.world_from_camera;
   std::map<std::string, bool> of_lamps;
-  for (const auto& [name, lamp] : lab.lamps) of_lamps[light_of(name, lamp)] |= lit.at(name);
+  for (const auto& [name, lamp] : lab.lamps) of_lamps[light_of(name, lamp)] |= lamps.lit(lamp_number.at(name));
   for (const auto& [name, light] : document.lights)
     if (const auto found = of_lamps.find(name); found == of_lamps.end() || found->second) image.light.push_back(name);
   if (image.light.empty()) image.dark = true;
-  image.noise = sensor_at(entry, shot.exposure_s).noise;
+  image.noise = sensor_at(entry, format_of(camera).bits, shot).noise;
   image.id = "frame";
-  image.id = sha256(manifest::print_document(
-                        [&] {
-                          manifest::Document one = scene;
-                          one.images = {image};
-                          one.images.front().time_s.reset();
-                          one.images.front().temperature_K.reset();
-                          return one;
-                        }(),
-                        scene.folder))
-                 .substr(0, 16);
+  image.id = content_of(scene, image).substr(0, 16);
   scene.images = {image};
   // What drifts with time counts from the beginning of the run.
   scene.images.push_back(image);
@@ -203,7 +252,9 @@ manifest::Document TrueState::scene_of(const std::string& camera, const Shot& sh
   return scene;
 }
 
-RawFrame TrueState::expose(const std::string& camera, const Shot& shot) {
+RawFrame TrueState::expose(const std::string& camera, const Shot& asked, const PixelFormat* format) {
+  const Shot shot = told(asked);
+  const PixelFormat own = format_of(camera);
   const manifest::Document scene = scene_of(camera, shot);
   render::SessionOptions how;
   how.seed = options.seed;
@@ -220,23 +271,30 @@ RawFrame TrueState::expose(const std::string& camera, const Shot& shot) {
   RawFrame frame;
   frame.width_px = seen.width;
   frame.height_px = seen.height;
-  const DeskSensor chip = sensor_at(entry, shot.exposure_s);
-  frame.bits = chip.bits;
-  frame.pixel_format = entry.pixel_format.empty() ? "Mono12" : entry.pixel_format;
-  const std::size_t channels = seen.channels.size();
+  const DeskSensor chip = sensor_at(entry, own.bits, shot);
+  frame.bits = format == nullptr ? own.bits : format->bits;
+  frame.pixel_format = format == nullptr ? own.unpacked() : format->unpacked();
+  const double deeper = std::ldexp(1.0, frame.bits - own.bits);
+  const std::size_t channels = seen.channels.size(), width = static_cast<std::size_t>(seen.width);
+  const std::string& mosaic = format == nullptr ? own.mosaic : format->mosaic;
   frame.samples.resize(seen.pixels());
   for (std::size_t i = 0; i < frame.samples.size(); ++i) {
+    const int filter = channels < 3 ? -1 : channel_of_filter(mosaic, i / width, i % width);
     double radiance = 0;
-    for (std::size_t c = 0; c < channels; ++c) radiance += seen.data[i * channels + c] / static_cast<double>(channels);
-    const double code = std::round(chip.black + radiance * chip.per_radiance);
-    frame.samples[i] = static_cast<std::uint16_t>(std::clamp(code, 0.0, chip.white));
+    if (filter >= 0)
+      radiance = seen.data[i * channels + static_cast<std::size_t>(filter)];
+    else
+      for (std::size_t c = 0; c < channels; ++c)
+        radiance += seen.data[i * channels + c] / static_cast<double>(channels);
+    const double code = std::clamp(std::round(chip.black + radiance * chip.per_radiance), 0.0, chip.white);
+    frame.samples[i] = static_cast<std::uint16_t>(std::floor(code * deeper));
   }
-  time_s += shot.exposure_s;
+  clock.pass(shot.exposure_s);
   frame.frame_id = ++frames[camera];
   frame.chunk_frame_id = frame.frame_id;
   frame.exposure_s = shot.exposure_s;
   frame.gain_db = shot.gain_db;
-  frame.temperature_K = 293.15 + warmth_K(time_s);
+  frame.temperature_K = desk::room_K + desk::warmth_K(clock.now_s());
   return frame;
 }
 

@@ -4,28 +4,40 @@
 #include <mutex>
 #include <string>
 
+#include "acquisition/desk/faults.h"
+#include "acquisition/desk/true_arm.h"
+#include "acquisition/desk/true_devices.h"
 #include "acquisition/desk/true_laboratory.h"
+#include "acquisition/device/unpack.h"
 #include "manifest/document.h"
 #include "robot/chain/role.h"
 
 namespace gonio::acquisition {
 
 struct TrueState {
-  TrueState(const manifest::Document& believed, const manifest::Document* truth, const DeskOptions& options);
+  // `pace`: of its clock (desk_clock.h). Error(data) where the truth names what the description has not, and for a
+  // camera whose pictures cannot be made.
+  TrueState(const manifest::Document& believed, const manifest::Document* truth, const DeskOptions& options,
+            double pace = 0);
 
   Rigid<frame::World, frame::Tool> world_from_tool(const std::string& arm) const;  // as it really stands
-  // Radiance that reaches the camera's pixels as its sensor chain gives it, and the codes of a frame.
-  RawFrame expose(const std::string& camera, const Shot& shot);
+  // The codes of a frame, of the radiance that reaches the camera's pixels through its sensor chain. `format`: what the
+  // camera was set to; its description's where nothing is said. Exposures count in microseconds, gains in 0.01 dB, as
+  // the simulated camera's registers hold them.
+  RawFrame expose(const std::string& camera, const Shot& shot, const PixelFormat* format = nullptr);
+  PixelFormat format_of(const std::string& camera) const;
+  const manifest::Laboratory& section() const { return document.laboratory.entry.front(); }
 
   manifest::Document document;  // as it is: scene, mechanisms, laboratory
   Laboratory laboratory;
   DeskOptions options;
-  robot::ChainState chain;                                // what the mechanisms of robots move
-  State joints;                                           // as sent, and as reported
-  std::map<std::string, std::array<double, 6>> approach;  // how every joint last turned
-  std::map<std::string, bool> lit;
-  std::map<std::string, double> angle_rad;
-  double time_s = 0;
+  desk::DeskClock clock;
+  desk::Faults faults;
+  robot::ChainState chain;  // what the mechanisms of robots move
+  std::map<std::string, std::unique_ptr<desk::TrueArm>> arms;
+  desk::TrueLamps lamps;
+  std::map<std::string, int> lamp_number;
+  std::map<std::string, std::unique_ptr<desk::TrueTurntable>> tables;
   std::map<std::string, std::uint64_t> frames;
   std::mutex busy;  // devices are called from several threads
 
@@ -34,7 +46,5 @@ struct TrueState {
   void place_lamps(manifest::Document& scene) const;
   void turn_objects(manifest::Document& scene) const;
 };
-
-double warmth_K(double time_s);  // of arms and cameras above the room's: 10 K, reached with a time constant of 30 min
 
 }  // namespace gonio::acquisition

@@ -82,6 +82,8 @@ class LampDevice {
   virtual ~LampDevice() = default;
   virtual void set(bool on) = 0;  // returns once it was read back
   virtual bool is_on() = 0;
+  // Does is_on() say what the lamp does, and not what it was told?
+  virtual bool answers() const { return false; }
 };
 class TurntableDevice {
  public:
@@ -103,11 +105,17 @@ struct Driver {
   std::string sentence;  // for the manual page: what its URL looks like, what it reaches
   std::unique_ptr<RobotDevice> (*robot)(const Url& url, const std::string& place) = nullptr;
   std::unique_ptr<CameraDevice> (*camera)(const Url& url, const std::string& place) = nullptr;
+  std::vector<std::string> camera_keys{};  // of its URL, that the laboratory's entry of a camera says: see camera_url()
   std::unique_ptr<LampDevice> (*lamp)(const Url& url, const std::string& place) = nullptr;
   std::unique_ptr<TurntableDevice> (*turntable)(const Url& url, const std::string& place) = nullptr;
   std::unique_ptr<ScreenDevice> (*screen)(const Url& url, const std::string& place) = nullptr;
 };
 std::span<const Driver* const> all_drivers();  // by scheme; defined in a generated source
+
+// With what the laboratory says of the camera beside its URL, where its driver has a key for it: `pixel_format`;
+// `trigger`, "software" or "hardware", whose line the URL names. Error(data) where the URL says another.
+std::string camera_url(const std::string& url, const std::string& pixel_format, const std::string& trigger,
+                       const std::string& place);
 
 // By scheme. Error(usage) at `place` that lists the schemes there are for this kind of device.
 std::unique_ptr<RobotDevice> open_robot(const std::string& url, const std::string& place);

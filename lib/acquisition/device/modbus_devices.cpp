@@ -33,6 +33,7 @@ class CoilLamp : public LampDevice {
                                   : device_.bits(BitTable::coil, lamp_.coil, 1).at(0);
     return bit != lamp_.inverse;
   }
+  bool answers() const override { return lamp_.answer.has_value(); }
 
  private:
   ModbusClient device_;

@@ -53,6 +53,7 @@ class TextLamp : public LampDevice {
     throw text_refusal(line_, "says '" + got + "', neither '" + state_on_ + "' nor '" + state_off_ + "'",
                        "state-on= and state-off= are what it answers");
   }
+  bool answers() const override { return !state_.empty(); }
 
  private:
   TextLine line_;

@@ -134,6 +134,30 @@ std::string with_query(const std::string& url, const std::string& key, const std
   return url + joint + key + "=" + quoted;
 }
 
+std::string camera_url(const std::string& url, const std::string& pixel_format, const std::string& trigger,
+                       const std::string& place) {
+  const Url parsed = parse_url(url, place);
+  const auto found = std::ranges::find(all_drivers(), parsed.scheme, [](const Driver* d) { return d->scheme; });
+  if (found == all_drivers().end()) return url;
+  std::string whole = url;
+  // `own`: what the laboratory says; `fits`: may the URL say this beside it?
+  const auto say = [&](const std::string& key, const std::string& own, const auto& fits) {
+    const auto& keys = (*found)->camera_keys;
+    if (own.empty() || std::ranges::find(keys, key) == keys.end()) return;
+    const auto given = parsed.query.find(key);
+    if (given == parsed.query.end())
+      whole = with_query(whole, key, own, place);
+    else if (!fits(given->second))
+      throw Error(Exit::data, place, url + ": the laboratory says " + key + " " + own, "let both say the same");
+  };
+  say("pixel_format", pixel_format, [&](const std::string& text) { return text == pixel_format; });
+  if (trigger == "hardware")
+    say("trigger", "Line0", [](const std::string& text) { return text != "software" && text != "none"; });
+  else
+    say("trigger", trigger, [&](const std::string& text) { return text == trigger; });
+  return whole;
+}
+
 namespace {
 
 template <class Device>

@@ -130,4 +130,10 @@ bool looks_dark(const FrameFigures& lit, const FrameFigures& dark) {
   return lit.bright_code <= dark.bright_code + 3 * noise && lit.mean_code <= dark.mean_code + 0.5 * noise;
 }
 
+bool looks_brighter(const FrameFigures& more, const FrameFigures& before, std::size_t count) {
+  const double noise = std::hypot(more.noise, before.noise) / std::sqrt(std::max(1.0, static_cast<double>(count)));
+  return more.saturated_share > 0.5 ||
+         more.mean_code - before.mean_code > std::max({5 * noise, 0.002 * before.mean_code, 0.02});
+}
+
 }  // namespace gonio::acquisition

@@ -61,7 +61,8 @@ double full_code(const FrameRecord& r) {
 
 // From a radiance to what the file says, 0 to 1 for its codes: known of a camera whose sensitivity is known.
 manifest::Parameter gain_of(const manifest::LaboratoryCamera& camera, const FrameRecord& r) {
-  if (camera.codes_per_radiance_s) return *camera.codes_per_radiance_s * r.exposure_s / full_code(r);
+  if (camera.codes_per_radiance_s)
+    return *camera.codes_per_radiance_s * r.exposure_s * amplification(r.gain_db) / full_code(r);
   manifest::Parameter gain(1.0);
   gain.free = true;
   return gain;
@@ -119,11 +120,16 @@ Value response_of(const manifest::LaboratoryCamera& camera, const FrameRecord& r
 // In the unit of the linear values, code / full: shot noise, and read noise with that of rounding (1 / 12 code^2).
 std::optional<manifest::Noise> noise_of(const manifest::LaboratoryCamera& camera, const FrameRecord& r) {
   if (!camera.electrons_per_code) return std::nullopt;
-  const double full = full_code(r), read = camera.read_electrons.value_or(0) / *camera.electrons_per_code;
-  return manifest::Noise{.gain = full * *camera.electrons_per_code, .read = std::sqrt(read * read + 1.0 / 12) / full};
+  const double per_code = *camera.electrons_per_code / amplification(r.gain_db), full = full_code(r);
+  const double read = camera.read_electrons.value_or(0) / per_code;
+  return manifest::Noise{.gain = full * per_code, .read = std::sqrt(read * read + 1.0 / 12) / full};
 }
 
 }  // namespace
+
+double amplification(std::optional<double> gain_db) {
+  return std::pow(10.0, gain_db.value_or(0) / 20);
+}
 
 std::string light_at_step(const std::string& light, const std::string& step) {
   return light + "@" + step;

@@ -41,6 +41,7 @@ void enter_frames(manifest::Document& document, const Laboratory& laboratory, co
 
 // The pictures that a step makes, one an exposure: their ids.
 std::vector<std::string> images_of(const manifest::PlanStep& step);
+double amplification(std::optional<double> gain_db);  // of voltages: 10^(dB / 20), as cameras count their gain
 // Id of the light that a held lamp is at one step: "lamp@hemisphere-0007". What a run enters for its frames is no light
 // of the scene that the next run finds.
 std::string light_at_step(const std::string& light, const std::string& step);

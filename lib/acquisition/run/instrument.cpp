@@ -49,6 +49,14 @@ std::map<std::string, manifest::LaboratoryRobot> reachable_robots(const Document
   return robots;
 }
 
+std::map<std::string, manifest::LaboratoryCamera> reachable_cameras(const Document& d) {
+  auto cameras = section_of(d).cameras;
+  for (auto& [name, camera] : cameras)
+    if (!camera.url.empty())
+      camera.url = camera_url(camera.url, camera.pixel_format, camera.trigger, url_place(d, "cameras", name));
+  return cameras;
+}
+
 template <class Device, class Members, class Open>
 void open_all(const Document& d, const std::string& kind, const Members& members,
               std::map<std::string, std::unique_ptr<Device>>& opened, const Open& open) {
@@ -91,7 +99,7 @@ Instrument open_instrument(const Document& d) {
   const manifest::Laboratory& lab = section_of(d);
   Instrument instrument;
   open_all(d, "robots", reachable_robots(d), instrument.robots, open_robot);
-  open_all(d, "cameras", lab.cameras, instrument.cameras, open_camera);
+  open_all(d, "cameras", reachable_cameras(d), instrument.cameras, open_camera);
   open_all(d, "lamps", lab.lamps, instrument.lamps, open_lamp);
   open_all(d, "turntables", lab.turntables, instrument.turntables, open_turntable);
   open_all(d, "screens", lab.screens, instrument.screens, open_screen);
@@ -124,7 +132,7 @@ std::vector<std::string> inspect(const Document& d, bool* all_well) {
   for (const auto& [name, robot] : reachable_robots(d))
     inspect_one(lines, all_well, "robot " + name, robot.url,
                 [&, &n = name, &u = robot.url] { return told(open_robot(u, url_place(d, "robots", n))->state()); });
-  for (const auto& [name, camera] : lab.cameras)
+  for (const auto& [name, camera] : reachable_cameras(d))
     inspect_one(lines, all_well, "camera " + name, camera.url,
                 [&, &n = name, &u = camera.url] { return open_camera(u, url_place(d, "cameras", n))->identity(); });
   for (const auto& [name, lamp] : lab.lamps)

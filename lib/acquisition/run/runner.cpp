@@ -10,6 +10,7 @@
 #include "acquisition/run/arm_mover.h"
 #include "acquisition/run/frame_record.h"
 #include "acquisition/run/journal.h"
+#include "acquisition/run/lamp_switch.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
@@ -28,6 +29,8 @@ using manifest::Value;
 namespace fs = std::filesystem;
 
 constexpr double arm_stands_rad = 1e-3;  // between before and after an exposure
+constexpr double usual_exposure_s = 0.01;
+constexpr const char* as_dark = "it is as dark as with the lamps off";
 
 double seconds_since(Clock::time_point zero) {
   return std::chrono::duration<double>(Clock::now() - zero).count();
@@ -78,7 +81,10 @@ class PlanRun {
         section_(document.laboratory.entry.front()),
         surroundings_(laboratory),
         mover_(laboratory, surroundings_, instrument),
-        journal_(options.out / "journal.jsonl", Value::object({{"what", "run"}, {"plan", plan.id}}), options.resume) {
+        journal_(options.out / "journal.jsonl", Value::object({{"what", "run"}, {"plan", plan.id}}), options.resume),
+        lamps_(instrument, section_, options.retakes + 1, [this](const std::string& lamp, const std::string& why) {
+          journal_.write(Value::object({{"what", "lamp"}, {"lamp", lamp}, {"why", why}}));
+        }) {
     for (const Value& event : journal_.earlier()) take_over(event);
     for (const manifest::PlanStep& step : plan.steps) total_ += images_of(step).size();
   }
@@ -87,7 +93,7 @@ class PlanRun {
     StopWatch watch(mover_);
     try {
       for (std::size_t i = 0; i < plan_.steps.size(); ++i) take_step(i);
-      switch_lamps({});
+      lamps_.set({});
       if (last_step_) mover_.go(way_home(laboratory_, plan_, *last_step_));
     } catch (...) {
       mover_.stop_all();
@@ -109,6 +115,7 @@ class PlanRun {
       if (file_stands(options_.out, record)) records_[record.image] = std::move(record);
     } else if (what == "retake") {
       ++report_.retaken;
+      records_.erase(event.find("image") == nullptr ? "" : event.find("image")->as_string());  // it was found wanting
     }
   }
 
@@ -146,9 +153,8 @@ class PlanRun {
         bracket.push_back({step.exposures_s[k], kept->second.figures});
         continue;
       }
-      const Shot shot{step.exposures_s.empty() ? 0.01 : step.exposures_s[k], camera_of(step).gain_db};
+      const Shot shot{step.exposures_s.empty() ? usual_exposure_s : step.exposures_s[k], camera_of(step).gain_db};
       if (options_.lamp_check && !step.lamps.empty()) know_dark(step, shot);
-      switch_lamps(step.lamps);
       keep(step, images[k], shot, &bracket);
     }
     take_stray_again(step, images, bracket);
@@ -208,24 +214,32 @@ class PlanRun {
     }
   }
 
-  void switch_lamps(const std::vector<std::string>& on) {
-    double settle_s = 0;
-    for (const auto& [name, lamp] : instrument_.lamps) {
-      const bool wanted = std::ranges::find(on, name) != on.end();
-      if (lamp->is_on() == wanted) continue;
-      lamp->set(wanted);
-      if (lamp->is_on() != wanted)
-        throw Error(Exit::unavailable, "lamp " + name, wanted ? "does not switch on" : "does not switch off");
-      settle_s = std::max(settle_s, section_.lamps.at(name).settle_s.value_or(0));
+  // The step's lamps, lit; what is wrong with one, in words. Of several at once a dead one would hide in the others'
+  // light: those that cannot be asked whether they shine are lit one by one, and each has to show in the picture.
+  std::string light(const manifest::PlanStep& step) {
+    const std::set wanted(step.lamps.begin(), step.lamps.end());
+    const auto on = lamps_.on();
+    if (lit_for_ == step.image && std::set(on.begin(), on.end()) == wanted) return {};
+    lit_for_ = step.image;
+    if (!options_.lamp_check || wanted.size() < 2 || lamps_.all_answer(step.lamps)) return lamps_.set(step.lamps), "";
+    auto exposures = step.exposures_s.empty() ? std::vector{usual_exposure_s} : step.exposures_s;
+    std::ranges::sort(exposures);
+    const Shot shot{exposures[exposures.size() / 2], camera_of(step).gain_db};
+    know_dark(step, shot);
+    const auto dark = dark_.find({step.camera, shot.exposure_s});
+    lamps_.set({});
+    RawFrame frame;
+    FrameFigures before, now;
+    std::vector<std::string> lit;
+    for (const std::string& lamp : wanted) {
+      lit.push_back(lamp), lamps_.set(lit);
+      if (const std::string wrong = take(step, shot, frame, now); !wrong.empty()) return lit_for_.clear(), wrong;
+      const bool shows = lit.size() > 1 ? looks_brighter(now, before, frame.samples.size())
+                                        : dark == dark_.end() || !looks_dark(now, dark->second);
+      if (!shows) return lit_for_.clear(), "lamp " + lamp + " makes no difference to the picture";
+      before = now;
     }
-    std::this_thread::sleep_for(std::chrono::duration<double>(settle_s));
-  }
-
-  std::vector<std::string> lamps_on() {
-    std::vector<std::string> on;
-    for (const auto& [name, lamp] : instrument_.lamps)
-      if (lamp->is_on()) on.push_back(name);
-    return on;
+    return {};
   }
 
   // One frame of `shot`; why it is none, in words.
@@ -253,7 +267,7 @@ class PlanRun {
     record.joints = laboratory_.arms.empty() ? State{} : mover_.stands();
     const std::string wrong = take(step, shot, frame, figures);
     if (!wrong.empty()) return wrong;
-    record.lamps = lamps_on();
+    record.lamps = lamps_.on();
     if (auto wanted = step.lamps;
         std::set(wanted.begin(), wanted.end()) != std::set(record.lamps.begin(), record.lamps.end()))
       return "other lamps are on than were asked";
@@ -264,7 +278,7 @@ class PlanRun {
     const auto dark = dark_.find({step.camera, shot.exposure_s});
     if (!step.lamps.empty() && dark != dark_.end() && looks_dark(figures, dark->second) &&
         figures.saturated_share < 0.5)
-      return "it is as dark as with the lamps off";
+      return as_dark;
     return {};
   }
 
@@ -272,7 +286,7 @@ class PlanRun {
   void know_dark(const manifest::PlanStep& step, const Shot& shot) {
     const std::pair key{step.camera, shot.exposure_s};
     if (dark_.contains(key)) return;
-    switch_lamps({});
+    lamps_.set({});
     RawFrame frame;
     FrameFigures figures;
     for (int n = 0; n <= options_.retakes; ++n)
@@ -292,7 +306,9 @@ class PlanRun {
     for (record.tries = 1; record.tries <= 2 * (options_.retakes + 1); ++record.tries) {
       throw_if_interrupted();
       FrameFigures figures;
-      const std::string wrong = take_lit(step, shot, frame, figures, record);
+      std::string wrong = light(step);
+      const bool dark = !wrong.empty();
+      if (!dark) wrong = take_lit(step, shot, frame, figures, record);
       if (wrong.empty() && (!doubt || (doubtful && differing(*doubtful, figures).empty()))) {
         record.figures = figures;
         write_frame(step, image, shot, frame, record);
@@ -303,13 +319,10 @@ class PlanRun {
         doubtful = figures;
         continue;
       }
-      doubt = true;
-      doubtful.reset();
-      why = wrong;
+      doubt = true, doubtful.reset(), why = wrong;
       ++report_.retaken;
       journal_.write(Value::object({{"what", "retake"}, {"image", image}, {"why", why}}));
-      if (why == "it is as dark as with the lamps off") switch_lamps({});
-      switch_lamps(step.lamps);
+      if (dark || why == as_dark) lamps_.set({});
     }
     ++report_.refused;
     report_.words.push_back(image + ": refused after " + std::to_string(record.tries - 1) + " tries: " + why);
@@ -349,6 +362,8 @@ class PlanRun {
   Surroundings surroundings_;
   ArmMover mover_;
   Journal journal_;
+  LampSwitch lamps_;
+  std::string lit_for_;  // the step whose lamps were last lit
   RunReport report_;
   std::map<std::string, FrameRecord> records_;
   std::map<std::string, std::optional<FrameBefore>> before_;

@@ -8,7 +8,8 @@
 // any moment goes on with the first frame that has not both.
 //
 // Every camera takes, before its first lit frame at an exposure, one with all lamps off: a lit frame as dark as that is
-// a lamp that does not light.
+// a lamp that does not light. Where several lamps are lit and not all of them say what they truly do, they are lit one
+// by one in every step, and each has to make the picture brighter.
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -117,6 +117,27 @@ TEST(Run, NoFrameBearsAWrongLabel) {
   RecordProperty("retaken", static_cast<int>(report.retaken));
 }
 
+// A dead lamp hides in the light of the other: each is lit on its own first.
+TEST(Run, OneDeadLampOfSeveralIsFound) {
+  const int steps = 60;
+  const tests::ScratchFolder folder;
+  manifest::Document d = turning(steps, {0.002, 0.008}, folder.path());
+  manifest::Plan& plan = d.plans.front();
+  for (manifest::PlanStep& step : plan.steps) step.lamps = {"l1", "l2"};
+  plan.id = plan_id(d, plan);
+  const auto book = std::make_shared<Book>();
+  Instrument instrument = instrument_of({.dead_lamp = 0.1}, 5, book);
+  const RunReport report = carry_out(d, instrument, folder.path());
+  for (const manifest::ImageEntry& image : d.images) {
+    const auto truth = book->shown.find(codes_of(folder.path() / d.files.at(image.file).path));
+    ASSERT_NE(truth, book->shown.end()) << image.id;
+    EXPECT_EQ(truth->second.lamps, (std::vector<std::string>{"l1", "l2"})) << image.id;
+    EXPECT_EQ(image.light, truth->second.lamps) << image.id;
+  }
+  EXPECT_EQ(report.frames, 2 * steps);  // five tries in a row: one step in 6000
+  EXPECT_GT(book->injected["dead lamp"], 5);
+}
+
 TEST(Run, WithoutFaultsNothingIsTakenTwice) {
   const tests::ScratchFolder folder;
   manifest::Document d = turning(10, {0.002, 0.004, 0.008, 0.016}, folder.path());

@@ -168,6 +168,7 @@ const Driver& folder() {
         "channel there (pixel_format=BayerRG12 says what it holds, settle=200ms how long its size must stand, "
         "timeout=10s beyond the exposure); its exposure, gain and time are not read back, so nothing checks them.";
     driver.camera = folder_camera;
+    driver.camera_keys = {"pixel_format"};
     return driver;
   }();
   return its_driver;

@@ -2,14 +2,13 @@
 // where it has one, and takes a single frame where it has none; a camera that a cable triggers waits for that line.
 // Whatever goes wrong with the connection or with a frame closes the camera; the next frame opens it anew, with a
 // stream on a new port, so that nothing that arrives late is taken for what was asked.
-#include <arv.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <mutex>
-#include <type_traits>
 
+#include "acquisition/device/connection.h"
+#include "acquisition/device/drivers/aravis_camera.h"
 #include "acquisition/device/frame_count.h"
 #include "acquisition/device/gige_knock.h"
 #include "acquisition/device/unpack.h"
@@ -21,68 +20,6 @@ namespace gonio::acquisition::drivers {
 namespace {
 
 constexpr const char* camera_remedy = "is it on, and in this network?";
-
-struct Unref {
-  void operator()(void* object) const { g_object_unref(object); }
-};
-template <class Object>
-using Held = std::unique_ptr<Object, Unref>;
-
-struct Wrong {
-  GError* error = nullptr;
-  ~Wrong() { g_clear_error(&error); }
-};
-
-struct GenicamSettings {
-  std::string address, pixel_format, trigger;  // trigger empty: software where there is one
-  int packet_size = 0;                         // 0: as the camera has it
-  double timeout_s = 3;
-  double gain_step_db = 0;  // what one of GainRaw is; 0: not known
-};
-
-// aravis's functions with their errors as ours.
-class AravisCamera {
- protected:
-  AravisCamera(GenicamSettings settings, std::string place)
-      : settings_(std::move(settings)), place_(std::move(place)) {}
-  Error failure(const std::string& problem, const std::string& remedy) const {
-    return Error(Exit::unavailable, place_, "camera " + settings_.address + ": " + problem, remedy);
-  }
-  Error impossible(const std::string& problem, const std::string& remedy) const {
-    return Error(Exit::data, place_, "camera " + settings_.address + ": " + problem, remedy);
-  }
-
-  // f(camera, arguments..., &error), one of aravis's functions.
-  template <class Function, class... Arguments>
-  auto ask(Function f, Arguments... arguments) {
-    Wrong wrong;
-    const auto check = [&] {
-      if (wrong.error == nullptr) return;
-      std::string words = wrong.error->message;
-      std::replace(words.begin(), words.end(), '\n', ' ');
-      throw failure(words, "is it on, connected, and held by no other program?");
-    };
-    if constexpr (std::is_void_v<decltype(f(camera_.get(), arguments..., &wrong.error))>) {
-      f(camera_.get(), arguments..., &wrong.error);
-      check();
-    } else {
-      auto result = f(camera_.get(), arguments..., &wrong.error);
-      check();
-      return result;
-    }
-  }
-  // The same where a camera may do without.
-  template <class Function, class... Arguments>
-  auto quietly(Function f, Arguments... arguments) {
-    return f(camera_.get(), arguments..., nullptr);
-  }
-  ArvDevice* device() { return arv_camera_get_device(camera_.get()); }
-  bool has(const char* feature) { return arv_device_is_feature_available(device(), feature, nullptr) != 0; }
-
-  GenicamSettings settings_;
-  std::string place_;
-  Held<ArvCamera> camera_;
-};
 
 class GenicamCamera : public CameraDevice, AravisCamera {
   // What failed is not believed any more; open() stops what a camera may still send.
@@ -202,6 +139,9 @@ class GenicamCamera : public CameraDevice, AravisCamera {
       ask(arv_camera_set_acquisition_mode, ARV_ACQUISITION_MODE_SINGLE_FRAME);
       return;
     }
+    if (!commanded_ &&
+        !arv_device_is_enumeration_entry_available(device(), "TriggerSource", settings_.trigger.c_str(), nullptr))
+      throw impossible("has no trigger " + settings_.trigger, "trigger=software, or a line that it has");
     ask(arv_camera_set_acquisition_mode, ARV_ACQUISITION_MODE_CONTINUOUS);
     ask(arv_camera_set_trigger, commanded_ ? "Software" : settings_.trigger.c_str());
   }
@@ -280,14 +220,26 @@ class GenicamCamera : public CameraDevice, AravisCamera {
     return ARV_IS_GV_STREAM(stream_.get()) ? arv_stream_get_info_uint64_by_name(stream_.get(), "n_missing_packets") : 0;
   }
 
+  // aravis asks the camera every second whether it is still ours: one that went away is not waited for.
+  Held<ArvBuffer> buffer_within(double patience_s) {
+    for (const auto until = after(patience_s);;) {
+      const double left_s = std::chrono::duration<double>(until - Clock::now()).count();
+      const double step_s = std::clamp(left_s, 0.0, 0.5);
+      Held<ArvBuffer> buffer(
+          arv_stream_timeout_pop_buffer(stream_.get(), static_cast<guint64>(std::lround(step_s * 1e6))));
+      if (buffer || left_s <= step_s) return buffer;
+      if (ARV_IS_GV_DEVICE(device()) && !arv_gv_device_is_controller(ARV_GV_DEVICE(device())))
+        throw failure("went away while a frame was waited for", camera_remedy);
+    }
+  }
+
   RawFrame grab(const Shot& shot) {
     while (ArvBuffer* old = arv_stream_try_pop_buffer(stream_.get())) arv_stream_push_buffer(stream_.get(), old);
     const std::uint64_t missing_before = missing_packets();
     if (single_) ask(arv_camera_start_acquisition);
     if (commanded_) ask(arv_camera_software_trigger);
-    const double patience_s = shot.exposure_s + settings_.timeout_s;
-    Held<ArvBuffer> buffer(
-        arv_stream_timeout_pop_buffer(stream_.get(), static_cast<guint64>(std::lround(patience_s * 1e6))));
+    const double patience_s = shot.exposure_s + settings_.readout_s + settings_.timeout_s;
+    Held<ArvBuffer> buffer = buffer_within(patience_s);
     if (!buffer)
       throw failure("no frame within " + format("%.3g s", patience_s),
                     commanded_ || single_ ? "does a firewall keep UDP away? is another trigger selected?"
@@ -316,7 +268,7 @@ class GenicamCamera : public CameraDevice, AravisCamera {
       throw failure(format("a frame came to nothing (aravis's status %d)", static_cast<int>(status)), {});
     read_pixels(buffer, frame);
     if (const auto ns = arv_buffer_get_timestamp(buffer); ns != 0) frame.camera_time_s = static_cast<double>(ns) * 1e-9;
-    frame.exposure_s = ask(arv_camera_get_exposure_time) * 1e-6;
+    frame.exposure_s = ask(arv_camera_get_exposure_time) / 1e6;
     frame.gain_db = gain_now();
     if (has("DeviceTemperature")) frame.temperature_K = 273.15 + ask(arv_camera_get_float, "DeviceTemperature");
     read_chunks(buffer, counted, frame);
@@ -346,7 +298,7 @@ class GenicamCamera : public CameraDevice, AravisCamera {
       const double value = arv_chunk_parser_get_float_value(chunks_.get(), buffer, name, &wrong.error);
       return wrong.error == nullptr ? std::optional(value) : std::nullopt;
     };
-    if (const auto us = real("ChunkExposureTime")) frame.exposure_s = *us * 1e-6;
+    if (const auto us = real("ChunkExposureTime")) frame.exposure_s = *us / 1e6;
     if (const auto db = real("ChunkGain")) frame.gain_db = *db;
     if (arv_device_get_feature(device(), "ChunkFrameID") == nullptr) return;
     Wrong wrong;
@@ -376,6 +328,7 @@ std::unique_ptr<CameraDevice> genicam_camera(const Url& url, const std::string& 
   settings.trigger = query.text("trigger");
   settings.packet_size = query.integer("packet-size", 0, 0, 16260);
   settings.gain_step_db = query.quantity("gain-step", Dimension::none, 0, 0, 10);
+  settings.readout_s = query.quantity("readout", Dimension::time, 0, 0, 3600);
   settings.timeout_s = query.timeout(3);
   query.end();
   return std::make_unique<GenicamCamera>(std::move(settings), place);
@@ -390,8 +343,11 @@ const Driver& genicam() {
     driver.sentence =
         "genicam://ADDRESS is a camera of GigE Vision, by its address, or of USB3 Vision, by aravis's name of it "
         "(pixel_format=Mono12p; trigger=software, none for single frames, or the line of a cable, as Line0; "
-        "packet-size=1400; gain-step=0.1, the dB of one where its gain is a count; timeout=3s beyond the exposure).";
+        "packet-size=1400; gain-step=0.1, the dB of one where its gain is a count; readout=0s from the end of an "
+        "exposure until its "
+        "frame may come; timeout=3s beyond both).";
     driver.camera = genicam_camera;
+    driver.camera_keys = {"pixel_format", "trigger"};
     return driver;
   }();
   return its_driver;
