@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/text.h"
+#include "camera/intrinsics.h"
 #include "io/image.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
@@ -64,11 +65,13 @@ int bits_of(const std::string& pixel_format) {
   return 12;
 }
 
-// What turns a radiance into codes: code = black + per_radiance * radiance, up to white; noise in radiance.
+// What turns a radiance into codes: code = black + full * v, v = gain * radiance through the sensor chain, up to white.
+// The chain works on v, what the frame's file says of the light: what a sensor does to its codes depends on the
+// exposure.
 struct DeskSensor {
   int bits = 12;
-  double white = 4095, black = 0, per_radiance = 1;
-  manifest::Noise noise;
+  double white = 4095, black = 0, full = 65535, gain = 1;
+  manifest::Noise noise;  // of v
 };
 
 DeskSensor sensor_at(const manifest::LaboratoryCamera& entry, double exposure_s) {
@@ -76,9 +79,9 @@ DeskSensor sensor_at(const manifest::LaboratoryCamera& entry, double exposure_s)
   sensor.bits = bits_of(entry.pixel_format);
   sensor.white = entry.white.value_or((1 << sensor.bits) - 1);
   sensor.black = entry.black_code.value_or(0);
-  sensor.per_radiance = entry.codes_per_radiance_s.value_or(sensor.white / usual_exposure_s) * exposure_s;
-  const double electrons =
-      entry.electrons_per_code.value_or(full_well_electrons / sensor.white) * sensor.per_radiance;
+  sensor.full = sensor.bits > 8 ? 65535 : 255;
+  sensor.gain = entry.codes_per_radiance_s.value_or(sensor.white / usual_exposure_s) * exposure_s / sensor.full;
+  const double electrons = entry.electrons_per_code.value_or(full_well_electrons / sensor.white) * sensor.full;
   sensor.noise = {.gain = electrons, .read = entry.read_electrons.value_or(usual_read_electrons) / electrons};
   return sensor;
 }
@@ -175,7 +178,13 @@ manifest::Document TrueState::scene_of(const std::string& camera, const Shot& sh
   for (const auto& [name, light] : document.lights)
     if (const auto found = of_lamps.find(name); found == of_lamps.end() || found->second) image.light.push_back(name);
   if (image.light.empty()) image.dark = true;
-  image.noise = sensor_at(entry, shot.exposure_s).noise;
+  const DeskSensor sensor = sensor_at(entry, shot.exposure_s);
+  image.noise = sensor.noise;
+  if (camera::mosaic_of(document, camera).empty()) {  // the mean of three readings has the noise of one
+    image.noise->gain /= 3;
+    image.noise->read *= std::sqrt(3.0);
+  }
+  image.gain = manifest::Parameter(sensor.gain);
   image.id = "frame";
   image.id = sha256(manifest::print_document(
                         [&] {
@@ -217,9 +226,9 @@ RawFrame TrueState::expose(const std::string& camera, const Shot& shot) {
   const std::size_t channels = seen.channels.size();
   frame.samples.resize(seen.pixels());
   for (std::size_t i = 0; i < frame.samples.size(); ++i) {
-    double radiance = 0;
-    for (std::size_t c = 0; c < channels; ++c) radiance += seen.data[i * channels + c] / static_cast<double>(channels);
-    const double code = std::round(chip.black + radiance * chip.per_radiance);
+    double v = 0;
+    for (std::size_t c = 0; c < channels; ++c) v += seen.data[i * channels + c] / static_cast<double>(channels);
+    const double code = std::round(chip.black + chip.full * v);
     frame.samples[i] = static_cast<std::uint16_t>(std::clamp(code, 0.0, chip.white));
   }
   time_s += shot.exposure_s;
