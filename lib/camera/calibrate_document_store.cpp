@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/board_place.h"
 #include "camera/calibrate_document_session.h"
 #include "camera/corner_table.h"
 #include "manifest/document.h"
@@ -127,6 +128,7 @@ void store_calibration(const Session& session, const CalibrationSetup& setup, co
   }
   for (const Picture& picture : session.pictures) store_picture(session, picture, calibration, document);
   store_rig(session, calibration, document);
+  place_images(document);
 }
 
 void store_corners(const Session& session, const Calibration& calibration, bool alone, const std::filesystem::path& csv,

@@ -42,14 +42,19 @@ void add_views(manifest::Document& document) {
 
 }  // namespace
 
-manifest::Document board_specimen(const std::filesystem::path& out) {
-  manifest::Document document;
+manifest::Board specimen_board_section() {
   manifest::Board section;
   section.kind = "charuco";
   section.squares = {9, 7};
   section.square_m = 0.02;
   section.marker_m = 0.015;
   section.dictionary = "4X4_50";
+  return section;
+}
+
+manifest::Document board_specimen(const std::filesystem::path& out) {
+  manifest::Document document;
+  const manifest::Board section = specimen_board_section();
   const camera::Board board = camera::board_of(section, "built-in board");
   const camera::Drawing drawing = camera::lay_out(board, "fit", "built-in board");
   make_folder(out);

@@ -7,6 +7,8 @@
 
 namespace gonio::render {
 
+manifest::Board specimen_board_section();
+
 // Writes the board's drawing, board.png, into `out`. World: the board's middle is the origin, z towards the cameras.
 manifest::Document board_specimen(const std::filesystem::path& out);
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "camera/board.h"
+#include "camera/board_place.h"
 #include "camera/corner_table.h"
 #include "camera/intrinsics.h"
 #include "manifest/document.h"
@@ -13,7 +14,6 @@
 #include "manifest/sections/camera.h"
 #include "manifest/sections/frame_link.h"
 #include "manifest/sections/image.h"
-#include "manifest/sections/laboratory.h"
 #include "manifest/sections/mounting.h"
 
 namespace gonio::robot {
@@ -153,20 +153,18 @@ void enter_errors(const handeye::Analysis& a, manifest::Mounting& m) {
   m.parts = manifest::ScatterParts{a.parts.robot_m, a.parts.camera_m, std::nullopt, a.parts.unexplained_m};
 }
 
-// Where a laboratory says where the arm stands, its images are seen from where the calibrated mounting holds the
-// camera, not from where the description believed it.
-void place_cameras(const std::string& camera, const Rigid<frame::Tool, frame::Camera>& tool_from_camera,
-                   manifest::Document& document) {
-  if (document.laboratory.entry.empty()) return;
-  const auto& robots = document.laboratory.entry.front().robots;
+// Of a board whose place in the world is known, calib-charuco has placed the images that show it; the others are seen
+// from where the calibrated mounting holds the camera.
+void place_cameras(const manifest::Mounting& m, manifest::Document& document) {
+  const auto board = camera::world_from_board(document, m.board);
+  if (!board || !m.tool_from_camera || !m.base_from_board) return;
+  const Rigid<frame::World, frame::Base> world_from_base = *board * inverse(*m.base_from_board);
   for (manifest::ImageEntry& image : document.images) {
-    const auto arm = robots.find(image.robot);
-    if (image.camera != camera || !image.base_from_tool || !image.world_from_camera || arm == robots.end()) continue;
-    if (arm->second.model == "urdf") continue;  // whose tool lies as its author put it
-    Rigid<frame::World, frame::Base> world_from_base;
-    if (arm->second.world_from_base) world_from_base = *arm->second.world_from_base;
+    if (image.camera != m.camera || !image.base_from_tool || pose_in(image, m.board) != nullptr) continue;
+    if (!m.robot.empty() && !image.robot.empty() && image.robot != m.robot) continue;
+    if (!image.world_from_camera) image.world_from_camera.emplace();
     static_cast<Rigid<frame::World, frame::Camera>&>(*image.world_from_camera) =
-        world_from_base * *image.base_from_tool * tool_from_camera;
+        world_from_base * *image.base_from_tool * *m.tool_from_camera;
   }
 }
 
@@ -291,7 +289,7 @@ void enter_mounting(const HandEyeInput& input, const HandEyeRequest& request, co
   }
   m.next = a.next;
   document.mountings[input.camera] = m;
-  if (m.tool_from_camera) place_cameras(input.camera, *m.tool_from_camera, document);
+  place_cameras(m, document);
 }
 
 std::vector<std::string> outlier_lines(const HandEyeInput& input, const handeye::Analysis& a) {

@@ -210,11 +210,6 @@ void fill_truth(const Spec& spec, const Stage& s, const Sizes& sizes, Truth& tru
 
 }  // namespace
 
-std::string_view kind_name(Kind kind) {
-  static constexpr std::string_view names[] = {"null", "distractor", "single", "pair", "alike", "invisible", "outside"};
-  return names[static_cast<std::size_t>(kind)];
-}
-
 std::string case_id(const Spec& spec) {
   std::uint64_t hash = split_mix(spec.seed);
   for (const char c : spec.domain + spec.variant) hash = split_mix(hash ^ static_cast<unsigned char>(c));

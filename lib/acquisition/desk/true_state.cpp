@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/text.h"
+#include "camera/intrinsics.h"
 #include "io/image.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/file.h"
@@ -114,20 +115,24 @@ std::string content_of(const manifest::Document& scene, manifest::ImageEntry ima
   return sha256(manifest::print_document(decides, decides.folder));
 }
 
-// What turns a radiance into codes: code = black + per_radiance * radiance, up to white; noise in radiance.
+// What turns a radiance into codes: code = black + full * v, v = gain * radiance through the sensor chain, up to white.
+// The chain works on v, what the frame's file says of the light: what a sensor does to its codes depends on the
+// exposure.
 struct DeskSensor {
-  double white = 4095, black = 0, per_radiance = 1;
-  manifest::Noise noise;
+  double white = 4095, black = 0, full = 65535, gain = 1;
+  manifest::Noise noise;  // of v
 };
 
 DeskSensor sensor_at(const manifest::LaboratoryCamera& entry, int bits, const Shot& shot) {
   DeskSensor sensor;
   sensor.white = entry.white.value_or((1 << bits) - 1);
   sensor.black = entry.black_code.value_or(0);
-  sensor.per_radiance = entry.codes_per_radiance_s.value_or(sensor.white / usual_exposure_s) * shot.exposure_s;
-  const double electrons = entry.electrons_per_code.value_or(full_well_electrons / sensor.white) * sensor.per_radiance;
+  sensor.full = bits > 8 ? 65535 : 255;
+  sensor.gain = entry.codes_per_radiance_s.value_or(sensor.white / usual_exposure_s) * shot.exposure_s *
+                amplification(shot.gain_db) / sensor.full;
+  const double electrons =
+      entry.electrons_per_code.value_or(full_well_electrons / sensor.white) * sensor.full / amplification(shot.gain_db);
   sensor.noise = {.gain = electrons, .read = entry.read_electrons.value_or(usual_read_electrons) / electrons};
-  sensor.per_radiance *= amplification(shot.gain_db);
   return sensor;
 }
 
@@ -241,7 +246,14 @@ manifest::Document TrueState::scene_of(const std::string& camera, const Shot& sh
   for (const auto& [name, light] : document.lights)
     if (const auto found = of_lamps.find(name); found == of_lamps.end() || found->second) image.light.push_back(name);
   if (image.light.empty()) image.dark = true;
-  image.noise = sensor_at(entry, format_of(camera).bits, shot).noise;
+  const PixelFormat own = format_of(camera);
+  const DeskSensor sensor = sensor_at(entry, own.bits, shot);
+  image.noise = sensor.noise;
+  if (camera::mosaic_of(document, camera).empty() && own.mosaic == "Mono") {
+    image.noise->gain /= 3;  // the mean of three readings has the noise of one
+    image.noise->read *= std::sqrt(3.0);
+  }
+  image.gain = manifest::Parameter(sensor.gain);
   image.id = "frame";
   image.id = content_of(scene, image).substr(0, 16);
   scene.images = {image};
@@ -280,13 +292,12 @@ RawFrame TrueState::expose(const std::string& camera, const Shot& asked, const P
   frame.samples.resize(seen.pixels());
   for (std::size_t i = 0; i < frame.samples.size(); ++i) {
     const int filter = channels < 3 ? -1 : channel_of_filter(mosaic, i / width, i % width);
-    double radiance = 0;
+    double v = 0;
     if (filter >= 0)
-      radiance = seen.data[i * channels + static_cast<std::size_t>(filter)];
+      v = seen.data[i * channels + static_cast<std::size_t>(filter)];
     else
-      for (std::size_t c = 0; c < channels; ++c)
-        radiance += seen.data[i * channels + c] / static_cast<double>(channels);
-    const double code = std::clamp(std::round(chip.black + radiance * chip.per_radiance), 0.0, chip.white);
+      for (std::size_t c = 0; c < channels; ++c) v += seen.data[i * channels + c] / static_cast<double>(channels);
+    const double code = std::clamp(std::round(chip.black + chip.full * v), 0.0, chip.white);
     frame.samples[i] = static_cast<std::uint16_t>(std::floor(code * deeper));
   }
   clock.pass(shot.exposure_s);

@@ -2,6 +2,8 @@
 #include "robot/chain/input.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "camera/board.h"
@@ -10,7 +12,9 @@
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
+#include "manifest/sections/laboratory.h"
 #include "manifest/sections/mounting.h"
+#include "manifest/sections/plan.h"
 #include "manifest/sections/robot.h"
 #include "manifest/sections/table.h"
 #include "robot/ur_calibration.h"
@@ -40,13 +44,20 @@ std::vector<const manifest::ImageEntry*> images_of(const manifest::Document& doc
   return images;
 }
 
-// What handeye left out is left out here.
-bool is_left_out(const std::string& image, const manifest::Mounting& m) {
-  return std::find(m.outliers.begin(), m.outliers.end(), image) != m.outliers.end();
+// What handeye left out is left out here, a few strays. Where more than a quarter of the poses do not fit the mountings
+// alone, they are what is to be explained (joints with play stand in two places); strays among them are found when
+// every hypothesis is free.
+std::vector<std::string> strays(const manifest::Document& document, const manifest::Mounting& m) {
+  return 4 * m.outliers.size() > images_of(document, m).size() ? std::vector<std::string>{} : m.outliers;
+}
+
+bool is_among(const std::string& image, const std::vector<std::string>& images) {
+  return std::find(images.begin(), images.end(), image) != images.end();
 }
 
 bool is_enough(const manifest::Document& document, const manifest::Mounting& m) {
-  const auto counts = [&](const manifest::ImageEntry* image) { return !is_left_out(image->id, m); };
+  const std::vector<std::string> left_out = strays(document, m);
+  const auto counts = [&](const manifest::ImageEntry* image) { return !is_among(image->id, left_out); };
   return is_complete(m) && std::ranges::count_if(images_of(document, m), counts) >= fewest_images;
 }
 
@@ -143,6 +154,20 @@ void even_out(const manifest::Document& document, ChainInput& input) {
   }
 }
 
+// The first pose of a run was come to from the arm's home.
+void find_first_approach(const manifest::Document& document, ChainInput& input) {
+  if (document.runs.size() != 1 || document.laboratory.entry.empty() || input.views.empty()) return;
+  const auto& robots = document.laboratory.entry.front().robots;
+  const auto arm = robots.find(input.robot);
+  const auto first = std::ranges::min_element(
+      input.views, {}, [](const ChainInput::View& v) { return v.time_s.value_or(std::numeric_limits<double>::infinity()); });
+  if (arm == robots.end() || !first->time_s || first->joints_rad.size() != arm->second.home_rad.size()) return;
+  for (std::size_t j = 0; j < std::min<std::size_t>(6, first->joints_rad.size()); ++j) {
+    const double turn = first->joints_rad[j] - arm->second.home_rad[j];
+    if (std::abs(turn) > 1e-5) first->approach[j] = turn > 0 ? 1 : -1;
+  }
+}
+
 ChainInput input_of(const manifest::Document& document, const std::string& name, const manifest::Mounting& m) {
   ChainInput input;
   input.mounting = name;
@@ -159,8 +184,11 @@ ChainInput input_of(const manifest::Document& document, const std::string& name,
   read_camera(document, input);
   read_board(document, input);
   for (const manifest::ImageEntry* image : images) input.views.push_back(view_of(document, *image, input));
+  find_first_approach(document, input);
   find_passage(input);  // by all poses: the arm went through those that are left out, too
-  std::erase_if(input.views, [&](const ChainInput::View& v) { return is_left_out(v.image, m); });
+  std::erase_if(input.views, [left_out = strays(document, m)](const ChainInput::View& v) {
+    return is_among(v.image, left_out);
+  });
   read_corners(document, input);
   even_out(document, input);
   return input;
