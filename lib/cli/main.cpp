@@ -182,6 +182,29 @@ void check_places(const Invocation& call) {
                 "give -o FILE or --out DIR");
 }
 
+// The folder of --out, and those above it that it needs. A run that ends in a refusal leaves none of them behind,
+// unless something was written there.
+class NewFolders {
+ public:
+  explicit NewFolders(const fs::path& out) {
+    if (out.empty()) return;
+    std::error_code ignored;
+    for (fs::path at = fs::absolute(out).lexically_normal(); !fs::exists(at, ignored); at = at.parent_path())
+      if (at.has_filename()) made_.push_back(at);
+  }
+  ~NewFolders() {
+    std::error_code failure;
+    for (const fs::path& at : made_)  // the innermost first; remove() takes nothing that is not empty
+      if (!fs::remove(at, failure) || failure) return;
+  }
+  NewFolders(const NewFolders&) = delete;
+  NewFolders& operator=(const NewFolders&) = delete;
+  void keep() { made_.clear(); }
+
+ private:
+  std::vector<fs::path> made_;
+};
+
 // Can everything be written? What lies below --out is asked after that folder was made, the rest before.
 void prepare_places(const Invocation& call) {
   const auto below_out = [&call](const fs::path& path) {
@@ -243,9 +266,11 @@ Exit run(const Program& program, int argc, char** argv) {
   const std::string input_id = call.has_document ? manifest::content_id(call.document) : std::string();
   if (program.check) program.check(call);
   if (call.flag("check")) return Exit::done;
+  NewFolders made(call.out);
   prepare_places(call);
   const Exit result = program.run(call);
   const Exit delivered = deliver(call, result, input_id);
+  made.keep();
   if (!call.afterwards || delivered != result) return delivered;
   close_stdout();
   return call.afterwards();

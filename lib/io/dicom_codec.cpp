@@ -1,11 +1,13 @@
 #include "io/dicom_codec.h"
 
+#include <fcntl.h>
 #include <gdcmByteValue.h>
 #include <gdcmDataElement.h>
 #include <gdcmFragment.h>
 #include <gdcmImage.h>
 #include <gdcmSequenceOfFragments.h>
 #include <gdcmTrace.h>
+#include <unistd.h>
 
 #include <exception>
 
@@ -21,6 +23,28 @@ gdcm::TransferSyntax gdcm_syntax(DicomPixels pixels) {
     default: return gdcm::TransferSyntax::JPEGLosslessProcess14_1;
   }
 }
+
+// Codecs below GDCM write what they meet to the stream of errors, past its switches: the refusal is one line, ours.
+// While it lives nothing of this process is written there.
+class SilentErrors {
+ public:
+  SilentErrors() : kept_(::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3)) {
+    const int nowhere = kept_ < 0 ? -1 : ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (nowhere < 0) return;
+    ::dup2(nowhere, STDERR_FILENO);
+    ::close(nowhere);
+  }
+  ~SilentErrors() {
+    if (kept_ < 0) return;
+    ::dup2(kept_, STDERR_FILENO);
+    ::close(kept_);
+  }
+  SilentErrors(const SilentErrors&) = delete;
+  SilentErrors& operator=(const SilentErrors&) = delete;
+
+ private:
+  int kept_;
+};
 
 }  // namespace
 
@@ -47,6 +71,7 @@ std::string decode_by_gdcm(const DicomFile& file, std::string_view stored, int b
   std::string out(file.frame_bytes(), '\0');
   bool decoded = false;
   try {
+    const SilentErrors silent;
     decoded = image.GetBufferLength() == out.size() && image.GetBuffer(out.data());
   } catch (const std::exception&) {
     decoded = false;

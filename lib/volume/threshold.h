@@ -7,6 +7,7 @@
 // Lengths are voxels of the smallest spacing. Where spacings differ, `scale` holds them over the smallest: an index
 // times `scale` is a place in which lengths and normals mean something.
 #pragma once
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
@@ -26,7 +27,7 @@ struct Threshold {
   // d(wall position along the outward normal) / d(threshold), voxels per value, mean over the surface: how far a
   // threshold that is wrong by one moves every wall. Negative; set by voxels_per_value.
   double voxels_per_value = 0;
-  double sigma_wall_voxels() const { return sigma * (voxels_per_value < 0 ? -voxels_per_value : voxels_per_value); }
+  double sigma_wall_voxels() const { return sigma * std::abs(voxels_per_value); }
 };
 // Error(data) where the mixture has no such two materials.
 Threshold half_way(const Mixture& mixture, std::size_t lower, std::size_t upper);

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "io/csv.h"
+#include "io/dicom_codec.h"
 #include "io/dicom_pixels.h"
 #include "io/little_endian.h"
 #include "io/volume_fixtures.h"
@@ -302,6 +303,25 @@ TEST_F(DicomSeries, WhatIsNoGridIsRefused) {
     write_file(folder_ / "s9.dcm", whole.substr(0, length));
     EXPECT_NE(volume_refusal(folder_ / "s9.dcm"), "none") << length;
   }
+}
+
+// Codecs say on the stream of errors what they think of a stream; the refusal is one line, ours.
+TEST(VolumeDicom, ABrokenCompressedStreamIsRefusedWithoutAWordOfTheCodec) {
+  DicomFile file;
+  file.path = "x.dcm", file.rows = file.columns = 16, file.bits_allocated = file.bits_stored = 16;
+  using namespace std::string_literals;
+  const std::string zeros(64, '\0');
+  const std::string broken[] = {"rubbish", "\xff\xd8\xff\xc3\x00\x0b\x10\x00\x10\x00\x10\x01\x01\x11\x00"s + zeros,
+                                "\xff\xd8\xff\xf7\x00\x0b\x10\x00\x10\x00\x10\x01\x01\x11\x00"s + zeros,
+                                "\xff\x4f\xff\x51\x00\x29\x00\x00\x00\x00\x00\x10\x00\x00\x00\x10"s + zeros,
+                                "\x00\x00\x00\x0cjP  \x0d\x0a\x87\x0a"s + zeros};
+  for (const DicomPixels pixels : {DicomPixels::jpeg_lossless, DicomPixels::jpeg_ls, DicomPixels::jpeg_2000})
+    for (const std::string& stored : broken) {
+      file.pixels = pixels;
+      testing::internal::CaptureStderr();
+      EXPECT_THROW(decode_by_gdcm(file, stored, 16, true), Error);
+      EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << static_cast<int>(pixels);
+    }
 }
 
 TEST(DicomRuns, AsTheStandardHasThem) {

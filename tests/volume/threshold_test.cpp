@@ -106,6 +106,9 @@ TEST(Threshold, VoxelsPerValueIsTheMeanInverseGradient) {
   Threshold t;
   t.value = 60, t.sigma = 2, t.voxels_per_value = -0.02;
   EXPECT_NEAR(t.sigma_wall_voxels(), 0.04, 1e-12);
+  Threshold exact = t;
+  exact.voxels_per_value = -0.0;  // which would be printed with its sign
+  EXPECT_FALSE(std::signbit(exact.sigma_wall_voxels()));
   EXPECT_NEAR(length_bias(t, 50), -0.4, 1e-12);  // too high a threshold: both walls stand back
 }
 

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/assignment.h"
 #include "base/error.h"
 #include "base/quantity.h"
 #include "base/text.h"
@@ -14,16 +15,6 @@ namespace {
 
 using cli::Type;
 
-std::vector<std::string> parts_of(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text)
-    if (c == separator)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  return parts;
-}
-
 std::size_t count_of(const std::string& text, const char* option, const std::string& whole, const char* remedy) {
   std::size_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -34,7 +25,7 @@ std::size_t count_of(const std::string& text, const char* option, const std::str
 
 template <std::size_t N>
 std::array<std::size_t, N> counts_of(const std::string& text, const char* option, const char* remedy) {
-  const std::vector<std::string> parts = parts_of(text, 'x');
+  const std::vector<std::string> parts = pieces(text, 'x');
   if (parts.size() != N)
     throw Error(Exit::usage, std::string("--") + option,
                 "\"" + text + "\" has " + std::to_string(parts.size()) + " counts, needs " + std::to_string(N), remedy);
@@ -44,7 +35,7 @@ std::array<std::size_t, N> counts_of(const std::string& text, const char* option
 }
 
 Vec3 spacing_of(const std::string& text) {
-  const std::vector<std::string> parts = parts_of(text, ',');
+  const std::vector<std::string> parts = pieces(text, ',');
   if (parts.size() != 1 && parts.size() != 3)
     throw Error(Exit::usage, "--voxel", "\"" + text + "\" has " + std::to_string(parts.size()) + " lengths",
                 "give one, or three: --voxel 0.1mm,0.1mm,0.3mm");
@@ -66,7 +57,7 @@ io::VoxelType type_of(const std::string& text) {
 }
 
 std::array<std::array<double, 3>, 2> box_of(const std::string& text) {
-  const std::vector<std::string> parts = parts_of(text, ',');
+  const std::vector<std::string> parts = pieces(text, ',');
   std::array<std::array<double, 3>, 2> box{};
   if (parts.size() != 6)
     throw Error(Exit::usage, "--box", "\"" + text + "\" has " + std::to_string(parts.size()) + " numbers",

@@ -47,6 +47,7 @@ void judge(Work& work) {
       fit ? "closed, 2-manifold, oriented, without self-intersections" : "not fit to be rendered as glass";
   if (sound.euler != wanted)
     how += "; Euler number " + std::to_string(sound.euler) + ", the volume's surface has " + std::to_string(wanted);
+  if (work.cut_by_border) how += "; the volume's border cuts the object, where the mesh is capped, not measured";
   const Asked& a = work.asked;
   const double limit = a.limit_distance ? a.limit_distance->metres(work.voxel_m()) : 0;
   if (a.limit_distance && std::max(there.rms_m, back.rms_m) > limit) {

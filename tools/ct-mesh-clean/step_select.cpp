@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "base/text.h"
 #include "tools/ct-mesh-clean/work.h"
 
@@ -49,10 +50,20 @@ void select(Work& work) {
                                work.kept.reason.front(),
                 all == 0 ? "give a lower --threshold" : "loosen --largest, --at-least, --brighter, --darker or --box");
   auto& entry = step(work, "components", std::to_string(stays) + " of " + std::to_string(all) + " stay");
+  std::size_t cut = 0;
+  for (std::size_t c = 0; c < all; ++c) cut += work.kept.keep[c] && work.components.list[c].touches_border;
+  work.cut_by_border = cut > 0;
+  if (work.cut_by_border) {
+    entry.how += "; the volume's border cuts " + std::to_string(cut) + " of them";
+    log(LogLevel::warning, work.path + ": its border cuts " + std::to_string(cut) + " of the " + std::to_string(stays) +
+                               " components that stay; the mesh has flat caps there; scan the "
+                               "whole object, or leave them out with --drop-cut");
+  }
   std::uint64_t voxels = 0, dropped = 0;
   for (std::size_t c = 0; c < all; ++c) (work.kept.keep[c] ? voxels : dropped) += work.components.list[c].voxels;
   entry.figures = {{"components", static_cast<double>(all)},
                    {"kept", static_cast<double>(stays)},
+                   {"cut_by_border", static_cast<double>(cut)},
                    {"kept_voxels", static_cast<double>(voxels)},
                    {"dropped_voxels", static_cast<double>(dropped)}};
   if (work.asked.split) {

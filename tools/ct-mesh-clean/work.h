@@ -85,6 +85,7 @@ struct Work {
   volume::Components components;
   volume::Kept kept;
   std::int64_t euler = 0;           // of the solid, from the voxels
+  bool cut_by_border = false;       // the volume's border cuts a component that stays
   volume::Contour contour;          // of the object, until it is in metres
   std::vector<volume::Edge> edges;  // at its vertices, until they are cleaned
   volume::Markers markers;

@@ -45,9 +45,28 @@ std::pair<std::size_t, std::size_t> samples_between(double low, double high, std
           static_cast<std::size_t>(std::clamp(std::floor(high) + 1, 0.0, last))};
 }
 
+// Calls add(sample across, sample along, path) for every sample of a view whose ray meets the ball.
+template <class Add>
+void for_samples_of(const Ball& ball, const Detector& d, const SampleGrid& grid, std::size_t view, const Add& add) {
+  const double angle = pi * static_cast<double>(view) / static_cast<double>(d.views);
+  const double across = ball.centre_m.x * std::cos(angle) + ball.centre_m.y * std::sin(angle);
+  const double at_u = (across / d.bin_m - grid.first_u) * fine, wide_u = ball.radius_m / d.bin_m * fine;
+  const double at_z = (ball.centre_m.z / d.slice_m + d.half_height() - grid.first_z) * fine,
+               wide_z = ball.radius_m / d.slice_m * fine;
+  const auto [z0, z1] = samples_between(at_z - wide_z, at_z + wide_z, grid.along);
+  const auto [u0, u1] = samples_between(at_u - wide_u, at_u + wide_u, grid.across);
+  for (std::size_t v = z0; v < z1; ++v)
+    for (std::size_t n = u0; n < u1; ++n) {
+      const double off_u = (static_cast<double>(n) - at_u) / wide_u, off_z = (static_cast<double>(v) - at_z) / wide_z;
+      const double rest = 1 - off_u * off_u - off_z * off_z;
+      if (rest > 0) add(n, v, 2 * ball.radius_m * std::sqrt(rest));
+    }
+}
+
 class Drawing {
  public:
-  Drawing(const mesh::Mesh& mesh, const Detector& d, std::size_t view) : grid_(sample_grid(d, view)) {
+  Drawing(const mesh::Mesh& mesh, const Detector& d, std::size_t view, std::span<const Ball> beside)
+      : grid_(sample_grid(d, view)) {
     const double angle = pi * static_cast<double>(view) / static_cast<double>(d.views);
     const double c = std::cos(angle), s = std::sin(angle);
     corners_.reserve(mesh.positions_m.size());
@@ -57,6 +76,10 @@ class Drawing {
     path_.assign(grid_.across * grid_.along, 0.0);
     turns_.assign(path_.size(), 0);
     for (const auto& t : mesh.triangles) draw(t);
+    for (const Ball& ball : beside)
+      for_samples_of(ball, d, grid_, view, [&](std::size_t n, std::size_t v, double path) {
+        path_[v * grid_.across + n] += ball.share * path;
+      });
   }
   // The mean over a pixel of exp(-per_m path); samples that met a hole of the mesh do not count.
   double intensity(std::size_t bin, std::size_t slice, double per_m) const {
@@ -102,10 +125,10 @@ class Drawing {
 
 }  // namespace
 
-std::vector<float> intensities(const mesh::Mesh& mesh, const Detector& d, double per_m) {
+std::vector<float> intensities(const mesh::Mesh& mesh, const Detector& d, double per_m, std::span<const Ball> beside) {
   std::vector<float> values(d.size());
   parallel_for(0, d.views, [&](std::size_t view) {
-    const Drawing drawing(mesh, d, view);
+    const Drawing drawing(mesh, d, view, beside);
     for (std::size_t k = 0; k < d.slices; ++k)
       for (std::size_t n = 0; n < d.bins; ++n)
         values[d.line(k, view) + n] = static_cast<float>(drawing.intensity(n, k, per_m));
@@ -117,24 +140,10 @@ std::vector<float> paths(std::span<const Ball> balls, const Detector& d) {
   std::vector<float> values(d.size(), 0.0f);
   parallel_for(0, d.views, [&](std::size_t view) {
     const SampleGrid grid = sample_grid(d, view);
-    const double angle = pi * static_cast<double>(view) / static_cast<double>(d.views);
-    for (const Ball& ball : balls) {
-      const double u = ball.centre_m.x * std::cos(angle) + ball.centre_m.y * std::sin(angle), z = ball.centre_m.z;
-      const double at_u = (u / d.bin_m - grid.first_u) * fine, wide_u = ball.radius_m / d.bin_m * fine;
-      const double at_z = (z / d.slice_m + d.half_height() - grid.first_z) * fine,
-                   wide_z = ball.radius_m / d.slice_m * fine;
-      const auto [z0, z1] = samples_between(at_z - wide_z, at_z + wide_z, grid.along);
-      const auto [u0, u1] = samples_between(at_u - wide_u, at_u + wide_u, grid.across);
-      for (std::size_t v = z0; v < z1; ++v)
-        for (std::size_t n = u0; n < u1; ++n) {
-          const double off_u = (static_cast<double>(n) - at_u) / wide_u,
-                       off_z = (static_cast<double>(v) - at_z) / wide_z;
-          const double rest = 1 - off_u * off_u - off_z * off_z;
-          if (rest > 0)
-            values[d.line(v / fine, view) + n / fine] +=
-                static_cast<float>(2 * ball.radius_m * std::sqrt(rest) / (fine * fine));
-        }
-    }
+    for (const Ball& ball : balls)
+      for_samples_of(ball, d, grid, view, [&](std::size_t n, std::size_t v, double path) {
+        values[d.line(v / fine, view) + n / fine] += static_cast<float>(path / (fine * fine));
+      });
   });
   return values;
 }

@@ -17,6 +17,7 @@ namespace gonio::explain::volumes {
 struct Ball {
   Vec3 centre_m{};
   double radius_m = 0;
+  double share = 0;  // of the material's attenuation; 0: not there
 };
 
 // Pixels: as many across as the diagonal of a slice needs, even or odd like the voxels across, so that the axis stands
@@ -30,8 +31,9 @@ struct Detector {
   std::size_t size() const { return slices * views * bins; }
 };
 
-// values[line(slice, view) + bin]: the mean intensity.
-std::vector<float> intensities(const mesh::Mesh& mesh, const Detector& detector, double per_m);
+// values[line(slice, view) + bin]: the mean intensity behind the shape, and behind balls beside it.
+std::vector<float> intensities(const mesh::Mesh& mesh, const Detector& detector, double per_m,
+                               std::span<const Ball> beside = {});
 // The mean path through balls, metres.
 std::vector<float> paths(std::span<const Ball> balls, const Detector& detector);
 

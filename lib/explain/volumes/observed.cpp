@@ -161,7 +161,7 @@ std::vector<Row> rows_of(const Sampled& sampled, const mesh::TriangleTree& tree,
 // Of the largest line integral, where values are no attenuation.
 double attenuation_per_m(const VolumesInput& input, const mesh::Mesh& mesh, const Values& values) {
   if (input.attenuation) return std::max(1e-3, values.material - values.air);
-  const Tomograph rough(mesh, input.volume.head.size, input.spacing_m, 1, rough_cells);
+  const Tomograph rough(mesh, input.volume.head.size, input.spacing_m, 1, {}, rough_cells);
   return nominal_attenuation / std::max(1e-9, rough.longest_m());
 }
 
@@ -189,6 +189,24 @@ mesh::Mesh displaced(mesh::Mesh mesh, const Displacement& by, double voxel_m) {
   for (std::size_t v = 0; v < mesh.positions_m.size(); ++v)
     mesh.positions_m[v] = mesh.positions_m[v] * (1 + by.scale) + mesh.normals[v] * (by.offset * voxel_m);
   return mesh;
+}
+
+// How dense each marker is: the median of what stands within half its radius, over the material's.
+std::vector<Ball> dense(std::vector<Ball> markers, const Sampled& sampled, const Values& values) {
+  constexpr int cells = 5;
+  for (Ball& ball : markers) {
+    std::vector<double> shares;
+    for (int k = -cells; k <= cells; ++k)
+      for (int j = -cells; j <= cells; ++j)
+        for (int i = -cells; i <= cells; ++i) {
+          const Vec3 off = Vec3{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)} / cells;
+          const double value = sampled.at(ball.centre_m + off * (0.5 * ball.radius_m));
+          if (dot(off, off) <= 1 && std::isfinite(value))
+            shares.push_back((value - values.air) / (values.material - values.air));
+        }
+    ball.share = shares.empty() ? 0 : std::max(0.0, stats::median(shares));
+  }
+  return markers;
 }
 
 // What is near a marker shows the marker.
@@ -221,7 +239,7 @@ Observed observed(const VolumesInput& input) {
   leave_out_markers(input.markers, o.voxel_m, rows);
   const Displacement by = displacement(rows, o);
   const Tomograph tomograph(displaced(mesh, by, o.voxel_m), input.volume.head.size, input.spacing_m,
-                            attenuation_per_m(input, mesh, values));
+                            attenuation_per_m(input, mesh, values), dense(input.markers, sampled, values));
   o.longest_path_m = tomograph.longest_m();
   add_simulated(tomograph, sampled, values, sites, input.markers, reach, rows, o);
   if (tomograph.is_fine())

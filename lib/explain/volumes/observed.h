@@ -31,6 +31,7 @@ inline bool is_grey(Reading reading) {
 }
 // Amounts at which mechanisms that are not in proportion to theirs were simulated.
 inline constexpr std::array<double, 4> scatter_shares{0.03, 0.1, 0.3, 1};
+inline constexpr std::array<double, 4> streak_floors{0.01, 0.03, 0.1, 0.3};
 inline constexpr std::array<double, 4> blur_spreads{0.5, 1, 1.6, 2.4};
 inline constexpr double blur_variance = 0.8;  // of the spectrum (volume/spectrum.h)
 
@@ -47,7 +48,8 @@ struct Row {
   // and read), of scatter at the shares above:
   double hardening = 0;
   std::array<double, 4> scatter{};
-  double markers = 0;  // the same as hardening for paths through markers
+  double markers = 0;             // the same as hardening for rays through markers
+  std::array<double, 4> floor{};  // the same as scatter, of rays through markers, at the floors above
   // What it lacks at each of the spreads above; of widths: the spread that makes an edge alone as wide.
   std::array<double, 4> blur{};
   std::array<double, 4> blur_of_spectrum{};  // beyond that, at the variance above; not of widths

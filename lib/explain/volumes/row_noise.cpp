@@ -14,7 +14,7 @@ namespace gonio::explain::volumes {
 namespace {
 
 constexpr std::size_t neighbours = 6, further = 18, halvings = 4;
-constexpr double beyond = 6, cell_voxels = 8;
+constexpr double beyond = 6, cell_voxels = 8, plainly_noisier = 1.5;
 
 // The nearest rows of the same kind to each row of it, of edges those that face alike; nearest first.
 using Near = std::vector<std::vector<std::uint32_t>>;
@@ -75,6 +75,20 @@ std::vector<double> without_ripples(const std::vector<double>& simulated, const 
   return result;
 }
 
+// How much wider than all the differences of a row's neighbours and its own are; one where that is not plainly more: in
+// the slices of dense parts a volume is noisier than elsewhere.
+std::vector<double> local_widths(const std::vector<double>& differences, const Near& near) {
+  const double all = std::max(1e-3, stats::robust_sigma(differences));
+  std::vector<double> result;
+  for (std::size_t n = 0; n < differences.size(); ++n) {
+    std::vector<double> own{std::abs(differences[n])};
+    for (const std::uint32_t m : near[n]) own.push_back(std::abs(differences[m]));
+    const double ratio = stats::median(own) / (0.6745 * all);
+    result.push_back(ratio > plainly_noisier ? ratio : 1);
+  }
+  return result;
+}
+
 // The median of six normal numbers has 0.215 of the variance of one.
 constexpr double median_variance = 0.215;
 
@@ -109,9 +123,10 @@ std::size_t settle_row_noise(std::vector<Row>& rows, double) {
     // What neighbours share counts as if every reading had it for itself.
     const double alone = factor * std::sqrt(1.0 / neighbours + 1.0 / static_cast<double>(further));
     const double shared = std::max(1.0, stats::robust_sigma(d.near) / alone);
+    const std::vector<double> wider = local_widths(d.own, near);
     for (std::size_t n = 0; n < own.size(); ++n) {
-      out[own[n]] = std::abs(d.own[n]) > beyond * factor * std::sqrt(1 + median_variance);
-      rows[own[n]].sigma *= factor * shared;
+      out[own[n]] = std::abs(d.own[n]) > beyond * factor * wider[n] * std::sqrt(1 + median_variance);
+      rows[own[n]].sigma *= factor * shared * wider[n];
     }
   }
   const std::size_t before = rows.size();

@@ -14,7 +14,7 @@
 namespace gonio::explain::volumes {
 namespace {
 
-constexpr double hardening_amount = 0.1, streak_amount = 0.1, usual_width = 0.6;
+constexpr double hardening_amount = 0.1, streak_amount = 0.02, usual_width = 0.6;
 
 // The voxels that readings at the sites and at grey rows are interpolated from.
 class Needed {
@@ -175,14 +175,19 @@ void add_edges_and_greys(const Tomograph& tomograph, const Sampled& sampled, con
   const std::vector<Read> scattered = simulation.with(tomograph.lack_by_scatter(shares), shares);
   lacks = {tomograph.lack_by_hardening()};
   std::vector<double> amounts{hardening_amount};
-  if (!markers.empty()) lacks.push_back(tomograph.lack_by_streak(markers)), amounts.push_back(streak_amount);
+  if (!markers.empty()) lacks.push_back(tomograph.lack_by_streak()), amounts.push_back(streak_amount);
   const std::vector<Read> hardened = simulation.with(lacks, amounts);
+  std::vector<Read> behind_markers;
+  const std::vector<double> floors(streak_floors.begin(), streak_floors.end()), whole(floors.size(), 1.0);
+  if (!markers.empty()) behind_markers = simulation.with(tomograph.lack_by_floor(floors), whole);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     fill_blur(rows[i], i, plain, blurred, softened);
     for (std::size_t s = 0; s < shares.size(); ++s)
       rows[i].scatter[s] = lacked(rows[i], i, plain, scattered[s]) / shares[s];
     rows[i].hardening = lacked(rows[i], i, plain, hardened[0]) / amounts[0];
     if (hardened.size() > 1) rows[i].markers = lacked(rows[i], i, plain, hardened[1]) / amounts[1];
+    for (std::size_t f = 0; f < behind_markers.size(); ++f)
+      rows[i].floor[f] = lacked(rows[i], i, plain, behind_markers[f]) / floors[f];
   }
   std::vector<Row> kept;
   for (const Row& row : rows)
@@ -196,8 +201,10 @@ void add_greys(const Tomograph& tomograph, const std::vector<Ball>& markers, std
   for (const Row& row : rows) places.push_back(row.at_m);
   const auto scatter = tomograph.reconstructed(tomograph.lack_by_scatter(scatter_shares), places);
   std::vector<Readings> lacks{tomograph.lack_by_hardening()};
-  if (!markers.empty()) lacks.push_back(tomograph.lack_by_streak(markers));
+  if (!markers.empty()) lacks.push_back(tomograph.lack_by_streak());
   const auto hardening = tomograph.reconstructed(lacks, places);
+  std::vector<std::array<float, 4>> behind_markers(places.size());
+  if (!markers.empty()) behind_markers = tomograph.reconstructed(tomograph.lack_by_floor(streak_floors), places);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Row& row = rows[i];
     if (row.reading == Reading::width) row.simulated = usual_width, row.blur = blur_spreads;
@@ -205,6 +212,8 @@ void add_greys(const Tomograph& tomograph, const std::vector<Ball>& markers, std
     row.simulated = row.reading == Reading::inside ? 1 : 0;
     for (std::size_t s = 0; s < scatter_shares.size(); ++s) row.scatter[s] = static_cast<double>(scatter[i][s]);
     row.hardening = static_cast<double>(hardening[i][0]), row.markers = static_cast<double>(hardening[i][1]);
+    for (std::size_t f = 0; f < streak_floors.size(); ++f)
+      row.floor[f] = static_cast<double>(behind_markers[i][f]) / streak_floors[f];
   }
 }
 

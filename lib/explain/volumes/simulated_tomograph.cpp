@@ -66,7 +66,7 @@ Readings transformed(const std::vector<float>& values, const Function& function)
 }  // namespace
 
 Tomograph::Tomograph(const mesh::Mesh& mesh, std::array<std::size_t, 3> size, Vec3 spacing_m, double per_m,
-                     std::size_t most)
+                     std::span<const Ball> markers, std::size_t most)
     : per_m_(per_m) {
   const double larger = std::max(1.0, static_cast<double>(std::ranges::max(size)) / static_cast<double>(most));
   fine_ = larger == 1;
@@ -80,7 +80,12 @@ Tomograph::Tomograph(const mesh::Mesh& mesh, std::array<std::size_t, 3> size, Ve
   detector_.bins += (detector_.bins + across_) % 2;
   detector_.views = static_cast<std::size_t>(std::ceil(pi / 2 * widest));
   intensity_ = intensities(mesh, detector_, per_m);
-  for (const float i : intensity_) longest_ = std::max(longest_, -std::log(static_cast<double>(i)) / per_m);
+  if (!markers.empty()) {
+    without_ = std::move(intensity_);
+    intensity_ = intensities(mesh, detector_, per_m, markers);
+  }
+  for (const float i : without_.empty() ? intensity_ : without_)
+    longest_ = std::max(longest_, -std::log(static_cast<double>(i)) / per_m);
 }
 
 Readings Tomograph::read() const {
@@ -88,15 +93,30 @@ Readings Tomograph::read() const {
 }
 
 Readings Tomograph::lack_by_hardening() const {
-  return transformed(intensity_, [&](double i) {
+  return transformed(without_.empty() ? intensity_ : without_, [&](double i) {
     return equation::ct_beam_hardening_lacks(-std::log(i), longest_ * per_m_) / per_m_;
   });
 }
 
-Readings Tomograph::lack_by_streak(std::span<const Ball> markers) const {
-  const std::vector<float> path = paths(markers, detector_);
-  const double longest = path.empty() ? 0 : static_cast<double>(std::ranges::max(path));
-  return transformed(path, [&](double m) { return longest > 0 ? equation::ct_streak_lacks(m, longest) : 0; });
+Readings Tomograph::lack_by_streak() const {
+  Readings result(intensity_.size(), 0.0f);
+  for (std::size_t i = 0; i < without_.size(); ++i)
+    result[i] = static_cast<float>(equation::ct_streak_lacks(-std::log(static_cast<double>(intensity_[i])),
+                                                             -std::log(static_cast<double>(without_[i]))) /
+                                   per_m_);
+  return result;
+}
+
+std::vector<Readings> Tomograph::lack_by_floor(std::span<const double> floors) const {
+  std::vector<Readings> result;
+  for (const double floor : floors) {
+    Readings& lacks = result.emplace_back(intensity_.size(), 0.0f);
+    for (std::size_t i = 0; i < without_.size(); ++i)
+      lacks[i] = static_cast<float>(
+          equation::ct_streak_floor_lacks(static_cast<double>(intensity_[i]), static_cast<double>(without_[i]), floor) /
+          per_m_);
+  }
+  return result;
 }
 
 Readings Tomograph::lack_by_blur(double spread, double variance) const {

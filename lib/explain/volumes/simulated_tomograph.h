@@ -24,15 +24,16 @@ class Tomograph {
   // For a volume of `size` voxels: views as half the circumference of a slice has pixels. Pixels are voxels, or
   // larger where a side has more than `most` of them.
   Tomograph(const mesh::Mesh& mesh, std::array<std::size_t, 3> size, Vec3 spacing_m, double per_m,
-            std::size_t most = most_cells);
+            std::span<const Ball> markers = {}, std::size_t most = most_cells);
   bool is_fine() const { return fine_; }         // a pixel a voxel
-  double longest_m() const { return longest_; }  // of all line integrals
+  double longest_m() const { return longest_; }  // of all line integrals of the shape
   const Detector& detector() const { return detector_; }
   // What pixels read: minus the logarithm of the intensity, over per_m.
   Readings read() const;
   // What they lack, for each unit of the amount (or of the one given): equations of lib/volume/mechanisms.
   Readings lack_by_hardening() const;
-  Readings lack_by_streak(std::span<const Ball> markers) const;
+  Readings lack_by_streak() const;
+  std::vector<Readings> lack_by_floor(std::span<const double> floors) const;
   // `spread`: sd in pixels along the slices, as many metres across them; `variance`: of the spectrum.
   Readings lack_by_blur(double spread, double variance) const;
   // Scattered photons are spread by a Gaussian an eighth of the detector wide.
@@ -49,6 +50,7 @@ class Tomograph {
   double per_m_ = 1, longest_ = 0;
   bool fine_ = true;
   std::vector<float> intensity_;
+  std::vector<float> without_;  // markers; empty where there are none
 };
 
 }  // namespace gonio::explain::volumes

@@ -1,5 +1,7 @@
 // A mechanism on readings of a volume: one file in terms/, called after it.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +26,18 @@ struct Term {
   bool of_spectrum = false;
   double (*act)(double value, const Row& row, const Observed& observed, std::span<const double> p) = nullptr;
 };
+// What is known at some shares of an amount, at any share: linear in its logarithm between them, constant beyond.
+inline double at_share(std::span<const double> known, std::span<const double> shares, double share) {
+  if (!(share > shares.front())) return known.front();
+  std::size_t k = 0;
+  while (k + 2 < shares.size() && share > shares[k + 1]) ++k;
+  const double t = std::log(share / shares[k]) / std::log(shares[k + 1] / shares[k]);
+  return known[k] + std::min(t, 1.0) * (known[k + 1] - known[k]);
+}
+
+// A row's value with a blur of that spread (voxels), of the one without it; spectrum: the variance of its energies.
+double blurred(double value, const Row& row, double spread, double spectrum);
+
 std::span<const Term* const> all_terms();  // sorted by name; defined in a generated source
 
 }  // namespace gonio::explain::volumes

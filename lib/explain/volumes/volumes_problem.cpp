@@ -22,6 +22,8 @@ using namespace volumes;
 // any radius, and to one of thirty voxels beside that, is free within these bounds: what pixels do that are voxels was
 // simulated.
 constexpr double usual_bias = 0.015, largest_bias = 0.03, usual_radius = 30, least_radius = 4, largest_radius = 120;
+// A blur of less than half a voxel is no blur: no simulation knows the pixels' own shape so well.
+constexpr double own_variance = 0.16, usual_own_variance = 0.06;
 constexpr double sharper = 0.1;  // than simulated a tomograph may be whose pixels are smaller than its voxels
 constexpr double largest_variance = 3, variance_sigma = 0.5;
 constexpr double value_sigma = 0.3;  // no reading may be deep enough to tell
@@ -89,6 +91,7 @@ class VolumesProblem final : public Problem {
       width_by_curvature,
       bias,
       bias_by_radius,
+      own_blur,
       spectrum
     };
   };
@@ -100,18 +103,21 @@ class VolumesProblem final : public Problem {
   }
 
   double base_value(const Row& row, std::span<const double> v) const {
+    const auto own = [&](double value) {
+      return blurred(value, row, std::sqrt(std::max(0.0, v[Base::own_blur])), v[Base::spectrum]);
+    };
     switch (row.reading) {
       case Reading::wall: {
         const Vec3 shift{v[Base::shift], v[Base::shift + 1], v[Base::shift + 2]},
             turn{v[Base::turn], v[Base::turn + 1], v[Base::turn + 2]};
         const double radius = std::clamp(1 / std::max(1e-9, std::abs(row.curvature)), least_radius, largest_radius);
-        return row.simulated - widened(row, v[Base::width_within]) +
+        return own(row.simulated - widened(row, v[Base::width_within])) +
                dot(row.normal, shift + cross(turn, row.at_m)) / observed_.voxel_m + v[Base::bias] +
                v[Base::bias_by_radius] * (std::sqrt(radius / usual_radius) - 1);
       }
       case Reading::width: {
         const double across = row.normal.z * row.normal.z;
-        return row.simulated + (v[Base::width_within] - observed_.simulated_width) * (1 - across) +
+        return own(row.simulated) + (v[Base::width_within] - observed_.simulated_width) * (1 - across) +
                (v[Base::width_across] - observed_.simulated_width) * across +
                v[Base::width_between] * 4 * across * (1 - across) +
                v[Base::width_by_curvature] * std::min(1.0, least_radius * std::abs(row.curvature));
@@ -119,7 +125,7 @@ class VolumesProblem final : public Problem {
       case Reading::inside:
       case Reading::outside: break;
     }
-    const double share = row.simulated - widened(row, v[Base::width_within]);
+    const double share = own(row.simulated - widened(row, v[Base::width_within]));
     return v[Base::air] + (v[Base::material] - v[Base::air]) * share;
   }
 
@@ -150,6 +156,7 @@ class VolumesProblem final : public Problem {
       free(name, "voxel", 0, -0.3, 0.3, 0.05, ideal_sigma);
     for (const char* name : {"wall_bias", "wall_bias_by_radius"})
       free(name, "voxel", 0, -largest_bias, largest_bias, 0.02, usual_bias);
+    free("own_blur_variance", "voxel^2", 0, 0, own_variance, 0.02, usual_own_variance);
     // Says something where edges are blurred alone.
     free("spectrum_variance", "1", volume::usual_variance, 0, largest_variance, 0.1, variance_sigma);
   }

@@ -10,19 +10,27 @@ const Mechanism& ct_streak() {
           "Rays through dense markers read too little: dark bands run between the markers, bright ones beside them.",
       .typical = "5 to 50 % of the material's value near dense markers",
       .equation =
-          "p' = p - streak m^2 / m_max for the path m of a ray through the listed markers, m_max the longest; grey "
-          "value: the filtered back-projection of p' away from the markers",
+          "p' = p - streak (p^2 - q^2) - ln((1 + floor / T) / (1 + floor / U)) for the line integrals p with and q "
+          "without the listed markers, T = exp(-p), U = exp(-q); grey value: the filtered back-projection of p' away "
+          "from the markers",
       .source = "De Man et al., IEEE Transactions on Nuclear Science 46 (1999) 691-696: metal streaks",
       .stage = "tomograph",
       .target = Target::scene,
       .domains = {"volumes"},
       .parameters = {{.name = "streak",
                       .unit = "1",
-                      .lower = -5,
-                      .upper = 20,
-                      .start = 0.1,
-                      .meaning = "attenuation that the longest path through markers lacks, as paths through the "
-                                 "object over that path"}},
+                      .lower = -0.5,
+                      .upper = 0.5,
+                      .start = 0.02,
+                      .meaning = "hardening behind markers: what a line integral lacks over its square, beyond what it "
+                                 "lacks without markers"},
+                     {.name = "floor",
+                      .unit = "1",
+                      .lower = 0,
+                      .upper = 0.5,
+                      .start = 0.01,
+                      .meaning = "transmission that the detector reads too much behind markers: what it cannot tell "
+                                 "from darkness, or what is scattered there"}},
       .conditions = {"volume.marker-path", "volume.path"},
       .mistaken_for = {{.with = "ct.beam-hardening", .told_apart = "take the markers off"}},
   };

@@ -136,6 +136,45 @@ TEST(Tomograph, ScatterSaturates) {
   EXPECT_GT(lost[0][0], lost[0][1]);  // deeper where paths are longer
 }
 
+// What stands beside the shape is in the line integrals as its own mesh would be, and hardening is the shape's alone.
+TEST(Tomograph, MarkersStandBesideTheShape) {
+  const mesh::Mesh ball = tests::ball_mesh({}, 0.6 * radius, false);
+  const Vec3 centre{0.004, 0.0045, 0.001};
+  const std::array<std::size_t, 3> size{48, 48, 48};
+  const Vec3 spacing = Vec3{1, 1, 1} * (extent / 48);
+  const std::vector<Ball> markers{{centre, 0.2 * radius, 1}};
+  mesh::Mesh both = ball;
+  tests::join(both, tests::ball_mesh(centre, 0.2 * radius, false));
+  const double per_m = 1 / radius;
+  const Tomograph beside(ball, size, spacing, per_m, markers), joined(both, size, spacing, per_m),
+      alone(ball, size, spacing, per_m);
+  const Readings a = beside.read(), b = joined.read();
+  double worst = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    worst = std::max(worst, std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i])));
+  EXPECT_LT(worst, 0.02 * radius);
+  EXPECT_EQ(beside.longest_m(), alone.longest_m());
+  EXPECT_EQ(beside.lack_by_hardening(), alone.lack_by_hardening());
+}
+
+// A ball by itself throws no streaks, however its readings bend: all views see it alike. Beside another one it does,
+// as the rays through both lack more than those through either.
+TEST(Tomograph, StreaksComeOfWhatElseLiesInTheRay) {
+  const std::array<std::size_t, 3> size{64, 64, 64};
+  const Vec3 spacing = Vec3{1, 1, 1} * (extent / 64);
+  const std::vector<Ball> marker{{{0.0072, 0, 0}, 0.15 * radius, 4}};
+  const auto streaks = [&](Vec3 at) {  // behind and beside the marker as seen from the shape
+    const Tomograph t(tests::ball_mesh(at, 0.5 * radius, false), size, spacing, 0.6 / radius, marker);
+    double most = 0;
+    for (const Readings& lacks : {t.lack_by_streak(), t.lack_by_floor(std::vector<double>{0.03})[0]})
+      for (const double v : back(t, lacks, {{0.0045, 0, 0}, {0.0045, 0.0012, 0}, {0.0045, -0.0012, 0}}))
+        most = std::max(most, std::abs(v));
+    return most;
+  };
+  const double with = streaks({0.0005, 0, 0}), without = streaks({0.0005, 0, -0.0065});
+  EXPECT_GT(with, 5 * without);
+}
+
 // Blurred intensities of thin matter are blurred line integrals, which keep their sum; of thick matter they read less,
 // and of a spectrum still less.
 TEST(Tomograph, BlurOfIntensitiesTakesFromThickMatter) {
@@ -161,6 +200,7 @@ std::vector<Row> some_rows() {
     row.at_m = {0.003, -0.002, 0.004};
     row.normal = normalized(Vec3{0.5, 0.4, 0.3});
     row.hardening = 0.7, row.scatter = {0.4, 0.38, 0.3, 0.2}, row.ring = 1.2, row.markers = 0.1;
+    row.floor = {0.3, 0.28, 0.2, 0.1};
     row.blur = {0.1, 0.2, 0.3, 0.4}, row.blur_of_spectrum = {0.01, 0.02, 0.03, 0.04};
     rows.push_back(row);
   }

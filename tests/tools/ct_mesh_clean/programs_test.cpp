@@ -99,15 +99,23 @@ TEST(CtMeshClean, AComponentOfTheTableGoesAndAnEnclosedOneGoesOnRequest) {
       folder / "pot.nrrd",
       volume_of(48, {shell(middle, 11, 15, 2100), ball(middle, 4, 2100), {[](Vec3 p) { return p.z - 3; }, 1900}}, 40,
                 5));
+  std::string said, verdict;
   const auto voxels = [&](std::vector<std::string> words) {
     words.insert(words.begin(), {"ct-mesh-clean", "--clean", "none", "--out", "o", "--force"});
     words.push_back("pot.nrrd");
     const Ended ended = run(words, folder.path());
     EXPECT_EQ(ended.status, 0) << ended.err;
-    return step_of(manifest::parse_document(ended.out, "stdout", folder.path()), "components").figures;
+    const manifest::Document d = manifest::parse_document(ended.out, "stdout", folder.path());
+    said = ended.err, verdict = step_of(d, "verdict").how;
+    return step_of(d, "components").figures;
   };
   EXPECT_EQ(voxels({"--largest", "0"}).at("kept"), 3);
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  EXPECT_THAT(said, HasSubstr("pot.nrrd: its border cuts 1 of the 3 components that stay"));
+  EXPECT_THAT(verdict, HasSubstr("the volume's border cuts the object"));
   EXPECT_EQ(voxels({"--largest", "0", "--drop-cut"}).at("kept"), 2);
+  EXPECT_EQ(said, "");
+  EXPECT_THAT(verdict, testing::Not(HasSubstr("border")));
   EXPECT_EQ(voxels({"--largest", "0", "--drop-cut", "--drop-enclosed"}).at("kept"), 1);
 }
 

@@ -81,6 +81,17 @@ TEST_F(Refusals, CommandLines) {
   refused({"--specimen", "teapot", "--out", "o"}, 64, "--specimen");
 }
 
+// Folders that were there, or hold something, stay.
+TEST_F(Refusals, NoFolderIsLeftBehind) {
+  refused({"--threshold", "9000", "--out", "deep/er/o", "ball.nrrd"}, 65, "nothing inside");
+  EXPECT_FALSE(std::filesystem::exists(folder() / "deep"));
+  std::filesystem::create_directory(folder() / "mine");
+  refused({"--threshold", "9000", "--out", "mine", "ball.nrrd"}, 65, "nothing inside");
+  refused({"--threshold", "9000", "--out", "mine/o", "ball.nrrd"}, 65, "nothing inside");
+  EXPECT_TRUE(std::filesystem::exists(folder() / "mine"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "mine/o"));
+}
+
 TEST_F(Refusals, Files) {
   refused({"absent.nrrd"}, 66, "absent.nrrd");
   refused({"text.txt"}, 65, "text.txt");

@@ -6,11 +6,11 @@
 
 #include "explain/volumes/volume_term.h"
 
-namespace gonio::explain::volumes::terms {
+namespace gonio::explain::volumes {
 namespace {
 
 // Between the spreads at which it was reconstructed, linear in their squares, and beyond the last.
-double between(const std::array<double, 4>& at, double spread) {
+double between_spreads(const std::array<double, 4>& at, double spread) {
   const double square = spread * spread;
   std::size_t k = 0;
   while (k + 1 < blur_spreads.size() && spread > blur_spreads[k]) ++k;
@@ -19,19 +19,28 @@ double between(const std::array<double, 4>& at, double spread) {
   return from + (square - low) / (high - low) * (at[k] - from);
 }
 
-double blurred(double value, const Row& row, const Observed&, std::span<const double> p) {
-  if (row.reading != Reading::width)
-    return value - between(row.blur, p[0]) - p[1] / blur_variance * between(row.blur_of_spectrum, p[0]);
-  std::array<double, 4> squares{};
-  for (std::size_t k = 0; k < squares.size(); ++k) squares[k] = row.blur[k] * row.blur[k];
-  return equation::ct_blur(value, std::sqrt(std::max(0.0, between(squares, p[0]))));
-}
-
 }  // namespace
 
+double blurred(double value, const Row& row, double spread, double spectrum) {
+  if (row.reading != Reading::width)
+    return value - between_spreads(row.blur, spread) -
+           spectrum / blur_variance * between_spreads(row.blur_of_spectrum, spread);
+  std::array<double, 4> squares{};
+  for (std::size_t k = 0; k < squares.size(); ++k) squares[k] = row.blur[k] * row.blur[k];
+  return equation::ct_blur(value, std::sqrt(std::max(0.0, between_spreads(squares, spread))));
+}
+
+namespace terms {
+
 const Term& ct_blur() {
-  static const Term term{.mechanism = mechanism::ct_blur, .order = 200, .of_spectrum = true, .act = blurred};
+  static const Term term{.mechanism = mechanism::ct_blur,
+                         .order = 200,
+                         .of_spectrum = true,
+                         .act = [](double value, const Row& row, const Observed&, std::span<const double> p) {
+                           return blurred(value, row, p[0], p[1]);
+                         }};
   return term;
 }
 
-}  // namespace gonio::explain::volumes::terms
+}  // namespace terms
+}  // namespace gonio::explain::volumes

@@ -11,10 +11,14 @@ const Term& ct_streak() {
   static const Term term{
       .mechanism = mechanism::ct_streak,
       .order = 200,
+      .forms = {{{"streak"}, false}, {{"floor"}, false}},
       .applies =
           [](const Observed& o) { return std::ranges::any_of(o.rows, [](const Row& r) { return r.markers != 0; }); },
-      .act = [](double value, const Row& row, const Observed&,
-                std::span<const double> p) { return equation::ct_streak(value, p[0], row.markers); }};
+      .act =
+          [](double value, const Row& row, const Observed&, std::span<const double> p) {
+            return equation::ct_streak(equation::ct_streak(value, p[0], row.markers), p[1],
+                                       at_share(row.floor, streak_floors, p[1]));
+          }};
   return term;
 }
 
