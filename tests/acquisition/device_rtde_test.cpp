@@ -70,7 +70,7 @@ TEST(DeviceRtde, RefusesWhatIsNotAsItsRecipeSays) {
   const auto names = rtde_names(24);
   const auto recipe = rtde_recipe("\1" + desk::rtde_types(names), names);
   desk::ArmSnapshot arm;
-  arm.joints_rad[2] = -1.25;
+  arm.joints_rad = {0, 0, -1.25, 0, 0, 0};
   arm.output_registers[24] = -7;
   const std::string data = "\1" + desk::rtde_data_bytes(arm, names);
   const RtdeState state = rtde_state(rtde_fields(data, recipe), 24);
