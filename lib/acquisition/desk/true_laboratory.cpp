@@ -150,7 +150,7 @@ Instrument desk_instrument(const manifest::Document& believed, const manifest::D
   for (const auto& [name, screen] : lab.screens) instrument.screens[name] = std::make_unique<DeskScreen>(name);
   instrument.clock_s = [state] {
     const std::lock_guard lock(state->busy);
-    return state->time_s;
+    return state->clock.now_s();
   };
   return instrument;
 }

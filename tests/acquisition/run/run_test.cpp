@@ -82,6 +82,13 @@ int number_from(const char* variable, int otherwise) {
   return text == nullptr ? otherwise : std::atoi(text);
 }
 
+// Beside a turntable that has turned, a lamp is a light of its own at every step: "l1@v1007".
+std::vector<std::string> lamps_of(const manifest::ImageEntry& image) {
+  std::vector<std::string> lamps;
+  for (const std::string& light : image.light) lamps.push_back(light.substr(0, light.find('@')));
+  return lamps;
+}
+
 // GONIO_FRAMES=10000 for the whole of it. Each kind of fault strikes in 1 to 3 % of the frames.
 TEST(Run, NoFrameBearsAWrongLabel) {
   const int steps = number_from("GONIO_FRAMES", 240) / 4;
@@ -103,7 +110,7 @@ TEST(Run, NoFrameBearsAWrongLabel) {
     const auto truth = book->shown.find(codes_of(folder.path() / d.files.at(image.file).path));
     ASSERT_NE(truth, book->shown.end()) << image.id;
     const int step = std::stoi(image.group.substr(1)) - 1000;
-    wrong += std::abs(truth->second.exposure_s - *image.exposure_s) > 1e-9 || truth->second.lamps != image.light ||
+    wrong += std::abs(truth->second.exposure_s - *image.exposure_s) > 1e-9 || truth->second.lamps != lamps_of(image) ||
              std::abs(truth->second.angle_rad - 0.01 * step) > 1e-9;
   }
   EXPECT_EQ(wrong, 0);
@@ -132,7 +139,7 @@ TEST(Run, OneDeadLampOfSeveralIsFound) {
     const auto truth = book->shown.find(codes_of(folder.path() / d.files.at(image.file).path));
     ASSERT_NE(truth, book->shown.end()) << image.id;
     EXPECT_EQ(truth->second.lamps, (std::vector<std::string>{"l1", "l2"})) << image.id;
-    EXPECT_EQ(image.light, truth->second.lamps) << image.id;
+    EXPECT_EQ(lamps_of(image), truth->second.lamps) << image.id;
   }
   EXPECT_EQ(report.frames, 2 * steps);  // five tries in a row: one step in 6000
   EXPECT_GT(book->injected["dead lamp"], 5);

@@ -30,7 +30,7 @@ using tests::Process;
 
 // The built-in laboratory with a small picture.
 void write_small_laboratory(const fs::path& folder) {
-  manifest::Document lab = specimen_laboratory(folder);
+  manifest::Document lab = specimen_laboratory("desk", folder);
   manifest::Camera& lens = lab.cameras.at("camera");
   lens.width_px = 48;
   lens.height_px = 36;

@@ -116,7 +116,7 @@ std::vector<Perturbation> drawn(std::uint64_t seed, Random& random) {
 }
 
 manifest::Document described(bool small, const std::filesystem::path& folder) {
-  manifest::Document d = acquisition::specimen_laboratory(folder);
+  manifest::Document d = acquisition::specimen_laboratory("desk", folder);
   manifest::Camera& lens = d.cameras.at("camera");
   lens = {};
   lens.model = "pinhole";
