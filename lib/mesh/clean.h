@@ -40,12 +40,15 @@ struct BoundedWish {
   double within_m = 0;
   int rounds = 2;                  // the second knows the edges from the first's normals
   double feature_angle_rad = 0.5;  // between neighbouring triangles, noise taken off: an edge of the object from here
-  std::vector<double> sigma_m{};   // the data's own uncertainties, one a vertex or none; their ratios count
+  // The data's own uncertainties, one a vertex or none. Their ratios count; with alike_m they are taken for what they
+  // say, because what errors that neighbours share leave behind is hard to tell from shape.
+  std::vector<double> sigma_m{};
+  double alike_m = 0;  // vertices nearer than this were read from the same data, and err alike; 0: not known
 };
 struct BoundedResult {
   int rounds = 0;
-  double sigma_m = 0;        // noise of the vertices along the normals, as found in the data
-  double inflation = 1;      // by how much its correlation makes means less certain
+  double sigma_m = 0;        // noise of the vertices along the normals, as found in the data or stated
+  double inflation = 1;      // by how much its correlation makes the variance of wide fits larger
   double mean_radius_m = 0;  // of the neighbourhoods
   std::size_t sharp_edges = 0;
   double rms_move_m = 0, largest_move_m = 0;

@@ -27,7 +27,7 @@ struct EdgeProfile {
 // more than the few round one line.
 void pool_voxels(const Block& block, const LocalShape& shape, double first, double last, Vec3 scale,
                  double noise_correlation, EdgeProfile& into);
-constexpr double pool_radius = 1.75;  // voxels
+constexpr double pool_radius = edges_alike_voxels / 2;
 constexpr double pool_step = 0.25;    // voxels along the normal that one mean is of
 
 // What edges near one another, and facing alike, have in common: means over boxes of ten voxels and the boxes round.

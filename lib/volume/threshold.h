@@ -108,6 +108,9 @@ Edge fit_edge(std::span<const double> s, std::span<const double> values, double 
 // negative one leaves only neighbours correlated).
 std::vector<double> trilinear_covariance(Vec3 first, Vec3 step, std::size_t count, double neighbour_correlation);
 
+// Edges nearer to one another than this were fitted to some of the same voxels: their errors are alike.
+constexpr double edges_alike_voxels = 3.5;
+
 struct EdgeWish {
   double reach_voxels = 3;  // half the profile; cut short where another wall comes nearer
   double step_voxels = 0.5;

@@ -18,7 +18,11 @@ std::vector<double> sigmas(const Work& work) {
 
 void clean_bounded(Work& work) {
   const double within = work.asked.within.metres(work.voxel_m());
-  const mesh::BoundedResult result = mesh::clean_within(work.mesh, {.within_m = within, .sigma_m = sigmas(work)});
+  const bool at_edges = work.asked.threshold_by == ThresholdBy::gradient;
+  const mesh::BoundedResult result =
+      mesh::clean_within(work.mesh, {.within_m = within,
+                                     .sigma_m = sigmas(work),
+                                     .alike_m = at_edges ? volume::edges_alike_voxels * work.voxel_m() : 0});
   auto& entry = step(work, "clean", "least noise of normals within " + format("%.4g m of the data", within));
   entry.figures = {{"within_m", within},
                    {"rounds", static_cast<double>(result.rounds)},

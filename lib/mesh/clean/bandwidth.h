@@ -5,17 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/clean/neighbourhood.h"
+#include "mesh/clean/noise.h"
 
 namespace gonio::mesh {
-
-// Independent errors of the vertices along the normals: variance, and by how much the mean of many is less certain than
-// if they were independent (1 + sum of correlations with what lies near).
-struct VertexNoise {
-  double sigma_m = 0;
-  double inflation = 1;
-};
-VertexNoise noise_of(const NoisySurface& surface, const std::vector<double>& weights);
 
 // At a triangle's centre, in Basis(guide): h(u, v) in units of the mean edge. radius 0: no fit, the triangle is its
 // own.

@@ -14,6 +14,7 @@
 #include "mesh/clean/local_quadratic.h"
 #include "mesh/mesh.h"
 #include "mesh/verdict.h"
+#include "stats/intervals.h"
 
 namespace gonio::mesh {
 namespace {
@@ -169,12 +170,11 @@ std::vector<double> weights_of(const BoundedWish& wish, std::size_t vertices) {
   if (wish.sigma_m.size() != vertices)
     throw Error(Exit::internal, "mesh",
                 std::to_string(wish.sigma_m.size()) + " uncertainties for " + std::to_string(vertices) + " vertices");
-  std::vector<double> sorted = wish.sigma_m, weights;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double middle = stats::median(wish.sigma_m);
+  std::vector<double> weights;
   weights.reserve(vertices);
   for (const double sigma : wish.sigma_m) {
-    const double ratio = sigma > 0 ? *middle / sigma : 1;
+    const double ratio = sigma > 0 ? middle / sigma : 1;
     weights.push_back(std::clamp(ratio * ratio, 1e-4, 1e4));
   }
   return weights;
@@ -205,6 +205,7 @@ BoundedResult clean_within(io::TriangleMesh& mesh, const BoundedWish& wish) {
   BoundedResult result;
   const std::vector<Vec3> data = mesh.positions_m;
   const std::vector<double> weights = weights_of(wish, data.size());
+  const StatedNoise stated{wish.alike_m > 0 && !wish.sigma_m.empty() ? stats::median(wish.sigma_m) : 0, wish.alike_m};
   NoisySurface surface(data, mesh.triangles);
   guide_by_neighbours(surface);
   result.normal_noise_before_rad = noise_of_normals(surface);
@@ -212,9 +213,9 @@ BoundedResult clean_within(io::TriangleMesh& mesh, const BoundedWish& wish) {
   for (result.rounds = 0; result.rounds < wish.rounds; ++result.rounds) {
     if (result.rounds > 0) guide_by_surfaces(surface, local);
     result.sharp_edges = mark_sharp(surface, wish.feature_angle_rad);
-    const VertexNoise noise = noise_of(surface, weights);
+    const VertexNoise noise = noise_of(surface, weights, stated);
     result.sigma_m = noise.sigma_m;
-    result.inflation = noise.inflation;
+    result.inflation = noise.inflation();
     local = local_surfaces(surface, noise, weights);
   }
   for (const LocalSurface& one : local) result.mean_radius_m += one.radius * surface.edge_m;
