@@ -1,5 +1,5 @@
-// Where a board stands in the world: the link from a board to an object of the scene ("frames": to the object's id, from
-// the board's) says that it is printed on it, and the object's pose says the rest.
+// Where a board stands in the world: the link from a board to an object of the scene ("frames": to the object's id,
+// from the board's) says that it is printed on it, and the object's pose says the rest.
 #pragma once
 #include <optional>
 #include <string>

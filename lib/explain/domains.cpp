@@ -22,10 +22,24 @@ std::vector<const Domain*> that_apply(const manifest::Document& document) {
 
 std::vector<std::unique_ptr<Problem>> problems_of(const manifest::Document& document, const ProblemOptions& options) {
   std::vector<std::unique_ptr<Problem>> problems;
-  for (const Domain* domain : that_apply(document))
-    for (std::unique_ptr<Problem>& problem : domain->problems(document, options))
-      problems.push_back(std::move(problem));
-  if (!problems.empty()) return problems;
+  for (AskedDomain& asked : domains_of(document, options)) {
+    if (asked.waits) asked.problems = asked.domain->problems(document, options);
+    for (std::unique_ptr<Problem>& problem : asked.problems) problems.push_back(std::move(problem));
+  }
+  return problems;
+}
+
+std::vector<AskedDomain> domains_of(const manifest::Document& document, const ProblemOptions& options) {
+  std::vector<AskedDomain> all;
+  const std::vector<const Domain*> domains = that_apply(document);
+  bool any = false;
+  for (const Domain* domain : domains) {
+    AskedDomain asked{domain, std::ranges::find(domains, domain->after, &Domain::name) != domains.end(), {}};
+    if (!asked.waits) asked.problems = domain->problems(document, options);
+    any = any || !asked.problems.empty();
+    all.push_back(std::move(asked));
+  }
+  if (any) return all;
   std::string known;
   for (const Domain* domain : all_domains()) known += (known.empty() ? "" : "; ") + domain->sentence;
   throw Error(Exit::data, manifest::place(document, ""), "has nothing to explain", "give one of: " + known);

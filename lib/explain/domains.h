@@ -8,6 +8,15 @@ namespace gonio::explain {
 std::vector<std::unique_ptr<Problem>> problems_of(const manifest::Document& document,
                                                   const ProblemOptions& options = {});
 
+// The same, domain by domain. Those that wait for another's answer (Domain::after), where that is asked, have no
+// problems yet.
+struct AskedDomain {
+  const Domain* domain = nullptr;
+  bool waits = false;
+  std::vector<std::unique_ptr<Problem>> problems;
+};
+std::vector<AskedDomain> domains_of(const manifest::Document& document, const ProblemOptions& options);
+
 // Files of the manifest that these problems read: pictures, masks, meshes, tables, calibrations of robots.
 std::vector<std::filesystem::path> files_of(const manifest::Document& document);
 

@@ -6,6 +6,7 @@
 #endif
 
 #include <algorithm>
+#include <deque>
 
 #include "base/atomic_file.h"
 #include "base/progress.h"
@@ -30,12 +31,23 @@ Exit worse(Exit a, Exit b) {
   return static_cast<int>(a) > static_cast<int>(b) ? a : b;
 }
 
-// "boards"; the second problem of a domain is "tables-2".
-std::string evidence_name(const std::vector<std::unique_ptr<Problem>>& problems, std::size_t k) {
-  const std::string domain = problems[k]->domain();
-  const auto earlier = std::count_if(problems.begin(), problems.begin() + static_cast<std::ptrdiff_t>(k),
-                                     [&](const std::unique_ptr<Problem>& p) { return p->domain() == domain; });
-  return earlier == 0 ? domain : domain + "-" + std::to_string(earlier + 1);
+struct Told {
+  std::unique_ptr<Problem> problem;
+  Explanation explanation{};
+  Illustration illustration{};
+};
+
+// "boards"; the second problem of a domain is "tables-2". The last of `told` is the one that is named.
+std::string evidence_name(const std::deque<Told>& told) {
+  const std::string domain = told.back().problem->domain();
+  const auto same = std::ranges::count_if(told, [&](const Told& t) { return t.problem->domain() == domain; });
+  return same == 1 ? domain : domain + "-" + std::to_string(same);
+}
+
+// Did the domain that another waits for leave something that nothing repairs?
+bool is_unmended(const std::deque<Told>& told, const std::string& domain) {
+  return std::ranges::any_of(
+      told, [&](const Told& t) { return t.problem->domain() == domain && t.explanation.verdict == Verdict::unknown; });
 }
 
 // Matrices of some megabytes come and go by the thousand. Handed back to the system at once, a third of the time goes
@@ -52,24 +64,33 @@ void keep_freed_memory() {
 
 Exit explain_document(manifest::Document& document, const ExplainRequest& request) {
   keep_freed_memory();
-  const std::vector<std::unique_ptr<Problem>> problems = problems_of(document, request.recordings);
-  std::vector<Explanation> explanations(problems.size());
-  std::vector<Illustration> illustrations(problems.size());
+  std::vector<AskedDomain> domains = domains_of(document, request.recordings);
+  std::deque<Told> told;
   std::vector<ReportPart> parts;
   Exit exit = Exit::done;
   document.explanations.clear();
-  for (std::size_t k = 0; k < problems.size(); ++k) {
-    const Problem& problem = *problems[k];
-    Explanation& e = explanations[k] = explain(problem, request.options);
-    illustrations[k] = problem.illustrate(e, request.out, document);
+  const auto tell = [&](std::unique_ptr<Problem> asked) {
+    Told& t = told.emplace_back(std::move(asked));
+    const Problem& problem = *t.problem;
+    Explanation& e = t.explanation = explain(problem, request.options);
+    t.illustration = problem.illustrate(e, request.out, document);
     if (e.significant && !request.out.empty())
-      illustrations[k].observations = write_evidence(problem, e, evidence_name(problems, k), request.out, document);
+      t.illustration.observations = write_evidence(problem, e, evidence_name(told), request.out, document);
     problem.apply(e, document);
-    document.explanations.push_back(entry_of(problem, e, illustrations[k]));
-    parts.push_back({&problem, &e, &illustrations[k]});
+    document.explanations.push_back(entry_of(problem, e, t.illustration));
+    parts.push_back({&problem, &e, &t.illustration});
     log(LogLevel::info, problem.domain() + ": " + e.sentence);
     if (e.verdict == Verdict::unknown) exit = worse(exit, Exit::negative);
     if (doubtful(problem, e)) exit = worse(exit, Exit::quality);
+  };
+  for (AskedDomain& asked : domains) {
+    if (asked.waits && is_unmended(told, asked.domain->after)) {
+      log(LogLevel::info, asked.domain->name + ": not asked: its recordings are held against what " +
+                              asked.domain->after + " has just refuted, and nothing mends that");
+      continue;
+    }
+    if (asked.waits) asked.problems = asked.domain->problems(document, request.recordings);
+    for (std::unique_ptr<Problem>& problem : asked.problems) tell(std::move(problem));
   }
   if (!request.page.empty()) write_file(request.page, report_page(document.name, parts));
   return exit;

@@ -1,6 +1,6 @@
 // scripts/proofs/sealed-laboratory: laboratories whose perturbations no program under test is told, from the plan of
 // their views to what explain makes of their frames.
-//   prove-laboratory FOLDER small|large SEED...    runs what has not been run, and prints the table
+//   prove-laboratory FOLDER SEED...    runs what has not been run, and prints the table
 // Detection limits are those that explain prints for these very recordings, of a number alone, at its own significance
 // (sealed/judge.h).
 #include <algorithm>
@@ -60,7 +60,9 @@ void judge_one(const LaboratoryCase& sealed, const path& folder, Counts& counts)
     counts.above += times >= 1;
     counts.named_above += times >= 1 && named;
     truth += (truth.empty() ? "" : " + ") + p.mechanism + format(" %.3g (%.1f limits)", p.value, times) +
-             (named ? "" : times >= 1 ? " MISSED" : " not named");
+             (named        ? ""
+              : times >= 1 ? " MISSED"
+                           : " not named");
   }
   bool invented = false;
   for (const std::string& name : names) {
@@ -76,31 +78,31 @@ void judge_one(const LaboratoryCase& sealed, const path& folder, Counts& counts)
 }
 
 int run(const std::vector<std::string>& words) {
-  if (words.size() < 3 || (words[1] != "small" && words[1] != "large")) {
-    std::fputs("prove-laboratory FOLDER small|large SEED...\n", stderr);
+  if (words.size() < 2) {
+    std::fputs("prove-laboratory FOLDER SEED...\n", stderr);
     return 64;
   }
-  const bool small = words[1] == "small";
   std::printf("%4s  %-84s %-44s\n", "seed", "what was so (size, times what could be seen)", "named");
   Counts counts;
-  for (std::size_t k = 2; k < words.size(); ++k) {
+  for (std::size_t k = 1; k < words.size(); ++k) {
     const std::string folder_name = "laboratory-" + words[k];
-    const path folder = path(words[0]) / words[1] / folder_name;
+    const path folder = path(words[0]) / folder_name;
     make_folder(folder);
-    const LaboratoryCase sealed = laboratory_case(std::strtoull(words[k].c_str(), nullptr, 10), small, folder);
-    if (!std::filesystem::exists(folder / "status.txt"))
-      run_laboratory(sealed, small ? 2 : 4, folder, path(words[0]) / "truths");
+    const LaboratoryCase sealed = laboratory_case(std::strtoull(words[k].c_str(), nullptr, 10), false, folder);
+    if (!std::filesystem::exists(folder / "status.txt")) run_laboratory(sealed, 4, folder, path(words[0]) / "truths");
     judge_one(sealed, folder, counts);
   }
   const double share = counts.above > 0 ? static_cast<double>(counts.named_above) / counts.above : 1;
   const int allowed = counts.laboratories / 12;
   const bool all_named = share >= 0.9, none_invented = counts.invented <= allowed && counts.failed == 0;
-  std::printf("sealed-laboratory named of those above their detection limit: measured %d of %d (of %d of any size %d) "
-              "required >= 90 %%%s\n",
-              counts.named_above, counts.above, counts.there, counts.named, all_named ? "" : "  NOT MET");
-  std::printf("sealed-laboratory laboratories in which something was named that is not there: measured %d of %d, %d "
-              "without an answer; required <= %d%s\n",
-              counts.invented, counts.laboratories, counts.failed, allowed, none_invented ? "" : "  NOT MET");
+  std::printf(
+      "sealed-laboratory named of those above their detection limit: measured %d of %d (of %d of any size %d) "
+      "required >= 90 %%%s\n",
+      counts.named_above, counts.above, counts.there, counts.named, all_named ? "" : "  NOT MET");
+  std::printf(
+      "sealed-laboratory laboratories in which something was named that is not there: measured %d of %d, %d "
+      "without an answer; required <= %d%s\n",
+      counts.invented, counts.laboratories, counts.failed, allowed, none_invented ? "" : "  NOT MET");
   return all_named && none_invented ? 0 : 1;
 }
 

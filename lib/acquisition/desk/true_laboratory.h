@@ -6,7 +6,8 @@
 // sent to; cameras see from where the true arm holds them. Pictures are rendered by room render at that state, through
 // the whole sensor chain with its noise, and become codes: code = black_code + v full, rounded, clipped at `white`;
 // v = codes_per_radiance_s * exposure / full * radiance as the chain reads it, full that of the file (255 or 65535):
-// amounts of the sensor's mechanisms are in the unit of the frames' linear values. Time is simulated: motions and exposures take what they would, and nobody waits.
+// amounts of the sensor's mechanisms are in the unit of the frames' linear values. Time is simulated: motions and
+// exposures take what they would, and nobody waits.
 //
 // The pixels of a frame depend on the state, the exposure and the seed alone: a frame taken again is the same frame.
 #pragma once

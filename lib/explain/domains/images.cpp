@@ -12,6 +12,7 @@ const Domain& images() {
       .name = "images",
       .sentence = "linear images with file and camera, of objects that render can simulate",
       .order = 2,
+      .after = "boards",
       .applies = explain::images::has_recordings,
       .problems =
           [](const manifest::Document& document, const ProblemOptions& options) {

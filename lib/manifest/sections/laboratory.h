@@ -62,10 +62,10 @@ struct LaboratoryCamera {
   std::string pixel_format{};        // "Mono8", "BayerRG12Packed", "BayerRGPolarized..." as GenICam names them
   std::vector<double> exposure_s{};  // [shortest, longest] that it can
   std::optional<double> gain_db{};
-  std::string trigger{};                         // "software" | "hardware"
-  std::optional<double> codes_per_radiance_s{};  // of a linear camera: codes for 1 W/(m^2 sr) in 1 s
-  std::optional<double> white{};                 // code at which a pixel is saturated
-  std::optional<double> black_code{};            // mean code without light; left out: 0
+  std::string trigger{};                                         // "software" | "hardware"
+  std::optional<double> codes_per_radiance_s{};                  // of a linear camera: codes for 1 W/(m^2 sr) in 1 s
+  std::optional<double> white{};                                 // code at which a pixel is saturated
+  std::optional<double> black_code{};                            // mean code without light; left out: 0
   std::optional<double> electrons_per_code{}, read_electrons{};  // its noise, as EMVA 1288 measures it
 };
 

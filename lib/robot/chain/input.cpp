@@ -159,8 +159,9 @@ void find_first_approach(const manifest::Document& document, ChainInput& input) 
   if (document.runs.size() != 1 || document.laboratory.entry.empty() || input.views.empty()) return;
   const auto& robots = document.laboratory.entry.front().robots;
   const auto arm = robots.find(input.robot);
-  const auto first = std::ranges::min_element(
-      input.views, {}, [](const ChainInput::View& v) { return v.time_s.value_or(std::numeric_limits<double>::infinity()); });
+  const auto first = std::ranges::min_element(input.views, {}, [](const ChainInput::View& v) {
+    return v.time_s.value_or(std::numeric_limits<double>::infinity());
+  });
   if (arm == robots.end() || !first->time_s || first->joints_rad.size() != arm->second.home_rad.size()) return;
   for (std::size_t j = 0; j < std::min<std::size_t>(6, first->joints_rad.size()); ++j) {
     const double turn = first->joints_rad[j] - arm->second.home_rad[j];
@@ -186,9 +187,8 @@ ChainInput input_of(const manifest::Document& document, const std::string& name,
   for (const manifest::ImageEntry* image : images) input.views.push_back(view_of(document, *image, input));
   find_first_approach(document, input);
   find_passage(input);  // by all poses: the arm went through those that are left out, too
-  std::erase_if(input.views, [left_out = strays(document, m)](const ChainInput::View& v) {
-    return is_among(v.image, left_out);
-  });
+  std::erase_if(input.views,
+                [left_out = strays(document, m)](const ChainInput::View& v) { return is_among(v.image, left_out); });
   read_corners(document, input);
   even_out(document, input);
   return input;

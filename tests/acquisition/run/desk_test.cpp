@@ -1,12 +1,14 @@
 // The laboratory on a desk: what it shows is what is so, and nothing of it lies about afterwards.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "acquisition/desk/specimen_laboratory.h"
 #include "acquisition/desk/true_laboratory.h"
 #include "data.h"
 #include "manifest/document.h"
+#include "manifest/sections/laboratory.h"
 #include "manifest/sections/mechanism_use.h"
 
 namespace gonio::acquisition {
@@ -47,6 +49,66 @@ TEST(Desk, AMechanismMovesTheCameraAndNotTheReport) {
   EXPECT_EQ(believed.robots.at("arm")->state().joints_rad, real.robots.at("arm")->state().joints_rad);
   EXPECT_NE(believed.cameras.at("camera")->take({0.01, {}}).samples,
             real.cameras.at("camera")->take({0.01, {}}).samples);
+}
+
+// Without light: the black code and the read noise that the description states, and rounding's. In the light: shot
+// noise. 307,200 pixels know a standard deviation to 0.13 %.
+TEST(Desk, NoiseIsWhatTheDescriptionSays) {
+  const tests::ScratchFolder folder;
+  const WorkIn here(folder.path());
+  manifest::Document lab = specimen_laboratory(folder.path());
+  const auto& camera = lab.laboratory.entry.front().cameras.at("camera");
+  Instrument instrument = desk_instrument(lab, nullptr, {.seed = 3, .spp = 1});
+  const RawFrame dark = instrument.cameras.at("camera")->take({0.01, {}});
+  double sum = 0, squares = 0;
+  for (const std::uint16_t code : dark.samples) sum += code, squares += static_cast<double>(code) * code;
+  const double n = static_cast<double>(dark.samples.size()), mean = sum / n;
+  const double read = *camera.read_electrons / *camera.electrons_per_code;
+  EXPECT_NEAR(mean, *camera.black_code, 0.02);
+  EXPECT_NEAR(squares / n - mean * mean, read * read + 1.0 / 12, 0.02 * read * read);
+  // Two frames of one paper, at seeds of their own, differ by their noise.
+  instrument.lamps.at("lamp")->set(true);
+  Instrument other = desk_instrument(lab, nullptr, {.seed = 4, .spp = 1});
+  other.lamps.at("lamp")->set(true);
+  const RawFrame a = instrument.cameras.at("camera")->take({0.01, {}}),
+                 b = other.cameras.at("camera")->take({0.01, {}});
+  const auto width = static_cast<std::size_t>(a.width_px);
+  const auto of_paper = [&](std::size_t i) {  // and so are all of its neighbours
+    for (const std::size_t row : {i - width, i, i + width})
+      for (std::size_t k = row - 1; k <= row + 1; ++k)
+        if (std::min(a.samples[k], b.samples[k]) < 2500) return false;
+    return true;
+  };
+  double expected = 0, measured = 0;
+  for (std::size_t i = width + 1; i + width + 1 < a.samples.size(); ++i) {
+    if (!of_paper(i)) continue;
+    const double level = 0.5 * (a.samples[i] + b.samples[i]) - *camera.black_code,
+                 d = 1.0 * a.samples[i] - b.samples[i];
+    measured += d * d;
+    expected += 2 * (level / *camera.electrons_per_code + read * read + 1.0 / 12);
+  }
+  ASSERT_GT(expected, 0);
+  EXPECT_NEAR(measured / expected, 1, 0.02);
+}
+
+// Time is the instrument's own, and what drifts counts from its beginning.
+TEST(Desk, ALampThatWarmsUpIsBrighterAtFirst) {
+  const tests::ScratchFolder folder;
+  const WorkIn here(folder.path());
+  const manifest::Document lab = specimen_laboratory(folder.path());
+  manifest::Document truth;
+  truth.mechanisms["light.drift"].parameters = {{"amplitude", 0.5}, {"time_constant_s", 1.0}};
+  Instrument instrument = desk_instrument(lab, &truth, {.seed = 3, .spp = 1});
+  instrument.lamps.at("lamp")->set(true);
+  const auto mean_of = [](const RawFrame& frame) {
+    double sum = 0;
+    for (const std::uint16_t code : frame.samples) sum += code - 64.0;
+    return sum / static_cast<double>(frame.samples.size());
+  };
+  const double first = mean_of(instrument.cameras.at("camera")->take({0.005, {}}));
+  instrument.cameras.at("camera")->take({5, {}});
+  EXPECT_NEAR(instrument.clock_s(), 5.005, 1e-9);
+  EXPECT_NEAR(first / mean_of(instrument.cameras.at("camera")->take({0.005, {}})), 1.5, 0.01);
 }
 
 }  // namespace

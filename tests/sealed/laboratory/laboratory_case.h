@@ -1,7 +1,7 @@
-// Sealed laboratories: an arm that carries a camera over a board under a lamp, described as its owner believes it to be,
-// and what is really so, which no program under test is given but the simulated instrument itself. In every one of them,
-// those where nothing is to be found too, the camera sits elsewhere on the arm, its focal length and its middle are
-// others, and the lamp is brighter or darker than described: that is what calibration is for.
+// Sealed laboratories: an arm that carries a camera over a board under a lamp, described as its owner believes it to
+// be, and what is really so, which no program under test is given but the simulated instrument itself. In every one of
+// them, those where nothing is to be found too, the camera sits elsewhere on the arm, its focal length and its middle
+// are others, and the lamp is brighter or darker than described: that is what calibration is for.
 #pragma once
 #include <cstdint>
 #include <filesystem>

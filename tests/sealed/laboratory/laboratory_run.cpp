@@ -20,7 +20,7 @@ struct Link {
 }  // namespace
 
 std::string run_laboratory(const LaboratoryCase& sealed, int spp, const std::filesystem::path& folder,
-                           const std::filesystem::path& truths) {
+                           const std::filesystem::path& truths, const std::vector<std::string>& hypotheses) {
   const auto begun = std::chrono::steady_clock::now();
   const std::filesystem::path truth = std::filesystem::absolute(truths) / (folder.filename().string() + ".json");
   make_folder(truths);
@@ -30,14 +30,16 @@ std::string run_laboratory(const LaboratoryCase& sealed, int spp, const std::fil
   plan.insert(plan.end(), sealed.plan.begin(), sealed.plan.end());
   const std::string seed = std::to_string(sealed.seed), quiet = "error";
   // Views out of reach leave 2 behind, and so does a calibration whose gates something real has shut.
+  Words explain{"explain", "--threads", "1", "--out", "out"};
+  for (const std::string& one : hypotheses) explain.insert(explain.end(), {"--hypotheses", one});
   const std::vector<Link> chain{
       {plan, 2},
       {{"acquire", "--go", "--truth", truth.string(), "--spp", std::to_string(spp), "--seed", seed, "--out", "run"}, 2},
-      {{"calib-charuco", "--model", "pinhole", "--charuco", "9x7", "--square", "20mm", "--marker", "15mm", "--dictionary",
-        "4X4_50", "--out", "calibrated"},
+      {{"calib-charuco", "--model", "pinhole", "--charuco", "9x7", "--square", "20mm", "--marker", "15mm",
+        "--dictionary", "4X4_50", "--out", "calibrated"},
        2},
       {{"handeye"}, 2},
-      {{"explain", "--threads", "1", "--out", "out"}, 2}};
+      {explain, 2}};
   std::string manifest;
   int status = 0;
   for (const Link& link : chain) {
