@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/board_place.h"
 #include "explain/boards/boards_outcome.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"

@@ -56,7 +56,7 @@ TEST(Desk, AMechanismMovesTheCameraAndNotTheReport) {
 TEST(Desk, NoiseIsWhatTheDescriptionSays) {
   const tests::ScratchFolder folder;
   const WorkIn here(folder.path());
-  manifest::Document lab = specimen_laboratory(folder.path());
+  manifest::Document lab = specimen_laboratory("desk", folder.path());
   const auto& camera = lab.laboratory.entry.front().cameras.at("camera");
   Instrument instrument = desk_instrument(lab, nullptr, {.seed = 3, .spp = 1});
   const RawFrame dark = instrument.cameras.at("camera")->take({0.01, {}});
@@ -95,7 +95,7 @@ TEST(Desk, NoiseIsWhatTheDescriptionSays) {
 TEST(Desk, ALampThatWarmsUpIsBrighterAtFirst) {
   const tests::ScratchFolder folder;
   const WorkIn here(folder.path());
-  const manifest::Document lab = specimen_laboratory(folder.path());
+  const manifest::Document lab = specimen_laboratory("desk", folder.path());
   manifest::Document truth;
   truth.mechanisms["light.drift"].parameters = {{"amplitude", 0.5}, {"time_constant_s", 1.0}};
   Instrument instrument = desk_instrument(lab, &truth, {.seed = 3, .spp = 1});
