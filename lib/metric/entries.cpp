@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "camera/intrinsics.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/comparison.h"
@@ -25,7 +26,12 @@ std::vector<Entry> entries(const manifest::Document& document) {
     Entry entry;
     entry.image = image.id;
     entry.photograph = manifest::picture_path(document, *listed);
-    entry.rendering = manifest::resolve(document, rendering.file, at + "/file");
+    // What a sensor behind polarizers gets, where render --stokes made it: half of the light, more or less.
+    const auto mosaic = rendering.files.find("mosaic");
+    const bool behind_polarizers = camera::mosaic_of(document, image.camera) == "polarizers";
+    entry.rendering = behind_polarizers && mosaic != rendering.files.end()
+                          ? manifest::resolve(document, mosaic->second, at + "/files/mosaic")
+                          : manifest::resolve(document, rendering.file, at + "/file");
     entry.mask = manifest::mask_path(document, *listed);
     entry.response = image.response;
     entry.saturation = image.saturation;

@@ -4,6 +4,8 @@
 #    run/compared.json
 # c  six paths of a camera, from them a sheet that bends, into the solvers:
 #    run/shapes.json
+# d  a varnished knot on a turntable before a camera behind polarizers, into
+#    render and compare: run/polarized.json
 # Smaller than the real ones, which are STEP=7.5deg EDGES='' (2,783 views),
 # SPP=256 and VIEWS=60.
 STEP  = 22.5deg
@@ -16,14 +18,15 @@ BOARD = --charuco 9x7 --square 20mm --marker 15mm --dictionary 4X4_50
 KNOT  = azimuth=200deg,span=60deg,step=30deg,lowest=50deg,highest=50deg$\
         ,radius=36cm,lamp-radius=42cm,lamp-step=40deg,lamp-lowest=50deg$\
         ,lamp-azimuth=-30deg,lamp-span=60deg
+TURN  = step=60deg,radius=24cm,azimuth=90deg,lowest=45deg,highest=45deg
 
 .RECIPEPREFIX = >
 .DELETE_ON_ERROR:
 .SECONDARY:
 .PHONY: all clean
-all: run/sample.json run/compared.json run/shapes.json
+all: run/sample.json run/compared.json run/shapes.json run/polarized.json
 
-run/arc.json run/studio.json: run/%.json: | run
+run/arc.json run/studio.json run/turntable.json: run/%.json: | run
 > acquire --specimen $* --out run/$* --force -o $@
 
 # a: two exposures, since a varnish is bright in its mirror direction.
@@ -73,6 +76,17 @@ run/shapes.json: $(PATHS:%=run/%-shapes.json)
 > for p in $(PATHS); do nrsfm-eval --centre --measure robust-rms --draws 0 \
 >   --csv run/$$p.csv --force -i run/$$p-shapes.json > /dev/null || exit 1; done
 > nrsfm-eval $(PATHS:%=--table run/%.csv) --model main --html run/shapes.html -o $@
+
+# d
+run/turntable-plan.json: run/turntable.json
+> acquire $< --plan turntable:$(TURN) --target 0m,0m,3cm -o $@
+
+run/turntable-frames.json: run/turntable-plan.json
+> acquire $< --go --spp $(SPP) --resume --out run/polarized -o $@
+
+run/polarized.json: run/turntable-frames.json
+> render $< --stokes --spp $(SPP) --resume --out run/stokes | \
+>   compare --html run/polarized.html -o $@
 
 run:
 > mkdir -p run

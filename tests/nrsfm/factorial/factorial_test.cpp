@@ -66,7 +66,8 @@ void expect_whole(const fs::path& folder) {
 
 TEST(Makefile, IsTheOneOfTheManual) {
   const std::string prose = read_file(fs::path(GONIO_SOURCE) / "man/prose/gonio.md");
-  EXPECT_THAT(prose, HasSubstr("```\n" + read_file(makefile) + "```\n"));
+  for (const fs::path& one : {makefile, makefile.parent_path() / "laboratory.mk"})
+    EXPECT_THAT(prose, HasSubstr("```\n" + read_file(one) + "```\n"));
 }
 
 TEST(Makefile, MakesTheWholeDesign) {
