@@ -84,7 +84,7 @@ Exit explain_document(manifest::Document& document, const ExplainRequest& reques
     if (doubtful(problem, e)) exit = worse(exit, Exit::quality);
   };
   for (AskedDomain& asked : domains) {
-    if (asked.waits && is_unmended(told, asked.domain->after)) {
+    if (asked.waits && asked.domain->needs_it && is_unmended(told, asked.domain->after)) {
       log(LogLevel::info, asked.domain->name + ": not asked: its recordings are held against what " +
                               asked.domain->after + " has just refuted, and nothing mends that");
       continue;

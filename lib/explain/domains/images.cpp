@@ -13,6 +13,7 @@ const Domain& images() {
       .sentence = "linear images with file and camera, of objects that render can simulate",
       .order = 2,
       .after = "boards",
+      .needs_it = true,
       .applies = explain::images::has_recordings,
       .problems =
           [](const manifest::Document& document, const ProblemOptions& options) {
