@@ -29,22 +29,17 @@ struct EdgeAt {
 };
 constexpr double root_two_pi = 2.5066282746310002, plateau_share = 0.15, usual_width = 0.8;
 
+// B at s of a wall at p, and its slopes; `slanted`: what an object whose values slant by one per voxel along s adds, s
+// up to p, smeared, and none beyond. The latter is slight: its slopes are left out. All of them share the two functions
+// that the fit's time goes into.
 struct EdgeStep {
-  double b = 0, by_place = 0, by_log_width = 0;
+  double b = 0, by_place = 0, by_log_width = 0, slanted = 0;
 };
-// B at s of a wall at p, and its slopes.
 EdgeStep step_at(double s, double p, double w, double mean_curvature) {
   const double u = (s - p) / w, phi = std::exp(-0.5 * u * u) / root_two_pi;
   const double h = mean_curvature / std::max(0.2, 1 + mean_curvature * s);
-  return {0.5 * std::erfc(u / std::numbers::sqrt2) - w * h * phi, phi * (1 / w - h * u),
-          phi * (u - w * h * (1 + u * u))};
-}
-
-// What an object whose values slant by one per voxel along s adds: s up to p, smeared; none beyond. Slight: its slopes
-// are left out.
-double slanted(double s, double p, double w) {
-  const double u = (s - p) / w;
-  return 0.5 * s * std::erfc(u / std::numbers::sqrt2) - w * std::exp(-0.5 * u * u) / root_two_pi;
+  const double beyond = 0.5 * std::erfc(u / std::numbers::sqrt2);
+  return {beyond - w * h * phi, phi * (1 / w - h * u), phi * (u - w * h * (1 + u * u)), s * beyond - w * phi};
 }
 
 struct EdgeProblem {
@@ -66,25 +61,25 @@ class EdgeDescent final : public optim::Descent {
 
   EdgeDescent(const EdgeProblem& problem, const Vector& start) : problem_(problem), x_(start), there_(start) {}
 
-  // Value and slopes at sample i.
-  double value(const Vector& x, std::size_t i, Vector* slopes) const {
-    const double s = problem_.s[i], w = std::exp(x[EdgeAt::log_width]), h = problem_.mean_curvature;
+  // Value and slopes at sample i; w: exp(x[log_width]).
+  double value(const Vector& x, double w, std::size_t i, Vector* slopes) const {
+    const double s = problem_.s[i], h = problem_.mean_curvature;
     const EdgeStep own = step_at(s, x[EdgeAt::position], w, h);
     const double rise = x[EdgeAt::object] - x[EdgeAt::air];
-    const double slant = slanted(s, x[EdgeAt::position], w);
-    double v = x[EdgeAt::air] + rise * own.b + (N == 5 ? x[EdgeAt::slope % N] : problem_.slope) * slant;
+    double v = x[EdgeAt::air] + rise * own.b + (N == 5 ? x[EdgeAt::slope % N] : problem_.slope) * own.slanted;
     if (slopes) {
       slopes->setZero();
       (*slopes)[EdgeAt::position] = rise * own.by_place;
       (*slopes)[EdgeAt::log_width] = rise * own.by_log_width;
       (*slopes)[EdgeAt::air] = 1 - own.b;
       (*slopes)[EdgeAt::object] = own.b;
-      if (N == 5) (*slopes)[EdgeAt::slope % N] = slant;
+      if (N == 5) (*slopes)[EdgeAt::slope % N] = own.slanted;
     }
     if constexpr (N == 8) {
-      if (problem_.has_inner)
-        v += add_behind(x, step_at(s, x[EdgeAt::behind], w, h), slopes) -
-             problem_.slope * slanted(s, x[EdgeAt::behind], w);
+      if (problem_.has_inner) {
+        const EdgeStep behind = step_at(s, x[EdgeAt::behind], w, h);
+        v += add_behind(x, behind, slopes) - problem_.slope * behind.slanted;
+      }
       if (problem_.has_outer) v += add_before(x, step_at(s, x[EdgeAt::before], w, h), slopes);
     }
     return v;
@@ -93,8 +88,9 @@ class EdgeDescent final : public optim::Descent {
   double cost(const Vector& x) const {
     if (std::abs(x[EdgeAt::log_width]) > 3) return HUGE_VAL;  // narrower than a twentieth of a voxel, wider than twenty
     double sum = 0;
+    const double w = std::exp(x[EdgeAt::log_width]);
     for (std::size_t i = 0; i < problem_.s.size(); ++i) {
-      const double r = (problem_.values[i] - value(x, i, nullptr)) / problem_.sample_sd[i];
+      const double r = (problem_.values[i] - value(x, w, i, nullptr)) / problem_.sample_sd[i];
       sum += r * r;
     }
     for_priors([&](Index a, Index b, double mean, double sd) {
@@ -108,8 +104,9 @@ class EdgeDescent final : public optim::Descent {
     h_.setZero();
     downhill_.setZero();
     Vector j;
+    const double w = std::exp(x_[EdgeAt::log_width]);
     for (std::size_t i = 0; i < problem_.s.size(); ++i) {
-      const double r = (problem_.values[i] - value(x_, i, &j)) / problem_.sample_sd[i];
+      const double r = (problem_.values[i] - value(x_, w, i, &j)) / problem_.sample_sd[i];
       j /= problem_.sample_sd[i];
       h_ += j * j.transpose();
       downhill_ += j * r;
@@ -260,9 +257,10 @@ Edge fitted_edge(const EdgeProblem& problem, const ProfileWish& wish, const Eige
 
   Eigen::Matrix<double, Eigen::Dynamic, N, Eigen::ColMajor, 64, N> j(n, N);
   double squares = 0, misfit = 0;
+  const double w = std::exp(x[EdgeAt::log_width]);
   for (std::size_t i = 0; i < n; ++i) {
     Vector row;
-    const double r = problem.values[i] - descent.value(x, i, &row), sd = problem.sample_sd[i];
+    const double r = problem.values[i] - descent.value(x, w, i, &row), sd = problem.sample_sd[i];
     misfit += r * r;
     squares += r * r / (sd * sd);
     j.row(static_cast<Index>(i)) = row.transpose() / sd;

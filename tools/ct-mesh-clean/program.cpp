@@ -21,6 +21,8 @@ void check(cli::Invocation& call) {
   asked(call);
   if (specimen_asked(call) && call.out.empty())
     throw Error(Exit::usage, "--specimen", "has no folder to write to", "give --out DIR");
+  if (!specimen_asked(call) && call.out.empty() && (call.given("VOLUME") || !call.document.volumes.empty()))
+    throw Error(Exit::usage, "--out", "is missing: the mesh needs a folder", "give --out DIR");
   for (const char* option : {"html", "csv"})
     if (call.given(option)) check_writable(call.text(option));
 }

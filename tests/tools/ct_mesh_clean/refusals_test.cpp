@@ -40,6 +40,7 @@ class Refusals : public testing::Test {
 
   static void refused(std::vector<std::string> words, int status, const std::string& says) {
     words.insert(words.begin(), "ct-mesh-clean");
+    if (status != 64 && std::ranges::find(words, "--out") == words.end()) words.insert(words.end(), {"--out", "o"});
     const auto before = std::filesystem::recursive_directory_iterator(folder());
     std::size_t files = 0, after = 0;
     for (const auto& e : before) files += e.is_regular_file();
@@ -78,6 +79,7 @@ TEST_F(Refusals, CommandLines) {
   refused({"--index", "0.5", "ball.nrrd"}, 64, "--index");
   refused({}, 64, "VOLUME");
   refused({"--specimen", "ornament"}, 64, "--out");
+  refused({"ball.nrrd"}, 64, "--out");
   refused({"--specimen", "teapot", "--out", "o"}, 64, "--specimen");
 }
 
