@@ -22,8 +22,8 @@ struct Domain {
   std::string name;      // "boards", "images", "tables": the folder's
   std::string sentence;  // what recordings it takes
   int order = 0;         // in which problems are explained and reported
-  // Name of the domain whose answer its recordings are held against, mended: pictures and poses against the camera that
-  // the boards show. `needs_it`: where nothing mends that, it is not asked.
+  // Name of the domain whose answer its recordings are held against, mended: pictures against the camera that the
+  // boards show. `needs_it`: where nothing mends that, it is not asked.
   std::string after{};
   bool needs_it = false;
   bool (*applies)(const manifest::Document& document) = nullptr;

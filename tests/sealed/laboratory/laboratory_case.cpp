@@ -34,7 +34,7 @@ std::string joint(const char* before, std::uint32_t first, std::uint32_t count, 
   return before + std::to_string(first + random.below(count)) + after;
 }
 
-std::vector<Offer> offers() {
+std::vector<Offer> offers_of_arm_and_lens() {
   return {{arm,
            [](Random& r) {
              const std::string which = joint("joint_", 2, 4, "_rad", r);
@@ -62,11 +62,13 @@ std::vector<Offer> offers() {
            [](Random& r) {
              return Perturbation{lens_domain, "lens.radial", {"lens.rational"}, "k1", either(r, 0.02, 0.2), "", "", 0};
            }},
-          {lens_domain,
-           [](Random& r) {
+          {lens_domain, [](Random& r) {
              return Perturbation{lens_domain, "lens.tangential", {}, "p1", either(r, 2e-3, 1e-2), "", "", 0};
-           }},
-          {light,
+           }}};
+}
+
+std::vector<Offer> offers_of_light() {
+  return {{light,
            [](Random& r) {
              return Perturbation{light, "optics.vignetting", {}, "falloff", size(r, 0.05, 0.3), "", "", 0};
            }},
@@ -97,6 +99,12 @@ std::vector<Offer> offers() {
           {light, [](Random& r) {
              return Perturbation{light, "optics.veiling-glare", {}, "share", size(r, 0.02, 0.08), "", "", 0};
            }}};
+}
+
+std::vector<Offer> offers() {
+  std::vector<Offer> all = offers_of_arm_and_lens();
+  for (const Offer& offer : offers_of_light()) all.push_back(offer);
+  return all;
 }
 
 // A quarter of the laboratories have nothing to find, a quarter two things, of different parts. The deck of offers is
