@@ -1,6 +1,7 @@
 # fish completion of nrsfm-make; printed by scripts/regenerate
 complete -c nrsfm-make -l kind -x -a 'articulated bending deflation stretching tearing' -d 'Animatronic; may be repeated. Left out: all.'
 complete -c nrsfm-make -l path -x -a 'circle half-circle line flyby zigzag tricky' -d 'Path of the camera; may be repeated. Left out: all.'
+complete -c nrsfm-make -l seen-from -x -d 'Instead of a path by name: the camera stands where the manifests images were taken from, in the order of their names, about the worlds origin; the path is called NAME.'
 complete -c nrsfm-make -l camera -x -a 'orthographic perspective' -d 'Projection; may be repeated. Left out: both.'
 complete -c nrsfm-make -l missing -x -a 'with without' -d 'With or without the points that the surface hides from the camera; may be repeated. Left out: both.'
 complete -c nrsfm-make -l frames -x -d 'Of each simulated sequence.'

@@ -107,21 +107,32 @@ std::vector<Offer> offers() {
   return all;
 }
 
-// A quarter of the laboratories have nothing to find, a quarter two things, of different parts. The deck of offers is
-// dealt so that every one of them comes as often as any other.
+// The deck of offers lies in its order, and is laid out again when it is used up. The first card whose part is not
+// `other` is taken off.
+std::size_t taken_off(std::vector<std::size_t>& deck, const std::vector<Offer>& all, const std::string& other) {
+  const auto fits = [&](std::size_t k) { return all[k].domain != other; };
+  if (std::ranges::none_of(deck, fits))
+    for (std::size_t k = 0; k < all.size(); ++k) deck.push_back(k);
+  const auto found = std::ranges::find_if(deck, fits);
+  const std::size_t card = *found;
+  deck.erase(found);
+  return card;
+}
+
+// A quarter of the laboratories have nothing to find, a quarter two things, of different parts: of every four the
+// first has none, the others one, one and two.
 std::vector<Perturbation> drawn(std::uint64_t seed, Random& random) {
   const std::vector<Offer> all = offers();
-  const std::uint64_t round = (seed - 1) / 4, place = (seed - 1) % 4;
-  if (place == 0) return {};
-  // Laboratories 2, 3, 4 of a round hold one, one and two perturbations: four cards a round.
-  const auto card = [&](std::uint64_t k) -> const Offer& { return all[(4 * round + k) % all.size()]; };
-  if (place < 3) return {card(place - 1).draw(random)};
-  const Offer& first = card(2);
-  std::uint64_t k = 3;
-  while (card(k).domain == first.domain) ++k;
-  std::vector<Perturbation> two{first.draw(random)};
-  two.push_back(card(k).draw(random));
-  return two;
+  std::vector<std::size_t> deck, cards;
+  for (std::uint64_t k = 1; k <= seed; ++k) {
+    cards.clear();
+    const std::uint64_t place = (k - 1) % 4;
+    if (place > 0) cards.push_back(taken_off(deck, all, ""));
+    if (place == 3) cards.push_back(taken_off(deck, all, all[cards[0]].domain));
+  }
+  std::vector<Perturbation> perturbations;
+  for (const std::size_t card : cards) perturbations.push_back(all[card].draw(random));
+  return perturbations;
 }
 
 manifest::Document described(bool small, const std::filesystem::path& folder) {
