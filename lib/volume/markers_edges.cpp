@@ -22,6 +22,7 @@ namespace {
 
 constexpr double reach = 3, step = 0.5;  // voxels
 constexpr double width_guess = 0.85;
+constexpr double alike = 0.05;     // of the step: sd of the plateaus round one marker
 constexpr double model_sd = 0.02;  // voxels: what an edge is off by, whatever its noise
 
 // Correlation of errors as far apart along one axis as the table's index says, in twentieths of a voxel.
@@ -89,13 +90,15 @@ class Rays {
     const auto covariance = trilinear_covariance(first, along * step, places.size(), noise_.neighbour_correlation);
     ProfileWish wish{noise_.sd, covariance, 1 / s.radius};
     wish.width = width;
-    wish.width_share = 0.25;        // slices are sharper along the axis than within
-    constexpr double alike = 0.05;  // of the step: plateaus round one marker
+    wish.width_share = 0.25;  // slices are sharper along the axis than within
     const double plateau_sd = alike * std::abs(levels.object - levels.air);
     if (settled) wish.air = Known{levels.air, plateau_sd}, wish.object = Known{levels.object, plateau_sd};
     const Edge e = fit_edge(places, values, wish);
     const double rise = levels.object - levels.air, off = std::max(0.7, 0.08 * s.radius);
-    if (!e.good || e.object < e.air || std::abs(e.position) > off || std::abs(e.air - levels.air) > 0.3 * rise ||
+    // What lies before it is no air where it is not like that round the rest: the foot of something lighter than the
+    // marker, whose smear draws the edge inwards. Such edges stand on one side, and would push the centre to the other.
+    const double most = settled ? 2 * alike : 0.3;
+    if (!e.good || e.object < e.air || std::abs(e.position) > off || std::abs(e.air - levels.air) > most * rise ||
         std::abs(e.object - levels.object) > 0.35 * rise)
       return {};
     return {direction, s.radius + e.position, e.sigma, e.air, e.object, e.width, e.excess};
