@@ -2,6 +2,7 @@
 #include "explain/domains.h"
 
 #include <algorithm>
+#include <set>
 
 #include "base/error.h"
 #include "manifest/document.h"
@@ -43,6 +44,29 @@ std::vector<AskedDomain> domains_of(const manifest::Document& document, const Pr
   std::string known;
   for (const Domain* domain : all_domains()) known += (known.empty() ? "" : "; ") + domain->sentence;
   throw Error(Exit::data, manifest::place(document, ""), "has nothing to explain", "give one of: " + known);
+}
+
+std::vector<std::string> hypotheses_of(const Domain& domain, const Problem& problem, std::span<const Answered> before,
+                                       const std::vector<std::string>& wanted) {
+  std::set<std::string> looked_at, named;
+  for (const Answered& answer : before) {
+    if (domain.leaves.empty() || answer.problem->domain() != domain.leaves_to) continue;
+    const auto& candidates = answer.problem->candidates();
+    const Explanation& e = *answer.explanation;
+    for (const auto& c : candidates)
+      if (c.id().starts_with(domain.leaves)) looked_at.insert(c.id());
+    for (const std::size_t c : e.named) named.insert(candidates[c].id());
+    for (const auto* sets : {&e.not_told_apart, &e.instead})
+      for (const auto& set : *sets)
+        for (const std::size_t c : set) named.insert(candidates[c].id());
+  }
+  std::vector<std::string> asked;
+  for (const auto& c : problem.candidates()) {
+    const bool is_wanted = wanted.empty() || std::ranges::find(wanted, c.id()) != wanted.end();
+    if (is_wanted && (named.contains(c.id()) || !looked_at.contains(c.id()))) asked.push_back(c.id());
+  }
+  const bool all = asked.size() == problem.candidates().size();
+  return all || asked.empty() ? wanted : asked;
 }
 
 std::vector<std::filesystem::path> files_of(const manifest::Document& document) {

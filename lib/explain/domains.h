@@ -1,5 +1,9 @@
 // The domains that a manifest offers to explain. Each of its tables, scenes, sets becomes one problem.
 #pragma once
+#include <span>
+#include <string>
+#include <vector>
+
 #include "explain/domain.h"
 
 namespace gonio::explain {
@@ -16,6 +20,16 @@ struct AskedDomain {
   std::vector<std::unique_ptr<Problem>> problems;
 };
 std::vector<AskedDomain> domains_of(const manifest::Document& document, const ProblemOptions& options);
+
+// An answer that was given: its problem, and what was said.
+struct Answered {
+  const Problem* problem = nullptr;
+  const Explanation* explanation = nullptr;
+};
+// Mechanisms that `problem` of `domain` is asked about (Options::hypotheses): `wanted`, all where that is empty, less
+// those that the domain leaves to one of `before` (Domain::leaves) and that this one looked at and did not name.
+std::vector<std::string> hypotheses_of(const Domain& domain, const Problem& problem, std::span<const Answered> before,
+                                       const std::vector<std::string>& wanted);
 
 // Files of the manifest that these problems read: pictures, masks, meshes, tables, calibrations of robots.
 std::vector<std::filesystem::path> files_of(const manifest::Document& document);

@@ -69,10 +69,14 @@ Exit explain_document(manifest::Document& document, const ExplainRequest& reques
   std::vector<ReportPart> parts;
   Exit exit = Exit::done;
   document.explanations.clear();
-  const auto tell = [&](std::unique_ptr<Problem> asked) {
+  const auto tell = [&](const Domain& domain, std::unique_ptr<Problem> asked) {
+    std::vector<Answered> before;
+    for (const Told& t : told) before.push_back({t.problem.get(), &t.explanation});
     Told& t = told.emplace_back(std::move(asked));
     const Problem& problem = *t.problem;
-    Explanation& e = t.explanation = explain(problem, request.options);
+    Options options = request.options;
+    options.hypotheses = hypotheses_of(domain, problem, before, options.hypotheses);
+    Explanation& e = t.explanation = explain(problem, options);
     t.illustration = problem.illustrate(e, request.out, document);
     if (e.significant && !request.out.empty())
       t.illustration.observations = write_evidence(problem, e, evidence_name(told), request.out, document);
@@ -90,7 +94,7 @@ Exit explain_document(manifest::Document& document, const ExplainRequest& reques
       continue;
     }
     if (asked.waits) asked.problems = asked.domain->problems(document, request.recordings);
-    for (std::unique_ptr<Problem>& problem : asked.problems) tell(std::move(problem));
+    for (std::unique_ptr<Problem>& problem : asked.problems) tell(*asked.domain, std::move(problem));
   }
   if (!request.page.empty()) write_file(request.page, report_page(document.name, parts));
   return exit;

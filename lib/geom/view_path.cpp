@@ -24,7 +24,7 @@ Vec3 zigzag(double s) {
     constexpr std::array<double, 3> depth{1.2, 0.8, 1.0};
     const double side = k % 2 == 0 ? -0.6 : 0.6;
     const double reach = depth[static_cast<std::size_t>(k % 3)];
-    return Vec3(side, -reach * std::cos(height_rad), reach * std::sin(height_rad));
+    return Vec3{side, -reach * std::cos(height_rad), reach * std::sin(height_rad)};
   };
   const int k = static_cast<int>(stroke);
   return (1 - part) * corner(k) + part * corner(k + 1);

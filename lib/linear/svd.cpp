@@ -3,7 +3,9 @@
 #include <Eigen/SVD>
 #include <type_traits>
 
+#ifndef __clang__  // which has no such warning
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // singular values, where Eigen gives up on NaN
+#endif
 
 namespace gonio::linear {
 namespace {

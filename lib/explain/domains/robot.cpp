@@ -12,6 +12,8 @@ const Domain& robot() {
       .name = "robot",
       .sentence = "a mounting on a robot with at least six posed images (handeye)",
       .order = 3,
+      .leaves = "lens.",
+      .leaves_to = "boards",
       .applies = has_hand_eye,
       .problems =
           [](const manifest::Document& document, const ProblemOptions&) {

@@ -1,6 +1,7 @@
 // See laboratory_case.h.
 #include "sealed/laboratory/laboratory_case.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
