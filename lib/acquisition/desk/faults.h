@@ -33,6 +33,8 @@ enum class Fault {
   trigger_lost,
   chunk_late,
   stuck_exposure,
+  modbus_acknowledge,
+  modbus_gateway,
   count
 };
 
@@ -61,6 +63,8 @@ inline constexpr std::array<FaultKind, static_cast<std::size_t>(Fault::count)> f
     {"trigger-lost", "a camera does not hear a trigger"},
     {"chunk-late", "a picture carries the figures of the one before"},
     {"stuck-exposure", "a picture is taken with the exposure of the one before"},
+    {"modbus-acknowledge", "a request is answered with not yet"},
+    {"modbus-gateway", "a request is answered by a gateway that reached nobody"},
 }};
 
 class Faults {

@@ -109,6 +109,8 @@ bool ModbusDesk::answer(int socket) {
   };
   if (faults_.strikes(Fault::modbus_exception)) return refuse(MODBUS_EXCEPTION_SLAVE_OR_SERVER_FAILURE);
   if (faults_.strikes(Fault::modbus_busy)) return refuse(MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY);
+  if (faults_.strikes(Fault::modbus_acknowledge)) return refuse(MODBUS_EXCEPTION_ACKNOWLEDGE);
+  if (faults_.strikes(Fault::modbus_gateway)) return refuse(MODBUS_EXCEPTION_GATEWAY_TARGET);
   const std::lock_guard<std::mutex> lock(mutex_);
   for (const auto& held : held_) held.show(*registers_);
   const bool sent = modbus_reply(registers_->context, request.data(), length, registers_->map) >= 0;

@@ -40,6 +40,14 @@ void replace(Section& section, const Section& truth) {
 
 // Objects are taken as a whole: what lies on the table is what the truth says, or what the description says.
 void take_truth(manifest::Document& document, const manifest::Document& other) {
+  for (const auto& [id, use] : other.mechanisms) {
+    const std::string at = manifest::place(other, "/mechanisms/" + id);
+    const mechanism::Mechanism* m = mechanism::find_mechanism(id);
+    if (m == nullptr) throw Error(Exit::data, at, "no such mechanism", "gonio-manifest(5) lists them");
+    std::size_t count = 1;
+    for (const auto& [name, parameter] : use.parameters) count = std::max(count, parameter.value.size());
+    scene::amounts_of(*m, use, 0, count, at);  // refuses parameters that it has not
+  }
   const manifest::Document truth = manifest::parse_document(manifest::print_document(other, document.folder),
                                                             other.name, document.folder, {document.allow_outside});
   replace(document.files, truth.files);

@@ -84,6 +84,8 @@ class LampDevice {
   virtual bool is_on() = 0;
   // Does is_on() say what the lamp does, and not what it was told?
   virtual bool answers() const { return false; }
+  // Can is_on() be asked now? Not of a lamp that only takes commands and has had none.
+  virtual bool knows() const { return true; }
 };
 class TurntableDevice {
  public:

@@ -2,10 +2,15 @@
 
 #include <modbus/modbus.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <functional>
+#include <optional>
+#include <thread>
 
+#include "acquisition/device/connection.h"
 #include "base/error.h"
 #include "base/text.h"
 
@@ -28,13 +33,31 @@ std::vector<std::uint16_t> split_words(std::uint64_t bits, std::size_t count, Wo
   return words;
 }
 
-// The device answered, in order, that it will not: the connection is fine. The other errors leave it unknown.
-bool is_exception(int wrong) {
-  return wrong > MODBUS_ENOBASE && wrong < EMBBADCRC;
-}
-// Busy or not ready yet: the same request may succeed.
-bool may_pass(int wrong) {
-  return wrong == EMBXSBUSY || wrong == EMBXACK || wrong == EMBXGTAR;
+// What a device may answer instead of doing it: Modbus application protocol 1.1b3, section 7. `passes`: the same
+// request may succeed later. A failure (04) is called unrecoverable there, but controllers send it while they start or
+// are overloaded; all our requests may be repeated, so they are.
+struct ModbusException {
+  int wrong, code;
+  bool passes;
+  const char* remedy;
+};
+constexpr std::array modbus_exceptions{
+    ModbusException{EMBXILFUN, 1, false, "the device cannot do this: is it a coil, a register, or for reading alone?"},
+    ModbusException{EMBXILADD, 2, false, "the device has no such address: check the number and unit="},
+    ModbusException{EMBXILVAL, 3, false, "the device does not take this value: check type and scale"},
+    ModbusException{EMBXSFAIL, 4, true, "look what the device itself reports, and switch it off and on"},
+    ModbusException{EMBXACK, 5, true, "the device needs longer for it: a longer timeout="},
+    ModbusException{EMBXSBUSY, 6, true, "does another client keep it busy? else a longer timeout="},
+    ModbusException{EMBXNACK, 7, false, "the device does not carry this out: look what it itself reports"},
+    ModbusException{EMBXMEMPAR, 8, true, "the device cannot read its own memory: have it serviced"},
+    ModbusException{EMBXGPATH, 10, true, "the gateway leads nowhere: check its set-up and unit="},
+    ModbusException{EMBXGTAR, 11, true,
+                    "the gateway gets no answer: is the device behind it on, and is unit= its own?"}};
+
+// Null: libmodbus's errno is no exception, and the connection cannot be believed any more.
+const ModbusException* exception_of(int wrong) {
+  const auto found = std::ranges::find(modbus_exceptions, wrong, &ModbusException::wrong);
+  return found == modbus_exceptions.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -93,17 +116,22 @@ void ModbusClient::open() {
   errno = wrong;
 }
 
+// An exception that may pass is waited out for the timeout, in pauses that grow; silence is met by another connection,
+// `tries` of them.
 void ModbusClient::perform(const Request& request) {
   const std::lock_guard<std::mutex> lock(one_at_a_time_);
   const std::string device = "Modbus at " + address_.host + ":" + std::to_string(address_.port);
   std::string problem;
-  for (int attempt = 0; attempt < address_.tries; ++attempt) {
+  std::optional<Clock::time_point> give_up;  // after the first exception
+  auto pause = std::chrono::milliseconds(1);
+  for (int silent = 0, asked = 1; silent < address_.tries; ++asked) {
     if (context_->open == nullptr) {
-      reconnections_ += attempt > 0 ? 1 : 0;
+      reconnections_ += silent > 0 ? 1 : 0;
       open();
     }
     if (context_->open == nullptr) {
       problem = std::string("cannot be reached: ") + modbus_strerror(errno);
+      ++silent;
       continue;
     }
     modbus_flush(context_->open);
@@ -111,12 +139,21 @@ void ModbusClient::perform(const Request& request) {
     if (got == request.expected) return;
     const int wrong = got < 0 ? errno : EMBBADDATA;
     problem = request.what + ": " + modbus_strerror(wrong);
-    if (is_exception(wrong)) {
-      if (may_pass(wrong)) continue;
-      throw Error(Exit::unavailable, place_, device + ", unit " + std::to_string(address_.unit) + ", " + problem,
-                  "the device answers, but not this: check the address and the unit");
+    const ModbusException* exception = exception_of(wrong);
+    if (exception == nullptr) {
+      context_->close();  // a late answer would be read as the next one's
+      ++silent;
+      continue;
     }
-    context_->close();  // a late answer would be read as the next one's
+    if (!give_up) give_up = after(address_.timeout_s);
+    if (!exception->passes || Clock::now() >= *give_up)
+      throw Error(Exit::unavailable, place_,
+                  device + format(", unit %d, ", address_.unit) + problem +
+                      format(" (exception %02d", exception->code) +
+                      (exception->passes ? format(", asked %d times in %g s)", asked, address_.timeout_s) : ")"),
+                  exception->remedy);
+    std::this_thread::sleep_for(pause);
+    pause = std::min(2 * pause, std::chrono::milliseconds(100));
   }
   throw Error(Exit::unavailable, place_,
               device + ", " + problem + format(" (%d tries of %g s)", address_.tries, address_.timeout_s),

@@ -54,6 +54,7 @@ class TextLamp : public LampDevice {
                        "state-on= and state-off= are what it answers");
   }
   bool answers() const override { return !state_.empty(); }
+  bool knows() const override { return !state_.empty() || known_ >= 0; }
 
  private:
   TextLine line_;

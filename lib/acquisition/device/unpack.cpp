@@ -34,6 +34,17 @@ bool is_mosaic_name(std::string_view name) {
   return false;
 }
 
+// `count` bits of a stream whose bytes are filled from their lowest bit on.
+unsigned bits_at(const std::uint8_t* bytes, std::size_t first, unsigned count) {
+  unsigned window = 0;
+  for (std::size_t byte = (first + count - 1) / 8 + 1; byte-- > first / 8;) window = (window << 8U) | bytes[byte];
+  return (window >> (first % 8)) & ((1U << count) - 1);
+}
+
+std::size_t mipi_group(int bits) {
+  return bits == 12 ? 2 : 4;
+}
+
 // Sample i of `row`, where it is within.
 unsigned packed_sample(const std::uint8_t* row, std::size_t i, const PixelFormat& format) {
   const auto bits = static_cast<unsigned>(format.bits);
@@ -42,22 +53,29 @@ unsigned packed_sample(const std::uint8_t* row, std::size_t i, const PixelFormat
     const unsigned rest = bits - 8, low = three[1] >> (i % 2 == 0 ? 0U : 4U);
     return (static_cast<unsigned>(three[i % 2 == 0 ? 0 : 2]) << rest) | (low & ((1U << rest) - 1));
   }
-  const std::size_t first = i * bits, last = first + bits - 1;
-  unsigned window = 0;
-  for (std::size_t byte = last / 8 + 1; byte-- > first / 8;) window = (window << 8U) | row[byte];
-  return (window >> (first % 8)) & ((1U << bits) - 1);
+  if (format.packing == Packing::mipi) {
+    const std::size_t group = mipi_group(format.bits);
+    const std::uint8_t* begin = row + i / group * (group * bits / 8);
+    return static_cast<unsigned>(begin[i % group]) << (bits - 8) |
+           bits_at(begin + group, i % group * (bits - 8), bits - 8);
+  }
+  return bits_at(row, i * bits, bits);
 }
 
 std::size_t bytes_of(std::size_t samples, const PixelFormat& format) {
   // The second of a pair lies in the third byte; a first alone needs two.
   if (format.packing == Packing::gige) return samples / 2 * 3 + samples % 2 * 2;
+  if (format.packing == Packing::mipi) {
+    const std::size_t group = mipi_group(format.bits);
+    return (samples + group - 1) / group * (group * static_cast<std::size_t>(format.bits) / 8);
+  }
   return (samples * static_cast<std::size_t>(format.bits_per_pixel()) + 7) / 8;
 }
 
 }  // namespace
 
 int PixelFormat::bits_per_pixel() const {
-  if (packing == Packing::pfnc) return bits;
+  if (packing == Packing::pfnc || packing == Packing::mipi) return bits;
   if (packing == Packing::gige) return 12;
   return bits == 8 ? 8 : 16;
 }
@@ -90,7 +108,8 @@ std::vector<std::uint16_t> unpack(std::span<const std::uint8_t> bytes, int width
   const auto width = static_cast<std::size_t>(std::max(width_px, 0));
   const auto height = static_cast<std::size_t>(std::max(height_px, 0));
   // Without padding all rows are one.
-  const std::size_t row_samples = row_padding > 0 ? width : width * height, rows = row_padding > 0 ? height : 1;
+  const bool apart = row_padding > 0 || format.packing == Packing::mipi;
+  const std::size_t row_samples = apart ? width : width * height, rows = apart ? height : 1;
   const std::size_t stride = bytes_of(row_samples, format) + static_cast<std::size_t>(std::max(row_padding, 0));
   const std::size_t needed = rows == 0 ? 0 : (rows - 1) * stride + bytes_of(row_samples, format);
   if (bytes.size() < needed)

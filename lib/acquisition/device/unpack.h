@@ -1,7 +1,7 @@
 // Pixel formats of cameras by the names that they give them, and their bytes as samples. Names and layouts: EMVA's
 // Pixel Format Naming Convention 2.4, sections 4 to 7, and GigE Vision 1.2, section 26, whose "Packed" formats are laid
-// out in another way than the "p" formats of the former. Polarization mosaics have the names that their makers gave
-// them.
+// out in another way than the "p" formats of the former; Linux's formats that end in P are packed as MIPI CSI-2 does.
+// Polarization mosaics have the names that their makers gave them.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -18,6 +18,8 @@ struct PixelFormat {
     pfnc,   // Mono12p: bit after bit, the lowest of each sample first, filled into bytes from their lowest bit on
     gige,   // Mono12Packed: two samples in three bytes: high bits of the first, low bits of both, high bits of the
             // second
+    mipi,   // no name of GenICam's: high bits of four samples (12 bit: two), a byte each, then their low bits, the
+           // lowest of the first sample first; every row begins anew
   };
   std::string mosaic;  // "Mono", "BayerRG", "Polarized", "BayerRGPolarized", ...
   int bits = 8;

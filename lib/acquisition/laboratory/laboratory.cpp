@@ -259,12 +259,33 @@ void put_limits(const manifest::LaboratoryLimits& limits, const std::string& pla
   laboratory.workspace = {low, high};
 }
 
+// Of two devices behind one URL each would undo what the other does, and read back what the other is.
+void one_url_each(const manifest::Document& document, const manifest::Laboratory& section) {
+  std::map<std::string, std::string> owners;
+  const auto each = [&](const std::string& kind, const auto& devices) {
+    for (const auto& [name, device] : devices) {
+      if (device.url.empty() || device.url.starts_with("sim:")) continue;
+      const std::string own = "/laboratory/" + kind + "/" + name;
+      const auto [owner, is_new] = owners.emplace(device.url, own);
+      if (!is_new)
+        throw Error(Exit::data, manifest::place(document, own + "/url"),
+                    device.url + " is that of " + owner->second + ", too", "give every device its own");
+    }
+  };
+  each("robots", section.robots);
+  each("cameras", section.cameras);
+  each("lamps", section.lamps);
+  each("turntables", section.turntables);
+  each("screens", section.screens);
+}
+
 }  // namespace
 
 Laboratory believed_laboratory(const manifest::Document& document) {
   const std::string place = manifest::place(document, "/laboratory");
   if (document.laboratory.entry.empty()) throw Error(Exit::data, place, "is missing", "describe the laboratory");
   const manifest::Laboratory& section = document.laboratory.entry.front();
+  one_url_each(document, section);
   Laboratory laboratory;
   for (const auto& [name, robot] : section.robots) laboratory.arms[name] = arm_of(document, name, robot);
   for (std::size_t i = 0; i < section.obstacles.size(); ++i) {

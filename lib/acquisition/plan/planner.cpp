@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 
+#include "acquisition/motion/line.h"
 #include "acquisition/plan/candidates.h"
 #include "acquisition/plan/edges.h"
 #include "acquisition/plan/nearest_view.h"
@@ -99,6 +100,9 @@ void Planner::check() const {
   };
   needs(options.reference_every, "reference"), needs(options.board_every, "board");
   const State home = configurations.state(configurations.home());
+  if (const std::string broken = broken_at(laboratory, home, smallest_singular(laboratory, home)); !broken.empty())
+    throw Error(Exit::data, manifest::place(document, "/laboratory/robots"), "at home " + broken,
+                "give the arms another home_rad, or the laboratory wider limits");
   if (surroundings.free(home, laboratory.margin_m)) return;
   const Clearance c = surroundings.clearance(home, laboratory.margin_m + 1e-6);
   throw Error(Exit::data, manifest::place(document, "/laboratory/robots"),

@@ -106,6 +106,17 @@ Instrument open_instrument(const Document& d) {
   return instrument;
 }
 
+void ask_all(Instrument& instrument) {
+  for (auto& [name, robot] : instrument.robots) robot->state();
+  for (auto& [name, table] : instrument.turntables) table->angle_rad();
+  for (auto& [name, lamp] : instrument.lamps) {
+    if (lamp->knows())
+      lamp->is_on();
+    else
+      lamp->set(false);
+  }
+}
+
 std::vector<std::string> urls_of(const Document& d) {
   std::vector<std::string> urls;
   for_each_device(d, [&urls](const char*, const std::string&, const std::string& url) {
@@ -137,7 +148,8 @@ std::vector<std::string> inspect(const Document& d, bool* all_well) {
                 [&, &n = name, &u = camera.url] { return open_camera(u, url_place(d, "cameras", n))->identity(); });
   for (const auto& [name, lamp] : lab.lamps)
     inspect_one(lines, all_well, "lamp " + name, lamp.url, [&, &n = name, &u = lamp.url] {
-      return std::string(open_lamp(u, url_place(d, "lamps", n))->is_on() ? "is on" : "is off");
+      const auto opened = open_lamp(u, url_place(d, "lamps", n));
+      return std::string(!opened->knows() ? "takes commands, and cannot be asked" : opened->is_on() ? "is on" : "is off");
     });
   for (const auto& [name, table] : lab.turntables)
     inspect_one(lines, all_well, "turntable " + name, table.url, [&, &n = name, &u = table.url] {

@@ -26,6 +26,10 @@ struct Instrument {
 Instrument open_instrument(const manifest::Document& document);
 std::vector<std::string> urls_of(const manifest::Document& document);
 
+// Asks every arm, turntable and lamp how it is, before a run begins; lamps that only take commands are switched off.
+// Error(unavailable) for one that does not answer.
+void ask_all(Instrument& instrument);
+
 // Does any URL reach something outside this program and this computer's loopback? Then nothing moves without --go.
 bool is_real(const manifest::Document& document);
 

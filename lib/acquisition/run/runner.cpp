@@ -383,6 +383,7 @@ RunReport run_plan(manifest::Document& document, const Laboratory& laboratory, c
   if (plan.id != plan_id(document, plan))
     throw Error(Exit::data, manifest::place(document, "/plans"), "was made for another laboratory, or changed by hand",
                 "plan again");
+  ask_all(instrument);  // nothing is written for a run that cannot begin
   make_folder(options.out / "frames");
   PlanRun run(document, laboratory, plan, instrument, options);
   const RunReport report = run.carry_out();

@@ -84,7 +84,7 @@ TEST(Served, ThePicturesAreThoseOfTheLaboratoryWithinOneProgramAndFaultsChangeNo
 
   Serving server(folder.path(), {"--truth", "truth.json", "--faults",
                                  "rtde-dropped=5%,rtde-reordered=5%,rtde-short=1%,modbus-busy=2%,"
-                                 "modbus-reset=2%,frame-dropped=15%,frame-reordered=40%,chunk-late=20%,"
+                                 "modbus-exception=5%,modbus-acknowledge=2%,modbus-gateway=2%,modbus-reset=2%,frame-dropped=15%,frame-reordered=40%,chunk-late=20%,"
                                  "stuck-exposure=20%,lamp-dark=15%"});
   EXPECT_EQ(read_file(folder / "served.json").find("joint-offset"), std::string::npos);  // the truth stays inside
   Process::Words outside{"acquire", "served.json", "--plan",       views,       "--go", "--out",

@@ -1,6 +1,6 @@
 // folder:///DIR: pictures that another program writes. The next picture that appears after the call, complete: its size
-// has not changed for a while and it can be decoded. Nothing says how it was exposed. Where two appear at once nobody
-// knows which of them was asked for.
+// has not changed for a while and it can be decoded. PNG and TIFF do not say how they were exposed; raw files of
+// cameras do. Where two appear at once nobody knows which of them was asked for.
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -8,11 +8,13 @@
 #include <thread>
 
 #include "acquisition/device/connection.h"
+#include "acquisition/device/raw_file.h"
 #include "acquisition/device/unpack.h"
 #include "acquisition/device/url_query.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "io/camera_raw.h"
 #include "io/raster.h"
 #include "io/raster_header.h"
 
@@ -23,14 +25,16 @@ namespace fs = std::filesystem;
 
 struct FolderSettings {
   fs::path folder;
-  std::string pixel_format;  // empty: Mono8 or Mono16, as the file says
+  std::string pixel_format;  // empty: as the file says
+  std::optional<double> base_iso;
   double timeout_s = 10, settle_s = 0.2;
 };
 
 bool may_be_picture(const fs::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return path.filename().string()[0] != '.' && (extension == ".png" || extension == ".tif" || extension == ".tiff");
+  return path.filename().string()[0] != '.' &&
+         (extension == ".png" || extension == ".tif" || extension == ".tiff" || io::is_camera_raw(path));
 }
 
 class FolderCamera : public CameraDevice {
@@ -71,7 +75,7 @@ class FolderCamera : public CameraDevice {
       }
       if (now > until)
         throw failure(format("no new picture within %.3g s", shot.exposure_s + settings_.timeout_s) + trouble,
-                      "does the other program write PNG or TIFF there, under a new name for each?");
+                      "does the other program write PNG, TIFF or raw files there, under a new name for each?");
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   }
@@ -109,6 +113,11 @@ class FolderCamera : public CameraDevice {
 
   RawFrame frame_of(const std::string& name) {
     const std::string path = (settings_.folder / name).string(), bytes = read_file(path);
+    if (io::is_camera_raw(path)) {
+      RawFrame frame = frame_of_raw_file(bytes, path, settings_.pixel_format, settings_.base_iso);
+      frame.frame_id = ++count_;
+      return frame;
+    }
     const int stored_bits = io::read_raster_header(bytes, path).code_bits;
     const io::Image image = io::decode_raster(bytes, path);
     if (image.channels.size() != 1)
@@ -151,6 +160,7 @@ std::unique_ptr<CameraDevice> folder_camera(const Url& url, const std::string& p
   if (!settings.pixel_format.empty() && !parse_pixel_format(settings.pixel_format))
     throw Error(Exit::usage, place, url.text + ": pixel_format is '" + settings.pixel_format + "'",
                 "as Mono12, BayerRG8, Polarized16");
+  if (const double iso = query.quantity("iso", Dimension::none, 0, 1, 1e6); iso > 0) settings.base_iso = iso;
   settings.settle_s = query.quantity("settle", Dimension::time, settings.settle_s, 1e-3, 3600);
   settings.timeout_s = query.timeout(settings.timeout_s);
   query.end();
@@ -165,8 +175,9 @@ const Driver& folder() {
     driver.scheme = "folder";
     driver.sentence =
         "folder:///DIR is a camera that another program works: each call waits for the next new PNG or TIFF of one "
-        "channel there (pixel_format=BayerRG12 says what it holds, settle=200ms how long its size must stand, "
-        "timeout=10s beyond the exposure); its exposure, gain and time are not read back, so nothing checks them.";
+        "channel, or raw file of a camera, there (pixel_format=BayerRG12 says what it holds, settle=200ms how long its "
+        "size must stand, timeout=10s beyond the exposure, iso=100 whose gain is 0 dB); a raw file says how it was "
+        "exposed, of the others nothing is read back, so nothing checks them.";
     driver.camera = folder_camera;
     driver.camera_keys = {"pixel_format"};
     return driver;
