@@ -277,6 +277,10 @@ void check_references(const Document& d) {
   for (const auto& [name, mesh] : d.meshes) {
     const std::string at = place(d, "/meshes/" + name);
     must_exist(d.files, "files", mesh.file, at + "/file");
+    for (std::size_t k = 0; k < mesh.shapes.size(); ++k)
+      must_exist(d.files, "files", mesh.shapes[k], at + "/shapes/" + std::to_string(k));
+    if (!mesh.shapes.empty() && mesh.file.empty())
+      throw Error(Exit::data, at, "has \"shapes\" without a \"file\" whose vertices they are");
     if (!mesh.file.empty() + mesh.sphere_radius_m.has_value() + mesh.plane_size_m.has_value() != 1)
       throw Error(Exit::data, at, "needs exactly one of \"file\", \"sphere\", \"plane\"");
   }

@@ -102,7 +102,9 @@ const std::vector<Field<LaboratoryTurntable>>& laboratory_turntable_fields() {
       field("range_rad", &T::range_rad, "rad", "[smallest, largest] angle; left out: it turns on and on"),
       field("speed_rad_per_s", &T::speed_rad_per_s, "rad/s", "largest").positive(),
       field("acceleration_rad_per_s2", &T::acceleration_rad_per_s2, "rad/s^2", "largest").positive(),
-      field("carries", &T::carries, "", "objects that turn with it")};
+      field("carries", &T::carries, "", "objects that turn with it"),
+      field("deforms", &T::deforms, "",
+            "objects whose meshes go through their shapes while it turns once; carrying none, it turns nothing else")};
   return table;
 }
 

@@ -146,6 +146,8 @@ const std::vector<Field<ImageEntry>>& image_fields() {
       field("base_from_tool", &ImageEntry::base_from_tool, "",
             "takes tool to robot base coordinates, as the controller said"),
       field("joints_rad", &ImageEntry::joints_rad, "rad", "joint angles of the robot"),
+      field("shapes", &ImageEntry::shapes, "",
+            "by object: how far it was through its mesh's shapes, 0 the first, 1 the last; left out: at the first"),
       field("boards", &ImageEntry::boards, "", "instead of board, where it shows several: one entry each")};
   return table;
 }
@@ -183,6 +185,10 @@ const std::vector<Field<Mesh>>& mesh_fields() {
           [](const Mesh& m) {
             return m.plane_size_m ? Value::object({{"size_m", *m.plane_size_m}}) : Value();
           }),
+      field(
+          "shapes", &Mesh::shapes, "",
+          "of a thing that deforms: file ids of PLY meshes with the vertices of `file` at other places, one after the "
+          "other; an image's `shapes` says how far it is through them, straight lines between; left out: rigid"),
       field("normals", &Mesh::normals, "", "smooth (the file's, else averaged by area and angle) or flat")
           .one_of({"smooth", "flat"})};
   return table;

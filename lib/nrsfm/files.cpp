@@ -209,6 +209,11 @@ Sequence read_sequence(const std::filesystem::path& path, const FileNames& names
   if (tracks.empty()) tracks_of_truth(s, notes);
   read_camera(file, s, notes);
   read_visible(file, names, s, notes);
+  if (file.find("W_sigma") != nullptr) {
+    s.sigma = file.matrix("W_sigma");
+    if (s.sigma.rows() != s.frames() || s.sigma.cols() != s.points())
+      refuse(file.place("W_sigma"), "is no number for every frame and point");
+  }
   if (file.find("unit_m") != nullptr) s.unit_m = file.number("unit_m");
   if (s.unit_m < 0) refuse(file.place("unit_m"), "is negative");
   if (file.find("factors") != nullptr) s.factors = file.factors("factors");
@@ -287,6 +292,7 @@ void write_sequence(const Sequence& s, const std::filesystem::path& file, const 
   out["W"] = variable_of(s.tracks);
   out["V"] = variable_of(s.visible.cast<double>().matrix());
   out["V"].kind = io::MatVariable::Kind::logical;
+  if (s.sigma.size() > 0) out["W_sigma"] = variable_of(s.sigma);
   if (s.truth) out["S"] = variable_of(*s.truth);
   out["frame"] = variable_of(std::string(s.truth_frame == ShapeFrame::camera ? "camera" : "object"));
   out["projection"] =

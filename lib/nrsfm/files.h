@@ -1,7 +1,8 @@
 // Sequences and reconstructions as files: MATLAB v5 (.mat), NumPy (.npz, or .npy with shapes), PLY per frame.
 //
 // Written .mat, the benchmark's naming: W (2F x P, NaN where missing), V (F x P, 1 where visible), S (3F x P truth),
-// R (2F x 3 rows of camera_from_object), T (3F, translation), K (3 x 3), projection, unit_m, factors (struct of text).
+// W_sigma (F x P, of the tracks where it is known), R (2F x 3 rows of camera_from_object), T (3F, translation), K
+// (3 x 3), projection, unit_m, factors (struct of text).
 // A reconstruction: S (3F x P), R, frame ("object" | "camera"), algorithm, factors.
 // Read besides: names of the field's files, Shat, S_hat, X (3 x P x F), GT, Q, Rs, visibility, D (1 where MISSING),
 // scale of Akhter's files (truth = S * scale, tracks = W * scale beside Shat), structs p(i).p / Pgth(i).P / v of

@@ -47,6 +47,7 @@ struct Sequence {
   Projection projection = Projection::orthographic;
   std::optional<Pinhole> pinhole;  // where perspective and known
   Tracks tracks;                   // NaN where not visible
+  Eigen::MatrixXd sigma;           // F x P, of visible tracks, each coordinate, in their unit; empty: not known
   Visible visible;                 // never empty: all true where nothing is missing
   std::optional<Shapes> truth;     // also of points that are not visible
   ShapeFrame truth_frame = ShapeFrame::object;

@@ -91,6 +91,7 @@ Session::Session(const manifest::Document& document, const SessionOptions& optio
   std::set<fs::path> files;
   scene::Reading reading;
   reading.allow_open = options.allow_open;
+  reading.image = options.image;
   reading.on_file = [&](const fs::path& path) {
     files.insert(path);
     if (on_file) on_file(path);

@@ -28,6 +28,7 @@ struct SessionOptions {
   std::vector<double> wavelengths_m{};  // of spectral channels
   bool allow_open = false;
   std::string purpose{};  // what else pictures depend on, for their identity
+  std::string image{};    // whose shapes things that deform have; empty: of all images
   double checkpoint_s = 10;
   bool resume = false, force = false;
 };

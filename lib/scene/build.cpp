@@ -19,6 +19,7 @@
 #include "optics/colour.h"
 #include "scene/amounts.h"
 #include "scene/checks.h"
+#include "scene/deformed.h"
 #include "scene/edit.h"
 #include "scene/mechanisms.h"
 #include "scene/placement.h"
@@ -147,7 +148,7 @@ class Builder {
     return v;
   }
 
-  Shape shape(const std::string& id) {
+  Shape shape(const std::string& id, const std::string& object) {
     const std::string pointer = "/meshes/" + id;
     const auto entry = document_.meshes.find(id);
     if (entry == document_.meshes.end()) throw Error(Exit::data, at(pointer), "no such mesh", "name one of `meshes`");
@@ -161,8 +162,9 @@ class Builder {
       return Plane{positive((*mesh.plane_size_m)[0], "size", place), positive((*mesh.plane_size_m)[1], "size", place)};
     }
     if (mesh.file.empty()) throw Error(Exit::data, at(pointer), "neither file nor sphere nor plane", "name a PLY file");
-    auto& known = meshes_[id];
-    if (!known) known = read_mesh(mesh, wish_of(id), pointer);
+    const double share = mesh.shapes.empty() ? 0 : deformation_of(document_, object, reading_.image);
+    auto& known = meshes_[{id, share}];
+    if (!known) known = read_mesh(id, share, wish_of(id), pointer);
     return known;
   }
 
@@ -185,12 +187,14 @@ class Builder {
     return numbered;
   }
 
-  std::shared_ptr<const mesh::Mesh> read_mesh(const manifest::Mesh& entry, const Wish& wish,
+  std::shared_ptr<const mesh::Mesh> read_mesh(const std::string& id, double share, const Wish& wish,
                                               const std::string& pointer) const {
-    const auto path = file(entry.file, pointer + "/file");
+    const manifest::Mesh& entry = document_.meshes.at(id);
+    const auto path = manifest::resolve(document_, entry.file, pointer + "/file");
     const auto shading = entry.normals == "flat" ? mesh::Shading::flat : mesh::Shading::smooth;
     std::size_t dropped = 0;
-    mesh::Mesh mesh = mesh::prepare(io::read_ply(path, wish.ply), shading, path.string(), &dropped);
+    mesh::Mesh mesh = mesh::prepare(deformed_mesh(document_, id, share, wish.ply, reading_.on_file), shading,
+                                    path.string(), &dropped);
     if (wish.curvature) mesh.mean_curvature_per_m = mesh::mean_curvature_per_m(mesh);
     if (dropped > 0)
       warn(path.string() + ": " + std::to_string(dropped) + " of " + std::to_string(dropped + mesh.triangles.size()) +
@@ -223,7 +227,7 @@ class Builder {
       const manifest::Object& object = document_.objects[i];
       const std::string pointer = "/objects/" + std::to_string(i);
       scene.instances.push_back(
-          {object.id, shape(object.mesh), pose(object.world_from_object, pointer + "/world_from_object"),
+          {object.id, shape(object.mesh, object.id), pose(object.world_from_object, pointer + "/world_from_object"),
            surface_index(scene.appearance, object.surface, pointer + "/surface"), object.priority.value_or(0)});
       const Surface& outer = scene.appearance.surfaces[scene.instances.back().surface];
       check_fit(outer, scene.instances.back().shape, at(pointer));
@@ -335,7 +339,7 @@ class Builder {
   const manifest::Document& document_;
   const Reading& reading_;
   Wish wish_;
-  std::map<std::string, std::shared_ptr<const mesh::Mesh>> meshes_;
+  std::map<std::pair<std::string, double>, std::shared_ptr<const mesh::Mesh>> meshes_;  // by id and deformation
 };
 
 }  // namespace

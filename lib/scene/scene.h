@@ -124,7 +124,8 @@ struct Scene {
 struct Reading {
   std::function<void(const std::filesystem::path&)> on_file;  // hears of every file that is read
   optics::Bands bands{};
-  bool allow_open = false;  // meshes with holes may bound media
+  bool allow_open = false;                               // meshes with holes may bound media
+  std::string image{};                                   // whose shapes things that deform have (scene/deformed.h)
   std::function<void(const std::string&)> on_warning{};  // hears what is odd about files; else it is logged
 };
 // Reads meshes and textures, checks everything, applies the `mechanisms` section. Error(data | no_input) at the place

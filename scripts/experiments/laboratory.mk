@@ -2,17 +2,19 @@
 # a  a light arc round a sample, into brdf-fit: run/sample.json
 # b  two arms, calibrated on a board, then a knot into render and compare:
 #    run/compared.json
-# c  six paths of a camera, from them a sheet that bends, into the solvers:
-#    run/shapes.json
+# c  a sheet that bends, photographed from six paths of a camera, its points
+#    followed through the pictures, into the solvers, beside the same points as
+#    geometry has them: run/shapes.json
 # d  a varnished knot on a turntable before a camera behind polarizers, into
 #    render and compare: run/polarized.json
 # Smaller than the real ones, which are STEP=7.5deg EDGES='' (2,783 views),
-# SPP=256 and VIEWS=60.
+# SPP=256 and VIEWS=241.
 STEP  = 22.5deg
 EDGES = ,steepest=22.5deg,flattest=67.5deg,nearest=22.5deg
 SPP   = 16
-VIEWS = 24
+VIEWS = 97
 SOLVERS = rigid csf
+SPREAD_circle = 0.3
 PATHS = circle half-circle line flyby zigzag tricky
 BOARD = --charuco 9x7 --square 20mm --marker 15mm --dictionary 4X4_50
 KNOT  = azimuth=200deg,span=60deg,step=30deg,lowest=50deg,highest=50deg$\
@@ -26,7 +28,7 @@ TURN  = step=60deg,radius=24cm,azimuth=90deg,lowest=45deg,highest=45deg
 .PHONY: all clean
 all: run/sample.json run/compared.json run/shapes.json run/polarized.json
 
-run/arc.json run/studio.json run/turntable.json: run/%.json: | run
+run/arc.json run/studio.json run/stage.json run/turntable.json: run/%.json: | run
 > acquire --specimen $* --out run/$* --force -o $@
 
 # a: two exposures, since a varnish is bright in its mirror direction.
@@ -61,15 +63,21 @@ run/compared.json: run/knot.json
 > render $< --spp $(SPP) --resume --out run/rendered | \
 >   compare --html run/compared.html -o $@
 
-# c
-$(PATHS:%=run/%-frames.json): run/%-frames.json: run/studio.json
-> acquire $< --plan $*:views=$(VIEWS),distance=36cm,spread=0.5 -o run/$*-plan.json \
->   || test $$? -eq 2
-> acquire run/$*-plan.json --go --spp 1 --resume --out run/$* -o $@
+# c: the drive turns once while the camera goes its way, and every 4th picture
+# is a frame; all the way round is beyond the arm's reach.
+run/sheet.json: run/stage.json
+> nrsfm-make --object sheet --kind bending --frames 40 --force --out run/sheet \
+>   -i $< -o $@
+
+$(PATHS:%=run/%-frames.json): run/%-frames.json: run/stage.json run/sheet.json
+> acquire $< --plan $*:views=$(VIEWS),distance=36cm,spread=$(or $(SPREAD_$*),0.5),turn=360deg \
+>   --target 0m,0m,6cm -o run/$*-plan.json || test $$? -eq 2
+> acquire run/$*-plan.json --go --truth run/sheet.json --spp $(SPP) --resume \
+>   --out run/$* -o $@
 
 $(PATHS:%=run/%-shapes.json): run/%-shapes.json: run/%-frames.json
-> nrsfm-make --seen-from $* --kind bending --camera perspective \
->   --missing with --resume --out run/tracks -i $< | \
+> nrsfm-make --follow $* --truth run/sheet.json --object sheet --every 4 \
+>   --least-seen 50% --resume --out run/tracks -i $< | \
 >   nrsfm-solve $(SOLVERS:%=--solver %) --resume --out run/shapes -o $@ || test $$? -eq 2
 
 run/shapes.json: $(PATHS:%=run/%-shapes.json)

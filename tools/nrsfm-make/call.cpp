@@ -189,6 +189,8 @@ std::vector<std::string> deformations(const cli::Invocation& call) {
 }  // namespace
 
 Exit run(cli::Invocation& call) {
+  if (call.given("follow")) return follow_photographs(call);
+  if (call.given("object")) return make_object(call);
   const auto cells =
       design(deformations(call), levels(call, call.given("seen-from") ? "seen-from" : "path", path_names()),
              levels(call, "camera", cameras),
@@ -231,6 +233,15 @@ void check(cli::Invocation& call) {
   if (call.given("seen-from") && !is_file_name(call.text("seen-from")))
     throw Error(Exit::usage, "--seen-from", "is \"" + call.text("seen-from") + "\", which no file can be called",
                 "take letters, digits, -, _ and dots");
+  if (call.given("follow") && !is_file_name(call.text("follow")))
+    throw Error(Exit::usage, "--follow", "is \"" + call.text("follow") + "\", which no file can be called",
+                "take letters, digits, -, _ and dots");
+  if (call.given("object") && !is_file_name(call.text("object")))
+    throw Error(Exit::usage, "--object", "is \"" + call.text("object") + "\", which no file can be called",
+                "take letters, digits, -, _ and dots");
+  if (call.given("object") && !call.given("follow") && call.texts("kind").size() != 1)
+    throw Error(Exit::usage, "--object", format("is one thing, and %zu kinds are named", call.texts("kind").size()),
+                "name one: --kind bending");
   for (const char* option : {"frames", "points", "kind"})
     if (call.given("meshes") && call.given(option))
       throw Error(Exit::usage, std::string("--") + option, "is that of the scans", "leave it out beside --meshes");
@@ -254,6 +265,38 @@ std::vector<cli::Option> options() {
                "of their names, about the world's origin; the path is called NAME.",
        .metavar = "NAME",
        .conflicts = {"path", "frames", "meshes"}},
+      {.name = "follow",
+       .type = Type::text,
+       .help = "Instead of simulating: follow points through the manifest's images, in the order of their names; the "
+               "path is called NAME. --points are followed at once, lost ones replaced.",
+       .metavar = "NAME",
+       .conflicts = {"path", "seen-from", "kind", "frames", "meshes"}},
+      {.name = "every",
+       .type = Type::integer,
+       .help = "--follow: of the images one makes a frame; those between are followed through.",
+       .preset = "1",
+       .lower = 1,
+       .upper = 1000,
+       .needs = {"follow"}},
+      {.name = "truth",
+       .type = Type::input_file,
+       .help = "--follow: what really stood there, as acquire --truth read it; adds the truth, and the same points' "
+               "tracks as geometry has them.",
+       .needs = {"follow", "object"}},
+      {.name = "object",
+       .type = Type::text,
+       .help = "Instead of tracks: enter the thing itself, painted, as object NAME of the scene; its mesh goes through "
+               "--frames shapes (acquire --truth). With --follow: what is followed.",
+       .metavar = "NAME",
+       .conflicts = {"path", "seen-from", "meshes"}},
+      {.name = "grain",
+       .type = Type::quantity,
+       .help = "--object: the finest of its paint.",
+       .preset = "3mm",
+       .dimension = Dimension::length,
+       .lower = 1e-5,
+       .upper = 1,
+       .needs = {"object"}},
       {.name = "camera",
        .type = Type::choice,
        .help = "Projection; may be repeated. Left out: both.",

@@ -9,6 +9,7 @@
 #include "camera/intrinsics.h"
 #include "io/picture.h"
 #include "manifest/image_list.h"
+#include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "render/entries.h"
 #include "render/mosaic.h"
@@ -70,8 +71,10 @@ SessionOptions options_of(const cli::Invocation& call) {
   return options;
 }
 
-Session session_of(cli::Invocation& call) {
-  return Session(seen_by(call), options_of(call), [&](const fs::path& path) { call.note_input(path); });
+Session session_of(cli::Invocation& call, const std::string& image) {
+  SessionOptions options = options_of(call);
+  options.image = image;
+  return Session(seen_by(call), options, [&](const fs::path& path) { call.note_input(path); });
 }
 
 std::string percent(double ratio) {
@@ -130,11 +133,12 @@ void write_layers(const Place& place) {
 
 class Images {
  public:
-  explicit Images(cli::Invocation& call) : call_(call), seen_(seen_by(call)), session_(session_of(call)) {}
+  explicit Images(cli::Invocation& call) : call_(call), seen_(seen_by(call)) {}
 
   // False where the picture is noisier than was asked for.
   bool make(std::size_t image, const std::string& id, const Place& place) {
-    std::optional<Facts> facts = session_.finished(image, place.picture);
+    session_for(image);
+    std::optional<Facts> facts = session_->finished(image, place.picture);
     if (!facts || !is_whole(place)) facts = render_anew(image, id, place);
     write_layers(place);
     if (call_.flag("record"))
@@ -146,7 +150,7 @@ class Images {
 
  private:
   Facts render_anew(std::size_t image, const std::string& id, const Place& place) {
-    Rendered rendered = session_.render(image, place.picture);
+    Rendered rendered = session_->render(image, place.picture);
     if (call_.flag("record")) rendered.picture = recorded(rendered.picture, sensor_of(seen_, image), id, call_.seed);
     write(place, rendered);
     Session::remove_checkpoint(place.picture);
@@ -154,9 +158,18 @@ class Images {
   }
   std::vector<double> wavelengths() const { return options_of(call_).wavelengths_m; }
 
+  // One session for images whose things have the same shapes.
+  void session_for(std::size_t image) {
+    const manifest::ImageEntry& entry = seen_.images[image];
+    if (session_ && entry.shapes == shapes_) return;
+    session_.emplace(session_of(call_, entry.id));
+    shapes_ = entry.shapes;
+  }
+
   cli::Invocation& call_;
   manifest::Document seen_;
-  Session session_;
+  std::optional<Session> session_;
+  std::map<std::string, double> shapes_;  // of the session's images
 };
 
 void check_merge(const cli::Invocation& call) {
@@ -177,7 +190,10 @@ void check(cli::Invocation& call) {
   pass_range(options_of(call));
   for (const std::size_t i : chosen_images(call.document, call.texts("image")))
     if (call.flag("record")) check_recordable(call.document, i);
-  if (call.flag("check")) session_of(call);
+  if (call.flag("check")) {
+    const auto chosen = chosen_images(call.document, call.texts("image"));
+    session_of(call, chosen.empty() ? "" : call.document.images[chosen.front()].id);
+  }
 }
 
 Exit render_images(cli::Invocation& call) {

@@ -10,10 +10,13 @@
 namespace gonio::acquisition {
 
 std::span<const SpecimenLaboratory> specimen_laboratories() {
-  static const std::array<SpecimenLaboratory, 4> all{
+  static const std::array<SpecimenLaboratory, 5> all{
       {{"desk", "a UR5 that holds a camera over a board", specimen_desk},
        {"arc", "an IRB 1600 that holds a camera over a flat sample and a white tile, and a light arc of 11 lamps",
         specimen_arc},
+       {"stage",
+        "the studio with an empty table and a drive that deforms the object \"sheet\" of a truth (nrsfm-make --object)",
+        specimen_stage},
        {"studio", "two UR5, one with a camera, one with a lamp, round a knot on a table or a board", specimen_studio},
        {"turntable", "a UR3 that holds a camera behind polarizers over a varnished knot on a turntable",
         specimen_turntable}}};

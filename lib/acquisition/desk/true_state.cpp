@@ -244,6 +244,8 @@ manifest::Document TrueState::scene_of(const std::string& camera, const Shot& sh
   image.exposure_s = shot.exposure_s;
   image.time_s = clock.now_s();
   image.temperature_K = desk::room_K + desk::warmth_K(*image.time_s);
+  for (const auto& [name, table] : lab.turntables)
+    image.shapes.merge(deformations(table, tables.at(name)->angle_rad()));
   auto& pose = static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace());
   if (!entry.robot.empty() && entry.tool_from_camera)
     pose = world_from_tool(entry.robot) * Rigid<frame::Tool, frame::Camera>(*entry.tool_from_camera);

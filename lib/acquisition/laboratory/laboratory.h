@@ -53,8 +53,12 @@ std::optional<Rigid<frame::Tool, frame::Camera>> tool_from_camera(const manifest
                                                                   const std::string& camera);
 Rigid<frame::World, frame::Camera> world_from_camera(const manifest::Document& document, const Laboratory& laboratory,
                                                      const std::string& camera, const State& state);
-// How what stands on a turntable has moved since its angle was 0, world coordinates.
+// A turntable that carries nothing and deforms something.
+bool is_drive(const manifest::LaboratoryTurntable& table);
+// How what stands on a turntable has moved since its angle was 0, world coordinates; not at all where the table is a
+// drive. And how far what it deforms has gone through its shapes (scene/deformed.h), which takes one turn.
 Rigid<frame::World, frame::World> turntable_motion(const manifest::LaboratoryTurntable& table, double angle_rad);
+std::map<std::string, double> deformations(const manifest::LaboratoryTurntable& table, double angle_rad);
 // A standing lamp without a place of its own stands where its light does.
 Vec3 lamp_position(const manifest::Document& document, const Laboratory& laboratory, const std::string& lamp,
                    const State& state);

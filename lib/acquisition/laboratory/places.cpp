@@ -1,10 +1,12 @@
 // Where things of a laboratory are: flanges, cameras, lamps; and the words for a limit that is broken.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "acquisition/laboratory/laboratory.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "geom/angle.h"
 #include "manifest/document.h"
 #include "manifest/sections/laboratory.h"
 #include "manifest/sections/light.h"
@@ -91,11 +93,22 @@ Rigid<frame::World, frame::Camera> world_from_camera(const manifest::Document& d
   return *part.world_from_camera;
 }
 
+bool is_drive(const manifest::LaboratoryTurntable& table) {
+  return table.carries.empty() && !table.deforms.empty();
+}
+
 Rigid<frame::World, frame::World> turntable_motion(const manifest::LaboratoryTurntable& table, double angle_rad) {
+  if (is_drive(table)) return {};
   Rigid<frame::World, frame::Object> world_from_table;
   if (table.world_from_table) world_from_table = *table.world_from_table;
   const Rigid<frame::Object, frame::Object> turn{quaternion_of_rotation_vector({0, 0, angle_rad}), {}};
   return world_from_table * turn * inverse(world_from_table);
+}
+
+std::map<std::string, double> deformations(const manifest::LaboratoryTurntable& table, double angle_rad) {
+  std::map<std::string, double> shares;
+  for (const std::string& object : table.deforms) shares[object] = std::clamp(angle_rad / (2 * pi), 0.0, 1.0);
+  return shares;
 }
 
 Vec3 lamp_position(const manifest::Document& document, const Laboratory& laboratory, const std::string& lamp,

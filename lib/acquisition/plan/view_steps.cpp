@@ -97,7 +97,9 @@ void need_lamps(const PatternScene& scene, const std::string& pattern, std::size
 std::vector<manifest::PlanStep> path_steps(const std::string& path, const PatternScene& scene,
                                            const PatternNumbers& numbers) {
   const auto frames = static_cast<std::size_t>(numbers.at("views"));
-  const double distance = numbers.at("distance"), size = numbers.at("spread");
+  const double distance = numbers.at("distance"), size = numbers.at("spread"), turn = numbers.at("turn");
+  if (turn != 0 && scene.turntable.empty())
+    throw Error(Exit::usage, path, "turn is given, and no turntable is named", "name one of the laboratory's");
   const Vec3 middle = view_path(path, 0.5);  // about which the way is made smaller, still looking at the target
   std::vector<manifest::PlanStep> steps;
   for (std::size_t f = 0; f < frames; ++f) {
@@ -105,6 +107,7 @@ std::vector<manifest::PlanStep> path_steps(const std::string& path, const Patter
     const Vec3 place = middle + size * (view_path(path, s) - middle);
     manifest::PlanStep step = view_step(scene, image_name(path, f));
     step.world_from_camera = camera_looking(scene, scene.target_m + distance * turned(scene, place));
+    if (turn != 0) step.turntable_rad[scene.turntable] = s * turn;
     steps.push_back(std::move(step));
   }
   return steps;
@@ -113,7 +116,8 @@ std::vector<manifest::PlanStep> path_steps(const std::string& path, const Patter
 std::vector<PatternParameter> path_parameters() {
   return {{"distance", "m", 0.5, 0.01, 100, "of the camera from the target, in the mean"},
           {"views", "1", 60, 1, 100000, "photographs along the way"},
-          {"spread", "1", 1, 0.01, 1, "of the way about its middle; below 1 it is that much smaller"}};
+          {"spread", "1", 1, 0.01, 1, "of the way about its middle; below 1 it is that much smaller"},
+          {"turn", "rad", 0, -1000, 1000, "of the turntable from the first photograph to the last; 0: it stands"}};
 }
 
 std::vector<manifest::PlanStep> grid_steps(const std::string& pattern, const PatternScene& scene,

@@ -78,8 +78,11 @@ Rigid<frame::World, frame::World> seen_from_table(const manifest::Laboratory& la
   return inverse(motion);
 }
 
-bool has_turned(const FrameRecord& r) {
-  return std::ranges::any_of(r.turntables, [](const auto& table) { return table.second != 0; });
+bool has_turned(const manifest::Laboratory& lab, const FrameRecord& r) {
+  return std::ranges::any_of(r.turntables, [&lab](const auto& table) {
+    const auto entry = lab.turntables.find(table.first);
+    return table.second != 0 && (entry == lab.turntables.end() || !is_drive(entry->second));
+  });
 }
 
 // The light that a lamp is in this frame. One that an arm held, or that went round a turntable, is a light of its own
@@ -94,7 +97,7 @@ std::string light_there(manifest::Document& d, const Laboratory& laboratory, con
   manifest::Light there = d.lights.at(light);
   const auto position = there.parameters.find("position_m"), towards = there.parameters.find("towards");
   const bool placed = position != there.parameters.end();
-  if (!(held && placed) && !(has_turned(r) && (placed || towards != there.parameters.end()))) return light;
+  if (!(held && placed) && !(has_turned(lab, r) && (placed || towards != there.parameters.end()))) return light;
   const Rigid<frame::World, frame::World> seen = seen_from_table(lab, r);
   const auto put = [](manifest::Parameter& parameter, Vec3 v) { parameter.value = {v.x, v.y, v.z}; };
   if (placed)
@@ -241,6 +244,9 @@ void enter_frames(manifest::Document& d, const Laboratory& laboratory, const man
         image.noise = noise_of(camera->second, r);
       }
       if (r.lamps.empty() && !lab.lamps.empty()) image.dark = true;
+      for (const auto& [name, angle] : r.turntables)
+        if (const auto table = lab.turntables.find(name); table != lab.turntables.end())
+          image.shapes.merge(deformations(table->second, angle));
       if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())
         if (tool_from_camera(d, r.camera) || camera->second.world_from_camera)
           static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =

@@ -1,5 +1,6 @@
 // "images": recordings, and under what they were made.
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,7 +38,8 @@ struct ImageEntry {  // "images"
   std::string robot;              // whose tool pose or joints follow
   std::optional<Pose<frame::Base, frame::Tool>> base_from_tool;  // as the robot's controller said
   std::vector<double> joints_rad;
-  std::vector<SeenBoard> boards;  // instead of `board`, where it shows several
+  std::map<std::string, double> shapes{};  // objects whose mesh has shapes: how far through them, 0 to 1
+  std::vector<SeenBoard> boards{};         // instead of `board`, where it shows several
 };
 
 }  // namespace gonio::manifest

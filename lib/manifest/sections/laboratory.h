@@ -83,6 +83,9 @@ struct LaboratoryTurntable {
   std::vector<double> range_rad{};                                      // [lower, upper]; empty: turns on and on
   std::optional<double> speed_rad_per_s{}, acceleration_rad_per_s2{};
   std::vector<std::string> carries{};  // objects
+  // Objects that it deforms: while it turns once, their meshes go through their shapes. One that carries nothing is a
+  // drive: nothing else turns with it.
+  std::vector<std::string> deforms{};
 };
 
 struct LaboratoryScreen {

@@ -41,21 +41,6 @@ Shapes without_gaps(const Shapes& shapes) {
   return kept.leftCols(count);
 }
 
-void add_box(FrameMesh& mesh, const RigBox& box) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices_m.cols());
-  mesh.vertices_m.conservativeResize(3, mesh.vertices_m.cols() + 8);
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-    mesh.vertices_m.col(first + corner) = box.world_from_box * sign.cwiseProduct(box.half_m);
-  }
-  constexpr std::array<std::array<std::uint32_t, 4>, 6> faces{
-      {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
-  for (const auto& [a, b, c, d] : faces) {
-    mesh.triangles.push_back({first + a, first + b, first + c});
-    mesh.triangles.push_back({first + a, first + c, first + d});
-  }
-}
-
 // A ray past the rim of a sheet: what the sheet shows next to the point, outside where nothing is found.
 bool outside_beside(const FrameCaster& caster, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                     double distance, double size) {
@@ -86,6 +71,21 @@ void require_nearby(const Motion& motion, const std::string& tracks, const std::
 }
 
 }  // namespace
+
+void add_box(FrameMesh& mesh, const RigBox& box) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices_m.cols());
+  mesh.vertices_m.conservativeResize(3, mesh.vertices_m.cols() + 8);
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    mesh.vertices_m.col(first + corner) = box.world_from_box * sign.cwiseProduct(box.half_m);
+  }
+  constexpr std::array<std::array<std::uint32_t, 4>, 6> faces{
+      {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+  for (const auto& [a, b, c, d] : faces) {
+    mesh.triangles.push_back({first + a, first + b, first + c});
+    mesh.triangles.push_back({first + a, first + c, first + d});
+  }
+}
 
 Motion motion_of(DeformingSurface made) {
   const auto surface = std::make_shared<const DeformingSurface>(std::move(made));

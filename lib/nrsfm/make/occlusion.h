@@ -14,6 +14,8 @@ struct FrameMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+void add_box(FrameMesh& mesh, const RigBox& box);
+
 struct Motion {
   std::string kind;             // level of the factor "deformation"
   std::string source;           // what deforms

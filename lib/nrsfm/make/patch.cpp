@@ -51,7 +51,16 @@ std::optional<Patch> Patch::of(const GreyPicture& picture, const Eigen::Vector2d
   return patch;
 }
 
-std::optional<double> Patch::align(const GreyPicture& picture, Warp& warp) const {
+// Both pictures' noise is in the residuals; the step moves the place by A d / g, the mean of both axes.
+double Patch::sigma_px(double residual_squares, double gain, const Warp& warp) const {
+  Eigen::Matrix<double, 8, 2> axes = Eigen::Matrix<double, 8, 2>::Zero();
+  axes(4, 0) = axes(5, 1) = 1;
+  const Eigen::Matrix2d inverse = normal_.solve(axes).middleRows<2>(4);
+  const double variance = residual_squares / (static_cast<double>(value_.size()) - 8) / (gain * gain);
+  return std::sqrt(variance * (warp.a * inverse * warp.a.transpose()).trace() / 2);
+}
+
+std::optional<Fit> Patch::align(const GreyPicture& picture, Warp& warp) const {
   constexpr int most = 30;
   constexpr double enough_px = 0.01;
   Eigen::VectorXd seen(value_.size());
@@ -77,7 +86,8 @@ std::optional<double> Patch::align(const GreyPicture& picture, Warp& warp) const
     const double moved = step.t.norm() + half_ * (step.a - Eigen::Matrix2d::Identity()).norm();
     if (moved > enough_px && round + 1 < most) continue;
     const Eigen::VectorXd a = seen.array() - seen.mean(), b = value_.array() - value_.mean();
-    return a.dot(b) / std::sqrt(std::max(1e-12, a.squaredNorm() * b.squaredNorm()));
+    const double likeness = a.dot(b) / std::sqrt(std::max(1e-12, a.squaredNorm() * b.squaredNorm()));
+    return Fit{likeness, sigma_px((seen - columns_ * fit).squaredNorm(), gain, warp)};
   }
   return std::nullopt;
 }

@@ -36,15 +36,6 @@ double noise(const Eigen::Vector3d& p, std::uint64_t seed) {
   return sum;
 }
 
-// Albedo at a place of the material.
-double albedo(const Paint& paint, const Eigen::Vector3d& place_m) {
-  constexpr int octaves = 4;
-  double sum = 0;
-  for (int k = 0; k < octaves; ++k)
-    sum += noise(place_m / (paint.grain_m * (1 << k)), split_mix(paint.seed + static_cast<std::uint64_t>(k)));
-  return std::clamp(0.5 + 0.35 * sum, 0.05, 0.95);
-}
-
 // Ray through a place of the picture: origin and direction in the object's frame. Orthographic ones start at the depth
 // `nearest` of the camera's frame.
 std::pair<Eigen::Vector3d, Eigen::Vector3d> ray_through(const PictureView& view, double x_px, double y_px,
@@ -80,6 +71,14 @@ Window showing(const FrameMesh& mesh, const PictureView& view) {
 }
 
 }  // namespace
+
+double albedo(const Paint& paint, const Eigen::Vector3d& material_m) {
+  constexpr int octaves = 4;
+  double sum = 0;
+  for (int k = 0; k < octaves; ++k)
+    sum += noise(material_m / (paint.grain_m * (1 << k)), split_mix(paint.seed + static_cast<std::uint64_t>(k)));
+  return std::clamp(0.5 + 0.35 * sum, 0.05, 0.95);
+}
 
 double pixel_m(const PictureView& view, const Eigen::Vector3d& place_m) {
   if (view.projection == Projection::orthographic) return 1 / view.pinhole.fx_px;

@@ -28,6 +28,8 @@ struct Paint {
   double grain_m = 0;
   std::uint64_t seed = 1;
 };
+double albedo(const Paint& paint, const Eigen::Vector3d& material_m);  // 0.05 to 0.95
+
 // A lamp beside the object and light from everywhere; each pixel is the mean of 2 x 2 rays. `material_m`: for every
 // vertex of the mesh the place of the paint that sticks to it.
 GreyPicture picture_of(const FrameMesh& mesh, const Eigen::Matrix3Xd& material_m, const PictureView& view,

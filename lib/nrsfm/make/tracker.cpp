@@ -28,9 +28,11 @@ cv::Point2f point(const Eigen::Vector2d& place_px) {
 struct Tracker::Impl {
   struct Followed {
     std::optional<Patch> patch;
-    Warp warp;           // of the patch in the last picture
-    double area = 1;     // of the patch over that of the first
-    double largest = 1;  // that the area has been
+    Warp warp;                // of the patch in the last picture
+    double area = 1;          // of the patch over that of the first
+    double largest = 1;       // that the area has been
+    double variance_px2 = 0;  // of where the patch began, about the point that was begun with
+    double sigma_px = 0;
   };
   TrackerOptions options;
   GreyPicture last;              // of which only the pixels are used
@@ -43,12 +45,13 @@ struct Tracker::Impl {
   // Whether the point is found near `expected`.
   bool find(Followed& f, const GreyPicture& now, const Eigen::Vector2d& expected) const {
     Warp warp{f.warp.a, expected};
-    const auto likeness = f.patch->align(now, warp);
-    if (!likeness || *likeness < options.likeness || (warp.t - expected).norm() > options.correction_px) return false;
+    const auto fit = f.patch->align(now, warp);
+    if (!fit || fit->likeness < options.likeness || (warp.t - expected).norm() > options.correction_px) return false;
     const double area = f.area * warp.a.determinant();
     f.largest = std::max(f.largest, area);
     if (area < options.left * f.largest) return false;
     f.warp = warp;
+    f.sigma_px = std::sqrt(f.variance_px2 + fit->sigma_px * fit->sigma_px);
     const Eigen::Vector2d sizes = linear::JacobiSvd<Eigen::Matrix2d>(warp.a).singularValues();
     if (sizes.maxCoeff() < options.change && sizes.minCoeff() * options.change > 1) return true;
     auto anew = Patch::of(now, warp.t, options.half_px);
@@ -56,6 +59,7 @@ struct Tracker::Impl {
     f.patch = std::move(anew);
     f.warp.a.setIdentity();
     f.area = area;
+    f.variance_px2 = f.sigma_px * f.sigma_px;
     return true;
   }
 };
@@ -104,6 +108,10 @@ void Tracker::begin(Eigen::Index point, const Eigen::Vector2d& place_px) {
 
 const Eigen::Matrix2Xd& Tracker::places_px() const {
   return impl_->places_px;
+}
+
+double Tracker::sigma_px(Eigen::Index point) const {
+  return impl_->points[static_cast<std::size_t>(point)].sigma_px;
 }
 
 }  // namespace gonio::nrsfm

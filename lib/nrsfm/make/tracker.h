@@ -31,6 +31,10 @@ class Tracker {
   // Begins to follow a point from a place in the last picture; lost at once where the picture ends beside it.
   void begin(Eigen::Index point, const Eigen::Vector2d& place_px);
   const Eigen::Matrix2Xd& places_px() const;  // in the last picture; NaN: not followed
+  // One standard deviation of a followed point's place, each coordinate, about the point of the material where it
+  // began: what noise did to the last alignment and to those at which patches were taken anew. 0 where it begins.
+  double sigma_px(Eigen::Index point) const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

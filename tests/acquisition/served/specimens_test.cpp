@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "acquisition/desk/specimen_laboratory.h"
 #include "base/atomic_file.h"
@@ -14,6 +15,7 @@
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mounting.h"
+#include "manifest/sections/object.h"
 #include "manifest/sections/plan.h"
 #include "manifest/sections/robot.h"
 #include "process.h"
@@ -42,7 +44,7 @@ manifest::Document compared(const tests::ScratchFolder& folder, const Words& ren
   Words render{"render", "frames.json", "--spp", "16", "--out", "r", "-o", "r.json"};
   render.insert(render.end(), render_more.begin(), render_more.end());
   expect_done(render, folder);
-  expect_done({"compare", "r.json", "-o", "compared.json"}, folder);
+  expect_done({"compare", "r.json", "--force", "-o", "compared.json"}, folder);
   return manifest::read_document(folder / "compared.json");
 }
 
@@ -95,6 +97,38 @@ TEST(Specimens, TwoArmsGoByWhatWasMeasured) {
     EXPECT_LT(norm(image.world_from_camera->translation_m - asked->world_from_camera->translation_m), 1e-6) << image.id;
     ASSERT_TRUE(image.saturation && image.noise);
   }
+}
+
+// A sheet that no client knows bends while its drive turns: frames differ though nothing else moves, say how far it
+// was, and are rendered again from the truth as they were taken.
+TEST(Specimens, WhatADriveDeformsIsPhotographedAndKnownAgain) {
+  const tests::ScratchFolder folder;
+  write_small("stage", folder);
+  expect_done({"nrsfm-make", "--object", "sheet", "--kind", "bending", "--frames", "4", "--grain", "2cm", "--out", "s",
+               "-i", "lab.json", "-o", "truth.json"},
+              folder);
+  expect_done({"acquire", "lab.json", "--plan", "tricky:views=3,distance=36cm,spread=0.01,turn=360deg", "--target",
+               "0m,0m,6cm", "-o", "plan.json"},
+              folder);
+  expect_done({"acquire", "plan.json", "--go", "--truth", "truth.json", "--spp", "16", "--out", "run", "-o", "f.json"},
+              folder);
+  const manifest::Document f = manifest::read_document(folder / "f.json");
+  ASSERT_EQ(f.images.size(), 3U);
+  for (const manifest::ImageEntry& image : f.images) {
+    const double share = 0.5 * (image.id.back() - '1');
+    EXPECT_EQ(image.shapes, (std::map<std::string, double>{{"sheet", share}, {"sheet-rig", share}})) << image.id;
+    EXPECT_LT(norm(image.world_from_camera->translation_m - f.images[0].world_from_camera->translation_m), 0.01);
+  }
+  EXPECT_EQ(std::ranges::count(f.objects, "sheet", &manifest::Object::id), 0);
+  manifest::Document twin = manifest::read_document(folder / "truth.json");
+  twin.images = f.images, twin.lights = f.lights;
+  for (manifest::ImageEntry& image : twin.images)
+    image.file = manifest::add_file(twin, manifest::resolve(f, image.file, "/files"), image.id);
+  write_file(folder / "frames.json", manifest::print_document(twin, folder.path()));
+  for (const manifest::Comparison& c : compared(folder, {}).comparisons) EXPECT_GT(*c.ssim, 0.97) << c.image;
+  std::swap(twin.images[0].shapes, twin.images[2].shapes);
+  write_file(folder / "frames.json", manifest::print_document(twin, folder.path()));
+  EXPECT_LT(*compared(folder, {"--force"}).comparisons[0].ssim, 0.9);
 }
 
 }  // namespace

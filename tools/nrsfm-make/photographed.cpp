@@ -1,0 +1,135 @@
+// nrsfm-make for instruments: what deforms as an object that a simulated laboratory photographs (--object), and tracks
+// out of photographs (--follow).
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/progress.h"
+#include "base/text.h"
+#include "manifest/document.h"
+#include "manifest/sections/sequence.h"
+#include "nrsfm/files.h"
+#include "nrsfm/make/camera_paths.h"
+#include "nrsfm/make/flow.h"
+#include "nrsfm/make/painted_object.h"
+#include "nrsfm/make/photographs.h"
+#include "stats/intervals.h"
+#include "tools/nrsfm-make/call.h"
+
+namespace gonio::tools::nrsfm_make {
+
+using namespace gonio::nrsfm;
+
+namespace {
+
+// Points that enough of the frames show, those that are seen longest first.
+std::vector<Eigen::Index> long_enough(const Visible& visible, double least_seen, const std::string& place) {
+  std::vector<Eigen::Index> kept;
+  const double least = std::max(2.0, least_seen * static_cast<double>(visible.rows()));
+  for (Eigen::Index p = 0; p < visible.cols(); ++p)
+    if (static_cast<double>(visible.col(p).count()) >= least) kept.push_back(p);
+  std::ranges::stable_sort(kept, std::greater{}, [&](Eigen::Index p) { return visible.col(p).count(); });
+  if (kept.size() < 4)
+    throw Error(Exit::data, place,
+                format("has %zu points that are followed through %.0f of %ld frames", kept.size(), std::ceil(least),
+                       static_cast<long>(visible.rows())),
+                "take photographs nearer to each other, or lower --least-seen");
+  return kept;
+}
+
+void keep(Sequence& s, const std::vector<Eigen::Index>& points) {
+  s.tracks = Tracks(s.tracks(Eigen::all, points));
+  s.visible = Visible(s.visible(Eigen::all, points));
+  if (s.sigma.size() > 0) s.sigma = Eigen::MatrixXd(s.sigma(Eigen::all, points));
+  if (s.truth) s.truth = Shapes((*s.truth)(Eigen::all, points));
+}
+
+// "sheet-circle-pictures", "sheet-circle-geometry"
+void enter(cli::Invocation& call, Sequence s, const std::string& tracks_from, std::vector<std::string> notes) {
+  const std::string deformation = call.given("object") ? call.text("object") : "photographed";
+  s.factors = {{"deformation", deformation},
+               {"path", call.text("follow")},
+               {"camera", "perspective"},
+               {"missing", "with"},
+               {"tracks", tracks_from}};
+  s.name = deformation + "-" + call.text("follow") + "-" + tracks_from;
+  const std::filesystem::path path = call.output_path(s.name + ".mat");
+  write_sequence(s, path, "photographs");
+  manifest::TrackSequence entry;
+  entry.file = manifest::add_file(call.document, path, s.name);
+  entry.frames = s.frames(), entry.points = s.points();
+  entry.projection = "perspective";
+  if (s.truth) entry.truth_frame = "object";
+  entry.unit_m = 1;
+  entry.missing_share = s.missing_share();
+  entry.tracks_from = tracks_from == "pictures" ? "optical-flow" : "geometry";
+  entry.factors = s.factors;
+  entry.source = "photographs of the manifest";
+  entry.notes = std::move(notes);
+  call.document.sequences[s.name] = entry;
+}
+
+// How large errors are beside what is said of them: root mean square of each coordinate's error over its sigma.
+std::string errors_of(const Sequence& s) {
+  const TrackErrors errors = track_errors(s);
+  const Tracks truth = project(*s.truth, s.cameras, s.projection, *s.pinhole);
+  std::vector<double> scores;
+  for (Eigen::Index f = 0; f < s.frames(); ++f)
+    for (Eigen::Index p = 0; p < s.points(); ++p)
+      if (s.visible(f, p) && s.sigma(f, p) > 0)
+        scores.push_back((s.tracks - truth).block<2, 1>(2 * f, p).norm() / (std::sqrt(2.0) * s.sigma(f, p)));
+  return format("the median error of the tracks is %.2f px, 5 %% exceed %.2f px", errors.median, errors.upper) +
+         (scores.empty() ? "" : format("; half of them exceed %.1f times their sigma", stats::median(scores)));
+}
+
+}  // namespace
+
+Exit make_object(cli::Invocation& call) {
+  const auto kinds = call.texts("kind");
+  const std::string id = call.text("object");
+  const Animatronic& animatronic = *find_animatronic(kinds.front());
+  const DeformingSurface surface = animatronic.make({call.integer("frames"), 4, call.seed});
+  const Extent extent = enter_painted(call.document, surface, id, {call.number("grain"), call.seed},
+                                      [&call](const std::string& name) { return call.output_path(name); });
+  const auto centimetres = [](double metres) { return format("%.1f cm", 100 * metres); };
+  log(LogLevel::info, id + " stays within x " + centimetres(extent.lower_m.x()) + " to " +
+                          centimetres(extent.upper_m.x()) + ", y " + centimetres(extent.lower_m.y()) + " to " +
+                          centimetres(extent.upper_m.y()) + ", z 0 to " + centimetres(extent.upper_m.z()));
+  return Exit::done;
+}
+
+Exit follow_photographs(cli::Invocation& call) {
+  const Photographs photographs(call.document);
+  for (const std::filesystem::path& file : photographs.files()) call.note_input(file);
+  const FollowOptions options{call.integer("points"), call.integer("every")};
+  Progress progress("following", photographs.count());
+  const auto picture = [&](std::size_t k) {
+    throw_if_interrupted();
+    progress.advance();
+    return photographs.picture(k);
+  };
+  const Followed followed = follow(photographs.count(), picture, options);
+  Sequence tracks = photographs.sequence(followed, options.every);
+  const std::string place = manifest::place(call.document, "/images");
+  if (!call.given("truth")) {
+    keep(tracks, long_enough(tracks.visible, call.number("least-seen"), place));
+    enter(call, tracks, "pictures", {});
+    return Exit::done;
+  }
+  call.note_input(call.text("truth"));
+  const manifest::Document truth = manifest::read_document(call.text("truth"));
+  KnownTracks known = with_truth(photographs, followed, std::move(tracks), options.every, truth, call.text("object"));
+  const auto kept = long_enough(known.tracks.visible, call.number("least-seen"), place);
+  keep(known.tracks, kept), keep(known.ideal, kept);
+  std::vector<std::string> notes{errors_of(known.tracks)};
+  if (known.elsewhere > 0)
+    notes.push_back(format("%ld corners beside the object are left out", static_cast<long>(known.elsewhere)));
+  log(LogLevel::info, call.text("follow") + ": " + notes.front());
+  enter(call, std::move(known.tracks), "pictures", std::move(notes));
+  enter(call, std::move(known.ideal), "geometry", {});
+  return Exit::done;
+}
+
+}  // namespace gonio::tools::nrsfm_make
