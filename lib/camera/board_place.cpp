@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "manifest/document.h"
+#include "manifest/measured_views.h"
 #include "manifest/sections/frame_link.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/object.h"
@@ -23,7 +24,7 @@ std::optional<Rigid<frame::World, frame::Board>> world_from_board(const manifest
   return std::nullopt;
 }
 
-void place_images(manifest::Document& document) {
+void place_images(manifest::Document& document, const std::string& by) {
   for (manifest::ImageEntry& image : document.images) {
     if (!image.camera_from_board || image.weight.value_or(1) == 0) continue;
     const auto place = world_from_board(document, image.board);
@@ -31,6 +32,7 @@ void place_images(manifest::Document& document) {
     if (!image.world_from_camera) image.world_from_camera.emplace();
     static_cast<Rigid<frame::World, frame::Camera>&>(*image.world_from_camera) =
         *place * inverse(*image.camera_from_board);
+    manifest::remember_view(document, image, by);
   }
 }
 

@@ -12,7 +12,8 @@ namespace gonio::camera {
 std::optional<Rigid<frame::World, frame::Board>> world_from_board(const manifest::Document& document,
                                                                   const std::string& board);
 
-// Images that show a board whose place is known are seen from where the calibration says: world_from_camera follows.
-void place_images(manifest::Document& document);
+// Images that show a board whose place is known are seen from where the calibration says: world_from_camera follows,
+// and the plan that they were taken by remembers it as `by` that program (manifest/measured_views.h).
+void place_images(manifest::Document& document, const std::string& by);
 
 }  // namespace gonio::camera

@@ -128,7 +128,7 @@ void store_calibration(const Session& session, const CalibrationSetup& setup, co
   }
   for (const Picture& picture : session.pictures) store_picture(session, picture, calibration, document);
   store_rig(session, calibration, document);
-  place_images(document);
+  place_images(document, "calib-charuco");
 }
 
 void store_corners(const Session& session, const Calibration& calibration, bool alone, const std::filesystem::path& csv,

@@ -178,6 +178,28 @@ const std::vector<Field<UnreachableView>>& unreachable_view_fields() {
   return table;
 }
 
+const std::vector<Field<MeasuredView>>& measured_view_fields() {
+  using M = MeasuredView;
+  static const std::vector<Field<M>> table{
+      field("image", &M::image, "", "of the step").needed(), field("by", &M::by, "", "the program that found it"),
+      field("world_from_camera", &M::world_from_camera, "", "takes camera to world coordinates").needed(),
+      field("board", &M::board, "", "name of the board that was seen"),
+      field("camera_from_board", &M::camera_from_board, "", "as it was seen, with its sigma")};
+  return table;
+}
+
+const std::vector<Field<CheckView>>& check_view_fields() {
+  using C = CheckView;
+  static const std::vector<Field<C>> table{
+      field("image", &C::image, "", "of the step").needed(),
+      field("board", &C::board, "", "name of the board"),
+      field("corners", &C::corners, "", "their numbers").range(0, 1 << 20),
+      field("u_px", &C::u_px, "px", "of each"),
+      field("v_px", &C::v_px, "px", "of each"),
+      field("sigma_px", &C::sigma_px, "px", "of one coordinate of each").positive()};
+  return table;
+}
+
 const std::vector<Field<Plan>>& plan_fields() {
   static const std::vector<Field<Plan>> table{
       field("id", &Plan::id, "", "SHA-256 of what decides it").needed(),
@@ -185,16 +207,48 @@ const std::vector<Field<Plan>>& plan_fields() {
       field("seed", &Plan::seed, "", "of the order's shuffle"),
       field("steps", &Plan::steps, "", "in the order in which they are taken").needed(),
       field("unreachable", &Plan::unreachable, "", "what was asked and cannot be"),
-      field("figures", &Plan::figures, "", "of the whole, by name; the unit ends the name")};
+      field("figures", &Plan::figures, "", "of the whole, by name; the unit ends the name"),
+      field("measured", &Plan::measured, "", "where cameras were found at its steps: later runs go by that"),
+      field("checks", &Plan::checks, "", "the board as its first run saw it: what later runs are held against")};
+  return table;
+}
+
+const std::vector<Field<Repeatability>>& repeatability_fields() {
+  using R = Repeatability;
+  static const std::vector<Field<R>> table{
+      field("views", &R::views, "", "in which the board was found").range(0, infinite),
+      field("position_m", &R::position_m, "m", "of one coordinate of the camera's place").range(0, infinite),
+      field("position_interval_m", &R::position_interval_m, "m", "[lower, upper] at 95 %").range(0, infinite),
+      field("corners_m", &R::corners_m, "m", "what the corners' noise makes of it beside").range(0, infinite),
+      field("rotation_rad", &R::rotation_rad, "rad", "about one axis").range(0, infinite),
+      field("rotation_interval_rad", &R::rotation_interval_rad, "rad", "[lower, upper] at 95 %").range(0, infinite),
+      field("corners_rad", &R::corners_rad, "rad", "what the corners' noise makes of it beside").range(0, infinite)};
+  return table;
+}
+
+const std::vector<Field<DriftedFrames>>& drifted_frames_fields() {
+  using D = DriftedFrames;
+  static const std::vector<Field<D>> table{
+      field("check", &D::check, "", "id of the view of the board that had moved").needed(),
+      field("against", &D::against, "", "id of the view that it is held against"),
+      field("value", &D::value, "", "how far, in `unit`; left out: no board was found").range(0, infinite),
+      field("sigma", &D::sigma, "", "one standard deviation of it").range(0, infinite),
+      field("limit", &D::limit, "", "that was given").range(0, infinite).needed(),
+      field("unit", &D::unit, "", "m, rad or px").one_of({"m", "rad", "px"}).needed(),
+      field("images", &D::images, "", "ids: taken between that view and the checks beside it")};
   return table;
 }
 
 const std::vector<Field<Run>>& run_fields() {
   static const std::vector<Field<Run>> table{
-      field("plan", &Run::plan, "", "id of the plan").needed(), field("journal", &Run::journal, "", "file id"),
+      field("plan", &Run::plan, "", "id of the plan").needed(),
+      field("journal", &Run::journal, "", "file id"),
       field("frames", &Run::frames, "", "kept").range(0, infinite),
       field("retaken", &Run::retaken, "", "taken again after a disagreement").range(0, infinite),
-      field("refused", &Run::refused, "", "given up after retakes").range(0, infinite)};
+      field("refused", &Run::refused, "", "given up after retakes").range(0, infinite),
+      field("measured", &Run::measured, "", "frames that stand where the plan's `measured` says").range(0, infinite),
+      field("repeatability", &Run::repeatability, "", "standard deviation over takes of the same views of a board"),
+      field("drifted", &Run::drifted, "", "frames from a moved place: beyond the limit, with what shows it")};
   return table;
 }
 
@@ -210,7 +264,11 @@ GONIO_RECORD(LaboratoryLimits, laboratory_limits_fields);
 GONIO_RECORD(Laboratory, laboratory_fields);
 GONIO_RECORD(PlanStep, plan_step_fields);
 GONIO_RECORD(UnreachableView, unreachable_view_fields);
+GONIO_RECORD(MeasuredView, measured_view_fields);
+GONIO_RECORD(CheckView, check_view_fields);
 GONIO_RECORD(Plan, plan_fields);
+GONIO_RECORD(Repeatability, repeatability_fields);
+GONIO_RECORD(DriftedFrames, drifted_frames_fields);
 GONIO_RECORD(Run, run_fields);
 
 }  // namespace gonio::manifest

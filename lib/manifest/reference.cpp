@@ -182,7 +182,18 @@ void add_acquisition(List& all) {
   all.push_back(listed("plans", "Written by acquire: what to photograph, by which motions.", plan_fields()));
   all.push_back(part("plans: steps", "One photograph, or one bracket of them.", plan_step_fields()));
   all.push_back(part("plans: unreachable", "Views that no arm reaches.", unreachable_view_fields()));
+  all.push_back(part("plans: measured", "Where cameras were found at the steps, by its runs.", measured_view_fields()));
+  all.push_back(
+      part("plans: checks", "Corners of a board as the first run of the plan found them.", check_view_fields()));
   all.push_back(listed("runs", "Written by acquire: what was done of plans.", run_fields()));
+  all.push_back(part("runs: repeatability",
+                     "Of the camera's place in the board's frame, over takes of the same views, beyond the corners' "
+                     "noise.",
+                     repeatability_fields()));
+  all.push_back(part("runs: drifted",
+                     "Frames between a view of the board that had moved by more than the limit and the checks before "
+                     "and after it. Nobody knows from where they were taken: their poses are not remembered.",
+                     drifted_frames_fields()));
 }
 
 void add_tracks(List& all) {

@@ -14,6 +14,10 @@ using gonio::DhRow;
 struct Provenance;  // sections/provenance.h; nobody passes them on
 struct ProvenanceRun;
 struct ProvenanceStep;
+struct MeasuredView;  // sections/plan.h
+struct CheckView;
+struct Repeatability;
+struct DriftedFrames;
 
 // The codecs are defined beside the tables (GONIO_RECORD in field_makers.h); those of surfaces, lights, laws and
 // mechanisms, which have parameters of a registry beside their table, in modelled.cpp. No section is complete here.
@@ -69,7 +73,11 @@ GONIO_TABLE(LaboratoryLimits, laboratory_limits_fields);
 GONIO_TABLE(Laboratory, laboratory_fields);
 GONIO_TABLE(PlanStep, plan_step_fields);
 GONIO_TABLE(UnreachableView, unreachable_view_fields);
+GONIO_TABLE(MeasuredView, measured_view_fields);
+GONIO_TABLE(CheckView, check_view_fields);
 GONIO_TABLE(Plan, plan_fields);
+GONIO_TABLE(Repeatability, repeatability_fields);
+GONIO_TABLE(DriftedFrames, drifted_frames_fields);
 GONIO_TABLE(Run, run_fields);
 GONIO_TABLE(TrackSequence, track_sequence_fields);
 GONIO_TABLE(ShapeReconstruction, shape_reconstruction_fields);

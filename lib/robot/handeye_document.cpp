@@ -10,6 +10,7 @@
 #include "camera/corner_table.h"
 #include "camera/intrinsics.h"
 #include "manifest/document.h"
+#include "manifest/measured_views.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/frame_link.h"
@@ -154,17 +155,19 @@ void enter_errors(const handeye::Analysis& a, manifest::Mounting& m) {
 }
 
 // Of a board whose place in the world is known, calib-charuco has placed the images that show it; the others are seen
-// from where the calibrated mounting holds the camera.
+// from where the calibrated mounting holds the camera, unless their step was seen from a board in another run.
 void place_cameras(const manifest::Mounting& m, manifest::Document& document) {
   const auto board = camera::world_from_board(document, m.board);
   if (!board || !m.tool_from_camera || !m.base_from_board) return;
   const Rigid<frame::World, frame::Base> world_from_base = *board * inverse(*m.base_from_board);
   for (manifest::ImageEntry& image : document.images) {
     if (image.camera != m.camera || !image.base_from_tool || pose_in(image, m.board) != nullptr) continue;
+    if (manifest::is_remembered(document, image, "calib-charuco")) continue;
     if (!m.robot.empty() && !image.robot.empty() && image.robot != m.robot) continue;
     if (!image.world_from_camera) image.world_from_camera.emplace();
     static_cast<Rigid<frame::World, frame::Camera>&>(*image.world_from_camera) =
         world_from_base * *image.base_from_tool * *m.tool_from_camera;
+    manifest::remember_view(document, image, "handeye");
   }
 }
 

@@ -13,6 +13,8 @@
 #include "base/atomic_file.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "cli/board_options.h"
+#include "geom/angle.h"
 #include "manifest/sections/comparison.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/laboratory.h"
@@ -32,14 +34,15 @@ struct Asked {
 };
 
 // The pattern's views, as frames of `purpose` where one is given; their ids stay apart from those that are there.
-void add_pattern(const PatternScene& scene, const std::string& text, const std::string& place,
+void add_pattern(const cli::Invocation& call, const std::string& text, const std::string& place,
                  const std::string& purpose, Asked& asked) {
   const PatternCall pattern = parse_pattern(text, place);
   asked.words += (asked.words.empty() ? "" : "; ") + (purpose.empty() ? "" : purpose + " ") + pattern.words;
   const auto taken = [&asked](const std::string& image) {
     return std::ranges::find(asked.steps, image, &manifest::PlanStep::image) != asked.steps.end();
   };
-  std::vector<manifest::PlanStep> steps = pattern.pattern->make(scene, pattern.numbers);
+  std::vector<manifest::PlanStep> steps =
+      pattern.pattern->make(pattern.pattern->name == "board" ? board_scene_of(call) : scene_of(call), pattern.numbers);
   int copy = 1;
   const auto ending = [&copy, &purpose] {
     return (purpose.empty() ? "" : "-" + purpose) + (copy > 1 ? "-" + std::to_string(copy) : "");
@@ -68,8 +71,8 @@ Asked asked_of(cli::Invocation& call) {
     return {pair_steps(scene, read_pairs(read_file(file), file), {}), "pairs of directions"};
   }
   Asked asked;
-  for (const std::string& text : call.texts("plan")) add_pattern(scene, text, "--plan", "", asked);
-  if (call.given("reference")) add_pattern(scene, call.text("reference"), "--reference", "reference", asked);
+  for (const std::string& text : call.texts("plan")) add_pattern(call, text, "--plan", "", asked);
+  if (call.given("reference")) add_pattern(call, call.text("reference"), "--reference", "reference", asked);
   return asked;
 }
 
@@ -113,6 +116,7 @@ void start_fresh(manifest::Document& d) {
 }  // namespace
 
 const manifest::Plan& plan(cli::Invocation& call, const Laboratory& laboratory) {
+  const std::vector<manifest::Plan> before = call.document.plans;
   if (call.flag("fresh")) start_fresh(call.document);
   const Asked asked = asked_of(call);
   Progress progress("planning", asked.steps.size());
@@ -124,6 +128,9 @@ const manifest::Plan& plan(cli::Invocation& call, const Laboratory& laboratory) 
                 format("lets no view be taken of the %zu that are asked", asked.steps.size()),
                 "move what is looked at (--target), come nearer, or ask for other views; each one's reason is above");
   }
+  // What was measured belongs to the id, and what has the same id is the same plan.
+  if (const auto known = std::ranges::find(before, made.id, &manifest::Plan::id); known != before.end())
+    made.measured = known->measured, made.checks = known->checks;
   const auto same = std::ranges::find(call.document.plans, made.id, &manifest::Plan::id);
   if (same != call.document.plans.end()) {
     *same = std::move(made);
@@ -151,7 +158,41 @@ std::string summary(const manifest::Plan& plan) {
   return out;
 }
 
+namespace {
+
+// What a run found out about itself, for people.
+void tell(const RunReport& report) {
+  for (const std::string& words : report.words) log(LogLevel::warning, words);
+  log(LogLevel::info, format("%lld frames, %lld retaken, %lld refused", static_cast<long long>(report.frames),
+                             static_cast<long long>(report.retaken), static_cast<long long>(report.refused)));
+  if (report.measured > 0)
+    log(LogLevel::info, format("%lld of them stand where earlier runs of the plan were measured",
+                               static_cast<long long>(report.measured)));
+  if (report.repeatability) {
+    const auto& r = *report.repeatability;
+    log(LogLevel::info,
+        format("repeatability over %lld views of the board: %.3g mm (%.3g to %.3g at 95 %%), %.3g deg (%.3g to %.3g)",
+               static_cast<long long>(r.views), 1e3 * *r.position_m, 1e3 * r.position_interval_m[0],
+               1e3 * r.position_interval_m[1], *r.rotation_rad / degree, r.rotation_interval_rad[0] / degree,
+               r.rotation_interval_rad[1] / degree));
+  }
+  std::size_t marked = 0;
+  for (const manifest::DriftedFrames& frames : report.drifted) marked += frames.images.size();
+  if (!report.stopped.empty())
+    log(LogLevel::error,
+        report.stopped + format("; fasten what moved, then --resume: %zu frames are taken again", marked));
+  else if (marked > 0)
+    log(LogLevel::warning, format("%zu frames are marked in runs: nobody knows from where they were taken", marked));
+}
+
+}  // namespace
+
 Exit go(cli::Invocation& call, const Laboratory& laboratory, const manifest::Plan& chosen) {
+  if (cli::describes_board(call)) cli::enter_described_board(call);
+  if (call.flag("measure-anew"))
+    if (const auto known = std::ranges::find(call.document.plans, chosen.id, &manifest::Plan::id);
+        known != call.document.plans.end())
+      known->measured.clear(), known->checks.clear();
   const manifest::Plan plan = chosen;  // the document changes while it is carried out
   std::vector<std::string> urls;
   for (const std::string& url : urls_of(call.document))
@@ -163,6 +204,7 @@ Exit go(cli::Invocation& call, const Laboratory& laboratory, const manifest::Pla
   options.resume = call.resume;
   options.retakes = static_cast<int>(call.integer("retakes"));
   options.seed = call.seed;
+  options.checks = check_options_of(call);
   std::optional<Progress> progress;
   options.on_frame = [&progress](const std::filesystem::path&, const std::string& words, std::size_t done,
                                  std::size_t total) {
@@ -171,10 +213,8 @@ Exit go(cli::Invocation& call, const Laboratory& laboratory, const manifest::Pla
     log(LogLevel::debug, words);
   };
   const RunReport report = run_plan(call.document, laboratory, plan, instrument, options);
-  for (const std::string& words : report.words) log(LogLevel::warning, words);
-  log(LogLevel::info, format("%lld frames, %lld retaken, %lld refused", static_cast<long long>(report.frames),
-                             static_cast<long long>(report.retaken), static_cast<long long>(report.refused)));
-  return report.refused > 0 ? Exit::quality : Exit::done;
+  tell(report);
+  return report.refused > 0 || !report.drifted.empty() ? Exit::quality : Exit::done;
 }
 
 }  // namespace gonio::tools::acquire

@@ -7,6 +7,7 @@
 #include "acquisition/laboratory/laboratory.h"
 #include "acquisition/plan/planner.h"
 #include "acquisition/plan/view_pattern.h"
+#include "acquisition/run/board_checks.h"
 #include "base/error.h"
 #include "cli/program.h"
 
@@ -16,6 +17,9 @@ std::vector<cli::Option> options();
 
 // What is looked at and lit, by which camera; checked against the laboratory. Error(usage) at the option.
 acquisition::PatternScene scene_of(const cli::Invocation& call);
+acquisition::PatternScene board_scene_of(const cli::Invocation& call);  // of --plan board
+// --drift-limit, --on-drift, and the board of the document.
+acquisition::CheckOptions check_options_of(const cli::Invocation& call);
 acquisition::PlanOptions plan_options_of(const cli::Invocation& call);
 double wait_of(const cli::Invocation& call);  // s
 

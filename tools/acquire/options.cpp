@@ -4,7 +4,9 @@
 #include "acquisition/plan/view_pattern.h"
 #include "base/assignment.h"
 #include "base/quantity.h"
+#include "cli/board_options.h"
 #include "cli/common_options.h"
+#include "manifest/sections/board.h"
 #include "manifest/sections/laboratory.h"
 #include "tools/acquire/call.h"
 
@@ -138,9 +140,34 @@ std::vector<cli::Option> planning_options() {
            .lower = 1},
           {.name = "board-every",
            .type = Type::integer,
-           .help = "Views between frames of the board, of --plan board.",
+           .help = "Views between frames of the board, of --plan board: checks, where it is described.",
            .metavar = "N",
-           .lower = 1}};
+           .lower = 1},
+          {.name = "board-target",
+           .type = Type::text,
+           .help = "What --plan board looks at, world, where the board lies elsewhere. Default: --target.",
+           .metavar = "X,Y,Z"}};
+}
+
+std::vector<cli::Option> checking_options() {
+  std::vector<cli::Option> list = cli::board_options();
+  const std::vector<cli::Option> own = {
+      {.name = "drift-limit",
+       .type = Type::text,
+       .help = "Check views: how far the camera, 0.3mm or 0.1deg, or the board in the picture, 0.5px, may have moved.",
+       .metavar = "LIMIT"},
+      {.name = "on-drift",
+       .type = Type::choice,
+       .help =
+           "Beyond it: stop where the arms stand (--resume takes the frames in question again), or mark the frames.",
+       .preset = "stop",
+       .choices = {"stop", "mark"},
+       .needs = {"drift-limit"}},
+      {.name = "measure-anew",
+       .type = Type::flag,
+       .help = "Forget what earlier runs of the plan measured: poses, and the views that checks are held against."}};
+  list.insert(list.end(), own.begin(), own.end());
+  return list;
 }
 
 std::vector<cli::Option> running_options() {
@@ -223,8 +250,16 @@ std::vector<cli::Option> serving_options() {
 std::vector<cli::Option> options() {
   std::vector<cli::Option> all = planning_options();
   for (cli::Option& option : serving_options()) all.push_back(std::move(option));
+  for (cli::Option& option : checking_options()) all.push_back(std::move(option));
   for (cli::Option& option : running_options()) all.push_back(std::move(option));
   return all;
+}
+
+acquisition::PatternScene board_scene_of(const cli::Invocation& call) {
+  acquisition::PatternScene scene = scene_of(call);
+  if (call.given("board-target"))
+    scene.target_m = vector_of(call.text("board-target"), Dimension::length, "--board-target");
+  return scene;
 }
 
 acquisition::PatternScene scene_of(const cli::Invocation& call) {
@@ -271,6 +306,19 @@ acquisition::PlanOptions plan_options_of(const cli::Invocation& call) {
   const acquisition::PatternScene scene = scene_of(call);
   options.target_m = scene.target_m;
   if (call.flag("straight")) options.straight = scene.camera;
+  return options;
+}
+
+acquisition::CheckOptions check_options_of(const cli::Invocation& call) {
+  acquisition::CheckOptions options;
+  if (call.given("drift-limit"))
+    options.limit = acquisition::parse_drift_limit(call.text("drift-limit"), "--drift-limit");
+  options.on_drift = call.text("on-drift") == "mark" ? acquisition::OnDrift::mark : acquisition::OnDrift::stop;
+  const auto& boards = call.document.boards;
+  if (boards.size() == 1) options.board = boards.begin()->first;
+  if (boards.size() > 1 && options.limit)
+    throw Error(Exit::data, manifest::place(call.document, "/boards"),
+                "describes " + std::to_string(boards.size()) + " boards", "leave the one that is checked");
   return options;
 }
 

@@ -5,6 +5,7 @@
 #include "acquisition/run/instrument.h"
 #include "base/atomic_file.h"
 #include "base/progress.h"
+#include "cli/board_options.h"
 #include "tools/acquire/call.h"
 
 namespace gonio::tools::acquire {
@@ -24,6 +25,8 @@ void check(cli::Invocation& call) {
   if (plans(call)) scene_of(call);
   if (call.flag("go") && call.out.empty())
     throw Error(Exit::usage, "--go", "has no folder for its frames", "give --out DIR");
+  check_options_of(call);
+  if (cli::describes_board(call)) cli::board_of(call);
   if (!call.flag("check")) return;
   bool all_well = true;
   for (const std::string& line : acquisition::inspect(call.document, &all_well)) log(LogLevel::info, line);
@@ -68,11 +71,12 @@ const cli::Program& gonio_program() {
       .takes_seed = true,
       .takes_resume = true,
       .sections_read = {"files", "laboratory", "plans", "cameras", "lights", "objects", "surfaces", "mechanisms",
-                        "explanations", "images"},
-      .sections_written = {"files", "laboratory", "plans", "runs", "images", "robots"},
+                        "explanations", "images", "boards", "mountings"},
+      .sections_written = {"files", "laboratory", "plans", "runs", "images", "robots", "boards"},
       .files = {{"frames/IMAGE.png", "raw frames, the sensor's own numbers, 8 or 16 bit"},
                 {"journal.jsonl", "what was intended and what came of it, a line each; what --resume goes by"}},
-      .exits = {{Exit::quality, "views are out of reach, or frames were refused"}},
+      .exits = {{Exit::quality,
+                 "views are out of reach, frames were refused, or views of a board have moved beyond --drift-limit"}},
       .references = {"Elias & Wen, IK-Geo: Unified robot inverse kinematics using subproblem decomposition, 2025.",
                      "Kuffner & LaValle, RRT-Connect, ICRA 2000.",
                      "Universal Robots, Real-Time Data Exchange (RTDE) guide.", "AIA, GigE Vision 1.2.",

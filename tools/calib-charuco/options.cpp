@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/quantity.h"
-#include "manifest/sections/board.h"
+#include "cli/board_options.h"
 #include "tools/calib-charuco/page.h"
 
 namespace gonio::tools::calib_charuco {
@@ -46,30 +46,6 @@ std::vector<std::string> model_choices() {
 
 }  // namespace
 
-bool describes_board(const cli::Invocation& call) {
-  return call.given("checkerboard") || call.given("charuco");
-}
-
-Board board_of(const cli::Invocation& call) {
-  const bool charuco = call.given("charuco");
-  const std::string option = charuco ? "charuco" : "checkerboard";
-  manifest::Board section;
-  section.kind = option;
-  (charuco ? section.squares : section.inner_corners) = columns_and_rows(call.text(option), "--" + option);
-  section.square_m = call.number("square");
-  if (charuco) {
-    section.marker_m = call.number("marker");
-    if (call.given("dictionary")) section.dictionary = call.text("dictionary");
-    if (call.text("layout") != "auto") section.legacy_layout = call.text("layout") == "legacy";
-  }
-  try {
-    return camera::board_of(section, "--" + option, call.given("dictionary-file") ? call.text("dictionary-file") : "");
-  } catch (const Error& e) {
-    if (!e.place().starts_with("--")) throw;
-    throw Error(Exit::usage, e.place(), e.problem(), e.remedy());
-  }
-}
-
 CalibrationRequest request_of(cli::Invocation& call) {
   CalibrationRequest request;
   request.model = call.text("model");
@@ -97,19 +73,13 @@ CalibrationRequest request_of(cli::Invocation& call) {
 void enter_command_line(cli::Invocation& call) {
   if (!call.has_document) {
     call.document.name = "command line";
-    if (!describes_board(call)) {
+    if (!cli::describes_board(call)) {
       throw Error(Exit::usage, "calib-charuco", "has no board",
                   "add --checkerboard 9x6 --square 25mm, or a manifest with boards");
     }
     if (!call.given("IMAGE")) throw Error(Exit::usage, "IMAGE", "is missing", "name photographs of the board");
   }
-  if (describes_board(call)) {
-    if (!call.document.boards.empty()) {
-      throw Error(Exit::usage, call.given("charuco") ? "--charuco" : "--checkerboard",
-                  "the manifest describes its boards already", "leave the option out");
-    }
-    enter_board(board_of(call), call.document);
-  }
+  if (cli::describes_board(call)) cli::enter_described_board(call);
   // What the user names may lie anywhere.
   if (call.given("IMAGE") || call.given("dictionary-file")) call.document.allow_outside = true;
   if (!call.given("IMAGE")) {
@@ -125,47 +95,8 @@ void enter_command_line(cli::Invocation& call) {
 }
 
 std::vector<cli::Option> calibration_options() {
-  return {
-      {.name = "checkerboard",
-       .type = Type::text,
-       .help = "Plain board: columns and rows of inner corners.",
-       .metavar = "CxR",
-       .conflicts = {"charuco"},
-       .needs = {"square"}},
-      {.name = "charuco",
-       .type = Type::text,
-       .help = "ChArUco board: columns and rows of squares.",
-       .metavar = "CxR",
-       .needs = {"square", "marker"}},
-      {.name = "square",
-       .type = Type::quantity,
-       .help = "Side of a square.",
-       .dimension = Dimension::length,
-       .lower = 1e-6,
-       .upper = 10},
-      {.name = "marker",
-       .type = Type::quantity,
-       .help = "Side of a marker with its black border.",
-       .dimension = Dimension::length,
-       .lower = 1e-6,
-       .upper = 10,
-       .needs = {"charuco"}},
-      {.name = "dictionary",
-       .type = Type::text,
-       .help = "Dictionary of the markers: 4X4_50 to 7X7_1000, ARUCO_ORIGINAL.",
-       .metavar = "NAME",
-       .conflicts = {"dictionary-file"},
-       .needs = {"charuco"}},
-      {.name = "dictionary-file",
-       .type = Type::input_file,
-       .help = "Dictionary of one's own, in OpenCV's YAML or JSON.",
-       .needs = {"charuco"}},
-      {.name = "layout",
-       .type = Type::choice,
-       .help = "Layout of a ChArUco board with an even number of rows: legacy is that of OpenCV before 4.6.",
-       .preset = "auto",
-       .choices = {"auto", "current", "legacy"},
-       .needs = {"charuco"}},
+  std::vector<cli::Option> list = cli::board_options();
+  const std::vector<cli::Option> fitting = {
       {.name = "rig",
        .type = Type::text,
        .help = "Cameras held together, by words that the pictures' names contain; the rest of a name is the shot.",
@@ -197,6 +128,8 @@ std::vector<cli::Option> calibration_options() {
       {.name = "no-quality",
        .type = Type::flag,
        .help = "Do not judge how well the camera predicts, nor compare halves of the views."}};
+  list.insert(list.end(), fitting.begin(), fitting.end());
+  return list;
 }
 
 }  // namespace gonio::tools::calib_charuco

@@ -9,9 +9,6 @@
 
 namespace gonio::tools::calib_charuco {
 
-bool describes_board(const cli::Invocation& call);
-// The board of --checkerboard or --charuco; Error(usage) for what makes no board.
-camera::Board board_of(const cli::Invocation& call);
 camera::CalibrationRequest request_of(cli::Invocation& call);
 // Enters board and pictures of the quick form; Error(usage) for options that do not fit together.
 void enter_command_line(cli::Invocation& call);

@@ -3,6 +3,7 @@
 #include "cli/program.h"
 
 #include "camera/board_drawing.h"
+#include "cli/board_options.h"
 #include "manifest/sections/board.h"
 #include "tools/calib-charuco/options.h"
 
@@ -13,11 +14,12 @@ using cli::Type;
 
 void check(cli::Invocation& call) {
   if (call.given("draw")) {
-    if (!describes_board(call)) throw Error(Exit::usage, "--draw", "has no board", "add --checkerboard or --charuco");
+    if (!cli::describes_board(call))
+      throw Error(Exit::usage, "--draw", "has no board", "add --checkerboard or --charuco");
     if (call.given("IMAGE"))
       throw Error(Exit::usage, "--draw", "cannot stand beside photographs", "draw first, then calibrate");
     camera::check_drawing_name(call.text("draw"));
-    camera::lay_out(board_of(call), call.text("paper"), "--paper");
+    camera::lay_out(cli::board_of(call), call.text("paper"), "--paper");
     return;
   }
   enter_command_line(call);
@@ -26,8 +28,8 @@ void check(cli::Invocation& call) {
 
 Exit run(cli::Invocation& call) {
   if (call.given("draw")) {
-    camera::draw_board(board_of(call), call.text("draw"), call.text("paper"), call.number("dpi"));
-    if (!call.document.boards.contains("board")) camera::enter_board(board_of(call), call.document);
+    camera::draw_board(cli::board_of(call), call.text("draw"), call.text("paper"), call.number("dpi"));
+    if (!call.document.boards.contains("board")) camera::enter_board(cli::board_of(call), call.document);
     return Exit::done;
   }
   return camera::calibrate_document(call.document, request_of(call));
@@ -72,8 +74,8 @@ const cli::Program& gonio_program() {
                     .repeat = true}},
       .standalone = {"draw"},
       .takes_out = true,
-      .sections_read = {"files", "boards", "cameras", "images"},
-      .sections_written = {"files", "boards", "cameras", "rigs", "images", "tables"},
+      .sections_read = {"files", "boards", "cameras", "images", "plans", "runs"},
+      .sections_written = {"files", "boards", "cameras", "rigs", "images", "tables", "plans"},
       .files = {{"corners.csv", "found corners: image, corner, board and pixel coordinates, sigma"},
                 {"calibration.html",
                  "one self-contained page: how good it is, residuals, views, what to photograph next"},

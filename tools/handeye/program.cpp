@@ -175,8 +175,8 @@ const cli::Program& gonio_program() {
                     .repeat = true}},
       .reads = cli::Reads::required,
       .takes_out = true,
-      .sections_read = {"boards", "cameras", "images", "tables", "light_positions"},
-      .sections_written = {"files", "frames", "images", "mountings"},
+      .sections_read = {"boards", "cameras", "images", "tables", "light_positions", "plans", "runs"},
+      .sections_written = {"files", "frames", "images", "mountings", "plans"},
       .files = {{"handeye.html", "the report"}},
       .exits =
           {{Exit::quality,

@@ -170,6 +170,17 @@ std::vector<Visit> interleaved(std::vector<Visit> views, const std::vector<PlanS
   return all;
 }
 
+std::string place_key(const PlanStep& step) {
+  std::string key = step.camera + "|" + step.robot;
+  const auto add = [&key](const std::vector<double>& joints) {
+    for (const double v : joints) key += format(",%.12g", v);
+  };
+  add(step.joints_rad);
+  for (const auto& [name, joints] : step.other_arms) key += "|" + name, add(joints);
+  for (const auto& [name, angle] : step.turntable_rad) key += "|" + name, add({angle});
+  return key;
+}
+
 Vec3 common_target(const std::vector<PlanStep>& asked) {
   // (sum of (1 - f f') + w) x = sum of (1 - f f') p + w m: nearest to all axes p + t f; the small w, towards the mean
   // point half a metre before the cameras, decides what the axes leave open.

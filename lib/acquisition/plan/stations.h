@@ -38,6 +38,9 @@ std::vector<Visit> interleaved(std::vector<Visit> views, const std::vector<manif
                                const std::vector<Station>& stations, const std::vector<bool>& reachable,
                                const PlanOptions& options, const std::function<double(std::size_t, std::size_t)>& far);
 
+// Equal of steps of a finished plan that have the same camera in the same joints and turntables: takes of one view.
+std::string place_key(const manifest::PlanStep& step);
+
 // The point nearest to the axes of all cameras; of one camera, or of parallel ones, half a metre before it.
 Vec3 common_target(const std::vector<manifest::PlanStep>& asked);
 // The point of the camera's axis that is nearest to `target_m`, in front of it.

@@ -5,7 +5,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "acquisition/plan/stations.h"
+#include "base/hash.h"
 #include "base/text.h"
+#include "io/codes.h"
+#include "io/image.h"
 #include "manifest/document.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/file.h"
@@ -149,6 +153,25 @@ std::vector<std::string> images_of(const manifest::PlanStep& step) {
   return ids;
 }
 
+std::filesystem::path write_frame_file(const std::filesystem::path& out, const RawFrame& frame, FrameRecord& record) {
+  record.file = "frames/" + file_stem(record.image) + ".png";
+  const std::filesystem::path path = out / record.file;
+  const int code_bits = frame.bits > 8 ? 16 : 8;
+  io::Image picture(frame.width_px, frame.height_px, {"Y"});
+  const auto full = static_cast<float>((1 << code_bits) - 1);
+  for (std::size_t i = 0; i < frame.samples.size(); ++i) picture.data[i] = static_cast<float>(frame.samples[i]) / full;
+  io::write_png(path, picture, code_bits);
+  record.bytes = std::filesystem::file_size(path);
+  record.sha256 = sha256_of_file(path);
+  return path;
+}
+
+bool file_stands(const std::filesystem::path& out, const FrameRecord& record) {
+  std::error_code error;
+  const std::filesystem::path path = out / record.file;
+  return std::filesystem::file_size(path, error) == record.bytes && !error && sha256_of_file(path) == record.sha256;
+}
+
 Value to_event(const FrameRecord& r) {
   Value e = Value::object({{"what", "frame"},
                            {"image", r.image},
@@ -215,10 +238,37 @@ std::string words_of(const FrameRecord& r) {
   return out;
 }
 
-void enter_frames(manifest::Document& d, const Laboratory& laboratory, const manifest::Plan& plan,
-                  const std::map<std::string, FrameRecord>& records, const std::filesystem::path& folder) {
+namespace {
+
+// Poses that were measured in the plan's joints, by place: of the step itself, or of another take of its view.
+class MeasuredPlaces {
+ public:
+  explicit MeasuredPlaces(const manifest::Plan& plan) : plan_(plan) {
+    for (const manifest::MeasuredView& view : plan.measured)
+      if (const auto step = std::ranges::find(plan.steps, view.image, &manifest::PlanStep::image);
+          step != plan.steps.end() && view.world_from_camera)
+        by_place_.emplace(place_key(*step), &view);
+  }
+  const manifest::MeasuredView* at(const manifest::PlanStep& step) const {
+    const auto own = std::ranges::find(plan_.measured, step.image, &manifest::MeasuredView::image);
+    if (own != plan_.measured.end() && own->world_from_camera) return &*own;
+    const auto other = by_place_.find(place_key(step));
+    return other == by_place_.end() ? nullptr : other->second;
+  }
+
+ private:
+  const manifest::Plan& plan_;
+  std::map<std::string, const manifest::MeasuredView*> by_place_;
+};
+
+}  // namespace
+
+std::int64_t enter_frames(manifest::Document& d, const Laboratory& laboratory, const manifest::Plan& plan,
+                          const std::map<std::string, FrameRecord>& records, const std::filesystem::path& folder) {
   enter_robots(d);
   const manifest::Laboratory lab = d.laboratory.entry.empty() ? manifest::Laboratory{} : d.laboratory.entry.front();
+  const MeasuredPlaces places(plan);
+  std::int64_t measured = 0;
   for (const manifest::PlanStep& step : plan.steps)
     for (const std::string& id : images_of(step)) {
       const auto found = records.find(id);
@@ -247,7 +297,9 @@ void enter_frames(manifest::Document& d, const Laboratory& laboratory, const man
       for (const auto& [name, angle] : r.turntables)
         if (const auto table = lab.turntables.find(name); table != lab.turntables.end())
           image.shapes.merge(deformations(table->second, angle));
-      if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())
+      if (const auto* view = places.at(step); view != nullptr)
+        image.world_from_camera = view->world_from_camera, ++measured;
+      else if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())
         if (tool_from_camera(d, r.camera) || camera->second.world_from_camera)
           static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =
               seen_from_table(lab, r) * world_from_camera(d, laboratory, r.camera, r.joints);
@@ -263,6 +315,7 @@ void enter_frames(manifest::Document& d, const Laboratory& laboratory, const man
       else
         d.images.push_back(image);
     }
+  return measured;
 }
 
 }  // namespace gonio::acquisition

@@ -31,13 +31,20 @@ struct FrameRecord {
   int tries = 1;
 };
 
+// Writes the frame's file below `out` and what it is into the record: file (as the image's id says), bytes, sha256.
+std::filesystem::path write_frame_file(const std::filesystem::path& out, const RawFrame& frame, FrameRecord& record);
+// Is a kept frame's file what the journal says of it?
+bool file_stands(const std::filesystem::path& out, const FrameRecord& record);
+
 manifest::Value to_event(const FrameRecord& record);  // {"what": "frame", ...}
 FrameRecord frame_of(const manifest::Value& event);   // of such an event
 std::string words_of(const FrameRecord& record);      // "v017: 8 ms, 0.2 % saturated"
 
-// Enters images, files and robots of the records, in the order of the plan. `folder`: of --out.
-void enter_frames(manifest::Document& document, const Laboratory& laboratory, const manifest::Plan& plan,
-                  const std::map<std::string, FrameRecord>& records, const std::filesystem::path& folder);
+// Enters images, files and robots of the records, in the order of the plan. `folder`: of --out. Cameras stand where the
+// plan's `measured` says of the step, or of another in the same joints, else where joints and mountings say. How many
+// frames stand where it was measured.
+std::int64_t enter_frames(manifest::Document& document, const Laboratory& laboratory, const manifest::Plan& plan,
+                          const std::map<std::string, FrameRecord>& records, const std::filesystem::path& folder);
 
 // The pictures that a step makes, one an exposure: their ids.
 std::vector<std::string> images_of(const manifest::PlanStep& step);

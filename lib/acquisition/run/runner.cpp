@@ -8,19 +8,16 @@
 
 #include "acquisition/plan/planner.h"
 #include "acquisition/run/arm_mover.h"
+#include "acquisition/run/doubtful_pictures.h"
 #include "acquisition/run/frame_record.h"
 #include "acquisition/run/journal.h"
 #include "acquisition/run/lamp_switch.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/hash.h"
 #include "base/text.h"
-#include "io/codes.h"
-#include "io/image.h"
 #include "manifest/document.h"
 #include "manifest/sections/laboratory.h"
 #include "manifest/sections/plan.h"
-#include "stats/intervals.h"
 
 namespace gonio::acquisition {
 namespace {
@@ -55,20 +52,6 @@ bool is_mosaic(const std::string& pixel_format) {
   return pixel_format.find("Bayer") != std::string::npos || pixel_format.find("Polariz") != std::string::npos;
 }
 
-// A kept frame's file is what the journal says of it.
-bool file_stands(const fs::path& out, const FrameRecord& record) {
-  std::error_code error;
-  const fs::path path = out / record.file;
-  return fs::file_size(path, error) == record.bytes && !error && sha256_of_file(path) == record.sha256;
-}
-
-io::Image picture_of(const RawFrame& frame, int code_bits) {
-  io::Image picture(frame.width_px, frame.height_px, {"Y"});
-  const auto full = static_cast<float>((1 << code_bits) - 1);
-  for (std::size_t i = 0; i < frame.samples.size(); ++i) picture.data[i] = static_cast<float>(frame.samples[i]) / full;
-  return picture;
-}
-
 class PlanRun {
  public:
   PlanRun(manifest::Document& document, const Laboratory& laboratory, const manifest::Plan& plan,
@@ -81,28 +64,39 @@ class PlanRun {
         section_(document.laboratory.entry.front()),
         surroundings_(laboratory),
         mover_(laboratory, surroundings_, instrument),
+        checks_(document, plan, options.checks),
         journal_(options.out / "journal.jsonl", Value::object({{"what", "run"}, {"plan", plan.id}}), options.resume),
         lamps_(instrument, section_, options.retakes + 1, [this](const std::string& lamp, const std::string& why) {
           journal_.write(Value::object({{"what", "lamp"}, {"lamp", lamp}, {"why", why}}));
         }) {
-    for (const Value& event : journal_.earlier()) take_over(event);
+    for (const Value& event : journal_.earlier()) {
+      take_over(event);
+      checks_.take_over(event);
+    }
     for (const manifest::PlanStep& step : plan.steps) total_ += images_of(step).size();
   }
 
   RunReport carry_out() {
     StopWatch watch(mover_);
     try {
-      for (std::size_t i = 0; i < plan_.steps.size(); ++i) take_step(i);
+      for (std::size_t i = 0; i < plan_.steps.size() && report_.stopped.empty(); ++i) {
+        take_step(i);
+        if (checks_.is_check(i)) check(i);
+      }
       lamps_.set({});
-      if (last_step_) mover_.go(way_home(laboratory_, plan_, *last_step_));
+      if (last_step_ && report_.stopped.empty()) mover_.go(way_home(laboratory_, plan_, *last_step_));
     } catch (...) {
       mover_.stop_all();
       if (interrupted()) throw Error(Exit::try_again, "run", "was interrupted; the arms stand", "go on with --resume");
       throw;
     }
     report_.frames = static_cast<std::int64_t>(records_.size());
-    doubt_pictures();
-    enter_frames(document_, laboratory_, plan_, records_, options_.out);
+    for (std::string& words : doubtful_pictures(records_, dark_)) report_.words.push_back(std::move(words));
+    report_.measured = enter_frames(document_, laboratory_, plan_, records_, options_.out);
+    report_.repeatability = checks_.repeatability();
+    remember_checks();
+    for (manifest::DriftedFrames& frames : report_.drifted)
+      std::erase_if(frames.images, [this](const std::string& image) { return !records_.contains(image); });
     return report_;
   }
 
@@ -116,26 +110,32 @@ class PlanRun {
     } else if (what == "retake") {
       ++report_.retaken;
       records_.erase(event.find("image") == nullptr ? "" : event.find("image")->as_string());  // it was found wanting
+    } else if (what == "drift") {
+      for (const Value& image : event.find("images")->as_array()) records_.erase(image.as_string());
     }
   }
 
-  // Saturated: more than 1 % of a picture that is no member of a bracket. Dark: its brightest percentile within ten
-  // times the noise of the lamps-off frame's. Out of focus: less than a quarter of the median of that camera's views.
-  void doubt_pictures() {
-    std::map<std::string, std::vector<double>> focus;
-    for (const auto& [id, r] : records_) focus[r.camera].push_back(r.figures.focus);
-    for (const auto& [id, r] : records_) {
-      const bool single = r.group == r.image;
-      if (single && r.figures.saturated_share > 0.01)
-        report_.words.push_back(words_of(r) + ": saturated; ask a bracket, or a shorter exposure");
-      const auto dark = dark_.find({r.camera, r.exposure_s});
-      if (single && r.figures.saturated_share <= 0.01 && dark != dark_.end() && !r.lamps.empty() &&
-          r.figures.bright_code < dark->second.bright_code + 10 * std::max(0.5, r.figures.noise))
-        report_.words.push_back(words_of(r) + ": underexposed; ask a bracket, or a longer exposure");
-      const double usual = stats::median(focus[r.camera]);
-      if (single && !r.lamps.empty() && r.figures.focus < 0.25 * usual && focus[r.camera].size() >= 5)
-        report_.words.push_back(words_of(r) + ": less sharp than the others");
-    }
+  // What later runs of the plan are held against: the first of them whose views nothing calls into question.
+  void remember_checks() {
+    const auto plan = std::ranges::find(document_.plans, plan_.id, &manifest::Plan::id);
+    if (plan != document_.plans.end() && plan->checks.empty() && report_.drifted.empty())
+      plan->checks = checks_.first_views();
+  }
+
+  // Has the board's view moved? The frames that this calls into question are marked, or the run stops where it stands:
+  // --resume takes them again.
+  void check(std::size_t index) {
+    const auto images = images_of(plan_.steps[index]);
+    const auto record = records_.find(images[images.size() / 2]);
+    const bool there = record != records_.end();
+    const auto drift = checks_.look(index, there ? options_.out / record->second.file : fs::path(),
+                                    there ? record->second.sha256 : "", [this](const Value& e) { journal_.write(e); });
+    if (!drift) return;
+    report_.drifted.push_back(*drift);
+    if (!checks_.moved()) return;
+    if (options_.checks.on_drift == OnDrift::mark) return report_.words.push_back(checks_.words());
+    journal_.write(Value::object({{"what", "drift"}, {"images", drift->images}}));
+    report_.stopped = checks_.words();
   }
 
   void take_step(std::size_t index) {
@@ -342,12 +342,7 @@ class PlanRun {
     record.frame_id = frame.frame_id;
     record.bits = frame.bits;
     for (const auto& [name, angle] : step.turntable_rad) record.turntables[name] = angle;
-    record.file = "frames/" + file_stem(image) + ".png";
-    const fs::path path = options_.out / record.file;
-    const int code_bits = frame.bits > 8 ? 16 : 8;
-    io::write_png(path, picture_of(frame, code_bits), code_bits);
-    record.bytes = fs::file_size(path);
-    record.sha256 = sha256_of_file(path);
+    const fs::path path = write_frame_file(options_.out, frame, record);
     journal_.write(to_event(record));
     records_[image] = record;
     if (options_.on_frame) options_.on_frame(path, words_of(record), records_.size(), total_);
@@ -361,6 +356,7 @@ class PlanRun {
   const manifest::Laboratory section_;
   Surroundings surroundings_;
   ArmMover mover_;
+  BoardChecks checks_;
   Journal journal_;
   LampSwitch lamps_;
   std::string lit_for_;  // the step whose lamps were last lit
@@ -393,6 +389,9 @@ RunReport run_plan(manifest::Document& document, const Laboratory& laboratory, c
   entry.frames = report.frames;
   entry.retaken = report.retaken;
   entry.refused = report.refused;
+  entry.measured = report.measured;
+  entry.repeatability = report.repeatability;
+  entry.drifted = report.drifted;
   document.runs.push_back(entry);
   return report;
 }

@@ -10,15 +10,21 @@
 // Every camera takes, before its first lit frame at an exposure, one with all lamps off: a lit frame as dark as that is
 // a lamp that does not light. Where several lamps are lit and not all of them say what they truly do, they are lit one
 // by one in every step, and each has to make the picture brighter.
+//
+// Poses that were measured at the plan's steps ("plans": measured) take the place of those that joints and mountings
+// say. Views of a board that the plan comes back to are held against each other (board_checks.h); of a run that stops
+// for one that has moved, what was taken is entered, and resumed it takes the frames in question again.
 #pragma once
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "acquisition/laboratory/laboratory.h"
 #include "acquisition/motion/way.h"
+#include "acquisition/run/board_checks.h"
 #include "acquisition/run/instrument.h"
 #include "manifest/sections/forward.h"
 
@@ -30,12 +36,17 @@ struct RunOptions {
   int retakes = 4;         // of one frame, after which it is refused
   bool lamp_check = true;  // the dark frames above
   std::uint64_t seed = 1;  // of ways back to the plan
+  CheckOptions checks{};   // of the board's views that the plan comes back to
   // After every frame that was kept: its file, its words ("v017: 8 ms, 0.2 % saturated"), how many of how many.
   std::function<void(const std::filesystem::path&, const std::string&, std::size_t, std::size_t)> on_frame{};
 };
 
 struct RunReport {
   std::int64_t frames = 0, retaken = 0, refused = 0;
+  std::int64_t measured = 0;  // frames that stand where the plan's earlier runs were measured
+  std::optional<manifest::Repeatability> repeatability{};
+  std::vector<manifest::DriftedFrames> drifted{};
+  std::string stopped{};           // why the run ended early: a check view had moved; empty: it did not
   std::vector<std::string> words;  // of what was refused, and of what looks doubtful: saturated, dark, out of focus
 };
 

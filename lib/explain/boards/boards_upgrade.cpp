@@ -151,7 +151,7 @@ void upgrade_boards(const Problem& problem, const BoardsInput& input, const std:
     upgrade_image(input, v, roles, e, image);
     image.rms_px = rms(input, o, e, [&](std::size_t other) { return other == v; });
   }
-  camera::place_images(document);
+  camera::place_images(document, "explain");
 }
 
 }  // namespace gonio::explain

@@ -36,6 +36,20 @@ struct UnreachableView {
   std::optional<PlanStep> nearest{};  // that can be reached
 };
 
+// Where a camera was found to stand at a step, in the joints that the step has: measured once, by any run of the plan.
+struct MeasuredView {
+  std::string image{}, by{};  // of the step; the program that found it
+  std::optional<Pose<frame::World, frame::Camera>> world_from_camera{};
+  std::string board{};                                                   // that it saw, as follows
+  std::optional<Pose<frame::Camera, frame::Board>> camera_from_board{};  // with what is uncertain of it
+};
+// A board's corners as the first run of the plan found them at a step: what later check views are held against.
+struct CheckView {
+  std::string image{}, board{};
+  std::vector<int> corners{};
+  std::vector<double> u_px{}, v_px{}, sigma_px{};  // of each
+};
+
 struct Plan {
   std::string id{};       // SHA-256 of what decides it: laboratory, request, seed, steps
   std::string pattern{};  // what was asked, in words
@@ -43,12 +57,35 @@ struct Plan {
   std::vector<PlanStep> steps{};
   std::vector<UnreachableView> unreachable{};
   std::map<std::string, double> figures{};  // the unit ends the name
+  std::vector<MeasuredView> measured{};     // by its runs; no part of the id
+  std::vector<CheckView> checks{};          // no part of the id either
+};
+
+// How closely a run came back to where it had been, by the board's views in between: standard deviations of one
+// coordinate over takes, beyond what the corners' noise makes, with the interval that holds them at 95 %.
+struct Repeatability {
+  std::int64_t views = 0;  // in which the board was found
+  std::optional<double> position_m{}, rotation_rad{};
+  std::vector<double> position_interval_m{}, rotation_interval_rad{};
+  std::optional<double> corners_m{}, corners_rad{};  // what the corners' noise makes, root mean square
+};
+
+// Frames at an end of which a check view had moved: nobody knows from where they were taken.
+struct DriftedFrames {
+  std::string check{}, against{};          // the view that had moved; the one it is held against
+  std::optional<double> value{}, sigma{};  // by how much; left out: no board was found
+  double limit = 0;
+  std::string unit{};  // "m" | "rad" | "px"
+  std::vector<std::string> images{};
 };
 
 struct Run {
   std::string plan{};     // id
   std::string journal{};  // file id
   std::int64_t frames = 0, retaken = 0, refused = 0;
+  std::int64_t measured = 0;  // frames that stand where the plan's `measured` says
+  std::optional<Repeatability> repeatability{};
+  std::vector<DriftedFrames> drifted{};
 };
 
 }  // namespace gonio::manifest

@@ -94,7 +94,7 @@ const ViewPattern& board() {
       "board",
       "Views of a calibration board from which camera and hand-eye calibration learn most.",
       "Tsai & Lenz 1989, section on accuracy: large rotations between stations about different axes",
-      {{"views", "1", 15, 3, 10000, "of the board"},
+      {{"views", "1", 15, 1, 10000, "of the board"},
        {"tilt", "rad", 40 * degree, degree, 80 * degree, "of the cone: largest angle from the board's normal"},
        {"twist", "rad", 60 * degree, 0, 180 * degree, "about the optical axis, to either side"},
        {"nearest", "m", 0.35, 0.01, 100, "distance from the board's middle"},
