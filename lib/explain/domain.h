@@ -26,9 +26,8 @@ struct Domain {
   // boards show. `needs_it`: where nothing mends that, it is not asked.
   std::string after{};
   bool needs_it = false;
-  // What it leaves to another domain of the same recordings: mechanisms whose ids begin so ("lens.") are hypotheses here
-  // only where that domain names them, or holds them for as good. Corners say of the lens all that poses fitted to them
-  // could say.
+  // What it leaves to another domain of the same recordings: mechanisms whose ids begin so ("lens.") are named here only
+  // where that domain names them. Corners say of the lens all that poses fitted to them could say.
   std::string leaves{}, leaves_to{};
   bool (*applies)(const manifest::Document& document) = nullptr;
   std::vector<std::unique_ptr<Problem>> (*problems)(const manifest::Document& document,

@@ -46,27 +46,32 @@ std::vector<AskedDomain> domains_of(const manifest::Document& document, const Pr
   throw Error(Exit::data, manifest::place(document, ""), "has nothing to explain", "give one of: " + known);
 }
 
-std::vector<std::string> hypotheses_of(const Domain& domain, const Problem& problem, std::span<const Answered> before,
-                                       const std::vector<std::string>& wanted) {
-  std::set<std::string> looked_at, named;
+std::set<std::string> refused_before(const Domain& domain, std::span<const Answered> before) {
+  std::set<std::string> refused, named;
   for (const Answered& answer : before) {
     if (domain.leaves.empty() || answer.problem->domain() != domain.leaves_to) continue;
     const auto& candidates = answer.problem->candidates();
-    const Explanation& e = *answer.explanation;
     for (const auto& c : candidates)
-      if (c.id().starts_with(domain.leaves)) looked_at.insert(c.id());
-    for (const std::size_t c : e.named) named.insert(candidates[c].id());
-    for (const auto* sets : {&e.not_told_apart, &e.instead})
-      for (const auto& set : *sets)
-        for (const std::size_t c : set) named.insert(candidates[c].id());
+      if (c.id().starts_with(domain.leaves)) refused.insert(c.id());
+    for (const std::size_t c : answer.explanation->named) named.insert(candidates[c].id());
   }
-  std::vector<std::string> asked;
-  for (const auto& c : problem.candidates()) {
-    const bool is_wanted = wanted.empty() || std::ranges::find(wanted, c.id()) != wanted.end();
-    if (is_wanted && (named.contains(c.id()) || !looked_at.contains(c.id()))) asked.push_back(c.id());
+  for (const std::string& id : named) refused.erase(id);
+  return refused;
+}
+
+Explanation explain_without(const Problem& problem, const Options& options, const std::set<std::string>& refused) {
+  Options now = options;
+  for (;;) {
+    Explanation e = explain(problem, now);
+    std::set<std::string> wrong;
+    for (const std::size_t c : e.named)
+      if (const std::string& id = problem.candidates()[c].id(); refused.contains(id)) wrong.insert(id);
+    if (wrong.empty()) return e;
+    if (now.hypotheses.empty())
+      for (const auto& c : problem.candidates()) now.hypotheses.push_back(c.id());
+    std::erase_if(now.hypotheses, [&wrong](const std::string& id) { return wrong.contains(id); });
+    if (now.hypotheses.empty()) return e;  // the user asked for nothing else
   }
-  const bool all = asked.size() == problem.candidates().size();
-  return all || asked.empty() ? wanted : asked;
 }
 
 std::vector<std::filesystem::path> files_of(const manifest::Document& document) {

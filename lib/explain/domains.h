@@ -1,5 +1,6 @@
 // The domains that a manifest offers to explain. Each of its tables, scenes, sets becomes one problem.
 #pragma once
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,10 +27,11 @@ struct Answered {
   const Problem* problem = nullptr;
   const Explanation* explanation = nullptr;
 };
-// Mechanisms that `problem` of `domain` is asked about (Options::hypotheses): `wanted`, all where that is empty, less
-// those that the domain leaves to one of `before` (Domain::leaves) and that this one looked at and did not name.
-std::vector<std::string> hypotheses_of(const Domain& domain, const Problem& problem, std::span<const Answered> before,
-                                       const std::vector<std::string>& wanted);
+// Mechanisms that `domain` leaves to one of `before` (Domain::leaves), and that this one looked at and did not name.
+std::set<std::string> refused_before(const Domain& domain, std::span<const Answered> before);
+// The explanation of `problem` in which none of `refused` is named: where one is, it is asked again without that one.
+// What they could explain still counts as a mismatch.
+Explanation explain_without(const Problem& problem, const Options& options, const std::set<std::string>& refused);
 
 // Files of the manifest that these problems read: pictures, masks, meshes, tables, calibrations of robots.
 std::vector<std::filesystem::path> files_of(const manifest::Document& document);

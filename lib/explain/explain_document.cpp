@@ -74,9 +74,7 @@ Exit explain_document(manifest::Document& document, const ExplainRequest& reques
     for (const Told& t : told) before.push_back({t.problem.get(), &t.explanation});
     Told& t = told.emplace_back(std::move(asked));
     const Problem& problem = *t.problem;
-    Options options = request.options;
-    options.hypotheses = hypotheses_of(domain, problem, before, options.hypotheses);
-    Explanation& e = t.explanation = explain(problem, options);
+    Explanation& e = t.explanation = explain_without(problem, request.options, refused_before(domain, before));
     t.illustration = problem.illustrate(e, request.out, document);
     if (e.significant && !request.out.empty())
       t.illustration.observations = write_evidence(problem, e, evidence_name(told), request.out, document);

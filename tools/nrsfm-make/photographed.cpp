@@ -110,7 +110,7 @@ Exit follow_photographs(cli::Invocation& call) {
     progress.advance();
     return photographs.picture(k);
   };
-  const Followed followed = follow(photographs.count(), picture, options);
+  const FollowedPoints followed = follow(photographs.count(), picture, options);
   Sequence tracks = photographs.sequence(followed, options.every);
   const std::string place = manifest::place(call.document, "/images");
   if (!call.given("truth")) {

@@ -110,14 +110,14 @@ Sequence columns(const Sequence& all, const std::vector<Eigen::Index>& kept) {
 
 }  // namespace
 
-Followed follow(std::size_t count, const std::function<GreyPicture(std::size_t)>& picture,
-                const FollowOptions& options) {
+FollowedPoints follow(std::size_t count, const std::function<GreyPicture(std::size_t)>& picture,
+                      const FollowOptions& options) {
   const auto every = static_cast<std::size_t>(options.every);
   const auto frames = static_cast<Eigen::Index>((count + every - 1) / every);
   constexpr Eigen::Index generations = 20;  // of lost points that are replaced
   const Eigen::Index capacity = generations * options.points;
   Tracker tracker(capacity);
-  Followed out;
+  FollowedPoints out;
   out.tracks_px = Tracks::Constant(2 * frames, capacity, not_seen);
   out.sigma_px = Eigen::MatrixXd::Constant(frames, capacity, not_seen);
   for (std::size_t k = 0; k < count; ++k) {
@@ -196,7 +196,7 @@ std::vector<std::filesystem::path> Photographs::files() const {
   return all;
 }
 
-Sequence Photographs::sequence(const Followed& followed, Eigen::Index every) const {
+Sequence Photographs::sequence(const FollowedPoints& followed, Eigen::Index every) const {
   Sequence s;
   s.projection = Projection::perspective;
   s.tracks = Tracks::Constant(followed.tracks_px.rows(), followed.tracks_px.cols(), not_seen);
@@ -219,8 +219,8 @@ Sequence Photographs::sequence(const Followed& followed, Eigen::Index every) con
   return s;
 }
 
-KnownTracks with_truth(const Photographs& photographs, const Followed& followed, Sequence tracks, Eigen::Index every,
-                       const manifest::Document& truth, const std::string& id) {
+KnownTracks with_truth(const Photographs& photographs, const FollowedPoints& followed, Sequence tracks,
+                       Eigen::Index every, const manifest::Document& truth, const std::string& id) {
   const Eigen::Index frames = tracks.frames();
   std::vector<std::optional<Anchor>> anchors(followed.born.size());
   std::vector<Stage> stages(static_cast<std::size_t>(frames));

@@ -15,14 +15,14 @@ struct FollowOptions {
   Eigen::Index every = 1;     // of the pictures one makes a frame; all are followed through
 };
 
-struct Followed {
+struct FollowedPoints {
   Tracks tracks_px;                // 2F x P, places from the upper left corner, the first pixel's centre at 0.5
   Eigen::MatrixXd sigma_px;        // F x P
   std::vector<Eigen::Index> born;  // of each point: the frame in which it was chosen
 };
 // Of pictures 0 to count - 1. A new point keeps a tracker's patch away from those that are followed already.
-Followed follow(std::size_t count, const std::function<GreyPicture(std::size_t)>& picture,
-                const FollowOptions& options);
+FollowedPoints follow(std::size_t count, const std::function<GreyPicture(std::size_t)>& picture,
+                      const FollowOptions& options);
 
 // The manifest's photographs from a camera that is known, in the order of their names. Codes are square roots of
 // radiance, so that shot noise is even in them; full scale is the brightest of the first, a middle and the last one but
@@ -37,7 +37,7 @@ class Photographs {
   std::vector<std::filesystem::path> files() const;
   // The sequence of every `every`-th: tracks less the lens's distortion, pixels of `pinhole`, whose centres lie at
   // integers as the manifest's do.
-  Sequence sequence(const Followed& followed, Eigen::Index every) const;
+  Sequence sequence(const FollowedPoints& followed, Eigen::Index every) const;
 
  private:
   const manifest::Document& document_;
@@ -52,7 +52,7 @@ struct KnownTracks {
   Sequence tracks, ideal;
   Eigen::Index elsewhere = 0;  // points that began beside the object
 };
-KnownTracks with_truth(const Photographs& photographs, const Followed& followed, Sequence tracks, Eigen::Index every,
-                       const manifest::Document& truth, const std::string& id);
+KnownTracks with_truth(const Photographs& photographs, const FollowedPoints& followed, Sequence tracks,
+                       Eigen::Index every, const manifest::Document& truth, const std::string& id);
 
 }  // namespace gonio::nrsfm

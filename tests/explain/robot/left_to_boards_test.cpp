@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "explain/domains.h"
-#include "inference/toy_frame.h"
+#include "inference/toy_problem.h"
 #include "mechanism/mechanism.h"
 
 namespace gonio::explain::tests {
@@ -24,22 +24,32 @@ const Domain& domain_named(const std::string& name) {
   return **std::ranges::find(all_domains(), name, &Domain::name);
 }
 
-TEST(LeftToBoards, OnlyWhatTheyNameOfALens) {
+TEST(LeftToBoards, WhatTheyLookedAtAndDidNotNameOfALensIsRefused) {
   const WithCandidates boards("boards", {"lens.radial", "lens.tangential", "lens.thin-prism", "board.scale"});
-  const WithCandidates robot("robot",
-                             {"robot.sag", "lens.radial", "lens.tangential", "lens.thin-prism", "board.scale"});
   Explanation e;
   e.named = {0};
-  const Answered answer{&boards, &e};
-  const auto asked = [&](const std::string& domain, const std::vector<std::string>& wanted) {
-    return hypotheses_of(domain_named(domain), robot, {&answer, 1}, wanted);
-  };
-  EXPECT_THAT(asked("robot", {}), testing::ElementsAre("robot.sag", "lens.radial", "board.scale"));
-  EXPECT_THAT(asked("images", {}), testing::IsEmpty());  // all of them, which leaves nothing to boards
-  EXPECT_THAT(asked("robot", {"robot.sag", "lens.tangential"}), testing::ElementsAre("robot.sag"));
   e.not_told_apart = {{0, 2}};
-  EXPECT_THAT(asked("robot", {}), testing::ElementsAre("robot.sag", "lens.radial", "lens.thin-prism", "board.scale"));
-  EXPECT_THAT(hypotheses_of(domain_named("robot"), robot, {}, {}), testing::IsEmpty());
+  const Answered answer{&boards, &e};
+  EXPECT_THAT(refused_before(domain_named("robot"), {&answer, 1}),
+              testing::ElementsAre("lens.tangential", "lens.thin-prism"));
+  EXPECT_THAT(refused_before(domain_named("images"), {&answer, 1}), testing::IsEmpty());
+  EXPECT_THAT(refused_before(domain_named("robot"), {}), testing::IsEmpty());
+}
+
+// What is refused is not named, and what was beside it still is.
+TEST(LeftToBoards, WhatIsRefusedIsNotNamed) {
+  ToyProblem::Truth truth;
+  truth.amplitudes = {1, 0.1, 0};
+  const ToyProblem problem(three_effects(), truth, 1);
+  const Explanation e = explain(problem, {});
+  ASSERT_FALSE(e.named.empty()) << e.sentence;
+  const std::string least = problem.candidates()[e.named.back()].id();
+  const Explanation without = explain_without(problem, {}, {least});
+  EXPECT_GE(e.named.size(), 2u);
+  EXPECT_EQ(without.named.size(), e.named.size() - 1) << without.sentence;
+  for (const std::size_t c : without.named) EXPECT_NE(problem.candidates()[c].id(), least) << without.sentence;
+  EXPECT_TRUE(without.significant);
+  EXPECT_EQ(explain_without(problem, {}, {}).sentence, e.sentence);
 }
 
 }  // namespace

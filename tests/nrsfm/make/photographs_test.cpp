@@ -131,7 +131,7 @@ TEST(Photographs, PointsAreFollowedWithinWhatIsSaidOfThem) {
   const Photographs photographs(recording.frames);
   ASSERT_EQ(photographs.count(), 13u);
   const FollowOptions options{.points = 60, .every = 3};
-  const Followed followed = follow(
+  const FollowedPoints followed = follow(
       13, [&](std::size_t k) { return photographs.picture(k); }, options);
   ASSERT_EQ(followed.tracks_px.rows(), 10);
   const KnownTracks known =
