@@ -39,7 +39,7 @@ TEST(LeftToBoards, WhatTheyLookedAtAndDidNotNameOfALensIsRefused) {
 // What is refused is not named, and what was beside it still is.
 TEST(LeftToBoards, WhatIsRefusedIsNotNamed) {
   ToyProblem::Truth truth;
-  truth.amplitudes = {1, 0.1, 0};
+  truth.amplitudes = {0.6, 0, 0.2};
   const ToyProblem problem(three_effects(), truth, 1);
   const Explanation e = explain(problem, {});
   ASSERT_FALSE(e.named.empty()) << e.sentence;
