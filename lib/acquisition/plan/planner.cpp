@@ -100,15 +100,16 @@ void Planner::check() const {
   };
   needs(options.reference_every, "reference"), needs(options.board_every, "board");
   const State home = configurations.state(configurations.home());
+  if (!surroundings.free(home, laboratory.margin_m)) {
+    const Clearance c = surroundings.clearance(home, laboratory.margin_m + 1e-6);
+    throw Error(Exit::data, manifest::place(document, "/laboratory/robots"),
+                format("at home %s comes within %.3g m of %s, limit %.3g m", c.first.c_str(), c.distance_m,
+                       c.second.c_str(), laboratory.margin_m),
+                "give the arms another home_rad");
+  }
   if (const std::string broken = broken_at(laboratory, home, smallest_singular(laboratory, home)); !broken.empty())
     throw Error(Exit::data, manifest::place(document, "/laboratory/robots"), "at home " + broken,
                 "give the arms another home_rad, or the laboratory wider limits");
-  if (surroundings.free(home, laboratory.margin_m)) return;
-  const Clearance c = surroundings.clearance(home, laboratory.margin_m + 1e-6);
-  throw Error(Exit::data, manifest::place(document, "/laboratory/robots"),
-              format("at home %s comes within %.3g m of %s, limit %.3g m", c.first.c_str(), c.distance_m,
-                     c.second.c_str(), laboratory.margin_m),
-              "give the arms another home_rad");
 }
 
 void Planner::find_candidates() {
