@@ -250,6 +250,21 @@ TEST_F(AcquireRefuses, PlansAndTruthsThatDoNotFit) {
   for (const BadInput& bad : all) expect_refused("plan.json", bad);
 }
 
+// A camera that stands needs no arm: that is no bad input.
+TEST_F(AcquireRefuses, NoLaboratoryWithoutArms) {
+  spoil("lab.json", [](Value& d) {
+    lab_of(d)["robots"] = Value::object();
+    lab_of(d)["obstacles"] = Value::array();
+    lab_of(d)["cameras"]["camera"]["robot"] = "";
+    lab_of(d)["cameras"]["camera"]["world_from_camera"] = Value::object(
+        {{"rotation", std::vector<double>{0, 1, 0, 0}}, {"translation_m", std::vector<double>{0, 0, 0.4}}});
+  });
+  const Ended ended = run({"acquire", "bad.json", "--plan", "hdr:longest=4ms", "--go", "--spp", "1", "--out", "stands"},
+                          folder().path());
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("\"images\""));
+}
+
 // An arm answers on loopback all the while, and has to stand where it stood.
 TEST_F(AcquireRefuses, DevicesThatAreNotAsTheyShouldBe) {
   DeskWorld world;
