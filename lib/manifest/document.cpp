@@ -295,7 +295,9 @@ fs::path resolve(const Document& d, const std::string& file_id, const std::strin
                 "move the file, or allow it with --allow-outside");
   std::error_code error;
   const auto bytes = fs::file_size(path, error);
-  if (error) throw Error(Exit::no_input, at + "/path", "\"" + file.path + "\" cannot be read: " + error.message());
+  if (error)
+    throw Error(Exit::no_input, at + "/path", "\"" + file.path + "\" cannot be read: " + error.message(),
+                "check the path and its permissions");
   if (file.bytes && *file.bytes != bytes)
     throw Error(Exit::data, at,
                 "\"" + file.path + "\" has " + std::to_string(bytes) + " bytes, the manifest says " +

@@ -146,7 +146,11 @@ const manifest::Plan& chosen_plan(const cli::Invocation& call) {
   if (!call.given("plan-id")) return plans.back();
   const auto found =
       std::ranges::find_if(plans, [&call](const manifest::Plan& p) { return p.id.starts_with(call.text("plan-id")); });
-  if (found == plans.end()) throw Error(Exit::usage, "--plan-id", "no plan's id begins with " + call.text("plan-id"));
+  if (found == plans.end()) {
+    std::string ids;
+    for (const manifest::Plan& one : plans) ids += (ids.empty() ? "" : ", ") + one.id.substr(0, 12);
+    throw Error(Exit::usage, "--plan-id", "no plan's id begins with " + call.text("plan-id"), "there is " + ids);
+  }
   return *found;
 }
 

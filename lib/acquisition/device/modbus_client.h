@@ -1,9 +1,9 @@
 // A Modbus TCP device as this program talks to it: one request at a time, each answered in time or not at all. After a
 // late or malformed answer the connection is dropped and the next request opens another: what arrives for an earlier
 // question is never read as the answer to a later one. Repeating is harmless, all requests set or read states: they are
-// repeated after silence (`tries`), and for the timeout where the device answers with an exception that may pass, as busy
-// does. One that stays, as an address that it does not have, is an answer. Error(unavailable) in words: device, unit,
-// address, exception, remedy.
+// repeated after silence (`tries`), and for the timeout where the device answers with an exception that may pass, as
+// busy does. One that stays, as an address that it does not have, is an answer. Error(unavailable) in words: device,
+// unit, address, exception, remedy.
 //
 // Numbers wider than a register are packed by own code (Modbus leaves it open): big-endian within a register, registers
 // in the order that is said.

@@ -50,7 +50,8 @@ bool writes_raw_alone(const std::string& choice) {
   return false;
 }
 
-std::string list_of(const std::vector<std::string>& choices, std::optional<double> (*number_of)(const std::string&)) {
+std::string listed_choices(const std::vector<std::string>& choices,
+                           std::optional<double> (*number_of)(const std::string&)) {
   std::string list;
   for (const std::string& choice : choices)
     if (number_of == nullptr || number_of(choice)) list += (list.empty() ? "" : ", ") + choice;
@@ -125,7 +126,7 @@ class TetheredCamera : public CameraDevice {
                                                    : std::ranges::find(choices, settings_.quality);
       if (found == choices.end())
         throw impossible(settings_.quality.empty() ? "writes no raw files" : "has no quality " + settings_.quality,
-                         "quality= the one that writes raw files: " + list_of(choices, nullptr));
+                         "quality= the one that writes raw files: " + listed_choices(choices, nullptr));
       return set(setting, *found);
     }
   }
@@ -143,7 +144,7 @@ class TetheredCamera : public CameraDevice {
     const auto nearest = nearest_choice(choices, exposure_s, shutter_speed_s);
     if (!nearest || std::abs(*shutter_speed_s(*nearest) / exposure_s - 1) > 0.01)
       throw impossible("has no shutter speed of " + shortest_text(exposure_s) + " s",
-                       list_of(choices, shutter_speed_s));
+                       listed_choices(choices, shutter_speed_s));
     set(speed_, *nearest);
     exposure_s_ = shutter_speed_s(*nearest);
   }
@@ -155,7 +156,7 @@ class TetheredCamera : public CameraDevice {
       const auto nearest = nearest_choice(choices, iso, iso_of);
       if (!nearest || std::abs(gain_of_iso(*iso_of(*nearest), settings_.base_iso) - *gain_db) > 0.1)
         throw impossible(format("has no ISO %.4g, a gain of %g dB over ISO %g", iso, *gain_db, settings_.base_iso),
-                         list_of(choices, iso_of));
+                         listed_choices(choices, iso_of));
       set("iso", *nearest);
     }
     const auto now = cable_->value("iso");

@@ -19,6 +19,11 @@
 namespace gonio::acquisition {
 namespace {
 
+// Without arms there is no singularity, and without solids nothing to stay clear of.
+std::optional<double> if_finite(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
 constexpr int most_rounds = 12;
 constexpr std::size_t tour_rounds_each = 8, most_tour_rounds = 6000;  // of ruin and recreate, per view
 constexpr double forbidden_s = 1e7;
@@ -100,15 +105,16 @@ void Planner::check() const {
   };
   needs(options.reference_every, "reference"), needs(options.board_every, "board");
   const State home = configurations.state(configurations.home());
+  if (!surroundings.free(home, laboratory.margin_m)) {
+    const Clearance c = surroundings.clearance(home, laboratory.margin_m + 1e-6);
+    throw Error(Exit::data, manifest::place(document, "/laboratory/robots"),
+                format("at home %s comes within %.3g m of %s, limit %.3g m", c.first.c_str(), c.distance_m,
+                       c.second.c_str(), laboratory.margin_m),
+                "give the arms another home_rad");
+  }
   if (const std::string broken = broken_at(laboratory, home, smallest_singular(laboratory, home)); !broken.empty())
     throw Error(Exit::data, manifest::place(document, "/laboratory/robots"), "at home " + broken,
                 "give the arms another home_rad, or the laboratory wider limits");
-  if (surroundings.free(home, laboratory.margin_m)) return;
-  const Clearance c = surroundings.clearance(home, laboratory.margin_m + 1e-6);
-  throw Error(Exit::data, manifest::place(document, "/laboratory/robots"),
-              format("at home %s comes within %.3g m of %s, limit %.3g m", c.first.c_str(), c.distance_m,
-                     c.second.c_str(), laboratory.margin_m),
-              "give the arms another home_rad");
 }
 
 void Planner::find_candidates() {
@@ -238,8 +244,9 @@ void Planner::write(const std::vector<Visit>& stops, const std::vector<std::size
       if (f == 0 && from != chosen[k]) {
         for (std::size_t s = 1; s + 1 < way.states.size(); ++s) step.via.push_back(way.states[s]);
         if (way.straight) step.straight = true;
-        step.duration_s = way.figures.duration_s, step.clearance_m = way.figures.clearance_m;
-        step.smallest_singular_m = way.figures.smallest_singular_m;
+        step.duration_s = way.figures.duration_s;
+        step.clearance_m = if_finite(way.figures.clearance_m);
+        step.smallest_singular_m = if_finite(way.figures.smallest_singular_m);
       } else {
         step.duration_s = 0;
       }
@@ -253,7 +260,8 @@ void Planner::write(const std::vector<Visit>& stops, const std::vector<std::size
   }
   plan.figures["moving_s"] = duration, plan.figures["detours"] = detours, plan.figures["straight_ways"] = straight;
   if (!moved) return;
-  plan.figures["smallest_singular_m"] = singular, plan.figures["smallest_clearance_m"] = clearance;
+  if (if_finite(singular)) plan.figures["smallest_singular_m"] = singular;
+  if (if_finite(clearance)) plan.figures["smallest_clearance_m"] = clearance;
   plan.figures["largest_turn_rad"] = turn;
 }
 

@@ -172,7 +172,8 @@ PatternNumbers pattern_numbers(const ViewPattern& pattern, const PatternNumbers&
                   names.empty() ? "it has none" : "it has " + names);
     }
     if (!(value >= p->lower && value <= p->upper))
-      throw Error(Exit::usage, place, pattern.name + ": " + name + " is " + shortest_text(value) + (p->unit == "1" ? "" : " " + p->unit),
+      throw Error(Exit::usage, place,
+                  pattern.name + ": " + name + " is " + shortest_text(value) + (p->unit == "1" ? "" : " " + p->unit),
                   "between " + shortest_text(p->lower) + " and " + shortest_text(p->upper));
     numbers[name] = value;
   }

@@ -149,7 +149,9 @@ std::vector<std::string> inspect(const Document& d, bool* all_well) {
   for (const auto& [name, lamp] : lab.lamps)
     inspect_one(lines, all_well, "lamp " + name, lamp.url, [&, &n = name, &u = lamp.url] {
       const auto opened = open_lamp(u, url_place(d, "lamps", n));
-      return std::string(!opened->knows() ? "takes commands, and cannot be asked" : opened->is_on() ? "is on" : "is off");
+      return std::string(!opened->knows()  ? "takes commands, and cannot be asked"
+                         : opened->is_on() ? "is on"
+                                           : "is off");
     });
   for (const auto& [name, table] : lab.turntables)
     inspect_one(lines, all_well, "turntable " + name, table.url, [&, &n = name, &u = table.url] {

@@ -88,7 +88,7 @@ class AcquireRefuses : public testing::Test {
     EXPECT_EQ(ended.status, bad.status) << ended.err;
     EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
     EXPECT_THAT(ended.err, testing::StartsWith("acquire: "));
-    EXPECT_THAT(ended.err, HasSubstr("; ")) << "what to do about it";
+    EXPECT_THAT(ended.err, testing::AnyOf(HasSubstr("; "), HasSubstr(" is needed"))) << "what to do about it";
     for (const std::string& words_in : bad.mentions) EXPECT_THAT(ended.err, HasSubstr(words_in));
     EXPECT_EQ(ended.out, "");
     EXPECT_EQ(files(), files_before);
@@ -248,6 +248,21 @@ TEST_F(AcquireRefuses, PlansAndTruthsThatDoNotFit) {
        65,
        {"bad.json#/laboratory: has simulated devices beside others; give all of them sim://"}}};
   for (const BadInput& bad : all) expect_refused("plan.json", bad);
+}
+
+// A camera that stands needs no arm: that is no bad input.
+TEST_F(AcquireRefuses, NoLaboratoryWithoutArms) {
+  spoil("lab.json", [](Value& d) {
+    lab_of(d)["robots"] = Value::object();
+    lab_of(d)["obstacles"] = Value::array();
+    lab_of(d)["cameras"]["camera"]["robot"] = "";
+    lab_of(d)["cameras"]["camera"]["world_from_camera"] = Value::object(
+        {{"rotation", std::vector<double>{0, 1, 0, 0}}, {"translation_m", std::vector<double>{0, 0, 0.4}}});
+  });
+  const Ended ended = run({"acquire", "bad.json", "--plan", "hdr:longest=4ms", "--go", "--spp", "1", "--out", "stands"},
+                          folder().path());
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("\"images\""));
 }
 
 // An arm answers on loopback all the while, and has to stand where it stood.
