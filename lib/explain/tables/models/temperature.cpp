@@ -1,8 +1,9 @@
 // Model "temperature": what a joint's sensor of temperature says over time. The base model knows no heating: one level
 // for each session, a stretch of rows without a long gap. The mechanisms are the drives of one warm body
-// (robot/mechanisms/robot_warm_up.h), at most one of which is named: something that stays the same, the motor's current
-// squared, the joint's speed. The body begins every session at the session's own level, since nothing is known of the
-// gap before it, and heads for one target throughout. The drive is taken to change evenly between two rows.
+// (robot/mechanisms/robot_warm_up.h): something that stays the same, the motor's current squared, the joint's speed.
+// The body begins every session at the session's own level, since nothing is known of the gap before it, and heads for
+// one target throughout. The drive is taken to change evenly between two rows. A task that repeats drives all three
+// alike: then they are said not to be told apart.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -132,7 +133,7 @@ class Temperature final : public BoundModel {
       for (const double v : given) heating.drive.push_back(drive.of(v));
     }
     // What is driven holds the one that stays the same within it: its drive at the mean.
-    Candidate candidate{heating.mechanism, {}, {}, "robot.heating", !heating.drive.empty()};
+    Candidate candidate{heating.mechanism, {}, {}, "", !heating.drive.empty()};
     for (const mechanism::Parameter& p : heating.mechanism->parameters) {
       candidate.parameters.push_back(parameters_.size());
       Parameter own;
