@@ -68,6 +68,14 @@ class BoundModel {
   // and, after all terms, to predictions (reflectance spans decades: log1p). Sigma, norm and conditions then live in
   // it.
   virtual double scaled(double value, std::size_t /*row*/) const { return value; }
+  // Rows next to each other within a group may share an error: into how many blocks a group is cut where the table
+  // names no column for them; 0: every row is one of its own.
+  virtual std::size_t blocks_a_group() const { return 0; }
+  // What it means, for people, that these mechanisms are named, with the model's own values and sigmas.
+  virtual std::string remarks(std::span<const std::string> /*named*/, std::span<const double> /*values*/,
+                              std::span<const double> /*sigma*/) const {
+    return {};
+  }
   // Fitted values with sigmas and the named mechanisms into the document's sections. `values`, `sigma`: the model's
   // own.
   virtual void apply(std::span<const double> values, std::span<const double> sigma,
@@ -91,6 +99,7 @@ struct Model {
   std::string group_noun = "group";  // "series", "frame"
   std::string group{};               // column that holds rows together where the table names none: "theta_i"
   Importance importance = Importance::share_of_signal;
+  bool reads_light = true;  // terms (of lamps, optics, sensors of light) act on what it predicts
   std::unique_ptr<BoundModel> (*bind)(const manifest::Document& document, const std::string& name,
                                       const Table& table) = nullptr;
 };

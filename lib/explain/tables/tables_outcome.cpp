@@ -28,8 +28,12 @@ std::vector<std::unique_ptr<Problem>> table_problems(const manifest::Document& d
   return problems;
 }
 
-std::string TablesProblem::remarks(const Explanation&) const {
-  return "Noise " + noise_ + "." + (grouped_.empty() ? "" : " " + grouped_);
+std::string TablesProblem::remarks(const Explanation& e) const {
+  std::vector<std::string> named;
+  for (const std::size_t c : e.named) named.push_back(candidates_[c].id());
+  const std::size_t count = bound_->parameters().size();
+  const std::string own = bound_->remarks(named, std::span(e.values).first(count), std::span(e.sigma).first(count));
+  return (own.empty() ? "" : own + " ") + "Noise " + noise_ + "." + (grouped_.empty() ? "" : " " + grouped_);
 }
 
 void TablesProblem::apply(const Explanation& e, manifest::Document& document) const {

@@ -64,6 +64,8 @@ void TablesProblem::assemble(const manifest::Document&) {
   candidates_ = bound_->candidates();
   std::vector<std::string> done;
   for (const Candidate& c : candidates_) done.push_back(c.id());
+  if (!model_->reads_light)
+    for (const Term* form : all_forms()) done.push_back(form->mechanism().id);
   terms_ = std::make_unique<TermStack>(table_, model_->name, done, parameters_.size());
   parameters_.insert(parameters_.end(), terms_->parameters().begin(), terms_->parameters().end());
   candidates_.insert(candidates_.end(), terms_->candidates().begin(), terms_->candidates().end());
@@ -168,11 +170,17 @@ void TablesProblem::set_blocks(const manifest::Table& section) {
   const std::size_t column = section.block.empty() ? Table::none : table_.place_of(section.block);
   if (!section.block.empty() && column == Table::none)
     throw Error(Exit::data, table_.place + "/block", "names column \"" + section.block + "\", which the table lacks");
+  const std::size_t shared = bound_->blocks_a_group();
   std::uint32_t next = 0;
   for (std::size_t g = 0; g < o.groups(); ++g) {
     std::vector<std::pair<double, std::uint32_t>> seen;
     for (std::size_t r = table_.first[g]; r < table_.first[g + 1]; ++r) {
       std::uint32_t block = next;
+      if (column == Table::none && shared > 0) {
+        const std::size_t rows = table_.first[g + 1] - table_.first[g], k = r - table_.first[g];
+        o.block.insert(o.block.end(), observed, next + static_cast<std::uint32_t>(k * shared / rows));
+        continue;
+      }
       if (column != Table::none) {
         const double value = table_.values[column][r];
         const auto found = std::find_if(seen.begin(), seen.end(), [&](const auto& s) { return s.first == value; });
@@ -184,6 +192,7 @@ void TablesProblem::set_blocks(const manifest::Table& section) {
       if (block == next) ++next;
       o.block.insert(o.block.end(), observed, block);
     }
+    if (column == Table::none) next += static_cast<std::uint32_t>(shared);
   }
 }
 
