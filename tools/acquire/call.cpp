@@ -164,13 +164,21 @@ Exit go(cli::Invocation& call, const Laboratory& laboratory, const manifest::Pla
   options.retakes = static_cast<int>(call.integer("retakes"));
   options.seed = call.seed;
   std::optional<Progress> progress;
-  options.on_frame = [&progress](const std::filesystem::path&, const std::string& words, std::size_t done,
-                                 std::size_t total) {
-    if (!progress) progress.emplace("frames", total - done + 1);
+  LivePage page(call, laboratory, plan);
+  options.on_frame = [&](const RunNews& news) {
+    if (!progress) progress.emplace("frames", news.total - news.records.size() + 1);
     progress->advance();
-    log(LogLevel::debug, words);
+    log(LogLevel::debug, words_of(news.frame));
+    page.show(news);
   };
-  const RunReport report = run_plan(call.document, laboratory, plan, instrument, options);
+  RunReport report;
+  try {
+    report = run_plan(call.document, laboratory, plan, instrument, options);
+  } catch (const Error& error) {
+    page.stop(error.what());
+    throw;
+  }
+  page.finish(report);
   for (const std::string& words : report.words) log(LogLevel::warning, words);
   log(LogLevel::info, format("%lld frames, %lld retaken, %lld refused", static_cast<long long>(report.frames),
                              static_cast<long long>(report.retaken), static_cast<long long>(report.refused)));

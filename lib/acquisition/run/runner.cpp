@@ -103,6 +103,7 @@ class PlanRun {
     report_.frames = static_cast<std::int64_t>(records_.size());
     doubt_pictures();
     enter_frames(document_, laboratory_, plan_, records_, options_.out);
+    report_.records = records_;
     return report_;
   }
 
@@ -350,7 +351,7 @@ class PlanRun {
     record.sha256 = sha256_of_file(path);
     journal_.write(to_event(record));
     records_[image] = record;
-    if (options_.on_frame) options_.on_frame(path, words_of(record), records_.size(), total_);
+    if (options_.on_frame) options_.on_frame({record, records_, total_, report_});
   }
 
   manifest::Document& document_;
