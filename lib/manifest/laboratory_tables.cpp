@@ -172,9 +172,10 @@ const std::vector<Field<PlanStep>>& plan_step_fields() {
 
 const std::vector<Field<UnreachableView>>& unreachable_view_fields() {
   using U = UnreachableView;
-  static const std::vector<Field<U>> table{field("image", &U::image, "", "id that was asked for").needed(),
-                                           field("why", &U::why, "", "in words").needed(),
-                                           field("nearest", &U::nearest, "", "step that can be reached")};
+  static const std::vector<Field<U>> table{
+      field("image", &U::image, "", "id that was asked for").needed(), field("why", &U::why, "", "in words").needed(),
+      field("world_from_camera", &U::world_from_camera, "", "asked: takes camera to world coordinates"),
+      field("nearest", &U::nearest, "", "step that can be reached")};
   return table;
 }
 

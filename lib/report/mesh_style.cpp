@@ -14,6 +14,20 @@ const std::string_view solid_style = R"css(
 .solid .controls button{font:inherit;color:var(--ink);background:var(--fill);border:1px solid var(--line);
 border-radius:3px;padding:.2rem .7rem;cursor:pointer}
 .solid .controls button[aria-pressed=true]{border-color:var(--accent);box-shadow:inset 0 -2px var(--accent)}
+.solid .controls label{display:inline-flex;align-items:center;gap:.3rem}
+.solid .controls input[type=range]{flex:1;min-width:8rem;accent-color:var(--accent)}
+.solid .controls select{font:inherit;color:var(--ink);background:var(--fill);border:1px solid var(--line);
+border-radius:3px}
+.solid .controls output{flex-basis:100%;font-variant-numeric:tabular-nums;color:var(--ink)}
+.solid .stage{position:relative;overflow:hidden}
+.solid .names span{position:absolute;left:0;top:0;padding:0 2px;font-size:.75rem;line-height:1.4;white-space:nowrap;
+color:#1c1d1f;text-shadow:0 0 3px #fff,0 0 3px #fff,0 0 3px #fff;pointer-events:none}
+.solid .keys{display:flex;flex-wrap:wrap;gap:.1rem 1.2rem;margin:.5rem 0;font-size:.8125rem;color:var(--soft)}
+.solid .keys span{display:inline-flex;align-items:center;gap:.4rem}
+.solid .keys i{width:.8rem;height:.8rem;border-radius:2px;border:1px solid var(--line);print-color-adjust:exact;
+-webkit-print-color-adjust:exact}
+svg .cursor{stroke:var(--accent);stroke-width:1.5;fill:none;pointer-events:none}
+svg[data-time]{cursor:crosshair}
 .solid .scale{margin:.4rem 0 0;max-width:none}
 @media print{.solid .controls{display:none}}
 )css";
@@ -35,8 +49,8 @@ for (const box of document.querySelectorAll('.solid')) {
   };
   const program = gl.createProgram();
   gl.attachShader(program, part(gl.VERTEX_SHADER, `attribute vec3 p; attribute vec3 c; uniform mat3 t; uniform vec3 m;
-    uniform vec2 s; uniform vec2 o; varying vec3 colour, at;
-    void main() { at = t * (p - m); colour = c; gl_Position = vec4(at.xy * s + o, -at.z * 0.4, 1.0); }`));
+    uniform mat3 q; uniform vec3 o; uniform vec2 s, h; uniform float z; varying vec3 colour, at;
+    void main() { at = t * (q * p + o - m); colour = c; gl_Position = vec4(at.xy * s + h, -at.z * z, 1.0); }`));
   gl.attachShader(program, part(gl.FRAGMENT_SHADER, `#extension GL_OES_standard_derivatives : enable
     precision highp float; varying vec3 colour, at;
     void main() { vec3 n = normalize(cross(dFdx(at), dFdy(at)));
@@ -49,7 +63,7 @@ for (const box of document.querySelectorAll('.solid')) {
     gl.bindBuffer(kind, b), gl.bufferData(kind, data, gl.STATIC_DRAW);
     return b;
   };
-  const meshes = [...box.querySelectorAll('script')].map(s => {
+  const meshes = [...box.querySelectorAll('script[data-name]')].map(s => {
     const raw = bytes(s.textContent), codes = new Uint16Array(raw.buffer), values = bytes(s.dataset.values);
     const positions = new Float32Array(codes.length), colours = new Float32Array(codes.length);
     for (let i = 0; i < codes.length; ++i) positions[i] = codes[i] / 65535;
@@ -65,11 +79,22 @@ for (const box of document.querySelectorAll('.solid')) {
     return {name: s.dataset.name, count: indices.length, positions: stored(gl.ARRAY_BUFFER, positions),
       colours: stored(gl.ARRAY_BUFFER, colours), indices: stored(gl.ELEMENT_ARRAY_BUFFER, indices)};
   });
-  picture.replaceWith(canvas);
+  const model = typeof readModel === 'function' ? readModel(box, bytes) : null;
+  for (const shape of model ? model.shapes : [])
+    meshes.push({name: '', count: shape.indices.length, positions: stored(gl.ARRAY_BUFFER, shape.positions),
+      indices: stored(gl.ELEMENT_ARRAY_BUFFER, shape.indices)});
+  const stage = document.createElement('div');
+  stage.className = 'stage';
+  picture.replaceWith(stage);
+  stage.append(canvas);
+  const names = model && makeNames(stage, model);
+  box.model = model;
+  let timeline = null;
   canvas.tabIndex = 0;
   canvas.setAttribute('role', 'img');
   let turn = start.slice(), near = 1, shown = 0, shift = [0, 0];
-  const place = name => gl.getAttribLocation(program, name), set = name => gl.getUniformLocation(program, name);
+  const known = {}, place = name => gl.getAttribLocation(program, name);
+  const set = name => known[name] || (known[name] = gl.getUniformLocation(program, name));
   const draw = () => {
     const wide = canvas.clientWidth, ratio = window.devicePixelRatio || 1;
     if (!wide) return;
@@ -78,21 +103,38 @@ for (const box of document.querySelectorAll('.solid')) {
     gl.clearColor(0.94, 0.94, 0.94, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);
-    const mesh = meshes[shown];
-    for (const [name, buffer] of [['p', mesh.positions], ['c', mesh.colours]]) {
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-      gl.enableVertexAttribArray(place(name));
-      gl.vertexAttribPointer(place(name), 3, gl.FLOAT, false, 0, 0);
-    }
-    const t = turn;
+    const t = turn, scale = [0.92 * 0.75 * reach * near, 0.92 * reach * near], time = timeline ? timeline.now() : 0;
     gl.uniformMatrix3fv(set('t'), false, [t[0], t[3], t[6], t[1], t[4], t[7], t[2], t[5], t[8]]);
     gl.uniform3fv(set('m'), middle);
-    gl.uniform2f(set('s'), 0.92 * 0.75 * reach * near, 0.92 * reach * near);
-    gl.uniform2f(set('o'), shift[0], shift[1]);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, mesh.indices);
-    gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
-    canvas.setAttribute('aria-label', d.name + ': ' + mesh.name);
-    box.dataset.drawn = mesh.name;
+    gl.uniform2fv(set('s'), scale);
+    gl.uniform2fv(set('h'), shift);
+    gl.uniform1f(set('z'), model ? 0.1 * reach : 0.4);
+    let bound = null;
+    const show = (mesh, q, o, colour) => {
+      for (const [name, buffer] of mesh === bound ? [] : [['p', mesh.positions], ['c', mesh.colours]]) {
+        if (!buffer) continue;
+        gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+        gl.enableVertexAttribArray(place(name));
+        gl.vertexAttribPointer(place(name), 3, gl.FLOAT, false, 0, 0);
+      }
+      if (colour) gl.vertexAttrib3fv(place('c'), colour);
+      gl.uniformMatrix3fv(set('q'), false, [q[0], q[3], q[6], q[1], q[4], q[7], q[2], q[5], q[8]]);
+      gl.uniform3fv(set('o'), o);
+      if (mesh !== bound) gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, mesh.indices);
+      gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
+      bound = mesh;
+    };
+    if (model) {
+      for (const n of model.place(time)) if (n.shape >= 0) show(meshes[n.shape], n.q, n.o, model.colourAt(n, time));
+      const high = wide * 0.75;
+      names.put(o => {
+        const at = applied(t, o.map((v, i) => v - middle[i]));
+        return [wide / 2 * (1 + at[0] * scale[0] + shift[0]), high / 2 * (1 - at[1] * scale[1] - shift[1])];
+      }, wide, high);
+    } else if (meshes.length) show(meshes[shown], [1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0], null);
+    const name = model ? 'model' : meshes.length ? meshes[shown].name : '';
+    canvas.setAttribute('aria-label', d.name + (model ? '' : ': ' + name));
+    box.dataset.drawn = name;
   };
   const rotate = (across, up) => {
     const c = Math.cos(across), s = Math.sin(across), e = Math.cos(up), f = Math.sin(up), t = turn;
@@ -122,10 +164,18 @@ for (const box of document.querySelectorAll('.solid')) {
     else return;
     e.preventDefault();
   });
-  if (meshes.length > 1) {
-    const controls = document.createElement('div'), buttons = [];
-    controls.className = 'controls';
-    canvas.after(controls);
+  const controls = document.createElement('div'), buttons = [];
+  controls.className = 'controls';
+  if (model && model.end > 0) timeline = makeTimeline(box, model, draw, controls);
+  if (model && names.count) {
+    const label = document.createElement('label'), tick = document.createElement('input');
+    Object.assign(tick, {type: 'checkbox', checked: true});
+    tick.addEventListener('change', () => { names.all.hidden = !tick.checked; });
+    label.append(tick, 'names');
+    controls.append(label);
+  }
+  if (controls.children.length || meshes.length > 1) stage.after(controls);
+  if (!model && meshes.length > 1) {
     meshes.forEach((mesh, i) => {
       const b = document.createElement('button');
       b.type = 'button', b.textContent = mesh.name, b.setAttribute('aria-pressed', i === 0);
@@ -138,7 +188,8 @@ for (const box of document.querySelectorAll('.solid')) {
     });
   }
   new ResizeObserver(draw).observe(canvas);
-  draw();
+  if (timeline) timeline.seek(timeline.now());
+  else draw();
 }
 )js";
 

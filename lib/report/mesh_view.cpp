@@ -9,6 +9,7 @@
 #include "io/image.h"
 #include "io/raster.h"
 #include "report/colour_map.h"
+#include "report/moving_view.h"
 #include "report/number_text.h"
 #include "report/page.h"
 
@@ -23,26 +24,34 @@ struct Cube {
   Point low{}, middle{};
   double side = 1, radius = 1;
 };
-Cube cube_of(const MeshView& view) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  std::array<float, 3> low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
+// Everything that the first picture holds.
+std::vector<Point> points_of(const MeshView& view) {
+  std::vector<Point> points;
   for (const ViewedMesh& mesh : view.meshes)
-    for (const auto& p : mesh.positions)
-      for (std::size_t i = 0; i < 3; ++i) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
+    for (const auto& p : mesh.positions) points.push_back({p[0], p[1], p[2]});
+  for (const Vec3 p : points_in_view(view.moving)) points.push_back({p.x, p.y, p.z});
+  return points;
+}
+
+Cube cube_of(const MeshView& view) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Point low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
+  const std::vector<Point> points = points_of(view);
+  for (const Point& p : points)
+    for (std::size_t i = 0; i < 3; ++i) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
   Cube cube;
-  if (!(low[0] <= high[0])) return cube;
+  if (points.empty()) return cube;
   cube.side = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    cube.middle[i] = 0.5 * (double{low[i]} + double{high[i]});
-    cube.side = std::max(cube.side, double{high[i]} - double{low[i]});
+    cube.middle[i] = 0.5 * (low[i] + high[i]);
+    cube.side = std::max(cube.side, high[i] - low[i]);
   }
   if (!(cube.side > 0)) cube.side = 1;
   for (std::size_t i = 0; i < 3; ++i) cube.low[i] = cube.middle[i] - 0.5 * cube.side;
   cube.radius = 0;
-  for (const ViewedMesh& mesh : view.meshes)
-    for (const auto& p : mesh.positions)
-      cube.radius =
-          std::max(cube.radius, std::hypot(p[0] - cube.middle[0], p[1] - cube.middle[1], p[2] - cube.middle[2]));
+  for (const Point& p : points)
+    cube.radius =
+        std::max(cube.radius, std::hypot(p[0] - cube.middle[0], p[1] - cube.middle[1], p[2] - cube.middle[2]));
   if (!(cube.radius > 0)) cube.radius = 1;
   return cube;
 }
@@ -106,22 +115,18 @@ void fill(Screen& screen, const std::array<Point, 3>& p, const std::array<float,
     }
 }
 
-void append(std::string& bytes, std::uint32_t value, int count) {
-  for (int k = 0; k < count; ++k) bytes += static_cast<char>(value >> (8 * k) & 255u);
-}
-
 // 16 bits a coordinate, then 8 bits a value, then 32 bits an index, as base64.
 std::string data_of(const MeshView& view, const ViewedMesh& mesh, const Cube& cube) {
   std::string positions, values, indices;
   for (const auto& p : mesh.positions)
     for (std::size_t i = 0; i < 3; ++i)
-      append(positions,
-             static_cast<std::uint32_t>(std::lround(std::clamp((p[i] - cube.low[i]) / cube.side, 0.0, 1.0) * 65535)),
-             2);
+      append_bytes(
+          positions,
+          static_cast<std::uint32_t>(std::lround(std::clamp((p[i] - cube.low[i]) / cube.side, 0.0, 1.0) * 65535)), 2);
   for (const float v : mesh.value)
-    append(values, static_cast<std::uint32_t>(std::lround(std::clamp(share_of(view, v), 0.0, 1.0) * 255)), 1);
+    append_bytes(values, static_cast<std::uint32_t>(std::lround(std::clamp(share_of(view, v), 0.0, 1.0) * 255)), 1);
   for (const auto& t : mesh.triangles)
-    for (const std::uint32_t i : t) append(indices, i, 4);
+    for (const std::uint32_t i : t) append_bytes(indices, i, 4);
   return "<script type=\"text/plain\" data-name=\"" + escape(mesh.name) + "\" data-values=\"" + base64(values) +
          "\" data-indices=\"" + base64(indices) + "\">" + base64(positions) + "</script>";
 }
@@ -144,23 +149,36 @@ std::string still_png(const MeshView& view, std::size_t which, int width, int he
   const Cube cube = cube_of(view);
   Screen screen(width, height);
   const double scale = 0.5 * fills * std::min(width, height) / cube.radius;
+  const auto draw = [&](const std::array<Point, 3>& corners, std::array<float, 3> colour) {
+    std::array<Point, 3> at, seen;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Point& p = corners[c];
+      at[c] = turned_by(view.turn, {p[0] - cube.middle[0], p[1] - cube.middle[1], p[2] - cube.middle[2]});
+      seen[c] = {0.5 * width + scale * at[c][0], 0.5 * height - scale * at[c][1], at[c][2]};
+    }
+    const float shade = shade_of(at[0], at[1], at[2]);
+    for (float& k : colour) k *= shade;
+    fill(screen, seen, colour);
+  };
   if (which < view.meshes.size()) {
     const ViewedMesh& mesh = view.meshes[which];
     for (const auto& t : mesh.triangles) {
-      std::array<Point, 3> at, seen;
+      std::array<Point, 3> corners;
       std::array<float, 3> colour{};
       for (std::size_t c = 0; c < 3; ++c) {
         const auto& p = mesh.positions[t[c]];
-        at[c] = turned_by(view.turn, {p[0] - cube.middle[0], p[1] - cube.middle[1], p[2] - cube.middle[2]});
-        seen[c] = {0.5 * width + scale * at[c][0], 0.5 * height - scale * at[c][1], at[c][2]};
+        corners[c] = {p[0], p[1], p[2]};
         const Colour own = colour_of(view, mesh, t[c]);
         for (std::size_t k = 0; k < 3; ++k) colour[k] += own[k] / 3;
       }
-      const float shade = shade_of(at[0], at[1], at[2]);
-      for (float& k : colour) k *= shade;
-      fill(screen, seen, colour);
+      draw(corners, colour);
     }
   }
+  each_triangle(view.moving, view.start_s, [&](const std::array<Vec3, 3>& corners, const std::array<float, 3>& colour) {
+    std::array<Point, 3> points;
+    for (std::size_t c = 0; c < 3; ++c) points[c] = {corners[c].x, corners[c].y, corners[c].z};
+    draw(points, colour);
+  });
   return io::encode_raster_png(screen.image);
 }
 
@@ -171,14 +189,19 @@ std::string html(const MeshView& view) {
   for (int k = 0; k <= 10; ++k)
     ramp += (k > 0 ? "," : "") + hex(view.low < 0 ? signed_colour(k / 5.0 - 1) : magnitude_colour(k / 10.0));
   for (const ViewedMesh& mesh : view.meshes) data += data_of(view, mesh, cube);
+  const bool moves = !view.moving.nodes.empty();
+  if (moves) data += data_of(view.moving);
+  const Point& m = cube.middle;
   return "<div class=\"solid\" data-name=\"" + escape(view.name) + "\" data-turn=\"" + turn + "\" data-colours=\"" +
          ramp +
-         format("\" data-side=\"%.9g\" data-radius=\"%.9g\" data-middle=\"%.9g %.9g %.9g\">", cube.side, cube.radius,
-                (cube.middle[0] - cube.low[0]) / cube.side, (cube.middle[1] - cube.low[1]) / cube.side,
-                (cube.middle[2] - cube.low[2]) / cube.side) +
+         format("\" data-side=\"%.9g\" data-radius=\"%.9g\" data-middle=\"%.9g %.9g %.9g\" data-start=\"%.9g\">",
+                moves ? 1.0 : cube.side, cube.radius, moves ? m[0] : (m[0] - cube.low[0]) / cube.side,
+                moves ? m[1] : (m[1] - cube.low[1]) / cube.side, moves ? m[2] : (m[2] - cube.low[2]) / cube.side,
+                view.start_s) +
          "<img alt=\"" + escape(view.name) +
          format("\" width=\"%d\" height=\"%d\" src=\"data:image/png;base64,", still_width, still_height) +
-         base64(still_png(view, 0, still_width, still_height)) + "\">" + data + scale_of(view) + "</div>";
+         base64(still_png(view, 0, still_width, still_height)) + "\">" + data + legend_of(view) + scale_of(view) +
+         "</div>";
 }
 
 }  // namespace gonio::report

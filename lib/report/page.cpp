@@ -7,6 +7,7 @@
 
 #include "report/mesh_style.h"
 #include "report/motion_style.h"
+#include "report/moving_view.h"
 #include "report/page_style.h"
 
 namespace gonio::report {
@@ -223,9 +224,14 @@ void Page::footer(std::string_view text) {
   footer_ += "<p>" + escape(text) + "</p>";
 }
 
+void Page::reload_every(int seconds) {
+  reload_s_ = seconds;
+}
+
 std::string Page::html() const {
   const bool moving = body_.find("<div class=\"motion\"") != std::string::npos;
   const bool solid = body_.find("<div class=\"solid\"") != std::string::npos;
+  const bool model = body_.find("class=\"model\"") != std::string::npos;
   std::string navigation;
   if (headings_.size() > 2) {
     for (std::size_t i = 0; i < headings_.size(); ++i)
@@ -235,14 +241,15 @@ std::string Page::html() const {
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
-         "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
-         "<title>" +
-         escape(title_) + "</title>\n<style>" + std::string(page_style) + (moving ? std::string(motion_style) : "") +
-         (solid ? std::string(solid_style) : "") + "</style></head>\n<body>" + head_ + navigation + "<main>" + body_ +
-         (in_section_ ? "</section>" : "") + "</main>\n" +
-         (footer_.empty() ? std::string() : "<footer>" + footer_ + "</footer>\n") + "<script>" +
+         "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n" +
+         (reload_s_ > 0 ? "<meta http-equiv=\"refresh\" content=\"" + std::to_string(reload_s_) + "\">\n" : "") +
+         "<title>" + escape(title_) + "</title>\n<style>" + std::string(page_style) +
+         (moving ? std::string(motion_style) : "") + (solid ? std::string(solid_style) : "") +
+         "</style></head>\n<body>" + head_ + navigation + "<main>" + body_ + (in_section_ ? "</section>" : "") +
+         "</main>\n" + (footer_.empty() ? std::string() : "<footer>" + footer_ + "</footer>\n") + "<script>" +
          std::string(page_script) + (moving ? std::string(motion_script) : "") +
-         (solid ? std::string(solid_script) : "") + "</script></body></html>\n";
+         (model ? std::string(moving_script) : "") + (solid ? std::string(solid_script) : "") +
+         "</script></body></html>\n";
 }
 
 }  // namespace gonio::report

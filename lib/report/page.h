@@ -72,6 +72,7 @@ class Page {
   void open_details(std::string_view summary);  // folded until the reader opens it
   void close_details();
   void footer(std::string_view text);
+  void reload_every(int seconds);  // for a page that is written again while something goes on
 
   std::string html() const;
 
@@ -79,6 +80,7 @@ class Page {
   std::string title_, head_, body_, footer_;
   std::vector<std::string> headings_;
   bool in_section_ = false;
+  int reload_s_ = 0;  // 0: never
 };
 
 std::string escape(std::string_view text);  // & < > " ' for element content and attribute values

@@ -178,8 +178,11 @@ std::string svg(const Plot& plot) {
       PlotAxis(range.x, plot.log_x, left, width - right),
       plot.equal_scales ? PlotAxis(range.y, plot.log_y, top, floor) : PlotAxis(range.y, plot.log_y, floor, top),
       height};
-  std::string text =
-      print("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\" aria-label=\"", width, height) + escape(plot.title) + "\">";
+  std::string text = print("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\" ", width, height) +
+                     (plot.over_time ? print("data-time=\"%.9g %.9g %.0f %.0f %.0f %.0f\" ", range.x.first,
+                                             range.x.second, left, width - right, top, floor)
+                                     : std::string()) +
+                     "aria-label=\"" + escape(plot.title) + "\">";
   for (const auto& shade : plot.shades) text += draw(shade, d);
   text += frame(plot, d);
   for (std::size_t n = 0; n < plot.series.size(); ++n) text += draw(plot.series[n], style(plot, n), d);

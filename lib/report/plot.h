@@ -39,6 +39,7 @@ struct Plot {
   std::vector<Shade> shades{};
   bool log_x = false, log_y = false;        // values <= 0 are gaps
   bool zero_y = false;                      // the y axis includes zero
+  bool over_time = false;                   // x is the time of the page's model (mesh_view.h), which marks itself here
   bool equal_scales = false;                // one unit is as long on x as on y, and y points down: an image plane
   std::pair<double, double> x_range{0, 0};  // equal: from the data
   std::pair<double, double> y_range{0, 0};

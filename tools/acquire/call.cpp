@@ -210,13 +210,21 @@ Exit go(cli::Invocation& call, const Laboratory& laboratory, const manifest::Pla
   options.seed = call.seed;
   options.checks = check_options_of(call);
   std::optional<Progress> progress;
-  options.on_frame = [&progress](const std::filesystem::path&, const std::string& words, std::size_t done,
-                                 std::size_t total) {
-    if (!progress) progress.emplace("frames", total - done + 1);
+  LivePage page(call, laboratory, plan);
+  options.on_frame = [&](const RunNews& news) {
+    if (!progress) progress.emplace("frames", news.total - news.records.size() + 1);
     progress->advance();
-    log(LogLevel::debug, words);
+    log(LogLevel::debug, words_of(news.frame));
+    page.show(news);
   };
-  const RunReport report = run_plan(call.document, laboratory, plan, instrument, options);
+  RunReport report;
+  try {
+    report = run_plan(call.document, laboratory, plan, instrument, options);
+  } catch (const Error& error) {
+    page.stop(error.what());
+    throw;
+  }
+  page.finish(report);
   tell(report);
   return report.refused > 0 || !report.drifted.empty() ? Exit::quality : Exit::done;
 }

@@ -211,13 +211,24 @@ std::vector<cli::Option> running_options() {
           cli::report_option()};
 }
 
+std::vector<cli::Option> drawing_options() {
+  return {{.name = "picture",
+           .type = Type::output_file,
+           .help = "Draw the laboratory as it is described, its arms at home: one page that needs no network. No device "
+                   "is asked."},
+          {.name = "gltf",
+           .type = Type::output_file,
+           .help = "Write the plan, or without one the laboratory, for other programs: glTF 2.0, animated; FILE.glb or "
+                   "FILE.gltf."}};
+}
+
 std::vector<cli::Option> serving_options() {
   return {
       {.name = "serve",
        .type = Type::flag,
        .help = "Serve the laboratory on loopback until interrupted: arms, lamps, turntables and cameras, simulated. "
                "Writes the description whose URLs reach them.",
-       .conflicts = {"plan", "next", "pairs", "go", "dry-run", "html", "specimen"}},
+       .conflicts = {"plan", "next", "pairs", "go", "dry-run", "html", "picture", "gltf", "specimen"}},
       {.name = "scene",
        .type = Type::input_file,
        .help = "--serve: what stands in the laboratory, a manifest with objects, surfaces, lights.",
@@ -252,6 +263,7 @@ std::vector<cli::Option> options() {
   for (cli::Option& option : serving_options()) all.push_back(std::move(option));
   for (cli::Option& option : checking_options()) all.push_back(std::move(option));
   for (cli::Option& option : running_options()) all.push_back(std::move(option));
+  for (cli::Option& option : drawing_options()) all.push_back(std::move(option));
   return all;
 }
 

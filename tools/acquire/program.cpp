@@ -1,9 +1,7 @@
 // acquire: plans views of an instrument, moves it, lights, photographs, and knows of every frame what it is
 // (lib/acquisition).
 #include "acquisition/desk/specimen_laboratory.h"
-#include "acquisition/plan/plan_page.h"
 #include "acquisition/run/instrument.h"
-#include "base/atomic_file.h"
 #include "base/progress.h"
 #include "cli/board_options.h"
 #include "tools/acquire/call.h"
@@ -15,6 +13,13 @@ bool plans(const cli::Invocation& call) {
   return call.given("plan") || call.flag("next") || call.given("pairs");
 }
 
+// --picture needs no plan, --gltf does without where there is none.
+bool draws_without_plan(const cli::Invocation& call) {
+  if (plans(call) || call.flag("go") || call.flag("dry-run") || call.given("html") || call.given("plan-id"))
+    return false;
+  return call.given("gltf") ? call.document.plans.empty() : call.given("picture");
+}
+
 // With --check every device is asked how it is, and none moves.
 void check(cli::Invocation& call) {
   if (call.given("specimen")) {
@@ -22,6 +27,7 @@ void check(cli::Invocation& call) {
     return;
   }
   acquisition::believed_laboratory(call.document);
+  check_drawings(call);
   if (plans(call)) scene_of(call);
   if (call.flag("go") && call.out.empty())
     throw Error(Exit::usage, "--go", "has no folder for its frames", "give --out DIR");
@@ -40,13 +46,17 @@ Exit run(cli::Invocation& call) {
   }
   if (call.flag("serve")) return serve(call);
   const acquisition::Laboratory laboratory = acquisition::believed_laboratory(call.document);
+  if (draws_without_plan(call)) {
+    draw(call, laboratory, nullptr);
+    return Exit::done;
+  }
   const manifest::Plan& chosen = plans(call) ? plan(call, laboratory) : chosen_plan(call);
   if (call.flag("dry-run") || plans(call)) log(LogLevel::info, summary(chosen));
-  if (call.given("html")) write_file(call.text("html"), acquisition::plan_page(laboratory, chosen));
+  draw(call, laboratory, &chosen);
   if (call.flag("go")) return go(call, laboratory, chosen);
-  if (!plans(call) && !call.flag("dry-run") && !call.given("html"))
+  if (!plans(call) && !call.flag("dry-run") && !call.given("html") && !call.given("gltf"))
     throw Error(Exit::usage, "--go", "is not given, and nothing else is asked for",
-                "plan (--plan), look (--dry-run, --html), or let it move (--go)");
+                "plan (--plan), look (--dry-run, --html, --picture, --gltf), or let it move (--go)");
   return chosen.unreachable.empty() ? Exit::done : Exit::quality;
 }
 
@@ -59,7 +69,7 @@ const cli::Program& gonio_program() {
       .synopsis = {"--plan PATTERN [OPTION]... [-i FILE | lab.json]",
                    "--go --out DIR [OPTION]... [-i FILE | plan.json]", "--specimen NAME --out DIR",
                    "--serve [OPTION]... [-i FILE | lab.json]", "--dry-run [-i FILE | plan.json]",
-                   "--check [-i FILE | lab.json]"},
+                   "--check [-i FILE | lab.json]", "--picture FILE [-i FILE | lab.json]"},
       .options = options(),
       .operands = {{.name = "MANIFEST",
                     .type = cli::Type::text,

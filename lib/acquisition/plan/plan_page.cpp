@@ -1,127 +1,155 @@
+// See plan_page.h.
 #include "acquisition/plan/plan_page.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/motion/body.h"
 #include "acquisition/motion/line.h"
 #include "acquisition/motion/way.h"
-#include "acquisition/plan/planner.h"
-#include "acquisition/plan/solid_mesh.h"
 #include "base/text.h"
 #include "geom/angle.h"
+#include "manifest/document.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/laboratory.h"
 #include "manifest/sections/plan.h"
-#include "report/mesh_view.h"
-#include "report/page.h"
 
 namespace gonio::acquisition {
 namespace {
 
-constexpr std::size_t moments = 5, most_samples = 600;
+constexpr std::size_t samples = 600;  // of a plot over time, beside the photographs
 constexpr double far_enough_m = 0.2;  // beyond that clearances are not told apart
+constexpr int drawing_px = 960;
 
-struct Moment {
-  double time_s = 0;
-  State state;
-  bool view = false;  // the arms stand and photograph
-};
-
-// The plan over time: every state of its ways, and between them so many that about `most_samples` are drawn.
-std::vector<Moment> moments_of(const Laboratory& laboratory, const manifest::Plan& plan) {
-  std::vector<Moment> all;
-  const std::size_t between_two = std::clamp<std::size_t>(most_samples / (plan.steps.size() + 1), 1, 20);
-  double time = 0;
-  for (std::size_t k = 0; k < plan.steps.size(); ++k) {
-    const Way way = way_to(laboratory, plan, k);
-    if (all.empty()) all.push_back({0, way.front(), false});
-    double length = 0;
-    for (std::size_t s = 1; s < way.size(); ++s) length += largest_turn(laboratory, way[s - 1], way[s]);
-    const double duration = plan.steps[k].duration_s.value_or(0);
-    for (std::size_t s = 1; s < way.size(); ++s) {
-      const double share = length > 0 ? duration * largest_turn(laboratory, way[s - 1], way[s]) / length : 0;
-      for (std::size_t i = 1; i <= between_two; ++i) {
-        const double t = static_cast<double>(i) / static_cast<double>(between_two);
-        all.push_back({time + t * share, between(laboratory, way[s - 1], way[s], t), false});
-      }
-      time += share;
-    }
-    all.back().view = true;
-  }
+// Evenly, and where arms stand to photograph.
+std::vector<double> times_to_plot(const PlanTimes& times) {
+  std::vector<double> all;
+  for (std::size_t k = 0; k <= samples; ++k)
+    all.push_back(times.end_s() * static_cast<double>(k) / static_cast<double>(samples));
+  if (times.stands.size() <= samples)
+    for (const PlanStand& stand : times.stands) all.push_back(stand.from_s);
+  std::ranges::sort(all);
+  const auto tail = std::ranges::unique(all);
+  all.erase(tail.begin(), tail.end());
   return all;
 }
 
-void add_mesh(report::ViewedMesh& to, const SolidMesh& mesh, const Mat3& rotation, Vec3 origin_m, float value) {
-  const auto first = static_cast<std::uint32_t>(to.positions.size());
-  for (const Vec3 v : mesh.vertices_m) {
-    const Vec3 p = rotation * v + origin_m;
-    to.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-    to.value.push_back(value);
-  }
-  for (const auto& t : mesh.triangles) to.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-}
-
-report::MeshView laboratory_view(const Laboratory& laboratory, const manifest::Plan& plan,
-                                 const std::vector<Moment>& all) {
-  const std::vector<Body> bodies = bodies_of(laboratory);
-  const auto arms = static_cast<float>(laboratory.arms.size());
-  report::MeshView view;
-  view.name = "the laboratory";
-  view.label = "0 what stands";
-  float number = 0;
-  for (const auto& [name, arm] : laboratory.arms) view.label += format(", %.0f ", double{++number}) + name;
-  view.label += format(", %.0f views", double{arms} + 1);
-  view.high = double{arms} + 1;
-  const SolidMesh dot = mesh_of(Solid{"view", Solid::Shape::box, {0.008, 0.008, 0.008}, {}, {}, "", 0, false, {}});
-  for (std::size_t m = 0; m < moments; ++m) {
-    const Moment& moment = all[m * (all.size() - 1) / (moments - 1)];
-    report::ViewedMesh mesh;
-    mesh.name = format("%.0f s", moment.time_s);
-    const std::vector<PlacedBody> at = placed(laboratory, bodies, moment.state);
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      add_mesh(mesh, mesh_of(*bodies[b].solid), at[b].rotation, at[b].origin_m, static_cast<float>(bodies[b].arm + 1));
-    for (const manifest::PlanStep& step : plan.steps)
-      if (step.world_from_camera) add_mesh(mesh, dot, Mat3{}, step.world_from_camera->translation_m, arms + 1);
-    view.meshes.push_back(std::move(mesh));
-  }
-  return view;
-}
-
-report::Plot joints_plot(const LaboratoryArm& arm, const std::vector<Moment>& all) {
+report::Plot plot_over_time(const std::string& title, const std::string& y_label) {
   report::Plot plot;
-  plot.title = arm.name, plot.x_label = "time / s", plot.y_label = "joint angle / deg";
-  for (std::size_t j = 0; j < arm.links.size(); ++j) {
-    report::Series series;
-    series.name = format("joint %zu", j + 1);
-    for (const Moment& m : all) {
-      series.x.push_back(m.time_s);
-      series.y.push_back(joints_of(arm, m.state)[j] / degree);
-    }
-    plot.series.push_back(std::move(series));
-  }
+  plot.title = title, plot.x_label = "time / s", plot.y_label = y_label, plot.over_time = true;
   return plot;
 }
 
-void plot_over_time(report::Page& page, const Laboratory& laboratory, const std::vector<Moment>& all) {
+// Joints turn evenly from moment to moment: their lines need no more, unless there are too many moments.
+std::vector<report::Plot> joints_plots(const Laboratory& laboratory, const PlanTimes& times,
+                                       const std::vector<double>& at) {
+  std::vector<std::pair<double, State>> states;
+  if (times.moments.size() <= at.size())
+    for (const PlanMoment& moment : times.moments) states.emplace_back(moment.time_s, moment.state);
+  else
+    for (const double t : at) states.emplace_back(t, state_at_time(laboratory, times, t));
+  std::vector<report::Plot> plots;
+  for (const auto& [name, arm] : laboratory.arms) {
+    report::Plot plot = plot_over_time(name, "joint angle / deg");
+    for (std::size_t j = 0; j < arm.links.size(); ++j) {
+      report::Series series;
+      series.name = format("joint %zu", j + 1);
+      for (const auto& [t, state] : states) {
+        series.x.push_back(t);
+        series.y.push_back(joints_of(arm, state)[j] / degree);
+      }
+      plot.series.push_back(std::move(series));
+    }
+    plots.push_back(std::move(plot));
+  }
+  return plots;
+}
+
+std::vector<report::Plot> limits_plots(const Laboratory& laboratory, const PlanTimes& times,
+                                       const std::vector<double>& at) {
   const Surroundings surroundings(laboratory);
   report::Series clearance, singular;
-  for (const Moment& m : all) {
-    clearance.x.push_back(m.time_s), singular.x.push_back(m.time_s);
-    clearance.y.push_back(1e3 * surroundings.clearance(m.state, far_enough_m).distance_m);
-    singular.y.push_back(smallest_singular(laboratory, m.state));
+  for (const double t : at) {
+    const State state = state_at_time(laboratory, times, t);
+    clearance.x.push_back(t), singular.x.push_back(t);
+    clearance.y.push_back(1e3 * surroundings.clearance(state, far_enough_m).distance_m);
+    singular.y.push_back(smallest_singular(laboratory, state));
   }
-  report::Plot near, dexterous;
-  near.title = "Distance of the two nearest solids", near.x_label = "time / s", near.y_label = "clearance / mm";
+  report::Plot near = plot_over_time("Distance of the two nearest solids", "clearance / mm");
   near.caption = format("Distances beyond %.0f mm are drawn at that.", 1e3 * far_enough_m);
+  for (double& y : clearance.y) y = std::min(y, 1e3 * far_enough_m);
   near.marks = {{report::Mark::Axis::y, 1e3 * laboratory.margin_m, "limit"}};
   near.series = {std::move(clearance)}, near.zero_y = true;
-  dexterous.title = "How far from singular postures", dexterous.x_label = "time / s";
-  dexterous.y_label = "smallest singular value / m", dexterous.zero_y = true;
+  report::Plot dexterous = plot_over_time("How far from singular postures", "smallest singular value / m");
   dexterous.marks = {{report::Mark::Axis::y, laboratory.smallest_singular_m, "limit"}};
-  dexterous.series = {std::move(singular)};
-  page.plots({near, dexterous});
-  std::vector<report::Plot> joints;
-  for (const auto& [name, arm] : laboratory.arms) joints.push_back(joints_plot(arm, all));
-  page.plots(joints);
+  dexterous.series = {std::move(singular)}, dexterous.zero_y = true;
+  return {near, dexterous};
+}
+
+std::string point(Vec3 p) {
+  return format("%.3f, %.3f, %.3f", p.x, p.y, p.z);
+}
+
+// What stands there, where, and what reaches it: all that the drawing shows, as text.
+report::TableText parts_of(const manifest::Document& document, const LaboratoryModel& lab) {
+  const manifest::Laboratory& section = document.laboratory.entry.front();
+  const auto places = io::placed_nodes(lab.model, 0);
+  report::TableText table;
+  table.columns = {{"name", "", false},
+                   {"what", "", false},
+                   {"where, at home", "m", false},
+                   {"held by", "", false},
+                   {"reached by", "", false}};
+  const auto where = [&](const std::map<std::string, int>& nodes, const std::string& name) {
+    const auto at = nodes.find(name);
+    return at == nodes.end() ? "no place is described" : point(places[static_cast<std::size_t>(at->second)].origin_m);
+  };
+  for (const auto& [name, robot] : section.robots)
+    table.rows.push_back({name, robot.model,
+                          robot.world_from_base ? point(robot.world_from_base->translation_m) : point({}), "",
+                          robot.url});
+  for (const auto& [name, camera] : section.cameras)
+    table.rows.push_back({name, document.cameras.contains(name) ? "camera" : "camera; its lens is not described",
+                          where(lab.cameras, name), camera.robot, camera.url});
+  for (const auto& [name, lamp] : section.lamps)
+    table.rows.push_back({name, "lamp", where(lab.lamps, name), lamp.robot, lamp.url});
+  for (const auto& [name, turns] : section.turntables)
+    table.rows.push_back({name, "turntable", where(lab.turntables, name), "", turns.url});
+  for (const auto& [name, screen] : section.screens)
+    table.rows.push_back({name, screen.kind, where(lab.screens, name), "", screen.url});
+  for (const manifest::SolidBody& body : section.obstacles)
+    table.rows.push_back({body.name, "stands around",
+                          body.world_from_body ? point(body.world_from_body->translation_m) : point({}), "", ""});
+  return table;
+}
+
+std::string counted(std::size_t count, const std::string& one) {
+  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+PlanDrawing drawing_of(const manifest::Document& document, const Laboratory& laboratory, const manifest::Plan& plan) {
+  PlanDrawing drawing;
+  drawing.times = times_of(document, laboratory, plan);
+  const std::vector<double> at = times_to_plot(drawing.times);
+  drawing.joints = joints_plots(laboratory, drawing.times, at);
+  if (!laboratory.arms.empty()) drawing.limits = limits_plots(laboratory, drawing.times, at);
+  return drawing;
+}
+
+void show_model(report::Page& page, io::MovingModel model, double start_s, const std::string& caption) {
+  report::Figure figure;
+  report::MeshView view = view_of(std::move(model));
+  view.start_s = start_s;
+  view.legend = legend_of(view.moving);
+  figure.svg = report::html(view);
+  figure.caption = caption;
+  page.figures({figure}, drawing_px);
+}
+
+void show_over_time(report::Page& page, const PlanDrawing& drawing) {
+  if (!drawing.limits.empty()) page.plots(drawing.limits);
+  if (!drawing.joints.empty()) page.plots(drawing.joints);
 }
 
 void list_unreachable(report::Page& page, const manifest::Plan& plan) {
@@ -130,19 +158,30 @@ void list_unreachable(report::Page& page, const manifest::Plan& plan) {
   report::TableText table;
   table.columns = {{"view", "", false}, {"why", "", false}, {"the nearest that can be reached stands at", "m", false}};
   for (const manifest::UnreachableView& view : plan.unreachable) {
-    std::string there = "none was found";
-    if (view.nearest && view.nearest->world_from_camera) {
-      const Vec3 p = view.nearest->world_from_camera->translation_m;
-      there = format("%.3f, %.3f, %.3f", p.x, p.y, p.z);
-    }
-    table.rows.push_back({view.image, view.why, there});
+    const bool found = view.nearest && view.nearest->world_from_camera;
+    table.rows.push_back(
+        {view.image, view.why, found ? point(view.nearest->world_from_camera->translation_m) : "none was found"});
   }
   page.table(table);
 }
 
-}  // namespace
+std::string laboratory_page(const manifest::Document& document, const Laboratory& laboratory) {
+  const manifest::Laboratory& section = document.laboratory.entry.front();
+  const LaboratoryModel lab = laboratory_model(document, laboratory);
+  report::Page page("A laboratory",
+                    counted(section.robots.size(), "arm") + ", " + counted(section.cameras.size(), "camera") + ", " +
+                        counted(section.lamps.size(), "lamp"),
+                    "As its description says; the arms stand at home. Nothing was asked of any device.");
+  page.section("The laboratory");
+  show_model(page, lab.model, 0,
+             "Drag or arrow keys turn it, the wheel or + and - bring it nearer, Shift and drag move it. Turntables are "
+             "drawn 20 cm wide: how large they are is not described.");
+  page.section("What stands there");
+  page.table(parts_of(document, lab));
+  return page.html();
+}
 
-std::string plan_page(const Laboratory& laboratory, const manifest::Plan& plan) {
+std::string plan_page(const manifest::Document& document, const Laboratory& laboratory, const manifest::Plan& plan) {
   const auto figure = [&](const char* name) {
     const auto at = plan.figures.find(name);
     return at == plan.figures.end() ? 0.0 : at->second;
@@ -158,14 +197,14 @@ std::string plan_page(const Laboratory& laboratory, const manifest::Plan& plan) 
                     {"smallest singular value", format("%.3f", figure("smallest_singular_m")), "m", ""},
                     {"largest turn of a joint", format("%.0f", figure("largest_turn_rad") / degree), "deg", ""}});
   if (!plan.steps.empty()) {
-    const std::vector<Moment> all = moments_of(laboratory, plan);
+    const PlanDrawing drawing = drawing_of(document, laboratory, plan);
     page.section("The laboratory");
-    report::Figure drawing;
-    drawing.svg = report::html(laboratory_view(laboratory, plan, all));
-    drawing.caption = "Small cubes: where the camera photographs. Buttons: moments of the plan.";
-    page.figures({drawing}, 640);
+    show_model(page, plan_model(document, laboratory, plan, drawing.times).model, 0,
+               "Space plays and pauses, Page Up and Page Down go from view to view; drag or arrow keys turn it, the "
+               "wheel or + and - bring it nearer. The time is that of motions, turntables, lamps that settle and "
+               "exposures; what cameras need to hand their pictures over comes on top.");
     page.section("Over time");
-    plot_over_time(page, laboratory, all);
+    show_over_time(page, drawing);
   }
   list_unreachable(page, plan);
   page.footer("Plan " + plan.id);

@@ -274,7 +274,7 @@ void Planner::write_unreachable(manifest::Plan& plan) const {
     }
     const auto nearest = nearest_reachable(search, configurations, step_of(k), why[k], target_m, robot_of(k));
     for (const std::size_t s : stations[k].steps) {
-      manifest::UnreachableView view{asked[s].image, why[k], {}};
+      manifest::UnreachableView view{asked[s].image, why[k], asked[s].world_from_camera, {}};
       if (nearest) {
         view.nearest = asked[s];
         view.nearest->world_from_camera = nearest->world_from_camera, view.nearest->light_m = nearest->light_m;

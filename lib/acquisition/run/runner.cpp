@@ -97,6 +97,7 @@ class PlanRun {
     remember_checks();
     for (manifest::DriftedFrames& frames : report_.drifted)
       std::erase_if(frames.images, [this](const std::string& image) { return !records_.contains(image); });
+    report_.records = records_;
     return report_;
   }
 
@@ -345,7 +346,7 @@ class PlanRun {
     const fs::path path = write_frame_file(options_.out, frame, record);
     journal_.write(to_event(record));
     records_[image] = record;
-    if (options_.on_frame) options_.on_frame(path, words_of(record), records_.size(), total_);
+    if (options_.on_frame) options_.on_frame({record, records_, total_, report_});
   }
 
   manifest::Document& document_;

@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,21 +26,11 @@
 #include "acquisition/laboratory/laboratory.h"
 #include "acquisition/motion/way.h"
 #include "acquisition/run/board_checks.h"
+#include "acquisition/run/frame_record.h"
 #include "acquisition/run/instrument.h"
 #include "manifest/sections/forward.h"
 
 namespace gonio::acquisition {
-
-struct RunOptions {
-  std::filesystem::path out;  // frames/IMAGE.png, journal.jsonl
-  bool resume = false;
-  int retakes = 4;         // of one frame, after which it is refused
-  bool lamp_check = true;  // the dark frames above
-  std::uint64_t seed = 1;  // of ways back to the plan
-  CheckOptions checks{};   // of the board's views that the plan comes back to
-  // After every frame that was kept: its file, its words ("v017: 8 ms, 0.2 % saturated"), how many of how many.
-  std::function<void(const std::filesystem::path&, const std::string&, std::size_t, std::size_t)> on_frame{};
-};
 
 struct RunReport {
   std::int64_t frames = 0, retaken = 0, refused = 0;
@@ -48,6 +39,26 @@ struct RunReport {
   std::vector<manifest::DriftedFrames> drifted{};
   std::string stopped{};           // why the run ended early: a check view had moved; empty: it did not
   std::vector<std::string> words;  // of what was refused, and of what looks doubtful: saturated, dark, out of focus
+  std::map<std::string, FrameRecord> records;  // of what was kept, by image
+};
+
+// What is so while the run goes on. The references hold during the call.
+struct RunNews {
+  const FrameRecord& frame;                           // that was just kept
+  const std::map<std::string, FrameRecord>& records;  // all that are kept, those of earlier runs with them
+  std::size_t total = 0;                              // that the plan has
+  const RunReport& report;                            // of what was taken again and refused so far
+};
+
+struct RunOptions {
+  std::filesystem::path out;  // frames/IMAGE.png, journal.jsonl
+  bool resume = false;
+  int retakes = 4;         // of one frame, after which it is refused
+  bool lamp_check = true;  // the dark frames above
+  std::uint64_t seed = 1;  // of ways back to the plan
+  CheckOptions checks{};   // of the board's views that the plan comes back to
+  // After every frame that was kept.
+  std::function<void(const RunNews&)> on_frame{};
 };
 
 // Carries out `plan` and enters images, files, robots and the run into `document`, all of it as the journal has it: a

@@ -33,7 +33,8 @@ struct PlanStep {
 
 struct UnreachableView {
   std::string image{}, why{};
-  std::optional<PlanStep> nearest{};  // that can be reached
+  std::optional<Pose<frame::World, frame::Camera>> world_from_camera{};  // asked
+  std::optional<PlanStep> nearest{};                                     // that can be reached
 };
 
 // Where a camera was found to stand at a step, in the joints that the step has: measured once, by any run of the plan.

@@ -178,7 +178,7 @@ bool run_and_kill(const fs::path& folder, int steps, int frames, bool resume) {
       options.out = folder;
       options.resume = resume;
       int kept = 0;
-      options.on_frame = [&](const fs::path&, const std::string&, std::size_t, std::size_t) {
+      options.on_frame = [&](const RunNews&) {
         if (++kept >= frames) ::raise(SIGKILL);
       };
       run_plan(d, believed_laboratory(d), plan, instrument, options);

@@ -1,12 +1,11 @@
 // A scene as glTF 2.0 (scene/exchange/formats/gltf.cpp): geometry, nodes, cameras, lamps.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <span>
 
 #include "base/text.h"
 #include "scene/exchange/geometry.h"
+#include "scene/exchange/gltf/buffer.h"
 #include "scene/exchange/gltf/gltf.h"
 #include "scene/exchange/lamp.h"
 #include "scene/exchange/lens.h"
@@ -27,59 +26,6 @@ void place(Value& node, const Rigid<To, From>& pose) {
   node["rotation"] = list(normalized(pose.rotation));
   node["translation"] = list(pose.translation_m);
 }
-
-// scene.bin, and what says where in it things are.
-class Buffer {
- public:
-  int vectors(std::span<const double> values, int columns, bool bounds) {
-    std::vector<float> single(values.begin(), values.end());
-    Value entry = Value::object({{"bufferView", view(single.data(), 4 * single.size(), 34962)},
-                                 {"componentType", 5126},
-                                 {"count", static_cast<std::int64_t>(single.size()) / columns},
-                                 {"type", columns == 3 ? "VEC3" : "VEC2"}});
-    if (bounds) add_bounds(single, static_cast<std::size_t>(columns), entry);
-    return enter(std::move(entry));
-  }
-  int indices(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-    return enter(Value::object({{"bufferView", view(triangles.data(), 12 * triangles.size(), 34963)},
-                                {"componentType", 5125},
-                                {"count", static_cast<std::int64_t>(3 * triangles.size())},
-                                {"type", "SCALAR"}}));
-  }
-  void finish(Value& root, Exported& out) {
-    if (bytes_.empty()) return;
-    root["accessors"] = accessors_;
-    root["bufferViews"] = views_;
-    root["buffers"].push_back(
-        Value::object({{"uri", "scene.bin"}, {"byteLength", static_cast<std::int64_t>(bytes_.size())}}));
-    out.files.push_back({"scene.bin", std::move(bytes_)});
-  }
-
- private:
-  static void add_bounds(const std::vector<float>& values, std::size_t columns, Value& entry) {
-    std::vector<double> low(columns, std::numeric_limits<double>::infinity()), high(columns, -low[0]);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      low[i % columns] = std::min<double>(low[i % columns], values[i]);
-      high[i % columns] = std::max<double>(high[i % columns], values[i]);
-    }
-    entry["min"] = Value(low);
-    entry["max"] = Value(high);
-  }
-  int view(const void* data, std::size_t length, int target) {
-    views_.push_back(Value::object({{"buffer", 0},
-                                    {"byteOffset", static_cast<std::int64_t>(bytes_.size())},
-                                    {"byteLength", static_cast<std::int64_t>(length)},
-                                    {"target", target}}));
-    bytes_.append(static_cast<const char*>(data), length);
-    return static_cast<int>(views_.as_array().size()) - 1;
-  }
-  int enter(Value entry) {
-    accessors_.push_back(std::move(entry));
-    return static_cast<int>(accessors_.as_array().size()) - 1;
-  }
-  std::string bytes_;
-  Value views_ = Value::array(), accessors_ = Value::array();
-};
 
 double smallest_extent(const io::TriangleMesh& mesh) {
   Vec3 low{1e300, 1e300, 1e300}, high = -low;
@@ -110,7 +56,8 @@ class Writer {
       root["extensionsUsed"].push_back("KHR_lights_punctual");
       root["extensions"]["KHR_lights_punctual"]["lights"] = lights_.value();
     }
-    buffer_.finish(root, out_);
+    buffer_.describe(root, "scene.bin");
+    if (!buffer_.bytes().empty()) out_.files.push_back({"scene.bin", buffer_.bytes()});
     out_.files.insert(out_.files.begin(), {"scene.gltf", manifest::print_json(root) + "\n"});
     return std::move(out_);
   }
@@ -165,12 +112,12 @@ class Writer {
       for (const Vec3 p : all) v.insert(v.end(), {p.x, p.y, p.z});
       return v;
     };
-    Value attributes = Value::object({{"POSITION", buffer_.vectors(flat(mesh.positions_m), 3, true)}});
-    if (!mesh.normals.empty()) attributes["NORMAL"] = buffer_.vectors(flat(mesh.normals), 3, false);
+    Value attributes = Value::object({{"POSITION", buffer_.vertices(flat(mesh.positions_m), 3, true)}});
+    if (!mesh.normals.empty()) attributes["NORMAL"] = buffer_.vertices(flat(mesh.normals), 3, false);
     if (!mesh.texture.empty()) {
       std::vector<double> uv;
       for (const Vec2 t : mesh.texture) uv.insert(uv.end(), {t.x, 1 - t.y});
-      attributes["TEXCOORD_0"] = buffer_.vectors(uv, 2, false);
+      attributes["TEXCOORD_0"] = buffer_.vertices(uv, 2, false);
     }
     return Value::object({{"attributes", attributes}, {"indices", buffer_.indices(mesh.triangles)}});
   }
