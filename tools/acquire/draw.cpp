@@ -83,7 +83,8 @@ void LivePage::finish(const RunReport& report) {
                  .retaken = report.retaken,
                  .refused = report.refused,
                  .words = report.words,
-                 .running = false});
+                 .running = false,
+                 .stopped = report.stopped});
 }
 
 void LivePage::stop(const std::string& why) {
