@@ -99,6 +99,24 @@ const makeCursors = seek => [...document.querySelectorAll('svg[data-time]')].map
     line.setAttribute('d', 'M' + x.toFixed(2) + ' ' + top + 'V' + floor);
   };
 });
+const listenToKeys = (box, range, t) => {
+  range.addEventListener('input', () => t.seek(+range.value));
+  range.addEventListener('keydown', e => {
+    const by = {ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1}[e.key];
+    if (by) t.seek(t.now() + by * t.end / 200);
+    else if (e.key === 'Home') t.seek(0);
+    else if (e.key === 'End') t.seek(t.end);
+    else return;
+    e.preventDefault();
+  });
+  box.addEventListener('keydown', e => {
+    if (e.key === ' ' && !e.target.closest('button,select,label')) t.toggle();
+    else if (e.key === 'PageUp') t.back();
+    else if (e.key === 'PageDown') t.on();
+    else return;
+    e.preventDefault();
+  });
+};
 const makeTimeline = (box, model, draw, controls) => {
   let time = Math.min(+box.dataset.start || 0, model.end), playing = false, last = 0;
   const make = (tag, set, into) => into.appendChild(Object.assign(document.createElement(tag), set));
@@ -148,22 +166,7 @@ const makeTimeline = (box, model, draw, controls) => {
     play.setAttribute('aria-label', play.textContent);
     if (playing) requestAnimationFrame(step);
   };
-  range.addEventListener('input', () => seek(+range.value));
-  range.addEventListener('keydown', e => {
-    const by = {ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1}[e.key];
-    if (by) seek(time + by * model.end / 200);
-    else if (e.key === 'Home') seek(0);
-    else if (e.key === 'End') seek(model.end);
-    else return;
-    e.preventDefault();
-  });
-  box.addEventListener('keydown', e => {
-    if (e.key === ' ' && !e.target.closest('button,select,label')) toggle();
-    else if (e.key === 'PageUp') back();
-    else if (e.key === 'PageDown') on();
-    else return;
-    e.preventDefault();
-  });
+  listenToKeys(box, range, {now: () => time, end: model.end, seek, toggle, back, on});
   return {now: () => time, seek};
 };
 )js";

@@ -105,13 +105,8 @@ std::string probed(const std::string& dom, const std::string& name) {
   return at == std::string::npos ? "" : dom.substr(at + key.size(), dom.find('"', at + key.size()) - at - key.size());
 }
 
-TEST(MovingView, TheScriptMovesTheModelAsTheLibraryDoes) {
-  if (chromium_path().empty()) GTEST_SKIP() << "no Chromium";
-  Page page("Test", "A chain", "");
-  page.figures({{.svg = html(view_of_chain())}});
-  page.plot({.title = "p", .series = {{.x = {0, 4}, .y = {3, 4}}}, .over_time = true, .x_range = {0, 4}});
-  std::string text = page.html();
-  const std::string probe = R"js(<script>const b=document.querySelector('.solid'),body=document.body.dataset;
+// What the browser is asked: where nodes stand at seven times, what keys do, what is drawn.
+const std::string browser_probe = R"js(<script>const b=document.querySelector('.solid'),body=document.body.dataset;
     body.webgl=b.model?'yes':'no';
     if(b.model){
       const places=[];
@@ -132,7 +127,14 @@ TEST(MovingView, TheScriptMovesTheModelAsTheLibraryDoes) {
       body.drawn=(drawn/w/h).toFixed(4);
       body.tag=b.querySelector('.names span').textContent;
     }</script></body>)js";
-  text.replace(text.find("</body>"), 7, probe);
+
+TEST(MovingView, TheScriptMovesTheModelAsTheLibraryDoes) {
+  if (chromium_path().empty()) GTEST_SKIP() << "no Chromium";
+  Page page("Test", "A chain", "");
+  page.figures({{.svg = html(view_of_chain())}});
+  page.plot({.title = "p", .series = {{.x = {0, 4}, .y = {3, 4}}}, .over_time = true, .x_range = {0, 4}});
+  std::string text = page.html();
+  text.replace(text.find("</body>"), 7, browser_probe);
   const tests::ScratchFolder folder;
   std::ofstream(folder / "page.html") << text;
   tests::Process chromium({chromium_path(), "--headless", "--no-sandbox", "--enable-unsafe-swiftshader",

@@ -1,9 +1,12 @@
 // acquire --picture, --html, --gltf: the laboratory and the plan drawn, and the page of a run while it goes on.
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 
 #include "acquisition/plan/plan_page.h"
 #include "acquisition/run/run_page.h"
 #include "base/atomic_file.h"
+#include "base/progress.h"
 #include "scene/exchange/moving_gltf.h"
 #include "tools/acquire/call.h"
 
@@ -16,6 +19,17 @@ constexpr double seconds_between_pages = 3;
 
 bool ends_in(const std::string& text, std::string_view ending) {
   return text.size() > ending.size() && text.ends_with(ending);
+}
+
+// After a signal write_file() refuses; a page that loads itself anew and says "running" for ever must not stay.
+void write_after_signal(const std::filesystem::path& file, const std::string& text) {
+  std::filesystem::path whole = file;
+  whole += ".stopped";
+  std::ofstream(whole, std::ios::binary) << text;
+  if (std::filesystem::file_size(whole) == text.size())
+    std::filesystem::rename(whole, file);
+  else
+    std::filesystem::remove(whole);
 }
 
 }  // namespace
@@ -87,14 +101,19 @@ void LivePage::finish(const RunReport& report) {
                  .stopped = report.stopped});
 }
 
+// What stopped the run is what the user has to hear: whatever goes wrong here is left at that.
 void LivePage::stop(const std::string& why) {
-  if (!parts_) return;
-  parts_->write({.records = &parts_->records,
-                 .retaken = parts_->retaken,
-                 .refused = parts_->refused,
-                 .words = parts_->words,
-                 .running = false,
-                 .stopped = why});
+  if (!parts_ || !std::filesystem::is_regular_file(parts_->file)) return;
+  try {
+    write_after_signal(parts_->file, parts_->page.html({.records = &parts_->records,
+                                                        .retaken = parts_->retaken,
+                                                        .refused = parts_->refused,
+                                                        .words = parts_->words,
+                                                        .running = false,
+                                                        .stopped = why}));
+  } catch (const std::exception& error) {
+    log(LogLevel::debug, parts_->file + ": " + error.what());
+  }
 }
 
 }  // namespace gonio::tools::acquire

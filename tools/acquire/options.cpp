@@ -212,14 +212,15 @@ std::vector<cli::Option> running_options() {
 }
 
 std::vector<cli::Option> drawing_options() {
-  return {{.name = "picture",
-           .type = Type::output_file,
-           .help = "Draw the laboratory as it is described, its arms at home: one page that needs no network. No device "
-                   "is asked."},
-          {.name = "gltf",
-           .type = Type::output_file,
-           .help = "Write the plan, or without one the laboratory, for other programs: glTF 2.0, animated; FILE.glb or "
-                   "FILE.gltf."}};
+  return {
+      {.name = "picture",
+       .type = Type::output_file,
+       .help = "Draw the laboratory as it is described, its arms at home: one page that needs no network. No device "
+               "is asked."},
+      {.name = "gltf",
+       .type = Type::output_file,
+       .help = "Write the plan, or without one the laboratory, for other programs: glTF 2.0, animated; FILE.glb or "
+               "FILE.gltf."}};
 }
 
 std::vector<cli::Option> serving_options() {

@@ -173,9 +173,10 @@ std::string laboratory_page(const manifest::Document& document, const Laboratory
                         counted(section.lamps.size(), "lamp"),
                     "As its description says; the arms stand at home. Nothing was asked of any device.");
   page.section("The laboratory");
-  show_model(page, lab.model, 0,
-             "Drag or arrow keys turn it, the wheel or + and - bring it nearer, Shift and drag move it. Turntables are "
-             "drawn 20 cm wide: how large they are is not described.");
+  show_model(
+      page, lab.model, 0,
+      std::string("Drag or arrow keys turn it, the wheel or + and - bring it nearer, Shift and drag move it.") +
+          (section.turntables.empty() ? "" : " Turntables are drawn 20 cm wide: how large they are is not described."));
   page.section("What stands there");
   page.table(parts_of(document, lab));
   return page.html();

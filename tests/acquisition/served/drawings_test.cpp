@@ -56,5 +56,21 @@ TEST_F(Drawings, ARunLeavesItsPage) {
   EXPECT_THAT(page, Not(HasSubstr("http-equiv=\"refresh\"")));
 }
 
+// A page that loads itself anew and says for ever that something runs would be worse than none.
+TEST_F(Drawings, ARunThatIsStoppedSaysSoOnItsPage) {
+  acquire({"lab.json", "--plan", "board:views=3,tilt=20deg,nearest=25cm,farthest=30cm", "-o", "plan.json"});
+  make_folder(folder / "run/frames/board-0002.png");  // where a picture ought to go
+  const tests::Ended ended = tests::run(
+      {"acquire", "plan.json", "--go", "--spp", "1", "--out", "run", "--html", "run.html", "-o", "frames.json"},
+      folder.path());
+  EXPECT_NE(ended.status, 0);
+  EXPECT_THAT(ended.err, HasSubstr("board-0002.png"));
+  const std::string page = read_file(folder / "run.html");
+  EXPECT_THAT(page, HasSubstr("of 3 frames, stopped"));
+  EXPECT_THAT(page, HasSubstr("board-0002.png"));
+  EXPECT_THAT(page, Not(HasSubstr("http-equiv=\"refresh\"")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "frames.json"));
+}
+
 }  // namespace
 }  // namespace gonio::acquisition
