@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/hash.h"
 #include "base/text.h"
 #include "manifest/document.h"
 #include "manifest/sections/camera.h"
@@ -103,6 +104,18 @@ std::string light_there(manifest::Document& d, const Laboratory& laboratory, con
   for (auto& [name, parameter] : there.parameters)
     if (name != "position_m" && name != "towards" && parameter.share.empty()) parameter.share = light + "." + name;
   const std::string id = light_at_step(light, r.group);
+  d.lights[id] = there;
+  return id;
+}
+
+// A screen's light is one of its own for every step: the same screen, another picture.
+std::string light_of_screen(manifest::Document& d, const std::string& screen, const std::string& picture,
+                            const std::string& step) {
+  const auto light = d.lights.find(screen);
+  if (picture.empty() || light == d.lights.end() || light->second.model != "screen") return "";
+  manifest::Light there = light->second;
+  there.file = picture;
+  const std::string id = light_at_step(screen, step);
   d.lights[id] = there;
   return id;
 }
@@ -212,6 +225,12 @@ std::string words_of(const FrameRecord& r) {
   return out;
 }
 
+bool file_stands(const std::filesystem::path& out, const FrameRecord& record) {
+  std::error_code error;
+  const std::filesystem::path path = out / record.file;
+  return std::filesystem::file_size(path, error) == record.bytes && !error && sha256_of_file(path) == record.sha256;
+}
+
 void enter_frames(manifest::Document& d, const Laboratory& laboratory, const manifest::Plan& plan,
                   const std::map<std::string, FrameRecord>& records, const std::filesystem::path& folder) {
   enter_robots(d);
@@ -240,7 +259,10 @@ void enter_frames(manifest::Document& d, const Laboratory& laboratory, const man
         image.response = response_of(camera->second, r);
         image.noise = noise_of(camera->second, r);
       }
-      if (r.lamps.empty() && !lab.lamps.empty()) image.dark = true;
+      for (const auto& [screen, picture] : step.screens)
+        if (const std::string light = light_of_screen(d, screen, picture, r.group); !light.empty())
+          image.light.push_back(light);
+      if (r.lamps.empty() && !lab.lamps.empty() && image.light.empty()) image.dark = true;
       if (const auto camera = lab.cameras.find(r.camera); camera != lab.cameras.end())
         if (tool_from_camera(d, r.camera) || camera->second.world_from_camera)
           static_cast<Rigid<frame::World, frame::Camera>&>(image.world_from_camera.emplace()) =

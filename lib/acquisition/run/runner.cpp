@@ -11,6 +11,7 @@
 #include "acquisition/run/frame_record.h"
 #include "acquisition/run/journal.h"
 #include "acquisition/run/lamp_switch.h"
+#include "acquisition/run/screen_switch.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
@@ -55,13 +56,6 @@ bool is_mosaic(const std::string& pixel_format) {
   return pixel_format.find("Bayer") != std::string::npos || pixel_format.find("Polariz") != std::string::npos;
 }
 
-// A kept frame's file is what the journal says of it.
-bool file_stands(const fs::path& out, const FrameRecord& record) {
-  std::error_code error;
-  const fs::path path = out / record.file;
-  return fs::file_size(path, error) == record.bytes && !error && sha256_of_file(path) == record.sha256;
-}
-
 io::Image picture_of(const RawFrame& frame, int code_bits) {
   io::Image picture(frame.width_px, frame.height_px, {"Y"});
   const auto full = static_cast<float>((1 << code_bits) - 1);
@@ -82,9 +76,11 @@ class PlanRun {
         surroundings_(laboratory),
         mover_(laboratory, surroundings_, instrument),
         journal_(options.out / "journal.jsonl", Value::object({{"what", "run"}, {"plan", plan.id}}), options.resume),
-        lamps_(instrument, section_, options.retakes + 1, [this](const std::string& lamp, const std::string& why) {
-          journal_.write(Value::object({{"what", "lamp"}, {"lamp", lamp}, {"why", why}}));
-        }) {
+        lamps_(instrument, section_, options.retakes + 1,
+               [this](const std::string& lamp, const std::string& why) {
+                 journal_.write(Value::object({{"what", "lamp"}, {"lamp", lamp}, {"why", why}}));
+               }),
+        screens_(instrument, document) {
     for (const Value& event : journal_.earlier()) take_over(event);
     for (const manifest::PlanStep& step : plan.steps) total_ += images_of(step).size();
   }
@@ -94,6 +90,7 @@ class PlanRun {
     try {
       for (std::size_t i = 0; i < plan_.steps.size(); ++i) take_step(i);
       lamps_.set({});
+      screens_.show({}, "plan");
       if (last_step_) mover_.go(way_home(laboratory_, plan_, *last_step_));
     } catch (...) {
       mover_.stop_all();
@@ -146,7 +143,7 @@ class PlanRun {
     journal_.write(Value::object({{"what", "intent"}, {"step", static_cast<std::int64_t>(index)}}));
     move_to(index);
     turn_tables(step);
-    for (const auto& [name, shown] : step.screens) instrument_.screens.at(name)->show(shown);
+    screens_.show(step.screens, "plan step " + step.image);
     std::vector<BracketFrame> bracket;
     for (std::size_t k = 0; k < images.size(); ++k) {
       if (const auto kept = records_.find(images[k]); kept != records_.end()) {
@@ -363,6 +360,7 @@ class PlanRun {
   ArmMover mover_;
   Journal journal_;
   LampSwitch lamps_;
+  ScreenSwitch screens_;
   std::string lit_for_;  // the step whose lamps were last lit
   RunReport report_;
   std::map<std::string, FrameRecord> records_;
