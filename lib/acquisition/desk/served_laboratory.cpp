@@ -1,6 +1,8 @@
 // See served_laboratory.h.
 #include "acquisition/desk/served_laboratory.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -8,6 +10,7 @@
 
 #include "acquisition/desk/gige_camera.h"
 #include "acquisition/desk/modbus_desk.h"
+#include "acquisition/desk/screen_folder.h"
 #include "acquisition/desk/true_state.h"
 #include "acquisition/desk/ur_controller.h"
 #include "base/assignment.h"
@@ -91,15 +94,16 @@ struct ServedLaboratory::Parts {
   };
 
   Parts(const Document& asked, const Document* scene, const Document* truth, const ServeOptions& options)
-      : believed(asked), state(staged(asked, scene), truth, options.desk, options.pace), port(options.port) {
+      : believed(asked),
+        state(staged(asked, scene), truth, options.desk, options.pace),
+        first_port(options.port),
+        port(options.port) {
     for (const auto& [kind, probability] : options.faults) state.faults.set(kind, probability);
     const manifest::Laboratory& lab = state.section();
-    if (!lab.screens.empty())
-      throw Error(Exit::data, manifest::place(believed, "/laboratory/screens"), "cannot be served",
-                  "leave screens out of a served laboratory");
     for (const auto& [name, arm] : state.arms) serve_arm(name, *arm);
     if (!lab.lamps.empty() || !lab.turntables.empty()) serve_lamps_and_tables(lab);
     for (const auto& [name, camera] : lab.cameras) serve_camera(name);
+    if (!lab.screens.empty()) serve_screens();
     rewrite();
   }
 
@@ -129,6 +133,13 @@ struct ServedLaboratory::Parts {
       first_register[name] = first;
       first += 4;
     }
+  }
+
+  // With ports that are given their folder has a name that stays, too, so that a run may go on after a new start.
+  void serve_screens() {
+    const std::string name = first_port == 0 ? "gonio-screens-of-" + std::to_string(::getpid())
+                                             : "gonio-screens-at-" + std::to_string(first_port);
+    screens = std::make_unique<desk::ScreenFolders>(state, std::filesystem::temp_directory_path() / name);
   }
 
   void serve_camera(const std::string& name) {
@@ -173,6 +184,7 @@ struct ServedLaboratory::Parts {
     }
     for (auto& [name, table] : lab.turntables)
       table.url = at(*switches) + format("/register/%d?scale=%gdeg", first_register.at(name), table_step_deg);
+    for (auto& [name, screen] : lab.screens) screen.url = "folder://" + screens->folder_of(name).string();
     for (auto& [name, camera] : lab.cameras) {
       camera.url = "genicam://" + cameras.at(name)->address() + format("?readout=%gs", readout_s.at(name));
       camera.trigger = "software";
@@ -181,7 +193,8 @@ struct ServedLaboratory::Parts {
 
   Document believed;
   TrueState state;
-  int port;
+  int first_port, port;  // port: the next one
+  std::unique_ptr<desk::ScreenFolders> screens;
   std::map<std::string, Arm> arms;
   std::unique_ptr<desk::ModbusDesk> switches;
   std::map<std::string, int> first_register;
@@ -209,6 +222,7 @@ std::vector<std::string> ServedLaboratory::words() const {
   for (const auto& [name, camera] : lab.cameras) lines.push_back("camera " + name + ": " + camera.url);
   for (const auto& [name, lamp] : lab.lamps) lines.push_back("lamp " + name + ": " + lamp.url);
   for (const auto& [name, table] : lab.turntables) lines.push_back("turntable " + name + ": " + table.url);
+  for (const auto& [name, screen] : lab.screens) lines.push_back("screen " + name + ": " + screen.url);
   return lines;
 }
 

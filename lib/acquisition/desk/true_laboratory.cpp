@@ -118,14 +118,14 @@ class DeskTurntable : public TurntableDevice {
 
 class DeskScreen : public ScreenDevice {
  public:
-  explicit DeskScreen(std::string name) : name_(std::move(name)) {}
+  DeskScreen(Shared state, std::string name) : state_(std::move(state)), name_(std::move(name)) {}
   void show(const std::string& picture) override {
-    if (!picture.empty())
-      throw Error(Exit::unavailable, "screen " + name_, "shows nothing but black in a simulated laboratory",
-                  "leave screens out of the plan");
+    const std::lock_guard lock(state_->busy);
+    state_->show(name_, picture);
   }
 
  private:
+  Shared state_;
   std::string name_;
 };
 
@@ -147,7 +147,7 @@ Instrument desk_instrument(const manifest::Document& believed, const manifest::D
   for (const auto& [name, lamp] : lab.lamps) instrument.lamps[name] = std::make_unique<DeskLamp>(state, name);
   for (const auto& [name, table] : lab.turntables)
     instrument.turntables[name] = std::make_unique<DeskTurntable>(state, name);
-  for (const auto& [name, screen] : lab.screens) instrument.screens[name] = std::make_unique<DeskScreen>(name);
+  for (const auto& [name, screen] : lab.screens) instrument.screens[name] = std::make_unique<DeskScreen>(state, name);
   instrument.clock_s = [state] {
     const std::lock_guard lock(state->busy);
     return state->clock.now_s();

@@ -6,11 +6,13 @@
 #include <limits>
 
 #include "acquisition/run/frame_record.h"
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/text.h"
 #include "camera/intrinsics.h"
 #include "io/image.h"
+#include "io/raster_header.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/file.h"
 #include "manifest/sections/image.h"
@@ -219,6 +221,38 @@ void TrueState::place_lamps(manifest::Document& scene) const {
   }
 }
 
+void TrueState::show(const std::string& name, const std::string& path) {
+  const manifest::LaboratoryScreen& screen = section().screens.at(name);
+  if (path.empty()) {
+    shown.erase(name);
+    return;
+  }
+  const auto light = document.lights.find(name);
+  if (light == document.lights.end() || light->second.model != "screen")
+    throw Error(Exit::data, manifest::place(document, "/laboratory/screens/" + name),
+                "is no light of the scene: it shows nothing but black", "enter it in lights, of model screen");
+  const io::RasterHeader head = io::read_raster_header(read_file(path), path);
+  if (head.width != static_cast<std::uint64_t>(screen.width_px) ||
+      head.height != static_cast<std::uint64_t>(screen.height_px))
+    throw Error(Exit::data, path,
+                format("has %llu x %llu pixels, screen %s has %lld x %lld", static_cast<unsigned long long>(head.width),
+                       static_cast<unsigned long long>(head.height), name.c_str(),
+                       static_cast<long long>(screen.width_px), static_cast<long long>(screen.height_px)),
+                "nothing is scaled: make the picture as large as the screen");
+  shown[name] = path;
+}
+
+void TrueState::light_screens(manifest::Document& scene) const {
+  for (const auto& [name, path] : shown) {
+    manifest::File& file = scene.files["screen-" + name];
+    file.path = std::filesystem::absolute(path).lexically_relative(std::filesystem::absolute(scene.folder)).string();
+    file.sha256 = sha256_of_file(path);
+    file.bytes = std::filesystem::file_size(path);
+    scene.lights.at(name).file = "screen-" + name;
+    scene.allow_outside = true;
+  }
+}
+
 // Objects on a turntable turn about its z.
 void TrueState::turn_objects(manifest::Document& scene) const {
   for (const auto& [name, table] : document.laboratory.entry.front().turntables) {
@@ -239,6 +273,7 @@ manifest::Document TrueState::scene_of(const std::string& camera, const Shot& sh
   const manifest::LaboratoryCamera& entry = lab.cameras.at(camera);
   place_lamps(scene);
   turn_objects(scene);
+  light_screens(scene);
   manifest::ImageEntry image;
   image.camera = camera;
   image.exposure_s = shot.exposure_s;
@@ -253,6 +288,7 @@ manifest::Document TrueState::scene_of(const std::string& camera, const Shot& sh
     pose = *entry.world_from_camera;
   std::map<std::string, bool> of_lamps;
   for (const auto& [name, lamp] : lab.lamps) of_lamps[light_of(name, lamp)] |= lamps.lit(lamp_number.at(name));
+  for (const auto& [name, screen] : lab.screens) of_lamps[name] = shown.contains(name);
   for (const auto& [name, light] : document.lights)
     if (const auto found = of_lamps.find(name); found == of_lamps.end() || found->second) image.light.push_back(name);
   if (image.light.empty()) image.dark = true;

@@ -26,6 +26,9 @@ struct TrueState {
   // the simulated camera's registers hold them.
   RawFrame expose(const std::string& camera, const Shot& shot, const PixelFormat* format = nullptr);
   PixelFormat format_of(const std::string& camera) const;
+  // What a screen shows from now on; empty: black. It is the scene's light of model "screen" with the screen's name.
+  // Error(data) where there is none, and for pictures that are not of the screen's size.
+  void show(const std::string& screen, const std::string& picture_path);
   const manifest::Laboratory& section() const { return document.laboratory.entry.front(); }
 
   manifest::Document document;  // as it is: scene, mechanisms, laboratory
@@ -39,12 +42,14 @@ struct TrueState {
   std::map<std::string, int> lamp_number;
   std::map<std::string, std::unique_ptr<desk::TrueTurntable>> tables;
   std::map<std::string, std::uint64_t> frames;
+  std::map<std::string, std::string> shown;  // pictures by screen
   std::mutex busy;  // devices are called from several threads
 
  private:
   manifest::Document scene_of(const std::string& camera, const Shot& shot) const;
   void place_lamps(manifest::Document& scene) const;
   void turn_objects(manifest::Document& scene) const;
+  void light_screens(manifest::Document& scene) const;
 };
 
 }  // namespace gonio::acquisition

@@ -114,6 +114,18 @@ std::string light_there(manifest::Document& d, const Laboratory& laboratory, con
   return id;
 }
 
+// A screen's light is one of its own for every step: the same screen, another picture.
+std::string light_of_screen(manifest::Document& d, const std::string& screen, const std::string& picture,
+                            const std::string& step) {
+  const auto light = d.lights.find(screen);
+  if (picture.empty() || light == d.lights.end() || light->second.model != "screen") return "";
+  manifest::Light there = light->second;
+  there.file = picture;
+  const std::string id = light_at_step(screen, step);
+  d.lights[id] = there;
+  return id;
+}
+
 // A sensor's own numbers, above what it reads in the dark.
 Value response_of(const manifest::LaboratoryCamera& camera, const FrameRecord& r) {
   const double black = camera.black_code.value_or(0) / full_code(r);
@@ -293,7 +305,10 @@ std::int64_t enter_frames(manifest::Document& d, const Laboratory& laboratory, c
         image.response = response_of(camera->second, r);
         image.noise = noise_of(camera->second, r);
       }
-      if (r.lamps.empty() && !lab.lamps.empty()) image.dark = true;
+      for (const auto& [screen, picture] : step.screens)
+        if (const std::string light = light_of_screen(d, screen, picture, r.group); !light.empty())
+          image.light.push_back(light);
+      if (r.lamps.empty() && !lab.lamps.empty() && image.light.empty()) image.dark = true;
       for (const auto& [name, angle] : r.turntables)
         if (const auto table = lab.turntables.find(name); table != lab.turntables.end())
           image.shapes.merge(deformations(table->second, angle));

@@ -39,6 +39,8 @@ bool file_stands(const std::filesystem::path& out, const FrameRecord& record);
 manifest::Value to_event(const FrameRecord& record);  // {"what": "frame", ...}
 FrameRecord frame_of(const manifest::Value& event);   // of such an event
 std::string words_of(const FrameRecord& record);      // "v017: 8 ms, 0.2 % saturated"
+// Is a kept frame's file what the journal says of it? `out`: that of the run.
+bool file_stands(const std::filesystem::path& out, const FrameRecord& record);
 
 // Enters images, files and robots of the records, in the order of the plan. `folder`: of --out. Cameras stand where the
 // plan's `measured` says of the step, or of another in the same joints, else where joints and mountings say. How many

@@ -2,9 +2,11 @@
 #include "acquisition/run/instrument.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "base/text.h"
+#include "geom/angle.h"
 #include "manifest/document.h"
 #include "manifest/sections/laboratory.h"
 
@@ -123,6 +125,15 @@ std::vector<std::string> urls_of(const Document& d) {
     if (!url.empty()) urls.push_back(url);
   });
   return urls;
+}
+
+void turn_tables(Instrument& instrument, const std::map<std::string, double>& angles_rad) {
+  for (const auto& [name, angle] : angles_rad) {
+    const double reached = instrument.turntables.at(name)->turn_to(angle);
+    if (std::abs(reached - angle) > 1e-3)
+      throw Error(Exit::unavailable, "turntable " + name,
+                  format("stands at %.3f deg, %.3f were asked", reached / degree, angle / degree));
+  }
 }
 
 bool is_real(const Document& d) {

@@ -30,6 +30,9 @@ std::vector<std::string> urls_of(const manifest::Document& document);
 // Error(unavailable) for one that does not answer.
 void ask_all(Instrument& instrument);
 
+// Turns turntables to these angles. Error(unavailable) for one that then stands more than 1e-3 rad away.
+void turn_tables(Instrument& instrument, const std::map<std::string, double>& angles_rad);
+
 // Does any URL reach something outside this program and this computer's loopback? Then nothing moves without --go.
 bool is_real(const manifest::Document& document);
 

@@ -12,6 +12,7 @@
 #include "acquisition/run/frame_record.h"
 #include "acquisition/run/journal.h"
 #include "acquisition/run/lamp_switch.h"
+#include "acquisition/run/screen_switch.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/text.h"
@@ -66,9 +67,11 @@ class PlanRun {
         mover_(laboratory, surroundings_, instrument),
         checks_(document, plan, options.checks),
         journal_(options.out / "journal.jsonl", Value::object({{"what", "run"}, {"plan", plan.id}}), options.resume),
-        lamps_(instrument, section_, options.retakes + 1, [this](const std::string& lamp, const std::string& why) {
-          journal_.write(Value::object({{"what", "lamp"}, {"lamp", lamp}, {"why", why}}));
-        }) {
+        lamps_(instrument, section_, options.retakes + 1,
+               [this](const std::string& lamp, const std::string& why) {
+                 journal_.write(Value::object({{"what", "lamp"}, {"lamp", lamp}, {"why", why}}));
+               }),
+        screens_(instrument, document) {
     for (const Value& event : journal_.earlier()) {
       take_over(event);
       checks_.take_over(event);
@@ -84,6 +87,7 @@ class PlanRun {
         if (checks_.is_check(i)) check(i);
       }
       lamps_.set({});
+      screens_.show({}, "plan");
       if (last_step_ && report_.stopped.empty()) mover_.go(way_home(laboratory_, plan_, *last_step_));
     } catch (...) {
       mover_.stop_all();
@@ -146,8 +150,8 @@ class PlanRun {
     throw_if_interrupted();
     journal_.write(Value::object({{"what", "intent"}, {"step", static_cast<std::int64_t>(index)}}));
     move_to(index);
-    turn_tables(step);
-    for (const auto& [name, shown] : step.screens) instrument_.screens.at(name)->show(shown);
+    turn_tables(instrument_, step.turntable_rad);
+    screens_.show(step.screens, "plan step " + step.image);
     std::vector<BracketFrame> bracket;
     for (std::size_t k = 0; k < images.size(); ++k) {
       if (const auto kept = records_.find(images[k]); kept != records_.end()) {
@@ -204,15 +208,6 @@ class PlanRun {
     if (stands_at(way.back())) return;
     if (!stands_at(way.front())) mover_.return_to(way.front(), options_.seed + index);
     mover_.go(way);
-  }
-
-  void turn_tables(const manifest::PlanStep& step) {
-    for (const auto& [name, angle] : step.turntable_rad) {
-      const double reached = instrument_.turntables.at(name)->turn_to(angle);
-      if (std::abs(reached - angle) > 1e-3)
-        throw Error(Exit::unavailable, "turntable " + name,
-                    format("stands at %.3f deg, %.3f were asked", reached * 57.29578, angle * 57.29578));
-    }
   }
 
   // The step's lamps, lit; what is wrong with one, in words. Of several at once a dead one would hide in the others'
@@ -360,6 +355,7 @@ class PlanRun {
   BoardChecks checks_;
   Journal journal_;
   LampSwitch lamps_;
+  ScreenSwitch screens_;
   std::string lit_for_;  // the step whose lamps were last lit
   RunReport report_;
   std::map<std::string, FrameRecord> records_;

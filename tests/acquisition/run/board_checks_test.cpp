@@ -220,7 +220,7 @@ TEST(BoardChecks, CutOffAnywhereItEndsAsIfItHadNot) {
     manifest::Document first = laboratory(folder.path()), again = first;
     RunOptions options = options_for(folder.path(), "0.3mm", OnDrift::mark);
     int kept = 0;
-    options.on_frame = [&](const fs::path&, const std::string&, std::size_t, std::size_t) {
+    options.on_frame = [&](const RunNews&) {
       if (++kept == cut) throw Error(Exit::io, "power", "is cut");
     };
     EXPECT_THROW(run(first, bumped, options), Error);

@@ -1,6 +1,7 @@
 // folder:///DIR: pictures that another program writes. The next picture that appears after the call, complete: its size
 // has not changed for a while and it can be decoded. PNG and TIFF do not say how they were exposed; raw files of
-// cameras do. Where two appear at once nobody knows which of them was asked for.
+// cameras do. Where two appear at once nobody knows which of them was asked for. And a screen whose pictures another
+// program shows: they lie in DIR/show, and DIR/shown says which one it is by its SHA-256.
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -13,6 +14,7 @@
 #include "acquisition/device/url_query.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/text.h"
 #include "io/camera_raw.h"
 #include "io/raster.h"
@@ -167,6 +169,46 @@ std::unique_ptr<CameraDevice> folder_camera(const Url& url, const std::string& p
   return std::make_unique<FolderCamera>(std::move(settings), place);
 }
 
+class FolderScreen : public ScreenDevice {
+ public:
+  FolderScreen(fs::path folder, double timeout_s, std::string place)
+      : folder_(std::move(folder)), place_(std::move(place)), timeout_s_(timeout_s) {
+    if (!fs::is_directory(folder_)) throw failure("is no folder", "start the program that shows the pictures");
+  }
+  void show(const std::string& picture_path) override {
+    const std::string picture = picture_path.empty() ? "" : read_file(picture_path), hash = sha256(picture);
+    write_file(folder_ / "show", picture);
+    std::string said;
+    for (const auto until = after(timeout_s_); !said.starts_with(hash);) {
+      if (Clock::now() > until)
+        throw failure(format("does not say within %.3g s that it shows the picture", timeout_s_),
+                      "does the program that shows it run?");
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      if (fs::exists(folder_ / "shown")) said = read_file(folder_ / "shown");
+    }
+    if (const auto why = said.find(" refused: "); why != std::string::npos)
+      throw failure("refuses " + picture_path + ": " + said.substr(why + 10, said.find('\n') - why - 10),
+                    "another picture");
+  }
+
+ private:
+  Error failure(const std::string& problem, const std::string& remedy) const {
+    return Error(Exit::unavailable, place_, "screen " + folder_.string() + ": " + problem, remedy);
+  }
+  fs::path folder_;
+  std::string place_;
+  double timeout_s_;
+};
+
+std::unique_ptr<ScreenDevice> folder_screen(const Url& url, const std::string& place) {
+  if (!url.host.empty() || url.path.size() < 2)
+    throw Error(Exit::usage, place, url.text + ": names no folder", "write folder:///DIR, with three strokes");
+  UrlQuery query(url, place);
+  const double timeout_s = query.timeout(10);
+  query.end();
+  return std::make_unique<FolderScreen>(url.path, timeout_s, place);
+}
+
 }  // namespace
 
 const Driver& folder() {
@@ -177,8 +219,11 @@ const Driver& folder() {
         "folder:///DIR is a camera that another program works: each call waits for the next new PNG or TIFF of one "
         "channel, or raw file of a camera, there (pixel_format=BayerRG12 says what it holds, settle=200ms how long its "
         "size must stand, timeout=10s beyond the exposure, iso=100 whose gain is 0 dB); a raw file says how it was "
-        "exposed, of the others nothing is read back, so nothing checks them.";
+        "exposed, of the others nothing is read back, so nothing checks them; or a screen that another program works: "
+        "it "
+        "shows what lies in DIR/show, black where that is empty, and writes the picture's SHA-256 to DIR/shown.";
     driver.camera = folder_camera;
+    driver.screen = folder_screen;
     driver.camera_keys = {"pixel_format"};
     return driver;
   }();
