@@ -218,7 +218,8 @@ const std::vector<Field<Repeatability>>& repeatability_fields() {
   using R = Repeatability;
   static const std::vector<Field<R>> table{
       field("views", &R::views, "", "in which the board was found").range(0, infinite),
-      field("position_m", &R::position_m, "m", "of one coordinate of the camera's place").range(0, infinite),
+      field("position_m", &R::position_m, "m", "of one coordinate of the board's middle before the camera")
+          .range(0, infinite),
       field("position_interval_m", &R::position_interval_m, "m", "[lower, upper] at 95 %").range(0, infinite),
       field("corners_m", &R::corners_m, "m", "what the corners' noise makes of it beside").range(0, infinite),
       field("rotation_rad", &R::rotation_rad, "rad", "about one axis").range(0, infinite),

@@ -187,7 +187,7 @@ void add_acquisition(List& all) {
       part("plans: checks", "Corners of a board as the first run of the plan found them.", check_view_fields()));
   all.push_back(listed("runs", "Written by acquire: what was done of plans.", run_fields()));
   all.push_back(part("runs: repeatability",
-                     "Of the camera's place in the board's frame, over takes of the same views, beyond the corners' "
+                     "Of the board's place before the camera, over takes of the same views, beyond the corners' "
                      "noise.",
                      repeatability_fields()));
   all.push_back(part("runs: drifted",

@@ -154,7 +154,8 @@ std::vector<cli::Option> checking_options() {
   const std::vector<cli::Option> own = {
       {.name = "drift-limit",
        .type = Type::text,
-       .help = "Check views: how far the camera, 0.3mm or 0.1deg, or the board in the picture, 0.5px, may have moved.",
+       .help =
+           "Check views: how far the board may have moved before the camera, 0.3mm, 0.1deg, or 0.5px in the picture.",
        .metavar = "LIMIT"},
       {.name = "on-drift",
        .type = Type::choice,

@@ -114,18 +114,18 @@ std::vector<CommonCorner> without_strays(const std::vector<CommonCorner>& corner
   return kept.size() >= least_check_corners ? kept : corners;
 }
 
-// The camera in the board's frame, c = -R' t and R': for R <- exp(w) R, t <- t + d they move by -R' (d + t x w), -R' w.
-void place_change(const camera::BoardPose& from, const robot::MeasuredPose& to, double scale, BoardShift& shift) {
-  const auto before = inverse(from), now = inverse(to.camera_from_board);
-  const Eigen::Matrix3d turn = eigen_of(matrix_of(now.rotation));
+// The board's middle m in the camera's axes, p = R m + t, moves by d + w x (R m) for R <- exp(w) R, t <- t + d: it is
+// known far better than the camera's own place, which a turn of the camera nearly makes up for.
+void place_change(const camera::BoardPose& from, const robot::MeasuredPose& to, Vec2 middle_m, double scale,
+                  BoardShift& shift) {
+  const camera::BoardPose& now = to.camera_from_board;
+  const Vec3 middle{middle_m.x, middle_m.y, 0};
   const Matrix6 covariance = scale * Eigen::Map<const Matrix6>(to.covariance.data());
-  Eigen::Matrix<double, 3, 6> place, attitude = Eigen::Matrix<double, 3, 6>::Zero();
-  place << -turn * crossing_of(to.camera_from_board.translation_m), -turn;
-  attitude.leftCols<3>() = -turn;
-  shift.position_m =
-      Moved{now.translation_m - before.translation_m, listed_matrix(place * covariance * place.transpose())};
-  shift.rotation_rad = Moved{rotation_vector_of(now.rotation * conjugate(before.rotation)),
-                             listed_matrix(attitude * covariance * attitude.transpose())};
+  Eigen::Matrix<double, 3, 6> place;
+  place << -crossing_of(now.rotate(middle)), Eigen::Matrix3d::Identity();
+  shift.position_m = Moved{now * middle - from * middle, listed_matrix(place * covariance * place.transpose())};
+  shift.rotation_rad = Moved{rotation_vector_of(now.rotation * conjugate(from.rotation)),
+                             listed_matrix(covariance.topLeftCorner<3, 3>())};
 }
 
 // The mean corner's way; what is left of the corners' differences about it is no noise where the camera has turned.
@@ -159,7 +159,7 @@ std::optional<BoardShift> shift_between(std::span<const camera::Corner> before, 
     }
     scale = std::max(1.0, fit.pose.squares / std::max(1.0, fit.pose.freedom));
     shift.freedom = fit.pose.freedom;
-    place_change(from, fit.pose, scale, shift);
+    place_change(from, fit.pose, board.extent().middle_m, scale, shift);
   }
   shift.picture_px = picture_change(corners, scale);
   double own = 0, all = 0;

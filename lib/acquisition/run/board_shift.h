@@ -23,8 +23,8 @@ struct Moved {  // a vector and its covariance
   Mat3 covariance;
 };
 struct BoardShift {
-  // Of the camera's place and attitude, and of the mean corner in the picture (z is 0). The covariances are of the
-  // difference; `own_share` of them is the second view's.
+  // Of the board's middle before the camera, of the camera's attitude, and of the mean corner in the picture (z is 0).
+  // The covariances are of the difference; `own_share` of them is the second view's.
   std::optional<Moved> position_m{}, rotation_rad{};  // where the lens is known
   Moved picture_px;
   double own_share = 0.5;
