@@ -156,6 +156,10 @@ const std::vector<Field<PlanStep>>& plan_step_fields() {
       field("lamps", &S::lamps, "", "that are on"),
       field("exposures_s", &S::exposures_s, "s", "one picture each").positive(),
       field("world_from_camera", &S::world_from_camera, "", "asked: takes camera to world coordinates"),
+      field("roll_rad", &S::roll_rad, "rad",
+            "asked: the camera may be turned about its axis by up to this, to either side; left out once joints are "
+            "chosen, or where it may not")
+          .range(0, 3.15),
       field("light_m", &S::light_m, "m", "asked: where the lamp that an arm holds is, world"),
       field("turntable_rad", &S::turntable_rad, "rad", "asked: angles by turntable"),
       field("screens", &S::screens, "", "what each shows: id of a pattern or a file"),

@@ -71,13 +71,13 @@ run/sheet.json: run/stage.json
 
 $(PATHS:%=run/%-frames.json): run/%-frames.json: run/stage.json run/sheet.json
 > acquire $< --plan $*:views=$(VIEWS),distance=36cm,spread=$(or $(SPREAD_$*),0.5),turn=360deg \
->   --target 0m,0m,6cm -o run/$*-plan.json || test $$? -eq 2
+>   --target 0m,0m,6cm --exposure 25ms -o run/$*-plan.json || test $$? -eq 2
 > acquire run/$*-plan.json --go --truth run/sheet.json --spp $(SPP) --resume \
 >   --out run/$* -o $@
 
 $(PATHS:%=run/%-shapes.json): run/%-shapes.json: run/%-frames.json
 > nrsfm-make --follow $* --truth run/sheet.json --object sheet --every 4 \
->   --least-seen 50% --resume --out run/tracks -i $< | \
+>   --points 200 --least-seen 50% --resume --out run/tracks -i $< | \
 >   nrsfm-solve $(SOLVERS:%=--solver %) --resume --out run/shapes -o $@ || test $$? -eq 2
 
 run/shapes.json: $(PATHS:%=run/%-shapes.json)

@@ -33,7 +33,7 @@ struct Sheet {
     mesh.file = add("rest", triangle(7));
     for (int k = 0; k < 3; ++k) mesh.shapes.push_back(add("shape-" + std::to_string(k), triangle(k * k)));
     document.meshes["sheet"] = mesh;
-    document.surfaces["paper"] = {};
+    document.surfaces["paper"].parameters["albedo"] = 0.5;
     document.objects.push_back({.id = "thing", .mesh = "sheet", .surface = "paper", .world_from_object = {}});
   }
   std::string add(const std::string& id, const io::TriangleMesh& mesh) {

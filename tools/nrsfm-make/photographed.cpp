@@ -46,6 +46,33 @@ void keep(Sequence& s, const std::vector<Eigen::Index>& points) {
   if (s.truth) s.truth = Shapes((*s.truth)(Eigen::all, points));
 }
 
+// Solvers need points in every frame: those in which fewer than eight are followed go.
+std::vector<Eigen::Index> frames_with_points(const Visible& visible, const std::string& place) {
+  constexpr Eigen::Index least = 8;
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index f = 0; f < visible.rows(); ++f)
+    if (visible.row(f).count() >= std::min(least, visible.cols())) kept.push_back(f);
+  if (kept.size() < 2)
+    throw Error(Exit::data, place,
+                format("have %zu frames in which %ld points are followed", kept.size(), static_cast<long>(least)),
+                "take photographs nearer to each other, or lower --least-seen");
+  return kept;
+}
+
+void keep_frames(Sequence& s, const std::vector<Eigen::Index>& frames) {
+  std::vector<Eigen::Index> twos, threes;
+  std::vector<CameraFromObject> seen_from;
+  for (const Eigen::Index f : frames) {
+    twos.insert(twos.end(), {2 * f, 2 * f + 1}), threes.insert(threes.end(), {3 * f, 3 * f + 1, 3 * f + 2});
+    seen_from.push_back(s.cameras[static_cast<std::size_t>(f)]);
+  }
+  s.tracks = Tracks(s.tracks(twos, Eigen::all));
+  s.visible = Visible(s.visible(frames, Eigen::all));
+  if (s.sigma.size() > 0) s.sigma = Eigen::MatrixXd(s.sigma(frames, Eigen::all));
+  if (s.truth) s.truth = Shapes((*s.truth)(threes, Eigen::all));
+  s.cameras = std::move(seen_from);
+}
+
 // "sheet-circle-pictures", "sheet-circle-geometry"
 void enter(cli::Invocation& call, Sequence s, const std::string& tracks_from, std::vector<std::string> notes) {
   const std::string deformation = call.given("object") ? call.text("object") : "photographed";
@@ -115,6 +142,7 @@ Exit follow_photographs(cli::Invocation& call) {
   const std::string place = manifest::place(call.document, "/images");
   if (!call.given("truth")) {
     keep(tracks, long_enough(tracks.visible, call.number("least-seen"), place));
+    keep_frames(tracks, frames_with_points(tracks.visible, place));
     enter(call, tracks, "pictures", {});
     return Exit::done;
   }
@@ -123,7 +151,13 @@ Exit follow_photographs(cli::Invocation& call) {
   KnownTracks known = with_truth(photographs, followed, std::move(tracks), options.every, truth, call.text("object"));
   const auto kept = long_enough(known.tracks.visible, call.number("least-seen"), place);
   keep(known.tracks, kept), keep(known.ideal, kept);
+  const auto frames = frames_with_points(known.tracks.visible, place);
+  const Eigen::Index lacking = known.tracks.frames() - static_cast<Eigen::Index>(frames.size());
+  keep_frames(known.tracks, frames), keep_frames(known.ideal, frames);
   std::vector<std::string> notes{errors_of(known.tracks)};
+  if (lacking > 0)
+    notes.push_back(
+        format("%ld frames in which fewer than 8 points are followed are left out", static_cast<long>(lacking)));
   if (known.elsewhere > 0)
     notes.push_back(format("%ld corners beside the object are left out", static_cast<long>(known.elsewhere)));
   log(LogLevel::info, call.text("follow") + ": " + notes.front());

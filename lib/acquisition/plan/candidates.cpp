@@ -20,6 +20,7 @@ namespace {
 
 // Kept of each arm alone; pairs that are tried.
 constexpr std::size_t most_camera_postures = 16, most_lamp_postures = 24, most_tries = 384;
+constexpr double roll_step_rad = pi / 18;
 constexpr double same_place_m = 1e-6, same_turn_rad = 1e-6;
 constexpr int lamp_rolls = 36, bare_lamp_rolls = 8;
 
@@ -66,6 +67,20 @@ std::vector<WorldTool> lamp_tools(Vec3 place, Vec3 in_tool, Vec3 target, bool di
       for (int k = 0; k < bare_lamp_rolls; ++k)
         tools.push_back(aimed(place, in_tool, normalized(axis), 2 * pi * k / bare_lamp_rolls));
     }
+  return tools;
+}
+
+// Tools that hold the camera where it is asked, turned about its axis as far as it may be.
+std::vector<WorldTool> camera_tools(const manifest::PlanStep& step, const Rigid<frame::Tool, frame::Camera>& mount) {
+  std::vector<WorldTool> tools{*step.world_from_camera * inverse(mount)};
+  const double most = step.roll_rad.value_or(0);
+  if (!(most > 0)) return tools;
+  const int each = std::max(1, static_cast<int>(std::ceil(most / roll_step_rad - 1e-9)));
+  for (int k = -each; k <= each; ++k) {
+    if (k == 0 || (k == each && most > pi - 1e-9)) continue;  // the same as the other half turn
+    const Rigid<frame::Camera, frame::Camera> roll{quaternion_of_rotation_vector({0, 0, most * k / each}), {}};
+    tools.push_back(*step.world_from_camera * roll * inverse(mount));
+  }
   return tools;
 }
 
@@ -139,6 +154,7 @@ void CandidateSearch::Parts::request_lamp(const manifest::PlanStep& step, Reques
   const Vec3 in_tool =
       entry.in_tool_m.size() == 3 ? Vec3{entry.in_tool_m[0], entry.in_tool_m[1], entry.in_tool_m[2]} : Vec3{};
   if (entry.robot == r.camera_arm && !r.camera_tools.empty()) {
+    r.camera_tools.resize(1);  // turned, it would take the lamp along
     const double off = norm(r.camera_tools[0] * in_tool - place);
     if (off > same_place_m)
       r.why = format("camera and lamp sit on one arm: with the camera there the lamp is %.3g m off its place", off);
@@ -165,8 +181,10 @@ CandidateSearch::Parts::Request CandidateSearch::Parts::request(const manifest::
       const Rigid<frame::Tool, frame::Camera> mount =
           tool_from_camera(document, step.camera).value_or(Rigid<frame::Tool, frame::Camera>{});
       r.camera_arm = arm;
-      r.camera_tools = {*step.world_from_camera * inverse(mount)};
-      r.camera_key = key_of(step.camera, numbers_of(*step.world_from_camera));
+      r.camera_tools = camera_tools(step, mount);
+      std::vector<double> numbers = numbers_of(*step.world_from_camera);
+      numbers.push_back(step.roll_rad.value_or(0));
+      r.camera_key = key_of(step.camera, numbers);
     }
   }
   if (r.why.empty() && !step.light_m.empty()) request_lamp(step, r);

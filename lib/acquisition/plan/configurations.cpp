@@ -11,11 +11,16 @@ namespace gonio::acquisition {
 Configurations::Configurations(const Laboratory& laboratory) : tool_speed_(laboratory.speed_m_per_s) {
   for (const auto& [name, arm] : laboratory.arms) {
     arms_.push_back({name, home_.size(), arm.home.size(), &arm});
-    home_.insert(home_.end(), arm.home.begin(), arm.home.end());
-    for (const robot::JointLimit& limit : arm.limits) {
-      speed_.push_back(limit.speed_rad_per_s);
-      acceleration_.push_back(limit.acceleration_rad_per_s2);
+    for (std::size_t j = 0; j < arm.limits.size(); ++j) {
+      const robot::JointLimit& limit = arm.limits[j];
+      auto at = std::ranges::find_if(alike_, [&limit](const Alike& a) {
+        return a.speed == limit.speed_rad_per_s && a.acceleration == limit.acceleration_rad_per_s2;
+      });
+      if (at == alike_.end())
+        at = alike_.insert(alike_.end(), Alike{limit.speed_rad_per_s, limit.acceleration_rad_per_s2, {}});
+      at->joints.push_back(home_.size() + j);
     }
+    home_.insert(home_.end(), arm.home.begin(), arm.home.end());
   }
 }
 
@@ -56,13 +61,20 @@ Configurations::Placed Configurations::placed(Configuration joints) const {
 
 double Configurations::time(const Placed& from, const Placed& to) const {
   double slowest = 0;
-  for (std::size_t j = 0; j < speed_.size(); ++j) {
-    const double turn = std::abs(to.joints[j] - from.joints[j]);
-    if (turn > 0) slowest = std::max(slowest, trapezoid_time(turn, speed_[j], acceleration_[j]));
+  for (const Alike& alike : alike_) {
+    double turn = 0;
+    for (const std::size_t j : alike.joints) turn = std::max(turn, std::abs(to.joints[j] - from.joints[j]));
+    if (turn > 0) slowest = std::max(slowest, trapezoid_time(turn, alike.speed, alike.acceleration));
   }
   for (std::size_t a = 0; a < arms_.size(); ++a)
     slowest = std::max(slowest, norm(to.tools_m[a] - from.tools_m[a]) / tool_speed_);
   return slowest;
+}
+
+double Configurations::largest_turn(const Placed& from, const Placed& to) const {
+  double turn = 0;
+  for (std::size_t j = 0; j < from.joints.size(); ++j) turn = std::max(turn, std::abs(to.joints[j] - from.joints[j]));
+  return turn;
 }
 
 }  // namespace gonio::acquisition

@@ -27,6 +27,7 @@ class Configurations {
   };
   Placed placed(Configuration joints) const;
   double time(const Placed& from, const Placed& to) const;
+  double largest_turn(const Placed& from, const Placed& to) const;  // of one joint, rad
 
  private:
   struct Arm {
@@ -36,7 +37,11 @@ class Configurations {
   };
   const Arm& find(const std::string& name) const;
   std::vector<Arm> arms_;
-  std::vector<double> speed_, acceleration_;
+  struct Alike {  // joints of one speed and acceleration: the farthest of them is the slowest
+    double speed = 0, acceleration = 0;
+    std::vector<std::size_t> joints;
+  };
+  std::vector<Alike> alike_;
   double tool_speed_ = 0;
   Configuration home_;
 };

@@ -50,8 +50,7 @@ PlanEdges::Key PlanEdges::stations(Key key) const {
 double PlanEdges::base(std::size_t from, std::size_t to) const {
   // A turntable of unknown speed: 0.2 rad/s, which matters for the order alone.
   const PlanCandidate &a = candidate(from), &b = candidate(to);
-  double turn = 0;
-  for (std::size_t j = 0; j < a.at.joints.size(); ++j) turn = std::max(turn, std::abs(a.at.joints[j] - b.at.joints[j]));
+  const double turn = configurations_.largest_turn(a.at, b.at);
   return std::max(configurations_.time(a.at, b.at), std::abs(a.table_rad - b.table_rad) / 0.2) +
          ample_s_per_rad * std::max(0.0, turn - ample_turn_rad);
 }
@@ -59,8 +58,8 @@ double PlanEdges::base(std::size_t from, std::size_t to) const {
 double PlanEdges::cost(std::size_t from, std::size_t to) const {
   if (from == to) return 0;
   if ((from == tour_home || touched_[from]) && (to == tour_home || touched_[to])) {
-    const auto at = edges_.find({std::min(from, to), std::max(from, to)});
-    if (at != edges_.end()) return at->second.cost_s;
+    const auto at = costs_s_.find(number({std::min(from, to), std::max(from, to)}));
+    if (at != costs_s_.end()) return at->second;
   }
   return base(from, to);
 }
@@ -189,6 +188,7 @@ bool PlanEdges::walk(const std::vector<std::size_t>& tour) {
     open = open && found[k].known == Edge::Known::open;
     for (const std::size_t c : {wanted[k].first, wanted[k].second})
       if (c != tour_home) touched_[c] = true;
+    costs_s_[number(wanted[k])] = found[k].cost_s;
     edges_[wanted[k]] = std::move(found[k]);
   }
   // Edges that were closed before.

@@ -5,10 +5,12 @@
 // free either a way is searched for. What is not found is closed. Where the camera is to go straight, straightness
 // comes first, and is given up for a pair of views after some pairs of their candidates failed.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "acquisition/motion/way.h"
@@ -61,6 +63,9 @@ class PlanEdges {
   Way round_the_middle(const State& from, const State& to, std::uint64_t stream) const;
   bool straight(Key key, Edge& edge) const;
   Key stations(Key key) const;
+  std::size_t number(Key key) const {
+    return key.first * (candidates_.size() + 1) + std::min(key.second, candidates_.size());
+  }
 
   const Laboratory& laboratory_;
   const Surroundings& surroundings_;
@@ -69,8 +74,9 @@ class PlanEdges {
   PlanCandidate home_;
   std::uint64_t seed_;
   std::map<Key, Edge> edges_;
-  std::vector<bool> touched_;             // candidates that have an edge in edges_
-  std::map<Key, int> straight_failures_;  // of pairs of stations
+  std::unordered_map<std::size_t, double> costs_s_;  // theirs, by number(): what tours ask for most
+  std::vector<bool> touched_;                        // candidates that have an edge in edges_
+  std::map<Key, int> straight_failures_;             // of pairs of stations
 };
 
 }  // namespace gonio::acquisition

@@ -88,6 +88,7 @@ struct Planner {
   std::vector<std::size_t> choose(const std::vector<Visit>& stops) const;
   bool drop_closed(const std::vector<Visit>& stops, const std::vector<std::size_t>& chosen);
   void order(std::vector<Visit>& stops, std::vector<std::size_t>& chosen);
+  void settle(manifest::PlanStep& step, const State& state) const;
   void write(const std::vector<Visit>& stops, const std::vector<std::size_t>& chosen, manifest::Plan& plan) const;
   void write_unreachable(manifest::Plan& plan) const;
 };
@@ -226,6 +227,15 @@ void Planner::order(std::vector<Visit>& stops, std::vector<std::size_t>& chosen)
   }
 }
 
+// Where a camera that may be turned about its axis really is.
+void Planner::settle(manifest::PlanStep& step, const State& state) const {
+  if (!step.roll_rad) return;
+  step.roll_rad.reset();
+  if (!step.robot.empty() && step.world_from_camera)
+    static_cast<Rigid<frame::World, frame::Camera>&>(*step.world_from_camera) =
+        world_from_camera(document, laboratory, step.camera, state);
+}
+
 void Planner::write(const std::vector<Visit>& stops, const std::vector<std::size_t>& chosen,
                     manifest::Plan& plan) const {
   double duration = 0, singular = 0, clearance = 0, turn = 0, detours = 0, straight = 0;
@@ -240,6 +250,7 @@ void Planner::write(const std::vector<Visit>& stops, const std::vector<std::size
       step.image = frame.image, step.purpose = frame.purpose;
       if (frame.purpose == "dark" && asked[frame.step].purpose != "dark") step.lamps.clear(), step.light_m.clear();
       set_joints(step, state, robot_of(stops[k].station));
+      settle(step, state);
       step.via.clear();
       if (f == 0 && from != chosen[k]) {
         for (std::size_t s = 1; s + 1 < way.states.size(); ++s) step.via.push_back(way.states[s]);
@@ -280,6 +291,9 @@ void Planner::write_unreachable(manifest::Plan& plan) const {
         view.nearest->world_from_camera = nearest->world_from_camera, view.nearest->light_m = nearest->light_m;
         view.nearest->robot = nearest->robot, view.nearest->joints_rad = nearest->joints_rad;
         view.nearest->other_arms = nearest->other_arms;
+        State state = nearest->other_arms;
+        if (!nearest->robot.empty()) state[nearest->robot] = nearest->joints_rad;
+        settle(*view.nearest, state);
       }
       plan.unreachable.push_back(std::move(view));
     }

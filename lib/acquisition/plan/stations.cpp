@@ -23,6 +23,7 @@ std::string what_it_asks(const PlanStep& step) {
     key += step.camera + ":";
     for (const double v : {p.rotation.w, p.rotation.x, p.rotation.y, p.rotation.z}) add(v);
     for (int k = 0; k < 3; ++k) add(p.translation_m[k]);
+    add(step.roll_rad.value_or(0));
   }
   // Which of its lamps is held decides where the arm stands.
   if (!step.light_m.empty()) {

@@ -141,6 +141,7 @@ std::vector<manifest::PlanStep> grid_steps(const std::string& pattern, const Pat
     for (const Direction view : views) {
       manifest::PlanStep step = view_step(scene, image_name(pattern, steps.size()));
       step.world_from_camera = camera_at(scene, view, n.at("radius"));
+      if (n.at("roll") > 0) step.roll_rad = n.at("roll");
       step.light_m = place;
       steps.push_back(std::move(step));
     }
@@ -153,6 +154,8 @@ std::vector<PatternParameter> grid_parameters() {
           {"lowest", "rad", 10 * degree, 0, 90 * degree, "elevation over the plane across the pole"},
           {"highest", "rad", 90 * degree, 0, 90 * degree, "elevation at which the grid begins"},
           {"even", "1", 0, 0, 1, "1: rings near the pole have fewer views, so that all lie about equally dense"},
+          {"roll", "rad", 0, 0, pi,
+           "the camera may be turned about its axis by up to this, to either side, where that saves time"},
           {"lamp-radius", "m", 0, 0, 100, "of the first lamp from the target; 0: the lamp is not moved"},
           {"lamp-step", "rad", 30 * degree, degree, 90 * degree, "between the lamp's directions, about evenly"},
           {"lamp-lowest", "rad", 30 * degree, 0, 90 * degree, "the lamp's lowest elevation"},

@@ -50,7 +50,7 @@ std::vector<PatternParameter> path_parameters();
 // The camera on a grid between two azimuths, under every place of the first lamp where that is given a radius.
 std::vector<manifest::PlanStep> grid_steps(const std::string& pattern, const PatternScene& scene,
                                            const PatternNumbers& numbers, double first_azimuth_rad, double span_rad);
-// radius, step, lowest, highest, even; lamp-radius, lamp-step, lamp-lowest, lamp-azimuth, lamp-span
+// radius, step, lowest, highest, even, roll; lamp-radius, lamp-step, lamp-lowest, lamp-azimuth, lamp-span
 std::vector<PatternParameter> grid_parameters();
 
 }  // namespace gonio::acquisition

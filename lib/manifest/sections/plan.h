@@ -20,7 +20,8 @@ struct PlanStep {
   std::vector<std::string> lamps{};
   std::vector<double> exposures_s{};
   std::optional<Pose<frame::World, frame::Camera>> world_from_camera{};  // asked
-  std::vector<double> light_m{};                                         // asked: where the held lamp is, world
+  std::optional<double> roll_rad{};  // asked: the camera may be turned about its axis by up to so much to either side
+  std::vector<double> light_m{};     // asked: where the held lamp is, world
   std::map<std::string, double> turntable_rad{};
   std::map<std::string, std::string> screens{};  // what each shows: pattern id or file id
   std::string robot{};                           // whose joints follow: the one that holds the camera

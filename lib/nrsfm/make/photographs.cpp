@@ -27,6 +27,7 @@
 namespace gonio::nrsfm {
 namespace {
 
+constexpr double least_corner = 0.05;  // of the best one's smaller eigenvalue
 constexpr double not_seen = std::numeric_limits<double>::quiet_NaN();
 
 Eigen::Vector3d vector_of(Vec3 v) {
@@ -43,7 +44,7 @@ std::vector<Eigen::Vector2d> corners(const GreyPicture& picture, const Eigen::Ma
     if (!std::isnan(taken(0, p)))
       cv::circle(free, {static_cast<int>(taken(0, p)), static_cast<int>(taken(1, p))}, half_px, cv::Scalar(0), -1);
   std::vector<cv::Point2f> found;
-  cv::goodFeaturesToTrack(grey, found, static_cast<int>(most), 0.02, half_px, free, half_px);
+  cv::goodFeaturesToTrack(grey, found, static_cast<int>(most), least_corner, half_px, free, half_px);
   std::vector<Eigen::Vector2d> places;
   for (const cv::Point2f& place : found) places.emplace_back(place.x + 0.5, place.y + 0.5);
   return places;
@@ -171,8 +172,14 @@ GreyPicture Photographs::picture(std::size_t k) const {
   const photograph::LinearPicture picture = read(document_, images_[k]);
   GreyPicture grey{picture.colour.width, picture.colour.height, {}, {}};
   grey.value.resize(picture.colour.pixels());
+  const manifest::Noise noise = image(k).noise.value_or(manifest::Noise{.gain = 0, .read = 0});
+  const auto even = [&noise](double v) {
+    return noise.gain > 0 ? std::sqrt(v * noise.gain + 0.375 + std::pow(noise.gain * noise.read, 2)) : std::sqrt(v);
+  };
+  const double dark = even(0), span = even(full_) - dark;
   for (std::size_t i = 0; i < grey.value.size(); ++i)
-    grey.value[i] = static_cast<std::uint8_t>(std::lround(255 * std::sqrt(std::min(1.0, grey_at(picture, i) / full_))));
+    grey.value[i] =
+        static_cast<std::uint8_t>(std::lround(255 * (even(std::min(full_, grey_at(picture, i))) - dark) / span));
   return grey;
 }
 

@@ -24,9 +24,11 @@ struct FollowedPoints {
 FollowedPoints follow(std::size_t count, const std::function<GreyPicture(std::size_t)>& picture,
                       const FollowOptions& options);
 
-// The manifest's photographs from a camera that is known, in the order of their names. Codes are square roots of
-// radiance, so that shot noise is even in them; full scale is the brightest of the first, a middle and the last one but
-// for 0.2 % of its pixels. Error(data) where fewer than two say where their camera stood, or they are mosaics.
+// The manifest's photographs from a camera that is known, in the order of their names. Their noise is made even, so
+// that nothing stands out in the dark that is none: codes go as sqrt(g v + 3/8 + (g r)^2) of radiance v (Anscombe 1948;
+// with read noise: Murtagh, Starck & Bijaoui 1995), g and r the image's noise; as sqrt(v) where it states none. Full
+// scale is the brightest of the first, a middle and the last one but for 0.2 % of its pixels. Error(data) where fewer
+// than two say where their camera stood, or they are mosaics.
 class Photographs {
  public:
   explicit Photographs(const manifest::Document& document);

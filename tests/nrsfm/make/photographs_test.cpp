@@ -145,7 +145,9 @@ TEST(Photographs, PointsAreFollowedWithinWhatIsSaidOfThem) {
     for (Eigen::Index f = 0; f < 5; ++f) {
       if (!known.tracks.visible(f, p)) continue;
       const double error = (known.tracks.tracks - truth).block<2, 1>(2 * f, p).norm(), sigma = known.tracks.sigma(f, p);
-      if (sigma == 0) EXPECT_LT(error, 1e-4) << f << " " << p;  // where it was chosen
+      if (sigma == 0) {
+        EXPECT_LT(error, 1e-4) << f << " " << p;  // where it was chosen
+      }
       if (sigma > 0) errors.push_back(error), scores.push_back(error / std::sqrt(2.0) / sigma);
       moved = std::max(moved, (truth.block<2, 1>(2 * f, p) - truth.block<2, 1>(0, p)).norm());
     }
