@@ -43,7 +43,7 @@ struct TrueState {
   std::map<std::string, std::unique_ptr<desk::TrueTurntable>> tables;
   std::map<std::string, std::uint64_t> frames;
   std::map<std::string, std::string> shown;  // pictures by screen
-  std::mutex busy;  // devices are called from several threads
+  std::mutex busy;                           // devices are called from several threads
 
  private:
   manifest::Document scene_of(const std::string& camera, const Shot& shot) const;

@@ -19,7 +19,7 @@ struct PixelFormat {
     gige,   // Mono12Packed: two samples in three bytes: high bits of the first, low bits of both, high bits of the
             // second
     mipi,   // no name of GenICam's: high bits of four samples (12 bit: two), a byte each, then their low bits, the
-           // lowest of the first sample first; every row begins anew
+            // lowest of the first sample first; every row begins anew
   };
   std::string mosaic;  // "Mono", "BayerRG", "Polarized", "BayerRGPolarized", ...
   int bits = 8;

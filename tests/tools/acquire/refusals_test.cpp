@@ -78,6 +78,18 @@ class AcquireRefuses : public testing::Test {
     write_file(folder() / "bad.json", manifest::print_json(document));
   }
 
+  // The arm behind a register map.
+  static Spoil by_map(const char* map, const std::string& camera, const std::string& lamp) {
+    return [map, camera, lamp](Value& d) {
+      write_file(folder() / "map.json", map);
+      d["files"]["map"] = Value::object({{"path", "map.json"}});
+      arm_of(d)["registers"] = "map";
+      url_of(d, "robots", "arm") = "modbus://127.0.0.1:1?timeout=50ms";
+      url_of(d, "cameras", "camera") = camera;
+      url_of(d, "lamps", "lamp") = lamp;
+    };
+  }
+
   static void expect_refused(const char* name, const BadInput& bad, const std::function<void()>& before = {}) {
     SCOPED_TRACE(bad.kind);
     spoil(name, bad.spoil);
@@ -99,46 +111,51 @@ const Process::Words planning{"--plan", views}, going{"--go", "--out", "o"};
 
 TEST_F(AcquireRefuses, LaboratoriesThatCannotBe) {
   const std::string lab = "bad.json#/laboratory";
+  const BadInput all[]{{"no laboratory",
+                        [](Value& d) { d["laboratory"] = Value::object(); },
+                        planning,
+                        64,
+                        {"which camera is not said"}},
+                       {"without robots",
+                        [](Value& d) { lab_of(d)["robots"] = Value::object(); },
+                        planning,
+                        65,
+                        {lab + "/cameras/camera/robot: names \"arm\"", "that section is empty"}},
+                       {"robot of unknown model",
+                        [](Value& d) { arm_of(d)["model"] = "ur17"; },
+                        planning,
+                        65,
+                        {lab + "/robots/arm/model: \"ur17\" is no known arm", "ur10e"}},
+                       {"calibration missing",
+                        [](Value& d) {
+                          d["files"]["c"] = Value::object({{"path", "none.conf"}});
+                          arm_of(d)["calibration"] = "c";
+                        },
+                        planning,
+                        66,
+                        {"bad.json#/files/c/path: \"none.conf\" cannot be read"}},
+                       {"mesh missing",
+                        [](Value& d) {
+                          d["files"]["m"] = Value::object({{"path", "none.ply"}});
+                          lab_of(d)["obstacles"].as_array().push_back(Value::object({{"name", "x"}, {"mesh", "m"}}));
+                        },
+                        planning,
+                        66,
+                        {"bad.json#/files/m/path: \"none.ply\" cannot be read"}},
+                       {"joint limit reversed",
+                        [](Value& d) {
+                          arm_of(d)["limits"] = Value::object(
+                              {{"lower_rad", std::vector<double>(6, 1)}, {"upper_rad", std::vector<double>(6, -1)}});
+                        },
+                        planning,
+                        65,
+                        {lab + "/robots/arm/limits: joint 1 may turn from 1 to -1 rad"}}};
+  for (const BadInput& bad : all) expect_refused("lab.json", bad);
+}
+
+TEST_F(AcquireRefuses, LimitsAndDevicesThatCannotBe) {
+  const std::string lab = "bad.json#/laboratory";
   const BadInput all[]{
-      {"no laboratory",
-       [](Value& d) { d["laboratory"] = Value::object(); },
-       planning,
-       64,
-       {"which camera is not said"}},
-      {"without robots",
-       [](Value& d) { lab_of(d)["robots"] = Value::object(); },
-       planning,
-       65,
-       {lab + "/cameras/camera/robot: names \"arm\"", "that section is empty"}},
-      {"robot of unknown model",
-       [](Value& d) { arm_of(d)["model"] = "ur17"; },
-       planning,
-       65,
-       {lab + "/robots/arm/model: \"ur17\" is no known arm", "ur10e"}},
-      {"calibration missing",
-       [](Value& d) {
-         d["files"]["c"] = Value::object({{"path", "none.conf"}});
-         arm_of(d)["calibration"] = "c";
-       },
-       planning,
-       66,
-       {"bad.json#/files/c/path: \"none.conf\" cannot be read"}},
-      {"mesh missing",
-       [](Value& d) {
-         d["files"]["m"] = Value::object({{"path", "none.ply"}});
-         lab_of(d)["obstacles"].as_array().push_back(Value::object({{"name", "x"}, {"mesh", "m"}}));
-       },
-       planning,
-       66,
-       {"bad.json#/files/m/path: \"none.ply\" cannot be read"}},
-      {"joint limit reversed",
-       [](Value& d) {
-         arm_of(d)["limits"] =
-             Value::object({{"lower_rad", std::vector<double>(6, 1)}, {"upper_rad", std::vector<double>(6, -1)}});
-       },
-       planning,
-       65,
-       {lab + "/robots/arm/limits: joint 1 may turn from 1 to -1 rad"}},
       {"home in the table",
        [](Value& d) { arm_of(d)["home_rad"] = std::vector<double>{0, 1, 1, 0, 0, 0}; },
        planning,
@@ -265,28 +282,21 @@ TEST_F(AcquireRefuses, NoLaboratoryWithoutArms) {
   EXPECT_THAT(ended.out, HasSubstr("\"images\""));
 }
 
+// The devices behind URLs; the arm is one that answers on loopback.
+Spoil reached(const DeskWorld& world, const std::string& camera, const std::string& lamp) {
+  return [arm = world.robot_url(), camera, lamp](Value& d) {
+    url_of(d, "robots", "arm") = arm;
+    url_of(d, "cameras", "camera") = camera;
+    url_of(d, "lamps", "lamp") = lamp;
+  };
+}
+
 // An arm answers on loopback all the while, and has to stand where it stood.
 TEST_F(AcquireRefuses, DevicesThatAreNotAsTheyShouldBe) {
   DeskWorld world;
   const std::string nobody = "modbus://127.0.0.1:1", lamp = world.host() + "/coil/3";
-  const auto real = [&](const std::string& camera_url, const std::string& lamp_url) {
-    return [&world, camera_url, lamp_url](Value& d) {
-      url_of(d, "robots", "arm") = world.robot_url();
-      url_of(d, "cameras", "camera") = camera_url;
-      url_of(d, "lamps", "lamp") = lamp_url;
-    };
-  };
   const std::string pictures = "folder://" + folder().path().string();
-  const auto by_map = [&](const char* map) {
-    return [map, pictures, lamp](Value& d) {
-      write_file(folder() / "map.json", map);
-      d["files"]["map"] = Value::object({{"path", "map.json"}});
-      arm_of(d)["registers"] = "map";
-      url_of(d, "robots", "arm") = "modbus://127.0.0.1:1?timeout=50ms";
-      url_of(d, "cameras", "camera") = pictures;
-      url_of(d, "lamps", "lamp") = lamp;
-    };
-  };
+  const auto real = [&](const std::string& camera, const std::string& light) { return reached(world, camera, light); };
   write_file(folder() / "map.json", "{}");
   const BadInput all[]{
       {"unknown scheme",
@@ -311,7 +321,7 @@ TEST_F(AcquireRefuses, DevicesThatAreNotAsTheyShouldBe) {
        {"/laboratory/lamps/lamp/url: Modbus at ",
         "discrete input 5000: Illegal data address (exception 02); the device"}},
       {"register map without a register",
-       by_map(R"({"joints": 6, "registers": {"joint-1": {"address": 1}}})"),
+       by_map(R"({"joints": 6, "registers": {"joint-1": {"address": 1}}})", pictures, lamp),
        going,
        65,
        {"map.json#/registers: joint-2 is missing; every joint needs its angle"}},
@@ -324,17 +334,21 @@ TEST_F(AcquireRefuses, DevicesThatAreNotAsTheyShouldBe) {
       {"--go missing on a real robot", real(pictures, lamp), {}, 64, {"--go: is not given"}}};
   const auto stood = joints_of(world.arm.now());
   for (const BadInput& bad : all) expect_refused("plan.json", bad);
+  EXPECT_EQ(joints_of(world.arm.now()), stood);
+  EXPECT_FALSE(world.arm.now().program_running);
+}
+
+TEST_F(AcquireRefuses, WhatAnotherHolds) {
+  const DeskWorld world;
+  const std::string lamp = world.host() + "/coil/3", pictures = "folder://" + folder().path().string();
   {
     const acquisition::InstrumentLock other({lamp}, std::chrono::seconds(0));
     expect_refused("plan.json", {"lock held",
-                                 real(pictures, lamp),
+                                 reached(world, pictures, lamp),
                                  going,
                                  75,
                                  {lamp + ": is driven by another program (waited 0 s); wait longer (--wait 10min)"}});
   }
-  EXPECT_EQ(joints_of(world.arm.now()), stood);
-  EXPECT_FALSE(world.arm.now().program_running);
-
   const int taken = acquisition::desk::listen_on_loopback(0);
   expect_refused("lab.json", {"port in use",
                               {},
