@@ -12,7 +12,7 @@ namespace gonio::acquisition {
 
 manifest::Document specimen_stage(const std::filesystem::path& out) {
   manifest::Document document = specimen_studio(out);
-  std::filesystem::remove(manifest::resolve(document, "knot", "/files"));
+  std::filesystem::remove(out / "knot.ply");
   document.files.erase("knot");
   document.meshes.erase("knot");
   document.surfaces.erase("knot");
