@@ -6,6 +6,7 @@
 #include "base/assignment.h"
 #include "base/quantity.h"
 #include "base/text.h"
+#include "geom/angle.h"
 
 namespace gonio::acquisition {
 
@@ -22,8 +23,11 @@ PatternCall parse_pattern(const std::string& text, const std::string& place) {
     }
   call.numbers = pattern_numbers(*call.pattern, given, place);
   call.words = call.pattern->name;
-  for (const PatternParameter& p : call.pattern->parameters)
-    call.words += format(", %s %g", p.name.c_str(), call.numbers[p.name]) + (p.unit == "1" ? "" : " " + p.unit);
+  for (const PatternParameter& p : call.pattern->parameters) {
+    const bool is_angle = p.unit == "rad";
+    call.words += format(", %s %g", p.name.c_str(), call.numbers[p.name] / (is_angle ? degree : 1));
+    if (p.unit != "1") call.words += " " + (is_angle ? "deg" : p.unit);
+  }
   return call;
 }
 
