@@ -214,8 +214,8 @@ TEST(GenicamCamera, NobodyThereIsSaidInTime) {
   for (const char* url : {"genicam://", "genicam://x:3956", "genicam://x/y", "genicam://x?packet=1",
                           "genicam://x?pixel_format=Mono9", "genicam://x?packet-size=99999"})
     EXPECT_EQ(refusal_of([&] { open_camera(url, "here"); }).code, Exit::usage) << url;
-  EXPECT_THAT(refusal_of([] { open_camera("gphoto2://x", "here"); }).text,
-              testing::AllOf(testing::HasSubstr("no driver for 'gphoto2://'"), testing::HasSubstr("genicam://"),
+  EXPECT_THAT(refusal_of([] { open_camera("usb://x", "here"); }).text,
+              testing::AllOf(testing::HasSubstr("no driver for 'usb://'"), testing::HasSubstr("genicam://"),
                              testing::HasSubstr("folder://")));
 }
 

@@ -105,17 +105,9 @@ TEST(Served, ThePicturesAreThoseOfTheLaboratoryWithinOneProgramAndFaultsChangeNo
   EXPECT_THAT(second.err, testing::Not(testing::HasSubstr(" 0 retaken")));
 }
 
-// A monitor faces the camera; what it shows is seen, and the picture is that of the laboratory within one program.
-TEST(Served, AScreenShowsTheCameraItsPictures) {
-  const tests::ScratchFolder folder;
-  const auto picture = [&](const char* name, const std::vector<float>& greys) {
-    io::Image image(4, 3, {"Y"});
-    for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = greys[i % 4 < 2 ? 0 : 1];
-    write_file(folder / name, io::encode_raster_png(image));
-    return (folder / name).string();
-  };
-  const std::string left = picture("left.png", {1, 0}), right = picture("right.png", {0, 1});
-  manifest::Document lab = manifest::parse_document(R"({"gonio": 1,
+// A camera before a screen of 4 x 3 pixels, and a sheet behind.
+manifest::Document before_a_screen(const std::filesystem::path& folder) {
+  return manifest::parse_document(R"({"gonio": 1,
     "files": {"f": {"path": "left.png"}},
     "cameras": {"c": {"width_px": 16, "height_px": 12, "fx_px": 16, "fy_px": 16, "cx_px": 7.5, "cy_px": 5.5}},
     "meshes": {"sheet": {"plane": {"size_m": [2, 2]}}},
@@ -127,32 +119,47 @@ TEST(Served, AScreenShowsTheCameraItsPictures) {
       "cameras": {"c": {"url": "sim://", "codes_per_radiance_s": 100000, "white": 4095,
         "world_from_camera": {"rotation": [0, 1, 0, 0], "translation_m": [0, 0, 1.3]}}},
       "screens": {"lcd": {"url": "sim://", "kind": "lcd", "width_px": 4, "height_px": 3}}}})",
-                                                    "lab.json", folder.path());
+                                  "lab.json", folder);
+}
+
+// Of the rows in the middle, from one column to another.
+double mean_of_columns(const RawFrame& frame, int from, int to) {
+  double sum = 0;
+  for (int y = 3; y < 9; ++y)
+    for (int x = from; x < to; ++x) sum += frame.samples[static_cast<std::size_t>(16 * y + x)];
+  return sum / (6 * (to - from));
+}
+
+// A monitor faces the camera; what it shows is seen, and the picture is that of the laboratory within one program.
+TEST(Served, AScreenShowsTheCameraItsPictures) {
+  const tests::ScratchFolder folder;
+  const auto picture = [&](const char* name, const std::vector<float>& greys) {
+    io::Image image(4, 3, {"Y"});
+    for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = greys[i % 4 < 2 ? 0 : 1];
+    write_file(folder / name, io::encode_raster_png(image));
+    return (folder / name).string();
+  };
+  const std::string left = picture("left.png", {1, 0}), right = picture("right.png", {0, 1});
+  const manifest::Document lab = before_a_screen(folder.path());
   ServeOptions options;
   options.desk.spp = 4;
   const Instrument inside = desk_instrument(lab, nullptr, options.desk);
   const ServedLaboratory served(lab, nullptr, nullptr, options);
   const Instrument outside = open_instrument(served.description());
   const Shot shot{0.01, {}};
-  const auto mean = [](const RawFrame& frame, int from, int to) {
-    double sum = 0;
-    for (int y = 3; y < 9; ++y)
-      for (int x = from; x < to; ++x) sum += frame.samples[static_cast<std::size_t>(16 * y + x)];
-    return sum / (6 * (to - from));
-  };
   const RawFrame dark = outside.cameras.at("c")->take(shot);
-  EXPECT_LT(mean(dark, 0, 16), 5);
+  EXPECT_LT(mean_of_columns(dark, 0, 16), 5);
   for (const auto& [path, brighter] : {std::pair{left, true}, {right, false}}) {
     inside.screens.at("lcd")->show(path);
     outside.screens.at("lcd")->show(path);
     const RawFrame seen = outside.cameras.at("c")->take(shot);
     EXPECT_EQ(seen.samples, inside.cameras.at("c")->take(shot).samples);
-    const double a = mean(seen, 2, 6), b = mean(seen, 10, 14);
+    const double a = mean_of_columns(seen, 2, 6), b = mean_of_columns(seen, 10, 14);
     EXPECT_GT(brighter ? a : b, 900);  // 1 W/(m^2 sr) is 1000 codes
     EXPECT_LT(brighter ? b : a, 100);
   }
   outside.screens.at("lcd")->show("");
-  EXPECT_LT(mean(outside.cameras.at("c")->take(shot), 0, 16), 5);
+  EXPECT_LT(mean_of_columns(outside.cameras.at("c")->take(shot), 0, 16), 5);
   io::Image small(3, 3, {"Y"});
   write_file(folder / "small.png", io::encode_raster_png(small));
   try {
