@@ -115,8 +115,7 @@ manifest::Document before_a_screen(const std::filesystem::path& folder) {
     "objects": [{"id": "sheet", "mesh": "sheet", "surface": "s"}],
     "lights": {"lcd": {"model": "screen", "file": "f", "position_m": [0, 0, 0.5], "direction": [0, 0, 1],
                        "up": [0, 1, 0], "width_m": 0.8, "height_m": 0.6, "scale": [1, 1, 1]}},
-    "laboratory": {
-      "cameras": {"c": {"url": "sim://", "codes_per_radiance_s": 100000, "white": 4095,
+    "laboratory": {"cameras": {"c": {"url": "sim://", "codes_per_radiance_s": 100000, "white": 4095,
         "world_from_camera": {"rotation": [0, 1, 0, 0], "translation_m": [0, 0, 1.3]}}},
       "screens": {"lcd": {"url": "sim://", "kind": "lcd", "width_px": 4, "height_px": 3}}}})",
                                   "lab.json", folder);

@@ -210,7 +210,7 @@ TEST_F(AcquireRefuses, WhatCannotBeAsked) {
        64,
        {"--exposure: is -2ms, at least 1e-07 s"}},
       {"unknown pattern", {}, {"--plan", "spiral"}, 64, {"--plan: no pattern \"spiral\"; one of arc, board"}},
-      {"number of a pattern", {}, {"--plan", "board:views=2"}, 64, {"--plan: board: views is 2; between 3 and 10000"}},
+      {"number of a pattern", {}, {"--plan", "board:views=0"}, 64, {"--plan: board: views is 0; between 1 and 10000"}},
       {"camera that it has not",
        {},
        {"--plan", views, "--camera", "left"},
