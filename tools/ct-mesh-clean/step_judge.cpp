@@ -1,5 +1,8 @@
 // Step: is the mesh fit to be rendered as glass?
+#include <utility>
+
 #include "base/error.h"
+#include "base/progress.h"
 #include "base/text.h"
 #include "tools/ct-mesh-clean/work.h"
 
@@ -30,6 +33,21 @@ void hold_against_reference(Work& work) {
                                            {"differing_paths", static_cast<double>(bend.differing_paths)}};
 }
 
+// What keeps the mesh from bounding glass, counted; empty: nothing.
+std::string faults_of(const mesh::Soundness& sound, std::size_t crossings) {
+  const std::pair<std::size_t, const char*> counted[] = {
+      {sound.boundary_edges, "open edges"},
+      {sound.crowded_edges, "edges of more than two triangles"},
+      {sound.disagreeing_edges, "edges whose triangles face unlike ways"},
+      {sound.pinched_vertices, "pinched vertices"},
+      {sound.degenerate_triangles, "triangles without area"},
+      {crossings, "pairs of triangles that cross"}};
+  std::string words;
+  for (const auto& [count, what] : counted)
+    if (count > 0) words += (words.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+  return words;
+}
+
 }  // namespace
 
 void judge(Work& work) {
@@ -43,8 +61,8 @@ void judge(Work& work) {
   // The surface bounds the solid: its Euler number is twice the solid's, which the voxels tell. Carving a marker off
   // may change it: said, not judged.
   const std::int64_t wanted = 2 * work.euler;
-  std::string how =
-      fit ? "closed, 2-manifold, oriented, without self-intersections" : "not fit to be rendered as glass";
+  std::string how = fit ? "closed, 2-manifold, oriented, without self-intersections"
+                        : "not fit to be rendered as glass: " + faults_of(sound, crossing.size());
   if (sound.euler != wanted)
     how += "; Euler number " + std::to_string(sound.euler) + ", the volume's surface has " + std::to_string(wanted);
   if (work.cut_by_border) how += "; the volume's border cuts the object, where the mesh is capped, not measured";
@@ -60,6 +78,7 @@ void judge(Work& work) {
   }
   work.sound = fit;
   if (!fit) work.missed = true;
+  if (work.missed) log(LogLevel::warning, work.path + ": " + how);
   auto& entry = step(work, "verdict", how);
   entry.figures = {{"components", static_cast<double>(sound.components)},
                    {"boundary_edges", static_cast<double>(sound.boundary_edges)},

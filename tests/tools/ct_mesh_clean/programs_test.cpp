@@ -126,6 +126,8 @@ TEST(CtMeshClean, ALimitThatIsMissedIsExitTwoAndEverythingIsWritten) {
   EXPECT_EQ(ended.status, 2) << ended.err;
   EXPECT_TRUE(std::filesystem::exists(folder / "o/ball.ply"));
   EXPECT_THAT(ended.out, HasSubstr("rays are bent wrongly"));
+  EXPECT_THAT(ended.err, HasSubstr("ball.nrrd: closed, 2-manifold"));  // nobody is left to guess
+  EXPECT_THAT(ended.err, HasSubstr("rays are bent wrongly"));
 }
 
 TEST(CtMeshClean, SameInputSameBytesWhateverTheThreads) {
