@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/lower_case.h"
 #include "base/text.h"
 
 namespace gonio::io {
@@ -104,9 +105,7 @@ void take_samples(const libraw_data_t& raw, CameraRaw& picture, const std::strin
 }  // namespace
 
 bool is_camera_raw(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return std::ranges::find(raw_extensions, extension) != raw_extensions.end();
+  return std::ranges::find(raw_extensions, lower_case(path.extension().string())) != raw_extensions.end();
 }
 
 CameraRaw decode_camera_raw(const std::string& bytes, const std::string& place) {

@@ -15,6 +15,7 @@
 #include "nrsfm/make/flow.h"
 #include "nrsfm/make/painted_object.h"
 #include "nrsfm/make/photographs.h"
+#include "nrsfm/make/selection.h"
 #include "stats/intervals.h"
 #include "tools/nrsfm-make/call.h"
 
@@ -26,24 +27,14 @@ namespace {
 
 // Points that enough of the frames show, those that are seen longest first.
 std::vector<Eigen::Index> long_enough(const Visible& visible, double least_seen, const std::string& place) {
-  std::vector<Eigen::Index> kept;
-  const double least = std::max(2.0, least_seen * static_cast<double>(visible.rows()));
-  for (Eigen::Index p = 0; p < visible.cols(); ++p)
-    if (static_cast<double>(visible.col(p).count()) >= least) kept.push_back(p);
+  std::vector<Eigen::Index> kept = often_seen(visible, least_seen);
   std::ranges::stable_sort(kept, std::greater{}, [&](Eigen::Index p) { return visible.col(p).count(); });
   if (kept.size() < 4)
     throw Error(Exit::data, place,
-                format("has %zu points that are followed through %.0f of %ld frames", kept.size(), std::ceil(least),
-                       static_cast<long>(visible.rows())),
+                format("has %zu points that are followed through %s of %ld frames", kept.size(),
+                       least_frames(visible, least_seen).c_str(), static_cast<long>(visible.rows())),
                 "take photographs nearer to each other, or lower --least-seen");
   return kept;
-}
-
-void keep(Sequence& s, const std::vector<Eigen::Index>& points) {
-  s.tracks = Tracks(s.tracks(Eigen::all, points));
-  s.visible = Visible(s.visible(Eigen::all, points));
-  if (s.sigma.size() > 0) s.sigma = Eigen::MatrixXd(s.sigma(Eigen::all, points));
-  if (s.truth) s.truth = Shapes((*s.truth)(Eigen::all, points));
 }
 
 // Solvers need points in every frame: those in which fewer than eight are followed go.
@@ -57,20 +48,6 @@ std::vector<Eigen::Index> frames_with_points(const Visible& visible, const std::
                 format("have %zu frames in which %ld points are followed", kept.size(), static_cast<long>(least)),
                 "take photographs nearer to each other, or lower --least-seen");
   return kept;
-}
-
-void keep_frames(Sequence& s, const std::vector<Eigen::Index>& frames) {
-  std::vector<Eigen::Index> twos, threes;
-  std::vector<CameraFromObject> seen_from;
-  for (const Eigen::Index f : frames) {
-    twos.insert(twos.end(), {2 * f, 2 * f + 1}), threes.insert(threes.end(), {3 * f, 3 * f + 1, 3 * f + 2});
-    seen_from.push_back(s.cameras[static_cast<std::size_t>(f)]);
-  }
-  s.tracks = Tracks(s.tracks(twos, Eigen::all));
-  s.visible = Visible(s.visible(frames, Eigen::all));
-  if (s.sigma.size() > 0) s.sigma = Eigen::MatrixXd(s.sigma(frames, Eigen::all));
-  if (s.truth) s.truth = Shapes((*s.truth)(threes, Eigen::all));
-  s.cameras = std::move(seen_from);
 }
 
 // "sheet-circle-pictures", "sheet-circle-geometry"
@@ -141,7 +118,7 @@ Exit follow_photographs(cli::Invocation& call) {
   Sequence tracks = photographs.sequence(followed, options.every);
   const std::string place = manifest::place(call.document, "/images");
   if (!call.given("truth")) {
-    keep(tracks, long_enough(tracks.visible, call.number("least-seen"), place));
+    keep_points(tracks, long_enough(tracks.visible, call.number("least-seen"), place));
     keep_frames(tracks, frames_with_points(tracks.visible, place));
     enter(call, tracks, "pictures", {});
     return Exit::done;
@@ -150,7 +127,7 @@ Exit follow_photographs(cli::Invocation& call) {
   const manifest::Document truth = manifest::read_document(call.text("truth"));
   KnownTracks known = with_truth(photographs, followed, std::move(tracks), options.every, truth, call.text("object"));
   const auto kept = long_enough(known.tracks.visible, call.number("least-seen"), place);
-  keep(known.tracks, kept), keep(known.ideal, kept);
+  keep_points(known.tracks, kept), keep_points(known.ideal, kept);
   const auto frames = frames_with_points(known.tracks.visible, place);
   const Eigen::Index lacking = known.tracks.frames() - static_cast<Eigen::Index>(frames.size());
   keep_frames(known.tracks, frames), keep_frames(known.ideal, frames);

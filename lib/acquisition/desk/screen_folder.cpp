@@ -15,6 +15,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr std::chrono::milliseconds settled{50};
+
 // What a file with this picture in it ends in.
 std::string ending_of(const std::string& picture, const fs::path& place) {
   switch (io::read_raster_header(picture, place.string()).kind) {
@@ -54,6 +56,10 @@ void ScreenFolders::look_at(const std::string& screen) {
   std::string said;
   try {
     if (!fs::exists(folder / "show")) return;
+    const fs::file_time_type written = fs::last_write_time(folder / "show");
+    // The clock of file systems ticks in milliseconds: what was read right after it was written is read once more.
+    if (const auto before = read_.find(screen); before != read_.end() && before->second > written + settled) return;
+    read_[screen] = fs::file_time_type::clock::now();
     const std::string picture = read_file(folder / "show"), hash = sha256(picture);
     said = hash;
     if (const auto before = answered_.find(screen); before != answered_.end() && before->second.starts_with(hash))

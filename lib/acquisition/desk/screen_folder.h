@@ -25,7 +25,8 @@ class ScreenFolders {
   void look_at(const std::string& screen);
   TrueState& state_;
   std::filesystem::path folder_;
-  std::map<std::string, std::string> answered_;  // what `shown` says, by screen
+  std::map<std::string, std::string> answered_;                  // what `shown` says, by screen
+  std::map<std::string, std::filesystem::file_time_type> read_;  // when `show` was last read
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

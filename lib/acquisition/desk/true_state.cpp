@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "acquisition/laboratory/usual.h"
 #include "acquisition/run/frame_record.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -32,7 +33,7 @@ namespace {
 
 // Where the description says nothing of them:
 constexpr double full_well_electrons = 10000, usual_read_electrons = 3;
-constexpr double usual_exposure_s = 0.01;  // at which a radiance of 1 saturates
+constexpr double saturating_exposure_s = 0.01;  // at which a radiance of 1 saturates
 
 // Entries of `truth` take the place of those of the same name.
 template <class Section>
@@ -138,7 +139,7 @@ DeskSensor sensor_at(const manifest::LaboratoryCamera& entry, int bits, const Sh
   sensor.white = entry.white.value_or((1 << bits) - 1);
   sensor.black = entry.black_code.value_or(0);
   sensor.full = bits > 8 ? 65535 : 255;
-  sensor.gain = entry.codes_per_radiance_s.value_or(sensor.white / usual_exposure_s) * shot.exposure_s *
+  sensor.gain = entry.codes_per_radiance_s.value_or(sensor.white / saturating_exposure_s) * shot.exposure_s *
                 amplification(shot.gain_db) / sensor.full;
   const double electrons =
       entry.electrons_per_code.value_or(full_well_electrons / sensor.white) * sensor.full / amplification(shot.gain_db);
@@ -177,8 +178,9 @@ TrueState::TrueState(const manifest::Document& believed, const manifest::Documen
     lamp_number.emplace(name, static_cast<int>(lamp_number.size()));
   }
   for (const auto& [name, table] : lab.turntables)
-    tables[name] = std::make_unique<desk::TrueTurntable>(clock, table.speed_rad_per_s.value_or(0.5),
-                                                         table.acceleration_rad_per_s2.value_or(1));
+    tables[name] = std::make_unique<desk::TrueTurntable>(
+        clock, table.speed_rad_per_s.value_or(usual_table_speed_rad_per_s),
+        table.acceleration_rad_per_s2.value_or(usual_table_acceleration_rad_per_s2));
   for (const auto& [name, camera] : lab.cameras) format_of(name);
 }
 

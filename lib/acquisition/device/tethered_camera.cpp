@@ -11,6 +11,7 @@
 #include "acquisition/device/connection.h"
 #include "acquisition/device/raw_file.h"
 #include "base/error.h"
+#include "base/lower_case.h"
 #include "base/text.h"
 #include "io/camera_raw.h"
 
@@ -32,11 +33,6 @@ std::optional<double> iso_of(const std::string& words) {
   std::string_view rest = words;
   const auto number = leading_number(rest);
   return number && rest.empty() && *number > 0 ? number : std::nullopt;
-}
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return text;
 }
 
 // "RAW", "NEF (Raw)": the sensor's numbers alone. Not "RAW + Large Fine JPEG", and not "cRAW", "mRAW", "sRAW", which

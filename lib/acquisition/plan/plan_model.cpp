@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "acquisition/laboratory/usual.h"
 #include "acquisition/motion/line.h"
 #include "acquisition/motion/way.h"
 #include "acquisition/plan/drawn_shapes.h"
@@ -17,9 +18,6 @@
 namespace gonio::acquisition {
 namespace {
 
-constexpr double usual_exposure_s = 0.01;
-// Of a turntable whose description does not say.
-constexpr double usual_table_speed = 0.5, usual_table_acceleration = 1;
 constexpr double mark_m = 0.025, missed_mark_m = 0.012;
 
 // Of the step's lamps the slowest, and all its exposures.
@@ -32,9 +30,9 @@ double standing_time(const manifest::Laboratory& section, const manifest::PlanSt
   return settles + (step.exposures_s.empty() ? usual_exposure_s : exposed);
 }
 
-class Clock {
+class Schedule {
  public:
-  Clock(const manifest::Document& document, const Laboratory& laboratory, const manifest::Plan& plan)
+  Schedule(const manifest::Document& document, const Laboratory& laboratory, const manifest::Plan& plan)
       : section_(document.laboratory.entry.front()), laboratory_(laboratory), plan_(plan) {}
 
   PlanTimes run() {
@@ -80,10 +78,10 @@ class Clock {
     for (const auto& [name, angle] : step.turntable_rad) {
       const auto table = section_.turntables.find(name);
       if (table == section_.turntables.end()) continue;
-      longest =
-          std::max(longest, trapezoid_time(angle - next.turntables[name],
-                                           table->second.speed_rad_per_s.value_or(usual_table_speed),
-                                           table->second.acceleration_rad_per_s2.value_or(usual_table_acceleration)));
+      longest = std::max(
+          longest, trapezoid_time(angle - next.turntables[name],
+                                  table->second.speed_rad_per_s.value_or(usual_table_speed_rad_per_s),
+                                  table->second.acceleration_rad_per_s2.value_or(usual_table_acceleration_rad_per_s2)));
       next.turntables[name] = angle;
     }
     next.time_s += longest;
@@ -190,7 +188,7 @@ std::string words_of_step(const manifest::PlanStep& step) {
 }  // namespace
 
 PlanTimes times_of(const manifest::Document& document, const Laboratory& laboratory, const manifest::Plan& plan) {
-  return Clock(document, laboratory, plan).run();
+  return Schedule(document, laboratory, plan).run();
 }
 
 State state_at_time(const Laboratory& laboratory, const PlanTimes& times, double time_s) {

@@ -8,6 +8,7 @@
 #include "acquisition/run/frame_record.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "geom/angle.h"
 #include "io/grey.h"
 #include "manifest/document.h"
 #include "manifest/section_tables.h"
@@ -19,13 +20,6 @@ namespace {
 
 using manifest::Value;
 
-constexpr double degrees_each = 57.29577951308232;
-
-std::string checked_image(const manifest::PlanStep& step) {
-  const auto images = images_of(step);
-  return images[images.size() / 2];
-}
-
 std::optional<camera::Intrinsics> lens_of(const manifest::Document& document, const std::string& name) {
   const auto found = document.cameras.find(name);
   if (found == document.cameras.end() || found->second.model == "orthographic" || found->second.fx_px.value.empty())
@@ -35,7 +29,7 @@ std::optional<camera::Intrinsics> lens_of(const manifest::Document& document, co
 
 std::string shown(double value, const std::string& unit) {
   return unit == "m"     ? format("%.3g mm", 1e3 * value)
-         : unit == "rad" ? format("%.3g deg", degrees_each * value)
+         : unit == "rad" ? format("%.3g deg", value / degree)
                          : format("%.3g px", value);
 }
 
@@ -67,6 +61,11 @@ Moved with_share(const Moved& moved, double share) {
 }
 
 }  // namespace
+
+std::string checked_image(const manifest::PlanStep& step) {
+  const auto images = images_of(step);
+  return images[images.size() / 2];
+}
 
 std::vector<std::size_t> check_steps(const manifest::Plan& plan) {
   std::map<std::string, int> takes;
@@ -123,7 +122,7 @@ BoardChecks::Seen BoardChecks::seen_in(const std::string& image, const std::file
   const camera::Detection detection = camera::detect_board(io::read_grey(file), board_, {});
   Seen seen{sha256, detection.corners.empty() ? detection.problem : "", detection.corners};
   for (camera::Corner& c : seen.corners)
-    if (!(c.sigma_px > 0)) c.sigma_px = detection.noise_px > 0 ? detection.noise_px : 0.1;
+    if (!(c.sigma_px > 0)) c.sigma_px = detection.noise_px > 0 ? detection.noise_px : usual_sigma_px;
   write(Value::object(
       {{"what", "check"},
        {"image", image},

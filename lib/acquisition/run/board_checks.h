@@ -31,6 +31,8 @@ inline constexpr double drift_false_alarms = 0.001;
 
 // Steps that are check views: board frames at a place that the plan visits more than once.
 std::vector<std::size_t> check_steps(const manifest::Plan& plan);
+std::string checked_image(
+    const manifest::PlanStep& step);  // the one in which the board is sought: of the middle exposure
 
 class BoardChecks {
  public:

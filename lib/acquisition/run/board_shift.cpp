@@ -8,7 +8,9 @@
 
 #include "base/error.h"
 #include "base/quantity.h"
-#include "camera/calibration.h"
+#include "camera/bundle_adjustment.h"
+#include "camera/quality/alignment.h"
+#include "linear/geom_matrices.h"
 #include "linear/solve.h"
 #include "linear/symmetric_eigen.h"
 #include "robot/chain/chain.h"
@@ -27,8 +29,6 @@ struct CommonCorner {
   Vec2 moved() const { return now - before; }
 };
 
-constexpr double usual_sigma_px = 0.1;  // where a detection states none
-
 std::vector<CommonCorner> common_corners(std::span<const camera::Corner> before, std::span<const camera::Corner> now) {
   const auto stated = [](const camera::Corner& c) { return c.sigma_px > 0 ? c.sigma_px : usual_sigma_px; };
   std::vector<CommonCorner> both;
@@ -44,34 +44,16 @@ double sigma_of(const CommonCorner& c) {
   return std::hypot(c.sigma_before, c.sigma_now);
 }
 
-Eigen::Matrix3d eigen_of(const Mat3& m) {
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.m.data());
-}
-Eigen::Matrix3d crossing_of(Vec3 v) {
-  return Eigen::Matrix3d{{0, -v.z, v.y}, {v.z, 0, -v.x}, {-v.y, v.x, 0}};
-}
-Mat3 listed_matrix(const Eigen::Matrix3d& m) {
-  Mat3 out;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) out(i, j) = 0.5 * (m(i, j) + m(j, i));
-  return out;
-}
-Eigen::Vector3d eigen_of(Vec3 v) {
-  return {v.x, v.y, v.z};
+Mat3 symmetric(const Eigen::Matrix3d& m) {
+  return linear::mat3_of(0.5 * (m + m.transpose()));
 }
 
 camera::BoardPose pose_seen(std::span<const camera::Corner> corners, const camera::Board& board,
                             const camera::Intrinsics& lens) {
-  camera::CalibrationSetup setup;
-  camera::CameraSetup camera;
-  camera.fixed = {"intrinsics", "distortion"};
-  camera.start = lens;
-  setup.cameras = {camera};
-  setup.boards.push_back({"board", board, false, {}});
   camera::View view;
-  view.name = "check";
   view.corners.assign(corners.begin(), corners.end());
-  return camera::calibrate({view}, setup).views.front().camera_from_board;
+  constexpr double loss_px = 1;  // corners that miss by more pull with less than their square
+  return camera::pose_under(view, board, lens, {}, camera::start_pose(view, board, lens), loss_px);
 }
 
 struct PoseFit {
@@ -122,10 +104,10 @@ void place_change(const camera::BoardPose& from, const robot::MeasuredPose& to, 
   const Vec3 middle{middle_m.x, middle_m.y, 0};
   const Matrix6 covariance = scale * Eigen::Map<const Matrix6>(to.covariance.data());
   Eigen::Matrix<double, 3, 6> place;
-  place << -crossing_of(now.rotate(middle)), Eigen::Matrix3d::Identity();
-  shift.position_m = Moved{now * middle - from * middle, listed_matrix(place * covariance * place.transpose())};
-  shift.rotation_rad = Moved{rotation_vector_of(now.rotation * conjugate(from.rotation)),
-                             listed_matrix(covariance.topLeftCorner<3, 3>())};
+  place << -linear::cross_matrix(linear::as_eigen(now.rotate(middle))), Eigen::Matrix3d::Identity();
+  shift.position_m = Moved{now * middle - from * middle, symmetric(place * covariance * place.transpose())};
+  shift.rotation_rad =
+      Moved{rotation_vector_of(now.rotation * conjugate(from.rotation)), symmetric(covariance.topLeftCorner<3, 3>())};
 }
 
 // The mean corner's way; what is left of the corners' differences about it is no noise where the camera has turned.
@@ -192,8 +174,8 @@ DriftVerdict judge_drift(const BoardShift& shift, const DriftLimit& limit, doubl
   if (!moved)
     throw Error(Exit::data, "--drift-limit", "is one of the camera's pose, and the lens is not known",
                 "give a limit in px, or a calibrated camera");
-  const linear::SymmetricEigen<Eigen::Matrix3d> eigen(eigen_of(moved->covariance));
-  const Eigen::Vector3d y = eigen.eigenvectors().transpose() * eigen_of(moved->by);
+  const linear::SymmetricEigen<Eigen::Matrix3d> eigen(linear::as_eigen(moved->covariance));
+  const Eigen::Vector3d y = eigen.eigenvectors().transpose() * linear::as_eigen(moved->by);
   const Eigen::Vector3d c = eigen.eigenvalues().cwiseMax(0.0);
   DriftVerdict verdict;
   verdict.value = y.norm();
@@ -259,7 +241,7 @@ std::optional<Scatter> scatter_of(std::span<const std::vector<Moved>> views) {
     if (view.size() < 2) continue;
     auto& list = takes.emplace_back();
     for (const Moved& m : view) {
-      list.push_back({eigen_of(m.by), eigen_of(m.covariance)});
+      list.push_back({linear::as_eigen(m.by), linear::as_eigen(m.covariance)});
       noise += list.back().c.trace() / 3, count += 1;
     }
     degrees += 3 * (static_cast<double>(view.size()) - 1);

@@ -32,6 +32,7 @@ struct BoardShift {
 };
 
 inline constexpr std::size_t least_check_corners = 8;
+inline constexpr double usual_sigma_px = 0.1;  // of a corner whose detection states none
 
 // Nothing where the views have fewer corners in common. `lens`: of the camera; left out where it is not known.
 std::optional<BoardShift> shift_between(std::span<const camera::Corner> before, std::span<const camera::Corner> now,

@@ -6,6 +6,7 @@
 #include <set>
 #include <thread>
 
+#include "acquisition/laboratory/usual.h"
 #include "acquisition/plan/planner.h"
 #include "acquisition/run/arm_mover.h"
 #include "acquisition/run/doubtful_pictures.h"
@@ -27,7 +28,6 @@ using manifest::Value;
 namespace fs = std::filesystem;
 
 constexpr double arm_stands_rad = 1e-3;  // between before and after an exposure
-constexpr double usual_exposure_s = 0.01;
 constexpr const char* as_dark = "it is as dark as with the lamps off";
 
 double seconds_since(Clock::time_point zero) {
@@ -130,8 +130,7 @@ class PlanRun {
   // Has the board's view moved? The frames that this calls into question are marked, or the run stops where it stands:
   // --resume takes them again.
   void check(std::size_t index) {
-    const auto images = images_of(plan_.steps[index]);
-    const auto record = records_.find(images[images.size() / 2]);
+    const auto record = records_.find(checked_image(plan_.steps[index]));
     const bool there = record != records_.end();
     const auto drift = checks_.look(index, there ? options_.out / record->second.file : fs::path(),
                                     there ? record->second.sha256 : "", [this](const Value& e) { journal_.write(e); });

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "linear/geom_matrices.h"
 #include "linear/solve.h"
 #include "linear/svd.h"
 
@@ -13,29 +14,23 @@ namespace {
 
 constexpr int most_steps = 30;
 
-Eigen::Vector3d vector_of(Vec3 v) {
-  return {v.x, v.y, v.z};
-}
-
 }  // namespace
 
 Rigid<frame::Camera, frame::Camera> aligned(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   Eigen::Vector3d mean_from = Eigen::Vector3d::Zero(), mean_to = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < from.size(); ++i) mean_from += vector_of(from[i]), mean_to += vector_of(to[i]);
+  for (std::size_t i = 0; i < from.size(); ++i)
+    mean_from += linear::as_eigen(from[i]), mean_to += linear::as_eigen(to[i]);
   mean_from /= static_cast<double>(from.size());
   mean_to /= static_cast<double>(from.size());
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < from.size(); ++i)
-    sum += (vector_of(to[i]) - mean_to) * (vector_of(from[i]) - mean_from).transpose();
+    sum += (linear::as_eigen(to[i]) - mean_to) * (linear::as_eigen(from[i]) - mean_from).transpose();
   const linear::JacobiSvd<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity();
   mirror(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
   const Eigen::Matrix3d r = svd.matrixU() * mirror * svd.matrixV().transpose();
   const Eigen::Vector3d t = mean_to - r * mean_from;
-  Mat3 rotation;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) rotation.m[static_cast<std::size_t>(3 * i + j)] = r(i, j);
-  return {quaternion_of(rotation), {t.x(), t.y(), t.z()}};
+  return {quaternion_of(linear::mat3_of(r)), {t.x(), t.y(), t.z()}};
 }
 
 BoardPose pose_under(const View& view, const Board& board, const Intrinsics& lens, const BoardWarp& warp,

@@ -7,6 +7,7 @@
 
 #include "light/mechanisms/light_ambient.h"
 #include "light/mechanisms/light_inverse_square.h"
+#include "linear/geom_matrices.h"
 #include "linear/solve.h"
 #include "optim/damped.h"
 #include "optim/descent.h"
@@ -28,17 +29,13 @@ double gloss(double f0, double alpha, Vec3 wo, Vec3 wi) {
          surface::Ggx(alpha).lobe(wo, wi, h);
 }
 
-Eigen::Vector3d eigen(Vec3 v) {
-  return {v.x, v.y, v.z};
-}
-
 // Least squares over the lamps in play that shine on the front.
 Vec3 least_squares(const std::vector<PatchLight>& lights, const std::vector<double>& y, const std::vector<char>& out) {
   Eigen::Matrix3d a = Eigen::Matrix3d::Identity() * 1e-9;
   Eigen::Vector3d r = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < y.size(); ++k) {
     if (out[k]) continue;
-    const Eigen::Vector3d l = eigen(lights[k].towards) * lights[k].white;
+    const Eigen::Vector3d l = linear::as_eigen(lights[k].towards) * lights[k].white;
     a += l * l.transpose();
     r += l * y[k];
   }
@@ -91,7 +88,7 @@ struct PatchDescent final : optim::Descent {
 
   PatchDescent(const PatchModel& of, const PatchReadings& read, const Patch& start)
       : model(of), readings(read), v(read.channels == 1 ? 3 : 5) {
-    v.head(3) = eigen(start.b);
+    v.head(3) = linear::as_eigen(start.b);
     if (read.channels > 1) v[3] = start.tint[0], v[4] = start.tint[1];
     r = residuals(v);
   }

@@ -9,10 +9,8 @@ Shapes anchored(const DeformingSurface& surface) {
   Shapes points(surface.vertices_m.rows(), static_cast<Eigen::Index>(surface.anchors.size()));
   for (std::size_t p = 0; p < surface.anchors.size(); ++p) {
     const Anchor& a = surface.anchors[p];
-    const auto& t = surface.triangles[a.triangle];
-    points.col(static_cast<Eigen::Index>(p)) = (1 - a.b1 - a.b2) * surface.vertices_m.col(t[0]) +
-                                               a.b1 * surface.vertices_m.col(t[1]) +
-                                               a.b2 * surface.vertices_m.col(t[2]);
+    points.col(static_cast<Eigen::Index>(p)) =
+        on_triangle(surface.vertices_m, surface.triangles[a.triangle], a.b1, a.b2);
   }
   return points;
 }

@@ -25,6 +25,14 @@ struct Anchor {
   double b1 = 0, b2 = 0;
 };
 
+// Its place, of vertices in columns: three rows for one frame, or three for each of several.
+template <class Vertices>
+Eigen::Matrix<double, Vertices::RowsAtCompileTime, 1> on_triangle(const Vertices& vertices_m,
+                                                                  const std::array<std::uint32_t, 3>& corners,
+                                                                  double b1, double b2) {
+  return (1 - b1 - b2) * vertices_m.col(corners[0]) + b1 * vertices_m.col(corners[1]) + b2 * vertices_m.col(corners[2]);
+}
+
 // A rigid part of the rig that holds and moves a surface: it hides what is behind it, and nothing is followed on it.
 struct RigBox {
   Eigen::Vector3d half_m = Eigen::Vector3d::Zero();

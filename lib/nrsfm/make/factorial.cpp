@@ -8,27 +8,18 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "nrsfm/make/flow.h"
+#include "nrsfm/make/selection.h"
 
 namespace gonio::nrsfm {
 namespace {
 
-// Sequence of the points in `kept` alone.
-void keep_points(Sequence& sequence, const std::vector<Eigen::Index>& kept) {
-  sequence.tracks = Tracks(sequence.tracks(Eigen::all, kept));
-  sequence.truth = Shapes((*sequence.truth)(Eigen::all, kept));
-  sequence.visible = Visible(sequence.visible(Eigen::all, kept));
-}
-
 // Columns that enough frames see.
-std::vector<Eigen::Index> often_seen(const Visible& visible, double least_seen, const std::string& place) {
-  const double least = std::max(2.0, least_seen * static_cast<double>(visible.rows()));
-  std::vector<Eigen::Index> kept;
-  for (Eigen::Index p = 0; p < visible.cols(); ++p)
-    if (static_cast<double>(visible.col(p).count()) >= least) kept.push_back(p);
+std::vector<Eigen::Index> tracked_columns(const Visible& visible, double least_seen, const std::string& place) {
+  std::vector<Eigen::Index> kept = often_seen(visible, least_seen);
   if (kept.size() < 4)
     throw NoTracks(Exit::data, place,
                    "has " + std::to_string(kept.size()) + " points that are seen in " +
-                       shortest_text(std::ceil(least)) + " of " + std::to_string(visible.rows()) + " frames",
+                       least_frames(visible, least_seen) + " of " + std::to_string(visible.rows()) + " frames",
                    "4 is the least; take more frames, or another path");
   return kept;
 }
@@ -100,7 +91,7 @@ Take take_of(const Motion& motion, const std::string& path, const std::string& c
   if (camera == "perspective") take.projection = Projection::perspective;
   take.cameras = camera_path(path, motion.frames(), take.place);
   const Visible visible = visible_points(motion, take.cameras, take.projection);
-  take.points = often_seen(visible, options.least_seen, motion.kind + "-" + path + "-" + camera);
+  take.points = tracked_columns(visible, options.least_seen, motion.kind + "-" + path + "-" + camera);
   take.wanted = take.points.size();
   if (motion.wanted > 0) take.wanted = std::min(take.wanted, static_cast<std::size_t>(motion.wanted));
   take.visible = visible(Eigen::all, take.points);
@@ -126,7 +117,7 @@ Sequence film(const Motion& motion, const Take& take, const Cell& cell, std::uin
   if (by_flow) {
     s.tracks = tracked(motion, take, s, options.flow_width_px, seed);
     s.visible = !s.tracks(Eigen::seq(0, Eigen::last, 2), Eigen::all).array().isNaN();
-    std::vector<Eigen::Index> kept = often_seen(s.visible, options.least_seen, s.name);
+    std::vector<Eigen::Index> kept = tracked_columns(s.visible, options.least_seen, s.name);
     kept.resize(std::min(kept.size(), take.wanted));
     keep_points(s, kept);
   } else if (cell.missing == "with") {

@@ -12,6 +12,7 @@
 #include "camera/camera_model.h"
 #include "camera/intrinsics.h"
 #include "camera/mosaic.h"
+#include "linear/geom_matrices.h"
 #include "manifest/document.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
@@ -19,6 +20,7 @@
 #include "manifest/sections/object.h"
 #include "nrsfm/make/camera_paths.h"
 #include "nrsfm/make/frame_caster.h"
+#include "nrsfm/make/selection.h"
 #include "nrsfm/make/tracker.h"
 #include "photograph/linear_picture.h"
 #include "scene/deformed.h"
@@ -29,10 +31,6 @@ namespace {
 
 constexpr double least_corner = 0.05;  // of the best one's smaller eigenvalue
 constexpr double not_seen = std::numeric_limits<double>::quiet_NaN();
-
-Eigen::Vector3d vector_of(Vec3 v) {
-  return {v.x, v.y, v.z};
-}
 
 // Corners at least a patch away from `taken` and from each other, the best first.
 std::vector<Eigen::Vector2d> corners(const GreyPicture& picture, const Eigen::Matrix2Xd& taken, Eigen::Index most) {
@@ -85,7 +83,7 @@ Stage stage_of(const manifest::Document& truth, const std::string& id, const man
     for (std::size_t v = 0; v < mesh.positions_m.size(); ++v) {
       const Vec3 place =
           object.world_from_object ? *object.world_from_object * mesh.positions_m[v] : Vec3(mesh.positions_m[v]);
-      stage.mesh.vertices_m.col(first + static_cast<Eigen::Index>(v)) = vector_of(place);
+      stage.mesh.vertices_m.col(first + static_cast<Eigen::Index>(v)) = linear::as_eigen(place);
     }
     const auto offset = static_cast<std::uint32_t>(first);
     for (const auto& [a, b, c] : mesh.triangles) stage.mesh.triangles.push_back({a + offset, b + offset, c + offset});
@@ -99,14 +97,6 @@ Stage stage_of(const manifest::Document& truth, const std::string& id, const man
   for (const manifest::Object& other : truth.objects)
     if (other.id != id && !truth.meshes.at(other.mesh).file.empty()) add(other);
   return stage;
-}
-
-Sequence columns(const Sequence& all, const std::vector<Eigen::Index>& kept) {
-  Sequence some = all;
-  some.tracks = Tracks(all.tracks(Eigen::all, kept));
-  some.visible = Visible(all.visible(Eigen::all, kept));
-  some.sigma = Eigen::MatrixXd(all.sigma(Eigen::all, kept));
-  return some;
 }
 
 }  // namespace
@@ -190,10 +180,8 @@ const manifest::ImageEntry& Photographs::image(std::size_t k) const {
 CameraFromObject Photographs::camera_from_world(std::size_t k) const {
   const auto& world_from_camera = *image(k).world_from_camera;
   CameraFromObject camera;
-  const Mat3 turn = matrix_of(world_from_camera.rotation);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) camera.rotation(i, j) = turn(j, i);
-  camera.translation = -camera.rotation * vector_of(world_from_camera.translation_m);
+  camera.rotation = linear::as_eigen(matrix_of(world_from_camera.rotation)).transpose();
+  camera.translation = -camera.rotation * linear::as_eigen(world_from_camera.translation_m);
   return camera;
 }
 
@@ -251,7 +239,8 @@ KnownTracks with_truth(const Photographs& photographs, const FollowedPoints& fol
     if (anchors[static_cast<std::size_t>(p)]) kept.push_back(p);
   KnownTracks known;
   known.elsewhere = tracks.points() - static_cast<Eigen::Index>(kept.size());
-  known.tracks = columns(tracks, kept);
+  known.tracks = std::move(tracks);
+  keep_points(known.tracks, kept);
   Shapes points(3 * frames, known.tracks.points());
   known.ideal = known.tracks;
   known.ideal.sigma.resize(0, 0);
@@ -261,14 +250,12 @@ KnownTracks with_truth(const Photographs& photographs, const FollowedPoints& fol
     for (std::size_t p = 0; p < kept.size(); ++p) {
       const Anchor& a = *anchors[static_cast<std::size_t>(kept[p])];
       const auto& t = mesh.triangles[a.triangle];
-      points.block<3, 1>(3 * f, static_cast<Eigen::Index>(p)) = (1 - a.b1 - a.b2) * mesh.vertices_m.col(t[0]) +
-                                                                a.b1 * mesh.vertices_m.col(t[1]) +
-                                                                a.b2 * mesh.vertices_m.col(t[2]);
+      points.block<3, 1>(3 * f, static_cast<Eigen::Index>(p)) = on_triangle(mesh.vertices_m, t, a.b1, a.b2);
     }
     known.ideal.visible.row(f) =
-        visible_in(mesh, shape_of(points, f), tracks.cameras[at], Projection::perspective, 1e-5);
+        visible_in(mesh, shape_of(points, f), known.tracks.cameras[at], Projection::perspective, 1e-5);
   });
-  known.ideal.tracks = project(points, tracks.cameras, Projection::perspective, *tracks.pinhole);
+  known.ideal.tracks = project(points, known.tracks.cameras, Projection::perspective, *known.tracks.pinhole);
   for (Eigen::Index f = 0; f < frames; ++f)
     for (Eigen::Index p = 0; p < known.ideal.points(); ++p)
       if (!known.ideal.visible(f, p)) known.ideal.tracks.block<2, 1>(2 * f, p).setConstant(not_seen);

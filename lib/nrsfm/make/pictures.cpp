@@ -101,8 +101,7 @@ GreyPicture picture_of(const FrameMesh& mesh, const Eigen::Matrix3Xd& material_m
     const auto met = caster.closest(origin, direction);
     if (!met) return Seen{};
     const auto& t = mesh.triangles[met->triangle];
-    const Eigen::Vector3d place = (1 - met->b1 - met->b2) * material_m.col(t[0]) + met->b1 * material_m.col(t[1]) +
-                                  met->b2 * material_m.col(t[2]);
+    const Eigen::Vector3d place = on_triangle(material_m, t, met->b1, met->b2);
     return Seen{albedo(paint, place) * (0.35 + 0.65 * std::max(0.0, met->normal.dot(lamp))),
                 static_cast<float>(met->distance_m)};
   };

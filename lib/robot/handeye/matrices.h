@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "geom/rigid.h"
+#include "linear/geom_matrices.h"
 #include "linear/svd.h"
 #include "linear/symmetric_eigen.h"
 
@@ -13,25 +14,18 @@ namespace gonio::robot::handeye {
 using Matrix3 = Eigen::Matrix3d;
 using Vector3 = Eigen::Vector3d;
 
+using linear::cross_matrix;
 inline Vector3 eigen_of(Vec3 v) {
-  return {v.x, v.y, v.z};
+  return linear::as_eigen(v);
 }
 inline Vec3 vec_of(const Vector3& v) {
   return {v.x(), v.y(), v.z()};
 }
 inline Matrix3 eigen_of(const Quaternion& q) {
-  const Mat3 m = matrix_of(q);
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.m.data());
+  return linear::as_eigen(matrix_of(q));
 }
 inline Quaternion quaternion_from(const Matrix3& rotation) {
-  Mat3 m;
-  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.m.data()) = rotation;
-  return quaternion_of(m);
-}
-inline Matrix3 cross_matrix(const Vector3& v) {
-  Matrix3 m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
+  return quaternion_of(linear::mat3_of(rotation));
 }
 // The rotation that maximises trace(R' m): Arun, Huang & Blostein, PAMI 9(5), 1987, with Umeyama's sign (PAMI 13(4),
 // 1991).

@@ -15,6 +15,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/lower_case.h"
 #include "base/text.h"
 #include "io/camera_raw.h"
 #include "io/raster.h"
@@ -33,8 +34,7 @@ struct FolderSettings {
 };
 
 bool may_be_picture(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  const std::string extension = lower_case(path.extension().string());
   return path.filename().string()[0] != '.' &&
          (extension == ".png" || extension == ".tif" || extension == ".tiff" || io::is_camera_raw(path));
 }
@@ -220,8 +220,8 @@ const Driver& folder() {
         "channel, or raw file of a camera, there (pixel_format=BayerRG12 says what it holds, settle=200ms how long its "
         "size must stand, timeout=10s beyond the exposure, iso=100 whose gain is 0 dB); a raw file says how it was "
         "exposed, of the others nothing is read back, so nothing checks them; or a screen that another program works: "
-        "it "
-        "shows what lies in DIR/show, black where that is empty, and writes the picture's SHA-256 to DIR/shown.";
+        "it shows what "
+        "lies in DIR/show, black where that is empty, and writes the picture's SHA-256 to DIR/shown.";
     driver.camera = folder_camera;
     driver.screen = folder_screen;
     driver.camera_keys = {"pixel_format"};

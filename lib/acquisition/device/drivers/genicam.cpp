@@ -257,15 +257,15 @@ class GenicamCamera : public CameraDevice, AravisCamera {
     const std::uint64_t counted = arv_buffer_get_frame_id(buffer);
     frame.frame_id = count_.number_of(counted);
     const auto status = arv_buffer_get_status(buffer);
-    if (status == ARV_BUFFER_STATUS_TIMEOUT || status == ARV_BUFFER_STATUS_MISSING_PACKETS ||
-        status == ARV_BUFFER_STATUS_WRONG_PACKET_ID) {
-      // No pixels: what a lost packet would have brought is whatever the frame before left there.
+    if (status == ARV_BUFFER_STATUS_SIZE_MISMATCH)
+      throw failure("its frames have another size than was agreed", "did another program change its settings?");
+    if (status != ARV_BUFFER_STATUS_SUCCESS) {
+      // No pixels: what a lost packet would have brought is whatever the frame before left there. On a busy machine a
+      // buffer may even come back empty ("cleared"): that, too, is a frame to take again, not a camera to give up.
       const std::uint64_t missing = missing_packets() - missing_before;
       frame.incomplete_packets = static_cast<std::int64_t>(std::max<std::uint64_t>(1, missing));
       return frame;
     }
-    if (status != ARV_BUFFER_STATUS_SUCCESS)
-      throw failure(format("a frame came to nothing (aravis's status %d)", static_cast<int>(status)), {});
     read_pixels(buffer, frame);
     if (const auto ns = arv_buffer_get_timestamp(buffer); ns != 0) frame.camera_time_s = static_cast<double>(ns) * 1e-9;
     frame.exposure_s = ask(arv_camera_get_exposure_time) / 1e6;

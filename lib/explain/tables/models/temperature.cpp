@@ -84,8 +84,7 @@ class Temperature final : public BoundModel {
       const double warmer = *std::ranges::max_element(body) - body[order_.front()];
       return format(
           "Its time constant is %.3g +- %.2g min, and it was %.3g K warmer at most than at the beginning: links "
-          "between "
-          "joints that warm alike grow by %.2g to %.2g mm per metre (10 to 25 ppm/K, robot.thermal).",
+          "between joints that warm alike grow by %.2g to %.2g mm per metre (10 to 25 ppm/K, robot.thermal).",
           1 / per_s / 60, sigma_per_s / (per_s * per_s) / 60, warmer, 1e-2 * warmer, 2.5e-2 * warmer);
     }
     return {};
