@@ -62,8 +62,6 @@ NormalEquations normal_equations(const std::vector<View>& views, const Calibrati
 Eigen::MatrixXd schur_complement(const NormalEquations& n);
 
 Intrinsics start_lens(const std::vector<View>& views, const std::vector<BoardSetup>& boards, const CameraSetup& camera);
-// The better one of the two poses that a plane allows.
-BoardPose start_pose(const View& view, const Board& board, const Intrinsics& lens);
 // Every camera's lens and views by themselves, then the rig. `state` has placement_of, view_weights and precision.
 void start(const std::vector<View>& views, const CalibrationSetup& setup, Adjustment& state);
 

@@ -125,4 +125,7 @@ struct Calibration {
 
 Calibration calibrate(const std::vector<View>& views, const CalibrationSetup& setup);
 
+// The better one of the two poses that a plane allows, under a lens that is known (calibration_start.cpp).
+BoardPose start_pose(const View& view, const Board& board, const Intrinsics& lens);
+
 }  // namespace gonio::camera

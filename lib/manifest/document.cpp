@@ -35,6 +35,7 @@
 #include "manifest/sections/mounting.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/pattern.h"
+#include "manifest/sections/placement.h"
 #include "manifest/sections/plan.h"
 #include "manifest/sections/provenance.h"
 #include "manifest/sections/reconstruction.h"
@@ -82,6 +83,7 @@ void for_each_section(D& d, const Visit& visit) {
   visit("ground_noises", d.ground_noises);
   visit("volumes", d.volumes);
   visit("markers", d.markers);
+  visit("placements", d.placements);
   visit("laboratory", d.laboratory);
   visit("plans", d.plans);
   visit("runs", d.runs);

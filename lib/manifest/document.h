@@ -56,6 +56,7 @@ struct Document {
   std::map<std::string, GroundNoiseFit> ground_noises;
   std::map<std::string, Volume> volumes;
   std::vector<Marker> markers;
+  std::vector<Placement> placements;
   AtMostOne<Laboratory> laboratory;
   std::vector<Plan> plans;
   std::vector<Run> runs;

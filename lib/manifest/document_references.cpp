@@ -20,6 +20,7 @@
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/pattern.h"
+#include "manifest/sections/placement.h"
 #include "manifest/sections/plan.h"
 #include "manifest/sections/reconstruction.h"
 #include "manifest/sections/relief.h"
@@ -176,6 +177,20 @@ void check_volumes(const Document& d) {
     must_exist(d.volumes, "volumes", marker.volume, at + "/volume");
     needs_numbers(marker.centre_m.size(), 3, at + "/centre_m", "give a point [x, y, z]");
     needs_numbers(marker.covariance_m2.size(), 9, at + "/covariance_m2", "give 3 x 3 numbers, row by row");
+    if (!marker.pixel.empty() && marker.pixel.size() != marker.seen_in.size())
+      throw Error(Exit::data, at + "/pixel",
+                  "has " + std::to_string(marker.pixel.size()) + " entries, seen_in has " +
+                      std::to_string(marker.seen_in.size()),
+                  "give [x, y] for each image");
+  }
+  for (std::size_t i = 0; i < d.placements.size(); ++i) {
+    const Placement& placement = d.placements[i];
+    const std::string at = place(d, "/placements/" + std::to_string(i));
+    needs_numbers(placement.covariance.size(), 36, at + "/covariance", "give 6 x 6 numbers, row by row");
+    needs_numbers(placement.centroid_m.size(), 3, at + "/centroid_m", "give a point [x, y, z]");
+    for (std::size_t k = 0; k < placement.pairs.size(); ++k)
+      needs_numbers(placement.pairs[k].world_m.size(), 3, at + "/pairs/" + std::to_string(k) + "/world_m",
+                    "give a point [x, y, z]");
   }
 }
 

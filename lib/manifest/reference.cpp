@@ -160,6 +160,11 @@ void add_volumes(List& all) {
       part("volumes: volume_from_index", "Columns are the grid's axes times the spacing.", index_map_fields()));
   all.push_back(part("volumes: steps", "Written by ct-mesh-clean.", volume_step_fields()));
   all.push_back(listed("markers", "Spheres glued to an object, found by ct-mesh-clean.", marker_fields()));
+  all.push_back(listed("placements", "Where pieces that were scanned elsewhere stand, found by reassemble.",
+                       placement_fields()));
+  all.push_back(part("placements: pairs", "A marker of the piece, and what the photographs show of it.",
+                     marker_pair_fields()));
+  all.push_back(part("placements: contacts", "What the piece touches.", placement_contact_fields()));
 }
 
 void add_acquisition(List& all) {

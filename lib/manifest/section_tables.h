@@ -14,6 +14,8 @@ using gonio::DhRow;
 struct Provenance;  // sections/provenance.h; nobody passes them on
 struct ProvenanceRun;
 struct ProvenanceStep;
+struct MarkerPair;  // sections/placement.h
+struct PlacementContact;
 struct MeasuredView;  // sections/plan.h
 struct CheckView;
 struct Repeatability;
@@ -61,6 +63,9 @@ GONIO_TABLE(IndexMap, index_map_fields);
 GONIO_TABLE(VolumeStep, volume_step_fields);
 GONIO_TABLE(Volume, volume_fields);
 GONIO_TABLE(Marker, marker_fields);
+GONIO_TABLE(MarkerPair, marker_pair_fields);
+GONIO_TABLE(PlacementContact, placement_contact_fields);
+GONIO_TABLE(Placement, placement_fields);
 GONIO_TABLE(SolidBody, solid_body_fields);
 GONIO_TABLE(JointLimits, joint_limits_fields);
 GONIO_TABLE(CableSlack, cable_slack_fields);

@@ -211,7 +211,8 @@ const std::vector<Field<Table>>& table_fields() {
       field("file", &Table::file, "", "file id of a CSV file with a header line"),
       field("rows", &Table::rows, "", "the rows themselves, [[...], ...], in the order of `columns`"),
       field("model", &Table::model, "",
-            "forward model that predicts it: camera, surface, sensor, light, volume, tracks or expression"),
+            "forward model that predicts it: camera, surface, sensor, light, volume, tracks, markers, temperature or "
+            "expression"),
       custom<Table>(
           "columns", "", "name to unit, in the file's order", Codec<std::map<std::string, std::string>>::schema(),
           [](Table& t, const Value& v, const std::string& place) {

@@ -55,7 +55,8 @@ const std::vector<Field<Marker>>& marker_fields() {
       field("covariance_m2", &Marker::covariance_m2, "m^2", "of the centre, 3 x 3, row by row"),
       sigma_field(&Marker::sigma),
       field("cover", &Marker::cover, "", "share of the sphere's directions that show its surface").range(0, 1),
-      field("seen_in", &Marker::seen_in, "", "images that show it")};
+      field("seen_in", &Marker::seen_in, "", "images that show it"),
+      field("pixel", &Marker::pixel, "px", "where they show its centre: [x, y] for each of seen_in")};
   return table;
 }
 

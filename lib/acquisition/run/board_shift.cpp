@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/quantity.h"
-#include "camera/bundle_adjustment.h"
+#include "camera/calibration.h"
 #include "camera/quality/alignment.h"
 #include "linear/geom_matrices.h"
 #include "linear/solve.h"

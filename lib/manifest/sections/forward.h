@@ -45,6 +45,7 @@ struct Light;
 struct LightPosition;
 struct Link;
 struct Marker;
+struct Placement;
 struct MechanismUse;
 struct Mesh;
 struct Mounting;

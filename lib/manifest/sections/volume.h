@@ -44,10 +44,11 @@ struct Marker {  // "markers"
   std::string volume{};  // name in volumes where it was found
   std::vector<double> centre_m{};
   std::optional<double> radius_m{};
-  std::vector<double> covariance_m2{};  // of the centre, 3 x 3, row by row
-  Sigmas sigma{};                       // of the radius
-  std::optional<double> cover{};        // share of the sphere's directions that show its surface
-  std::vector<std::string> seen_in{};   // images
+  std::vector<double> covariance_m2{};       // of the centre, 3 x 3, row by row
+  Sigmas sigma{};                            // of the radius
+  std::optional<double> cover{};             // share of the sphere's directions that show its surface
+  std::vector<std::string> seen_in{};        // images
+  std::vector<std::vector<double>> pixel{};  // where its centre is seen, [x, y] for each of them
 };
 
 }  // namespace gonio::manifest
