@@ -27,6 +27,9 @@ Soundness soundness(const io::TriangleMesh& mesh);
 // are. Stops after `at_most` pairs.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(const io::TriangleMesh& mesh,
                                                                         std::size_t at_most = 1000);
+// Pairs (triangle of a, triangle of b) that meet, if only in a point; likewise exact.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections(const io::TriangleMesh& a, const io::TriangleMesh& b,
+                                                                   std::size_t at_most = 1000);
 
 // Distances from points spread evenly over `from` (area-weighted, seeded, plus all vertices) to the surface `to`.
 struct Distance {

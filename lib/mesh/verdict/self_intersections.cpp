@@ -67,26 +67,28 @@ bool meet(const ThreePlaces& a, const ThreePlaces& b) {
   return CGAL::do_intersect(exact(a), exact(b));
 }
 
-}  // namespace
+using TrianglePairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(const io::TriangleMesh& mesh,
-                                                                        std::size_t at_most) {
+ThreePlaces places_of(const io::TriangleMesh& mesh, std::uint32_t t) {
+  const auto& [a, b, c] = mesh.triangles[t];
+  return {mesh.positions_m[a], mesh.positions_m[b], mesh.positions_m[c]};
+}
+
+// Pairs, the smaller number first, whose boxes touch, that both have an area, and of which `wanted` says yes.
+template <class Wanted>
+TrianglePairs touching_pairs(const io::TriangleMesh& mesh, std::size_t at_most, const Wanted& wanted) {
   const TriangleTree tree(mesh.positions_m, mesh.triangles);
-  const auto places = [&](std::uint32_t t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    return ThreePlaces{mesh.positions_m[a], mesh.positions_m[b], mesh.positions_m[c]};
-  };
   std::vector<std::uint8_t> flat(mesh.triangles.size(), 0);
   parallel_for(
       0, flat.size(),
       [&](std::size_t t) {
-        const ThreePlaces here = places(static_cast<std::uint32_t>(t));
+        const ThreePlaces here = places_of(mesh, static_cast<std::uint32_t>(t));
         flat[t] = is_finite(here[0]) && is_finite(here[1]) && is_finite(here[2]) && without_area(here);
       },
       4096);
   // Stretches of leaves one after the other: who comes first does not depend on threads, and a mesh full of
   // intersections is not searched to its end.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> all;
+  TrianglePairs all;
   constexpr std::size_t stretch = 1 << 16;
   for (std::size_t first = 0; first < tree.leaves() && all.size() < at_most; first += stretch) {
     const std::size_t last = std::min(first + stretch, tree.leaves());
@@ -95,7 +97,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(const io
         first, last,
         [&](std::size_t leaf) {
           tree.overlapping_pairs(leaf, [&](std::uint32_t one, std::uint32_t other) {
-            if (flat[one] != 0 || flat[other] != 0 || !meet(places(one), places(other))) return;
+            if (flat[one] != 0 || flat[other] != 0 || !wanted(std::min(one, other), std::max(one, other))) return;
             const std::lock_guard hold(lock);
             all.push_back(std::minmax(one, other));
           });
@@ -105,6 +107,30 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(const io
   }
   if (all.size() > at_most) all.resize(at_most);
   return all;
+}
+
+}  // namespace
+
+TrianglePairs self_intersections(const io::TriangleMesh& mesh, std::size_t at_most) {
+  return touching_pairs(mesh, at_most, [&](std::uint32_t one, std::uint32_t other) {
+    return meet(places_of(mesh, one), places_of(mesh, other));
+  });
+}
+
+TrianglePairs intersections(const io::TriangleMesh& a, const io::TriangleMesh& b, std::size_t at_most) {
+  io::TriangleMesh both;
+  both.positions_m = a.positions_m;
+  both.triangles = a.triangles;
+  both.positions_m.insert(both.positions_m.end(), b.positions_m.begin(), b.positions_m.end());
+  const auto corners = static_cast<std::uint32_t>(a.positions_m.size());
+  const auto faces = static_cast<std::uint32_t>(a.triangles.size());
+  for (const auto& [i, j, k] : b.triangles) both.triangles.push_back({i + corners, j + corners, k + corners});
+  TrianglePairs met = touching_pairs(both, at_most, [&](std::uint32_t one, std::uint32_t other) {
+    return one < faces && other >= faces &&
+           CGAL::do_intersect(exact(places_of(both, one)), exact(places_of(both, other)));
+  });
+  for (auto& pair : met) pair.second -= faces;
+  return met;
 }
 
 }  // namespace gonio::mesh
