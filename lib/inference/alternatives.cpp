@@ -1,6 +1,7 @@
 // See race.h: which other mechanisms explain the recordings as well as the named ones do.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "inference/judgement.h"
@@ -17,6 +18,7 @@ constexpr double near_reach = 0.7;   // of the furthest-reaching pair, linearly,
 constexpr std::size_t most_pairs = 3;
 constexpr double distinct_blocks = 3;
 constexpr double distinct_share = 0.01;  // of the winner's gain: a difference that could be anyone's last digit
+constexpr double distinct_squares = 1;   // over all rows, in noise widths squared: see indistinct()
 
 // Those that look most like `named` once the free parameters are projected out; and those that did as well alone.
 std::vector<std::size_t> stand_ins(const Race& race, const Selection& s, std::size_t named) {
@@ -59,6 +61,15 @@ bool was_put_aside(const Selection& s, const std::vector<std::size_t>& candidate
                      [&](const PutAside& p) { return same_set(p.candidates, candidates); });
 }
 
+// Twice the logarithm of a ratio of likelihoods below one: no test tells these apart (Neyman & Pearson 1933), however
+// evenly the blocks share the difference. Two forms of one effect differ so, by what they make of its second order.
+bool indistinct(const Model& best, const Model& other) {
+  double rows = 0;
+  for (const double r : best.held_out.rows) rows += r;
+  const Gain apart = gain(other.held_out, best.held_out);
+  return apart.sigma < std::numeric_limits<double>::max() && rows * apart.mean < distinct_squares;
+}
+
 struct Alternative {
   std::size_t candidate = 0;
   double gain = 0, apart = 0;  // held out; block z by which the winner is better
@@ -87,7 +98,7 @@ std::vector<Alternative> alternatives_of(const Race& race, const Effort& effort,
     const Hypothesis h = race.judged(rest, exchanged, {other}, {}, 1);
     if (!h.refused.empty()) continue;
     const bool form = race.system().problem().candidates()[other].finer && nearly_all(rest, s.model, exchanged);
-    if (form || as_good(rest, s.model, exchanged, 2, 0.5))
+    if (form || as_good(rest, s.model, exchanged, 2, 0.5) || indistinct(s.model, exchanged))
       alternatives.push_back({other, h.gain, block_z(exchanged.held_out, s.model.held_out), form});
   }
   std::stable_sort(alternatives.begin(), alternatives.end(),

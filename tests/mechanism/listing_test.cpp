@@ -33,11 +33,12 @@ const std::set<std::string> owed = words(
 const std::set<std::string> of_other_simulators = {"print.growth", "print.light-bleed", "print.overcure",
                                                    "geometry.beam-hardening"};
 // Beyond the list: a rational lens is a family of the radial one; residue on a micro-structure, and its walls; a scale
-// for every frame of a film; what a tomograph does to a volume; what heats an arm's joints.
+// for every frame of a film; what a tomograph does to a volume; what heats an arm's joints; what glue
+// and glass do to markers.
 const std::set<std::string> besides = words(
     "lens.rational surface.residue surface.walls tracks.scale ct.threshold ct.scale ct.blur ct.cupping "
     "ct.beam-hardening ct.scatter ct.ring ct.streak ct.axis-tilt robot.warm-up robot.joule-heating "
-    "robot.friction-heating");
+    "robot.friction-heating marker.offset marker.refracted");
 
 // Owed and not there yet: printed, until they are declared and leave this list.
 const std::set<std::string> awaited = {};

@@ -88,7 +88,17 @@ const std::vector<WorldEntry> entries{
      {10, 3, 4, 6, 3, 3},
      {3, 1, 1, 2, 1, 1}},
     {"volume", volume_world, {}, {16, 8, 8, 8, 0, 5}, {8, 4, 4, 5, 0, 4}},
-    {"tracks", tracks_world, {}, {14, 6, 8, 5, 0, 5}, {7, 3, 5, 3, 0, 4}}};
+    {"tracks", tracks_world, {}, {14, 6, 8, 5, 0, 5}, {7, 3, 5, 3, 0, 4}},
+    {"markers",
+     markers_world,
+     {{Kind::alike, {"glue"}, "ball"},
+      {Kind::alike, {"wrong voxels"}, "ball"},
+      {Kind::invisible, {"moved lid"}, "free lid"},
+      {Kind::null, {}, "free lid"},
+      {Kind::null, {}, "resting lid"},
+      {Kind::single, {"sunk lid"}, "resting lid"}},
+     {14, 8, 8, 6, 4, 4},
+     {3, 2, 2, 2, 1, 1}}};
 
 // Sizes in detection limits, in turn: 0 draws what occurs in practice.
 constexpr double multiples[] = {0, 4, 0, 8, 0, 0};

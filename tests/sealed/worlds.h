@@ -41,5 +41,6 @@ std::unique_ptr<World> photometric_world();
 std::unique_ptr<World> gloss_world();
 std::unique_ptr<World> heights_world();
 std::unique_ptr<World> tomograph_world();
+std::unique_ptr<World> markers_world();
 
 }  // namespace gonio::sealed

@@ -10,7 +10,7 @@ namespace gonio::explain::domains {
 const Domain& tables() {
   static const Domain domain{
       .name = "tables",
-      .sentence = "tables whose model predicts them (sensor, light, volume, surface, tracks, expression)",
+      .sentence = "tables whose model predicts them (sensor, light, volume, surface, tracks, markers, temperature, expression)",
       .order = 4,
       .applies = explain::tables::has_tables,
       .problems = explain::tables::table_problems,

@@ -80,6 +80,8 @@ class BoundModel {
   // own.
   virtual void apply(std::span<const double> values, std::span<const double> sigma,
                      manifest::Document& document) const = 0;
+  // Can the manifest say it? Else it stands in the explanation alone: an object that was moved between two images.
+  virtual bool is_of_manifest(const Candidate& /*candidate*/) const { return true; }
   virtual std::vector<Proposal> proposals() const { return {}; }
   virtual ProposedRows propose(std::span<const double>, std::size_t) const { return {}; }
 

@@ -1,6 +1,7 @@
 // See tables_problem.h: what goes back into the manifest, and what a person looks at.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/text.h"
 #include "explain/tables/tables_problem.h"
@@ -36,12 +37,32 @@ std::string TablesProblem::remarks(const Explanation& e) const {
   return (own.empty() ? "" : own + " ") + "Noise " + noise_ + "." + (grouped_.empty() ? "" : " " + grouped_);
 }
 
+namespace {
+
+// One mechanism on two targets, each of which was a candidate of its own.
+void join(manifest::MechanismUse& use, const manifest::MechanismUse& other, const mechanism::Mechanism& m) {
+  for (const mechanism::Parameter& p : m.parameters) {
+    if (!use.parameters.contains(p.name) && !other.parameters.contains(p.name)) continue;
+    std::vector<double>& value = use.parameters[p.name].value;
+    std::vector<double>& sigma = use.sigma[p.name];
+    value.resize(use.on.size(), p.neutral), sigma.resize(use.on.size(), 0);
+    const auto more = other.parameters.find(p.name);
+    value.push_back(more == other.parameters.end() ? p.neutral : more->second.scalar());
+    sigma.push_back(more == other.parameters.end() ? 0 : other.sigma.at(p.name).front());
+  }
+  use.on.insert(use.on.end(), other.on.begin(), other.on.end());
+}
+
+}  // namespace
+
 void TablesProblem::apply(const Explanation& e, manifest::Document& document) const {
   const std::size_t own = bound_->parameters().size();
   bound_->apply(std::span(e.values).first(own), std::span(e.sigma).first(own), document);
   const std::vector<Candidate>& of_terms = terms_->candidates();
+  std::set<std::string> entered;
   for (const std::size_t c : e.named) {
     const mechanism::Mechanism& m = *candidates_[c].mechanism;
+    if (!bound_->is_of_manifest(candidates_[c])) continue;
     manifest::MechanismUse use;
     use.on = candidates_[c].on;
     // What stands fixed beside the fitted numbers, a reference among them, unless it is neutral.
@@ -60,7 +81,10 @@ void TablesProblem::apply(const Explanation& e, manifest::Document& document) co
       use.parameters[name].value.push_back(e.values[p]);
       use.sigma[name].push_back(e.sigma[p]);
     }
-    document.mechanisms[m.id] = std::move(use);
+    if (!entered.insert(m.id).second && use.on.size() == 1)
+      join(document.mechanisms[m.id], use, m);
+    else
+      document.mechanisms[m.id] = std::move(use);
   }
 }
 

@@ -75,7 +75,10 @@ void TablesProblem::assemble(const manifest::Document&) {
 // names. Candidates with the numbers of several targets hold them target by target.
 std::optional<std::size_t> TablesProblem::number_of(const Candidate& candidate, std::size_t k,
                                                     const manifest::MechanismUse& use) const {
-  if (!of_single_targets(candidate)) return 0;
+  if (!of_single_targets(candidate)) {
+    if (candidate.on.size() != 1 || use.on.size() < 2) return 0;
+    return static_cast<std::size_t>(std::ranges::find(use.on, candidate.on[0]) - use.on.begin());
+  }
   const std::size_t own = k / candidate.mechanism->parameters.size();
   if (use.on.empty()) return own;
   const std::string& target = candidate.on[own];
@@ -93,7 +96,7 @@ bool TablesProblem::of_single_targets(const Candidate& candidate) {
 void TablesProblem::switch_on(const manifest::Document& document) {
   std::erase_if(candidates_, [&](const Candidate& candidate) {
     const auto found = document.mechanisms.find(candidate.id());
-    if (found == document.mechanisms.end()) return false;
+    if (found == document.mechanisms.end() || !bound_->is_of_manifest(candidate)) return false;
     const manifest::MechanismUse& use = found->second;
     const auto elsewhere = [&](const std::string& name) {
       return std::find(use.on.begin(), use.on.end(), name) == use.on.end();

@@ -12,7 +12,7 @@ const Mechanism& geometry_contact() {
       .source = "indentation of a soft support",
       .stage = "geometry",
       .target = Target::object,
-      .domains = {"images"},
+      .domains = {"images", "tables"},
       .parameters = {{.name = "depth_m",
                       .unit = "m",
                       .neutral = 0,
@@ -20,7 +20,7 @@ const Mechanism& geometry_contact() {
                       .upper = 0.005,
                       .start = 0.0005,
                       .meaning = "by which the object lies deeper"}},
-      .conditions = {"image.edge-distance", "light.shadow-edge-distance"},
+      .conditions = {"image.edge-distance", "light.shadow-edge-distance", "marker.height"},
       .mistaken_for = {{.with = "geometry.pose", .told_apart = "lift the object and lay it on a hard support"}},
   };
   return declaration;

@@ -12,7 +12,7 @@ const Mechanism& geometry_pose() {
       .source = "Rodrigues 1840",
       .stage = "geometry",
       .target = Target::object,
-      .domains = {"images"},
+      .domains = {"images", "tables"},
       .parameters = {{.name = "shift_x_m",
                       .unit = "m",
                       .neutral = 0,
@@ -55,7 +55,7 @@ const Mechanism& geometry_pose() {
                       .upper = 0.1,
                       .start = 0.002,
                       .meaning = "rotation vector about the middle of the object's box, its world z"}},
-      .conditions = {"image.edge-distance", "surface.exitance-angle", "light.shadow-edge-distance"},
+      .conditions = {"image.edge-distance", "surface.exitance-angle", "light.shadow-edge-distance", "marker.height"},
       .mistaken_for = {{.with = "geometry.scale", .told_apart = "a second view"},
                        {.with = "light.direction", .told_apart = "a second object that did not move"}},
   };

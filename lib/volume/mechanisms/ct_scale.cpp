@@ -14,7 +14,7 @@ const Mechanism& ct_scale() {
       .source = "Kruth et al., CIRP Annals 60 (2011) 821-842, section 4.1: the scale error of a source-object distance",
       .stage = "tomograph",
       .target = Target::scene,
-      .domains = {"volumes"},
+      .domains = {"volumes", "tables"},
       .parameters = {{.name = "scale",
                       .unit = "1",
                       .lower = -0.05,
@@ -27,9 +27,10 @@ const Mechanism& ct_scale() {
                       .upper = 0.05,
                       .start = 0.002,
                       .meaning = "the same along the rotation axis alone, beside scale"}},
-      .conditions = {"volume.size", "volume.height"},
+      .conditions = {"volume.size", "volume.height", "marker.distance-from-origin"},
       .mistaken_for = {{.with = "ct.threshold",
                         .told_apart = "scan an object with outer and inner walls, or one that is thin and long"},
+                       {.with = "marker.offset", .told_apart = "markers near the middle of the piece and far from it"},
                        {.with = "geometry.scale", .told_apart = "measure the object with a caliper"}},
   };
   return declaration;

@@ -11,6 +11,7 @@
 #include "data.h"
 #include "explain/tables/quick_table.h"
 #include "manifest/sections/table.h"
+#include "marker_world.h"
 #include "table_world.h"
 
 namespace gonio::explain::tables::tests {
@@ -113,6 +114,12 @@ World surface() {
                  R"("model": "surface", "surface": "s", "observed": ["f"])", usual);
 }
 
+World markers() {
+  Pieces pieces;
+  pieces.glass = true;
+  return marker_world(1, pieces);
+}
+
 class Candidates : public testing::TestWithParam<Walk> {};
 
 TEST_P(Candidates, AreSeenInConditionsThatTheProblemHas) {
@@ -133,7 +140,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Walk{"sensor", sensor, {"surface.incidence-angle", "scene.ambient-visibility", "light.visibility"}},
                     Walk{"light", light, no_shadows}, Walk{"parallel", parallel_light, no_shadows},
                     Walk{"volume", volume, {"image.exposure"}}, Walk{"refraction", refraction, {"image.exposure"}},
-                    Walk{"surface", surface, {"surface.spatial-frequency", "surface.lay-azimuth"}}),
+                    Walk{"surface", surface, {"surface.spatial-frequency", "surface.lay-azimuth"}},
+                    // Centres of markers have no edges and throw no shadows; a volume's walls are not there.
+                    Walk{"markers", markers, {"image.edge-distance", "light.shadow-edge-distance", "volume.size"}}),
     [](const auto& i) { return std::string(i.param.model); });
 
 // A column that is named after the observed one is its noise: with it the table states it, and it is no condition.
