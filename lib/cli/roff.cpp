@@ -1,5 +1,6 @@
 #include "cli/roff.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace gonio::cli {
@@ -197,7 +198,9 @@ std::string contents_of(std::string_view text, std::size_t fewest) {
       ++parts;
     }
   });
-  return parts < fewest ? "" : "# CONTENTS" + out + "\n\n";
+  constexpr std::ptrdiff_t long_text = 400;  // lines
+  const bool short_text = std::ranges::count(text, '\n') < long_text;
+  return parts < fewest && short_text ? "" : "# CONTENTS" + out + "\n\n";
 }
 
 }  // namespace gonio::cli

@@ -15,7 +15,7 @@ std::string section_of(std::string_view text, std::string_view name);
 // The names of the "# NAME" headings, in their order.
 std::vector<std::string> headings_of(std::string_view text);
 // A section "# CONTENTS" that names the headings of `text` and the "## parts" under each; empty where there are fewer
-// parts than that.
+// parts than that, and the text is not long either.
 std::string contents_of(std::string_view text, std::size_t fewest = 12);
 
 }  // namespace gonio::cli
