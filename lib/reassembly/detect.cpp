@@ -78,7 +78,7 @@ std::string fine_refusal(const Outline& o, const DetectWish& wish) {
            " and " + shortest_text(high) + ")";
   const double asked = cover_asked(wish.least_cover, o.radius_px);
   if (o.cover < asked) return "shows " + two_digits(o.cover) + " of its outline (limit " + two_digits(asked) + ")";
-  const double rough = std::max(0.18, 0.02 * o.radius_px);
+  const double rough = std::max(0.25, 0.025 * o.radius_px);
   if (o.rms_px > rough)
     return "is no circle: its edge strays by " + two_digits(o.rms_px) + " px (limit " + two_digits(rough) + ")";
   if (o.contrast < wish.least_contrast)

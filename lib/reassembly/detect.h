@@ -25,7 +25,7 @@ struct DetectWish {
   double smallest_px = 4, largest_px = 200;  // radii of outlines
   Contrast contrast = Contrast::either;
   double least_cover = 0.5;   // share of the outline that must show an edge; below a radius of 12 px 1.3 times that
-  double least_contrast = 8;  // times the picture's noise
+  double least_contrast = 6;  // times the picture's noise
   // Where the size of the markers and roughly their distance are known, their outlines are no others.
   std::optional<double> least_half_angle_rad{}, largest_half_angle_rad{};
 };

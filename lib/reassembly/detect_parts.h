@@ -52,7 +52,7 @@ constexpr double large_px = 48;
 // Below this radius half a circle is nothing rare in a texture: more of it must show.
 constexpr double small_px = 12;
 inline double cover_asked(double least_cover, double radius_px) {
-  return radius_px < small_px ? std::min(1.0, 1.3 * least_cover) : least_cover;
+  return radius_px < small_px ? std::min(1.0, 1.15 * least_cover) : least_cover;
 }
 
 struct OutlineCandidate {

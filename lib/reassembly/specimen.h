@@ -10,7 +10,7 @@
 namespace gonio::reassembly {
 
 struct SpecimenWish {
-  int width_px = 800, height_px = 600, spp = 8;
+  int width_px = 800, height_px = 600, spp = 4;
   std::uint64_t seed = 1;
 };
 // Writes below `out`: bowl.json and lid.json (pieces: mesh, surface, markers with covariance), table.ply, the

@@ -136,6 +136,11 @@ void take_pieces(Work& work) {
 
 void see(Work& work) {
   work.seen = reassembly::views_of(work.call.document, work.asked.images, work.asked.detect, largest_radius_m(work));
+  for (std::size_t v = 0; v < work.seen.views.size(); ++v)
+    for (const reassembly::Refused& r : work.seen.refused[v])
+      log(LogLevel::debug, format("%s: what is at %.1f, %.1f, of radius %.1f px, ", work.seen.views[v].image.c_str(),
+                                  r.centre_px.x, r.centre_px.y, r.radius_px) +
+                               r.why);
   std::size_t outlines = 0;
   for (const reassembly::View& view : work.seen.views) outlines += view.outlines.size();
   log(LogLevel::info, format("%zu outlines of spheres in %zu photographs", outlines, work.seen.views.size()));
