@@ -45,6 +45,31 @@ void check_wish(const io::GreyImage& picture, const camera::CameraModel& camera,
                 "less than a quarter does not tell a circle from a bend");
 }
 
+// Where half angles are bounded, so are radii: sizes that no marker can have are not looked for at all. Over the whole
+// picture, since the same cone is larger towards the rim of a pinhole's.
+DetectWish narrowed(DetectWish wish, const camera::CameraModel& camera) {
+  if (!wish.least_half_angle_rad && !wish.largest_half_angle_rad) return wish;
+  constexpr int steps = 4;
+  double least = HUGE_VAL, most = 0;
+  for (int i = 0; i <= steps; ++i)
+    for (int j = 0; j <= steps; ++j) {
+      const Vec2 at{double(i) * (camera.width_px() - 1) / steps, double(j) * (camera.height_px() - 1) / steps};
+      const Vec3 axis = camera.ray(at).direction, across = across_of(axis);
+      for (const Vec3 tangent : {across, cross(axis, across)}) {
+        const auto reach = [&](double half_angle) {
+          const auto rim = camera.project(axis + tangent * std::tan(half_angle));
+          return rim ? norm(*rim - at) : HUGE_VAL;
+        };
+        if (wish.least_half_angle_rad) least = std::min(least, reach(*wish.least_half_angle_rad));
+        if (wish.largest_half_angle_rad) most = std::max(most, reach(*wish.largest_half_angle_rad));
+      }
+    }
+  if (wish.least_half_angle_rad && std::isfinite(least)) wish.smallest_px = std::max(wish.smallest_px, 0.95 * least);
+  if (wish.largest_half_angle_rad && std::isfinite(most)) wish.largest_px = std::min(wish.largest_px, 1.05 * most);
+  wish.largest_px = std::max(wish.largest_px, 1.01 * wish.smallest_px);
+  return wish;
+}
+
 std::string two_digits(double v) {
   return shortest_text(std::round(v * 100) / 100);
 }
@@ -176,9 +201,10 @@ std::vector<Judged> follow(const Pyramid& pyramid, const camera::CameraModel& ca
 
 }  // namespace
 
-Detected detect_spheres(const io::GreyImage& picture, const camera::CameraModel& camera, const DetectWish& wish,
+Detected detect_spheres(const io::GreyImage& picture, const camera::CameraModel& camera, const DetectWish& asked,
                         const std::vector<unsigned char>& mask) {
-  check_wish(picture, camera, wish, mask);
+  check_wish(picture, camera, asked, mask);
+  const DetectWish wish = narrowed(asked, camera);
   const Pyramid pyramid = pyramid_of(picture, mask, wish.largest_px);
   const std::vector<OutlineCandidate> candidates = circle_candidates(pyramid, camera, wish);
   std::vector<Judged> judged = follow(pyramid, camera, wish, candidates);
