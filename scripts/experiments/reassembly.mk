@@ -15,7 +15,7 @@
 # structured-light: other programs that write the same files may take their
 # places. Larger: WIDTH=640 VOXELS=400 SPP=1024 PHOTO_SPP=64.
 WIDTH     = 320
-VOXELS    = 160
+VOXELS    = 144
 PHOTONS   = 100000
 SPP       = 64
 PHOTO_SPP = 24
