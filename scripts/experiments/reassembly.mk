@@ -210,7 +210,8 @@ run/table.txt: $(STEPS:%=run/%.compared)
 
 run/figure16.html: run/table.txt
 > { echo '<!doctype html><title>Step by step</title><table>'; \
->   awk 'NR > 1 {h = $$0; sub(/^([^ ]+ ){6}/, "", h); print "<tr><th>" $$1 \
+>   awk 'NR > 1 {h = ""; for (i = 7; i <= NF; i++) h = h " " $$i; \
+>   print "<tr><th>" $$1 \
 >   "<td><img src=pictures/" $$1 "/front.png><td><img src=errors/" $$1 \
 >   "/front-log10-error.png><td>RMSE " $$3 \
 >   " (beyond noise " $$2 ")<br>SSIM " $$4 "<br>log error " $$5 \
