@@ -22,7 +22,8 @@ const std::vector<Field<MarkerPair>>& marker_pair_fields() {
 const std::vector<Field<PlacementContact>>& placement_contact_fields() {
   static const std::vector<Field<PlacementContact>> table{
       field("object", &PlacementContact::object, "", "the other object").needed(),
-      field("how", &PlacementContact::how, "", "who gave way, and by what rule").one_of({"push", "elastic", "settled"}),
+      field("how", &PlacementContact::how, "", "who gave way, and by what rule; left out: nothing was moved")
+          .one_of({"push", "elastic", "settled"}),
       field("deepest_m", &PlacementContact::deepest_m, "m", "largest displacement").range(0, infinite),
       field("volume_m3", &PlacementContact::volume_m3, "m^3", "swept by the soft surface").range(0, infinite),
       field("pairs", &PlacementContact::pairs, "", "intersecting triangles before and after").range(0, infinite),

@@ -58,8 +58,11 @@ void enter_contact(Work& work, const std::string& upper, const std::string& lowe
                    double moved_m) {
   for (manifest::Placement& entry : work.call.document.placements)
     if (entry.object == upper)
-      entry.contacts.push_back(
-          {.object = lower, .how = "settled", .deepest_m = moved_m, .gap_m = seat.gap_m, .sigma_gap_m = seat.sigma_m});
+      entry.contacts.push_back({.object = lower,
+                                .how = work.asked.settle ? "settled" : "",
+                                .deepest_m = moved_m,
+                                .gap_m = seat.gap_m,
+                                .sigma_gap_m = seat.sigma_m});
 }
 
 void stand(Work& work, Stack& stack, std::size_t upper, std::size_t lower, const reassembly::Seat& seat) {
