@@ -23,6 +23,9 @@ std::string take_in(manifest::Document& into, const manifest::Document& other, c
 // not there, without a covariance and so on; none at all.
 std::vector<Piece> pieces_of(const manifest::Document& document);
 
+// The camera of an image. Error(data) where the manifest has several and the image names none.
+camera::CameraModel camera_of(const manifest::Document& document, std::size_t image);
+
 // Images that have a camera, a pose and a picture: with the outlines that they show. `images`: which (empty: all of
 // them); those without a pose are refused. Reads pictures, masks.
 struct SeenViews {
@@ -39,6 +42,10 @@ SeenViews views_of(const manifest::Document& document, const std::vector<std::st
 void enter(const Placement& placement, const std::vector<Piece>& pieces, const std::vector<View>& views,
            const Bundles& bundles, manifest::Document& document);
 
+// Of a point that is fixed to a placed piece, world: m^2.
+Mat3 covariance_at(const Placed& placed, Vec3 point_m);
+// One standard deviation of the places of the piece's markers, rms over them and over x, y, z.
+double placed_sigma_m(const Placed& placed, const Piece& piece);
 // Of the pose of a piece: one standard deviation of a small rotation about each axis, and of the place of its origin.
 manifest::PoseSigma pose_sigma(const Placed& placed);
 

@@ -63,21 +63,39 @@ void enter_pairs(const Placed& placed, const Piece& piece, const std::vector<Vie
 
 }  // namespace
 
-manifest::PoseSigma pose_sigma(const Placed& placed) {
-  // The origin moves with the centroid and turns about it: cov(t - [r]x w) with r from the centroid to the origin.
-  const Vec3 r = placed.world_from_object.translation_m - placed.centroid_m;
-  const auto c = [&](int i, int j) { return placed.covariance[static_cast<std::size_t>(6 * i + j)]; };
-  // d origin = t + w x r = t + A w, A = [[0, r.z, -r.y], [-r.z, 0, r.x], [r.y, -r.x, 0]].
+Mat3 covariance_at(const Placed& placed, Vec3 point_m) {
+  // d point = t + w x r = t + A w with r from the centroid: A C_ww A' + A C_wt + C_tw A' + C_tt.
+  const Vec3 r = point_m - placed.centroid_m;
   const double a[3][3] = {{0, r.z, -r.y}, {-r.z, 0, r.x}, {r.y, -r.x, 0}};
+  const auto c = [&](int i, int j) { return placed.covariance[static_cast<std::size_t>(6 * i + j)]; };
+  Mat3 out;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      double sum = c(3 + i, 3 + j);
+      for (int k = 0; k < 3; ++k) {
+        sum += a[i][k] * c(k, 3 + j) + c(3 + i, k) * a[j][k];
+        for (int l = 0; l < 3; ++l) sum += a[i][k] * c(k, l) * a[j][l];
+      }
+      out(i, j) = sum;
+    }
+  return out;
+}
+
+double placed_sigma_m(const Placed& placed, const Piece& piece) {
+  double sum = 0;
+  for (const PieceMarker& marker : piece.markers) {
+    const Mat3 c = covariance_at(placed, placed.world_from_object * marker.centre_m);
+    sum += c(0, 0) + c(1, 1) + c(2, 2);
+  }
+  return std::sqrt(std::max(0.0, sum / static_cast<double>(3 * piece.markers.size())));
+}
+
+manifest::PoseSigma pose_sigma(const Placed& placed) {
+  const Mat3 origin = covariance_at(placed, placed.world_from_object.translation_m);
   manifest::PoseSigma sigma;
   for (int i = 0; i < 3; ++i) {
-    sigma.rotation_rad.push_back(std::sqrt(std::max(0.0, c(i, i))));
-    double variance = c(3 + i, 3 + i);
-    for (int k = 0; k < 3; ++k) {
-      variance += 2 * a[i][k] * c(k, 3 + i);
-      for (int l = 0; l < 3; ++l) variance += a[i][k] * c(k, l) * a[i][l];
-    }
-    sigma.translation_m.push_back(std::sqrt(std::max(0.0, variance)));
+    sigma.rotation_rad.push_back(std::sqrt(std::max(0.0, placed.covariance[static_cast<std::size_t>(7 * i)])));
+    sigma.translation_m.push_back(std::sqrt(std::max(0.0, origin(i, i))));
   }
   return sigma;
 }

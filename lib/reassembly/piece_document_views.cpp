@@ -54,14 +54,6 @@ std::vector<std::size_t> asked_images(const Document& document, const std::vecto
   return chosen;
 }
 
-const manifest::Camera& camera_named(const Document& document, const std::string& name, const std::string& at) {
-  if (name.empty() && document.cameras.size() == 1) return document.cameras.begin()->second;
-  const manifest::Camera* camera = manifest::find_camera(document, name);
-  if (camera == nullptr)
-    throw Error(Exit::data, manifest::place(document, at + "/camera"), "is not said", "name one of cameras");
-  return *camera;
-}
-
 // The point nearest to the axes of all cameras; nothing where these are about parallel, or pass it behind a camera.
 // Normal equations sum (1 - a a') (x - c) = 0, solved by Cramer's rule.
 std::optional<Vec3> looked_at(const Document& document, const std::vector<std::size_t>& images) {
@@ -93,9 +85,7 @@ std::optional<Vec3> looked_at(const Document& document, const std::vector<std::s
 
 View view_of(const Document& document, std::size_t index, const DetectWish& wish, std::vector<Refused>& refused) {
   const manifest::ImageEntry& image = document.images[index];
-  const std::string at = "/images/" + std::to_string(index);
-  const camera::CameraModel camera(camera_named(document, image.camera, at),
-                                   manifest::place(document, "/cameras/" + image.camera));
+  const camera::CameraModel camera = camera_of(document, index);
   const std::filesystem::path path = manifest::picture_path(document, index);
   const io::GreyImage picture = io::read_grey(path);
   if (picture.width != camera.width_px() || picture.height != camera.height_px())
@@ -134,6 +124,16 @@ void check_covariance(const Mat3& c, const std::string& at) {
 }
 
 }  // namespace
+
+camera::CameraModel camera_of(const Document& document, std::size_t image) {
+  const std::string& stated = manifest::camera_of_image(document, image);
+  const std::string name = stated.empty() && document.cameras.size() == 1 ? document.cameras.begin()->first : stated;
+  const manifest::Camera* camera = manifest::find_camera(document, name);
+  if (camera == nullptr)
+    throw Error(Exit::data, manifest::place(document, "/images/" + std::to_string(image) + "/camera"), "is not said",
+                "name one of cameras");
+  return {*camera, manifest::place(document, "/cameras/" + name)};
+}
 
 std::vector<Piece> pieces_of(const Document& document) {
   std::vector<Piece> pieces;

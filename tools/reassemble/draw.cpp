@@ -102,9 +102,7 @@ std::string drawing_of(const Work& work, std::size_t view) {
         outline.centre_px.x, outline.centre_px.y, outline.radius_px + line, colour_of(looks[o]), line, dash);
   }
   // Where the placed markers should be: crosses.
-  std::string name = document.images[image].camera;
-  if (name.empty()) name = document.cameras.begin()->first;
-  const camera::CameraModel camera(document.cameras.at(name), name);
+  const camera::CameraModel camera = reassembly::camera_of(document, image);
   for (std::size_t p = 0; p < work.pieces.size(); ++p) {
     const reassembly::Placed& placed = work.placement.pieces[p];
     if (placed.verdict != reassembly::Verdict::placed) continue;

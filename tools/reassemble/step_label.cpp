@@ -95,8 +95,7 @@ std::vector<Shot> shots_of(const Work& work) {
     Shot shot;
     shot.image = view.image, shot.index = *manifest::index_of_image(document, view.image);
     const manifest::ImageEntry& entry = document.images[shot.index];
-    const std::string name = entry.camera.empty() ? document.cameras.begin()->first : entry.camera;
-    shot.camera = std::make_unique<camera::CameraModel>(document.cameras.at(name), "/cameras/" + name);
+    shot.camera = std::make_unique<camera::CameraModel>(reassembly::camera_of(document, shot.index));
     shot.world_from_camera = view.world_from_camera;
     const std::string at = manifest::place(document, "/images/" + std::to_string(shot.index));
     shot.picture =

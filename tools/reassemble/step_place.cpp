@@ -32,30 +32,12 @@ void check_radii(const Work& work) {
   log(LogLevel::warning, "no marker has a radius_m: distances are found by the directions alone (--marker-radius)");
 }
 
-// sqrt of the mean variance of the placed markers, by the pose's covariance.
-double placed_sigma_m(const reassembly::Placed& placed, const reassembly::Piece& piece) {
-  double sum = 0;
-  for (const reassembly::PieceMarker& marker : piece.markers) {
-    const Vec3 r = placed.world_from_object * marker.centre_m - placed.centroid_m;
-    const double a[3][3] = {{0, r.z, -r.y}, {-r.z, 0, r.x}, {r.y, -r.x, 0}};
-    const auto c = [&](int i, int j) { return placed.covariance[static_cast<std::size_t>(6 * i + j)]; };
-    for (int i = 0; i < 3; ++i) {
-      sum += c(3 + i, 3 + i);
-      for (int k = 0; k < 3; ++k) {
-        sum += 2 * a[i][k] * c(k, 3 + i);
-        for (int l = 0; l < 3; ++l) sum += a[i][k] * c(k, l) * a[i][l];
-      }
-    }
-  }
-  return std::sqrt(std::max(0.0, sum / static_cast<double>(3 * piece.markers.size())));
-}
-
 void judge(Work& work, const reassembly::Placed& placed, const reassembly::Piece& piece) {
   if (placed.verdict != reassembly::Verdict::placed) {
     work.complaints.push_back(placed.object + ": not placed: " + placed.why);
     return;
   }
-  const double sigma = placed_sigma_m(placed, piece);
+  const double sigma = reassembly::placed_sigma_m(placed, piece);
   log(LogLevel::info, format("%s: placed by %zu of %zu markers, to %.3g mm", placed.object.c_str(), placed.pairs.size(),
                              piece.markers.size(), 1e3 * sigma));
   if (work.asked.max_error_m && sigma > *work.asked.max_error_m)

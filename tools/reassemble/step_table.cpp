@@ -32,10 +32,9 @@ class Rows {
   void add(const PlacedPiece& piece, std::size_t marker, std::size_t view, const Outline& outline) {
     const reassembly::PieceMarker& own = piece.piece->markers[marker];
     const View& from = work_.seen.views[view];
-    const double scale = work_.placement.sigma_scale > 0 ? work_.placement.scale : 1;
     reassembly::MarkerRow row;
     row.image = from.image, row.piece = piece.piece->object, row.marker = own.id;
-    row.centre_m = scale * own.centre_m;
+    row.centre_m = work_.placement.scale * own.centre_m;  // 1 where it was not fitted
     const Mat3& c = own.covariance_m2;
     row.centre_sigma_m = std::sqrt((c(0, 0) + c(1, 1) + c(2, 2)) / 3);
     row.normal = reassembly::outward_normal(piece.mesh, *piece.tree, row.centre_m);
@@ -55,7 +54,8 @@ class Rows {
     double nearest = 6 * outline.half_angle_rad;  // three diameters
     for (const auto& piece : pieces_)
       for (std::size_t m = 0; m < piece->piece->markers.size(); ++m) {
-        const Vec3 there = piece->placed->world_from_object * piece->piece->markers[m].centre_m;
+        const Vec3 there =
+            piece->placed->world_from_object * (work_.placement.scale * piece->piece->markers[m].centre_m);
         const Vec3 seen = normalized(inverse(from.world_from_camera) * there);
         const double angle = std::acos(std::clamp(dot(seen, outline.axis), -1.0, 1.0));
         const auto walls = reassembly::walls_between(from.world_from_camera.translation_m, there,
@@ -75,9 +75,7 @@ class Rows {
   Vec2 sigma_px(std::size_t view, const Outline& outline) const {
     const manifest::Document& document = work_.call.document;
     const std::size_t image = *manifest::index_of_image(document, work_.seen.views[view].image);
-    std::string name = document.images[image].camera;
-    if (name.empty()) name = document.cameras.begin()->first;
-    const camera::CameraModel camera(document.cameras.at(name), name);
+    const camera::CameraModel camera = reassembly::camera_of(document, image);
     const Vec3 across = reassembly::across_of(outline.axis), down = cross(outline.axis, across);
     constexpr double step = 1e-5;
     Vec2 variance{};
