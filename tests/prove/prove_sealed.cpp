@@ -95,7 +95,7 @@ int judge_all(const path& folder, const std::vector<Spec>& specs, const std::str
   });
   const Judgement judgement = judge(cases);
   std::fputs(table_text(judgement).c_str(), stdout);
-  write_file(folder.string() + ".html", page_html(judgement, cases, mode));
+  write_file(folder.string() + ".html", page_html(judgement, cases, "scripts/prove sealed, mode " + mode));
   write_file(folder.string() + ".truth.json", print_json(truth_json(cases)) + "\n");
   if (broken > 0) std::printf("sealed: %d truths are not those that were sealed\n", broken.load());
   bool missed = broken > 0 || judgement.unanswered > 0;

@@ -91,6 +91,7 @@ void read_entry(const Value& entry, Answer& a) {
     a.before = number_or(h->find("before"), NAN);
     a.after = number_or(h->find("after"), NAN);
   }
+  if (const Value* p = entry.find("probability"); p && p->is_number()) a.probability = p->as_number();
   a.sentence = text_or_nothing(entry.find("sentence"));
 }
 

@@ -28,6 +28,7 @@ struct Answer {
   std::vector<std::string> invisible;
   std::string condition, stage, sentence;
   double before = 0, after = 0;
+  std::optional<double> probability;  // stated: that the verdict is right, see is_right() in judge.h
   // Of the evidence against the truth, where that can be asked: observations that hold most of the effect, and all that
   // show any.
   std::optional<double> auc, auc_any;

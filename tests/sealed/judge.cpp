@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <set>
 
@@ -53,21 +52,11 @@ bool single(const Judged& j) {
   return j.truth.kind == Kind::single || j.truth.kind == Kind::alike;
 }
 
-struct Asked {
-  Question question;
-  std::function<bool(const Judged&)> applies, right;
-};
-
-Question share_question(const char* question, const char* measure, const char* to_reach, double bound, bool at_most,
-                        bool required = true) {
-  return {question, measure, to_reach, bound, at_most, required, {}, {}, false};
-}
-
 bool wrongly_named(const Judged& j) {
   return !j.answer.named.empty() || !j.answer.elsewhere.empty();
 }
 
-std::vector<Asked> questions() {
+std::vector<Asked> sealed_questions() {
   const auto apart = [](const Judged& j) { return single(j) && clear(j) && j.truth.apart == Apart::yes; };
   const auto alike = [](const Judged& j) { return single(j) && clear(j) && j.truth.apart == Apart::no; };
   const auto located = [](const Judged& j) {
@@ -93,11 +82,13 @@ std::vector<Asked> questions() {
        [](const Judged& j) { return has_all(j.answer.reported, j.truth.mechanisms); }},
       {share_question("which, where it cannot", "set of at most 3", "all", 1, false), alike,
        [](const Judged& j) { return j.answer.set_size <= 3; }},
-      {share_question("two at once", "both named", ">= 80 %", 0.8, false),
+      {share_question("two at once", "both named", ">= 85 %", 0.85, false),
        [](const Judged& j) {
          return j.truth.kind == Kind::pair && j.truth.apart == Apart::yes && matter(j) && all_clear(j);
        },
        [](const Judged& j) { return has_all(j.answer.named, j.truth.mechanisms); }},
+      {share_question("falsely certain", "named alone, without alternatives, and wrong", "<= 1 %", 0.01, true),
+       [](const Judged& j) { return j.answer.ran; }, falsely_certain},
       {share_question("outside the library", "wrongly named as a known one", "<= 5 %", 0.05, true),
        [](const Judged& j) { return j.truth.kind == Kind::outside && j.truth.apart == Apart::yes; }, wrongly_named},
       {share_question("outside the library", "reported as a mismatch that nothing known repairs", "", 0, false, false),
@@ -176,7 +167,40 @@ std::string first_answer(const Judged& j) {
   return "(" + j.answer.verdict + ")";
 }
 
+// Where the effect can be told apart, or cannot, by the maker's own count: what is unclear is no one's to be sure of.
+std::vector<Stated> stated_probabilities(const std::vector<Judged>& cases) {
+  std::vector<Stated> stated;
+  for (const Judged& j : cases)
+    if (j.answer.ran && j.answer.probability && j.truth.apart != Apart::unclear)
+      stated.push_back({*j.answer.probability, is_right(j)});
+  return stated;
+}
+
 }  // namespace
+
+Question share_question(const char* question, const char* measure, const char* to_reach, double bound, bool at_most,
+                        bool required) {
+  return {question, measure, to_reach, bound, at_most, required, {}, {}, false};
+}
+Asking sealed_asking() {
+  return {sealed_questions(), 0.9};
+}
+
+bool is_right(const Judged& j) {
+  const bool nothing = says_nothing(j) || j.truth.kind == Kind::invisible || j.truth.share < matters;
+  if (j.answer.verdict == "null") return nothing || !clear(j);  // "as far as these recordings can show"
+  if (j.answer.verdict == "unknown") return !nothing && j.truth.kind == Kind::outside;
+  if (j.truth.mechanisms.empty()) return false;
+  // What is there and does not matter may be named, and need not.
+  if (nothing) return has_all(j.truth.mechanisms, j.answer.named);
+  return has_all(j.answer.reported, j.truth.mechanisms);
+}
+
+bool falsely_certain(const Judged& j) {
+  if (j.answer.verdict != "named") return false;
+  if (!has_all(j.truth.mechanisms, j.answer.named)) return true;
+  return j.truth.kind == Kind::pair && matter(j) && all_clear(j) && !has_all(j.answer.named, j.truth.mechanisms);
+}
 
 bool clearly_there(const Judged& j) {
   return matter(j) && times_the_limit(j) >= clearly;
@@ -234,7 +258,7 @@ std::string Question::measured() const {
                 100 * t.interval().upper);
 }
 
-Judgement judge(const std::vector<Judged>& as_read) {
+Judgement judge(const std::vector<Judged>& as_read, const Asking& asking) {
   std::vector<Judged> cases;
   std::copy_if(as_read.begin(), as_read.end(), std::back_inserter(cases),
                [](const Judged& j) { return j.answer.begun || j.answer.ran; });
@@ -244,8 +268,7 @@ Judgement judge(const std::vector<Judged>& as_read) {
   Judgement result;
   result.cases = cases.size();
   result.not_begun = as_read.size() - cases.size();
-  const std::vector<Asked> asked = questions();
-  for (const Asked& a : asked) {
+  for (const Asked& a : asking.questions) {
     result.questions.push_back(a.question);
     Question& q = result.questions.back();
     for (const Judged& j : cases) {
@@ -266,11 +289,12 @@ Judgement judge(const std::vector<Judged>& as_read) {
     add_failure(j, "no answer", result);
   }
   result.effects = effect_rows(cases);
+  result.stated = stated_probabilities(cases);
   Question error = median_question("how much", "parameter error (median)", "<= 10 %", 0.1, true);
   Question coverage = share_question("how much", "95 % interval covers", "90-98 %", 0.9, false);
   ask_numbers(cases, error, coverage);
-  Question repaired =
-      median_question("repaired", "(before - after) / (before - floor), held out (median)", ">= 0.9", 0.9, false);
+  Question repaired = median_question("repaired", "(before - after) / (before - floor), held out (median)",
+                                      asking.repaired < 0.9 ? ">= 0.85" : ">= 0.9", asking.repaired, false);
   Question negative = share_question("repaired", "negative", "never", 0, true);
   ask_repair(cases, repaired, negative);
   for (Question* q : {&error, &coverage, &repaired, &negative}) result.questions.push_back(*q);

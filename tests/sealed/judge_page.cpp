@@ -131,14 +131,14 @@ report::TableText case_table(const std::vector<Judged>& cases) {
   return table;
 }
 
-std::string headline(const Judgement& j) {
+std::string headline(const Judgement& j, const std::string& what) {
   int met = 0, asked = 0;
   for (const Question& q : j.questions) {
     if (!q.required || (q.all().asked == 0 && q.values.empty())) continue;
     ++asked;
     met += q.met();
   }
-  std::string text = format("%d of %d figures of the proof are reached on %zu sealed cases", met, asked, j.cases);
+  std::string text = format("%d of %d figures of the proof are reached on %zu %s", met, asked, j.cases, what.c_str());
   if (j.not_begun > 0) text += format("; %zu more were not begun for want of time", j.not_begun);
   return text;
 }
@@ -160,6 +160,7 @@ std::string table_text(const Judgement& j) {
         text += format("    %-37s %-52s %s\n", q.question.c_str(), q.measure.c_str(), cell(q, d).c_str());
   }
   text += effect_text(j);
+  if (!j.stated.empty()) text += reliability_text(reliability_of(j.stated));
   text += "\nleft out -> named:\n";
   for (const auto& [truth, answers] : j.confusion)
     for (const auto& [answer, count] : answers)
@@ -171,12 +172,14 @@ std::string table_text(const Judgement& j) {
   return text;
 }
 
-std::string page_html(const Judgement& j, const std::vector<Judged>& cases, const std::string& mode) {
+std::string page_html(const Judgement& j, const std::vector<Judged>& cases, const std::string& footer,
+                      const std::string& what, const std::string& lead) {
   const bool good =
       std::all_of(j.questions.begin(), j.questions.end(), [](const Question& q) { return !q.required || q.met(); });
-  report::Page page("sealed cases", headline(j),
-                    "Recordings made by code that shares nothing with the code that explains them; the truth of a case "
-                    "is computed again only after its answer has been written.",
+  report::Page page(what, headline(j, what),
+                    lead.empty() ? "Recordings made by code that shares nothing with the code that explains them; the "
+                                   "truth of a case is computed again only after its answer has been written."
+                                 : lead,
                     good ? report::Tone::good : report::Tone::neutral);
   page.section("The table");
   page.table(question_table(j));
@@ -189,6 +192,12 @@ std::string page_html(const Judgement& j, const std::vector<Judged>& cases, cons
       "after the fair refit, is at least one noise width and at least its own root mean square.");
   page.table(domain_table(j));
   page.table(effect_table(j));
+  if (!j.stated.empty()) {
+    page.section("How sure");
+    const Reliability reliability = reliability_of(j.stated);
+    page.plot(reliability_plot(reliability));
+    page.table(reliability_table(reliability));
+  }
   page.section("Confusions");
   page.table(confusion_table(j));
   page.section("Failures");
@@ -197,7 +206,7 @@ std::string page_html(const Judgement& j, const std::vector<Judged>& cases, cons
   page.open_details(format("%zu cases", cases.size()));
   page.table(case_table(cases));
   page.close_details();
-  page.footer("scripts/prove sealed, mode " + mode);
+  page.footer(footer);
   return page.html();
 }
 

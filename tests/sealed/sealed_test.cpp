@@ -193,7 +193,8 @@ TEST(Judge, CountsWhatIsRightAndWhatIsWrong) {
   EXPECT_NEAR(question(j, "how much", "parameter").figure(), 0.05, 1e-9);
   EXPECT_EQ(question(j, "how much", "95 %").all().right, 9);
   EXPECT_NEAR(question(j, "repaired", "(before").figure(), 0.95, 1e-9);
-  EXPECT_EQ(j.failures.size(), 3u);
+  EXPECT_EQ(question(j, "falsely certain", "").all().right, 3);
+  EXPECT_EQ(j.failures.size(), 6u);  // each of these three twice
   ASSERT_EQ(j.effects.size(), 1u);
   EXPECT_EQ(j.effects[0].mechanism, "lens.radial");
   EXPECT_EQ(j.effects[0].cases, 10);
@@ -202,6 +203,25 @@ TEST(Judge, CountsWhatIsRightAndWhatIsWrong) {
   EXPECT_NEAR(j.effects[0].floor[0], 1, 1e-12);
   EXPECT_EQ(j.confusion.at("lens.radial").at("board.warp"), 1);
   EXPECT_NE(page_html(j, cases, "quick").find("board.warp"), std::string::npos);
+}
+
+// What is listed beside others is not certain; the weaker of two counts where it is clearly there.
+TEST(Judge, CertaintyIsFalseWhereItIsAloneAndWrong) {
+  Judged alone = answered(Kind::single, "lens.radial", {"board.warp"}), listed = alone;
+  EXPECT_TRUE(falsely_certain(alone));
+  EXPECT_FALSE(is_right(alone));
+  listed.answer.verdict = "ambiguous";
+  listed.answer.reported = {"board.warp", "lens.radial"};
+  EXPECT_FALSE(falsely_certain(listed));
+  EXPECT_TRUE(is_right(listed));
+  Judged pair = answered(Kind::pair, "lens.radial", {"lens.radial"});
+  pair.truth.mechanisms.push_back("board.warp");
+  pair.truth.values.push_back({"board.warp", "w", 1.0});
+  pair.answer.limit["board.warp"]["w"] = 0.1;
+  EXPECT_TRUE(falsely_certain(pair));
+  pair.truth.values.back().value = 0.2;  // too weak to be asked for
+  EXPECT_FALSE(falsely_certain(pair));
+  EXPECT_TRUE(is_right(answered(Kind::null, "", {})));
 }
 
 TEST(Judge, CasesThatWereNotBegunAreCountedAndNotAsked) {
