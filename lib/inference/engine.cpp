@@ -12,7 +12,9 @@
 #include "inference/law.h"
 #include "inference/noise.h"
 #include "inference/plan.h"
+#include "inference/profile.h"
 #include "inference/race.h"
+#include "inference/refinement.h"
 #include "inference/sentence.h"
 #include "stats/intervals.h"
 
@@ -20,6 +22,7 @@ namespace gonio::inference {
 namespace {
 
 constexpr std::size_t groups_for_a_test_set = 16;
+constexpr std::size_t most_profiles = 4;  // of one mechanism
 
 // A quarter of the groups, drawn by the seed, is opened once at the end; with few groups every one takes turns instead.
 std::vector<std::size_t> draw_test_groups(const std::vector<std::size_t>& groups, std::uint64_t seed) {
@@ -108,12 +111,18 @@ void final_fit(const System& system, const Race& race, const Selection& selectio
   }
   e.converged = base.fit.converged && model.fit.converged;
   e.base_values = base.fit.values;
-  e.values = model.fit.values;
   e.residual_before = system.raw_residual(e.base_values);
-  e.residual_after = system.raw_residual(e.values);
+  e.residual_after = system.raw_residual(model.fit.values);
+  for (const std::size_t p : base.fit.active)
+    if (std::find(base.fit.inner.begin(), base.fit.inner.end(), p) == base.fit.inner.end()) e.at_limits.push_back(p);
   e.fitted_before = in_sample_score(system, e.residual_before);
   e.fitted_after = in_sample_score(system, e.residual_after);
-  const Uncertainty u = uncertainty(system, model.fit);
+  // What is reported by numbers is fitted to the exact simulation, where there is one.
+  const std::optional<Refined> better = model.candidates.empty() ? std::nullopt : refined(system, model);
+  const System& exact = better ? better->system : system;
+  const Fit& best = better ? better->fit : model.fit;
+  e.values = best.values;
+  const Uncertainty u = uncertainty(exact, best);
   e.active = u.parameters;
   e.sigma.assign(e.values.size(), 0.0);
   for (Eigen::Index c = 0; c < u.covariance.rows(); ++c) {
@@ -121,13 +130,17 @@ void final_fit(const System& system, const Race& race, const Selection& selectio
     for (Eigen::Index d = 0; d < u.covariance.cols(); ++d) e.covariance.push_back(u.covariance(c, d));
   }
   for (const std::size_t c : selection.model.candidates) {
-    const std::vector<Estimate> own = estimates(system, model.fit, u, system.problem().candidates()[c].parameters);
+    std::vector<Estimate> own = estimates(exact, best, u, system.problem().candidates()[c].parameters);
+    std::size_t profiles = 0;
+    for (Estimate& estimate : own)
+      if (needs_profile(system.problem().parameters()[estimate.parameter], estimate) && profiles++ < most_profiles)
+        set_profile_interval(exact, best, estimate);
     e.estimates.insert(e.estimates.end(), own.begin(), own.end());
   }
   for (const std::size_t p : race.free()) {
     if (model.candidates.empty() || !(e.sigma[p] > 0)) continue;
     if (system.problem().parameters()[p].groups.size() == 1) continue;
-    e.compensation.push_back({p, e.base_values[p], e.values[p], e.sigma[p]});
+    e.compensation.push_back({p, e.base_values[p], model.fit.values[p], e.sigma[p]});
   }
   const auto shift = [](const Compensation& c) { return std::abs(c.after - c.before) / c.sigma; };
   std::stable_sort(e.compensation.begin(), e.compensation.end(),
@@ -217,6 +230,7 @@ void place_stage(const Problem& problem, Explanation& e) {
 Explanation explain(const Problem& problem, const Options& options) {
   Explanation e;
   e.smallest_effect = options.smallest_effect;
+  e.sure = options.sure;
   System all = in_play(problem, options);
   const std::vector<double> start = starting_values(problem);
   const NoiseFindings noise = settle_noise(all, start);
@@ -251,7 +265,11 @@ Explanation explain(const Problem& problem, const Options& options) {
   compare_with_calibration(problem, e);
   find_law(all, e);
   make_plan(all, e);
+  const Verdict verdict = e.verdict;
+  const std::vector<std::size_t> named = e.named;
   problem.conclude(e);
+  if (e.verdict != verdict || e.named != named)
+    e.weighed.clear();  // by a test of the domain's own, which has its level
   write_sentence(problem, e);
   return e;
 }

@@ -15,6 +15,7 @@ namespace gonio::inference {
 
 struct Options {
   double smallest_effect = 0.01;        // smallest effect worth a name, see Importance
+  double sure = 0.9;                    // probability that suffices to name one explanation alone
   double level = 0.01;                  // false alarms allowed to the null test, and to every name
   std::vector<std::string> hypotheses;  // mechanism ids to consider; empty: all candidates of the problem
   std::vector<std::string> protect;     // names of parameters, or of what stands before a '/', that keep their values

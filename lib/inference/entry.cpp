@@ -1,6 +1,7 @@
 // See entry.h.
 #include "inference/entry.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "manifest/explanation_tables.h"
@@ -20,11 +21,20 @@ bool is_parameter(const std::string& full, const std::string& name) {
          (full[full.size() - name.size() - 1] == '.' || full[full.size() - name.size() - 1] == '/');
 }
 
+// That the candidate is among what was left out.
+double probability_of(const Explanation& e, std::size_t candidate) {
+  double sum = 0;
+  for (const Explanation::Weighed& w : e.weighed)
+    if (std::find(w.candidates.begin(), w.candidates.end(), candidate) != w.candidates.end()) sum += w.probability;
+  return std::min(sum, 1.0);
+}
+
 manifest::NamedMechanism named_mechanism(const Problem& problem, const Explanation& e, std::size_t candidate) {
   const Candidate& c = problem.candidates()[candidate];
   manifest::NamedMechanism entry;
   entry.mechanism = c.id();
   entry.on = c.on;
+  if (!e.weighed.empty()) entry.probability = probability_of(e, candidate);
   for (const mechanism::Parameter& p : c.mechanism->parameters) {
     std::vector<double> value, width;
     manifest::NamedInterval interval{.name = p.name, .lower = {}, .upper = {}};
@@ -43,6 +53,19 @@ manifest::NamedMechanism named_mechanism(const Problem& problem, const Explanati
     entry.interval_95.push_back(interval);
   }
   return entry;
+}
+
+std::vector<manifest::WeighedAnswer> weighed(const Problem& problem, const Explanation& e) {
+  using Kind = Explanation::Weighed::Kind;
+  std::vector<manifest::WeighedAnswer> list;
+  for (const Explanation::Weighed& w : e.weighed) {
+    manifest::WeighedAnswer& answer = list.emplace_back();
+    answer.answer = w.kind == Kind::nothing ? "nothing" : w.kind == Kind::outside ? "outside" : "mechanisms";
+    for (const std::size_t c : w.candidates) answer.mechanisms.push_back(problem.candidates()[c].id());
+    answer.probability = w.probability;
+    for (const auto& [name, value] : w.statistics) answer.statistics.push_back({name, {value}});
+  }
+  return list;
 }
 
 manifest::MismatchCondition located_condition(const LocatedCondition& c) {
@@ -173,6 +196,8 @@ std::vector<manifest::NotToldApart> not_told_apart(const Problem& problem, const
 manifest::Value entry_of(const Problem& problem, const Explanation& e, const Illustration& illustration) {
   manifest::ExplanationEntry entry;
   entry.domain = problem.domain(), entry.verdict = verdict_name(e.verdict);
+  if (!e.weighed.empty()) entry.probability = e.probability;
+  entry.weighed = weighed(problem, e);
   for (const Misplaced::File& f : e.misplaced.files) entry.misplaced.push_back({f.group, f.shows, f.own, f.other});
   for (const std::size_t c : e.named) entry.named.push_back(named_mechanism(problem, e, c));
   entry.not_told_apart = not_told_apart(problem, e);

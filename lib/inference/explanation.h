@@ -65,6 +65,7 @@ struct LocatedCondition {
   double share = 0;             // of the excess over noise that a smooth curve over this condition explains
   double lower = 0, upper = 0;  // range that holds most of it
   double effect = 0;            // rms of the curve over that range, in `curve.value_unit`
+  double period = 0;            // of a wave with a phase of its own in each group; 0: one smooth curve
   Curve curve;
 };
 struct LocatedGroup {
@@ -89,6 +90,11 @@ struct LawTerm {
   double coefficient = 0, sigma = 0;
   std::string unit;                                    // of the coefficient
   std::vector<std::pair<std::string, double>> powers;  // condition -> power
+  struct Reference {
+    double value = 1;
+    std::string unit{};  // empty: none, a plain number
+  };
+  std::vector<Reference> reference{};  // round size of each of these conditions, for words alone
   // A dimensionless function of shape_of / scale: "exp" (of minus that), "sin", "cos" (scale 1: of an angle).
   std::string shape{}, shape_of{}, scale_unit{};
   double scale = 1, scale_sigma = 0;
@@ -131,18 +137,29 @@ struct Explanation {
   std::vector<std::vector<std::size_t>>
       not_told_apart;  // sets of candidates: the first is named, each of the others could stand in its place
   std::vector<std::vector<std::size_t>> instead;  // whole sets, each as good an explanation as all that is named
-  double global_p = 1;                            // of the null test
+  // What was held against each other, the likeliest first (probability.h).
+  struct Weighed {
+    enum class Kind { nothing, outside, set };
+    Kind kind = Kind::set;
+    std::vector<std::size_t> candidates;
+    double probability = 0;
+    std::vector<std::pair<std::string, double>> statistics;  // those that are not zero
+  };
+  std::vector<Weighed> weighed;
+  double probability = 0, sure = 0.9;  // of the verdict: that it is what is named, or among what is listed
+  double global_p = 1;                 // of the null test
   bool significant = false, important = false;
   double noise_factor = 1;
   std::size_t outlier_blocks = 0;
   double smallest_effect = 0.01;
 
-  std::vector<double> base_values;  // fair refit of the base model, all groups
-  std::vector<double> values;       // with the named mechanisms; equals base_values where nothing is named
-  std::vector<std::size_t> active;  // parameters that were free in the final fit
-  std::vector<double> sigma;        // one per parameter, zero where not free
-  std::vector<double> covariance;   // of `active`, row-major: sandwich over blocks
-  std::vector<Estimate> estimates;  // of the named mechanisms' parameters
+  std::vector<std::size_t> at_limits{};  // free parameters of the base model that its fit leaves at a bound
+  std::vector<double> base_values;       // fair refit of the base model, all groups
+  std::vector<double> values;            // with the named mechanisms; equals base_values where nothing is named
+  std::vector<std::size_t> active;       // parameters that were free in the final fit
+  std::vector<double> sigma;             // one per parameter, zero where not free
+  std::vector<double> covariance;        // of `active`, row-major: sandwich over blocks
+  std::vector<Estimate> estimates;       // of the named mechanisms' parameters
   std::vector<double> residual_before, residual_after;  // y - f of all rows
 
   double held_out_before = 0, held_out_after = 0;  // user's unit

@@ -4,163 +4,223 @@
 #include <algorithm>
 #include <cmath>
 
+#include "inference/wording.h"
+
 namespace gonio::inference {
 namespace {
 
-// Of all that can be repaired: what an otherwise right model may leave over its own conditions (a facet is no
-// Gaussian), and what may be left elsewhere beside a named effect.
-constexpr double own_share = 0.35, other_share = 0.5;
-// Where a free curve over its own condition takes away most of what is left above the noise, the recordings are clean
-// enough to ask for more. While others wait: a law that is the right one leaves next to nothing. When no other is
-// content: a law of the right kind in another form (a lobe that is no GGX, a lens that is no polynomial) repairs four
-// fifths of what can be repaired over its condition, an imitator less; what it leaves is reported beside it.
-constexpr double clean_share_first = 0.02, clean_share_last = 0.2, clean_part = 0.5;
-constexpr double price_of_a_look = 10;  // as in the null test
-constexpr double clearly_better = 0.1;  // by which a free curve must repair more, as a share of what it repairs
+using Set = std::vector<std::size_t>;
 
-bool repairs(const Hypothesis& h, const Options& options) {
-  return h.gain > 2 * h.gain_sigma && h.effect >= options.smallest_effect;
+constexpr double nearly_one = 0.99;  // of what the plainer form repairs
+constexpr double equal_errors = 2;   // of the paired difference: what is within them was not told apart by recordings
+constexpr std::size_t most_listed_beside = 2;
+
+bool contains(const Set& set, std::size_t c) {
+  return std::find(set.begin(), set.end(), c) != set.end();
+}
+bool within(const Set& some, const Set& all) {
+  return std::all_of(some.begin(), some.end(), [&](std::size_t c) { return contains(all, c); });
 }
 
-// Does any of the candidates declare the condition as a carrier of its signature?
-bool declares(const Problem& problem, const std::vector<std::size_t>& candidates, const std::string& condition) {
-  return std::any_of(candidates.begin(), candidates.end(), [&](std::size_t c) {
-    const std::vector<std::string>& own = problem.candidates()[c].mechanism->conditions;
-    return std::find(own.begin(), own.end(), condition) != own.end();
-  });
-}
-
-struct Left {
-  const Competitor* any = nullptr;                        // the free curve that repairs most of what is left
-  const Competitor* own = nullptr;                        // the same over a condition that a named mechanism declares
-  const SerialCorrelation* serial_correlation = nullptr;  // what no smooth curve follows
-  const Interaction* interaction = nullptr;               // what turns round from one condition to another
-};
-Left structure_left(const Problem& problem, const Selection& s, const Options& options) {
-  Left left;
-  if (s.after.global_p > options.level) return left;
-  const auto tells = [&](const auto& look) {
-    return look && price_of_a_look * look->p <= options.level && look->effect >= options.smallest_effect;
-  };
-  if (tells(s.after.serial_correlation)) left.serial_correlation = &*s.after.serial_correlation;
-  if (tells(s.after.interaction)) left.interaction = &*s.after.interaction;
-  for (const Competitor& c : s.after.curves) {
-    if (!repairs(c.hypothesis, options)) continue;
-    if (left.any == nullptr) left.any = &c;
-    if (left.own == nullptr && declares(problem, s.model.candidates, c.hypothesis.name)) left.own = &c;
+// The place in `a` of the only one that is another in `b`; nothing where they differ otherwise.
+std::optional<std::size_t> only_exchange(const Set& a, const Set& b) {
+  if (a.size() != b.size()) return std::nullopt;
+  std::optional<std::size_t> place;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (contains(b, a[k])) continue;
+    if (place) return std::nullopt;
+    place = k;
   }
-  return left;
+  return place;
+}
+std::size_t the_other(const Set& a, const Set& b) {
+  return *std::find_if(b.begin(), b.end(), [&](std::size_t c) { return !contains(a, c); });
 }
 
-// Mean square of the held-out residual above the noise, per row.
-double excess(const HeldOut& h) {
-  double squares = 0, rows = 0;
-  for (std::size_t g = 0; g < h.whitened.size(); ++g) squares += h.whitened[g], rows += h.rows[g];
-  return rows > 0 ? squares / rows - 1 : 0;
+// One mechanism on the same things, in another form: a power law and a spline of one response.
+bool same_physics(const Problem& problem, std::size_t a, std::size_t b) {
+  const Candidate &one = problem.candidates()[a], &other = problem.candidates()[b];
+  return one.id() == other.id() && one.on == other.on;
 }
 
-// The free curve that repairs clearly more of the base model's misfit than the winner does.
-const Competitor* better_curve(const Selection& s, const Options& options) {
-  for (const Competitor& c : s.before.curves) {
-    if (!repairs(c.hypothesis, options)) continue;
-    // Curves are judged linearly: both as falls against the base model as it is judged in either way.
-    HeldOut by_curve = s.base.held_out;
-    const HeldOut& linear = s.before.evidence->folds->own();
-    for (std::size_t g = 0; g < by_curve.whitened.size(); ++g)
-      by_curve.whitened[g] -= linear.whitened[g] - c.held_out.whitened[g];
-    const Gain apart = gain(s.model.held_out, by_curve);
-    if (apart.mean > 2 * apart.sigma && apart.mean > clearly_better * c.hypothesis.gain) return &c;
+// Is `f` the likeliest set in another form of one of its mechanisms? Two forms of one thing are no two explanations.
+bool is_form(const Problem& problem, const Finalist& top, const Finalist& f) {
+  const std::optional<std::size_t> place = only_exchange(top.model.candidates, f.model.candidates);
+  if (!place || !f.refused.empty()) return false;
+  const std::size_t other = the_other(top.model.candidates, f.model.candidates);
+  if (same_physics(problem, top.model.candidates[*place], other)) return true;
+  return problem.candidates()[other].finer && !problem.candidates()[top.model.candidates[*place]].finer &&
+         f.gained >= nearly_one * top.gained;
+}
+
+// What speaks most against a set beside the likeliest one.
+std::string objection(const Finalist& f, const Finalist& top) {
+  if (!f.refused.empty()) return f.refused;
+  const Member own{Member::Kind::set, f.statistics}, best{Member::Kind::set, top.statistics};
+  std::string_view worst;
+  double most = 0;
+  for (const LogitTerm& t : logit_terms()) {
+    const double against = t.weight * (t.of(best) - t.of(own));
+    if (against > most) most = against, worst = t.name;
   }
-  return nullptr;
+  if (worst == "own" || worst == "clean")
+    return "leaves structure over " + f.left.own_over + ", its own condition: it only imitates in part";
+  if (worst == "any") return "leaves structure " + f.left.any_over;
+  if (worst == "curve")
+    return "a free curve over " + f.curve + " repairs more on unseen groups: it only imitates in part";
+  if (worst == "behind" || worst == "missed") return "another repairs more on unseen groups";
+  if (worst == "numbers") return "needs more numbers";
+  if (worst == "size") return "larger than such an effect is";
+  if (worst == "controls") return "negative controls without physics do better";
+  if (worst == "weakest" || worst == "times" || worst == "more") return "one of its mechanisms does too little";
+  return "less likely";
 }
 
-Outside outside_of(const Problem& problem, std::size_t condition) {
+void mark(const Selection& s, const Explanation& e, const Finalist& top, Hypothesis& h) {
+  if (!h.refused.empty() || h.kind != Hypothesis::Kind::mechanisms || h.candidates.empty()) return;
+  const Finalist* own = nullptr;  // the likeliest set that holds it
+  for (const Finalist& f : s.finalists->list()) {
+    if (!within(h.candidates, f.model.candidates)) continue;
+    if (own == nullptr || f.probability > own->probability) own = &f;
+  }
+  if (own == nullptr) return;
+  for (const auto& listed : {e.not_told_apart, e.instead})
+    for (const Set& set : listed)
+      if (within(h.candidates, set)) return;
+  if (e.named.empty() || !within(h.candidates, e.named))
+    h.refused =
+        (own == &top ? std::string("unlikely") : objection(*own, top)) + " (" + share_in_words(own->probability) + ")";
+}
+
+Explanation::Weighed weighed_as(Explanation::Weighed::Kind kind, const Set& candidates, double probability,
+                                const Statistics& of) {
+  Explanation::Weighed w{kind, candidates, probability, {}};
+  for (const Statistic& s : statistics())
+    if (of.*s.value != 0) w.statistics.emplace_back(s.name, of.*s.value);
+  return w;
+}
+
+void list_weighed(const Finalists& finalists, Explanation& e) {
+  using Kind = Explanation::Weighed::Kind;
+  const std::vector<Member> members = finalists.members();
+  e.weighed = {weighed_as(Kind::nothing, {}, finalists.nothing(), members[0].statistics),
+               weighed_as(Kind::outside, {}, finalists.outside(), members[1].statistics)};
+  for (const Finalist& f : finalists.list())
+    if (f.refused.empty()) e.weighed.push_back(weighed_as(Kind::set, f.model.candidates, f.probability, f.statistics));
+  std::stable_sort(e.weighed.begin(), e.weighed.end(),
+                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
+}
+
+void begin_outside(const Problem& problem, const LeftOver& left, const ResidualStructure& before, bool unknown,
+                   Explanation& e) {
+  std::optional<std::size_t> condition = left.condition;
+  if (!condition && unknown && !before.curves.empty()) condition = before.curves[0].condition;
+  if (!condition) return;
   Outside outside;
-  outside.condition = problem.observations().conditions[condition].name;
-  outside.stage = problem.observations().conditions[condition].stage;
-  return outside;
+  outside.condition = problem.observations().conditions[*condition].name;
+  outside.stage = problem.observations().conditions[*condition].stage;
+  e.outside = outside;
 }
 
-std::string objection_to(const Problem& problem, const Selection& s, const Left& left, const Competitor* better,
-                         double clean_share) {
-  const double repaired = gain(s.base.held_out, s.model.held_out).mean;
-  const auto too_much = [&](const Competitor* c, double share) {
-    return c != nullptr && c->hypothesis.gain > share * (c->hypothesis.gain + std::max(0.0, repaired));
+// The sets that are listed, by how they differ from the first.
+void name_listed(const Problem& problem, const std::vector<Finalist>& list, const std::vector<std::size_t>& listed,
+                 Explanation& e) {
+  const Finalist& top = list[listed[0]];
+  e.named = top.model.candidates;
+  std::vector<Set> beside(e.named.size());
+  const auto stand_in = [&](std::size_t place, std::size_t other) {
+    if (same_physics(problem, e.named[place], other)) return;
+    if (!contains(beside[place], other)) beside[place].push_back(other);
   };
-  const bool clean =
-      left.own != nullptr && left.own->hypothesis.gain > clean_part * std::max(0.0, excess(s.model.held_out));
-  if (too_much(left.own, clean ? clean_share : own_share))
-    return "leaves structure over " + left.own->hypothesis.name + ", its own condition: it only imitates in part";
-  if (too_much(left.any, other_share)) return "leaves more than it repairs, over " + left.any->hypothesis.name;
-  if (left.serial_correlation != nullptr && left.serial_correlation->power > std::max(0.0, repaired))
-    return "leaves more than it repairs, a fine structure along " +
-           problem.observations().conditions[left.serial_correlation->condition].name;
-  if (left.interaction != nullptr && left.interaction->power > std::max(0.0, repaired))
-    return "leaves more than it repairs, over the product of " +
-           problem.observations().conditions[left.interaction->first].name + " and " +
-           problem.observations().conditions[left.interaction->second].name;
-  if (better != nullptr)
-    return "a free curve over " + better->hypothesis.name + " repairs more on unseen groups: it only imitates in part";
-  return "";
+  for (std::size_t k = 1; k < listed.size(); ++k) {
+    const Set& other = list[listed[k]].model.candidates;
+    if (const std::optional<std::size_t> place = only_exchange(e.named, other))
+      stand_in(*place, the_other(e.named, other));
+    else
+      e.instead.push_back(other);
+  }
+  e.verdict = listed.size() == 1 ? Verdict::named : Verdict::ambiguous;
+  for (const Finalist& f : list)
+    if (is_form(problem, top, f))
+      stand_in(*only_exchange(e.named, f.model.candidates), the_other(e.named, f.model.candidates));
+  for (std::size_t place = 0; place < beside.size(); ++place) {
+    if (beside[place].empty()) continue;
+    beside[place].insert(beside[place].begin(), e.named[place]);
+    e.not_told_apart.push_back(beside[place]);
+  }
 }
 
-// Marks what is part of the set and of no set that stands.
-void refuse(const std::vector<std::size_t>& set, const std::vector<std::size_t>& standing, const std::string& why,
-            Explanation& e) {
-  const auto within = [](const std::vector<std::size_t>& some, const std::vector<std::size_t>& all) {
-    return std::all_of(some.begin(), some.end(),
-                       [&](std::size_t c) { return std::find(all.begin(), all.end(), c) != all.end(); });
-  };
-  for (Hypothesis& h : e.scoreboard)
-    if (h.refused.empty() && h.kind == Hypothesis::Kind::mechanisms && !h.candidates.empty() &&
-        within(h.candidates, set) && !within(h.candidates, standing))
-      h.refused = why;
+// Forms of the likeliest set count for it.
+std::vector<double> by_physics(const Problem& problem, const std::vector<Finalist>& list, const Finalist& top,
+                               const std::vector<std::size_t>& places, std::vector<double> p) {
+  const auto own = static_cast<std::size_t>(&top - list.data());
+  const auto at = static_cast<std::size_t>(std::find(places.begin(), places.end(), own) - places.begin()) + 2;
+  for (std::size_t k = 0; k < places.size(); ++k)
+    if (is_form(problem, top, list[places[k]])) p[at] += p[k + 2], p[k + 2] = 0;
+  return p;
+}
+
+// What was named alone by its plausible sizes or its few numbers, while unseen groups cannot tell another, no larger
+// set from it that repairs as much: the recordings decide what is told apart, priors only what comes first.
+void add_equals(const Problem& problem, const std::vector<Finalist>& list, std::vector<std::size_t>& listed,
+                double& probability) {
+  if (listed.size() != 1) return;
+  const Finalist& top = list[listed[0]];
+  std::vector<std::size_t> equal;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const Finalist& f = list[k];
+    if (k == listed[0] || !f.refused.empty() || f.statistics.times < 0 || is_form(problem, top, f)) continue;
+    if (f.model.candidates.size() > top.model.candidates.size() || f.statistics.numbers > top.statistics.numbers)
+      continue;
+    if (f.statistics.behind <= equal_errors && f.gained >= nearly_one * top.gained) equal.push_back(k);
+  }
+  std::stable_sort(equal.begin(), equal.end(),
+                   [&](std::size_t a, std::size_t b) { return list[a].probability > list[b].probability; });
+  equal.resize(std::min(equal.size(), most_listed_beside));
+  for (const std::size_t k : equal) {
+    listed.push_back(k);
+    probability += list[k].probability;
+  }
 }
 
 }  // namespace
 
-std::string objection(const Problem& problem, const Selection& s, const Options& options) {
-  if (s.model.candidates.empty()) return "";
-  return objection_to(problem, s, structure_left(problem, s, options), better_curve(s, options), clean_share_first);
-}
-
-void judge(const Problem& problem, Selection& s, const Options& options, Explanation& e) {
+void judge(const Problem& problem, const Selection& s, const Options& options, Explanation& e) {
+  const Finalists& finalists = *s.finalists;
+  const std::vector<Finalist>& list = finalists.list();
   e.significant = s.before.global_p <= options.level;
-  const Left left = structure_left(problem, s, options);
-  const bool remains = left.any != nullptr || left.serial_correlation != nullptr || left.interaction != nullptr;
-  if (left.any != nullptr)
-    e.outside = outside_of(problem, left.any->condition);
-  else if (left.serial_correlation != nullptr)
-    e.outside = outside_of(problem, left.serial_correlation->condition);
-  else if (left.interaction != nullptr)
-    e.outside = outside_of(problem, left.interaction->first);
-  if (s.model.candidates.empty()) {
-    e.verdict = remains ? Verdict::unknown : Verdict::null;
-    e.important = remains;
-    return;
-  }
-  e.important = true;
-  const Competitor* better = better_curve(s, options);
-  std::string why = objection_to(problem, s, left, better, clean_share_last);
-  if (why.empty() && !(e.held_out_after < e.held_out_before))
-    why = "the groups that no choice has seen are not the better for it";
-  for (const PutAside& p : s.put_aside)
-    refuse(p.candidates, why.empty() ? s.model.candidates : std::vector<std::size_t>{}, p.why, e);
-  if (!why.empty()) {
+  list_weighed(finalists, e);
+  const Finalist* top = finalists.likeliest();
+  const LeftOver at_first = left_over(problem, {}, s.before, options);
+  std::vector<std::size_t> places;
+  const std::vector<Member> members = finalists.members(&places);
+  std::vector<double> p = probabilities(members);
+  if (top != nullptr) p = by_physics(problem, list, *top, places, std::move(p));
+  Answer found = answer(members, p, options.sure);
+  if (!e.significant) found = {Answer::Kind::nothing, {}, finalists.nothing()};
+  // The groups that no choice has seen speak last.
+  const bool no_better = found.kind == Answer::Kind::sets && !(e.held_out_after < e.held_out_before);
+  if (no_better) found = {Answer::Kind::outside, {}, finalists.outside()};
+  e.probability = found.probability;
+  if (found.kind == Answer::Kind::nothing) {
+    e.verdict = Verdict::null;
+  } else if (found.kind == Answer::Kind::outside) {
     e.verdict = Verdict::unknown;
-    if (!e.outside) e.outside = outside_of(problem, (better != nullptr ? *better : s.before.curves.at(0)).condition);
-    refuse(s.model.candidates, {}, why, e);
-    return;
+  } else {
+    std::vector<std::size_t> listed;
+    for (const std::size_t k : found.sets) listed.push_back(places[k - 2]);
+    add_equals(problem, list, listed, e.probability);
+    name_listed(problem, list, listed, e);
   }
-  e.named = s.model.candidates;
-  e.not_told_apart = s.not_told_apart;
-  e.instead = s.instead;
-  // Finer forms of what is named stand beside it and are no other physics.
-  const auto is_form = [&](std::size_t c) { return problem.candidates()[c].finer; };
-  const bool only_forms = std::all_of(e.not_told_apart.begin(), e.not_told_apart.end(), [&](const auto& set) {
-    return std::all_of(set.begin() + 1, set.end(), is_form);
-  });
-  e.verdict = only_forms && s.instead.empty() ? Verdict::named : Verdict::ambiguous;
+  e.important = e.verdict != Verdict::null;
+  if (e.verdict != Verdict::null)
+    begin_outside(problem, e.named.empty() ? at_first : top->left, s.before, e.verdict == Verdict::unknown, e);
+  if (top != nullptr)
+    for (Hypothesis& h : e.scoreboard) mark(s, e, *top, h);
+  if (no_better)
+    for (Hypothesis& h : e.scoreboard)
+      if (top != nullptr && within(h.candidates, top->model.candidates) && !h.candidates.empty())
+        h.refused = "the groups that no choice has seen are not the better for it";
 }
 
 }  // namespace gonio::inference

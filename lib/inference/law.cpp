@@ -51,6 +51,16 @@ std::vector<std::size_t> conditions_of(const std::vector<Term>& terms, std::size
   return list;
 }
 
+constexpr double least_of_curve = 0.5;  // of what free curves over its conditions repair on unseen groups
+
+// Free curves over these conditions, all at once, on unseen groups: what a law over them could repair at best.
+double gain_of_curves(const LawData& data, const std::vector<std::size_t>& conditions) {
+  RawColumns columns;
+  for (const std::size_t c : conditions)
+    for (std::vector<double>& hat : free_curve(data.system(), c)) columns.push_back(std::move(hat));
+  return gain(data.held_out({}), data.held_out(columns)).mean;
+}
+
 struct Judged {
   std::vector<Term> terms;
   Extrapolation leading;
@@ -66,7 +76,8 @@ Judged judged(const LawData& data, const std::vector<Term>& terms, std::size_t p
     if ((other.outwards.tells() || other.inwards.tells()) && !other.passes) return result;
   }
   const Gain g = gain(data.held_out({}), data.held_out(columns_of(data, terms)));
-  result.kept = data.system().groups.size() < 3 || g.mean > g.sigma;
+  result.kept = data.system().groups.size() < 3 ||
+                (g.mean > g.sigma && g.mean >= least_of_curve * gain_of_curves(data, conditions));
   return result;
 }
 
@@ -151,13 +162,32 @@ void tell_terms(const LawData& data, const std::vector<Term>& terms, Outside& ou
   outside.law = in_words(system.problem(), outside.terms);
 }
 
+// Constants that a person can use: each known to a third, a scale to a half. A cosine and a sine are one amplitude.
+bool has_sane_constants(const std::vector<LawTerm>& terms) {
+  constexpr double of_coefficient = 1.0 / 3, of_scale = 0.5;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const LawTerm& t = terms[k];
+    if (t.scale_sigma > of_scale * std::abs(t.scale)) return false;
+    if (is_wave(terms, k)) {
+      const LawTerm& s = terms[++k];
+      if (std::hypot(t.sigma, s.sigma) > of_coefficient * std::hypot(t.coefficient, s.coefficient)) return false;
+    } else if (t.sigma > of_coefficient * std::abs(t.coefficient)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 void tell(const LawData& data, const Judged& law, Explanation& e) {
   const System& system = data.system();
   const Condition& leading = system.observations().conditions[law.leading.condition];
   Outside& outside = *e.outside;
+  Outside told = outside;
+  tell_terms(data, law.terms, told);
+  if (!has_sane_constants(told.terms)) return;
+  outside = std::move(told);
   outside.condition = leading.name;
   outside.stage = leading.stage;
-  tell_terms(data, law.terms, outside);
   const Way& way = law.leading.outwards.tells() ? law.leading.outwards : law.leading.inwards;
   outside.held_out_before = way.before;
   outside.held_out_after = way.after;

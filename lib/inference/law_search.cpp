@@ -95,7 +95,8 @@ Term refined(const LawData& data, Term term, const RawColumns& chosen, const Mas
     const std::vector<Score> scores = data.scores(columns, chosen, mask);
     std::size_t best = 3;
     for (std::size_t k = 0; k < scores.size(); ++k)
-      if (scores[k].survives > 1e-3 && scores[k].fall > scores[best].fall) best = k;
+      if (scores[k].survives > 1e-3 && scores[k].fall > scores[best].fall && is_readable(data.system(), around[k]))
+        best = k;
     term = around[best];
   }
   return term;
@@ -224,6 +225,13 @@ void sum_up(std::size_t blocks, Extrapolation& x) {
 }
 
 }  // namespace
+
+RawColumns free_curve(const System& system, std::size_t condition) {
+  const std::vector<double>& value = system.observations().conditions[condition].values;
+  Mask used(value.size());
+  for (std::size_t i = 0; i < value.size(); ++i) used[i] = system.weight(i) > 0 && std::isfinite(value[i]);
+  return curve_columns(system, condition, value, used);
+}
 
 RawColumns columns_of(const LawData& data, const std::vector<Term>& terms) {
   RawColumns columns;

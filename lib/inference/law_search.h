@@ -42,6 +42,9 @@ std::vector<Term> with_one_more(const LawData& data, const std::vector<Term>& po
 // Single terms nearly as good as the best one, best first.
 std::vector<Term> good_singles(const LawData& data, const std::vector<Term>& possible, double level);
 
+// Hats over the quantiles of one condition, with its direction: a free curve.
+RawColumns free_curve(const System& system, std::size_t condition);
+
 RawColumns columns_of(const LawData& data, const std::vector<Term>& terms);
 std::vector<double> combined(const RawColumns& columns, const Eigen::VectorXd& coefficients);
 

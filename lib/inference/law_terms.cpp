@@ -13,6 +13,8 @@ namespace {
 
 constexpr double least_ratio = 1e-4;  // of the smallest to the largest value, for negative and broken powers
 constexpr int scales_tried = 9;
+constexpr double most_folds = 7;  // |x / scale| of an exponential: beyond a factor of a thousand its coefficient, which
+                                  // is its value at zero, says nothing about what was seen
 
 std::vector<double> powers_for(const ConditionKind& kind) {
   if (kind.periodic) return {};
@@ -32,16 +34,12 @@ void add_shapes(const ConditionKind& kind, std::size_t c, double blocks, std::ve
     for (const char* shape : {"sin", "cos"})
       for (const double scale : {1.0, 0.5}) terms.push_back({{}, shape, c, scale, false, c, scale == 1 ? 1.0 : 2.0});
   if (kind.periodic) return;
-  const double range = kind.upper - kind.lower;
+  const double range = kind.upper - kind.lower, largest = std::max(std::abs(kind.lower), std::abs(kind.upper));
   for (int k = 0; k < scales_tried; ++k)
-    for (const double sign : {1.0, -1.0})
-      terms.push_back({{},
-                       "exp",
-                       c,
-                       sign * range * 0.04 * std::pow(50.0, k / (scales_tried - 1.0)),
-                       true,
-                       c,
-                       1 + std::log(blocks)});
+    for (const double sign : {1.0, -1.0}) {
+      const double scale = range * 0.04 * std::pow(50.0, k / (scales_tried - 1.0));
+      if (largest <= most_folds * scale) terms.push_back({{}, "exp", c, sign * scale, true, c, 1 + std::log(blocks)});
+    }
 }
 
 constexpr const char* radiance = "image.radiance";  // what was predicted: its curve is an absolute error
@@ -87,10 +85,23 @@ std::string power_in_words(const std::string& name, double power) {
   return power == 1 ? name : name + "^" + printed(power);
 }
 
+// Every condition over a round number of its own unit, so that the coefficient is the size of the term there.
 std::string term_in_words(const LawTerm& t) {
-  std::string text = number_in_words(t.coefficient, t.sigma);
-  if (t.unit != "1") text += " " + t.unit;
-  for (const auto& [name, power] : t.powers) text += " * " + power_in_words(name, power);
+  double size = 1;
+  Unit unit(t.unit);
+  std::string product;
+  for (std::size_t k = 0; k < t.powers.size(); ++k) {
+    const auto& [name, power] = t.powers[k];
+    const LawTerm::Reference at = k < t.reference.size() ? t.reference[k] : LawTerm::Reference{};
+    const bool bare = at.unit.empty();
+    product += " * " + power_in_words(bare ? name : "(" + name + " / " + quantity(at.value, at.unit) + ")", power);
+    if (bare) continue;
+    size *= std::pow(at.value, power);
+    unit = unit / Unit(at.unit).power(-power);
+  }
+  std::string text = number_in_words(t.coefficient * size, t.sigma * size);
+  if (unit.text() != "1") text += " " + unit.text();
+  text += product;
   if (t.shape == "exp") {
     text += std::string(" * exp(") + (t.scale > 0 ? "-" : "") + t.shape_of + " / " +
             number_in_words(std::abs(t.scale), t.scale_sigma) + (t.scale_unit == "1" ? "" : " " + t.scale_unit) + ")";
@@ -100,12 +111,6 @@ std::string term_in_words(const LawTerm& t) {
   return text;
 }
 
-// c cos(x / s) + d sin(x / s) = A cos(2 pi x / P - phase).
-bool is_wave(const std::vector<LawTerm>& terms, std::size_t k) {
-  if (k + 1 >= terms.size()) return false;
-  const LawTerm &c = terms[k], &s = terms[k + 1];
-  return c.shape == "cos" && s.shape == "sin" && c.shape_of == s.shape_of && c.scale == s.scale && c.scale_sigma > 0;
-}
 std::string wave_in_words(const LawTerm& c, const LawTerm& s) {
   const double size = std::hypot(c.coefficient, s.coefficient), turn = 2 * std::numbers::pi;
   const double sigma = std::hypot(c.coefficient * c.sigma, s.coefficient * s.sigma) / size;
@@ -115,6 +120,12 @@ std::string wave_in_words(const LawTerm& c, const LawTerm& s) {
 }
 
 }  // namespace
+
+bool is_wave(const std::vector<LawTerm>& terms, std::size_t k) {
+  if (k + 1 >= terms.size()) return false;
+  const LawTerm &c = terms[k], &s = terms[k + 1];
+  return c.shape == "cos" && s.shape == "sin" && c.shape_of == s.shape_of && c.scale == s.scale && c.scale_sigma > 0;
+}
 
 bool shares_scale(const Term& cosine, const Term& sine) {
   return cosine.shape == "cos" && sine.shape == "sin" && cosine.fitted_scale && sine.fitted_scale &&
@@ -139,6 +150,12 @@ ConditionKind kind_of(const System& system, std::size_t condition) {
   kind.angle = c.unit == "rad";
   kind.periodic = kind.angle && range > 3.3;  // more than half a turn
   return kind;
+}
+
+bool is_readable(const System& system, const Term& term) {
+  if (term.shape != "exp") return true;
+  const ConditionKind kind = kind_of(system, term.shape_of);
+  return std::max(std::abs(kind.lower), std::abs(kind.upper)) <= most_folds * std::abs(term.scale);
 }
 
 std::vector<Term> possible_terms(const System& system, const std::vector<std::size_t>& leaders) {
@@ -190,6 +207,20 @@ std::vector<double> column_of(const System& system, const Term& term, const Mask
   return column;
 }
 
+namespace {
+
+// The largest size met, to one digit as it is shown; nothing for plain numbers.
+LawTerm::Reference reference_of(const System& system, std::size_t condition) {
+  const Unit unit(system.observations().conditions[condition].unit);
+  if (unit.is_number()) return {};
+  const ConditionKind kind = kind_of(system, condition);
+  const double largest = std::max(std::abs(kind.lower), std::abs(kind.upper));
+  const double factor = shown_in(unit.text(), largest).factor;
+  return {std::stod(printed(largest * factor, 1)) / factor, unit.text()};
+}
+
+}  // namespace
+
 LawTerm told(const System& system, const Term& term, double coefficient, double sigma, double scale_sigma) {
   const Problem& problem = system.problem();
   const std::vector<Condition>& conditions = problem.observations().conditions;
@@ -205,6 +236,7 @@ LawTerm told(const System& system, const Term& term, double coefficient, double 
   for (const auto& [c, power] : term.powers) {
     unit = unit / Unit(conditions[c].unit).power(power);
     t.powers.emplace_back(conditions[c].name, power);
+    t.reference.push_back(reference_of(system, c));
   }
   t.unit = unit.text();
   if (term.shape.empty()) return t;

@@ -33,6 +33,9 @@ struct ConditionKind {
 };
 ConditionKind kind_of(const System& system, std::size_t condition);
 
+// Does an exponential stay within a thousandfold of its coefficient wherever it was seen?
+bool is_readable(const System& system, const Term& term);
+
 // Terms over the conditions `leaders`, alone and with one other condition, in an order that depends on nothing else.
 // Where a condition's direction makes its curve a relative error, terms of both kinds, relative and absolute.
 std::vector<Term> possible_terms(const System& system, const std::vector<std::size_t>& leaders);
@@ -41,6 +44,8 @@ std::vector<Term> possible_terms(const System& system, const std::vector<std::si
 // outside the mask.
 std::vector<double> column_of(const System& system, const Term& term, const Mask& mask = {});
 
+// c cos(x / s) + d sin(x / s), the term `k` and the next: A cos(2 pi x / P - phase).
+bool is_wave(const std::vector<LawTerm>& terms, std::size_t k);
 // The term as it is told, with its coefficient's unit.
 LawTerm told(const System& system, const Term& term, double coefficient, double sigma, double scale_sigma);
 std::string in_words(const Problem& problem, const std::vector<LawTerm>& terms);

@@ -140,6 +140,7 @@ std::vector<LocatedCondition> locate(const System& system, const Projection& p, 
     const Condition& condition = system.observations().conditions[structures.list[s].index];
     LocatedCondition located;
     located.name = condition.name, located.unit = condition.unit, located.stage = condition.stage;
+    located.period = structures.list[s].period;
     const Explained e = explained_by(p, p.foreign(structures, s));
     located.share = excess > 0 ? std::clamp((e.squares - e.rank) / excess, 0.0, 1.0) : 0;
     result.push_back(std::move(located));
@@ -187,6 +188,11 @@ void place_conditions(const System& system, Explanation& e) {
         std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) { return c.name == located.name; });
     const auto place = static_cast<std::size_t>(found - conditions.begin());
     located.curve = residual_curve(system, place, e.residual_before, e.residual_after, bins_of_a_curve);
+    if (located.period > 0) {  // everywhere, and nowhere in the mean over the groups
+      if (!located.curve.centre.empty())
+        located.lower = located.curve.centre.front(), located.upper = located.curve.centre.back();
+      continue;
+    }
     if (e.named.empty()) {
       find_range(located.curve, power_of(located.curve), located);
       continue;

@@ -35,6 +35,7 @@ struct Condition {
   std::vector<double> values;     // one per row; NaN: does not apply to this row
   std::vector<double> direction;  // one per row, or empty
   std::string curve_unit = "";    // of the curve: residual's unit over direction's: "px", "mm", "1"
+  bool within_groups = false;     // asked as well for waves with a phase of their own in each group (own_phase.h)
 };
 
 struct Observations {
@@ -94,6 +95,11 @@ struct ProposedRows {
   std::vector<std::vector<double>> nuisance;  // derivatives, one column for each number that only this group would have
 };
 
+// What an exact simulation says more than predict() does, row by row, and the variance of that by its random numbers.
+struct Bias {
+  std::vector<double> value, variance;
+};
+
 struct Explanation;  // explanation.h
 struct Illustration;
 
@@ -114,6 +120,13 @@ class Problem {
   // differences of predict() with step 1e-4 size, one-sided at a bound.
   virtual void jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
                         std::span<double> derivatives) const;
+
+  // Where predict() stands for a slower simulation: by how much it is off at `values`, with these candidates switched
+  // on. Asked once or twice, of what is reported. The same random numbers serve all values.
+  virtual std::optional<Bias> bias(std::span<const double> /*values*/,
+                                   std::span<const std::size_t> /*candidates*/) const {
+    return std::nullopt;
+  }
 
   virtual std::string domain() const = 0;      // "boards", "images"
   virtual std::string unit() const = 0;        // of the score: "px", "1" (a ratio)

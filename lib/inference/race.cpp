@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/parallel.h"
 #include "stats/distributions.h"
@@ -13,7 +14,10 @@ namespace {
 
 constexpr int chords = 25;                            // steps of a fit with kept slopes
 constexpr int turns = 3;                              // how often the slopes may be taken anew
+constexpr double usual_reach = 3;                     // typical sizes: where a bound lies so near, it may be reached
 constexpr double small_gain = 0.005, small_cost = 4;  // of the sum of whitened squares: not worth new slopes
+
+constexpr double least_block_z = 5;  // of a claim about single groups
 
 std::string family_of(const Candidate& c) {
   if (!c.family.empty()) return c.family;
@@ -22,12 +26,27 @@ std::string family_of(const Candidate& c) {
   return family;
 }
 
+// Most of its numbers at least: one that all groups share (the period of a flicker) does not tie the others.
 bool has_numbers_of_groups(const System& system, const std::vector<std::size_t>& candidates) {
   return std::any_of(candidates.begin(), candidates.end(), [&](std::size_t c) {
     const std::vector<std::size_t>& own = system.problem().candidates()[c].parameters;
-    return std::all_of(own.begin(), own.end(),
-                       [&](std::size_t p) { return system.problem().parameters()[p].groups.size() == 1; });
+    const auto single =
+        std::ranges::count_if(own, [&](std::size_t p) { return system.problem().parameters()[p].groups.size() == 1; });
+    return 2 * static_cast<std::size_t>(single) > own.size();
   });
+}
+
+// A claim about one or two groups among more: groups that it says nothing about have nothing to gain, so that the
+// spread over groups would hide what single blocks show.
+bool is_about_few_groups(const System& system, const std::vector<std::size_t>& candidates) {
+  std::set<std::size_t> groups;
+  for (const std::size_t c : candidates)
+    for (const std::size_t p : system.problem().candidates()[c].parameters) {
+      const std::vector<std::size_t>& own = system.problem().parameters()[p].groups;
+      if (own.empty()) return false;
+      groups.insert(own.begin(), own.end());
+    }
+  return groups.size() <= 2 && 2 * groups.size() <= system.groups.size();
 }
 
 bool is_protected(const std::string& name, const std::vector<std::string>& protect) {
@@ -35,7 +54,41 @@ bool is_protected(const std::string& name, const std::vector<std::string>& prote
                      [&](const std::string& p) { return name == p || name.starts_with(p + "/"); });
 }
 
+// The chance that unseen rows are so much the better for nothing: Student's on the falls of single blocks, with as many
+// degrees as blocks bear them, (sum d^2)^2 / sum d^4 less one. A linear interval speaks neither at a bound nor along a
+// flat likelihood; this does.
+double unseen_p(const HeldOut& before, const HeldOut& after) {
+  double squares = 0, fourths = 0;
+  for (std::size_t b = 0; b < std::min(before.blocks.size(), after.blocks.size()); ++b) {
+    const double d = before.blocks[b] - after.blocks[b];
+    squares += d * d, fourths += d * d * d * d;
+  }
+  const double degrees = fourths > 0 ? squares * squares / fourths - 1 : 0;
+  return degrees > 1 ? stats::student_upper(block_z(before, after), degrees) : 1;
+}
+
 }  // namespace
+
+double typical_size(const Candidate& candidate, const Parameter& parameter) {
+  const std::string& full = parameter.name;
+  for (const mechanism::Parameter& p : candidate.mechanism->parameters) {
+    if (!full.ends_with(p.name)) continue;
+    const char before = full.size() == p.name.size() ? '.' : full[full.size() - p.name.size() - 1];
+    if (before == '.' || before == '/') return p.typical;
+  }
+  return 0;
+}
+
+std::string at_a_limit(const Problem& problem, const Fit& fit, const std::vector<std::size_t>& candidates) {
+  for (const std::size_t c : candidates)
+    for (const std::size_t p : problem.candidates()[c].parameters) {
+      const Parameter& parameter = problem.parameters()[p];
+      if (std::find(fit.inner.begin(), fit.inner.end(), p) != fit.inner.end()) continue;
+      const double away = std::abs(fit.values[p] - parameter.neutral);
+      if (!(away <= usual_reach * typical_size(problem.candidates()[c], parameter))) return parameter.name;
+    }
+  return "";
+}
 
 Race::Race(const System& system, const Options& options) : system_(system), options_(options) {
   const Problem& problem = system.problem();
@@ -201,6 +254,9 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
   const Gain g = gain(before.held_out, after.held_out);
   h.gain = g.mean;
   h.gain_sigma = g.sigma;
+  const bool about_few = is_about_few_groups(system_, added);
+  const double blocks_z = about_few ? block_z(before.held_out, after.held_out) : 0;
+  if (blocks_z > 0) h.gain_sigma = h.gain / blocks_z;
   h.effect = effect(before, after);
   std::vector<std::size_t> parameters;
   for (const std::size_t c : added) {
@@ -216,6 +272,7 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
   for (const std::size_t c : added)
     h.wald_p =
         std::max(h.wald_p, neutral_p(system_, after.fit, u, system_.problem().candidates()[c].parameters, helps));
+  if (helps) h.wald_p = std::min(h.wald_p, unseen_p(before.held_out, after.held_out));
   // A free hand in every group beats physics that all groups share: negative controls are held against mechanisms of
   // their own kind.
   const bool grouped = has_numbers_of_groups(system_, added);
@@ -225,13 +282,12 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
     ++peers;
     rivals += negative_control.gain > h.gain + h.gain_sigma;
   }
-  const auto at_bound =
-      std::find_if(h.parameters.begin(), h.parameters.end(), [](const Estimate& e) { return e.at_bound; });
+  const std::string limit = at_a_limit(system_.problem(), after.fit, added);
   // Numbers of single groups soak up any misfit, so that their being away from neutral proves nothing: held-out groups
   // alone speak.
   const double freedom = static_cast<double>(system_.groups.size()) - 1;
-  const bool by_chance =
-      grouped && !(h.gain_sigma > 0 && stats::student_upper(h.gain / h.gain_sigma, freedom) <= options_.level);
+  const bool by_chance = grouped && !(about_few && blocks_z > least_block_z) &&
+                         !(h.gain_sigma > 0 && stats::student_upper(h.gain / h.gain_sigma, freedom) <= options_.level);
   if (!(h.gain > h.gain_sigma))
     h.refused = "does not lower the held-out score beyond its standard error";
   else if (by_chance)
@@ -241,8 +297,8 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
     h.refused = "negative controls without physics do better";
   else if (stats::sidak(h.wald_p, static_cast<double>(looks)) > options_.level)
     h.refused = "its parameters cannot be told from neutral";
-  else if (at_bound != h.parameters.end())
-    h.refused = system_.problem().parameters()[at_bound->parameter].name + " ends at the limit of what is plausible";
+  else if (!limit.empty())
+    h.refused = limit + " ends at the limit of what is plausible";
   else if (h.effect < options_.smallest_effect)
     h.refused = "smaller than what matters";
   return h;

@@ -74,6 +74,13 @@ class Race {
   std::vector<std::size_t> allowed_, free_;
 };
 
+// The usual size of a deviation that the candidate's mechanism declares for a parameter of the problem; 0: none.
+double typical_size(const Candidate& candidate, const Parameter& parameter);
+// The name of the first number of these candidates that a fit left at a limit of what is plausible; empty: there is
+// none. A bound within a few usual sizes of neutral is one of the physics itself (a share of one, a mirror), and no
+// objection.
+std::string at_a_limit(const Problem& problem, const Fit& fit, const std::vector<std::size_t>& candidates);
+
 // What the recordings say about one model, before anything else is fitted.
 struct Evidence {
   Structures structures;
@@ -102,7 +109,10 @@ struct ResidualStructure {
   std::optional<Interaction> interaction;  // structure in a product of conditions; asked where nothing else is found
   std::shared_ptr<const Evidence> evidence;
 };
-ResidualStructure residual_structure(const Race& race, const Model& model, const Options& options);
+// `looks`: at curves alone where nothing but what a model leaves is asked.
+enum class Looks { at_everything, at_curves };
+ResidualStructure residual_structure(const Race& race, const Model& model, const Options& options,
+                                     Looks looks = Looks::at_everything);
 
 // How much may be tried: a number of fits and of pairs, never a time.
 struct Effort {
@@ -110,39 +120,32 @@ struct Effort {
   std::size_t least = 4;       // of them whatever the screening says
   std::size_t pairs = 20000;   // screened in a round
   std::size_t effects = 5;     // at once
-  std::size_t runners_up = 4;  // tried where the last judgement refuses the first choice
+  std::size_t runners_up = 4;  // tried where the first choice does not suffice
+  std::size_t looks = 8;       // at what finalists leave, at a time
   std::string shortened;       // what a budget has cost, in a sentence
 };
 Effort effort_for(const Race& race, const Options& options);
 
-// A set of candidates that won its race and that the last judgement refused.
-struct PutAside {
-  std::vector<std::size_t> candidates;
-  std::string why;
-};
+class Finalists;
 struct Selection {
   Model base, model;
   ResidualStructure before, after;
   std::vector<Hypothesis> scoreboard;
-  std::vector<std::size_t> minor;  // places in `scoreboard`
-  std::vector<std::vector<std::size_t>> not_told_apart;
-  std::vector<std::vector<std::size_t>> instead;  // whole sets that do as well as all of the model's candidates
-  std::vector<PutAside> put_aside;
+  std::vector<std::size_t> minor;              // places in `scoreboard`
+  std::shared_ptr<const Finalists> finalists;  // finalists.h; the model is the likeliest of them
   std::string shortened;
 };
-// Selection and judgement are one search: where objection() (judgement.h) refuses what forward selection has come to,
-// the choice of one round is changed for the next that passes there, and selection goes on from it: first the one that
-// falls least short of what was chosen, in whichever round, and a bounded number of them (limited discrepancy search,
-// Harvey & Ginsberg, IJCAI 1995). One that judges well wins, unless what was refused repairs clearly more; where none
-// does, the first choice stands, refused.
-// `mismatch_p`: of the null test on the base model, where it was asked of more groups than these; above the level
-// nothing is added to it.
+// Forward selection while effects pay, and, where what it comes to and its parts do not suffice together, the same from
+// another choice of one round: first the one that falls least short of what was chosen, in whichever round, and a
+// bounded number of them (limited discrepancy search, Harvey & Ginsberg, IJCAI 1995). All sets on the way are weighed
+// against each other (finalists.h), and so is what could stand in for a member of the likeliest. `mismatch_p`: of the
+// null test on the base model, where it was asked of more groups than these; above the level nothing is added to it.
 Selection select(const Race& race, const Options& options, const std::vector<double>& start,
                  std::optional<double> mismatch_p);
 
-// For each named effect, what could stand in its place: within two standard errors of the winner. For several together
-// also other sets, no larger, that have none of them and judge as well.
-void find_alternatives(const Race& race, const Options& options, const Effort& effort, Selection& selection);
+// Adds what could stand in the place of each member of `model`; for two together also pairs that have neither.
+void add_alternatives(const Race& race, const Effort& effort, const Selection& selection, const Model& model,
+                      Finalists& finalists);
 // Is `other` as good as `best`, both extending `before`? Within `errors` standard errors of the paired difference over
 // groups, not beyond what the noise of single blocks could do, and with at least `share` of what the best one gained.
 bool as_good(const Model& before, const Model& best, const Model& other, double errors, double share);

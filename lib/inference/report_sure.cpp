@@ -13,16 +13,20 @@ using report::Tone;
 std::string verdict_in_words(const Problem& problem, const Explanation& e) {
   if (!e.misplaced.files.empty())
     return "Verdict: unknown. Files do not show what the manifest takes them for, and no physics was asked of them.";
+  const std::string sure = probability_in_words(e.probability);
   switch (e.verdict) {
     case Verdict::null:
       return e.significant
                  ? "Verdict: nothing that matters. A mismatch beyond noise is there, but too small for a name."
                  : "Verdict: nothing is left out, as far as these recordings can show.";
-    case Verdict::named: return "Verdict: named. No other hypothesis explains the held-out data as well.";
-    case Verdict::ambiguous: return "Verdict: ambiguous. Several hypotheses explain the held-out data equally well.";
+    case Verdict::named: return "Verdict: named. " + sure + " sure that it is this and nothing else.";
+    case Verdict::ambiguous:
+      return "Verdict: ambiguous. " + sure + " sure that it is one of those listed below" +
+             (e.probability < e.sure ? ", less than was asked for." : ".");
     case Verdict::unknown:
-      return "Verdict: unknown. Something matters here, and nothing in the library repairs it on unseen " +
-             problem.group_noun() + "s.";
+      return "Verdict: unknown, " + sure +
+             " sure. Something matters here, and nothing in the library repairs it on unseen " + problem.group_noun() +
+             "s.";
   }
   return "";
 }
@@ -69,6 +73,28 @@ void parameters(report::Page& page, const Problem& problem, const Explanation& e
   page.table(table);
 }
 
+// The answers that were held against each other, and what speaks for and against each.
+void weighed_answers(report::Page& page, const Problem& problem, const Explanation& e) {
+  using Kind = Explanation::Weighed::Kind;
+  constexpr std::size_t most = 8;
+  constexpr double least = 0.001;
+  if (!e.significant || e.weighed.empty()) return;
+  report::TableText table{"Probabilities from the statistics beside them, calibrated on cases of known truth.",
+                          {{"answer", "", false}, {"probability", ""}, {"for and against", "", false}},
+                          {}};
+  for (const Explanation::Weighed& w : e.weighed) {
+    if (table.rows.size() == most || (w.probability < least && !table.rows.empty())) break;
+    std::string answer, why;
+    for (const std::size_t c : w.candidates)
+      answer += (answer.empty() ? "" : " with ") + mechanism_in_words(problem, c);
+    if (w.kind == Kind::nothing) answer = "nothing that matters";
+    if (w.kind == Kind::outside) answer = "none of these: outside the library";
+    for (const auto& [name, value] : w.statistics) why += (why.empty() ? "" : ", ") + name + " " + printed(value, 2);
+    table.rows.push_back({answer, probability_in_words(w.probability), why});
+  }
+  page.table(table);
+}
+
 }  // namespace
 
 void tell_sure(report::Page& page, const ReportPart& part) {
@@ -87,8 +113,9 @@ void tell_sure(report::Page& page, const ReportPart& part) {
   for (const std::vector<std::size_t>& set : e.not_told_apart)
     sets.push_back("Not told apart: " + words(set, ", ") + ".");
   for (const std::vector<std::size_t>& set : e.instead)
-    sets.push_back("As good in the place of all that is named: " + words(set, " with ") + ".");
+    sets.push_back("In the place of all that is named: " + words(set, " with ") + ".");
   if (!sets.empty()) page.list(sets);
+  weighed_answers(page, problem, e);
   if (!e.converged) page.note("The final fit did not converge: take the numbers with care.");
 }
 

@@ -51,7 +51,9 @@ std::string effect_in_words(const LocatedCondition& c) {
 }
 
 // "half angle below 18 degrees: 64 % of the excess, 0.8 px".
-std::string ranked(const LocatedCondition& c) {
+std::string ranked(const Problem& problem, const LocatedCondition& c) {
+  if (c.period > 0)
+    return place_in_words(problem, c) + " (" + c.name + "): " + share_in_words(c.share) + " of the excess";
   std::string range = range_in_words(c);
   if (range.empty()) range = "over its whole range";
   const std::string effect = effect_in_words(c);
@@ -142,9 +144,14 @@ void tell_curve(report::Page& page, const ReportPart& part) {
   }
   page.plots(plots);
   if (!e.significant) return;
+  if (!tells_where(e.conditions[0])) {
+    std::string nowhere = nowhere_in_words(*part.problem, e.conditions[0]);
+    nowhere[0] = 'N';
+    page.paragraph(nowhere + ".");
+  }
   std::vector<std::string> items;
   for (std::size_t k = 0; k < std::min<std::size_t>(4, e.conditions.size()); ++k)
-    if (k == 0 || e.conditions[k].share > 0.05) items.push_back(ranked(e.conditions[k]));
+    if (k == 0 || e.conditions[k].share > 0.05) items.push_back(ranked(*part.problem, e.conditions[k]));
   page.list(items);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "inference/global_test.h"
+#include "inference/own_phase.h"
 #include "inference/race.h"
 #include "stats/sign_flip.h"
 
@@ -53,11 +54,17 @@ bool of_single_groups(const System& system, const Structure& structure) {
          own.size() >= system.groups.size();
 }
 
-void gather(const Race& race, const Model& model, const Options& options, Structures& structures) {
+void gather(const Race& race, const Model& model, const Options& options, Looks looks, Structures& structures) {
   const System& system = race.system();
+  if (looks == Looks::at_curves) {
+    for (std::size_t c = 0; c < system.observations().conditions.size(); ++c) structures.add_curve(system, c);
+    return;
+  }
   for (const std::size_t c : race.open_to(model)) structures.add_mechanism(system, model.fit.values, c);
   for (const std::size_t c : race.open_to(model)) structures.add_changes(system, model.fit.values, c);
   for (std::size_t c = 0; c < system.observations().conditions.size(); ++c) structures.add_curve(system, c);
+  for (const OwnPhase& wave : own_phases(system, model.fit.values))
+    if (price_of_further_looks * wave.p <= options.level) structures.add_wave(system, wave.condition, wave.period);
   const std::vector<std::size_t>& shapes = race.allowed();
   for (std::size_t d = 0; d < options.negative_controls && !shapes.empty(); ++d)
     structures.add_negative_control(system, shapes[d % shapes.size()], d, options.seed);
@@ -90,11 +97,11 @@ void run_competitors(const Race& race, const Model& model, const Options& option
 
 }  // namespace
 
-ResidualStructure residual_structure(const Race& race, const Model& model, const Options& options) {
+ResidualStructure residual_structure(const Race& race, const Model& model, const Options& options, Looks at) {
   const System& system = race.system();
   const auto evidence = std::make_shared<Evidence>();
   Structures& structures = evidence->structures;
-  gather(race, model, options, structures);
+  gather(race, model, options, at, structures);
   const Projection& p = evidence->projection = project(system, model.fit, structures);
   evidence->scores = block_scores(system, p, structures);
   evidence->folds = std::make_unique<Folds>(system, p.linearisation);

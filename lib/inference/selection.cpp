@@ -1,17 +1,17 @@
-// See race.h: forward selection while effects pay, backward elimination, and the next choice where the last judgement
-// refuses the first.
+// See race.h: forward selection while effects pay, backward elimination, and another choice where the first does not
+// suffice.
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
+#include "inference/finalists.h"
 #include "inference/forward_step.h"
-#include "inference/judgement.h"
 
 namespace gonio::inference {
 namespace {
 
-constexpr double least_share = 0.5;   // of what the first choice repaired, for a runner-up to be worth a look
-constexpr double clearly_less = 0.1;  // by which a runner-up may repair less, as a share, beside two standard errors
+constexpr double least_share = 0.5;     // of what the first choice repaired, for a runner-up to be worth a look
+constexpr double near_finalists = 0.3;  // the same, for a place among the finalists as it stands
 
 std::vector<std::size_t> smaller_set(std::vector<std::size_t> set, std::size_t c) {
   std::erase(set, c);
@@ -41,12 +41,12 @@ bool is_minor(const Hypothesis& h) {
 
 // A round with what it starts from; runners of the same round share it.
 struct Level {
-  Level(const Race& race, const Effort& effort, Model from, ResidualStructure left)
-      : model(std::move(from)), after(std::move(left)), step(race, effort, model, after) {}
+  Level(const Race& race, const Effort& effort, Model from, std::shared_ptr<const ResidualStructure> left)
+      : model(std::move(from)), after(std::move(left)), step(race, effort, model, *after) {}
   Level(const Level&) = delete;
   Level& operator=(const Level&) = delete;
   Model model;
-  ResidualStructure after;
+  std::shared_ptr<const ResidualStructure> after;
   ForwardStep step;
 };
 // What forward selection has come to.
@@ -54,29 +54,23 @@ struct Path {
   std::vector<std::shared_ptr<Level>> levels;
   std::vector<Runner> joined;  // one for each level but the last, where nothing more joins
   Model model;
-  ResidualStructure after;
+  std::shared_ptr<const ResidualStructure> after;
 };
 
 class Search {
  public:
-  Search(const Race& race, const Options& options, const Effort& effort, Selection& s)
-      : race_(race), options_(options), effort_(effort), s_(s) {}
+  Search(const Race& race, const Options& options, const Effort& effort, Selection& s, Finalists& finalists)
+      : race_(race), options_(options), effort_(effort), s_(s), finalists_(finalists) {}
 
   void run() {
-    Path first{{}, {}, s_.model, s_.after};
-    climb(first);
-    take(first);
-    if (s_.model.candidates.empty()) return;
-    std::string why = objection(race_.system().problem(), s_, options_);
-    if (why.empty()) return;
-    const Model refused = s_.model;
-    s_.put_aside.push_back({refused.candidates, why});
-    for (const Turn& turn : turns(first)) {
-      if (taken(first, turn, false, refused)) return;
-      if (grown_ && taken(first, turn, true, refused)) return;
-    }
-    s_.put_aside.erase(s_.put_aside.begin());
-    take(first);
+    paths_.push_back({{}, {}, s_.base, std::make_shared<const ResidualStructure>(s_.before)});
+    climb(paths_[0]);
+    enter(paths_[0]);
+    finalists_.weigh(effort_.looks);
+    if (paths_[0].joined.empty()) return tell(paths_[0]);
+    if (finalists_.in_library() < options_.sure) explore();
+    exchange();
+    settle();
   }
 
  private:
@@ -87,61 +81,95 @@ class Search {
     double share = 0;  // of what was repaired when the first choice had joined there
   };
 
-  // Is the selection content with what follows from this turn? `wary`: nothing joins that completes a set that was put
-  // aside; asked after the free choice, which may have drawn it in again.
-  bool taken(const Path& first, const Turn& turn, bool wary, const Model& refused) {
-    const auto place = static_cast<std::ptrdiff_t>(turn.level);
-    Path path{{first.levels.begin(), first.levels.begin() + place + 1},
-              {first.joined.begin(), first.joined.begin() + place},
-              turn.runner.model,
-              {}};
-    path.joined.push_back(turn.runner);
-    path.after = residual_structure(race_, path.model, options_);
-    climb(path, wary);
-    take(path);
-    grown_ = path.joined.size() > turn.level + 1;
-    if (put_aside(s_.model.candidates, false)) return false;
-    std::string why = objection(race_.system().problem(), s_, options_);
-    if (why.empty() && falls_short(refused)) why = "another set, which only imitates, repairs more on unseen groups";
-    if (!why.empty()) s_.put_aside.push_back({s_.model.candidates, why});
-    return why.empty();
-  }
-
-  // Effects join while they pay; not to a set that was put aside before.
-  void climb(Path& path, bool wary = false) const {
-    while (path.after.global_p <= options_.level && path.model.candidates.size() < effort_.effects) {
+  // Effects join while they pay; no set that is among the finalists already, where `anew`.
+  void climb(Path& path, bool anew = false) const {
+    while (path.after->global_p <= options_.level && path.model.candidates.size() < effort_.effects) {
       path.levels.push_back(std::make_shared<Level>(race_, effort_, path.model, path.after));
       std::optional<Runner> joined = path.levels.back()->step.next();
-      while (joined && put_aside(joined->model.candidates, wary)) joined = path.levels.back()->step.next();
+      while (anew && joined && finalists_.knows(joined->model.candidates)) joined = path.levels.back()->step.next();
       if (!joined) return;
-      path.model = joined->model;
-      path.joined.push_back(std::move(*joined));
-      path.after = residual_structure(race_, path.model, options_);
+      join(path, std::move(*joined));
+    }
+  }
+  void join(Path& path, Runner runner) const {
+    path.model = runner.model;
+    path.joined.push_back(std::move(runner));
+    path.after = std::make_shared<const ResidualStructure>(residual_structure(race_, path.model, options_));
+  }
+
+  // All that the path met and that could be: what it chose, and the runners of its rounds.
+  void enter(const Path& path) {
+    for (std::size_t k = 0; k < path.joined.size(); ++k)
+      finalists_.add(path.joined[k].model, k + 1 < path.levels.size() ? path.levels[k + 1]->after : path.after);
+    for (const std::shared_ptr<Level>& level : path.levels) {
+      double best = 0;
+      for (const Runner& r : level->step.runners()) best = std::max(best, r.hypothesis.gain);
+      for (const Runner& r : level->step.runners())
+        if ((r.hypothesis.refused.empty() || is_minor(r.hypothesis)) && r.hypothesis.gain > near_finalists * best)
+          finalists_.add(r.model);
+    }
+    if (path.model.candidates.size() < 2) return;
+    Model smaller = path.model;
+    eliminate(race_, options_, smaller);
+    finalists_.add(std::move(smaller));
+  }
+
+  void explore() {
+    for (const Turn& turn : turns(paths_[0])) {
+      const auto place = static_cast<std::ptrdiff_t>(turn.level);
+      const Path& first = paths_[0];
+      Path path{{first.levels.begin(), first.levels.begin() + place + 1},
+                {first.joined.begin(), first.joined.begin() + place},
+                {},
+                {}};
+      join(path, turn.runner);
+      climb(path, true);
+      enter(path);
+      paths_.push_back(std::move(path));
+      finalists_.weigh(effort_.looks);
+      if (finalists_.in_library() >= options_.sure) return;
     }
   }
 
-  // The selection as this path leaves it.
-  void take(const Path& path) {
-    s_.model = path.model;
-    s_.after = path.after;
-    s_.scoreboard.clear();
-    s_.minor.clear();
-    for (const std::shared_ptr<Level>& level : path.levels) enter_lines(*level);
-    if (s_.model.candidates.size() < 2) return;
-    const std::size_t size = s_.model.candidates.size();
-    eliminate(race_, options_, s_.model);
-    if (s_.model.candidates.size() != size) s_.after = residual_structure(race_, s_.model, options_);
+  // What could stand in for a member of the likeliest set; and, where that makes another the likeliest, of that one.
+  void exchange() {
+    std::vector<std::size_t> of;
+    for (int turn = 0; turn < 2; ++turn) {
+      const Finalist* top = finalists_.likeliest();
+      if (top == nullptr || top->model.candidates == of) return;
+      of = top->model.candidates;
+      add_alternatives(race_, effort_, s_, Model(top->model), finalists_);
+      finalists_.weigh(effort_.looks);
+    }
   }
 
-  void enter_lines(const Level& level) {
-    s_.minor.clear();  // what is minor beside an effect that has since been found may be its imitation
-    const auto enter = [&](Hypothesis h) {
-      if (!level.model.candidates.empty()) h.name = race_.name_of(level.model.candidates) + " + " + h.name;
-      if (is_minor(h)) s_.minor.push_back(s_.scoreboard.size());
-      s_.scoreboard.push_back(std::move(h));
+  // The selection as the likeliest set leaves it.
+  void settle() {
+    const Finalist* top = finalists_.likeliest();
+    if (top == nullptr) return tell(paths_[0]);
+    s_.model = top->model;
+    s_.after = top->after != nullptr ? *top->after : residual_structure(race_, s_.model, options_);
+    const auto leads_there = [&](const Path& path) {
+      return std::all_of(s_.model.candidates.begin(), s_.model.candidates.end(), [&](std::size_t c) {
+        return std::find(path.model.candidates.begin(), path.model.candidates.end(), c) != path.model.candidates.end();
+      });
     };
-    for (const Runner& r : level.step.runners()) enter(r.hypothesis);
-    for (Hypothesis& h : level.step.screened_out()) enter(std::move(h));
+    const auto path = std::find_if(paths_.begin(), paths_.end(), leads_there);
+    tell(path != paths_.end() ? *path : paths_[0]);
+  }
+
+  // The rounds of a path as lines of the scoreboard.
+  void tell(const Path& path) {
+    for (const std::shared_ptr<Level>& level : path.levels) {
+      s_.minor.clear();  // what is minor beside an effect that has since been found may be its imitation
+      const auto line = [&](Hypothesis h) {
+        if (!level->model.candidates.empty()) h.name = race_.name_of(level->model.candidates) + " + " + h.name;
+        if (is_minor(h)) s_.minor.push_back(s_.scoreboard.size());
+        s_.scoreboard.push_back(std::move(h));
+      };
+      for (const Runner& r : level->step.runners()) line(r.hypothesis);
+      for (Hypothesis& h : level->step.screened_out()) line(std::move(h));
+    }
   }
 
   // The furthest-reaching other choices of all levels.
@@ -163,26 +191,12 @@ class Search {
     return list;
   }
 
-  // Was this set put aside, whatever the order in which its effects joined? `parts`: or a part of it.
-  bool put_aside(const std::vector<std::size_t>& candidates, bool parts) const {
-    return std::any_of(s_.put_aside.begin(), s_.put_aside.end(), [&](const PutAside& p) {
-      return (parts || p.candidates.size() == candidates.size()) &&
-             std::all_of(p.candidates.begin(), p.candidates.end(), [&](std::size_t c) {
-               return std::find(candidates.begin(), candidates.end(), c) != candidates.end();
-             });
-    });
-  }
-
-  bool falls_short(const Model& refused) const {
-    const Gain apart = gain(s_.model.held_out, refused.held_out);
-    return apart.mean > 2 * apart.sigma && apart.mean > clearly_less * gain(s_.base.held_out, refused.held_out).mean;
-  }
-
   const Race& race_;
   const Options& options_;
   const Effort& effort_;
   Selection& s_;
-  bool grown_ = false;  // further effects joined after the last turn
+  Finalists& finalists_;
+  std::vector<Path> paths_;
 };
 
 }  // namespace
@@ -198,7 +212,7 @@ Effort effort_for(const Race& race, const Options& options) {
   effort.fits = static_cast<std::size_t>(std::clamp(fits / 4, 2.0, static_cast<double>(most)));
   effort.least = std::min(effort.least, effort.fits);
   effort.pairs = static_cast<std::size_t>(std::clamp(100 * fits, 10.0, static_cast<double>(pairs)));
-  if (fits < 20) effort.effects = 2, effort.runners_up = 1;
+  if (fits < 20) effort.effects = 2, effort.runners_up = 1, effort.looks = 3;
   if (effort.fits < most || effort.pairs < pairs || effort.effects < 5)
     effort.shortened = "The budget allowed " + std::to_string(effort.fits) + " fits and " +
                        std::to_string(effort.pairs) + " pairs a round, and at most " + std::to_string(effort.effects) +
@@ -214,8 +228,9 @@ Selection select(const Race& race, const Options& options, const std::vector<dou
   s.base = s.model = race.base(start);
   s.before = s.after = residual_structure(race, s.base, options);
   if (mismatch_p) s.before.global_p = s.after.global_p = *mismatch_p;
-  Search(race, options, effort, s).run();
-  find_alternatives(race, options, effort, s);
+  const auto finalists = std::make_shared<Finalists>(race, options, s.base, s.before);
+  Search(race, options, effort, s, *finalists).run();
+  s.finalists = finalists;
   return s;
 }
 

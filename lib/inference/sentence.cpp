@@ -10,12 +10,13 @@
 namespace gonio::inference {
 namespace {
 
-constexpr double least_share = 0.05;     // of the excess, for a place to be worth a word
 constexpr double most_over_noise = 1.5;  // residuals over the stated noise that are called noise
 
-std::string located_in(const Explanation& e) {
-  if (e.conditions.empty() || e.conditions[0].share < least_share) return "";
+std::string located_in(const Problem& problem, const Explanation& e) {
+  if (e.conditions.empty()) return "";
   const LocatedCondition& c = e.conditions[0];
+  if (!tells_where(c)) return " (" + nowhere_in_words(problem, c) + ")";
+  if (c.period > 0) return ", seen as " + place_in_words(problem, c);
   const std::string range = range_in_words(c);
   if (range.empty()) return ", seen over the whole range of the " + condition_in_words(c.name);
   return ", seen where the " + condition_in_words(c.name) + " is " + range;
@@ -37,22 +38,55 @@ std::string listed(const Problem& problem, const std::vector<std::size_t>& candi
   return text;
 }
 
+// "94 % sure."; of several that could be, each one's own share.
+std::string sure_sentence(const Problem& problem, const Explanation& e) {
+  if (e.weighed.empty()) return "";
+  std::string text = " How sure: " + probability_in_words(e.probability) + " that it is ";
+  if (e.verdict == Verdict::named) return text + (e.named.size() == 1 ? "this." : "these.");
+  std::string each;
+  for (const Explanation::Weighed& w : e.weighed) {
+    if (w.kind != Explanation::Weighed::Kind::set || w.probability < 0.01) continue;
+    const bool first = w.candidates == e.named;
+    const bool other = std::find(e.instead.begin(), e.instead.end(), w.candidates) != e.instead.end();
+    const bool alone =
+        e.named.size() == 1 && w.candidates.size() == 1 && !e.not_told_apart.empty() &&
+        std::find(e.not_told_apart[0].begin(), e.not_told_apart[0].end(), w.candidates[0]) != e.not_told_apart[0].end();
+    if (first || other || alone)
+      each += (each.empty() ? "" : ", ") + listed(problem, w.candidates, 0, " with ") + " " +
+              probability_in_words(w.probability);
+  }
+  return text + "among what is listed (" + each + ").";
+}
+
+// What the library has that comes closest, where nothing is named.
+std::string likeliest_sentence(const Problem& problem, const Explanation& e) {
+  using Kind = Explanation::Weighed::Kind;
+  for (const Explanation::Weighed& w : e.weighed) {
+    if (w.kind != Kind::set || w.probability < 0.02) continue;
+    return " How sure: " + probability_in_words(e.probability) +
+           " that it is none of the library's; the likeliest is " + listed(problem, w.candidates, 0, " with ") +
+           ", with " + probability_in_words(w.probability) + ".";
+  }
+  return "";
+}
+
 std::string named_sentence(const Problem& problem, const Explanation& e) {
   std::string text = "The recordings show ";
   for (std::size_t k = 0; k < e.named.size(); ++k) {
     text += (k == 0 ? "" : k + 1 == e.named.size() ? " and " : ", ") + mechanism_in_words(problem, e.named[k]);
     if (const std::string own = parameters_in_words(problem, e, e.named[k]); !own.empty()) text += " (" + own + ")";
   }
-  text += located_in(e) + ": with " + (e.named.size() == 1 ? "it" : "them") + " the " + problem.score_name() + " on " +
-          (e.test_groups.empty() ? "left-out " : "unseen ") + problem.group_noun() + "s falls from " +
+  text += located_in(problem, e) + ": with " + (e.named.size() == 1 ? "it" : "them") + " the " + problem.score_name() +
+          " on " + (e.test_groups.empty() ? "left-out " : "unseen ") + problem.group_noun() + "s falls from " +
           score_in_words(e.held_out_before, problem.unit()) + " to " +
           score_in_words(e.held_out_after, problem.unit()) + ".";
+  text += sure_sentence(problem, e);
   for (const std::vector<std::size_t>& set : e.not_told_apart)
-    text += " As good an explanation as " + problem.candidates()[set[0]].id() + " is " +
+    text += " In the place of " + problem.candidates()[set[0]].id() + " it could be " +
             listed(problem, set, 1, " or ") + ": these recordings cannot tell them apart.";
   for (const std::vector<std::size_t>& set : e.instead)
-    text += " As good an explanation as " + listed(problem, e.named, 0, " and ") + " is " +
-            listed(problem, set, 0, " with ") + ", in the place of both.";
+    text += " Instead of " + listed(problem, e.named, 0, " and ") + " it could be " +
+            listed(problem, set, 0, " with ") + ".";
   if (e.outside)
     text += " Structure over the " + condition_in_words(e.outside->condition) +
             " remains that nothing in the library repairs." + law_sentence(problem, *e.outside);
@@ -73,19 +107,25 @@ double misfit_over_noise(const Problem& problem, const Explanation& e) {
   return rows > 0 ? std::sqrt(squares / freedom) : 0;
 }
 
+// Where it is, by the condition `where`; that it is nowhere, where even the most telling one holds little of it.
+std::string structured(const Problem& problem, const Explanation& e, const std::string& where) {
+  const auto located = std::ranges::find(e.conditions, where, &LocatedCondition::name);
+  if (located == e.conditions.end()) return ", structured over the " + condition_in_words(where);
+  const LocatedCondition& most = *std::ranges::max_element(e.conditions, {}, &LocatedCondition::share);
+  if (!tells_where(most)) return ", but " + nowhere_in_words(problem, most);
+  if (located->period > 0) return ", in " + place_in_words(problem, *located);
+  const std::string range = range_in_words(*located);
+  return ", structured over the " + condition_in_words(where) + (range.empty() ? "" : " (most of it " + range + ")");
+}
+
 std::string plain_sentence(const Problem& problem, const Explanation& e) {
   const std::string score = problem.score_name() + " " + score_in_words(e.held_out_before, problem.unit());
   if (e.verdict == Verdict::unknown) {
     const std::string where = e.outside ? e.outside->condition : e.conditions.empty() ? "" : e.conditions[0].name;
     std::string text = "There is a mismatch that matters";
-    if (!where.empty()) {
-      const auto located = std::find_if(e.conditions.begin(), e.conditions.end(),
-                                        [&](const LocatedCondition& c) { return c.name == where; });
-      text += ", structured over the " + condition_in_words(where);
-      const std::string range = located == e.conditions.end() ? "" : range_in_words(*located);
-      if (!range.empty()) text += " (most of it " + range + ")";
-    }
+    if (!where.empty()) text += structured(problem, e, where);
     text += ", and no physics in the library repairs it on unseen " + problem.group_noun() + "s (" + score + ").";
+    text += likeliest_sentence(problem, e);
     return e.outside ? text + law_sentence(problem, *e.outside) : text;
   }
   if (e.significant)
@@ -97,6 +137,20 @@ std::string plain_sentence(const Problem& problem, const Explanation& e) {
   return "No structure is told from scatter " + p + ", so no physics is named; but the residuals scatter " +
          printed(times, 2) + " times as much as the noise that was taken for them: that may be larger, or these are " +
          "too few " + problem.group_noun() + "s to show more (" + score + ").";
+}
+
+// Said before any physics: the base model lies outside what is plausible for it.
+std::string limits_sentence(const Problem& problem, const Explanation& e) {
+  constexpr std::size_t most = 3;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(most, e.at_limits.size()); ++k) {
+    const Parameter& p = problem.parameters()[e.at_limits[k]];
+    text += (k == 0 ? "" : ", ") + p.name + " (" + quantity(e.base_values[e.at_limits[k]], p.unit, 3) + ")";
+  }
+  if (e.at_limits.size() > most) text += " and " + std::to_string(e.at_limits.size() - most) + " more";
+  if (text.empty()) return "";
+  return std::string("The base model fits only at the limit of what is plausible for ") + text +
+         ": look at units, files and the geometry first. ";
 }
 
 std::string minor_sentence(const Problem& problem, const Explanation& e) {
@@ -172,7 +226,7 @@ std::string measurement(const Problem& problem, const Explanation& e) {
     if (!m.mistaken_for.empty())
       return "To confirm " + m.id + " against " + m.mistaken_for[0].with + ": " + m.mistaken_for[0].told_apart + ".";
   }
-  if (e.verdict == Verdict::unknown && !e.conditions.empty())
+  if (e.verdict == Verdict::unknown && !e.conditions.empty() && tells_where(e.conditions[0]))
     return "Record more " + problem.group_noun() + "s that vary the " +
            condition_in_words(e.outside ? e.outside->condition : e.conditions[0].name) + ".";
   if (!e.named.empty()) return "";
@@ -192,7 +246,8 @@ void write_sentence(const Problem& problem, Explanation& e) {
         "light for these pictures; then explain again.";
     return;
   }
-  e.sentence = e.named.empty() ? plain_sentence(problem, e) : named_sentence(problem, e);
+  e.sentence =
+      limits_sentence(problem, e) + (e.named.empty() ? plain_sentence(problem, e) : named_sentence(problem, e));
   e.sentence += minor_sentence(problem, e) + unused_sentence(problem);
   if (const std::string remarks = problem.remarks(e); !remarks.empty()) e.sentence += " " + remarks;
   if (!e.shortened.empty()) e.sentence += " " + e.shortened;

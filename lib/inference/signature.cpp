@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numbers>
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -118,6 +120,35 @@ void Structures::add_curve(const System& system, std::size_t condition) {
     hat[k] = 1;
     extras.push_back({{{curve, std::move(hat)}}, {}});
   }
+}
+
+void Structures::add_wave(const System& system, std::size_t condition, double period) {
+  constexpr double knots_of_a_period = 12;
+  double lower = std::numeric_limits<double>::infinity(), upper = -lower;
+  for (const double v : system.observations().conditions[condition].values)
+    if (std::isfinite(v)) lower = std::min(lower, v), upper = std::max(upper, v);
+  CurveBasis wave{condition, {}};
+  for (double x = lower; x < upper + period / knots_of_a_period; x += period / knots_of_a_period)
+    wave.knots.push_back(x);
+  bases_of_waves_.push_back(std::move(wave));
+  const CurveBasis& basis = bases_of_waves_.back();
+  if (basis.size() < 2) return;
+  Structure structure{Structure::Kind::curve,
+                      condition,
+                      system.observations().conditions[condition].name,
+                      extras.size(),
+                      0,
+                      0,
+                      {},
+                      period};
+  for (const std::size_t g : system.groups)
+    for (const double ahead : {0.0, 0.25}) {
+      std::vector<double> swing;
+      for (const double x : basis.knots) swing.push_back(std::cos(2 * std::numbers::pi * (x / period - ahead)));
+      extras.push_back({{{&basis, std::move(swing)}}, {g}});
+      ++structure.count;
+    }
+  list.push_back(std::move(structure));
 }
 
 void Structures::add_negative_control(const System& system, std::size_t candidate, std::size_t number,

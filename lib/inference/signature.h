@@ -22,6 +22,7 @@ struct Structure {
   std::size_t first = 0, count = 0;  // its columns among all signature parameters, or among all extras
   std::size_t shape = 0;             // negative controls: the candidate whose freedom it has
   std::vector<double> point{};       // changes: the values of the candidate's parameters
+  double period = 0;                 // of a curve that is a wave in each group; 0: one smooth curve for all
 };
 
 // The columns of all structures, as extras and signatures that linearise() understands. Not copyable: extras point at
@@ -36,6 +37,8 @@ class Structures {
   // nonlinear mechanism could do elsewhere. Mechanisms that all groups share.
   void add_changes(const System& system, const std::vector<double>& values, std::size_t candidate);
   void add_curve(const System& system, std::size_t condition);
+  // A wave of this period over the condition, its size and phase free in each group.
+  void add_wave(const System& system, std::size_t condition, double period);
   // Smooth random functions of one or two conditions, as many and on the same groups as the candidate has parameters:
   // the same freedom without the physics.
   void add_negative_control(const System& system, std::size_t candidate, std::size_t number, std::uint64_t seed);
@@ -47,7 +50,7 @@ class Structures {
 
  private:
   const CurveBasis* basis(const System& system, std::size_t condition);
-  std::deque<CurveBasis> bases_;
+  std::deque<CurveBasis> bases_, bases_of_waves_;
 };
 
 struct Projection {

@@ -50,6 +50,10 @@ void System::set_aside(std::size_t block) {
   std::erase_if(groups, [&](std::size_t g) { return used_rows(g) == 0; });
 }
 
+void System::set_bias(const Bias& bias) {
+  bias_ = bias.value;
+}
+
 std::size_t System::used_rows(std::size_t group) const {
   const Observations& o = observations();
   return static_cast<std::size_t>(std::count_if(weight_.begin() + static_cast<std::ptrdiff_t>(o.first[group]),
@@ -95,6 +99,7 @@ Eigen::VectorXd System::residual(std::span<const double> values, std::size_t gro
   for (std::size_t i = 0; i < rows; ++i) {
     const double w = weight_[first + i];
     double& entry = r[static_cast<Eigen::Index>(i)];
+    if (!bias_.empty()) entry += bias_[first + i];
     entry = w > 0 ? (o.value[first + i] - entry) * w : 0;
   }
   return r;

@@ -54,6 +54,8 @@ class System {
 
   void set_noise_factor(double factor);
   void set_aside(std::size_t block);
+  // Held against predict() + bias from here on. What the bias scatters is in the residuals; weights stay.
+  void set_bias(const Bias& bias);
   // Splits blocks into halves anew; the outcome depends on the seed and the block's number only.
   int half(std::size_t row) const { return half_[row]; }
   double weight(std::size_t row) const { return weight_[row]; }  // 1 / sigma, zero where set aside
@@ -77,7 +79,7 @@ class System {
  private:
   const Problem& problem_;
   double factor_ = 1;
-  std::vector<double> weight_;
+  std::vector<double> weight_, bias_;
   std::vector<char> half_, aside_;
 };
 

@@ -12,6 +12,7 @@ namespace gonio::inference {
 namespace {
 
 constexpr std::size_t most_parameters = 2;
+constexpr std::size_t most_targets = 6;        // listed by name
 constexpr std::size_t numbers_of_a_list = 16;  // more are a list with no number that stands out
 
 // "lights/lamp/radius_m" -> "radius"; the unit goes with the value.
@@ -62,6 +63,12 @@ std::string share_in_words(double share) {
   return printed(100 * share, std::abs(share) >= 0.995 ? 3 : 2) + " %";
 }
 
+std::string probability_in_words(double probability) {
+  if (probability > 0.995) return "over 99 %";
+  if (probability < 0.005) return "under 1 %";
+  return std::to_string(std::lround(100 * probability)) + " %";
+}
+
 std::string score_in_words(double score, const std::string& unit) {
   return unit.empty() || unit == "1" ? share_in_words(score) : quantity(score, unit, 3);
 }
@@ -98,11 +105,27 @@ std::string range_in_words(const LocatedCondition& c) {
   return "between " + printed(c.lower * shown.factor, 2) + " and " + joined(printed(c.upper * shown.factor, 2), shown);
 }
 
+std::string place_in_words(const Problem& problem, const LocatedCondition& c) {
+  if (!(c.period > 0)) return "the " + condition_in_words(c.name);
+  return "bands along the " + condition_in_words(c.name) + ", " + quantity(c.period, c.unit) +
+         " from one to the next, begun anew in every " + problem.group_noun();
+}
+
+bool tells_where(const LocatedCondition& c) {
+  return c.share >= telling_share;
+}
+
+std::string nowhere_in_words(const Problem& problem, const LocatedCondition& c) {
+  return "no condition carries it: the most telling, " + place_in_words(problem, c) + ", holds " +
+         share_in_words(c.share) + " of the excess";
+}
+
 std::string mechanism_in_words(const Problem& problem, std::size_t candidate) {
   const Candidate& c = problem.candidates()[candidate];
   std::string text = c.id();
-  for (std::size_t k = 0; k < c.on.size(); ++k)
-    text += (k == 0 ? " on " : k + 1 == c.on.size() ? " and " : ", ") + c.on[k];
+  const std::size_t shown = c.on.size() > most_targets + 1 ? most_targets : c.on.size();
+  for (std::size_t k = 0; k < shown; ++k) text += (k == 0 ? " on " : k + 1 == c.on.size() ? " and " : ", ") + c.on[k];
+  if (shown < c.on.size()) text += " and " + std::to_string(c.on.size() - shown) + " more";
   return text;
 }
 
@@ -122,7 +145,8 @@ std::vector<std::string> minor_mechanisms(const Problem& problem, const Explanat
 
 std::string parameters_in_words(const Problem& problem, const Explanation& e, std::size_t candidate) {
   const std::vector<std::size_t>& own = problem.candidates()[candidate].parameters;
-  if (own.size() > numbers_of_a_list) return "";
+  const auto of_all = [&](std::size_t p) { return problem.parameters()[p].groups.size() != 1; };
+  if (static_cast<std::size_t>(std::ranges::count_if(own, of_all)) > numbers_of_a_list) return "";
   std::vector<const Estimate*> clear;  // of neutral, the clearest first
   const auto distance = [&](const Estimate* x) {
     return x->sigma > 0 ? std::abs(x->value - problem.parameters()[x->parameter].neutral) / x->sigma : 0;
@@ -130,7 +154,7 @@ std::string parameters_in_words(const Problem& problem, const Explanation& e, st
   for (const Estimate& x : e.estimates) {
     if (std::find(own.begin(), own.end(), x.parameter) == own.end()) continue;
     const Parameter& p = problem.parameters()[x.parameter];
-    if (p.groups.size() == 1 && problem.observations().groups() > 1) return "";  // a number for every group
+    if (p.groups.size() == 1 && problem.observations().groups() > 1) continue;  // a number for every group
     if (distance(&x) > 2) clear.push_back(&x);
   }
   std::stable_sort(clear.begin(), clear.end(),

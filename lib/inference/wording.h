@@ -19,12 +19,20 @@ struct Shown {
 Shown shown_in(const std::string& unit, double size);
 std::string quantity(double value, const std::string& unit, int digits = 2);         // "18 degrees", "0.8 m", "3.1 mm"
 std::string share_in_words(double share);                                            // "3.1 %"; no exponents
+std::string probability_in_words(double probability);                                // "94 %", "over 99 %"
 std::string score_in_words(double score, const std::string& unit);                   // ratios as per cent
 std::string estimate_in_words(double value, double sigma, const std::string& unit);  // "35.0 ± 0.4 mm"
 
 std::string condition_in_words(const std::string& name);  // "surface.half-angle": "half angle"
 // "above 0.6 of the half diagonal", "between 20 and 45 degrees"; empty where it is everywhere.
 std::string range_in_words(const LocatedCondition& located);
+// "the half angle"; "bands along the image y, 17 px from one to the next, begun anew in every image".
+std::string place_in_words(const Problem& problem, const LocatedCondition& located);
+// Below this share of the excess a condition does not say where the mismatch is, and that is then said.
+inline constexpr double telling_share = 0.2;
+bool tells_where(const LocatedCondition& located);
+// "no condition carries it: the most telling, the hue, holds 4 % of the excess"
+std::string nowhere_in_words(const Problem& problem, const LocatedCondition& located);
 std::string mechanism_in_words(const Problem& problem, std::size_t candidate);  // "surface.interface on bunny"
 // Ids of mechanisms that are there, but matter too little; each once, and none that is named.
 std::vector<std::string> minor_mechanisms(const Problem& problem, const Explanation& explanation);

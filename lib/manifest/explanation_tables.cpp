@@ -97,6 +97,18 @@ const std::vector<Field<ScoredHypothesis>>& scored_hypothesis_fields() {
   return table;
 }
 
+const std::vector<Field<WeighedAnswer>>& weighed_answer_fields() {
+  using T = WeighedAnswer;
+  static const std::vector<Field<T>> table{
+      field("answer", &T::answer, "", "mechanisms together, nothing left out, or something outside the library")
+          .one_of({"mechanisms", "nothing", "outside"})
+          .needed(),
+      field("mechanisms", &T::mechanisms, "", "their ids"),
+      number_field("probability", &T::probability, "", "that it is the answer").range(0, 1),
+      numbers_by_name("statistics", &T::statistics, "what the probability was computed from; left out: zero")};
+  return table;
+}
+
 const std::vector<Field<LookAlike>>& look_alike_fields() {
   using T = LookAlike;
   static const std::vector<Field<T>> table{
@@ -192,6 +204,8 @@ const std::vector<Field<ExplanationEntry>>& explanation_fields() {
           "unknown: there is a mismatch and none does")
           .one_of({"null", "named", "ambiguous", "unknown"})
           .needed(),
+      field("probability", &T::probability, "", "that the verdict is right: that it is this, or one of those listed")
+          .range(0, 1),
       field("misplaced", &T::misplaced, "", "files that are not the recordings they are taken for"),
       field("named", &T::named, "", "mechanisms, the most important first").always(Value::array()),
       field("not_told_apart", &T::not_told_apart, "",
@@ -205,6 +219,7 @@ const std::vector<Field<ExplanationEntry>>& explanation_fields() {
       field("noise", &T::noise, "", "what the residuals say of the stated noise"),
       field("negative_controls", &T::negative_controls, "",
             "negative controls: how often nothing would have passed for physics"),
+      field("weighed", &T::weighed, "", "the answers that were held against each other, the likeliest first"),
       field("scoreboard", &T::scoreboard, "", "all hypotheses, the best first").always(Value::array()),
       field("isolability", &T::isolability, "", "what these recordings can show").always(Value::array()),
       field("compensation", &T::compensation, "", "free parameters that the missing physics had bent")
@@ -219,6 +234,7 @@ GONIO_RECORD(NullTest, null_test_fields);
 GONIO_RECORD(ExplainedNoise, explained_noise_fields);
 GONIO_RECORD(NegativeControls, negative_controls_fields);
 GONIO_RECORD(ScoredHypothesis, scored_hypothesis_fields);
+GONIO_RECORD(WeighedAnswer, weighed_answer_fields);
 GONIO_RECORD(LookAlike, look_alike_fields);
 GONIO_RECORD(MechanismVisibility, mechanism_visibility_fields);
 GONIO_RECORD(IndependentValue, independent_value_fields);

@@ -8,6 +8,7 @@
 namespace gonio::manifest {
 
 GONIO_TABLE(NamedMechanism, named_mechanism_fields);
+GONIO_TABLE(WeighedAnswer, weighed_answer_fields);
 GONIO_TABLE(MisplacedFile, misplaced_file_fields);
 GONIO_TABLE(BeforeAfter, before_after_fields);
 GONIO_TABLE(TermShape, term_shape_fields);

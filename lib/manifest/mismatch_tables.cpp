@@ -58,8 +58,10 @@ const std::vector<Field<NamedMechanism>>& named_mechanism_fields() {
   static const std::vector<Field<T>> table{
       field("mechanism", &T::mechanism, "", "its id: gonio-mechanisms(7)").always("").needed(),
       field("on", &T::on, "", "surfaces, lights, ... that it applies to; left out: the scene"),
+      field("probability", &T::probability, "", "that it is among what was left out").range(0, 1),
       numbers_by_name("parameters", &T::parameters, "as fitted: one number, or one for each name in `on`"),
-      numbers_by_name("sigma", &T::sigma, "one standard deviation of each"), intervals_field()};
+      numbers_by_name("sigma", &T::sigma, "one standard deviation of each"),
+      intervals_field()};
   return table;
 }
 

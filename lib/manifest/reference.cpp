@@ -160,10 +160,10 @@ void add_volumes(List& all) {
       part("volumes: volume_from_index", "Columns are the grid's axes times the spacing.", index_map_fields()));
   all.push_back(part("volumes: steps", "Written by ct-mesh-clean.", volume_step_fields()));
   all.push_back(listed("markers", "Spheres glued to an object, found by ct-mesh-clean.", marker_fields()));
-  all.push_back(listed("placements", "Where pieces that were scanned elsewhere stand, found by reassemble.",
-                       placement_fields()));
-  all.push_back(part("placements: pairs", "A marker of the piece, and what the photographs show of it.",
-                     marker_pair_fields()));
+  all.push_back(
+      listed("placements", "Where pieces that were scanned elsewhere stand, found by reassemble.", placement_fields()));
+  all.push_back(
+      part("placements: pairs", "A marker of the piece, and what the photographs show of it.", marker_pair_fields()));
   all.push_back(part("placements: contacts", "What the piece touches.", placement_contact_fields()));
 }
 
@@ -233,6 +233,7 @@ void add_explanations(List& all) {
   all.push_back(part(e + "noise", "Against what was stated.", explained_noise_fields()));
   all.push_back(part(e + "negative_controls", "Mechanisms without physics.", negative_controls_fields()));
   all.push_back(part(e + "scoreboard", "One for each hypothesis.", scored_hypothesis_fields()));
+  all.push_back(part(e + "weighed", "One for each answer that was held against the others.", weighed_answer_fields()));
   all.push_back(part(e + "isolability", "One for each mechanism that applies.", mechanism_visibility_fields()));
   all.push_back(part(e + "isolability/looks_like", "Mechanisms that are hard to tell apart.", look_alike_fields()));
   all.push_back(part(e + "compensation", "One for each free parameter.", shifted_parameter_fields()));

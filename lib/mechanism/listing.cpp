@@ -75,10 +75,15 @@ std::string folded(const std::string& equation) {
   return lines + line + "\n";
 }
 
+std::string usual(const Parameter& p, const std::string& before) {
+  if (p.typical == 0) return "";
+  return before + number(p.typical) + (p.unit.empty() || p.unit == "1" ? "" : " " + p.unit);
+}
+
 std::string parameter_in_words(const Parameter& p) {
   const std::string unit = p.unit.empty() || p.unit == "1" ? "" : " " + p.unit;
   return p.name + ": " + p.meaning + "; " + number(p.lower) + " to " + number(p.upper) + unit + ", neutral at " +
-         number(p.neutral);
+         number(p.neutral) + usual(p, ", usually off by ");
 }
 
 std::string domains_in_words(const Mechanism& m) {
@@ -136,10 +141,11 @@ std::string markdown() {
     for (const Mechanism* m : stage.mechanisms) {
       result += "## " + m->id + "\n" + m->sentence;
       if (!m->typical.empty()) result += " Typical size: " + m->typical + ".";
-      result += "\n\n```\n" + folded(m->equation) + "```\n\n| parameter | unit | neutral | bounds | meaning |\n";
+      result += "\n\n```\n" + folded(m->equation) +
+                "```\n\n| parameter | unit | neutral | bounds | usual deviation | meaning |\n";
       for (const Parameter& p : m->parameters)
         result += "| " + p.name + " | " + p.unit + " | " + number(p.neutral) + " | " + number(p.lower) + " to " +
-                  number(p.upper) + " | " + manifest::in_cell(p.meaning) + " |\n";
+                  number(p.upper) + " | " + usual(p, "") + " | " + manifest::in_cell(p.meaning) + " |\n";
       result += "\nHypothesis for: " + domains_in_words(*m) + ". Shows in: " + joined(m->conditions) + ".\n";
       for (const Confusion& c : m->mistaken_for)
         result += "- mistaken for **" + c.with + "**; told apart by: " + c.told_apart + "\n";

@@ -19,7 +19,11 @@ struct Parameter {
   double neutral = 0;           // the term vanishes here
   double lower = 0, upper = 0;  // physical bounds of a plausible fit
   double start = 0;             // where a fit begins (never the neutral value where the slope vanishes there)
-  std::string meaning;
+  // Usual size of a deviation from the neutral value, one standard deviation (of what has no effect by itself, such as
+  // the roughness of a gloss: from where a fit begins); 0: it goes with the scene's own units, or any value is as
+  // usual.
+  double typical = 0;
+  std::string meaning{};
 };
 struct Confusion {
   std::string with;        // canonical id (or a plain word where the list has none)

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "manifest/document.h"
 #include "manifest/fields.h"
+#include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "mechanism/mechanism.h"
 
@@ -15,12 +16,15 @@ bool exists(const manifest::Document& d, Target target, const std::string& name)
   switch (target) {
     case Target::surface: return has_entry(d, "surfaces", name);
     case Target::light: return has_entry(d, "lights", name);
-    case Target::camera: return has_entry(d, "cameras", name);
+    case Target::camera:
+      return has_entry(d, "cameras", name) ||
+             std::ranges::any_of(d.images, [&](const manifest::ImageEntry& image) { return image.id == name; });
     case Target::board: return has_entry(d, "boards", name);
     case Target::object: return has_entry(d, "objects", name);
     case Target::scene:
       if (!d.tables.empty() && name.starts_with("point ")) return true;  // of a table of tracks
       if (has_entry(d, "volumes", name)) return true;
+      if (std::ranges::find(d.images, name, &manifest::ImageEntry::id) != d.images.end()) return true;
       return has_entry(d, "sequences", name.substr(0, name.find('/')));  // "walking/point-7/frame-12"
   }
   return false;

@@ -186,9 +186,49 @@ TEST(Law, SaysWhatItDoesToEveryRowAndWhere) {
                 1e-12);
   EXPECT_EQ(e.outside->condition, "clock.time");
   EXPECT_EQ(e.outside->stage, "clock");
-  EXPECT_NE(e.outside->law.find("clock.time * plate.height^2"), std::string::npos) << e.outside->law;
+  EXPECT_NE(e.outside->law.find("(clock.time / 1 s) * (plate.height / 1 m)^2"), std::string::npos) << e.outside->law;
   EXPECT_NE(e.outside->extrapolated.find("clock.time beyond"), std::string::npos) << e.outside->extrapolated;
   EXPECT_GT(e.outside->share, 0.8);
+}
+
+// 4.8e-12 exp(y / 23 mm) is no law that a person can use: what is seen near zero is a million times smaller than the
+// coefficient of such a term, or as much larger.
+TEST(Law, AnExponentialFarFromWhereItWasSeenIsNotTold) {
+  for (int run = 0; run < 10; ++run) {
+    const auto wall = [](double x, double) { return 0.5 * std::exp((x - 1) / 0.03); };
+    const Explanation e = law_of(LawProblem({.law = wall, .lower = 0.2}, 1900 + run), "plate.height");
+    for (const LawTerm& t : e.outside->terms)
+      if (t.shape == "exp") {
+        EXPECT_LE(1 / std::abs(t.scale), 7.01) << e.outside->law;
+      }
+  }
+}
+
+// Half of what is there follows a parabola and the rest jumps to and fro: what little of it a power holds is no law.
+TEST(Law, WhatRepairsLittleOfWhatAFreeCurveDoesIsNoLaw) {
+  int laws = 0;
+  const int runs = 20;
+  for (int run = 0; run < runs; ++run) {
+    const auto teeth = [](double x, double) {
+      return 0.08 * x * x + 0.16 * (2 * std::abs(4 * x - std::floor(4 * x + 0.5) * 1.0) - 0.5);
+    };
+    const LawProblem problem({.law = teeth, .groups = 20, .blocks = 60}, 2100 + run);
+    const Explanation e = law_of(problem, "plate.height");
+    for (const LawTerm& t : e.outside->terms) laws += !t.powers.empty();
+  }
+  EXPECT_LE(laws, 0.1 * runs);
+}
+
+TEST(Law, ConstantsAreKnownAndTermsHaveNoUnits) {
+  const LawProblem problem({.law = [](double x, double) { return 0.3 * x * x; }, .lower = 0, .upper = 0.043}, 7);
+  const Explanation faint = law_of(problem, "plate.height");
+  EXPECT_TRUE(faint.outside->terms.empty()) << faint.outside->law;
+  const LawProblem clear({.law = [](double x, double) { return 300 * x * x; }, .lower = 0, .upper = 0.043}, 7);
+  const Explanation e = law_of(clear, "plate.height");
+  ASSERT_FALSE(e.outside->terms.empty());
+  for (const LawTerm& t : e.outside->terms) EXPECT_LT(t.sigma, std::abs(t.coefficient) / 3) << e.outside->law;
+  EXPECT_NE(e.outside->law.find("(plate.height / 40 mm)^2"), std::string::npos) << e.outside->law;
+  EXPECT_NE(e.outside->law.find(" px * (plate"), std::string::npos) << e.outside->law;
 }
 
 }  // namespace

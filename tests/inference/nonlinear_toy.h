@@ -87,7 +87,7 @@ class NonlinearToy : public ToyFrame {
 };
 
 inline mechanism::Parameter number(std::string name, double neutral, double lower, double upper, double start) {
-  return {std::move(name), "1", neutral, lower, upper, start, ""};
+  return {.name = std::move(name), .unit = "1", .neutral = neutral, .lower = lower, .upper = upper, .start = start};
 }
 inline mechanism::Parameter amplitude() {
   return number("a", 0, -5, 5, 0.05);

@@ -79,7 +79,7 @@ TEST(Report, ANamedEffectIsReadFromTopToBottom) {
 TEST(Report, WhatTheLibraryLacksIsToldAsALaw) {
   const Told told({.law = [](double x, double z) { return 0.3 * x * z; }}, 2);
   ASSERT_EQ(told.e.verdict, Verdict::unknown) << told.e.sentence;  // no curve over one condition alone sees x z
-  EXPECT_NE(told.e.sentence.find("plate.height * clock.time"), std::string::npos) << told.e.sentence;
+  EXPECT_NE(told.e.sentence.find("(plate.height / 1 m) * (clock.time / 1 s)"), std::string::npos) << told.e.sentence;
   const Told other({.law = [](double, double z) { return 0.3 * z; }}, 3);
   ASSERT_EQ(other.e.verdict, Verdict::unknown) << other.e.sentence;
   ASSERT_TRUE(other.e.outside.has_value());

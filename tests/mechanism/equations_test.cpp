@@ -260,10 +260,10 @@ TEST(Bindings, StacksOfExposuresSayWhatTheEquationSays) {
     for (int i = 0; i < draws; ++i) {
       const Numbers at = inputs_of(m, random);
       Numbers p = amounts_of(m, random), numbers = p;
-      if (m.id == "sensor.non-linearity") {  // its numbers are the curve's, gamma and quadratic; full scale refers
+      if (m.id == "sensor.non-linearity") {  // its numbers: the curve's, then those of the closed forms
         p[1] = stack.full_scale;
-        numbers.assign(p.begin() + 3, p.end());
-        numbers.insert(numbers.end(), {p[2], p[0]});
+        numbers.assign(p.begin() + 5, p.end());
+        numbers.insert(numbers.end(), {p[2], p[0], p[3], p[4]});
       }
       explain::stacks::Taken taken{.exposure_s = random.uniform(0.01, 1), .gain = 1.3};
       ReadingChain chain;
@@ -299,9 +299,9 @@ TEST(Bindings, StacksOfLightsSayWhatTheEquationSays) {
       PatchLight light{{0, 0, 1}, 1};
       const double v = random.uniform(0.1, 5);
       if (m.id == "sensor.non-linearity") {
-        for (std::size_t k = 3; k < p.size(); ++k) p[k] = m.parameters[k].neutral;
+        for (std::size_t k = 5; k < p.size(); ++k) p[k] = m.parameters[k].neutral;
         p[1] = stack.full_scale;
-        numbers = {p[2], p[0]};
+        numbers = {p[2], p[0], p[3], p[4]};
       }
       if (m.id == "light.ambient") at = {v, 0}, numbers = {p[0]};  // over what the lamp gives a facing plate
       if (binding->set != nullptr) binding->set(numbers, stack, model);

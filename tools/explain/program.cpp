@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "cli/height_maps.h"
+#include "explain/domain_listing.h"
 #include "explain/domains.h"
 #include "explain/explain_document.h"
 #include "tools/explain/operand.h"
@@ -17,6 +18,7 @@ using cli::Type;
 gonio::explain::ExplainRequest request_of(cli::Invocation& call) {
   gonio::explain::ExplainRequest request;
   request.options.smallest_effect = call.number("smallest-effect");
+  request.options.sure = call.number("sure");
   request.options.level = call.number("level");
   request.options.hypotheses = call.texts("hypotheses");
   request.options.protect = call.texts("protect");
@@ -34,6 +36,7 @@ gonio::explain::ExplainRequest request_of(cli::Invocation& call) {
 
 void check(cli::Invocation& call) {
   if (call.flag("list")) return;
+  if (call.flag("domains")) throw Error(Exit::usage, "--domains", "says what --list prints", "give both");
   check_out(call);
   gonio::explain::check_hypotheses(call.texts("hypotheses"));
   read_operand(call);
@@ -46,7 +49,8 @@ void check(cli::Invocation& call) {
 Exit run(cli::Invocation& call) {
   if (call.flag("list")) {
     call.writes_document = false;
-    std::cout << gonio::explain::list_of_mechanisms() << std::flush;
+    std::cout << (call.flag("domains") ? gonio::explain::product_text() : gonio::explain::list_of_mechanisms())
+              << std::flush;
     return Exit::done;
   }
   for (const std::filesystem::path& path : gonio::explain::files_of(call.document)) call.note_input(path);
@@ -104,6 +108,14 @@ std::vector<cli::Option> engine_options() {
        .lower = 0,
        .upper = 1,
        .aliases = {"matters"}},
+      {.name = "sure",
+       .type = Type::quantity,
+       .help =
+           "Probability that suffices to name one explanation alone, and that those which are listed have together.",
+       .preset = "90%",
+       .dimension = Dimension::ratio,
+       .lower = 0.5,
+       .upper = 0.9999},
       {.name = "level",
        .type = Type::number,
        .help = "False alarms allowed to the null test and to every name.",
@@ -143,7 +155,10 @@ std::vector<cli::Option> engine_options() {
        .help = "Write the report page here; with --out it is DIR/report.html."},
       {.name = "list",
        .type = Type::flag,
-       .help = "Print the mechanisms with their conditions and confusions, and end."}};
+       .help = "Print the mechanisms with their conditions and confusions, and end."},
+      {.name = "domains",
+       .type = Type::flag,
+       .help = "With --list: for each kind of recordings which mechanisms are asked, and why the others are not."}};
 }
 
 std::vector<cli::Option> options() {
@@ -161,7 +176,7 @@ const cli::Program& gonio_program() {
       .sentence = "find the physics that a simulation left out",
       .synopsis = {"[OPTION]... [-i FILE | recording.json]",
                    "[OPTION]... data.csv --model MODEL --observed COLUMN [--free NAME=VALUE,...]",
-                   "[OPTION]... paint.brdf", "[OPTION]... map.tif --step LENGTH --unit LENGTH", "--list"},
+                   "[OPTION]... paint.brdf", "[OPTION]... map.tif --step LENGTH --unit LENGTH", "--list [--domains]"},
       .options = options(),
       .operands = {{.name = "FILE",
                     .type = Type::input_file,

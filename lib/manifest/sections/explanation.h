@@ -22,10 +22,19 @@ struct NamedInterval {
 };
 
 struct NamedMechanism {
-  std::string mechanism;        // canonical id
-  std::vector<std::string> on;  // surfaces, lights, ... that it applies to; empty: the scene
+  std::string mechanism;              // canonical id
+  std::vector<std::string> on;        // surfaces, lights, ... that it applies to; empty: the scene
+  std::optional<double> probability;  // that it is among what was left out
   NamedNumbers parameters, sigma;
   std::vector<NamedInterval> interval_95;
+};
+
+// One of the answers that were held against each other: mechanisms together, or none of them.
+struct WeighedAnswer {
+  std::string answer;  // mechanisms, nothing, outside
+  std::vector<std::string> mechanisms;
+  double probability = not_known;
+  NamedNumbers statistics;
 };
 
 // Mechanisms of which each could stand in the first one's place, or whole sets of them, each an explanation of its own.
@@ -152,6 +161,7 @@ struct NextMeasurement {
 
 struct ExplanationEntry {
   std::string domain, verdict;
+  std::optional<double> probability;  // of the verdict
   std::vector<MisplacedFile> misplaced;
   std::vector<NamedMechanism> named;
   std::vector<NotToldApart> not_told_apart;
@@ -162,6 +172,7 @@ struct ExplanationEntry {
   NullTest null_test;
   ExplainedNoise noise;
   NegativeControls negative_controls;
+  std::vector<WeighedAnswer> weighed;
   std::vector<ScoredHypothesis> scoreboard;
   std::vector<MechanismVisibility> isolability;
   std::vector<ShiftedParameter> compensation;

@@ -1,0 +1,279 @@
+// See finalists.h.
+#include "inference/finalists.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "stats/distributions.h"
+
+namespace gonio::inference {
+namespace {
+
+constexpr double worth_a_look = 0.02;     // probability, before what it leaves is known
+constexpr double last_digit = 0.0025;     // of what can be repaired: a difference that could be anyone's
+constexpr double a_square = 0.5;          // noise widths squared, over all rows: no test parts what differs by less
+constexpr std::size_t enough_groups = 5;  // for a standard error over groups to mean something
+constexpr double at_most_errors = 12;
+
+bool same_set(std::vector<std::size_t> a, std::vector<std::size_t> b) {
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  return a == b;
+}
+
+bool matters(const Finalist& f) {
+  return f.refused.empty() && !(f.statistics.times < 0);
+}
+bool holds_more(const Finalist& more, const Finalist& f) {
+  const std::vector<std::size_t>&all = more.model.candidates, &own = f.model.candidates;
+  return all.size() > own.size() && std::all_of(own.begin(), own.end(), [&](std::size_t c) {
+           return std::find(all.begin(), all.end(), c) != all.end();
+         });
+}
+
+double part_of_all(double part, double of) {
+  return of > 0 ? std::clamp(part / of, 0.0, 1.0) : 0;
+}
+
+// Mean square of the held-out residual above the noise, per row.
+double excess_of(const HeldOut& h) {
+  double squares = 0, rows = 0;
+  for (std::size_t g = 0; g < h.whitened.size(); ++g) squares += h.whitened[g], rows += h.rows[g];
+  return rows > 0 ? squares / rows - 1 : 0;
+}
+
+// Standard errors by which `after` is better, as of a normal law: over groups by Student's, or over blocks where groups
+// are few. `floor`: of the standard error.
+double errors_between(const HeldOut& before, const HeldOut& after, double floor) {
+  const Gain g = gain(before, after);
+  const std::size_t groups = before.whitened.size();
+  if (!(g.sigma < std::numeric_limits<double>::max())) return -at_most_errors;
+  if (groups < enough_groups) {
+    const double blocks = block_z(before, after);
+    const double sigma = blocks != 0 ? std::abs(g.mean / blocks) : 0;
+    const double all = std::hypot(sigma, floor);
+    return all > 0 ? std::clamp(g.mean / all, -at_most_errors, at_most_errors) : 0;
+  }
+  const double sigma = std::hypot(g.sigma, floor);
+  if (!(sigma > 0)) return g.mean > 0 ? at_most_errors : 0;
+  const double t = g.mean / sigma;
+  const double tail = stats::student_upper(std::abs(t), static_cast<double>(groups) - 1);
+  return std::copysign(std::min(stats::normal_upper_quantile(tail), at_most_errors), t);
+}
+// How clearly `after` helps: by groups or by blocks, whichever say it. Groups that an effect touches unequally disagree
+// about its size, not about its being there.
+double errors_of_help(const HeldOut& before, const HeldOut& after) {
+  return std::max(errors_between(before, after, 0), std::min(block_z(before, after), at_most_errors));
+}
+
+}  // namespace
+
+Finalists::Finalists(const Race& race, const Options& options, const Model& base, const ResidualStructure& before)
+    : race_(race), options_(options), base_(base), before_(before) {
+  for (const double r : base.held_out.rows) rows_ += r;
+}
+
+bool Finalists::knows(const std::vector<std::size_t>& candidates) const {
+  return std::any_of(list_.begin(), list_.end(),
+                     [&](const Finalist& f) { return same_set(f.model.candidates, candidates); });
+}
+
+void Finalists::add(Model model, std::shared_ptr<const ResidualStructure> after) {
+  if (model.candidates.empty()) return;
+  const auto known = std::find_if(list_.begin(), list_.end(),
+                                  [&](const Finalist& f) { return same_set(f.model.candidates, model.candidates); });
+  if (known != list_.end() && (known->looked_into || known->model.fit.cost <= model.fit.cost)) {
+    if (after == nullptr || known->after != nullptr) return;
+  }
+  Finalist& f = known != list_.end() ? *known : list_.emplace_back();
+  f = Finalist{};
+  f.model = std::move(model);
+  f.after = std::move(after);
+  f.gained = gain(base_.held_out, f.model.held_out).mean;
+  Statistics& s = f.statistics;
+  for (const std::size_t c : f.model.candidates) {
+    const Candidate& candidate = race_.system().problem().candidates()[c];
+    for (const std::size_t p : candidate.parameters) {
+      const std::size_t on = race_.system().problem().parameters()[p].groups.size();
+      const double all = static_cast<double>(race_.system().observations().groups());
+      s.numbers += on == 0 || !(all > 0) ? 1 : static_cast<double>(on) / all;
+    }
+    s.finer += candidate.finer;
+  }
+  s.more = static_cast<double>(f.model.candidates.size()) - 1;
+  s.weakest = errors_of_help(base_.held_out, f.model.held_out);
+  s.times = std::log(std::max(1e-3, race_.effect(base_, f.model) / std::max(1e-6, options_.smallest_effect)));
+  s.size = sizes(f.model);
+  s.controls = controls(f);
+  refuse(f);
+}
+
+// Mean penalty of a half-Cauchy prior whose scale is the size that the mechanism declares as typical. What has no
+// effect by itself is measured from where a fit begins.
+double Finalists::sizes(const Model& model) const {
+  const Problem& problem = race_.system().problem();
+  double sum = 0, numbers = 0;
+  for (const std::size_t c : model.candidates)
+    for (const std::size_t p : problem.candidates()[c].parameters) {
+      const Parameter& parameter = problem.parameters()[p];
+      const double typical = typical_size(problem.candidates()[c], parameter);
+      if (!(typical > 0)) continue;
+      const double v = model.fit.values[p];
+      const double away = std::min(std::abs(v - parameter.neutral), std::abs(v - parameter.start)) / typical;
+      sum += std::log1p(away * away);
+      numbers += 1;
+    }
+  return numbers > 0 ? sum / numbers : 0;
+}
+
+double Finalists::controls(const Finalist& f) const {
+  if (f.model.candidates.size() > 1) return 0;
+  const auto grouped = [&](std::size_t c) {
+    const std::vector<std::size_t>& own = race_.system().problem().candidates()[c].parameters;
+    return std::all_of(own.begin(), own.end(),
+                       [&](std::size_t p) { return race_.system().problem().parameters()[p].groups.size() == 1; });
+  };
+  const Gain own = gain(base_.held_out, f.model.held_out);
+  double peers = 0, better = 0;
+  for (const Hypothesis& control : before_.negative_controls) {
+    if (grouped(control.candidates.at(0)) != grouped(f.model.candidates[0])) continue;
+    ++peers;
+    better += control.gain > own.mean + own.sigma;
+  }
+  return part_of_all(better, peers);
+}
+
+void Finalists::refuse(Finalist& f) const {
+  f.refused = at_a_limit(race_.system().problem(), f.model.fit, f.model.candidates);
+  if (!f.refused.empty()) f.refused += " ends at the limit of what is plausible";
+  if (!(f.statistics.weakest > 1)) f.refused = "does not lower the held-out score beyond its standard error";
+}
+
+void Finalists::weaken(Finalist& f) const {
+  if (f.model.candidates.size() < 2) return;
+  const Slopes kept = race_.slopes_at(f.model);
+  for (const std::size_t c : f.model.candidates) {
+    std::vector<std::size_t> rest = f.model.candidates;
+    std::erase(rest, c);
+    const Model without = race_.changed(f.model, rest, &kept);
+    f.statistics.weakest = std::min(f.statistics.weakest, errors_of_help(without.held_out, f.model.held_out));
+    const double effect = race_.effect(without, f.model);
+    f.statistics.times =
+        std::min(f.statistics.times, std::log(std::max(1e-3, effect / std::max(1e-6, options_.smallest_effect))));
+  }
+}
+
+void Finalists::look_into(Finalist& f) {
+  if (f.after == nullptr) {
+    Model polished = race_.changed(f.model, f.model.candidates);
+    if (polished.fit.cost < f.model.fit.cost) {
+      f.model = std::move(polished);
+      f.gained = gain(base_.held_out, f.model.held_out).mean;
+      f.statistics.weakest = errors_of_help(base_.held_out, f.model.held_out);
+      f.statistics.size = sizes(f.model);
+    }
+    f.left = left_over(race_.system().problem(), f.model.candidates,
+                       residual_structure(race_, f.model, options_, Looks::at_curves), options_);
+  } else {
+    f.left = left_over(race_.system().problem(), f.model.candidates, *f.after, options_);
+  }
+  weaken(f);
+  f.looked_into = true;
+  refuse(f);
+}
+
+void Finalists::compare() {
+  const Finalist* best = nullptr;
+  for (const Finalist& f : list_)
+    if (f.refused.empty() && (best == nullptr || f.gained > best->gained)) best = &f;
+  if (best == nullptr) return;
+  double most = best->gained + (best->looked_into ? best->left.any : 0);
+  const HeldOut& linear = before_.evidence->folds->own();
+  const double floor = std::hypot(last_digit * most, rows_ > 0 ? a_square / rows_ : 0);
+  for (Finalist& f : list_) {
+    Statistics& s = f.statistics;
+    s.behind = &f == best ? 0 : std::max(0.0, errors_between(f.model.held_out, best->model.held_out, floor));
+    // What a further mechanism adds that matters counts whole, however much the first has done.
+    for (const Finalist& more : list_)
+      if (more.refused.empty() && more.looked_into && !(more.statistics.times < 0) && holds_more(more, f))
+        s.behind = std::max(s.behind, errors_between(f.model.held_out, more.model.held_out, 0));
+    s.missed = 1 - part_of_all(f.gained, most);
+    s.own = part_of_all(f.left.own, f.left.own + std::max(0.0, f.gained));
+    s.clean = part_of_all(f.left.own, excess_of(f.model.held_out));
+    s.any = part_of_all(f.left.any, f.left.any + std::max(0.0, f.gained));
+    s.curve = 0;
+    for (const Competitor& c : before_.curves) {
+      if (!(c.hypothesis.gain > 2 * c.hypothesis.gain_sigma)) continue;
+      // Curves are judged linearly: both as falls against the base model as it is judged in either way.
+      HeldOut by_curve = base_.held_out;
+      for (std::size_t g = 0; g < by_curve.whitened.size(); ++g)
+        by_curve.whitened[g] -= linear.whitened[g] - c.held_out.whitened[g];
+      const Gain apart = gain(f.model.held_out, by_curve);
+      if (!(apart.mean > 2 * apart.sigma)) continue;
+      const double better = part_of_all(apart.mean, c.hypothesis.gain);
+      if (better > s.curve) s.curve = better, f.curve = c.hypothesis.name;
+    }
+  }
+}
+
+std::vector<Member> Finalists::members(std::vector<std::size_t>* places) const {
+  Member nothing{Member::Kind::nothing, {}};
+  double largest = 1e-3;
+  for (const Finalist& f : list_) largest = std::max(largest, std::exp(f.statistics.times) * options_.smallest_effect);
+  for (const Competitor& c : before_.curves)
+    if (c.hypothesis.gain > c.hypothesis.gain_sigma) largest = std::max(largest, c.hypothesis.effect);
+  nothing.statistics.mismatch = -std::log10(std::max(before_.global_p, 1e-12));
+  nothing.statistics.largest = std::log(largest / std::max(1e-6, options_.smallest_effect));
+  Member outside{Member::Kind::outside, {}};
+  const LeftOver all = left_over(race_.system().problem(), {}, before_, options_);
+  outside.statistics.times = all.condition ? std::max(0.0, nothing.statistics.largest) : -1;
+  std::vector<Member> result = {nothing, outside};
+  for (std::size_t k = 0; k < list_.size(); ++k) {
+    if (!list_[k].refused.empty()) continue;
+    result.push_back({Member::Kind::set, list_[k].statistics});
+    if (places != nullptr) places->push_back(k);
+  }
+  return result;
+}
+
+void Finalists::score() {
+  compare();
+  std::vector<std::size_t> places;
+  const std::vector<double> p = probabilities(members(&places));
+  nothing_ = p[0], outside_ = p[1];
+  if (members()[1].statistics.times < 0) nothing_ += outside_, outside_ = 0;
+  for (Finalist& f : list_) f.probability = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    Finalist& f = list_[places[k]];
+    (matters(f) ? f.probability : nothing_) += p[k + 2];
+  }
+}
+
+void Finalists::weigh(std::size_t most) {
+  score();
+  for (std::size_t n = 0; n < most; ++n) {
+    Finalist* next = nullptr;
+    for (Finalist& f : list_)
+      if (!f.looked_into && f.probability > worth_a_look && (next == nullptr || f.probability > next->probability))
+        next = &f;
+    if (next == nullptr) return;
+    look_into(*next);
+    score();
+  }
+}
+
+const Finalist* Finalists::likeliest() const {
+  const Finalist* best = nullptr;
+  for (const Finalist& f : list_)
+    if (matters(f) && (best == nullptr || f.probability > best->probability)) best = &f;
+  return best;
+}
+
+double Finalists::in_library() const {
+  double sum = 0;
+  for (const Finalist& f : list_) sum += matters(f) ? f.probability : 0;
+  return sum;
+}
+
+}  // namespace gonio::inference

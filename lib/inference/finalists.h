@@ -1,0 +1,74 @@
+// The sets of mechanisms that could be what was left out, each with the statistics that say how likely it is
+// (probability.h): what forward selection came to and its parts, the runners-up, and what can stand in for one of them.
+//
+// What a set leaves is dear to know. It is looked into where the set is likely without knowing it, the likeliest first:
+// what it leaves can only speak against it.
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inference/probability.h"
+#include "inference/race.h"
+
+namespace gonio::inference {
+
+// What a model leaves that matters, in squared noise per observation, and where.
+struct LeftOver {
+  double own = 0, any = 0;
+  std::string own_over, any_over;
+  std::optional<std::size_t> condition;  // that carries most of it
+};
+LeftOver left_over(const Problem& problem, const std::vector<std::size_t>& candidates, const ResidualStructure& after,
+                   const Options& options);
+
+struct Finalist {
+  Model model;
+  std::string refused;  // by a rule that no probability mends: at a bound, not significant, too small
+  Statistics statistics;
+  double probability = 0;
+  double gained = 0;  // fall of the held-out mean square from the base model
+  bool looked_into = false;
+  std::shared_ptr<const ResidualStructure> after;  // of what was looked into whole
+  LeftOver left;
+  std::string curve;  // over which a free one repairs more
+};
+
+class Finalists {
+ public:
+  Finalists(const Race& race, const Options& options, const Model& base, const ResidualStructure& before);
+
+  // Once for every set; a better fit of a known one takes its place. `after`: what it leaves, where that is known.
+  void add(Model model, std::shared_ptr<const ResidualStructure> after = nullptr);
+  bool knows(const std::vector<std::size_t>& candidates) const;
+  // Looks into what is likely and has not been looked into, no more than `most` of them; then weighs all.
+  void weigh(std::size_t most);
+
+  const std::vector<Finalist>& list() const { return list_; }
+  const Finalist* likeliest() const;  // of the sets; null: there is none that could be
+  double in_library() const;          // the probability that it is any of the sets
+  double nothing() const { return nothing_; }
+  double outside() const { return outside_; }
+  // Nothing, outside, then those of list() that no rule refuses; `places`: theirs in list().
+  std::vector<Member> members(std::vector<std::size_t>* places = nullptr) const;
+
+ private:
+  void look_into(Finalist& f);
+  void refuse(Finalist& f) const;
+  void weaken(Finalist& f) const;  // weakest part and its effect, by leaving each out
+  void compare();                  // what depends on the others
+  void score();
+  double sizes(const Model& model) const;
+  double controls(const Finalist& f) const;
+
+  const Race& race_;
+  const Options& options_;
+  const Model base_;
+  const ResidualStructure before_;
+  std::vector<Finalist> list_;
+  double nothing_ = 1, outside_ = 0, rows_ = 0;
+};
+
+}  // namespace gonio::inference
