@@ -47,7 +47,8 @@ std::vector<Use> camera_uses(const Setting& setting, const mechanism::Mechanism&
 
 std::span<const double> camera_amounts(const Use& use, const Frame& frame) {
   const std::string& camera = frame.model.recordings().views[frame.image.view].camera;
-  const auto found = std::find(use.on.begin(), use.on.end(), camera);
+  auto found = std::find(use.on.begin(), use.on.end(), frame.image.id);  // one picture of it
+  if (found == use.on.end()) found = std::find(use.on.begin(), use.on.end(), camera);
   if (found != use.on.end()) return use.amounts(frame.state, static_cast<std::size_t>(found - use.on.begin()));
   if (use.on.empty()) return use.amounts(frame.state);
   return use.neutral_amounts();

@@ -16,7 +16,7 @@ std::size_t readings_near(const Recordings& recordings, double value);
 
 // One use for each camera of the recordings that has not the mechanism already; a mechanism of cameras.
 std::vector<Use> camera_uses(const Setting& setting, const mechanism::Mechanism& mechanism);
-// The numbers that hold for the frame's camera; neutral ones where the use does not mean it.
+// The numbers that hold for the frame's picture or its camera; neutral ones where the use does not mean it.
 std::span<const double> camera_amounts(const Use& use, const Frame& frame);
 
 }  // namespace gonio::relighting

@@ -74,7 +74,8 @@ double ToneCurve::reading(double light) const {
 double Response::operator()(double light) const {
   double v = light;
   if (quadratic != 0) v = equation::sensor_quadratic(v, quadratic, reference);
-  if (gamma != 1) v = equation::sensor_power_law(v, gamma, reference);
+  if (gamma != 1) v = equation::sensor_power_law(v, gamma, reference, toe);
+  if (shoulder != 0) v = equation::sensor_shoulder(v, shoulder, reference);
   if (!curve.linear()) v = reference * curve.reading(v / reference);
   return v;
 }
@@ -82,7 +83,8 @@ double Response::operator()(double light) const {
 double Response::light(double reading) const {
   double v = reading;
   if (!curve.linear()) v = reference * curve.light(v / reference);
-  if (gamma != 1) v = equation::sensor_power_law(v, 1 / gamma, reference);
+  if (shoulder != 0) v = equation::sensor_shoulder_undone(v, shoulder, reference);
+  if (gamma != 1) v = equation::sensor_power_law(v, 1 / gamma, reference, toe);
   // q u^2 + u = v with u = light / reference: u = 2 v / (1 + sqrt(1 + 4 q v)).
   if (quadratic != 0) v = 2 * v / (1 + std::sqrt(std::max(0.0, 1 + 4 * quadratic * v / reference)));
   return v;

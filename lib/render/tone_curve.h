@@ -1,7 +1,8 @@
 // Responses of sensors, film and the processing behind them: from light to what is read, step 6 of
 // render/sensor_chain.h. All quantities are over a reference; what is negative is mirrored about zero.
 //   quadratic   reading = v (1 + quadratic v)
-//   power law   reading = v^gamma
+//   power law   reading = v^gamma, with a linear toe where it has one
+//   shoulder    reading = v (1 + shoulder) / (1 + shoulder v)
 //   tone curve  d ln(light) / d ln(reading) = p(reading), p linear in ln(reading) between nodes, constant beyond them
 // The tone curve is the inverse response of Debevec & Malik 1997, equation 3, g(reading) = ln(light), by its slope in
 // logarithms rather than by a value for each code: any positive slopes make a rising curve, slopes of one are a linear
@@ -34,11 +35,12 @@ class ToneCurve {
   ToneSlopes slopes_, log_light_;  // the latter at the nodes
 };
 
-// One reading: the three in this order, each with `reference` as its unit. Unchanged to the last bit where quadratic is
-// 0, gamma is 1 and the curve is linear.
+// One reading: the four in this order, each with `reference` as its unit. Unchanged to the last bit where quadratic
+// and shoulder are 0, gamma is 1 and the curve is linear.
 struct Response {
   double quadratic = 0, gamma = 1, reference = 1;
   ToneCurve curve{};
+  double toe = 0, shoulder = 0;
   double operator()(double light) const;
   double light(double reading) const;  // the inverse; the rising branch of the quadratic, its top beyond
 };

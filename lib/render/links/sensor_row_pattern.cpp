@@ -10,8 +10,8 @@ const Link& sensor_row_pattern() {
                          .step = Step::signal,
                          .order = 20,
                          .value = [](std::span<const double> p) -> OnValue {
-                           return [a = p[0], period = p[1], phase = p[2]](double v, const Site& at) {
-                             return equation::sensor_row_pattern(v, a, period, phase, at.row);
+                           return [pattern = equation::row_pattern(p)](double v, const Site& at) {
+                             return equation::sensor_row_pattern(v, pattern, at.row);
                            };
                          }};
   return link;

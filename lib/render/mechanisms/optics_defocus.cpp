@@ -21,6 +21,7 @@ const Mechanism& optics_defocus() {
                       .lower = 0,
                       .upper = 0.1,
                       .start = 0.005,
+                      .typical = 0.005,
                       .meaning = "radius of the entrance pupil: focal length over twice the f-number"},
                      {.name = "focus_m",
                       .unit = "m",

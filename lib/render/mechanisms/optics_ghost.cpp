@@ -20,6 +20,7 @@ const Mechanism& optics_ghost() {
                       .lower = 0,
                       .upper = 0.05,
                       .start = 0.005,
+                      .typical = 0.003,
                       .meaning = "brightness of the ghost over that of its source"}},
       .conditions = {"image.mirrored-radiance", "image.radiance"},
       .mistaken_for = {{.with = "surface.interface",

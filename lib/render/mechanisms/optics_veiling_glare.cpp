@@ -19,6 +19,7 @@ const Mechanism& optics_veiling_glare() {
                       .lower = 0,
                       .upper = 0.2,
                       .start = 0.02,
+                      .typical = 0.02,
                       .meaning = "share of the picture's mean that is added to every pixel"}},
       .conditions = {"image.mean", "image.radiance"},
       .mistaken_for = {{.with = "light.ambient", .told_apart = "mask the bright areas"},

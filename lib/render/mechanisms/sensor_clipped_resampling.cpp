@@ -28,6 +28,7 @@ const Mechanism& sensor_clipped_resampling() {
                       .lower = 1,
                       .upper = 3,
                       .start = 1.8,
+                      .typical = 1,
                       .meaning = "side of the box of native pixels that one pixel of the picture is made of; without "
                                  "effect where nothing is cut off"}},
       .conditions = {"image.radiance", "image.edge-distance"},

@@ -19,6 +19,7 @@ const Mechanism& sensor_crosstalk() {
                       .lower = 0,
                       .upper = 0.2,
                       .start = 0.03,
+                      .typical = 0.03,
                       .meaning = "share of each other band in a band's reading"}},
       .conditions = {"image.hue"},
       .mistaken_for = {{.with = "dispersion", .told_apart = "light of one colour"},

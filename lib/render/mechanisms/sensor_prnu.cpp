@@ -19,6 +19,7 @@ const Mechanism& sensor_prnu() {
                       .lower = 0,
                       .upper = 0.1,
                       .start = 0.01,
+                      .typical = 0.01,
                       .meaning = "standard deviation of the pixels' sensitivity over its mean"}},
       .conditions = {"camera.pixel"},
       .mistaken_for = {{.with = "texture", .told_apart = "shift the object by some pixels: the pattern stays"},

@@ -1,6 +1,7 @@
 // sensor.row-pattern on one value.
 #pragma once
 #include <cmath>
+#include <span>
 
 #include "geom/vector.h"
 #include "mechanism/mechanism.h"
@@ -11,8 +12,17 @@ const Mechanism& sensor_row_pattern();
 
 namespace gonio::equation {
 
-inline double sensor_row_pattern(double v, double amplitude, double period_px, double phase_rad, double row) {
-  return v * (1 + amplitude * std::sin(2 * pi * row / period_px + phase_rad));
+struct RowPattern {  // the mechanism's parameters, in its order
+  double amplitude = 0, period_px = 100, phase_rad = 0, sine = 0, cosine = 0;
+};
+inline RowPattern row_pattern(std::span<const double> p) {
+  return {p[0], p[1], p[2], p[3], p[4]};
+}
+inline double sensor_row_pattern(double v, const RowPattern& p, double row) {
+  const double turn = 2 * pi * row / p.period_px;
+  double swing = p.amplitude * std::sin(turn + p.phase_rad);
+  if (p.sine != 0 || p.cosine != 0) swing += p.sine * std::sin(turn) + p.cosine * std::cos(turn);
+  return v * (1 + swing);
 }
 
 }  // namespace gonio::equation

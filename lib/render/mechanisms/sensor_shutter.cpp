@@ -19,6 +19,7 @@ const Mechanism& sensor_shutter() {
                       .lower = -0.01,
                       .upper = 0.01,
                       .start = 1e-5,
+                      .typical = 5e-5,
                       .meaning = "time by which every exposure is longer than stated"}},
       .conditions = {"image.exposure"},
       .mistaken_for = {{.with = "light.drift", .told_apart = "the exposures in shuffled order, some of them twice"},

@@ -23,6 +23,7 @@ const Mechanism& transport_caustic() {
                       .lower = 0,
                       .upper = 1.5,
                       .start = 0.5,
+                      .typical = 1,
                       .meaning = "share of the light through smooth interfaces that is simulated"}},
       .conditions = {"light.visibility", "image.radiance"},
       .mistaken_for = {{.with = "light.second-source", .told_apart = "cover the glass"},

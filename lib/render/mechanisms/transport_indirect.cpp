@@ -20,6 +20,7 @@ const Mechanism& transport_indirect() {
                       .lower = 0,
                       .upper = 2,
                       .start = 1,
+                      .typical = 1,
                       .meaning = "factor on interreflected light; 1 is what the albedos and the geometry imply"}},
       .conditions = {"scene.indirect-irradiance", "light.visibility", "image.radiance"},
       .mistaken_for = {{.with = "light.ambient", .told_apart = "black cloth over the neighbours, or the lamp off"},
