@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/random.h"
+#include "camera/camera_model.h"
 #include "io/image.h"
 #include "mechanism/mechanism.h"
 
@@ -34,6 +35,8 @@ struct Link {
   // The one that its step calls for; `p` are the mechanism's amounts. A null function: does not act on this picture.
   OnValue (*value)(std::span<const double> p) = nullptr;
   OnPicture (*picture)(std::span<const double> p, double exposure_s) = nullptr;  // exposure_s 0: not stated
+  // Step optics only, instead of `picture`: what depends on where the axis meets the picture.
+  OnPicture (*lens)(std::span<const double> p, const camera::CameraModel& camera) = nullptr;
 };
 
 std::span<const Link* const> all_links();  // sorted by name; defined in a generated source

@@ -107,7 +107,6 @@ class PathLoop {
       walked += reach;
     }
   }
-
   bool is_off(int scattered) const { return scattered > 1 && setting_.scene.appearance.indirect_strength == 0; }
 
   bool scatter_at_surface(Path<Carrier>& path) const {
@@ -115,11 +114,12 @@ class PathLoop {
     ++path.events;
     ++path.noticed.events;
     const SurfacePoint& at = *path.left;
-    const bool transmits = setting_.transmits[at.surface];
+    const bool transmits = setting_.transmits[at.surface];  // a sheet lies in one medium
     std::optional<Crossing> crossing;
     std::optional<InterfaceHere> here;
     bool disperses = false;  // and the path still has all bands
-    if (setting_.media.any() && (transmits || !path.inside.empty())) {
+    if (setting_.media.any() && !(transmits && setting_.scene.appearance.surfaces[at.surface].model->thin()) &&
+        (transmits || !path.inside.empty())) {
       crossing = setting_.media.crossing(path.inside, at);
       const Rgb eta = crossing->eta;
       disperses = path.colour < 0 && (eta.x != eta.y || eta.y != eta.z);

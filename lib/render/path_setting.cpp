@@ -38,7 +38,7 @@ PathSetting::PathSetting(const scene::Scene& the_scene, std::size_t number, cons
   named = emitters.size();
   if (scene.appearance.ambient) emitters.push_back(scene.appearance.ambient.get());
   for (const scene::Surface& surface : scene.appearance.surfaces) {
-    transmits.push_back(surface.model->transmits());
+    transmits.push_back(surface.model->transmits() || surface.model->thin());
     spreads.push_back(may_spread(surface));
   }
   if (media.any()) camera_inside = media.around(view.world_from_camera.translation_m);

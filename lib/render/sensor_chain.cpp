@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "camera/intrinsics.h"
 #include "manifest/document.h"
+#include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "render/image_seed.h"
@@ -38,6 +39,10 @@ double poisson(double expected, Random& random) {
 void act(const Sensor& sensor, Step step, io::Image& image) {
   for (const Sensor::Active& active : sensor.links) {
     if (active.link->step != step) continue;
+    if (active.link->lens != nullptr) {
+      if (sensor.lens) active.link->lens(active.amounts, *sensor.lens)(image);
+      continue;
+    }
     if (const OnPicture picture = active.link->picture(active.amounts, sensor.exposure_s)) picture(image);
   }
 }
@@ -139,8 +144,12 @@ Sensor sensor_of(const manifest::Document& document, std::size_t image) {
   for (const auto& [id, use] : document.mechanisms) {
     const mechanism::Mechanism* m = mechanism::find_mechanism(id);
     if (m == nullptr || !in_sensor_chain(*m)) continue;
-    auto amounts = scene::camera_amounts(*m, use, entry.camera, manifest::place(document, "/mechanisms/" + id));
-    if (amounts) sensor.switch_on(*m, std::move(*amounts));
+    auto amounts =
+        scene::camera_amounts(*m, use, entry.camera, manifest::place(document, "/mechanisms/" + id), entry.id);
+    if (!amounts) continue;
+    sensor.switch_on(*m, std::move(*amounts));
+    if (!sensor.lens)
+      sensor.lens.emplace(document.cameras.at(entry.camera), manifest::place(document, "/cameras/" + entry.camera));
   }
   return sensor;
 }

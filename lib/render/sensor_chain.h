@@ -1,7 +1,7 @@
 // From a rendered picture to what a camera records: a chain of mechanisms, each of which vanishes exactly at its
 // neutral value. Values are linear and in the rendering's unit throughout, black offset and full scale too. The steps,
 // in this order (render/link.h); which mechanism acts at which step its file in render/links says:
-//   optics      pictures before the filters: shutter, ghost, veiling glare, crosstalk
+//   optics      pictures before the filters: lateral colour, shutter, ghost, veiling glare, crosstalk
 //               the camera's mosaic: one channel Y behind colour filters; "polarizers": behind these (render/mosaic.h)
 //   light       sensitivity of pixels
 //               photon noise, Poisson: v is v * gain electrons (Janesick 2007, equation 2.14)
@@ -13,6 +13,7 @@
 // beside the sensor's. Every image id has noise of its own under one seed.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,8 @@ struct Sensor {  // as it stands: ideal, three channels, without noise
   std::string camera;
   std::string mosaic;
   manifest::Noise noise;
-  double exposure_s = 0;  // 0: not stated
+  double exposure_s = 0;                    // 0: not stated
+  std::optional<camera::CameraModel> lens;  // nothing: no link that asks for it acts
   struct Active {
     const Link* link = nullptr;
     std::vector<double> amounts;  // one per parameter of the mechanism

@@ -41,7 +41,7 @@ bool depends_on_azimuth(const Layer& base) {
 struct Remembered {
   const Model* model = nullptr;
   const Prepared* prepared = nullptr;
-  std::array<Rgb, 12> values;
+  decltype(Values::v) values;
   double eta = 0, alpha = 0;
   Rgb depth;
   InterfaceTrap trap;

@@ -43,7 +43,7 @@ struct Prepared {
 
 // Parameter values at one point, in the order of info().parameters; scalars are spread over all three components.
 struct Values {
-  std::array<Rgb, 12> v{};
+  std::array<Rgb, 16> v{};
   // Index beyond the interface over the index on wo's side, per band. The path tracer sets it at every vertex from the
   // media that meet there; only models that transmit() read it.
   Rgb eta{1, 1, 1};
@@ -82,9 +82,14 @@ class Model {
   // transmit() with the transmittance (radiance over eta^2).
   virtual Rgb albedo(const Values& values, Vec3 wo) const = 0;
 
+  // Is what the albedo adds in proportion to it? Where not, light that facets have sent on to each other counts.
+  virtual bool proportional_to_albedo(const Values&) const { return true; }
+
   // Light also passes to the other side: an interface to the medium that interior() states.
   virtual bool transmits() const { return false; }
   virtual std::optional<Medium> interior(const Values&) const { return {}; }  // of models that transmit
+  // A sheet without thickness that light comes through: no interface, and no medium beyond.
+  virtual bool thin() const { return false; }
   // Null where light leaves where it entered.
   virtual const Subsurface* subsurface(const Values&) const { return nullptr; }
   // Mueller matrices per band of scattering from wi to wo, divided by their (0, 0) element: evaluate(), or the weight

@@ -52,7 +52,7 @@ bool concerns_pictures(const Mechanism& m) {
   const bool tables_alone = !m.domains.empty() && std::ranges::all_of(m.domains, [](const std::string& domain) {
     return domain == "tables" || domain == "heights" || domain == "nrsfm" || domain == "volumes";
   });
-  return lens || !(is_for("boards") || is_for("robot") || tables_alone);
+  return lens || is_for("images") || !(is_for("boards") || is_for("robot") || tables_alone);
 }
 
 manifest::MechanismUse use(const Mechanism& m, bool neutral) {

@@ -75,7 +75,8 @@ inline SurfaceCase completed(SurfaceCase c, Random& random) {
   if (c.model->info().takes_base) {
     std::vector<std::shared_ptr<const SurfaceCase>> bases;
     for (const surface::Model* model : surface::all_models()) {
-      if (model->info().takes_base || model->transmits() || model->info().attachment != manifest::Attachment::none)
+      if (model->info().takes_base || model->transmits() || model->thin() ||
+          model->info().attachment != manifest::Attachment::none)
         continue;
       const auto base = std::make_shared<const SurfaceCase>(
           completed({model, draw_values(*model, random), model->info().id}, random));

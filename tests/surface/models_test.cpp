@@ -95,7 +95,7 @@ TEST_P(EverySurface, SampleStatesDensityAndWeight) {
       ASSERT_NEAR(norm(s.wi), 1, 1e-12) << c.name;
       ASSERT_TRUE(sound(s.weight)) << c.name;
       if (s.below) continue;
-      ASSERT_TRUE(s.wi.z > 0 || (c.model->transmits() && s.wi.z < 0)) << c.name;
+      ASSERT_TRUE(s.wi.z > 0 || ((c.model->transmits() || c.model->thin()) && s.wi.z < 0)) << c.name;
       if (s.delta) continue;
       ASSERT_NEAR(s.pdf / c.model->pdf(c.values, wo, s.wi), 1, 1e-9) << c.name;
       const Rgb expected = c.model->evaluate(c.values, wo, s.wi) * (std::abs(s.wi.z) / s.pdf);
@@ -144,7 +144,7 @@ TEST_P(EverySurface, IsBlackBelowTheHorizon) {
       EXPECT_EQ(largest(c.model->evaluate(c.values, below, above)), 0) << c.name;
       EXPECT_EQ(c.model->pdf(c.values, below, above), 0) << c.name;
       EXPECT_EQ(c.model->sample(c.values, below, {0.3, 0.4}, 0.5).pdf, 0) << c.name;
-      if (c.model->transmits() && z < 0) continue;
+      if ((c.model->transmits() || c.model->thin()) && z < 0) continue;
       EXPECT_EQ(largest(c.model->evaluate(c.values, above, below)), 0) << c.name;
       EXPECT_EQ(c.model->pdf(c.values, above, below), 0) << c.name;
     }
@@ -159,14 +159,17 @@ double table_error(double zenith) {
 // Energy, and albedo() against the sampler. Six standard errors of the estimate (Student's t of seven degrees: false
 // alarms below 1e-3 each) come on top; 0.01 more covers a rough base under an interface, where albedo() says that it is
 // an approximation, 0.05 what a coat throws back to its base. Where light leaves elsewhere than it entered the weight
-// is what enters.
+// is what enters. An interface with a direction closes to 0.02 where it is a mixture (surface/models/glossy.cpp).
 TEST_P(EverySurface, ReflectsNoMoreThanItReceives) {
   for (const SurfaceCase& c : cases(3, 106))
     for (const double zenith : {0.0, 45.0, 75.0, 88.0}) {
       const Vec3 wo = at_zenith(zenith);
       const auto [reflected, error] = reflectance_by_sampling(*c.model, c.values, wo);
       const Rgb stated = c.model->albedo(c.values, wo);
-      const double coat = c.model->info().takes_base ? 0.05 : 0;
+      const double coat =
+          c.model->info().takes_base                                                                       ? 0.05
+          : std::ranges::count(c.model->info().parameters, "anisotropy_0", &manifest::ParameterInfo::name) ? 0.01
+                                                                                                           : 0;
       EXPECT_LE(max_component(reflected), 1 + coat + table_error(zenith) + 6 * max_component(error))
           << c.name << " at " << zenith;
       EXPECT_LE(max_component(stated), 1 + coat + 1e-3) << c.name << " at " << zenith;

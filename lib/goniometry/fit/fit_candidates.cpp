@@ -3,7 +3,7 @@
 //   retro, retro_alpha                        light sent back to the lamp, counted as a lobe
 //   anisotropy_0, anisotropy_45; anisotropy, azimuth_rad     a direction; where both are offered, the first, which has
 //                                             no jump where the sample has none
-//   sigma_rad                                 a rough matte base
+//   sigma_rad                                 a rough matte base, by Oren & Nayar's qualitative law (matte_form 0)
 // Held always: lengths that only their ratios' slopes show (wavelength_u_m), masking as derived (projections), and
 // residue on reliefs (residue_share, residue_alpha), which is a hypothesis of explain's.
 #include "goniometry/fit/fit_candidates.h"
@@ -46,7 +46,7 @@ bool freed(const surface::Model& model, const std::string& name, const Variant& 
   if (name == "anisotropy_0" || name == "anisotropy_45") return v.direction;
   if (name == "anisotropy") return v.direction && !has(model, "anisotropy_0");
   if (name == "azimuth_rad") return relief(model) || (v.direction && !has(model, "anisotropy_0"));
-  return name != "wavelength_u_m" && name != "projections" && !name.starts_with("residue_");
+  return name != "wavelength_u_m" && name != "matte_form" && name != "projections" && !name.starts_with("residue_");
 }
 
 double held_value(const manifest::ParameterInfo& p) {
@@ -109,9 +109,11 @@ std::string refusal(const surface::Model& model, const FitOptions& options, bool
   if (info.attachment != manifest::Attachment::none) return "its numbers are a table: reconstruct one instead";
   if (info.takes_base)
     return "it lies on another surface, whose numbers it shares: interfaced-diffuse is the matte case";
+  if (model.thin()) return "light passes through it, and a reflectance shows a part: diffuse is what it reflects";
   if (model.transmits()) return "light passes through it, and a reflectance shows a part: metal has the same lobe";
   if (has(model, "sigma_s_per_m"))
     return "light leaves it elsewhere than it entered: interfaced-diffuse is its limit for wide light";
+  if (has(model, "sheen")) return "its parts are other models: glossy, metal, glossy-metal";
   if (relief(model) && !anisotropic && options.models.empty()) return "it needs samples that turn about the normal";
   if (relief(model) && has(model, "amplitude_m") && options.models.empty())
     return "slow and seldom: name it to have it fitted";

@@ -18,6 +18,7 @@ Parameter path_of(const char* name, const char* colour) {
           .lower = 0,
           .upper = 0.05,
           .start = 0.003,
+          .typical = 0.002,
           .meaning = std::string("diffuse mean free path 1 / sqrt(3 sigma_a sigma_t') in ") + colour};
 }
 

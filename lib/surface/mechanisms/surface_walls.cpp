@@ -21,6 +21,7 @@ const Mechanism& surface_walls() {
                       .lower = 0,
                       .upper = 1,
                       .start = 0.5,
+                      .typical = 1,
                       .meaning = "what the walls reflect, as a share of what facets would"}},
       .conditions = {"surface.azimuth", "surface.half-angle", "surface.exitance-angle"},
       .mistaken_for = {{.with = "surface.residue",

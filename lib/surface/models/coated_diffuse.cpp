@@ -9,15 +9,19 @@
 #include "surface/fresnel.h"
 #include "surface/hemisphere.h"
 #include "surface/interface_albedo.h"
+#include "surface/matte.h"
 #include "surface/microfacet.h"
-#include "surface/oren_nayar.h"
 #include "surface/polarization.h"
 #include "surface/surface.h"
 
 namespace gonio::surface {
 namespace {
 
-enum : std::size_t { albedo_index, sigma_index, f0_index, alpha_index };
+enum : std::size_t { albedo_index, sigma_index, f0_index, alpha_index, form_index };
+
+Matte matte_of(const Values& values) {
+  return {values.scalar(sigma_index), values.scalar(form_index)};
+}
 
 // What depends on the parameters and wo alone.
 struct Coat {
@@ -98,20 +102,22 @@ class CoatedDiffuse final : public Model {
               .preset = 0.1,
               .lower = min_alpha,
               .upper = max_alpha,
-              .meaning = "GGX roughness of the interface"}},
+              .meaning = "GGX roughness of the interface"},
+             matte_form_parameter()},
     };
     return info;
   }
 
   Rgb evaluate(const Values& values, Vec3 wo, Vec3 wi) const override {
     if (wo.z <= 0 || wi.z <= 0) return {};
-    const Rgb base = values.rgb(albedo_index) * (OrenNayar(values.scalar(sigma_index)).shape(wo, wi) / pi);
+    const Rgb base = matte_of(values).brdf(values.rgb(albedo_index), wo, wi);
     if (values.scalar(f0_index) <= 0) return base;
     return together(Coat(values, wo), base, wo, wi);
   }
 
   Rgb evaluate_with_slopes(const Values& values, Vec3 wo, Vec3 wi, std::span<Rgb> slopes) const override {
-    std::fill_n(slopes.begin(), 4, Rgb{});
+    if (!matte_of(values).has_slopes()) return Model::evaluate_with_slopes(values, wo, wi, slopes);
+    std::fill_n(slopes.begin(), 5, Rgb{});
     if (wo.z <= 0 || wi.z <= 0) return {};
     using T = CoatSlopes::T;
     const CoatSlopes& at = CoatSlopes::of(values);
@@ -135,11 +141,11 @@ class CoatedDiffuse final : public Model {
 
   Sample sample(const Values& values, Vec3 wo, Vec2 u, double u_lobe) const override {
     if (wo.z <= 0) return {};
-    const OrenNayar rough(values.scalar(sigma_index));
+    const Matte rough = matte_of(values);
     const Rgb albedo = values.rgb(albedo_index);
     if (values.scalar(f0_index) <= 0) {
       const Vec3 wi = cosine_direction(u);
-      return wi.z > 0 ? Sample{wi, albedo * rough.shape(wo, wi), cosine_density(wi)} : Sample{};
+      return wi.z > 0 ? Sample{wi, rough.weight(albedo, wo, wi), cosine_density(wi)} : Sample{};
     }
     const Coat coat(values, wo);
     const Ggx ggx(coat.alpha);
@@ -148,7 +154,7 @@ class CoatedDiffuse final : public Model {
     if (wi.z <= 0) return {};
     const double density = share * ggx.pdf(wo, half_vector(wo, wi)) + (1 - share) * cosine_density(wi);
     if (!(density > 0)) return {};
-    return {wi, together(coat, albedo * (rough.shape(wo, wi) / pi), wo, wi) * (wi.z / density), density};
+    return {wi, together(coat, rough.brdf(albedo, wo, wi), wo, wi) * (wi.z / density), density};
   }
 
   double pdf(const Values& values, Vec3 wo, Vec3 wi) const override {
@@ -162,7 +168,7 @@ class CoatedDiffuse final : public Model {
   optics::MuellerRgb mueller(const Values& values, Vec3 wo, Vec3 wi) const override {
     if (values.scalar(f0_index) <= 0) return Model::mueller(values, wo, wi);
     const Coat coat(values, wo);
-    const Rgb base = values.rgb(albedo_index) * (OrenNayar(values.scalar(sigma_index)).shape(wo, wi) / pi);
+    const Rgb base = matte_of(values).brdf(values.rgb(albedo_index), wo, wi);
     const Rgb all = together(coat, base, wo, wi), gloss = together(coat, {}, wo, wi);
     const optics::Mueller facet = dielectric_facet(coat.eta, wo, wi), beneath = matte_beneath(coat.eta, wo, wi);
     return {mixed(facet, beneath, share_of(gloss.x, all.x)), mixed(facet, beneath, share_of(gloss.y, all.y)),
@@ -171,11 +177,13 @@ class CoatedDiffuse final : public Model {
 
   Rgb albedo(const Values& values, Vec3 wo) const override {
     if (wo.z <= 0) return {};
-    const Rgb base = values.rgb(albedo_index) * OrenNayar(values.scalar(sigma_index)).reflectance(wo.z);
+    const Rgb base = matte_of(values).reflectance(values.rgb(albedo_index), wo.z);
     if (values.scalar(f0_index) <= 0) return base;
     const double passes = Coat(values, wo).passes_out, reflects = 1 - passes;
     return Rgb{reflects, reflects, reflects} + base * passes;
   }
+
+  bool proportional_to_albedo(const Values& values) const override { return matte_of(values).proportional(); }
 
  private:
   static Rgb together(const Coat& coat, Rgb base, Vec3 wo, Vec3 wi) {

@@ -12,7 +12,7 @@
 #include "surface/hemisphere.h"
 #include "surface/interface_albedo.h"
 #include "surface/interface_loss.h"
-#include "surface/oren_nayar.h"
+#include "surface/matte.h"
 #include "surface/polarization.h"
 #include "surface/surface.h"
 
@@ -29,7 +29,8 @@ enum : std::size_t {
   a0_index,
   a45_index,
   retro_index,
-  retro_alpha_index
+  retro_alpha_index,
+  form_index
 };
 
 struct Interface {
@@ -63,7 +64,7 @@ struct Here {
   Ggx back;
   Vec3 wo;
   Rgb albedo;
-  OrenNayar rough;
+  Matte rough;
 
   Here(const Values& v, Vec3 to_eye)
       : interface(v),
@@ -75,7 +76,7 @@ struct Here {
         back(v.scalar(retro_alpha_index)),
         wo(to_eye),
         albedo(v.rgb(albedo_index)),
-        rough(v.scalar(sigma_index)) {
+        rough(v.scalar(sigma_index), v.scalar(form_index)) {
     const double below = (1 - reflected) * mean(albedo), above = reflected + below;
     const double sent = retro > 0 ? retro * returns(v.scalar(retro_alpha_index)) : 0, all = (1 - retro) * above + sent;
     retro_share = all > 0 ? sent / all : 0;
@@ -87,7 +88,7 @@ struct Here {
     return fresnel_dielectric(half_cosine(wo, wi), eta) * lobes.lobe(wi, half_vector(wo, wi));
   }
   Rgb base(Vec3 wi) const {
-    const Rgb matte = albedo * (rough.shape(wo, wi) / pi);
+    const Rgb matte = rough.brdf(albedo, wo, wi);
     return interface.f0 > 0 ? matte * (passes_out * (1 - interface.reflects(wi))) : matte;
   }
   double sent(Vec3 wi) const {
@@ -134,7 +135,8 @@ class Glossy final : public Model {
     return wo.z > 0 && wi.z > 0 ? Here(values, wo).evaluate(wi) : Rgb{};
   }
   Rgb evaluate_with_slopes(const Values& values, Vec3 wo, Vec3 wi, std::span<Rgb> slopes) const override {
-    std::fill_n(slopes.begin(), unknowns + 1, Rgb{});
+    if (!matte_of(values).has_slopes()) return Model::evaluate_with_slopes(values, wo, wi, slopes);
+    std::fill_n(slopes.begin(), unknowns + 2, Rgb{});
     if (wo.z <= 0 || wi.z <= 0) return {};
     const Linear at = linear(values, wo, wi);
     const Rgb albedo = values.rgb(albedo_index);
@@ -170,12 +172,15 @@ class Glossy final : public Model {
   Rgb albedo(const Values& values, Vec3 wo) const override {
     if (wo.z <= 0) return {};
     const Here here(values, wo);
-    const Rgb base = here.albedo * (here.rough.reflectance(wo.z) * (1 - here.reflected));
+    const Rgb base = here.rough.reflectance(here.albedo, wo.z) * (1 - here.reflected);
     const double sent = here.retro > 0 ? here.retro * here.returns(values.scalar(retro_alpha_index)) : 0;
     return (Rgb{here.reflected, here.reflected, here.reflected} + base) * (1 - here.retro) + Rgb{sent, sent, sent};
   }
 
+  bool proportional_to_albedo(const Values& values) const override { return matte_of(values).proportional(); }
+
  private:
+  static Matte matte_of(const Values& values) { return {values.scalar(sigma_index), values.scalar(form_index)}; }
   // f = rest + albedo base, by the numbers after the albedo.
   static constexpr std::size_t unknowns = retro_alpha_index;
   using T = Dual<unknowns>;
@@ -230,6 +235,7 @@ class Glossy final : public Model {
          .upper = max_alpha,
          .meaning = "GGX roughness of the interface"}};
     for (const auto& p : gloss_parameters(min_alpha)) all.push_back(p);
+    all.push_back(matte_form_parameter());
     return all;
   }
 };
