@@ -21,6 +21,7 @@ const Mechanism& light_finite_size() {
                       .lower = 0,
                       .upper = 0.2,
                       .start = 0.01,
+                      .typical = 0.01,
                       .meaning = "radius of the lamp"}},
       .conditions = {"light.shadow-edge-distance", "light.visibility", "light.distance"},
       .mistaken_for = {{.with = "optics.defocus", .told_apart = "move the light: a penumbra grows, blur stays"},

@@ -21,6 +21,7 @@ const Mechanism& light_near_environment() {
                       .lower = 0,
                       .upper = 5,
                       .start = 0.2,
+                      .typical = 0.3,
                       .meaning = "one over the distance of the walls from the scene's centre; 0: infinitely far"}},
       .conditions = {"scene.x", "scene.y", "scene.z", "surface.incidence-angle"},
       .mistaken_for = {{.with = "geometry.pose", .told_apart = "a second light probe, at another place"},

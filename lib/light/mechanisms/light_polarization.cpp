@@ -22,6 +22,7 @@ const Mechanism& light_polarization() {
                       .lower = -0.99,
                       .upper = 0.99,
                       .start = 0.3,
+                      .typical = 0.1,
                       .meaning =
                           "share polarized along the axis x carried along from +z to the lamp, less that across; "
                           "render takes it into account with --stokes"},
@@ -31,6 +32,7 @@ const Mechanism& light_polarization() {
                       .lower = -0.99,
                       .upper = 0.99,
                       .start = 0.3,
+                      .typical = 0.1,
                       .meaning = "the same for axes turned by 45 degrees"}},
       .conditions = {"light.plane-azimuth", "surface.incidence-angle", "light.identity"},
       .mistaken_for = {{.with = "surface.anisotropy", .told_apart = "roll the camera, or turn the lamp about its axis"},

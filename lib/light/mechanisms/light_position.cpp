@@ -5,7 +5,14 @@ namespace gonio::mechanism {
 namespace {
 
 Parameter along(const char* name, const char* axis) {
-  return {.name = name, .unit = "m", .neutral = 0, .lower = -0.1, .upper = 0.1, .start = 0.002, .meaning = axis};
+  return {.name = name,
+          .unit = "m",
+          .neutral = 0,
+          .lower = -0.1,
+          .upper = 0.1,
+          .start = 0.002,
+          .typical = 0.005,
+          .meaning = axis};
 }
 
 }  // namespace

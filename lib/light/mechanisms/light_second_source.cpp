@@ -6,13 +6,13 @@ namespace gonio::mechanism {
 const Mechanism& light_second_source() {
   static const Mechanism declaration{
       .id = "light.second-source",
-      .sentence = "A further light that nobody wrote down shines in all pictures from one direction.",
+      .sentence = "A further light that nobody wrote down shines in all pictures from one place.",
       .typical = "0.1 to 20 % of the lamp",
       .equation =
           "E += watt_per_m2 V max(0, n.l) (D / r)^2, V 1 where nothing is in the way; D, r and l lead to it from the "
-          "middle and from the point: D along (cos(el) cos(az), cos(el) sin(az), sin(el)), without end in pictures and "
-          "under a directional lamp, as far as the first lamp in other tables",
-      .source = "Lambert 1760; a distant source",
+          "middle and from the point: D along (cos(el) cos(az), cos(el) sin(az), sin(el)), 1 / nearness_per_m away; in "
+          "tables as far as the first lamp",
+      .source = "Lambert 1760; Kepler 1604",
       .stage = "light",
       .target = Target::scene,
       .domains = {"tables", "images"},
@@ -38,7 +38,16 @@ const Mechanism& light_second_source() {
                       .upper = 1.6,
                       .start = 0.8,
                       .meaning =
-                          "of the direction to it, above the world's xy plane; without effect where watt_per_m2 is 0"}},
+                          "of the direction to it, above the world's xy plane; without effect where watt_per_m2 is 0"},
+                     {.name = "nearness_per_m",
+                      .unit = "1/m",
+                      .neutral = 0,
+                      .lower = 0,
+                      .upper = 10,
+                      .start = 0.5,
+                      .typical = 1,
+                      .meaning = "one over its distance from the middle; 0: infinitely far; without effect where "
+                                 "watt_per_m2 is 0"}},
       .conditions = {"light.visibility", "scene.ambient-visibility", "surface.exitance-angle"},
       .mistaken_for = {{.with = "transport.indirect", .told_apart = "cover it"},
                        {.with = "light.ambient", .told_apart = "cover it; or look for second shadows"},

@@ -4,9 +4,11 @@
 //   S(t) = 3 t^2 - 2 t^3                                       (Pharr, Jakob & Humphreys 2023, section 12.2.1)
 // Photons leave by cos^exponent within the outer cone. With radius_m > 0 it is a disc across the axis: light/aimed.h.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "light/aimed.h"
+#include "light/mechanisms/light_lobe.h"
 #include "light/warp.h"
 
 namespace gonio::light {
@@ -25,16 +27,15 @@ enum : std::size_t {
 class ConeLobe final : public Lobe {
  public:
   ConeLobe(double outer_rad, double inner_share, double exponent)
-      : outer_(std::cos(outer_rad)), inner_(std::cos(inner_share * outer_rad)), exponent_(exponent) {}
+      : outer_(std::cos(outer_rad)), numbers_{exponent, outer_rad, inner_share} {}
   double relative(Vec3 local) const override {
-    if (!(local.z > std::max(0.0, outer_))) return 0;
-    const double t = local.z >= inner_ ? 1 : (local.z - outer_) / (inner_ - outer_);
-    return t * t * (3 - 2 * t) * (exponent_ == 0 ? 1 : std::pow(local.z, exponent_));
+    return local.z > std::max(0.0, outer_) ? equation::light_lobe(local.z, numbers_) : 0;
   }
   Draw draw(Vec2 u) const override { return {at_height(1 - u.x * (1 - outer_), u.y), 1 / (2 * pi * (1 - outer_))}; }
 
  private:
-  double outer_, inner_, exponent_;  // cosines
+  double outer_;                   // cosine
+  std::array<double, 3> numbers_;  // of light.lobe
 };
 
 class SpotModel final : public Model {

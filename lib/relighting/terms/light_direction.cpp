@@ -1,4 +1,4 @@
-// light.direction: lamps turned about the scene's centre; their shadows stay where they fell.
+// light.direction: lamps turned about the scene's centre; their shadows go with them.
 #include "relighting/uses.h"
 
 namespace gonio::mechanism {
@@ -9,13 +9,8 @@ namespace gonio::relighting::terms {
 namespace {
 
 std::vector<Use> candidates(const Setting& s) {
-  std::optional<Use> use =
-      lamps_use(s, mechanism::light_direction(), false, [](const Setting&, std::size_t) { return true; });
-  if (!use) return {};
-  for (std::size_t i = 0; i < use->numbers.size(); ++i)
-    use->numbers[i].groups = lit_by(s.recordings, use->targets[i / 2]);
-  use->family = lamps_place;
-  return {*use};
+  return all_or_one_lamp(s, mechanism::light_direction(), lamps_place, false,
+                         [](const Setting&, std::size_t) { return true; });
 }
 
 }  // namespace

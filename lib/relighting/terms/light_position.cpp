@@ -1,4 +1,4 @@
-// light.position: lamps moved; their shadows stay where they fell. An alternative to light.direction for lamps at a
+// light.position: lamps moved; their shadows go with them. An alternative to light.direction for lamps at a
 // finite distance: three numbers a lamp instead of two.
 #include "relighting/uses.h"
 
@@ -10,14 +10,8 @@ namespace gonio::relighting::terms {
 namespace {
 
 std::vector<Use> candidates(const Setting& s) {
-  std::optional<Use> use = lamps_use(s, mechanism::light_position(), false, [](const Setting& here, std::size_t light) {
-    return !here.layout.lights[light].directional;
-  });
-  if (!use) return {};
-  for (std::size_t i = 0; i < use->numbers.size(); ++i)
-    use->numbers[i].groups = lit_by(s.recordings, use->targets[i / 3]);
-  use->family = lamps_place;
-  return {*use};
+  return all_or_one_lamp(s, mechanism::light_position(), lamps_place, true,
+                         [](const Setting& here, std::size_t light) { return !here.layout.lights[light].directional; });
 }
 
 }  // namespace

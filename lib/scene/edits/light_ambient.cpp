@@ -6,7 +6,7 @@
 namespace gonio::scene::edits {
 namespace {
 
-void surround(Appearance& appearance, const Amounts& amounts, const std::string& place) {
+void surround(Appearance& appearance, const Amounts& amounts, Vec3, const std::string& place) {
   if (amounts == Amounts{0, 0, 0}) {
     appearance.ambient = nullptr;
     return;
