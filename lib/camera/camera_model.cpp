@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "camera/mechanisms/camera_rolling_shutter.h"
+#include "camera/mechanisms/lens_non_central.h"
 #include "manifest/sections/camera.h"
 
 namespace gonio::camera {
@@ -91,12 +93,60 @@ CameraModel CameraModel::parallel(double px_per_m, int width_px, int height_px) 
   return camera;
 }
 
+CameraModel CameraModel::with(const Intrinsics& lens) const {
+  CameraModel other = *this;
+  other.lens_ = lens;
+  if (!orthographic_) other.find_limits();
+  return other;
+}
+
+// Centres of pixels lie at integers: u' + 1/2 = factor (u + 1/2). Rows are read as before, in groups.
+CameraModel CameraModel::finer(int factor) const {
+  Intrinsics lens = lens_;
+  lens.fx_px *= factor, lens.fy_px *= factor;
+  lens.cx_px = factor * (lens.cx_px + 0.5) - 0.5, lens.cy_px = factor * (lens.cy_px + 0.5) - 0.5;
+  CameraModel other = with(lens);
+  other.width_px_ *= factor, other.height_px_ *= factor;
+  other.factor_ *= factor;
+  return other;
+}
+
+CameraModel CameraModel::with_pupil(double pupil_m) const {
+  CameraModel other = *this;
+  other.pupil_m_ = pupil_m;
+  return other;
+}
+
+CameraModel CameraModel::with_motion(Vec2 motion_m) const {
+  CameraModel other = *this;
+  other.motion_m_ = motion_m;
+  return other;
+}
+
+Vec3 CameraModel::shift_of_row(double row) const {
+  const double tau =
+      equation::camera_rolling_shutter((row + 0.5) / factor_ - 0.5, static_cast<double>(height_px_) / factor_);
+  return {tau * motion_m_.x, tau * motion_m_.y, 0};
+}
+
 void CameraModel::find_limits() {
   distorted_ = std::ranges::any_of(lens_.distortion, [](double v) { return v != 0; });
   radius_limit_ = one_to_one_radius(lens_.distortion.data());
 }
 
 std::optional<Vec2> CameraModel::project(Vec3 p) const {
+  auto pixel = project_at_rest(p);
+  if (motion_m_ == Vec2{}) return pixel;
+  for (int i = 0; pixel && i < 50; ++i) {  // v solves v = P_v(p + tau(v) m)
+    const double row = pixel->y;
+    pixel = project_at_rest(p + shift_of_row(row));
+    if (pixel && std::abs(pixel->y - row) < 1e-10) break;
+  }
+  return pixel;
+}
+
+std::optional<Vec2> CameraModel::project_at_rest(Vec3 p) const {
+  if (pupil_m_ != 0) p.z -= equation::lens_non_central_place(pupil_m_, p);
   if (orthographic_) return Vec2{lens_.fx_px * p.x + lens_.cx_px, lens_.fy_px * p.y + lens_.cy_px};
   const std::array<double, 3> direction{p.x, p.y, p.z};
   double x = 0, y = 0;
@@ -110,6 +160,13 @@ std::optional<Vec2> CameraModel::project(Vec3 p) const {
 }
 
 Ray CameraModel::ray(Vec2 pixel) const {
+  Ray ray = central_ray(pixel);
+  if (pupil_m_ != 0 && !orthographic_) ray.origin_m.z += equation::lens_non_central(pupil_m_, ray.direction);
+  if (!(motion_m_ == Vec2{})) ray.origin_m = ray.origin_m - shift_of_row(pixel.y);
+  return ray;
+}
+
+Ray CameraModel::central_ray(Vec2 pixel) const {
   const Vec2 at{(pixel.x - lens_.cx_px) / lens_.fx_px, (pixel.y - lens_.cy_px) / lens_.fy_px};
   if (orthographic_) return {{at.x, at.y, 0}, {0, 0, 1}};
   const Vec2 p = distorted_ ? undistort(at) : at;

@@ -32,19 +32,36 @@ class CameraModel {
   // inverse).
   Ray ray(Vec2 pixel) const;
 
+  const Intrinsics& intrinsics() const { return lens_; }  // orthographic: fx_px, fy_px are pixels per metre
+  // The same camera with other numbers, its picture's size, pupil and readout kept.
+  CameraModel with(const Intrinsics& lens) const;
+  // The same view with `factor` x `factor` pixels in the place of each: pixel n holds those from factor n on.
+  CameraModel finer(int factor) const;
+  // lens.non-central: rays at the angle theta pass through (0, 0, pupil_m sin^2 theta).
+  CameraModel with_pupil(double pupil_m) const;
+  // camera.rolling-shutter: all that is seen shifts by (x, y, 0) in the camera frame during one readout.
+  CameraModel with_motion(Vec2 motion_m) const;
+
   int width_px() const { return width_px_; }
   int height_px() const { return height_px_; }
   Vec2 principal_point_px() const { return {lens_.cx_px, lens_.cy_px}; }
   bool orthographic() const { return orthographic_; }
+  bool operator==(const CameraModel&) const = default;
 
  private:
   CameraModel() = default;
   void find_limits();
   Vec2 undistort(Vec2 distorted) const;
+  std::optional<Vec2> project_at_rest(Vec3 point_m) const;
+  Ray central_ray(Vec2 pixel) const;
+  Vec3 shift_of_row(double row) const;
 
   int width_px_ = 0, height_px_ = 0;
   Intrinsics lens_;  // orthographic: fx_px, fy_px are pixels per metre
   bool distorted_ = false, orthographic_ = false;
+  double pupil_m_ = 0;
+  Vec2 motion_m_;
+  int factor_ = 1;           // pixels a side for one of the sensor's
   double radius_limit_ = 0;  // largest radius on the plane at which the radial part still grows
 };
 

@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/mechanisms/camera_rolling_shutter.h"
+#include "camera/mechanisms/lens_lateral_colour.h"
+#include "camera/mechanisms/lens_non_central.h"
+
 namespace gonio::camera {
 namespace {
 
@@ -32,13 +36,8 @@ Pinhole pinhole_of(const CornerModel& m) {
   return {v[0] * stretch, v[1] * stretch, v[2] + drift(1), v[3] + drift(2)};
 }
 
-// Row by row from the middle, in readouts.
-double readouts(double row, int height_px) {
-  return (row - 0.5 * (height_px - 1)) / height_px;
-}
-
 // Height s of the entrance pupil for a point at p: s = pupil g(X, Y, Z - s), g = (X^2 + Y^2) / |.|^2 = sin^2 theta,
-// with its derivatives. The iteration contracts by about s over the distance.
+// with its derivatives.
 struct Pupil {
   double s = 0, by_pupil = 0;
   Vec3 by_point;
@@ -46,14 +45,8 @@ struct Pupil {
 Pupil pupil_of(double pupil_m, Vec3 p) {
   const double across2 = p.x * p.x + p.y * p.y;
   Pupil result;
-  double z = p.z, square = across2 + z * z;
-  for (int i = 0; i < most_iterations && pupil_m != 0; ++i) {
-    const double before = result.s;
-    result.s = pupil_m * across2 / square;
-    z = p.z - result.s;
-    square = across2 + z * z;
-    if (std::abs(result.s - before) < 1e-15) break;
-  }
+  result.s = equation::lens_non_central_place(pupil_m, p);
+  const double z = p.z - result.s, square = across2 + z * z;
   const double by_z = -2 * z * across2 / (square * square), by_x2 = z * z / (square * square);  // of g
   const double feedback = 1 / (1 + pupil_m * by_z);
   result.by_pupil = across2 / square * feedback;
@@ -85,7 +78,7 @@ bool project(const CornerModel& m, const BoardPose& pose, const CornerPlace& pla
   if (!lay_on_plane(lens[LensTerm::fisheye], point.data(), &x, &y)) return false;
   distort(lens, x, y, &xd, &yd);
   const Stretch colour = stretch_of(v, place.colour);
-  const double factor = 1 + colour.linear + colour.cubic * (xd * xd + yd * yd);
+  const double factor = equation::lens_lateral_colour(colour.linear, colour.cubic, xd * xd + yd * yd);
   const Pinhole k = pinhole_of(m);
   pixel = {k.fx * (xd * factor) + k.cx, k.fy * (yd * factor) + k.cy};
   return true;
@@ -93,7 +86,7 @@ bool project(const CornerModel& m, const BoardPose& pose, const CornerPlace& pla
 
 BoardPose shifted(const CornerModel& m, double row) {
   BoardPose pose = m.pose;
-  const double tau = readouts(row, m.height_px);
+  const double tau = equation::camera_rolling_shutter(row, m.height_px);
   pose.translation_m = pose.translation_m + Vec3{tau * m.values[C::motion], tau * m.values[C::motion + 1], 0};
   return pose;
 }
@@ -133,7 +126,7 @@ Coloured coloured(const LensMap& map, const Stretch& colour) {
   Coloured c;
   c.plain = {map.x, map.y};
   c.r2 = map.x * map.x + map.y * map.y;
-  const double factor = 1 + colour.linear + colour.cubic * c.r2;
+  const double factor = equation::lens_lateral_colour(colour.linear, colour.cubic, c.r2);
   c.place = c.plain * factor;
   c.by = {factor + 2 * colour.cubic * map.x * map.x, 2 * colour.cubic * map.x * map.y, 2 * colour.cubic * map.x * map.y,
           factor + 2 * colour.cubic * map.y * map.y};
@@ -207,7 +200,7 @@ bool differentiate(const CornerModel& m, const BoardPose& pose, const CornerPlac
 // With P the projection at the pose of the corner's own row and P,t its derivative by the shift, the row's equation
 // differentiates to dv (1 - P_v,t . m / h) = dP_v + tau P_v,t . dm, du = dP_u + tau P_u,t . dm + (P_u,t . m / h) dv.
 void add_motion(const CornerModel& m, double row, CornerJacobian& jacobian) {
-  const double tau = readouts(row, m.height_px);
+  const double tau = equation::camera_rolling_shutter(row, m.height_px);
   std::array<double, 2> drift{};  // what one row later does to (u, v)
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double along_x = jacobian[axis][BoardColumn::translation],

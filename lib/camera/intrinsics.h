@@ -15,6 +15,7 @@ namespace gonio::camera {
 struct Intrinsics {  // of a perspective or fisheye camera; pixels, pixel centres at integers
   double fx_px = 0, fy_px = 0, cx_px = 0, cy_px = 0;
   std::array<double, distortion_terms> distortion{};  // in the order of distortion_names
+  bool operator==(const Intrinsics&) const = default;
 };
 
 // A set of places in distortion_names.

@@ -48,6 +48,49 @@ Rgb albedo_of(const SurfaceState& surface) {
                                                  : Rgb{};
 }
 
+std::vector<Rgb> albedos_of(const SceneState& state) {
+  std::vector<Rgb> albedos;
+  for (const SurfaceState& s : state.surfaces) albedos.push_back(albedo_of(s));
+  return albedos;
+}
+
+// What a facet sends on of the light that reaches it by way of others, over its share of the pixel.
+class Indirect {
+ public:
+  // `onward`: Shading's, of the image's lights.
+  Indirect(const ViewCache& cache, const SceneState& state, const render::Monomials& monomials, const Recording& image,
+           std::size_t lights, std::vector<double> onward)
+      : cache_(cache),
+        state_(state),
+        image_(image),
+        lights_(lights),
+        onward_(std::move(onward)),
+        transport_(state, monomials),
+        ambient_(max_component(state.ambient) > 0) {}
+  Rgb operator()(std::size_t facet, Rgb albedo, const Scattered& sent_on) const {
+    const bool glossy = max_component(sent_on.gloss) > 0;
+    Rgb irradiance, mirrored;
+    const auto add_source = [&](std::size_t source, Rgb emission) {
+      const std::size_t first = (facet * (lights_ + 1) + source) * transport_.terms();
+      irradiance += transport_(&cache_.indirect[first]) * emission;
+      if (glossy) mirrored += transport_(&cache_.mirrored[first]) * emission;
+    };
+    for (std::size_t j = 0; j < image_.lights.size(); ++j)
+      add_source(image_.lights[j], state_.lights[image_.lights[j]].intensity * onward_[j]);
+    if (ambient_) add_source(lights_, state_.ambient);
+    return (albedo * irradiance * sent_on.base + sent_on.gloss * mirrored) / pi;
+  }
+
+ private:
+  const ViewCache& cache_;
+  const SceneState& state_;
+  const Recording& image_;
+  std::size_t lights_;
+  std::vector<double> onward_;
+  Transport transport_;
+  bool ambient_;
+};
+
 }  // namespace
 
 ImageModel::ImageModel(const Recordings& recordings, const SceneLayout& layout, const render::Monomials& monomials,
@@ -152,38 +195,71 @@ void ImageModel::compose_from(const ViewCache& cache, const SceneState& state, s
                               std::span<const std::uint32_t> picked, const Shading& shading,
                               std::span<double> radiance) const {
   const Recording& image = recordings_.images[number];
-  const std::size_t lights = layout_.lights.size();
-  const Transport transport(state, monomials_);
-  std::vector<Rgb> albedos;
-  for (const SurfaceState& s : state.surfaces) albedos.push_back(albedo_of(s));
-  const bool ambient = max_component(state.ambient) > 0;
+  const Indirect indirect(cache, state, monomials_, image, layout_.lights.size(), shading.onward);
+  const std::vector<Rgb> albedos = albedos_of(state);
   std::size_t slot = 0;
   for (std::size_t i = 0; i < picked.size(); ++i) {
     const Pixel& pixel = cache.pixels[picked[i]];
     Rgb sum = state.ambient * pixel.sky;
     for (std::size_t k = 0; k < pixel.facets; ++k, ++slot) {
-      const std::size_t f = pixel.first_facet + k, first_source = f * (lights + 1);
+      const std::size_t f = pixel.first_facet + k;
       const Facet& facet = cache.facets[f];
       const Rgb albedo = albedos[facet.surface] * facet.tint;
-      const Scattered& sent_on = shading.indirect[slot];
-      const bool glossy = max_component(sent_on.gloss) > 0;
-      Rgb irradiance, mirrored;
-      const auto add_source = [&](std::size_t source, Rgb emission) {
-        irradiance += transport(&cache.indirect[(first_source + source) * transport.terms()]) * emission;
-        if (glossy) mirrored += transport(&cache.mirrored[(first_source + source) * transport.terms()]) * emission;
-      };
       for (std::size_t j = 0; j < shading.lights; ++j) {
-        const Rgb intensity = state.lights[image.lights[j]].intensity;
         const Scattered& direct = shading.direct[slot * shading.lights + j];
-        sum += (albedo * direct.base + direct.gloss) * intensity;
-        add_source(image.lights[j], intensity);
+        sum += (albedo * direct.base + direct.gloss) * state.lights[image.lights[j]].intensity;
       }
-      if (ambient) add_source(lights, state.ambient);
-      sum += (albedo * irradiance * sent_on.base + sent_on.gloss * mirrored) * (facet.weight / pi);
+      sum += indirect(f, albedo, shading.indirect[slot]) * facet.weight;
     }
     sum *= exposure_of(state, image, number, pixel);
     for (int c = 0; c < 3; ++c) radiance[3 * i + static_cast<std::size_t>(c)] = sum[c];
   }
+}
+
+std::vector<Rgb> ImageModel::direct_from(const ViewCache& cache, std::span<const float> sums, const SceneState& state,
+                                         std::size_t number, std::span<const std::uint32_t> picked) const {
+  const Recording& image = recordings_.images[number];
+  const Shading shading = Shader(layout_, image, cache, sums)(state, picked);
+  const std::vector<Rgb> albedos = albedos_of(state);
+  std::vector<Rgb> radiance;
+  std::size_t slot = 0;
+  for (const std::uint32_t p : picked)
+    for (std::size_t k = 0; k < cache.pixels[p].facets; ++k, ++slot) {
+      const Facet& facet = cache.facets[cache.pixels[p].first_facet + k];
+      Rgb sum;
+      for (std::size_t j = 0; j < shading.lights; ++j) {
+        const Scattered& direct = shading.direct[slot * shading.lights + j];
+        sum += (albedos[facet.surface] * facet.tint * direct.base + direct.gloss) *
+               state.lights[image.lights[j]].intensity;
+      }
+      radiance.push_back(sum);
+    }
+  return radiance;
+}
+
+struct Onward::Impl {
+  const ViewCache& cache;
+  const SceneState& state;
+  Indirect indirect;
+  Shader shader;
+  std::vector<Rgb> albedos;
+};
+
+Onward::Onward(const ImageModel& model, const SceneState& state, std::size_t number) {
+  const Recording& image = model.recordings().images[number];
+  const ViewCache& cache = model.cache(image.view);
+  impl_ = std::unique_ptr<const Impl>(
+      new Impl{cache, state,
+               Indirect(cache, state, model.monomials(), image, model.layout().lights.size(),
+                        model.shade(state, number, {}).onward),
+               Shader(model.layout(), image, cache, {}), albedos_of(state)});
+}
+Onward::~Onward() = default;
+
+Rgb Onward::operator()(std::size_t f) const {
+  const Facet& facet = impl_->cache.facets[f];
+  return impl_->indirect(f, impl_->albedos[facet.surface] * facet.tint,
+                         impl_->shader.scattered(impl_->state.surfaces[facet.surface], facet));
 }
 
 void ImageModel::variance(const SceneState& state, std::size_t number, std::span<const std::uint32_t> picked,
@@ -208,6 +284,8 @@ void ImageModel::variance(const SceneState& state, std::size_t number, std::span
         sum += unit * unit * (Rgb{direct, direct, direct} * Rgb{direct, direct, direct} + indirect * indirect);
         level += unit * (sums_[image.view][(f * lights + l) * radius_count] / std::max(1e-6f, facet.weight));
       }
+      const Rgb printed = level * (facet.weight * facet.tint_sigma / std::max(1e-3, max_component(facet.tint)));
+      sum += printed * printed;
       first += level * facet.weight;
       second += level * level * facet.weight;
     }

@@ -10,6 +10,7 @@
 // surfaces is that of diffuse ones with the same albedo at 45 degrees. Terms (relighting/term.h) edit the state
 // before, and change what comes out after.
 #pragma once
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -53,6 +54,10 @@ class ImageModel {
   // The base model's prediction from another cache of the same pixels, as if nothing but geometry differed.
   void predict_from(const ViewCache& cache, std::span<const float> sums, const SceneState& edited, std::size_t image,
                     std::span<const std::uint32_t> picked, std::span<double> radiance) const;
+  // Direct light that facets of another cache of the same view send to the camera, before exposure and weighted by
+  // their share of the pixel: one value for each facet of the picked pixels, in order.
+  std::vector<Rgb> direct_from(const ViewCache& cache, std::span<const float> sums, const SceneState& edited,
+                               std::size_t image, std::span<const std::uint32_t> picked) const;
   // Variance of the prediction at `state`: Monte Carlo of the indirect light, sub-sampling of edges.
   void variance(const SceneState& state, std::size_t image, std::span<const std::uint32_t> picked,
                 std::span<double> variance) const;
@@ -82,6 +87,19 @@ class ImageModel {
   std::vector<std::vector<float>> sums_;  // [view]: facet_sums()
   std::vector<Use> uses_;
   std::vector<std::size_t> ordered_;  // uses by their terms' order
+};
+
+// Light by way of other surfaces at one state: what a facet of the view's cache sends to the camera, before exposure
+// and for the whole pixel.
+class Onward {
+ public:
+  Onward(const ImageModel& model, const SceneState& edited, std::size_t image);
+  ~Onward();
+  Rgb operator()(std::size_t facet) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
 };
 
 // Factor of gain and vignetting on the radiance of a pixel.

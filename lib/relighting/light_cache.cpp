@@ -13,6 +13,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "relighting/lamp_shadows.h"
 #include "render/ray_caster.h"
 #include "surface/microfacet.h"
 
@@ -186,6 +187,14 @@ class PixelBuilder {
       for (std::size_t l = 0; l < lights_.size(); ++l) add_direct(patch, l, edges[l], random, spread, out);
     }
     out.facets.push_back(facet);
+    if (options_.shadows) {
+      std::vector<const SurfacePoint*> points;
+      for (const SubSample* sample : mine) points.push_back(&sample->point);
+      for (const LightSource& light : lights_) {
+        const bool any = cast_shadows_about(caster_, points, light, out.shadows);
+        out.shadow_table.push_back(any ? static_cast<std::int32_t>(out.shadows.size() / shadow_nodes) - 1 : -1);
+      }
+    }
     const double n = static_cast<double>(mine.size());
     for (std::size_t l = 0; l < lights_.size(); ++l) {
       const double mean = spread.sum[l] / n;
@@ -286,6 +295,7 @@ class PixelBuilder {
 
   // Light by way of other surfaces. Paths start at the sub-samples in turn.
   void add_indirect(const std::vector<const SubSample*>& mine, Random& random, ViewCache& out) const {
+    if (options_.paths == 0) return;
     Gathered diffuse(lights_.size() + 1, monomials_.size()), gloss = diffuse;
     for (int k = 0; k < options_.paths; ++k) {
       const SurfacePoint& at = mine[static_cast<std::size_t>(k) % mine.size()]->point;
@@ -344,6 +354,9 @@ ViewCache build_cache(const RayCaster& caster, const View& view, std::span<const
     append(all.patches, part.patches);
     append(all.direct, part.direct);
     append(all.visible, part.visible);
+    for (const std::int32_t t : part.shadow_table)
+      all.shadow_table.push_back(t < 0 ? t : t + static_cast<std::int32_t>(all.shadows.size() / shadow_nodes));
+    append(all.shadows, part.shadows);
     append(all.indirect, part.indirect);
     append(all.mirrored, part.mirrored);
     append(all.indirect_sigma, part.indirect_sigma);

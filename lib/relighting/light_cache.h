@@ -50,7 +50,8 @@ struct Facet {
   std::uint32_t surface = 0;
   float weight = 0;  // share of the pixel
   std::uint32_t first_patch = 0, patches = 0;
-  Rgb tint{1, 1, 1};  // of a textured surface: its albedo here over the texture's mean (relighting/textures.h)
+  Rgb tint{1, 1, 1};     // of a textured surface: its albedo here over the texture's mean (relighting/textures.h)
+  float tint_sigma = 0;  // one standard deviation of it, of the most uncertain channel
 };
 struct Pixel {
   int x = 0, y = 0;
@@ -63,9 +64,12 @@ struct ViewCache {
   std::vector<Pixel> pixels;
   std::vector<Facet> facets;
   std::vector<Patch> patches;
-  std::vector<float> direct;    // [patch][light][radius]
-  std::vector<float> visible;   // [patch][light]: share of the small light that is not hidden
-  std::vector<float> indirect;  // [facet][source][monomial]
+  std::vector<float> direct;   // [patch][light][radius]
+  std::vector<float> visible;  // [patch][light]: share of the small light that is not hidden
+  // Of lamps that stand elsewhere: relighting/lamp_shadows.h; empty: none were cast.
+  std::vector<std::int32_t> shadow_table;  // [facet][light]: which table; -1: nothing changes
+  std::vector<std::uint8_t> shadows;       // [table][node]
+  std::vector<float> indirect;             // [facet][source][monomial]
   std::vector<float> mirrored;  // [facet][source][monomial]: pi times the mean radiance about the mirror direction
   std::vector<float> indirect_sigma;  // [facet][source]
   std::vector<float> direct_sigma;    // [facet][light]: error of the mean over the sub-samples
@@ -75,9 +79,10 @@ struct ViewCache {
 
 struct CacheOptions {
   int samples = 8;        // sub-samples of a pixel, along each side
-  int paths = 512;        // a facet; 0: no light by way of surfaces
+  int paths = 512;        // a facet; 0: no light by way of surfaces, whose tables stay empty
   int patches = 4;        // of a pixel, along each side
   bool penumbrae = true;  // false: small lights only, at every radius
+  bool shadows = false;   // of lamps that stand elsewhere
   // Sub-samples are moved by this far at least and at most, evenly over that ring of the picture: what lies about a
   // pixel.
   double inner_px = 0, outer_px = 0;

@@ -11,11 +11,14 @@
 #include "base/error.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
+#include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
+#include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/object.h"
 #include "photograph/linear_picture.h"
 #include "photograph/mask.h"
+#include "scene/mechanisms.h"
 #include "stats/intervals.h"
 
 namespace gonio::relighting {
@@ -78,16 +81,27 @@ manifest::Noise measured_noise(const Recording& image) {
   return {.gain = 0, .read = std::max(sigma, 1e-6)};
 }
 
-// The view that `entry` was taken from, entered where it is new.
+// The view that `entry` was taken from, entered where it is new. What the manifest's mechanisms say of where things are
+// seen has acted on it.
 std::size_t view_of(const manifest::Document& document, const manifest::ImageEntry& entry, Recordings& recordings) {
-  Rigid<frame::World, frame::Camera> pose;
-  if (entry.world_from_camera) pose = {entry.world_from_camera->rotation, entry.world_from_camera->translation_m};
+  manifest::Camera camera = *find_camera(document, entry.camera);
+  const std::string place = manifest::place(document, "/cameras/" + entry.camera);
+  const auto acting = [&](const auto& act) {
+    for (const auto& [id, use] : document.mechanisms)
+      if (const mechanism::Mechanism* m = mechanism::find_mechanism(id); m != nullptr && scene::moves_pixels(*m))
+        act(*m, use, manifest::place(document, "/mechanisms/" + id));
+  };
+  acting([&](const auto& m, const auto& use, const std::string& at) {
+    scene::apply_mechanism(camera, entry.camera, m, use, at);
+  });
+  scene::View seen{.image = entry.id, .camera = camera::CameraModel(camera, place), .camera_name = entry.camera};
+  if (entry.world_from_camera)
+    seen.world_from_camera = {entry.world_from_camera->rotation, entry.world_from_camera->translation_m};
+  acting([&](const auto& m, const auto& use, const std::string& at) { scene::apply_mechanism(seen, m, use, at); });
+  const View view{entry.camera, seen.camera, seen.world_from_camera};
   for (std::size_t v = 0; v < recordings.views.size(); ++v)
-    if (recordings.views[v].camera == entry.camera && recordings.views[v].world_from_camera == pose) return v;
-  recordings.views.push_back(
-      {entry.camera,
-       camera::CameraModel(*find_camera(document, entry.camera), manifest::place(document, "/cameras/" + entry.camera)),
-       pose});
+    if (recordings.views[v] == view) return v;
+  recordings.views.push_back(view);
   return recordings.views.size() - 1;
 }
 

@@ -24,6 +24,7 @@ struct View {
   std::string camera;  // key in the manifest's cameras
   camera::CameraModel model;
   Rigid<frame::World, frame::Camera> world_from_camera;
+  bool operator==(const View&) const = default;
 };
 
 struct Recording {

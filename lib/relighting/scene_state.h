@@ -24,7 +24,7 @@ struct LightState {
   double tilt_x_rad = 0, tilt_y_rad = 0;
   Vec3 shift_m;               // of a lamp at a finite distance
   double nearness_per_m = 0;  // directional lights: one over the distance from the scene's centre
-  double exponent = 0;        // of the lobe about the direction to the scene's centre
+  std::vector<double> lobe;   // amounts of light.lobe; empty: it shines all round
 };
 struct SceneState {
   std::vector<SurfaceState> surfaces;

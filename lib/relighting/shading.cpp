@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "light/mechanisms/light_inverse_square.h"
+#include "light/mechanisms/light_lobe.h"
 #include "light/turn.h"
+#include "relighting/lamp_shadows.h"
 
 namespace gonio::relighting {
 namespace {
@@ -34,10 +36,17 @@ Aim aim(const LightSource& light, Vec3 point_m) {
   return {to_light / std::sqrt(square), 1 / square};
 }
 
+// Lamps face the scene's centre, or beside it by the tilts of light.lobe.
+Vec3 lobe_axis(Vec3 position_m, Vec3 centre_m, std::span<const double> lobe) {
+  return light::turned_with(normalized(centre_m - position_m), position_m, lobe[mechanism::lobe_tilt_x],
+                            lobe[mechanism::lobe_tilt_y], centre_m);
+}
+
 // The surface without and with a white base.
 struct Extremes {
   surface::Values black, white;
-  bool has_base = false;
+  bool has_base = false, proportional = true;
+  Rgb colour;  // the present albedo, where the base does not grow in proportion to it
   // Where nothing but the albedo has a colour, a band sees the albedo of its own alone: one evaluation with a base that
   // is black in red and white in green yields both.
   bool at_once = false;
@@ -47,12 +56,19 @@ struct Extremes {
     const std::size_t albedo = parameter_index(*surface.model, "albedo");
     black.v[albedo] = {0, 0, 0};
     white.v[albedo] = {1, 1, 1};
+    proportional = surface.model->proportional_to_albedo(surface.values);
+    if (!proportional) {
+      white = surface.values;
+      colour = surface.values.rgb(albedo);
+      return;
+    }
     const auto& parameters = surface.model->info().parameters;
     at_once = std::count_if(parameters.begin(), parameters.end(),
                             [](const manifest::ParameterInfo& p) { return p.components == 3; }) == 1;
     if (at_once) white.v[albedo] = {0, 1, 1};
   }
-  template <class F>  // F: Values -> Rgb, affine in the albedo
+  // F: Values -> Rgb, affine in the albedo, else as if it were so about the present one
+  template <class F>
   Scattered split(const F& f) const {
     if (at_once) {
       const Rgb both = f(white);
@@ -60,6 +76,11 @@ struct Extremes {
       return {{base, base, base}, {gloss, gloss, gloss}};
     }
     const Rgb gloss = f(black);
+    if (!proportional) {
+      const Rgb all = f(white);
+      const auto of = [&](int c) { return colour[c] > 1e-9 ? (all[c] - gloss[c]) / colour[c] : 0.0; };
+      return {{of(0), of(1), of(2)}, gloss};
+    }
     const double base = has_base ? mean(f(white) - gloss) : 0;
     return {{base, base, base}, gloss};
   }
@@ -106,9 +127,9 @@ struct Shader::Lamp {
   RadiusWeights radius;
   LightSource source;  // turned and moved
   bool turned;
-  double exponent;  // of the lobe about `axis`
-  Vec3 axis;        // from the lamp to the scene's centre
-  double lobe(Vec3 wi) const { return exponent == 0 ? 1 : std::pow(std::max(0.0, -dot(wi, axis)), exponent); }
+  std::span<const double> profile;  // amounts of light.lobe, if any
+  Vec3 axis;                        // away from the lamp
+  double lobe(Vec3 wi) const { return profile.empty() ? 1 : equation::light_lobe(-dot(wi, axis), profile); }
 };
 
 std::vector<Shader::Lamp> Shader::lamps(const SceneState& state) const {
@@ -117,8 +138,8 @@ std::vector<Shader::Lamp> Shader::lamps(const SceneState& state) const {
     const LightState& light = state.lights[l];
     const LightSource& given = layout_.lights[l];
     const bool moves = light.tilt_x_rad != 0 || light.tilt_y_rad != 0 || !(light.shift_m == Vec3{}) ||
-                       light.nearness_per_m != 0 || light.exponent != 0;
-    Lamp lamp{l, RadiusWeights(light.radius_m), given, moves, light.exponent, {}};
+                       light.nearness_per_m != 0 || !light.lobe.empty();
+    Lamp lamp{l, RadiusWeights(light.radius_m), given, moves, light.lobe, {}};
     if (given.directional) {
       lamp.source.direction = light::turned(given.direction, light.tilt_x_rad, light.tilt_y_rad);
       lamp.source.centre_m = layout_.centre_m;
@@ -126,11 +147,33 @@ std::vector<Shader::Lamp> Shader::lamps(const SceneState& state) const {
     } else {
       lamp.source.position_m =
           light::turned_about(given.position_m, light.tilt_x_rad, light.tilt_y_rad, layout_.centre_m) + light.shift_m;
-      if (light.exponent != 0) lamp.axis = normalized(layout_.centre_m - lamp.source.position_m);
+      if (!light.lobe.empty()) lamp.axis = lobe_axis(lamp.source.position_m, layout_.centre_m, light.lobe);
     }
     all.push_back(lamp);
   }
   return all;
+}
+
+// Of a lamp with a lobe: what reaches all that the view sees, over what it would get from one that shines all round.
+double Shader::onward(const Lamp& lamp) const {
+  if (lamp.profile.empty()) return 1;
+  double all = 0, left = 0;
+  for (std::size_t f = 0; f < cache_.facets.size(); ++f) {
+    const double sent = sums_[(f * layout_.lights.size() + lamp.light) * radius_count];
+    all += sent;
+    left += sent * lamp.lobe(aim(lamp.source, cache_.patches[cache_.facets[f].first_patch].position_m).wi);
+  }
+  return all > 0 ? left / all : 1;
+}
+
+// The share of the lamp that is not hidden where it now stands, of a patch that sees `visible` of it where it stood.
+double Shader::visible_now(const Lamp& lamp, std::size_t f, double visible) const {
+  const std::int32_t table =
+      cache_.shadow_table.empty() ? -1 : cache_.shadow_table[f * layout_.lights.size() + lamp.light];
+  if (table < 0) return visible;
+  const Vec3 at_m = cache_.patches[cache_.facets[f].first_patch].position_m;
+  return visible_along(&cache_.shadows[static_cast<std::size_t>(table) * shadow_nodes],
+                       aim(layout_.lights[lamp.light], at_m).wi, aim(lamp.source, at_m).wi, visible);
 }
 
 Scattered Shader::direct(const SurfaceState& surface, std::size_t f, const Lamp& lamp) const {
@@ -149,9 +192,11 @@ Scattered Shader::direct(const SurfaceState& surface, std::size_t f, const Lamp&
     const Aim now = aim(lamp.source, patch.position_m);
     if (lamp.turned) {
       const Aim was = aim(layout_.lights[l], patch.position_m);
-      const double change = std::max(0.0, dot(patch.normal, now.wi)) * now.falloff -
-                            std::max(0.0, dot(patch.normal, was.wi)) * was.falloff;
-      irradiance = std::max(0.0, irradiance + cache_.visible[place * lights + l] * change) * lamp.lobe(now.wi);
+      const double open = std::max(0.0, dot(patch.normal, now.wi)) * now.falloff,
+                   change = open - std::max(0.0, dot(patch.normal, was.wi)) * was.falloff;
+      const double visible = cache_.visible[place * lights + l];
+      const double moved = visible_now(lamp, f, visible) - visible;  // shadows go with the lamp
+      irradiance = std::max(0.0, irradiance + visible * change + moved * open) * lamp.lobe(now.wi);
     }
     if (irradiance <= 0) continue;
     const double weighted = irradiance * patch.weight;
@@ -173,7 +218,19 @@ Scattered Shader::scattered(const SurfaceState& surface, const Facet& facet) con
   if (surface.lambertian()) return {{1, 1, 1}, {}};
   const Patch& patch = cache_.patches[facet.first_patch];
   const Vec3 wo = above_horizon(Basis(patch.normal).to_local(patch.wo));
-  return Extremes(surface).split([&](const surface::Values& v) { return surface.model->albedo(v, wo); });
+  const auto sent = [&](const surface::Values& v) { return surface.model->albedo(v, wo); };
+  if (!has_parameter(*surface.model, "metal")) return Extremes(surface).split(sent);
+  // A metal mirrors what comes from other surfaces; its matte part spreads it.
+  const std::size_t metal = parameter_index(*surface.model, "metal"),
+                    albedo = parameter_index(*surface.model, "albedo");
+  const double share = surface.values.scalar(metal);
+  SurfaceState matte = surface;
+  matte.values.v[metal] = {0, 0, 0};
+  Scattered all = Extremes(matte).split(sent);
+  if (!(share > 0)) return all;
+  all.base = all.base * (1 - share);
+  all.gloss = sent(surface.values) - all.base * surface.values.rgb(albedo);
+  return all;
 }
 
 Shading Shader::operator()(const SceneState& state, std::span<const std::uint32_t> picked) const {
@@ -184,6 +241,7 @@ Shading Shader::operator()(const SceneState& state, std::span<const std::uint32_
   shading.direct.resize(facets * shading.lights);
   shading.indirect.resize(facets);
   for (std::uint32_t s = 0; s < state.surfaces.size(); ++s) again(state, picked, s, shading);
+  for (const Lamp& lamp : lamps(state)) shading.onward.push_back(onward(lamp));
   return shading;
 }
 

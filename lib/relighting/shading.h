@@ -3,11 +3,13 @@
 //
 // Per facet and light that is on: radiance = intensity (albedo * base + gloss), both per unit intensity and weighted by
 // the facet's share of the pixel. Per facet: the share of irregular incident light that is sent on is albedo * base +
-// gloss. For models without a diffuse base (metals) everything is gloss.
+// gloss. For models without a diffuse base (metals) everything is gloss; where the base does not grow in proportion to
+// the albedo (Model::proportional_to_albedo) it is split as if it did, about the present one.
 //   base, gloss = sum over patches weight f(wo, wi) V cos(theta) / d^2,  f from lib/surface at albedo 0 and 1
-// A light that is turned or moved keeps the shadows that it cast; cosines and distances follow it. Lamps with a lobe
-// shine cos^exponent about the direction to the scene's centre (light.lobe); a directional light of finite nearness
-// stands at 1 / nearness from the centre, where its irradiance is what the base model says, and falls with the square.
+// A light that is turned or moved takes its shadows along where the cache has them (relighting/lamp_shadows.h). Lamps
+// with a lobe shine by it about the direction to the scene's centre (light.lobe); a directional light of finite
+// nearness stands at 1 / nearness from the centre, where its irradiance is what the base model says, and falls with the
+// square.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -26,6 +28,7 @@ struct Shading {
   std::size_t lights = 0;           // on in this image
   std::vector<Scattered> direct;    // [facet of the picked pixels, in order][light of the image]
   std::vector<Scattered> indirect;  // [facet of the picked pixels, in order]
+  std::vector<double> onward;       // [light of the image]: of its light, the share that surfaces still get to send on
 };
 
 // Weights of the radius table's entries at one radius: cubic Hermite with tangents from the neighbouring nodes (Catmull
@@ -52,12 +55,15 @@ class Shader {
   // The facets of one surface anew.
   void again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface,
              Shading& shading) const;
+  // What the surface sends on of light that comes from everywhere, at a facet.
+  Scattered scattered(const SurfaceState& surface, const Facet& facet) const;
 
  private:
   struct Lamp;
   std::vector<Lamp> lamps(const SceneState& state) const;
+  double onward(const Lamp& lamp) const;
+  double visible_now(const Lamp& lamp, std::size_t facet, double visible) const;
   Scattered direct(const SurfaceState& surface, std::size_t facet, const Lamp& lamp) const;
-  Scattered scattered(const SurfaceState& surface, const Facet& facet) const;
   const SceneLayout& layout_;
   const Recording& image_;
   const ViewCache& cache_;

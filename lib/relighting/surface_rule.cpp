@@ -45,7 +45,8 @@ surface::Values presets(const surface::Model& model) {
 
 bool simple(const surface::Model& model) {
   const manifest::ModelInfo& info = model.info();
-  if (info.attachment != manifest::Attachment::none || info.takes_base || model.transmits()) return false;
+  if (info.attachment != manifest::Attachment::none || info.takes_base || model.transmits() || model.thin())
+    return false;
   const surface::Values values = presets(model);
   return !model.prepare(values, {}, info.id) && !model.subsurface(values);
 }
@@ -113,7 +114,7 @@ std::vector<Use> surface_candidates(const Setting& setting, const Mechanism& mec
     if (has_parameter(*surface.model, first.name) &&
         surface.values.scalar(parameter_index(*surface.model, first.name)) != first.neutral)
       continue;
-    uses.push_back(target_use(mechanism, {name}, {s}, false));
+    for (Use& use : in_forms(target_use(mechanism, {name}, {s}, false))) uses.push_back(std::move(use));
   }
   return uses;
 }

@@ -15,6 +15,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,8 +41,9 @@ struct Prepared {
 // A number of the search: one of the mechanism's parameters for one set of targets.
 struct Number {
   double neutral = 0, start = 0, lower = 0, upper = 0;
-  bool free = true;                   // false: `start` is known from the recordings and goes with the others
-  std::vector<std::size_t> groups{};  // images on which it acts; empty: all
+  bool free = true;                      // false: `start` is known from the recordings and goes with the others
+  std::vector<std::size_t> groups{};     // images on which it acts; empty: all
+  std::optional<std::size_t> same_as{};  // an earlier free number of the use, whose value it has
 };
 
 struct Use {
@@ -52,6 +54,7 @@ struct Use {
   std::size_t sets = 1;                // of parameters: one, or one for each target
   std::vector<Number> numbers{};       // [set][parameter]
   std::string family{};                // of the candidate; empty: the mechanism and its targets
+  bool finer = false;                  // Candidate::finer
   std::shared_ptr<const Prepared> prepared{};
   std::size_t place = 0;  // among the model's uses: SceneState::amounts[place]
 
@@ -66,6 +69,14 @@ struct Use {
   std::vector<double> neutral_{};  // one set, in the mechanism's order
 };
 
+class FineViews;
+struct Places;
+// What several terms need: built by the first that asks.
+struct Shared {
+  std::shared_ptr<const FineViews> fine;  // relighting/fine_views.h
+  std::shared_ptr<const Places> places;   // relighting/shifted_views.h
+};
+
 // What a term may look at when it says where it applies and what it builds.
 struct Setting {
   const manifest::Document& document;
@@ -75,6 +86,7 @@ struct Setting {
   const SceneLayout& layout;
   const ImageModel& model;             // of the base
   const SceneState* fitted = nullptr;  // where amounts are settled: what is built need hold for these alone
+  Shared* shared = nullptr;
 };
 
 // The pixels of one image that are simulated together.

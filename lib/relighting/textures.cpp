@@ -11,8 +11,6 @@ namespace {
 
 using render::SurfacePoint;
 
-constexpr int rays = 5;  // along each side
-
 const scene::Texture* albedo_texture(const scene::Surface& surface) {
   const auto found = std::ranges::find(surface.textures, "albedo", &scene::Texture::name);
   return found == surface.textures.end() ? nullptr : &*found;
@@ -23,9 +21,14 @@ bool has_textures(const scene::Scene& scene) {
                              [](const scene::Surface& s) { return albedo_texture(s) != nullptr; });
 }
 
+// A printed edge lies within a tenth of a pixel of where a calibrated camera sees it. A step that crosses a pixel has a
+// spread of half its height, and moves the pixel by its height for a pixel.
+constexpr double place_error_px = 0.1;
+
 // What the rays of a square about a pixel's middle meet.
 template <class Visit>
-void look_about(const render::RayCaster& caster, const View& view, int x, int y, double half_px, const Visit& visit) {
+void look_about(const render::RayCaster& caster, const View& view, int x, int y, double half_px, int rays,
+                const Visit& visit) {
   for (int j = 0; j < rays; ++j)
     for (int i = 0; i < rays; ++i) {
       const Vec2 at{x + half_px * (2.0 * i / (rays - 1) - 1), y + half_px * (2.0 * j / (rays - 1) - 1)};
@@ -60,7 +63,7 @@ bool is_even(const scene::Scene& scene, const render::RayCaster& caster, const V
   std::optional<std::uint32_t> instance;
   Rgb least{1, 1, 1}, most;
   bool textured = false, one = true, sky = false;
-  look_about(caster, view, x, y, even_margin_px, [&](const std::optional<SurfacePoint>& met) {
+  look_about(caster, view, x, y, even_margin_px, 5, [&](const std::optional<SurfacePoint>& met) {
     if (!met) {
       sky = true;
       return;
@@ -77,7 +80,8 @@ bool is_even(const scene::Scene& scene, const render::RayCaster& caster, const V
   return !textured || (one && !sky && max_component(most - least) <= even_change);
 }
 
-void tint_facets(const scene::Scene& scene, const render::RayCaster& caster, const View& view, ViewCache& cache) {
+void tint_facets(const scene::Scene& scene, const render::RayCaster& caster, const View& view, ViewCache& cache,
+                 int rays) {
   if (!has_textures(scene)) return;
   std::vector<Rgb> means;
   for (const scene::Surface& surface : scene.appearance.surfaces) {
@@ -89,17 +93,20 @@ void tint_facets(const scene::Scene& scene, const render::RayCaster& caster, con
       const std::uint32_t surface = cache.facets[f].surface;
       const scene::Texture* texture = albedo_texture(scene.appearance.surfaces[surface]);
       if (texture == nullptr) continue;
-      Rgb sum;
+      Rgb sum, square;
       double n = 0;
-      look_about(caster, view, pixel.x, pixel.y, 0.5, [&](const std::optional<SurfacePoint>& met) {
+      look_about(caster, view, pixel.x, pixel.y, 0.5, rays, [&](const std::optional<SurfacePoint>& met) {
         if (!met || met->surface != surface) return;
-        sum += texture->at(met->uv);
+        const Rgb texel = texture->at(met->uv);
+        sum += texel, square += texel * texel;
         n += 1;
       });
       if (n == 0) continue;
       const Rgb mean = means[surface], here = sum / n;
       const auto over = [](double value, double usual) { return usual > 0 ? value / usual : 1; };
       cache.facets[f].tint = {over(here.x, mean.x), over(here.y, mean.y), over(here.z, mean.z)};
+      const double spread = std::sqrt(std::max(0.0, max_component(square / n - here * here)));
+      cache.facets[f].tint_sigma = static_cast<float>(place_error_px * 2 * spread / max_component(mean));
     }
 }
 

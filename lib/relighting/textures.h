@@ -2,8 +2,9 @@
 // The surface's albedo is the texture's mean, and every facet has a tint, the albedo there over that mean.
 //
 // Where the texture changes, a pixel's brightness follows from the pose by the pixel and says nothing of light or
-// camera that the even places beside it do not: only these are asked. A place is even where all rays within
-// `even_margin_px` of the pixel's middle meet one instance at albedos that differ by no more than `even_change`.
+// camera that the even places beside it do not: of these few are asked, which tell where things are seen. A place is
+// even where all rays within `even_margin_px` of the pixel's middle meet one instance at albedos that differ by no more
+// than `even_change`.
 #pragma once
 #include <array>
 
@@ -23,6 +24,8 @@ void settle_textures(const scene::Scene& scene, SceneLayout& layout);
 // True where no textured surface is met.
 bool is_even(const scene::Scene& scene, const render::RayCaster& caster, const View& view, int x, int y);
 
-void tint_facets(const scene::Scene& scene, const render::RayCaster& caster, const View& view, ViewCache& cache);
+// `rays`: along each side of a pixel.
+void tint_facets(const scene::Scene& scene, const render::RayCaster& caster, const View& view, ViewCache& cache,
+                 int rays = 5);
 
 }  // namespace gonio::relighting

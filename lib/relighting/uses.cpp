@@ -4,7 +4,9 @@
 
 #include "manifest/document.h"
 #include "manifest/sections/mechanism_use.h"
+#include "mechanism/form.h"
 #include "relighting/surface_rule.h"
+#include "scene/mechanisms.h"
 
 namespace gonio::relighting {
 namespace {
@@ -34,6 +36,9 @@ std::vector<std::string> names_of(const Setting& s, Target target) {
       for (const View& view : s.recordings.views)
         if (std::find(names.begin(), names.end(), view.camera) == names.end()) names.push_back(view.camera);
       return names;
+    case Target::scene:
+      for (const Recording& image : s.recordings.images) names.push_back(image.id);
+      return names;
     default: return {};
   }
 }
@@ -43,7 +48,7 @@ Use given_use(const Setting& s, const Mechanism& m, const manifest::MechanismUse
   const std::vector<std::string> all = names_of(s, m.target);
   std::vector<std::string> on = given.on;
   std::vector<std::size_t> targets;
-  if (on.empty()) on = all;
+  if (on.empty() && m.target != Target::scene) on = all;
   for (const std::string& name : on) {
     const auto found = std::find(all.begin(), all.end(), name);
     targets.push_back(static_cast<std::size_t>(found - all.begin()));
@@ -96,6 +101,30 @@ Use target_use(const Mechanism& mechanism, std::vector<std::string> on, std::vec
   return use;
 }
 
+std::vector<Use> in_forms(const Use& use) {
+  const std::span<const mechanism::Form> forms = mechanism::forms_of(*use.mechanism);
+  if (forms.empty()) return {use};
+  std::vector<Use> all;
+  const std::vector<mechanism::Parameter>& infos = use.mechanism->parameters;
+  for (const mechanism::Form& form : forms) {
+    Use one = use;
+    one.finer = form.finer;
+    if (one.family.empty()) {
+      one.family = use.mechanism->id;
+      for (const std::string& name : use.on) one.family += "@" + name;
+    }
+    for (std::size_t i = 0; i < one.numbers.size(); ++i)
+      for (const auto& [name, value] : form.held)
+        if (infos[i % infos.size()].name == name) {
+          Number& number = one.numbers[i];
+          number.neutral = number.start = value;
+          number.free = false;
+        }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
 std::optional<Use> lamps_use(const Setting& setting, const Mechanism& mechanism, bool shared,
                              bool (*fits)(const Setting& setting, std::size_t light)) {
   std::vector<std::string> on;
@@ -108,6 +137,25 @@ std::optional<Use> lamps_use(const Setting& setting, const Mechanism& mechanism,
   }
   if (on.empty()) return {};
   return target_use(mechanism, on, lights, shared);
+}
+
+std::vector<Use> all_or_one_lamp(const Setting& setting, const Mechanism& mechanism, const std::string& family,
+                                 bool on_one_frame, bool (*fits)(const Setting& setting, std::size_t light)) {
+  std::optional<Use> all = lamps_use(setting, mechanism, false, fits);
+  if (!all) return {};
+  std::vector<Use> uses{*all};
+  if (all->targets.size() > 1) {
+    if (on_one_frame) uses.push_back(target_use(mechanism, all->on, all->targets, true));
+    for (std::size_t t = 0; t < all->targets.size(); ++t)
+      uses.push_back(target_use(mechanism, {all->on[t]}, {all->targets[t]}, false));
+  }
+  for (Use& use : uses) {
+    use.family = family;
+    if (use.sets < use.on.size()) continue;
+    for (std::size_t i = 0; i < use.numbers.size(); ++i)
+      use.numbers[i].groups = lit_by(setting.recordings, use.targets[i / mechanism.parameters.size()]);
+  }
+  return uses;
 }
 
 bool lamps_surround(const Setting& setting) {
@@ -149,7 +197,8 @@ std::vector<Use> given_uses(const Setting& setting) {
   std::vector<Use> uses;
   for (const auto& [id, given] : setting.document.mechanisms) {
     const Mechanism* m = mechanism::find_mechanism(id);
-    if (m && m->target == Target::object) continue;  // rays meet the objects where the mechanism has put them
+    // Rays leave the cameras, and meet the objects, where the mechanisms have put them.
+    if (m && (m->target == Target::object || scene::moves_pixels(*m))) continue;
     if (m && term_of(*m)) uses.push_back(given_use(setting, *m, given));
   }
   return uses;

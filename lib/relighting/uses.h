@@ -12,6 +12,9 @@ Use scene_use(const mechanism::Mechanism& mechanism);
 Use target_use(const mechanism::Mechanism& mechanism, std::vector<std::string> on, std::vector<std::size_t> targets,
                bool shared);
 
+// The same use in each of its mechanism's forms, alternatives of one family; itself where there is one alone.
+std::vector<Use> in_forms(const Use& use);
+
 // A use for the lamps that `fits` and on which the manifest has not switched the mechanism on; nothing where none is.
 std::optional<Use> lamps_use(const Setting& setting, const mechanism::Mechanism& mechanism, bool shared,
                              bool (*fits)(const Setting& setting, std::size_t light));
@@ -21,6 +24,12 @@ bool lamps_surround(const Setting& setting);
 
 // Terms that move the same lamps are alternatives.
 inline constexpr const char* lamps_place = "place of the lamps";
+
+// Alternatives of one family: each of the lamps with numbers of its own, one lamp of several alone and, where asked,
+// all with the same numbers, as if they hung on one frame. Numbers act on the pictures that their lamp is on in.
+std::vector<Use> all_or_one_lamp(const Setting& setting, const mechanism::Mechanism& mechanism,
+                                 const std::string& family, bool on_one_frame,
+                                 bool (*fits)(const Setting& setting, std::size_t light));
 
 // The images on which a light is on; empty: all.
 std::vector<std::size_t> lit_by(const Recordings& recordings, std::size_t light);

@@ -299,6 +299,30 @@ class Builder {
     return factor;
   }
 
+  static bool is_companion(const std::string& id, const std::string& of) {
+    const std::size_t blank = id.size() > of.size() ? id.size() - of.size() - 1 : 0;
+    if (blank == 0 || id[blank] != ' ' || !id.ends_with(of)) return false;
+    const mechanism::Mechanism* mechanism = mechanism::find_mechanism(id.substr(0, blank));
+    const Edit* edit = mechanism != nullptr ? find_edit(*mechanism) : nullptr;
+    return edit != nullptr && edit->companion != nullptr;
+  }
+
+  // What mechanisms of single pictures make of this one.
+  double factor_of(const manifest::ImageEntry& image) const {
+    double factor = 1;
+    for (const auto& [id, use] : document_.mechanisms) {
+      const mechanism::Mechanism* mechanism = mechanism::find_mechanism(id);
+      const Edit* edit = mechanism != nullptr ? find_edit(*mechanism) : nullptr;
+      if (edit == nullptr || edit->picture == nullptr) continue;
+      const auto found = std::find(use.on.begin(), use.on.end(), image.id);
+      if (!use.on.empty() && found == use.on.end()) continue;
+      const auto place = static_cast<std::size_t>(found - use.on.begin());
+      factor *= edit->picture(
+          amounts_of(*mechanism, use, place, std::max<std::size_t>(1, use.on.size()), at("/mechanisms/" + id)));
+    }
+    return factor;
+  }
+
   std::vector<std::size_t> lights_of(const Scene& scene, const manifest::ImageEntry& image,
                                      const std::string& pointer) const {
     const auto& all = scene.appearance.lights;
@@ -309,6 +333,9 @@ class Builder {
         throw Error(Exit::data, at(pointer + "/light"), "no light \"" + name + "\"", "name one of `lights`");
       lights.push_back(static_cast<std::size_t>(found - all.begin()));
     }
+    for (std::size_t i = 0, named = lights.size(); i < all.size(); ++i)
+      for (std::size_t k = 0; k < named; ++k)
+        if (is_companion(all[i].id, all[lights[k]].id)) lights.push_back(i);
     for (std::size_t i = 0; i < all.size(); ++i)
       if ((image.light.empty() && !image.dark.value_or(false)) || all[i].id == mechanism::light_second_source().id)
         lights.push_back(i);
@@ -330,7 +357,7 @@ class Builder {
            optics::upsampled(image.gain && image.gain->given() ? image.gain->rgb() : Rgb{1, 1, 1}, reading_.bands),
            {},
            image.camera});
-      scene.views.back().gain *= lamps_at(image);
+      scene.views.back().gain *= lamps_at(image) * factor_of(image);
       for (const auto& [id, use] : document_.mechanisms)
         apply_mechanism(scene.views.back(), *mechanism::find_mechanism(id), use, at("/mechanisms/" + id));
     }

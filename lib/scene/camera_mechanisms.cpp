@@ -16,9 +16,10 @@ using mechanism::Mechanism;
 using mechanism::Target;
 
 std::optional<Amounts> camera_amounts(const Mechanism& mechanism, const manifest::MechanismUse& use,
-                                      const std::string& name, const std::string& place) {
+                                      const std::string& name, const std::string& place, const std::string& picture) {
   if (mechanism.target != Target::camera) return {};
-  const auto found = std::find(use.on.begin(), use.on.end(), name);
+  auto found = std::find(use.on.begin(), use.on.end(), picture);
+  if (picture.empty() || found == use.on.end()) found = std::find(use.on.begin(), use.on.end(), name);
   if (!use.on.empty() && found == use.on.end()) return {};
   const std::size_t count = std::max<std::size_t>(1, use.on.size());
   const Amounts amounts =
@@ -37,10 +38,29 @@ std::optional<Amounts> camera_amounts(const Mechanism& mechanism, const manifest
 
 void apply_mechanism(View& view, const Mechanism& mechanism, const manifest::MechanismUse& use,
                      const std::string& place) {
+  auto amounts = camera_amounts(mechanism, use, view.image, place);  // of this picture alone
+  if (!amounts || use.on.empty())
+    amounts = mechanism.stage == "lens" ? std::nullopt : camera_amounts(mechanism, use, view.camera_name, place);
+  if (amounts) apply_amounts(view, mechanism, *amounts);
+}
+
+void apply_amounts(View& view, const Mechanism& mechanism, const std::vector<double>& amounts) {
+  if (neutral(mechanism, amounts)) return;
+  if (mechanism.stage == "lens") {
+    camera::Intrinsics lens = view.camera.intrinsics();
+    for (std::size_t i = 0; i < amounts.size(); ++i)
+      lens.distortion[camera::distortion_index(mechanism.parameters[i].name, mechanism.id)] = amounts[i];
+    view.camera = view.camera.with(lens);
+    return;
+  }
   const Edit* edit = find_edit(mechanism);
-  if (edit == nullptr || edit->view == nullptr) return;
-  const auto amounts = camera_amounts(mechanism, use, view.camera_name, place);
-  if (amounts) edit->view(view, *amounts);
+  if (edit != nullptr && edit->view != nullptr) edit->view(view, amounts);
+}
+
+bool moves_pixels(const Mechanism& mechanism) {
+  if (mechanism.target != Target::camera) return false;
+  const Edit* edit = find_edit(mechanism);
+  return mechanism.stage == "lens" || (edit != nullptr && edit->rays);
 }
 
 void apply_mechanism(manifest::Camera& camera, const std::string& name, const Mechanism& mechanism,

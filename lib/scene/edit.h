@@ -18,14 +18,18 @@ struct Moment {                   // of an image that states its time
 struct Edit {
   const mechanism::Mechanism& (*mechanism)() = nullptr;
   // Those of what it changes. Lights and surfaces: where it `fits` one; they are refreshed afterwards.
-  void (*appearance)(Appearance&, const Amounts&, const std::string& place) = nullptr;
+  void (*appearance)(Appearance&, const Amounts&, Vec3 centre_m, const std::string& place) = nullptr;
   bool (*fits_light)(const Light&) = nullptr;
   void (*light)(Light&, const Amounts&, Vec3 centre_m, const std::string& place) = nullptr;
+  // A light that is on wherever this one is: it is called after the mechanism and the light, with a blank between.
+  Light (*companion)(const Light&, const Amounts&, const std::string& place) = nullptr;
   bool (*fits_surface)(const Surface&) = nullptr;
   void (*surface)(Surface&, const Amounts&) = nullptr;
   void (*instance)(Instance&, std::span<const double>) = nullptr;
   void (*view)(View&, const Amounts&) = nullptr;
+  bool rays = false;                                      // `view` changes where things are seen
   Rgb (*lamps)(const Amounts&, const Moment&) = nullptr;  // factor on all lamps
+  double (*picture)(const Amounts&) = nullptr;            // factor on the pictures that the use is `on`
   // explain simulates it and a path tracer of this kind does not: the scene stays as it is.
   bool beyond_rendering = false;
 };

@@ -23,7 +23,7 @@ bool can_apply(const Surface& surface, const Mechanism& mechanism) {
 }
 bool can_apply(const Light& light, const Mechanism& mechanism) {
   const Edit* own = find_edit(mechanism);
-  return own != nullptr && own->light != nullptr ? own->fits_light(light) : model_for(light, mechanism) != nullptr;
+  return own != nullptr && own->fits_light != nullptr ? own->fits_light(light) : model_for(light, mechanism) != nullptr;
 }
 
 template <class Thing>
@@ -67,6 +67,23 @@ void edit_each(std::vector<Thing>& things, const Mechanism& mechanism, const man
   }
 }
 
+// Beside the lights that are named, in play with amounts of their own, others.
+void add_companions(std::vector<Light>& lights, const Edit& own, const Mechanism& mechanism,
+                    const manifest::MechanismUse& use, const std::vector<std::string>& on, const std::string& place) {
+  for (std::size_t i = 0; i < on.size(); ++i) {
+    const auto found = std::find_if(lights.begin(), lights.end(), [&](const Light& l) { return l.id == on[i]; });
+    if (found == lights.end() || !own.fits_light(*found))
+      throw Error(Exit::data, place_of(place, "on"), mechanism.id + " does not apply to \"" + on[i] + "\"",
+                  "name a light with a position");
+    const Amounts amounts = amounts_of(mechanism, use, i, on.size(), place);
+    if (neutral(mechanism, amounts) || amounts[0] == 0) continue;
+    Light companion = own.companion(*found, amounts, place);
+    companion.id = mechanism.id + " " + on[i];
+    refresh(companion, place);
+    lights.push_back(std::move(companion));
+  }
+}
+
 template <class Thing>
 std::vector<std::string> names_that_take(const std::vector<Thing>& things, const Mechanism& mechanism) {
   std::vector<std::string> names;
@@ -89,9 +106,10 @@ bool applies_to_scenes(const Mechanism& mechanism) {
   };
   const Edit* own = find_edit(mechanism);
   switch (mechanism.target) {
-    case Target::scene: return own != nullptr && own->appearance != nullptr;
+    case Target::scene: return own != nullptr && (own->appearance != nullptr || own->picture != nullptr);
     case Target::surface: return (own != nullptr && own->surface != nullptr) || expressed(surface::all_models());
-    case Target::light: return (own != nullptr && own->light != nullptr) || expressed(light::all_models());
+    case Target::light:
+      return (own != nullptr && (own->light != nullptr || own->companion != nullptr)) || expressed(light::all_models());
     case Target::object: return applies_to_objects(mechanism);
     default: return false;
   }
@@ -107,10 +125,12 @@ void apply_mechanism(Appearance& appearance, const Mechanism& mechanism, const m
   if (beyond_rendering(mechanism)) return;
   const std::vector<std::string> on = use.on.empty() ? mechanism_targets(appearance, mechanism) : use.on;
   if (mechanism.target == Target::surface) return edit_each(appearance.surfaces, mechanism, use, on, centre_m, place);
-  if (mechanism.target == Target::light) return edit_each(appearance.lights, mechanism, use, on, centre_m, place);
   const Edit* own = find_edit(mechanism);
+  if (own != nullptr && own->companion != nullptr)
+    return add_companions(appearance.lights, *own, mechanism, use, on, place);
+  if (mechanism.target == Target::light) return edit_each(appearance.lights, mechanism, use, on, centre_m, place);
   if (own != nullptr && own->appearance != nullptr)
-    own->appearance(appearance, amounts_of(mechanism, use, 0, 1, place), place);
+    own->appearance(appearance, amounts_of(mechanism, use, 0, 1, place), centre_m, place);
 }
 
 }  // namespace gonio::scene

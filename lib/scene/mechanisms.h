@@ -42,16 +42,23 @@ void apply_mechanism(Appearance& appearance, const mechanism::Mechanism& mechani
 void apply_mechanism(manifest::Camera& camera, const std::string& name, const mechanism::Mechanism& mechanism,
                      const manifest::MechanismUse& use, const std::string& place);
 
-// What a mechanism of cameras amounts to for the camera `name`, one number per parameter in its order; nothing where it
+// What a mechanism of cameras amounts to for the camera `name` (or for one picture of it, where `on` names pictures: a
+// name of `on` is a camera's or a picture's), one number per parameter in its order; nothing where it
 // is not meant or neutral. Error(data) at `place` also for values beyond the parameters' bounds (but for the lens'
 // terms, which fits may take anywhere).
 std::optional<std::vector<double>> camera_amounts(const mechanism::Mechanism& mechanism,
                                                   const manifest::MechanismUse& use, const std::string& name,
-                                                  const std::string& place);
+                                                  const std::string& place, const std::string& picture = "");
 
-// The view's part: optics.defocus; others leave it as it is.
+// The view's part: what moves pixels, and optics.defocus; others leave it as it is. "on" may name pictures as well as
+// cameras: the amounts of a picture's own name come first. The lens' terms for all of a camera's pictures are the
+// camera's part.
 void apply_mechanism(View& view, const mechanism::Mechanism& mechanism, const manifest::MechanismUse& use,
                      const std::string& place);
+void apply_amounts(View& view, const mechanism::Mechanism& mechanism, const std::vector<double>& amounts);
+
+// Does it act on the rays of a view: on where things are seen?
+bool moves_pixels(const mechanism::Mechanism& mechanism);
 
 // "surface.interface:f0=0.05,alpha=0.15,on=bunny,on=cup" as typed on a command line. Error(usage) at `place`.
 std::pair<const mechanism::Mechanism*, manifest::MechanismUse> parse_mechanism(const std::string& text,

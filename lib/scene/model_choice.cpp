@@ -54,6 +54,24 @@ const light::Model* model_for(const Light& l, const Mechanism& m) {
   return model_for(l.model, light::all_models(), m);
 }
 
+const light::Model* model_with(const Light& l, std::span<const std::string> names) {
+  const auto has_all = [&](const manifest::ModelInfo& info) {
+    return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+      const manifest::ParameterInfo* found = find_parameter(info, name);
+      return found && found->components == 1;
+    });
+  };
+  const manifest::ModelInfo& present = l.model->info();
+  if (has_all(present)) return l.model;
+  const light::Model* best = nullptr;
+  for (const light::Model* candidate : light::all_models()) {
+    const manifest::ModelInfo& info = candidate->info();
+    if (info.attachment != present.attachment || !has_all(info) || !includes(info, present)) continue;
+    if (!best || info.parameters.size() < best->info().parameters.size()) best = candidate;
+  }
+  return best;
+}
+
 std::vector<double> components(Vec3 v) {
   return {v.x, v.y, v.z};
 }

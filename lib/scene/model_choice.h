@@ -1,5 +1,6 @@
 // Which registered model takes a mechanism's parameters (scene/mechanisms.h says the rule).
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ bool can_express(const manifest::ModelInfo& info, const mechanism::Mechanism& me
 // has and can; null where none does.
 const surface::Model* model_for(const Surface& surface, const mechanism::Mechanism& mechanism);
 const light::Model* model_for(const Light& light, const mechanism::Mechanism& mechanism);
+// The same for single numbers of these names, given or not.
+const light::Model* model_with(const Light& light, std::span<const std::string> names);
 
 std::vector<double> components(Vec3 v);  // as parameters hold them
 

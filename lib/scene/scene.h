@@ -104,13 +104,13 @@ struct ThinLens {                             // optics.defocus; a radius of zer
 };
 
 struct View {  // one image to be simulated
-  std::string image;
+  std::string image{};
   camera::CameraModel camera;
-  Rigid<frame::World, frame::Camera> world_from_camera;
-  std::vector<std::size_t> lights;  // that are on: places in Appearance::lights
+  Rigid<frame::World, frame::Camera> world_from_camera{};
+  std::vector<std::size_t> lights{};  // that are on: places in Appearance::lights
   Rgb gain{1, 1, 1};
-  ThinLens lens;
-  std::string camera_name;
+  ThinLens lens{};
+  std::string camera_name{};
 };
 
 struct Scene {

@@ -21,6 +21,7 @@ const Mechanism& tracks_perspective() {
                       .unit = "1/px",
                       .lower = 0,
                       .upper = 0.02,
+                      .typical = 1e-3,
                       .meaning = "one over the focal length; 0: orthographic"}},
       .conditions = {"tracks.depth", "camera.image-radius"},
       .mistaken_for = {{.with = "deformation", .told_apart = "film a rigid object of known shape with the same camera"},

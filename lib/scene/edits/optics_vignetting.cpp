@@ -6,7 +6,7 @@
 namespace gonio::scene::edits {
 namespace {
 
-void vignette(Appearance& appearance, const Amounts& amounts, const std::string&) {
+void vignette(Appearance& appearance, const Amounts& amounts, Vec3, const std::string&) {
   appearance.vignetting_falloff = amounts[0];
 }
 

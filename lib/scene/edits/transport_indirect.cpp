@@ -8,7 +8,7 @@ const Mechanism& transport_indirect();
 namespace gonio::scene::edits {
 namespace {
 
-void scale_indirect(Appearance& appearance, const Amounts& amounts, const std::string&) {
+void scale_indirect(Appearance& appearance, const Amounts& amounts, Vec3, const std::string&) {
   appearance.indirect_strength = amounts[0];
 }
 

@@ -19,6 +19,7 @@ const Mechanism& geometry_contact() {
                       .lower = -0.005,
                       .upper = 0.005,
                       .start = 0.0005,
+                      .typical = 5e-4,
                       .meaning = "by which the object lies deeper"}},
       .conditions = {"image.edge-distance", "light.shadow-edge-distance", "marker.height"},
       .mistaken_for = {{.with = "geometry.pose", .told_apart = "lift the object and lay it on a hard support"}},

@@ -21,6 +21,7 @@ const Mechanism& geometry_offset() {
                       .lower = -0.003,
                       .upper = 0.003,
                       .start = 0.0002,
+                      .typical = 3e-4,
                       .meaning = "along the outward normals"}},
       .conditions = {"image.edge-distance", "surface.exitance-angle"},
       .mistaken_for = {{.with = "geometry.scale", .told_apart = "caliper at a thin and at a thick part"},

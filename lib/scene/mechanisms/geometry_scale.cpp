@@ -19,6 +19,7 @@ const Mechanism& geometry_scale() {
                       .lower = -0.1,
                       .upper = 0.1,
                       .start = 0.005,
+                      .typical = 0.03,
                       .meaning = "relative growth in all directions, about the origin of the object's frame"}},
       .conditions = {"image.edge-distance", "surface.exitance-angle"},
       .mistaken_for = {{.with = "geometry.pose", .told_apart = "caliper, or a second view"},

@@ -19,6 +19,7 @@ const Mechanism& optics_vignetting() {
                       .lower = -0.1,
                       .upper = 0.6,
                       .start = 0.05,
+                      .typical = 0.2,
                       .meaning = "share of the light that is lost half a picture's width from its centre"}},
       .conditions = {"camera.image-radius"},
       .mistaken_for = {{.with = "light.lobe", .told_apart = "move the patch together with the light"},

@@ -20,6 +20,7 @@ const Mechanism& volume_absorption() {
                       .lower = 0,
                       .upper = 1000,
                       .start = 1,
+                      .typical = 5,
                       .meaning = "absorption coefficient"}},
       .conditions = {"volume.path-length"},
       .mistaken_for = {{.with = "surface albedo", .told_apart = "two thicknesses of the same material"},

@@ -20,6 +20,7 @@ const Mechanism& volume_dispersion() {
                       .lower = 0,
                       .upper = 5e-14,
                       .start = 4e-15,
+                      .typical = 2e-15,
                       .meaning = "Cauchy's second coefficient"}},
       .conditions = {"light.wavelength", "surface.incidence-angle"},
       .mistaken_for = {{.with = "geometry.offset", .told_apart = "narrow bands"},

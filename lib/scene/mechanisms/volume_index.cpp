@@ -20,6 +20,7 @@ const Mechanism& volume_index() {
                       .lower = -0.3,
                       .upper = 0.3,
                       .start = 0.01,
+                      .typical = 0.008,
                       .meaning = "added to the base model's index"}},
       .conditions = {"surface.incidence-angle", "light.wavelength"},
       .mistaken_for = {{.with = "geometry.offset", .told_apart = "caliper"},

@@ -1,0 +1,49 @@
+// What half-pixel cells show at one state of the scene, summed over a pixel's square at any place. Places are first
+// named (look_at), then all are shaded at once, then summed.
+#pragma once
+#include <unordered_map>
+
+#include "relighting/fine_views.h"
+#include "relighting/image_model.h"
+#include "relighting/shifted_views.h"
+
+namespace gonio::relighting {
+
+class Sight {
+ public:
+  Sight(const FineView& view, const Places& places, const Frame& frame)
+      : view_(view), places_(places), frame_(frame), onward_(frame.model, frame.state, frame.number) {}
+
+  void look_at(Vec2 centre);
+  void shade();
+
+  struct Sum {
+    Rgb radiance;  // before exposure
+    double share = 0;
+  };
+  enum class Which { all, near, far };
+  // About `centre`, with the light by way of other surfaces that the sampled pixel number `pixel` of the view has.
+  Sum at(Vec2 centre, std::uint32_t pixel, Which which);
+
+ private:
+  struct Shaded {
+    std::uint64_t wanted = 0;
+    const FineTile* tile = nullptr;
+    std::vector<Rgb> direct;  // by facet of the tile
+  };
+  Rgb onward(std::uint32_t pixel, const Facet& part);
+  Rgb onward_of(std::size_t facet, Rgb tint);
+  const FineView& view_;
+  const Places& places_;
+  const Frame& frame_;
+  Onward onward_;
+  std::unordered_map<int, Shaded> tiles_;
+  std::unordered_map<std::size_t, Rgb> known_;
+};
+
+inline constexpr int block_px = 16;  // of Places::nearest
+inline int blocks_across(int width_px) {
+  return (width_px + block_px - 1) / block_px;
+}
+
+}  // namespace gonio::relighting
