@@ -18,6 +18,12 @@ struct ProblemOptions {
                         // recordings, options and budget give the same answer on every machine
 };
 
+// Mechanisms that recordings of a domain cannot show: an id, or how ids begin ("robot."), of which the longest counts.
+struct Untouched {
+  std::string ids;
+  std::string why;  // in words that hold for all of them
+};
+
 struct Domain {
   std::string name;      // "boards", "images", "tables": the folder's
   std::string sentence;  // what recordings it takes
@@ -26,14 +32,17 @@ struct Domain {
   // boards show. `needs_it`: where nothing mends that, it is not asked.
   std::string after{};
   bool needs_it = false;
-  // What it leaves to another domain of the same recordings: mechanisms whose ids begin so ("lens.") are named here only
-  // where that domain names them. Corners say of the lens all that poses fitted to them could say.
+  // What it leaves to another domain of the same recordings: mechanisms whose ids begin so ("lens.") are named here
+  // only where that domain names them. Corners say of the lens all that poses fitted to them could say.
   std::string leaves{}, leaves_to{};
   bool (*applies)(const manifest::Document& document) = nullptr;
   std::vector<std::unique_ptr<Problem>> (*problems)(const manifest::Document& document,
                                                     const ProblemOptions& options) = nullptr;
   // Files of the manifest that the problems read, for provenance.
   std::vector<std::filesystem::path> (*files)(const manifest::Document& document) = nullptr;
+  // Why the mechanisms that do not declare this domain are no hypotheses here. tests/explain/product_test.cpp demands a
+  // reason for each; explain --list --domains and gonio-mechanisms(7) print them.
+  std::vector<Untouched> untouched{};
 };
 
 std::span<const Domain* const> all_domains();  // sorted by name; defined in a generated source

@@ -25,7 +25,25 @@ const Domain& boards() {
               if (table.model == "camera" && !table.file.empty())
                 files.push_back(manifest::resolve(document, table.file, "/tables/" + name + "/file"));
             return files;
-          }};
+          },
+      .untouched =
+          {{"light.", "corners are places, and keep no brightness"},
+           {"camera.aspect", "the base model's own: free in every calibration from corners"},
+           {"camera.focal-length", "the base model's own: free in every calibration from corners"},
+           {"camera.principal-point", "the base model's own: free in every calibration from corners"},
+           {"camera.pose", "every view's pose is free"},
+           {"optics.",
+            "blur, glare and falloff change how bright a corner's squares are, and leave the corner between them"},
+           {"sensor.", "corners are places; how wrong grey levels move them all alike is board.corner-bias"},
+           {"surface.", "corners are places, and keep no brightness"},
+           {"volume.", "nothing lies between board and camera that light goes through"},
+           {"transport.", "corners are places, and keep no brightness"},
+           {"geometry.", "every view's pose is free, and the board's own shape is board.warp and board.scale"},
+           {"reference.", "corners are places, and keep no brightness"},
+           {"robot.", "no robot is known here: hand-eye sets (robot) have its joints"},
+           {"tracks.", "a board is rigid and its corners are named: no track can slip, no shape deforms"},
+           {"marker.", "markers of other kinds are tables of the model markers"},
+           {"ct.", "no X-rays"}}};
   return domain;
 }
 

@@ -9,7 +9,8 @@ namespace gonio::explain::domains {
 const Domain& heights() {
   static const Domain domain{
       .name = "heights",
-      .sentence = "a table of the model \"heights\", whose file is a height map (.sur, .opd, .nms, .x3p, .plu, OpenEXR, TIFF)",
+      .sentence =
+          "a table of the model \"heights\", whose file is a height map (.sur, .opd, .nms, .x3p, .plu, OpenEXR, TIFF)",
       .order = 5,
       .applies = has_heights,
       .problems =
@@ -25,7 +26,24 @@ const Domain& heights() {
               if (table.model == "heights")
                 files.push_back(manifest::resolve(document, table.file, "/tables/" + name + "/file"));
             return files;
-          }};
+          },
+      .untouched =
+          {{"surface.", "it changes what light does, and leaves the relief as it is; a height map has no light"},
+           {"light.", "a height map has no light"},
+           {"optics.", "how an instrument sees is in its own transfer function, which a height map does not state"},
+           {"sensor.", "a height map has heights and no grey levels"},
+           {"transport.", "a height map has no light"},
+           {"volume.", "a height map ends at the surface"},
+           {"reference.", "a height map is held against no reference"},
+           {"geometry.",
+            "a height map is levelled and held against no shape: where it stands and how large it is stays unknown"},
+           {"lens.", "a height map has been rectified by its instrument; its scales are those that its file states"},
+           {"camera.", "a height map has no camera"},
+           {"board.", "a height map has no board"},
+           {"robot.", "a height map has no robot"},
+           {"tracks.", "a height map does not move"},
+           {"marker.", "a height map has no markers"},
+           {"ct.", "no X-rays"}}};
   return domain;
 }
 

@@ -33,7 +33,24 @@ const Domain& images() {
               if (!mesh.file.empty())
                 files.push_back(manifest::resolve(document, mesh.file, "/meshes/" + name + "/file"));
             return files;
-          }};
+          },
+      .untouched =
+          {{"board.", "a board in a scene is an object like others; what its corners tell is the domain boards"},
+           {"robot.",
+            "where the cameras stand is known here or free; how a robot missed that place is a hand-eye set (robot)"},
+           {"tracks.", "no point is followed: pixels are compared where they are"},
+           {"marker.", "markers are tables of the model markers"},
+           {"ct.", "no X-rays"},
+           {"reference.", "pictures are held against a simulation, and no white tile"},
+           {"camera.thermal", "pictures of a scene state no temperature; corners with a column of it are boards"},
+           {"surface.micro-ridges",
+            "glints between two and ten pixels wide: the model of a mean lobe holds for tables of a sample alone"},
+           {"surface.residue", "reliefs turn with the sample, which is measured by tables of reflectance"},
+           {"surface.walls", "reliefs turn with the sample, which is measured by tables of reflectance"},
+           {"surface.thin-film", "three channels average over its fringes: tables of reflectance in narrow bands"},
+           {"volume.",
+            "what is seen through glass is left out of the fast model: tables of transmittance, or render and "
+            "compare"}}};
   return domain;
 }
 

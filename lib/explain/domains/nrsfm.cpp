@@ -17,7 +17,22 @@ const Domain& nrsfm() {
               problems.push_back(tracks_problem(std::move(followed)));
             return problems;
           },
-      .files = gonio::nrsfm::followed_files};
+      .files = gonio::nrsfm::followed_files,
+      .untouched = {
+          {"lens.", "tracks of one view under an orthographic camera: bent rays and a bent shape are one and the same"},
+          {"camera.", "tracks state neither exposure nor temperature"},
+          {"board.", "the shape is unknown: a board is one that does not deform"},
+          {"light.", "tracks are places, and keep no brightness"},
+          {"optics.", "tracks are places, and keep no brightness"},
+          {"sensor.", "tracks are places, and keep no brightness"},
+          {"surface.", "tracks are places, and keep no brightness"},
+          {"volume.", "tracks are places, and keep no brightness"},
+          {"transport.", "tracks are places, and keep no brightness"},
+          {"reference.", "tracks are places, and keep no brightness"},
+          {"geometry.", "shape and motion are what is sought, and free in every frame"},
+          {"robot.", "no robot is known"},
+          {"marker.", "markers are tables of the model markers"},
+          {"ct.", "no X-rays"}}};
   return domain;
 }
 

@@ -28,7 +28,35 @@ const Domain& robot() {
               if (!robot.calibration.empty())
                 files.push_back(manifest::resolve(document, robot.calibration, "/robots/" + name + "/calibration"));
             return files;
-          }};
+          },
+      .untouched =
+          {{"board.corner-bias",
+            "a constant shift of all corners is the camera's mounting, by which they are held; boards shows it"},
+           {"lens.",
+            "poses from corners say of the lens what these terms of it say; all others are left to boards, which has "
+            "the corners themselves"},
+           {"camera.rolling-shutter",
+            "the arm stands still while a picture is taken; robot.time-offset is the delay of what moves"},
+           {"camera.thermal",
+            "hand-eye sets state no temperature of the camera; corners with a column of it are boards"},
+           {"robot.friction-heating", "needs temperatures of the joints, a table of the model temperature"},
+           {"robot.joule-heating", "needs temperatures of the joints, a table of the model temperature"},
+           {"robot.warm-up", "needs temperatures of the joints, a table of the model temperature"},
+           {"camera.aspect", "the base model's own: free where the poses come with their corners"},
+           {"camera.focal-length", "the base model's own: free where the poses come with their corners"},
+           {"camera.principal-point", "the base model's own: free where the poses come with their corners"},
+           {"camera.pose", "where the camera sits is the mounting, which is free"},
+           {"light.", "poses are places, and keep no brightness"},
+           {"optics.", "poses are places, and keep no brightness"},
+           {"sensor.", "poses are places, and keep no brightness"},
+           {"surface.", "poses are places, and keep no brightness"},
+           {"volume.", "poses are places, and keep no brightness"},
+           {"transport.", "poses are places, and keep no brightness"},
+           {"reference.", "poses are places, and keep no brightness"},
+           {"geometry.", "the board stands still and is measured; where it stands and where the camera sits is free"},
+           {"tracks.", "no shape deforms, and corners are named"},
+           {"marker.", "poses come from boards; markers of other kinds are tables of the model markers"},
+           {"ct.", "no X-rays"}}};
   return domain;
 }
 

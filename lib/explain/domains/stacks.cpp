@@ -7,6 +7,57 @@
 
 namespace gonio::explain::domains {
 
+namespace {
+
+std::vector<Untouched> stack_reasons() {
+  return {
+      {"lens.", "camera and scene stand still: where a pixel looks cancels"},
+      {"camera.", "camera and scene stand still while and between pictures are taken"},
+      {"board.", "camera and scene stand still: where a pixel looks cancels"},
+      {"light.finite-size", "its penumbrae need what casts the shadow, and a stack has no geometry"},
+      {"light.lobe", "the lamps are distant, and their strengths and slopes across the picture are free"},
+      {"light.position", "the lamps are distant: light.direction, and light.inverse-square where they are not"},
+      {"light.near-environment", "needs places, and a stack has no geometry"},
+      {"light.polarization", "no polarizer is stated"},
+      {"light.reflector", "needs places, and a stack has no geometry"},
+      {"light.second-source",
+       "a second lamp beside each would need its own direction in every picture, as many numbers as a patch has "
+       "readings; what all have in common is light.ambient"},
+      {"light.spectrum", "strength in each channel is the tint of every patch"},
+      {"optics.defocus",
+       "every pixel is fitted alone: what its neighbours send it is the same in all pictures but where shadows "
+       "end"},
+      {"optics.ghost", "needs a bright source in the picture; readings of sites are even about them"},
+      {"sensor.clipped-resampling", "sites lie where their neighbours are even"},
+      {"sensor.crosstalk", "sites lie where their neighbours are even, and the tint of each is free"},
+      {"sensor.exposure", "lamps have free strengths, and exposures their shutter: a factor on one picture is either"},
+      {"sensor.prnu", "a pixel's gain is its patch's albedo, which is free"},
+      {"sensor.row-pattern",
+       "readings of one patch share a row, and lamps their strengths, which are free in every picture"},
+      {"transport.", "needs what lies around a patch, and a stack has no geometry"},
+      {"geometry.", "a stack has no geometry: the normal of every patch is free"},
+      {"surface.anisotropy", "a patch has no tangent, and too few readings to find one beside its normal"},
+      {"surface.coat", "a patch is all there is: surface.interface is asked of all of them alike"},
+      {"surface.translucent", "needs the far side, and a stack has no geometry"},
+      {"surface.fluorescence", "no picture states the band that excites"},
+      {"surface.micro-ridges", "a patch has no tangent, and too few readings to find one beside its normal"},
+      {"surface.residue", "reliefs are measured on samples that turn: tables of reflectance"},
+      {"surface.walls", "reliefs are measured on samples that turn: tables of reflectance"},
+      {"surface.spatial-variation", "albedo and tint are free at every patch"},
+      {"surface.specular", "so few lamps find a lobe at most once or twice: too coarse a scan to part two"},
+      {"surface.subsurface", "needs the distance to where light enters, and a stack has no geometry"},
+      {"surface.thin-film",
+       "three channels under few lamps show one phase in ten: tables of reflectance in narrow bands"},
+      {"volume.", "nothing is known to be transparent"},
+      {"reference.", "a stack has no white tile beside it"},
+      {"robot.", "no robot is known"},
+      {"tracks.", "nothing moves"},
+      {"marker.", "markers are tables of the model markers"},
+      {"ct.", "no X-rays"}};
+}
+
+}  // namespace
+
 const Domain& stacks() {
   static const Domain domain{
       .name = "stacks",
@@ -34,7 +85,8 @@ const Domain& stacks() {
                 for (const std::size_t i : entries)
                   for (auto& file : manifest::files_of_image(document, i)) files.push_back(file);
             return files;
-          }};
+          },
+      .untouched = stack_reasons()};
   return domain;
 }
 

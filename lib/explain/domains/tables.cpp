@@ -10,17 +10,43 @@ namespace gonio::explain::domains {
 const Domain& tables() {
   static const Domain domain{
       .name = "tables",
-      .sentence = "tables whose model predicts them (sensor, light, volume, surface, tracks, markers, temperature, expression)",
+      .sentence =
+          "tables whose model predicts them (sensor, light, volume, surface, tracks, markers, temperature, expression)",
       .order = 4,
       .applies = explain::tables::has_tables,
       .problems = explain::tables::table_problems,
-      .files = [](const manifest::Document& document) {
-        std::vector<std::filesystem::path> files;
-        for (const auto& [name, table] : document.tables)
-          if (explain::tables::find_model(table.model) != nullptr && !table.file.empty())
-            files.push_back(manifest::resolve(document, table.file, "/tables/" + name + "/file"));
-        return files;
-      }};
+      .files =
+          [](const manifest::Document& document) {
+            std::vector<std::filesystem::path> files;
+            for (const auto& [name, table] : document.tables)
+              if (explain::tables::find_model(table.model) != nullptr && !table.file.empty())
+                files.push_back(manifest::resolve(document, table.file, "/tables/" + name + "/file"));
+            return files;
+          },
+      .untouched = {
+          {"board.", "corners of boards are the domain boards"},
+          {"lens.",
+           "a table's rows have no pixels but those of tracks and markers, to which lens.radial says what so few can "
+           "show"},
+          {"camera.", "a table of corners with columns of row, time or temperature is the domain boards"},
+          {"light.near-environment", "irradiance over a plane knows no directions of the surroundings"},
+          {"light.polarization", "no column states a polarizer"},
+          {"light.position", "where the lamps stand is the base model's own: mark position_m free"},
+          {"light.reflector", "irradiance is measured over a free plane; what stands beside it is light.second-source"},
+          {"optics.", "a row has no neighbours in a picture for light to go to"},
+          {"sensor.clipped-resampling", "a row has no neighbours in a picture"},
+          {"sensor.crosstalk", "a row has no neighbours in a picture, and its channels are measured apart"},
+          {"sensor.prnu", "a row names no pixel"},
+          {"sensor.exposure", "a reading states its own exposure: sensor.shutter is what all of them have in common"},
+          {"transport.", "rows know of no other bodies"},
+          {"surface.coat", "samples of a reflectance are those of one place: surface.interface"},
+          {"surface.translucent", "samples of a reflectance are those of one side"},
+          {"surface.spatial-variation", "samples of a reflectance are those of one place"},
+          {"surface.subsurface", "samples of a reflectance do not say where the light went in"},
+          {"geometry.", "rows know of no body but the plane or the sample that they were measured on"},
+          {"robot.", "joint angles with poses are the domain robot; tables of the model temperature have what warms"},
+          {"tracks.", "a table of tracks holds points against a known shape: their scale is that shape's"},
+          {"ct.", "a table has lengths measured in a volume, which ct.scale alone changes in proportion"}}};
   return domain;
 }
 

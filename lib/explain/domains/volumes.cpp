@@ -16,7 +16,24 @@ const Domain& volumes() {
             for (VolumesInput& input : volumes_inputs(document)) problems.push_back(volumes_problem(std::move(input)));
             return problems;
           },
-      .files = volumes_files};
+      .files = volumes_files,
+      .untouched = {
+          {"light.", "X-rays: no lamp"},
+          {"optics.", "X-rays: no lens"},
+          {"lens.", "X-rays: no lens"},
+          {"camera.", "X-rays: no camera; the detector's faults are ct.ring and ct.blur"},
+          {"sensor.",
+           "the detector's readings have been reconstructed: its faults show as ct.ring, ct.cupping and ct.streak"},
+          {"surface.", "X-rays pass the surface as they find it"},
+          {"transport.", "what light does between bodies is ct.scatter for X-rays"},
+          {"volume.", "the index of refraction of X-rays is one; what they lose on their way is the volume itself"},
+          {"reference.", "the reference is a shape, and no white tile"},
+          {"geometry.",
+           "what a volume shows of it has the names ct.threshold (offset), ct.scale (scale) and ct.axis-tilt (pose)"},
+          {"board.", "a scanned part is no board of corners"},
+          {"robot.", "a tomograph turns its part by no robot"},
+          {"tracks.", "nothing moves"},
+          {"marker.", "markers are tables of the model markers"}}};
   return domain;
 }
 

@@ -154,21 +154,36 @@ class Collector {
     candidate.mechanism = use.mechanism;
     candidate.on = use.on;
     candidate.family = use.family;
-    for (std::size_t i = 0; i < use.numbers.size(); ++i)
-      if (use.numbers[i].free)
-        candidate.parameters.push_back(add(searched(use, i), {{Kind::amount, use.place, i, -1}}, {}));
+    candidate.finer = use.finer;
+    std::map<std::size_t, std::size_t> parameter_of;
+    for (std::size_t i = 0; i < use.numbers.size(); ++i) {
+      const Place place{Kind::amount, use.place, i, -1};
+      if (const auto& same = use.numbers[i].same_as) {
+        out_.places[parameter_of.at(*same)].push_back(place);
+      } else if (use.numbers[i].free) {
+        parameter_of[i] = add(searched(use, i), {place}, {});
+        candidate.parameters.push_back(parameter_of[i]);
+      }
+    }
     if (candidate.parameters.empty()) return;
     out_.candidates.push_back(std::move(candidate));
     out_.use_of.push_back(use.place);
+  }
+
+  static bool is_shared(const Use& use, std::size_t i) {
+    return std::ranges::any_of(use.numbers, [i](const Number& n) { return n.same_as == i; });
   }
 
   static Parameter searched(const Use& use, std::size_t i) {
     const std::size_t n = use.mechanism->parameters.size();
     const mechanism::Parameter& info = use.mechanism->parameters[i % n];
     const Number& number = use.numbers[i];
-    const bool one_target = use.on.size() == 1 || use.sets > 1;
+    const bool one_target = use.on.size() == 1 || (use.sets > 1 && !is_shared(use, i));
+    std::string target = one_target ? "@" + use.on[i / n] : "";
+    if (!one_target && use.sets == 1 && !number.groups.empty())  // others may have numbers of their own
+      for (const std::string& name : use.on) target += (target.empty() ? "@" : "+") + name;
     Parameter p;
-    p.name = use.mechanism->id + (one_target ? "@" + use.on[i / n] : "") + "." + info.name;
+    p.name = use.mechanism->id + target + "." + info.name;
     p.unit = info.unit;
     p.start = number.start;
     p.neutral = number.neutral;

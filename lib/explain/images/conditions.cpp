@@ -29,6 +29,7 @@ enum Which : std::size_t {
   emission_at,
   indirect_at,
   row_at,
+  column_at,
   mean_at,
   mirrored_at,
   hue_at,
@@ -43,6 +44,7 @@ enum Which : std::size_t {
   pixel_at,
   plane_at,
   excitation_at,
+  picture_at,
   count
 };
 // In the order of Which. Structure of those with `relative` scales with the signal.
@@ -65,6 +67,7 @@ constexpr std::array<Description, count> descriptions{{
     {"light.emission-angle", "rad", "light", true},
     {"scene.indirect-irradiance", "1", "transport", false},
     {"camera.image-y", "px", "sensor", true},
+    {"camera.image-x", "px", "sensor", true},
     {"image.mean", "W/(m^2 sr)", "optics", false},
     {"image.mirrored-radiance", "W/(m^2 sr)", "optics", false},
     {"image.hue", "1", "sensor", false},
@@ -79,6 +82,7 @@ constexpr std::array<Description, count> descriptions{{
     {"camera.pixel", "1", "sensor", true},
     {"light.plane-azimuth", "rad", "light", true},
     {"surface.excitation", "1", "surface", false},
+    {"image.identity", "1", "sensor", true},
 }};
 using Known = std::array<double, count>;
 
@@ -115,6 +119,7 @@ class Describer {
     c[image_radius_at] = image_radius(image_.picture, pixel.x, pixel.y);
     if (!image_.lights.empty()) c[identity_at] = static_cast<double>(image_.lights[0]);
     c[row_at] = pixel.y;
+    c[column_at] = pixel.x;
     c[edge_at] = edge_distance(pixel);
     c[exposure_at] = image_.exposure_s.value_or(none);
     c[time_at] = image_.time_s.value_or(none);
@@ -175,10 +180,39 @@ class Describer {
   const ViewCache& cache_;
 };
 
+// Displacements in px: along the image radius, and along x and y over the rows.
+std::vector<Condition> edge_shifts(const ImageModel& model, const std::vector<std::vector<std::uint32_t>>& picked,
+                                   const std::array<std::vector<double>, 2>& across) {
+  std::vector<Condition> all{{"camera.edge-shift-radial", "half width", "optics", {}, {}, "px"},
+                             {"camera.edge-shift-x", "px", "pose", {}, {}, "px"},
+                             {"camera.edge-shift-y", "px", "pose", {}, {}, "px"}};
+  if (std::ranges::none_of(across[0], [](double v) { return v != 0; })) return {};
+  std::size_t row = 0;
+  for (std::size_t g = 0; g < picked.size(); ++g) {
+    const Recording& image = model.recordings().images[g];
+    const ViewCache& cache = model.cache(image.view);
+    for (const std::uint32_t p : picked[g]) {
+      const Pixel& pixel = cache.pixels[p];
+      const double x = pixel.x - 0.5 * (image.picture.width - 1), y = pixel.y - 0.5 * (image.picture.height - 1);
+      const double r = std::hypot(x, y);
+      for (int k = 0; k < 3; ++k, ++row) {
+        all[0].values.push_back(image_radius(image.picture, pixel.x, pixel.y));
+        all[0].direction.push_back(r > 0 ? (x * across[0][row] + y * across[1][row]) / r : 0);
+        for (std::size_t a = 0; a < 2; ++a) {
+          all[a + 1].values.push_back(pixel.y);
+          all[a + 1].direction.push_back(across[a][row]);
+        }
+      }
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 std::vector<Condition> image_conditions(const ImageModel& model, const std::vector<std::vector<std::uint32_t>>& picked,
-                                        std::span<const double> prediction) {
+                                        std::span<const double> prediction,
+                                        const std::array<std::vector<double>, 2>& across) {
   const std::vector<double> relative(prediction.begin(), prediction.end());
   std::vector<Condition> all;
   for (const Description& d : descriptions)
@@ -191,6 +225,7 @@ std::vector<Condition> image_conditions(const ImageModel& model, const std::vect
     const Describer describe(model, image);
     for (const std::uint32_t p : picked[g]) {
       Known known = describe.of(cache.pixels[p]);
+      known[picture_at] = static_cast<double>(g);
       const Rgb mirrored = opposite(image, cache.pixels[p]);
       const std::size_t place =
           3 * (static_cast<std::size_t>(cache.pixels[p].y) * static_cast<std::size_t>(image.picture.width) +
@@ -208,6 +243,9 @@ std::vector<Condition> image_conditions(const ImageModel& model, const std::vect
       }
     }
   }
+  for (Condition& c : all)  // lamps flicker and fields ripple in every picture anew
+    c.within_groups = c.name == "camera.image-x" || c.name == "camera.image-y" || c.name == "camera.image-radius";
+  for (Condition& shift : edge_shifts(model, picked, across)) all.push_back(std::move(shift));
   // A condition that does not vary says nothing.
   std::erase_if(all, [](const Condition& condition) {
     double lower = std::numeric_limits<double>::infinity(), upper = -lower;

@@ -11,6 +11,7 @@
 #include "inference/explanation.h"
 #include "manifest/document.h"
 #include "relighting/repeats.h"
+#include "relighting/shifted_views.h"
 #include "relighting/textures.h"
 #include "relighting/uses.h"
 #include "scene/scene.h"
@@ -20,6 +21,9 @@ namespace {
 
 constexpr int tile_px = 8;
 constexpr std::uint64_t pixel_seed = 20;
+constexpr std::size_t most_lamps_with_shadows = 12;  // that follow them: more are surroundings, or light stages
+// Of the places where a texture changes: they tell where things are seen, and little of light.
+constexpr double uneven_share = 0.25;
 
 std::size_t at(const io::Image& picture, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x);
@@ -57,7 +61,9 @@ bool shows_glass(const ViewCache& cache, const Pixel& pixel, const SceneState& s
 }  // namespace
 
 ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& options)
-    : recordings_(read_recordings(document)), cache_options_(options.cache) {
+    : document_(std::make_unique<manifest::Document>(document)),
+      recordings_(read_recordings(document)),
+      cache_options_(options.cache) {
   if (recordings_.images.empty())
     throw Error(Exit::data, manifest::place(document, "/images"), "holds no recording",
                 "give at least one image with a weight");
@@ -73,6 +79,7 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
   std::vector<std::vector<std::array<int, 2>>> chosen(recordings_.views.size());
   choose_pixels(options.pixels, chosen);
   std::vector<ViewCache> caches;
+  cache_options_.shadows = layout_.lights.size() <= most_lamps_with_shadows;
   for (std::size_t v = 0; v < chosen.size(); ++v) {
     caches.push_back(
         build_cache(*caster_, recordings_.views[v], layout_.lights, *monomials_, chosen[v], cache_options_));
@@ -86,7 +93,7 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
 }
 
 void ImagesProblem::bind(const manifest::Document& document) {
-  const Setting setting{document, *scene_, *caster_, recordings_, layout_, *model_};
+  const Setting setting{document, *scene_, *caster_, recordings_, layout_, *model_, nullptr, &shared_};
   const auto prepared = [&](std::vector<Use> uses) {
     for (Use& use : uses)
       if (use.term->prepare) use.prepared = use.term->prepare(setting, use);
@@ -128,7 +135,9 @@ void ImagesProblem::choose_pixels(std::size_t pixels, std::vector<std::vector<st
         for (std::size_t k = 0; k < tile.size() && taken < take; ++k) {
           const std::size_t other = k + random.below(static_cast<std::uint32_t>(tile.size() - k));
           std::swap(tile[k], tile[other]);
-          if (!is_even(*scene_, *caster_, recordings_.views[v], tile[k][0], tile[k][1])) continue;
+          if (!is_even(*scene_, *caster_, recordings_.views[v], tile[k][0], tile[k][1]) &&
+              random.uniform() >= uneven_share)
+            continue;
           chosen[v].push_back(tile[k]);
           ++taken;
         }
@@ -141,6 +150,7 @@ void ImagesProblem::fill_rows() {
   o.first.push_back(0);
   std::uint32_t blocks = 0;
   std::vector<double> prediction;
+  std::array<std::vector<double>, 2> across;  // along x and y, for a pixel
   for (std::size_t g = 0; g < recordings_.images.size(); ++g) {
     const Recording& image = recordings_.images[g];
     const ViewCache& cache = model_->cache(image.view);
@@ -160,6 +170,9 @@ void ImagesProblem::fill_rows() {
         yf[k] += image.picture.at(pixel.x, pixel.y, static_cast<int>(k)) * start[3 * i + k];
         ff[k] += start[3 * i + k] * start[3 * i + k];
       }
+    const SceneState now = model_->edited(layout_.start, g);
+    const std::vector<double> slopes = shared_.places ? slopes_across(shared_, {g, image, cache, mine, now, *model_})
+                                                      : std::vector<double>(6 * mine.size(), 0.0);
     for (std::size_t i = 0; i < mine.size(); ++i) {
       const Pixel& pixel = cache.pixels[mine[i]];
       const auto [tile, fresh] = tiles.try_emplace({pixel.x / tile_px, pixel.y / tile_px}, blocks);
@@ -174,13 +187,14 @@ void ImagesProblem::fill_rows() {
         o.norm.push_back(y * y);
         o.block.push_back(tile->second);
         prediction.push_back(scale * start[3 * i + k]);
+        for (std::size_t a = 0; a < 2; ++a) across[a].push_back(scale * slopes[6 * i + 3 * a + k]);
       }
     }
     o.first.push_back(o.value.size());
     o.group.push_back(image.id);
     picked_.push_back(std::move(mine));
   }
-  o.conditions = image_conditions(*model_, picked_, prediction);
+  o.conditions = image_conditions(*model_, picked_, prediction, across);
 }
 
 SceneState ImagesProblem::raw_state(std::span<const double> values) const {
@@ -214,7 +228,10 @@ Touched touched_by(const std::vector<Place>& places, const SceneState& state, co
         const surface::Model& model = *state.surfaces[p.target].model;
         at_least(Reach::compose);
         if (has_parameter(model, "albedo") && p.parameter == parameter_index(model, "albedo")) {
-          at_least(shaded ? Reach::surfaces : Reach::compose);  // terms there may depend on it; no facet does
+          // Terms there may depend on it; facets do not, but where their base is out of proportion to it.
+          const bool proportional = model.proportional_to_albedo(state.surfaces[p.target].values);
+          at_least(shaded || !proportional ? Reach::surfaces : Reach::compose);
+          if (!proportional) t.surfaces.push_back(static_cast<std::uint32_t>(p.target));
           break;
         }
         at_least(Reach::surfaces);
@@ -239,6 +256,10 @@ const Use* sloped(const std::vector<Place>& places, const std::vector<Use>& uses
   if (places.size() != 1 || places[0].kind != Place::Kind::amount) return nullptr;
   const Use& use = uses[places[0].target];
   return use.term->slopes ? &use : nullptr;
+}
+
+bool acts_on(const Parameter& p, std::size_t group) {
+  return p.groups.empty() || std::binary_search(p.groups.begin(), p.groups.end(), group);
 }
 
 // An image at one state, and what of it can be kept where a little of the state changes.
@@ -315,17 +336,24 @@ void ImagesProblem::jacobian(std::span<const double> values, std::size_t group, 
   const std::size_t rows = 3 * picked_[group].size();
   const Derivatives near(*model_, raw_state(values), group, picked_[group]);
   std::vector<double> above(rows), below(rows);
+  std::size_t filled = 0;  // columns before this one
   for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (k < filled) continue;
     const Parameter& p = parameters_[columns[k]];
     const std::span<double> column = derivatives.subspan(k * rows, rows);
-    if (!p.groups.empty() && !std::binary_search(p.groups.begin(), p.groups.end(), group)) {
+    if (!acts_on(p, group)) {
       std::fill(column.begin(), column.end(), 0.0);
       continue;
     }
     const std::vector<Place>& places = bindings_.places[columns[k]];
     if (const Use* use = sloped(places, model_->uses())) {
-      const std::size_t number[1] = {places[0].parameter};
-      near.slopes(*use, number, column);
+      std::vector<std::size_t> numbers;  // of this use, as long as they follow each other: one scene serves them all
+      for (filled = k; filled < columns.size() && acts_on(parameters_[columns[filled]], group); ++filled) {
+        const std::vector<Place>& next = bindings_.places[columns[filled]];
+        if (sloped(next, model_->uses()) != use) break;
+        numbers.push_back(next[0].parameter);
+      }
+      near.slopes(*use, numbers, derivatives.subspan(k * rows, numbers.size() * rows));
       continue;
     }
     const Touched touched = touched_by(places, near.centre(), model_->uses());

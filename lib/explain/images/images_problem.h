@@ -30,6 +30,9 @@ class ImagesProblem final : public Problem {
   // Central differences; direct light is shaded anew only where the parameter reaches it.
   void jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
                 std::span<double> derivatives) const override;
+  // By the path tracer at the sampled pixels.
+  std::optional<inference::Bias> bias(std::span<const double> values,
+                                      std::span<const std::size_t> candidates) const override;
   std::string domain() const override { return "images"; }
   std::string unit() const override { return "1"; }
   std::string score_name() const override { return "relative RMSE"; }
@@ -58,6 +61,7 @@ class ImagesProblem final : public Problem {
   void choose_pixels(std::size_t pixels, std::vector<std::vector<std::array<int, 2>>>& chosen) const;
   void fill_rows();
 
+  std::unique_ptr<manifest::Document> document_;  // as it was given
   Recordings recordings_;
   SceneLayout layout_;
   std::unique_ptr<render::Monomials> monomials_;
@@ -66,6 +70,7 @@ class ImagesProblem final : public Problem {
   std::unique_ptr<scene::Scene> scene_;
   std::unique_ptr<render::RayCaster> caster_;
   std::unique_ptr<ImageModel> model_;
+  Shared shared_;
   std::vector<std::vector<std::uint32_t>> picked_;  // per image: places in its view's cache, ascending
   Misplaced misplaced_;
 };

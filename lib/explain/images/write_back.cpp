@@ -51,16 +51,34 @@ struct Entry {
 };
 
 void add_candidate(const Bindings& bindings, std::size_t candidate, const Use& use, const Explanation& explanation,
-                   Entry& entry) {
+                   bool alone, Entry& entry) {
   const std::vector<mechanism::Parameter>& infos = use.mechanism->parameters;
   entry.on.insert(entry.on.end(), use.on.begin(), use.on.end());
+  // One set for several targets is one number, unless other sets stand beside it.
+  const std::size_t copies = use.sets == 1 && !alone ? std::max<std::size_t>(1, use.on.size()) : 1;
+  std::map<std::size_t, std::size_t> parameter_of;
   std::size_t next = 0;
   for (std::size_t i = 0; i < use.numbers.size(); ++i) {
     const std::string& name = infos[i % infos.size()].name;
-    const bool free = use.numbers[i].free;
-    const std::size_t p = free ? bindings.candidates[candidate].parameters[next++] : 0;
-    entry.value[name].push_back(free ? explanation.values[p] : use.numbers[i].start);
-    entry.sigma[name].push_back(free ? explanation.sigma[p] : 0);
+    const std::optional<std::size_t> same = use.numbers[i].same_as;
+    const bool free = use.numbers[i].free || same;
+    if (use.numbers[i].free && !same) parameter_of[i] = bindings.candidates[candidate].parameters[next++];
+    const std::size_t p = free ? parameter_of.at(same.value_or(i)) : 0;
+    for (std::size_t k = 0; k < copies; ++k) {
+      entry.value[name].push_back(free ? explanation.values[p] : use.numbers[i].start);
+      entry.sigma[name].push_back(free ? explanation.sigma[p] : 0);
+    }
+  }
+}
+
+// Numbers of forms that are not in use: what is left out is neutral.
+void leave_out_neutral(const mechanism::Mechanism& mechanism, Entry& entry) {
+  for (const mechanism::Parameter& p : mechanism.parameters) {
+    const auto found = entry.value.find(p.name);
+    if (found == entry.value.end() || entry.value.size() == 1) continue;
+    const bool idle = std::ranges::all_of(found->second, [&](double v) { return v == p.neutral; }) &&
+                      std::ranges::all_of(entry.sigma[p.name], [](double s) { return s == 0; });
+    if (idle) entry.value.erase(found), entry.sigma.erase(p.name);
   }
 }
 
@@ -72,11 +90,17 @@ void write_back(const Bindings& bindings, std::span<const Use> uses, const Expla
     for (const Origin& origin : bindings.origins[p])
       write_base(origin, explanation.values[p], explanation.sigma.empty() ? 0 : explanation.sigma[p], document);
   std::map<std::string, Entry> entries;
-  for (const std::size_t c : explanation.named)
-    add_candidate(bindings, c, uses[bindings.use_of[c]], explanation, entries[bindings.candidates[c].id()]);
+  const auto named_with = [&](const std::string& id) {
+    return std::ranges::count_if(explanation.named, [&](std::size_t c) { return bindings.candidates[c].id() == id; });
+  };
+  for (const std::size_t c : explanation.named) {
+    const std::string& id = bindings.candidates[c].id();
+    add_candidate(bindings, c, uses[bindings.use_of[c]], explanation, named_with(id) == 1, entries[id]);
+  }
   for (auto& [id, entry] : entries) {
     manifest::MechanismUse& use = document.mechanisms[id];
     use.on = std::move(entry.on);
+    leave_out_neutral(*mechanism::find_mechanism(id), entry);
     for (auto& [name, values] : entry.value) use.parameters[name] = manifest::Parameter(std::move(values));
     for (auto& [name, sigmas] : entry.sigma) use.sigma[name] = std::move(sigmas);
   }

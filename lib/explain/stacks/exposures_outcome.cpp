@@ -18,15 +18,17 @@ std::string ExposuresProblem::remarks(const Explanation& e) const {
   if (form.ends_with(".quadratic"))
     return "The response departs from proportion by " + printed(100 * e.values[own[0]]) + " % at the reading " +
            printed(stack_.full_scale) + ".";
-  if (form.ends_with(".gamma"))
+  const std::string& id = candidates_[*response].id();
+  if (form == id + ".gamma" && own.size() == 1)
     return "The response is a power law: readings grow with the light to the power " + printed(e.values[own[0]]) + ".";
   const ReadingChain now = chain(e.values);
-  const bool of_all = form == candidates_[*response].id() + ".slope";
+  const bool of_all = form == id + ".slope" || form == id + ".gamma";
   std::string text = of_all ? "The response is a tone curve" : "The response is a tone curve of each channel";
   text += ", not one power: where it reads";
   for (const double z : {0.25, 0.5, 0.75}) {
-    const render::ToneCurve& curve = now.response[stack_.channels.size() > 1 ? 1 : 0].curve;
-    const double slope = std::log(curve.light(1.01 * z) / curve.light(z / 1.01)) / (2 * std::log(1.01));
+    const render::Response& curve = now.response[stack_.channels.size() > 1 ? 1 : 0];
+    const double at = z * stack_.full_scale;
+    const double slope = std::log(curve.light(1.01 * at) / curve.light(at / 1.01)) / (2 * std::log(1.01));
     text += (z == 0.25 ? " " : z == 0.75 ? " and " : ", ") + printed(100 * z) + " %";
     text += " of " + printed(stack_.full_scale) + " it grows with the light to the power " + printed(1 / slope, 2);
   }

@@ -14,9 +14,11 @@
 #include "render/mechanisms/sensor_black_offset.h"
 #include "scene/mechanisms/optics_vignetting.h"
 #include "surface/fresnel.h"
+#include "surface/gloss_lobes.h"
 #include "surface/interface_albedo.h"
 #include "surface/microfacet.h"
 #include "surface/oren_nayar.h"
+#include "surface/sheen.h"
 
 namespace gonio::explain::stacks {
 namespace {
@@ -51,6 +53,18 @@ PatchLight seen_from(const PatchLight& light, Vec3 position, double nearness) {
   return {normalized(arm), light.white * equation::light_inverse_square(arm)};
 }
 
+double PatchModel::others(double colour, Vec3 wo, Vec3 wi) const {
+  double sum = 0;
+  if (metal > 0) sum += metal * colour * surface::Ggx(metal_alpha).lobe(wo, wi, surface::half_vector(wo, wi));
+  if (sheen > 0) sum += sheen * surface::velvet(wo, wi, sheen_width);
+  if (sheen_forward > 0) sum += sheen_forward * surface::forward_sheen(wo, wi);
+  if (retro > 0) {
+    const Vec3 from = surface::sent_back(wo);
+    sum += retro * surface::Ggx(retro_alpha).lobe(from, wi, surface::half_vector(from, wi));
+  }
+  return sum;
+}
+
 double PatchModel::operator()(Vec3 b, double tint, const PatchLight& light, double radius) const {
   const double albedo = norm(b);
   if (!(albedo > 0)) return equation::sensor_black_offset(response(0), offset);
@@ -59,7 +73,8 @@ double PatchModel::operator()(Vec3 b, double tint, const PatchLight& light, doub
   double u = 0;
   if (ci > 0) {
     u = light.white * tint * albedo * ci;
-    if ((sigma_rad > 0 || f0 > 0) && co > grazing) {
+    const bool shared = rest() != 1;
+    if ((sigma_rad > 0 || f0 > 0 || shared) && co > grazing) {
       const Basis basis(n);
       const Vec3 wo = basis.to_local(eye), wi = basis.to_local(light.towards);
       if (sigma_rad > 0) u *= surface::OrenNayar(sigma_rad).shape(wo, wi);
@@ -69,6 +84,7 @@ double PatchModel::operator()(Vec3 b, double tint, const PatchLight& light, doub
                               (1 - surface::dielectric_albedo_mean(alpha, f0));
         u = u * passes + light.white * pi * gloss(f0, alpha, wo, wi) * ci;
       }
+      if (shared) u = u * rest() + light.white * pi * others(tint * albedo, wo, wi) * ci;
     }
   }
   if (ambient != 0) u += equation::light_ambient(ambient) * tint * albedo * light.white;

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "light/irradiance.h"
+#include "light/mechanisms/light_lobe.h"
 #include "manifest/document.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"
@@ -90,11 +91,11 @@ Sight sight_of(const scene::Light& lamp, Vec3 point_m, Vec3 centre_m) {
 }
 
 LampState::LampState(const manifest::Document& document, const std::vector<std::string>& names, Vec3 centre_m,
-                     const std::string& place)
+                     std::span<const Vec3> points_m, const std::string& place)
     : centre_m_(centre_m), place_(place) {
   for (const std::string& name : names) appearance_.lights.push_back(lamp_of(document, name, place));
   free_parameters(document);
-  mechanisms_of_lamps();
+  mechanisms_of_lamps(points_m);
   second_source();
 }
 
@@ -127,7 +128,7 @@ void LampState::free_parameters(const manifest::Document&) {
 }
 
 // Every registered mechanism of lamps that tables show and that the scene can apply to this one.
-void LampState::mechanisms_of_lamps() {
+void LampState::mechanisms_of_lamps(std::span<const Vec3> points_m) {
   for (const mechanism::Mechanism* m : mechanism::all_mechanisms()) {
     if (m->target != mechanism::Target::light) continue;
     if (std::find(m->domains.begin(), m->domains.end(), "tables") == m->domains.end()) continue;
@@ -135,15 +136,45 @@ void LampState::mechanisms_of_lamps() {
     const std::vector<std::string> targets = scene::mechanism_targets(appearance_, *m);
     for (std::size_t l = 0; l < lamps().size(); ++l) {
       if (std::find(targets.begin(), targets.end(), lamps()[l].id) == targets.end()) continue;
-      Candidate candidate{m, {lamps()[l].id}, {}, {}};
-      for (std::size_t k = 0; k < m->parameters.size(); ++k) {
-        const mechanism::Parameter& p = m->parameters[k];
-        candidate.parameters.push_back(parameters_.size());
-        const double size = std::max(std::abs(p.start - p.neutral), 0.02 * (p.upper - p.lower));
-        add({lamps()[l].id + "/" + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, size, {}, {}}, {l, "", m, k});
-      }
-      candidates_.push_back(std::move(candidate));
+      std::vector<std::size_t> all;
+      for (std::size_t k = 0; k < m->parameters.size(); ++k) all.push_back(k);
+      if (m->id != mechanism::light_lobe().id)
+        form_of_lamp(*m, l, all, {});
+      else
+        lobes_of_lamp(l, points_m);
     }
+  }
+}
+
+void LampState::form_of_lamp(const mechanism::Mechanism& m, std::size_t lamp, std::span<const std::size_t> numbers,
+                             const std::string& form) {
+  Candidate candidate{&m, {lamps()[lamp].id}, {}, m.id + " " + lamps()[lamp].id};
+  for (const std::size_t k : numbers) {
+    const mechanism::Parameter& p = m.parameters[k];
+    candidate.parameters.push_back(parameters_.size());
+    const double size =
+        std::max(std::min(std::abs(p.start - p.neutral), p.upper - p.lower), 0.02 * (p.upper - p.lower));
+    add({lamps()[lamp].id + form + "/" + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, size, {}, {}},
+        {lamp, "", &m, k});
+  }
+  candidates_.push_back(std::move(candidate));
+}
+
+// A lamp that fades, or one with a cone, whose edge is sought from where the outermost points lie.
+void LampState::lobes_of_lamp(std::size_t lamp, std::span<const Vec3> points_m) {
+  const mechanism::Mechanism& m = mechanism::light_lobe();
+  double widest = 0;
+  for (const Vec3& p : points_m) widest = std::max(widest, sight_of(lamps()[lamp], p, centre_m_).emission_rad);
+  const std::size_t fading[] = {mechanism::lobe_exponent}, cone[] = {mechanism::lobe_outer, mechanism::lobe_inner};
+  form_of_lamp(m, lamp, fading, "");
+  if (!(widest > 0)) return;
+  const std::size_t aimed[] = {mechanism::lobe_outer, mechanism::lobe_inner, mechanism::lobe_tilt_x,
+                               mechanism::lobe_tilt_y};
+  for (const auto& [numbers, form] : {std::pair{std::span<const std::size_t>(cone), " with a cone"},
+                                      std::pair{std::span<const std::size_t>(aimed), " with an aimed cone"}}) {
+    form_of_lamp(m, lamp, numbers, form);
+    Parameter& outer = parameters_[candidates_.back().parameters[0]];
+    outer.start = std::clamp(0.95 * widest, outer.lower, outer.upper);
   }
 }
 
@@ -210,7 +241,7 @@ std::vector<scene::Light> LampState::at(std::span<const double> values) const {
     bool in_play = false;
     for (std::size_t k = 0; k < c.parameters.size(); ++k) {
       const double v = values[c.parameters[k]];
-      use.parameters[m.parameters[k].name] = v;
+      use.parameters[m.parameters[numbers_[c.parameters[k]].component].name] = v;
       in_play = in_play || v != parameters_[c.parameters[k]].neutral;
     }
     if (!in_play) continue;

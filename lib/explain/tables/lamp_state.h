@@ -1,6 +1,7 @@
 // The lamps of a table of irradiances: their parameters, the mechanisms that edit them (scene/mechanisms.h, so that
 // `render` and a table mean the same), and the irradiance that they make on small planes.
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ class LampState {
  public:
   // `names`: entries of the document's lights. `centre_m`: of the points, about which directions are turned.
   LampState(const manifest::Document& document, const std::vector<std::string>& names, Vec3 centre_m,
-            const std::string& place);
+            std::span<const Vec3> points_m, const std::string& place);
 
   const std::vector<scene::Light>& lamps() const { return appearance_.lights; }
   const std::vector<Parameter>& parameters() const { return parameters_; }
@@ -35,7 +36,10 @@ class LampState {
 
  private:
   void free_parameters(const manifest::Document& document);
-  void mechanisms_of_lamps();
+  void mechanisms_of_lamps(std::span<const Vec3> points_m);
+  void form_of_lamp(const mechanism::Mechanism& m, std::size_t lamp, std::span<const std::size_t> numbers,
+                    const std::string& form);
+  void lobes_of_lamp(std::size_t lamp, std::span<const Vec3> points_m);
   void second_source();
   scene::Light second_lamp(std::span<const double> numbers) const;
   void add(Parameter parameter, LampNumber number);

@@ -75,7 +75,7 @@ class Collector {
     surface.model = surface::find(found->second.model);
     if (surface.model == nullptr)
       throw Error(Exit::data, place, "has an unknown model \"" + found->second.model + "\"");
-    if (surface.model->info().takes_base || surface.model->transmits())
+    if (surface.model->info().takes_base || surface.model->transmits() || surface.model->thin())
       throw Error(Exit::data, place,
                   "its model \"" + found->second.model + "\" lies on another surface or lets light through",
                   "explain tables of reflectance with another model, such as coated-diffuse");
@@ -171,9 +171,9 @@ class Collector {
 
   // A mechanism that the manifest has switched on is part of the base model, and free; others are candidates.
   void enter(const mechanism::Mechanism& m, std::vector<std::pair<Parameter, ReflectanceSlot>> own,
-             const std::string& family) {
+             const std::string& family, bool finer = false) {
     const manifest::MechanismUse* use = use_of(m);
-    Candidate candidate{&m, {section_.surface}, {}, family};
+    Candidate candidate{&m, {section_.surface}, {}, family, finer};
     for (auto& [parameter, slot] : own) {
       if (use != nullptr) {
         const auto given = use->parameters.find(slot.name);
@@ -198,25 +198,45 @@ class Collector {
     // The base model has it.
     if (own && (fitted || scratch_.surfaces[0].values.scalar(*own) != m.parameters[0].neutral)) return;
     manifest::MechanismUse start;
-    std::vector<std::pair<Parameter, ReflectanceSlot>> parameters;
-    for (const mechanism::Parameter& info : m.parameters) {
-      Parameter p = of_mechanism(m, info);
-      if (info.name == "second_alpha") p.start = start_of_second_lobe(p);
-      if (&info == &m.parameters[0] && own && out_.base_model->info().parameters[*own].upper == info.upper)
-        p.upper += beyond_all * (info.upper - info.lower);
-      // The signature vanishes where the base has no gloss; edits begin from where a search would.
-      start.parameters[info.name] = manifest::Parameter(info.start);
-      // Numbers that shape a term do not switch it on; those that vanish with it do.
-      const bool switches = &info == &m.parameters[0] || binding.each_switches;
-      parameters.push_back({p, {Kind::mechanism, info.name, ReflectanceSlot::all, 0, "", switches, info.neutral}});
-    }
+    // The signature vanishes where the base has no gloss; edits begin from where a search would.
+    for (const mechanism::Parameter& info : m.parameters) start.parameters[info.name] = manifest::Parameter(info.start);
     const scene::Surface before = scratch_.surfaces[0];
     scene::apply_mechanism(scratch_, m, start, {}, out_.place);
     const surface::Model* model = scratch_.surfaces[0].model;
     scratch_.surfaces[0] = before;
     scratch_.surfaces[0].model = model;
     scene::refresh(scratch_.surfaces[0], out_.place);
-    enter(m, std::move(parameters), "");
+    const std::span<const mechanism::Form> forms = mechanism::forms_of(m);
+    if (forms.empty()) return enter_form(binding, nullptr, own);
+    for (const mechanism::Form& form : forms)
+      if (is_given_form(m, form)) enter_form(binding, &form, own);
+  }
+  // Of a mechanism that the manifest has switched on, the form that it says alone.
+  bool is_given_form(const mechanism::Mechanism& m, const mechanism::Form& form) const {
+    const manifest::MechanismUse* use = use_of(m);
+    return use == nullptr || std::ranges::all_of(form.held, [&](const auto& held) {
+             const auto given = use->parameters.find(held.first);
+             const auto own = std::ranges::find(m.parameters, held.first, &mechanism::Parameter::name);
+             return (given == use->parameters.end() ? own->neutral : given->second.scalar()) == held.second;
+           });
+  }
+  void enter_form(const ReflectanceBinding& binding, const mechanism::Form* form,
+                  const std::optional<std::size_t>& own) {
+    const mechanism::Mechanism& m = binding.mechanism();
+    std::vector<std::pair<Parameter, ReflectanceSlot>> parameters;
+    for (const mechanism::Parameter& info : m.parameters) {
+      if (form != nullptr && std::ranges::count(form->held, info.name, &std::pair<std::string, double>::first) > 0)
+        continue;
+      Parameter p = of_mechanism(m, info);
+      if (info.name == "second_alpha") p.start = start_of_second_lobe(p);
+      if (&info == &m.parameters[0] && own && out_.base_model->info().parameters[*own].upper == info.upper)
+        p.upper += beyond_all * (info.upper - info.lower);
+      // Numbers that shape a term do not switch it on; those that vanish with it do.
+      const bool switches = parameters.empty() || binding.each_switches;
+      parameters.push_back(
+          {p, {Kind::mechanism, info.name, ReflectanceSlot::all, 0, "", switches, form, info.neutral}});
+    }
+    enter(m, std::move(parameters), form == nullptr ? "" : m.id, form != nullptr && form->finer);
   }
   // Away from the lobe that is there: three times broader, or narrower where that is broad already.
   double start_of_second_lobe(const Parameter& p) const {
@@ -278,8 +298,21 @@ ReflectanceState ReflectanceParameters::state(std::span<const double> values) co
   s.triples = base_values;
   if (s.model != base_model)
     for (surface::Values& v : s.triples) v = widened(v, *base_model, *s.model);
+  const auto set = [&s](const std::string& name, double value) {
+    if (const std::optional<std::size_t> at = parameter_place(*s.model, name))
+      for (surface::Values& v : s.triples) v.v[*at] = {value, value, value};
+  };
+  const mechanism::Form* acts = nullptr;  // of the mechanism whose numbers follow
   for (std::size_t p = 0; p < slots.size(); ++p) {
     const ReflectanceSlot& slot = slots[p];
+    if (slot.form != nullptr) {
+      if (slot.switches && values[p] != slot.neutral) {
+        acts = slot.form;
+        for (const auto& [name, value] : acts->held) set(name, value);
+      }
+      if (acts == slot.form) set(slot.name, values[p]);
+      continue;
+    }
     if (slot.kind == Kind::gain) s.gain = values[p];
     if (slot.kind == Kind::film && slot.which == 0 && values[p] > 0) s.film = {values[p], values[p + 1]};
     if (slot.kind == Kind::ridges && slot.which == 0 && values[p] > 0)
@@ -291,7 +324,7 @@ ReflectanceState ReflectanceParameters::state(std::span<const double> values) co
     if (slot.band != ReflectanceSlot::all)
       set_component(s.triples[slot.band / 3].v[*at], slot.band % 3, values[p]);
     else
-      for (surface::Values& v : s.triples) v.v[*at] = {values[p], values[p], values[p]};
+      set(slot.name, values[p]);
   }
   return s;
 }

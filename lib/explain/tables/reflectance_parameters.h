@@ -2,10 +2,10 @@
 // per band where they are colours, and those of the candidates.
 //
 // surface.diffuse-roughness, surface.interface, surface.specular, surface.anisotropy, surface.retro-reflection,
-// surface.residue and surface.walls set parameters of registered models, as `render` does (scene/mechanisms.h): the
-// base model gives way to the smallest that can express them all; what it has free already is no candidate.
-// surface.thin-film and surface.micro-ridges come as several candidates of one family, each with its own range of
-// thickness or azimuth: fringes and lobes have many local minima, and a range holds one of them.
+// surface.metal, surface.sheen, surface.residue and surface.walls set parameters of registered models, as `render` does
+// (scene/mechanisms.h): the base model gives way to the smallest that can express them all; what it has free already is
+// no candidate. surface.thin-film and surface.micro-ridges come as several candidates of one family, each with its own
+// range of thickness or azimuth: fringes and lobes have many local minima, and a range holds one of them.
 //
 // A table whose scale is not trusted states a `gain` among its parameters, by which every reflectance is multiplied.
 #pragma once
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "explain/tables/reflectance_surface.h"
+#include "mechanism/form.h"
 
 namespace gonio::explain::tables {
 
@@ -24,6 +25,8 @@ struct ReflectanceSlot {
   std::size_t which = 0;   // film, ridges, fluorescence: number of the parameter
   std::string mechanism;   // id; empty for the base surface
   bool switches = false;   // mechanism: away from `neutral` it needs the full model
+  const mechanism::Form* form =
+      nullptr;  // of the mechanism, which acts where the number that switches it is not neutral
   double neutral = 0;
   static constexpr std::size_t all = static_cast<std::size_t>(-1);
 };

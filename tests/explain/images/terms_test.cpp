@@ -10,6 +10,7 @@
 #include "explain/images/images_problem.h"
 #include "manifest/document.h"
 #include "relighting/uses.h"
+#include "scene/mechanisms.h"
 
 namespace gonio::explain {
 namespace {
@@ -85,11 +86,12 @@ TEST_F(BallOnATable, TheFirstConditionOfEveryCandidateIsThere) {
 
 // The derivatives that keep parts of a prediction against differences of whole predictions, with several terms in play.
 // What adds to the picture from scenes of its own is differentiated at neutral alone: elsewhere it is taken to go along
-// with the rest.
+// with the rest. Slopes of what moves pixels are those of differences as wide as their cells (displaced_test.cpp).
 TEST_F(BallOnATable, JacobianIsTheDifferenceOfPredictions) {
   std::vector<double> values = neutral();
   std::vector<std::size_t> columns;
   for (const Candidate& c : problem_->candidates()) {
+    if (scene::moves_pixels(*c.mechanism) || c.id() == "lens.lateral-colour") continue;
     for (const std::size_t p : c.parameters) {
       const Parameter& q = problem_->parameters()[p];
       if (c.id() != "surface.interface" && c.id() != "light.finite-size" && c.id() != "light.direction" &&

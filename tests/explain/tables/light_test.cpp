@@ -76,6 +76,22 @@ TEST(LightTable, ALobeIsNamed) {
   EXPECT_NEAR(exponent->value, 2, 4 * exponent->sigma);
 }
 
+// A spot's cone with a soft edge, which no power of the cosine follows.
+TEST(LightTable, ASpotIsALobe) {
+  const Vec3 lamp{0.1, -0.05, 0.8}, axis = normalized(Vec3{0, 0, 0.1} - lamp);  // at the middle of the grid
+  const World w = plane_world(7, point_lamp, [&](Vec3 p) {
+    const double cosine = dot(normalized(p - lamp), axis);
+    const double t = std::clamp((cosine - std::cos(0.55)) / (std::cos(0.11) - std::cos(0.55)), 0.0, 1.0);
+    return point_at(lamp, 1.5, p) * (t * t * (3 - 2 * t));
+  });
+  const TablesProblem problem = w.problem();
+  const Explanation e = explain(problem, {});
+  EXPECT_EQ(named(problem, e), "light.lobe") << e.sentence;
+  const Estimate* outer = estimate_of(problem, e, "lamp with a cone/outer_rad");
+  ASSERT_NE(outer, nullptr) << e.sentence;
+  EXPECT_NEAR(outer->value, 0.55, 4 * outer->sigma + 0.01);
+}
+
 TEST(LightTable, AmbientLightIsNamedOrToldToLookLikeAnOffset) {
   const World w = plane_world(4, point_lamp, [](Vec3 p) { return point_at({0.1, -0.05, 0.8}, 2.3, p) + 0.4; });
   const TablesProblem problem = w.problem();
@@ -106,7 +122,7 @@ TEST(LightTable, IrradianceOfALampWithoutAClosedFormIsThatOfItsFormula) {
       R"({"gonio": 1, "lights": {"l": {"model": "disc", "position_m": [0, 0, 0.5], "direction": [0, 0, -1],
           "radius_m": 0.1, "watt_per_sr": 3}}})",
       "t", ".");
-  const LampState state(document, {"l"}, {0, 0, 0}, "here");
+  const LampState state(document, {"l"}, {0, 0, 0}, {}, "here");
   for (const double b : {0.0, 0.1, 0.3}) {
     const Rgb radiance = Rgb{3, 3, 3} * (1 / (pi * 0.01));
     EXPECT_NEAR(irradiance(state.lamps()[0], {b, 0, 0}, {0, 0, 1}).x, light::disc_irradiance(radiance, 0.1, 0.5, b).x,

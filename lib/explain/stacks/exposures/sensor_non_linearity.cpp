@@ -1,10 +1,11 @@
-// sensor.non-linearity in a stack of exposures: tone curves of the channels and of all together, power law, quadratic,
-// the most flexible first. Bends only where readings reach beyond the inner one of their nodes. A bend is expected to
-// be moderate, so that codes that few readings show do not make the curve wave.
+// sensor.non-linearity in a stack of exposures: tone curves of the channels and of all together, power law with
+// toe, with shoulder and alone, quadratic, the most flexible first. Bends only where readings reach beyond the inner
+// one of their nodes. A bend is expected to be moderate, so that codes that few readings show do not make the curve
+// wave.
 //
 // Numbers: of every curve the slope and its bends, the common curve first, then each channel's own where there are
-// several; gamma; quadratic. The curves are alternatives of one family: at most one is not neutral, so that slopes
-// multiply and bends add.
+// several; gamma; quadratic; toe; shoulder. The curves are alternatives of one family: at most one is not neutral, so
+// that slopes multiply and bends add.
 #include "render/mechanisms/sensor_non_linearity.h"
 
 #include <tuple>
@@ -48,14 +49,19 @@ void enter_responses(StackEntry& entry, const ExposureFacts& facts) {
   }
   entry.add("gamma", 0.5);
   entry.add("quadratic", 0.1);
+  entry.add("toe", 0.05);
+  entry.add("shoulder", 0.5);
+  const std::size_t gamma = entry.count() - 4, quadratic = gamma + 1, toe = gamma + 2, shoulder = gamma + 3;
   if (curves > 1) entry.propose(own);
   entry.propose(common);
-  entry.propose({entry.count() - 2});
-  entry.propose({entry.count() - 1});
+  entry.propose({gamma, toe});
+  entry.propose({gamma, shoulder});
+  entry.propose({gamma});
+  entry.propose({quadratic});
 }
 
 void set_responses(std::span<const double> p, const Stack& stack, ReadingChain& chain) {
-  const double gamma = p[p.size() - 2], quadratic = p[p.size() - 1];
+  const std::span<const double> closed = p.last(4);  // gamma, quadratic, toe, shoulder
   for (std::size_t c = 0; c < stack.channels.size(); ++c) {
     double slope = p[0];
     render::ToneBends bend;
@@ -65,7 +71,12 @@ void set_responses(std::span<const double> p, const Stack& stack, ReadingChain& 
       slope *= own[0];
       for (std::size_t k = 0; k < bends; ++k) bend[k] += own[1 + k];
     }
-    chain.response[c] = {quadratic, gamma, stack.full_scale, render::ToneCurve(render::slopes_of(slope, bend))};
+    chain.response[c] = {.quadratic = closed[1],
+                         .gamma = closed[0],
+                         .reference = stack.full_scale,
+                         .curve = render::ToneCurve(render::slopes_of(slope, bend)),
+                         .toe = closed[2],
+                         .shoulder = closed[3]};
   }
 }
 

@@ -21,10 +21,15 @@ struct Spot {
   double exposure = 1;  // factor
 };
 
-Vec3 centre_of(const Table& table) {
+std::vector<Vec3> points_of(const Table& table) {
   const std::vector<double>&x = table.needed("x_m", "m"), &y = table.needed("y_m", "m"), &z = table.needed("z_m", "m");
+  std::vector<Vec3> points;
+  for (std::size_t r = 0; r < table.rows(); ++r) points.push_back({x[r], y[r], z[r]});
+  return points;
+}
+Vec3 centre_of(const Table& table) {
   Vec3 sum;
-  for (std::size_t r = 0; r < table.rows(); ++r) sum = sum + Vec3{x[r], y[r], z[r]};
+  for (const Vec3& p : points_of(table)) sum = sum + p;
   return sum * (1 / static_cast<double>(table.rows()));
 }
 
@@ -55,7 +60,8 @@ class Illumination final : public BoundModel {
   Illumination(const manifest::Document& document, const std::string& name, const Table& table)
       : name_(name),
         centre_m_(centre_of(table)),
-        lamps_(document, lamps_of(document.tables.at(name), table), centre_m_, table.place + "/light") {
+        lamps_(document, lamps_of(document.tables.at(name), table), centre_m_, points_of(table),
+               table.place + "/light") {
     if (table.observed.size() != 1)
       throw Error(Exit::data, table.place + "/observed", "names " + std::to_string(table.observed.size()) + " columns",
                   "model light predicts one: the irradiance");

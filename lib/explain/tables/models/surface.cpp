@@ -1,5 +1,7 @@
 // Model "surface" of tables: samples of a BRDF, f in 1/sr, against the directions of light and eye. Forward model,
 // terms and scale: explain/tables/reflectance_{surface,parameters,rows}.h.
+#include "manifest/sections/surface.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +11,6 @@
 #include "geom/angle.h"
 #include "manifest/document.h"
 #include "manifest/sections/mechanism_use.h"
-#include "manifest/sections/surface.h"
 #include "manifest/sections/table.h"
 
 namespace gonio::explain::tables {
@@ -192,6 +193,8 @@ class BoundSurface final : public BoundModel {
       value = std::min(value, std::ranges::find(own, slot.name, &mechanism::Parameter::name)->upper);
     }
     use.parameters[slot.name] = manifest::Parameter(value);
+    if (slot.form != nullptr)
+      for (const auto& [name, held] : slot.form->held) use.parameters[name] = manifest::Parameter(held);
     use.sigma[slot.name] = {sigma[p]};
   }
 

@@ -1,4 +1,4 @@
-// sensor.row-pattern on readings whose row in the picture is known.
+// sensor.row-pattern on readings whose row in the picture is known, with one phase.
 #include "render/mechanisms/sensor_row_pattern.h"
 
 #include <algorithm>
@@ -18,6 +18,7 @@ const Term& sensor_row_pattern() {
                            const std::vector<double>& row = *table.find("row");
                            const auto [least, most] = std::minmax_element(row.begin(), row.end());
                            const double span = *most - *least;
+                           for (std::size_t k = 3; k < p.size(); ++k) p[k].use = TermParameter::Use::fixed;
                            p[1] = {span / 4, std::max(2.0, span / 50), 2 * span, span / 20};
                          }};
   return term;

@@ -104,6 +104,14 @@ std::vector<std::string> EffectOutcome::named() const {
   return ids;
 }
 
+std::string EffectOutcome::told() const {
+  std::string text = explanation.sentence;
+  for (const explain::Hypothesis& h : explanation.scoreboard)
+    text += "\n" + h.name + ": gain " + std::to_string(h.gain) + " +- " + std::to_string(h.gain_sigma) + ", held out " +
+            std::to_string(h.held_out) + " " + h.refused;
+  return text;
+}
+
 double EffectOutcome::fitted(const std::string& parameter) const {
   for (const explain::Estimate& e : explanation.estimates) {
     const std::string& name = problem.parameters()[e.parameter].name;

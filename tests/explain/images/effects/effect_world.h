@@ -41,6 +41,7 @@ struct EffectOutcome {
   explicit EffectOutcome(const EffectWorld& world, const std::vector<std::string>& hypotheses = {});
   EffectOutcome(const EffectOutcome&) = delete;
   std::vector<std::string> named() const;
+  std::string told() const;                           // the sentence, and what was weighed
   double fitted(const std::string& parameter) const;  // its last word: "aperture_radius_m"
 };
 
