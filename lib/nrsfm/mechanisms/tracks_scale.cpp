@@ -19,6 +19,7 @@ const Mechanism& tracks_scale() {
                       .unit = "1",
                       .lower = -1.5,
                       .upper = 1.5,
+                      .typical = 0.2,
                       .meaning = "logarithm of the frame's scale over the mean; one number for each frame but the "
                                  "first"}},
       .conditions = {"tracks.frame", "camera.image-radius"},

@@ -18,6 +18,7 @@ const Mechanism& marker_offset() {
                       .lower = -0.005,
                       .upper = 0.005,
                       .start = 0.0002,
+                      .typical = 2e-4,
                       .meaning = "by which markers sit further out than the piece's description has them"}},
       .conditions = {"surface.exitance-angle"},
       .mistaken_for = {{.with = "ct.scale",

@@ -25,6 +25,7 @@ const Mechanism& marker_refracted() {
                       .lower = 1,
                       .upper = 2.2,
                       .start = 1.4,
+                      .typical = 0.5,
                       .meaning = "index of refraction of the walls; 1: as if there were none"}},
       .conditions = {"glass.path", "glass.incidence"},
       .mistaken_for = {{.with = "geometry.pose",

@@ -19,12 +19,14 @@ const Mechanism& robot_sag() {
                       .unit = "rad/m",
                       .lower = -0.01,
                       .upper = 0.01,
+                      .typical = 4e-4,
                       .meaning =
                           "yielding of joint 2 per metre of lever arm (negative: a balancer that pushes too hard)"},
                      {.name = "joint_3_rad_per_m",
                       .unit = "rad/m",
                       .lower = -0.01,
                       .upper = 0.01,
+                      .typical = 4e-4,
                       .meaning =
                           "yielding of joint 3 per metre of lever arm (negative: a balancer that pushes too hard)"}},
       .conditions = {"robot.reach"},

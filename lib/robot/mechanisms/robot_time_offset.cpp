@@ -19,6 +19,7 @@ const Mechanism& robot_time_offset() {
                       .unit = "s",
                       .lower = -0.5,
                       .upper = 0.5,
+                      .typical = 0.005,
                       .meaning = "the pose that belongs to an image is the one stated this much later"}},
       .conditions = {"robot.speed"},
       .mistaken_for = {{.with = "robot.backlash", .told_apart = "stop before each photograph"},

@@ -24,6 +24,7 @@ inline Parameter heating_rate() {
           .lower = 0,
           .upper = 0.1,
           .start = 7e-4,
+          .typical = 7e-4,
           .meaning = "the reciprocal of the time constant; 0: the joint stays at its level"};
 }
 inline Parameter heating_level(const char* name, double start, const std::string& meaning) {
@@ -33,6 +34,7 @@ inline Parameter heating_level(const char* name, double start, const std::string
           .lower = 200,
           .upper = 500,
           .start = start,
+          .typical = 10,
           .meaning = meaning + "; without effect at rate 0"};
 }
 inline Parameter heating_rise(const char* name, const char* unit, double start, const std::string& meaning) {
@@ -42,6 +44,7 @@ inline Parameter heating_rise(const char* name, const char* unit, double start, 
           .lower = 0,
           .upper = 1000,
           .start = start,
+          .typical = start,
           .meaning = meaning + "; without effect at rate 0"};
 }
 }  // namespace gonio::mechanism

@@ -26,6 +26,7 @@ const Mechanism& ct_beam_hardening() {
                       .lower = -0.2,
                       .upper = 0.9,
                       .start = 0.1,
+                      .typical = 0.15,
                       .meaning = "share by which the longest path through the object reads too little"}},
       .conditions = {"volume.path", "volume.depth", "volume.radius"},
       .mistaken_for = {{.with = "ct.cupping", .told_apart = "look at the air in hollows: only hardening reaches it"},

@@ -29,6 +29,7 @@ const Mechanism& ct_blur() {
                       .lower = 0,
                       .upper = 6,
                       .start = 0.8,
+                      .typical = 1,
                       .meaning = "standard deviation of the spread, in voxels of the smallest spacing"}},
       .conditions = {"volume.edge-width", "volume.edge-tilt"},
       .mistaken_for = {{.with = "ct.axis-tilt", .told_apart = "look at edges near and far from the middle slice"},

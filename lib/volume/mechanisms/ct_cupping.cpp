@@ -21,6 +21,7 @@ const Mechanism& ct_cupping() {
                       .lower = -0.9,
                       .upper = 0.9,
                       .start = 0.05,
+                      .typical = 0.08,
                       .meaning = "gain at the rim of the field less that at the axis, as a share"}},
       .conditions = {"volume.radius", "volume.depth"},
       .mistaken_for = {{.with = "ct.beam-hardening",

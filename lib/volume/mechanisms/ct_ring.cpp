@@ -24,6 +24,7 @@ const Mechanism& ct_ring() {
                       .lower = 0,
                       .upper = 2,
                       .start = 0.01,
+                      .typical = 0.01,
                       .meaning = "root mean square of the rings, as a share of material less air"}},
       .conditions = {"volume.ring", "volume.radius"},
       .mistaken_for = {{.with = "noise", .told_apart = "scan twice: rings come back, noise does not"},

@@ -25,6 +25,7 @@ const Mechanism& ct_scatter() {
                       .lower = 0,
                       .upper = 1,
                       .start = 0.02,
+                      .typical = 0.2,
                       .meaning = "scattered photons that arrive, over those that the primary beam lost"}},
       .conditions = {"volume.path", "volume.depth", "volume.radius"},
       .mistaken_for = {{.with = "ct.beam-hardening",

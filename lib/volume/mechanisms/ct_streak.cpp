@@ -22,6 +22,7 @@ const Mechanism& ct_streak() {
                       .lower = -0.5,
                       .upper = 0.5,
                       .start = 0.02,
+                      .typical = 0.2,
                       .meaning = "hardening behind markers: what a line integral lacks over its square, beyond what it "
                                  "lacks without markers"},
                      {.name = "floor",
@@ -29,6 +30,7 @@ const Mechanism& ct_streak() {
                       .lower = 0,
                       .upper = 0.5,
                       .start = 0.01,
+                      .typical = 0.02,
                       .meaning = "transmission that the detector reads too much behind markers: what it cannot tell "
                                  "from darkness, or what is scattered there"}},
       .conditions = {"volume.marker-path", "volume.path"},

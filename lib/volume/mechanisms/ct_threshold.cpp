@@ -20,6 +20,7 @@ const Mechanism& ct_threshold() {
                       .lower = -2,
                       .upper = 2,
                       .start = 0.1,
+                      .typical = 0.2,
                       .meaning = "how far the walls lie outside of the believed surface, in voxels of the smallest "
                                  "spacing"}},
       .conditions = {"volume.curvature", "volume.size", "volume.edge-azimuth", "volume.height"},
