@@ -10,6 +10,7 @@
 #include "cli/program.h"
 #include "cli/reference.h"
 #include "cli/roff.h"
+#include "explain/domain_listing.h"
 #include "manifest/reference.h"
 #include "mechanism/listing.h"
 #include "mechanism/reference.h"
@@ -45,7 +46,8 @@ void write_all(const fs::path& root) {
   }
   write_file(root / "man" / "gonio-manifest.5",
              page(root, "gonio-manifest", 5, "# SECTIONS\n" + manifest::manifest_fields_text()));
-  write_file(root / "man" / "gonio-mechanisms.7", page(root, "gonio-mechanisms", 7, mechanism::markdown()));
+  write_file(root / "man" / "gonio-mechanisms.7",
+             page(root, "gonio-mechanisms", 7, mechanism::markdown() + explain::product_markdown()));
   write_file(root / "man" / "gonio-nrsfm.7", page(root, "gonio-nrsfm", 7, nrsfm::markdown()));
   write_file(root / "man" / "gonio-surfaces.7", page(root, "gonio-surfaces", 7, manifest::surface_models_text()));
   for (const char* name : {"gonio", "gonio-conventions"})

@@ -1,5 +1,6 @@
 # fish completion of explain; printed by scripts/regenerate
 complete -c explain -l smallest-effect -x -d 'Smallest effect of interest: images, rms share of the radiance; boards, share of the held-out error removed.'
+complete -c explain -l sure -x -d 'Probability that suffices to name one explanation alone, and that those which are listed have together.'
 complete -c explain -l level -x -d 'False alarms allowed to the null test and to every name.'
 complete -c explain -l hypotheses -x -d 'Consider this mechanism only; may be repeated. Default: all that apply.'
 complete -c explain -l protect -x -d 'Keep this parameter, or all whose name begins with it and a slash, at the manifests value: cameras/c.'
@@ -8,6 +9,7 @@ complete -c explain -l repeat -r -d 'A further take of the same recordings, from
 complete -c explain -l budget -x -d 'Time to spend, turned into an amount of work that is the same on every machine; default: no limit.'
 complete -c explain -l html -r -d 'Write the report page here; with --out it is DIR/report.html.'
 complete -c explain -l list -d 'Print the mechanisms with their conditions and confusions, and end.'
+complete -c explain -l domains -d 'With --list: for each kind of recordings which mechanisms are asked, and why the others are not.'
 complete -c explain -l table -r -d 'Explain this table, text in columns, JSON ({"units": {...}, "rows": [{...}, ...]}), .brdf or .binary.'
 complete -c explain -l model -x -d 'What predicts the table: sensor, light, volume, surface, tracks, or an expression over columns.'
 complete -c explain -l observed -x -d 'Column that was measured; may be repeated.'
