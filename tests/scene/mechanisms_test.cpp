@@ -75,7 +75,7 @@ TEST(Registry, EveryMechanismOfImagesAppliesAndVanishesAtNeutral) {
     if (std::find(m->domains.begin(), m->domains.end(), "images") == m->domains.end()) continue;
     // Cameras: render/sensor_chain_test; objects: placement_test; the time of images: render/neutral_mechanisms_test.
     if (m->target == Target::camera || m->target == Target::object || m->id == "light.drift" ||
-        m->id == "light.spectrum")
+        m->id == "light.spectrum" || m->id == "sensor.exposure")
       continue;
     if (beyond_rendering(*m)) {
       Appearance base = appearance(), edited = base;

@@ -90,7 +90,7 @@ std::optional<Use> picture_by_picture(const Setting& s, const RoughResidual& rou
   for (std::size_t i = 0; i < s.recordings.images.size(); ++i) {
     const Recording& image = s.recordings.images[i];
     if (s.recordings.views[image.view].camera != camera) continue;
-    if (switched_on(s.document, "sensor.row-pattern", image.id)) return {};
+    if (switched_on(s.document, mechanism::sensor_row_pattern().id, image.id)) return {};
     profiles.push_back(profile_of(s, rough, i));
     if (profiles.back().row.size() < 8) {
       profiles.pop_back();
