@@ -62,7 +62,7 @@ const LogitTerm all_logit_terms[] = {
     {"weakest", [](const Member& m) { return of_set(m, std::clamp(m.statistics.weakest, 0.0, most_errors)); }, 0.5, 1},
     {"times", [](const Member& m) { return of_set(m, std::clamp(m.statistics.times, -1.0, 3.0)); }, 0.4, 1},
     {"more", [](const Member& m) { return of_set(m, m.statistics.more); }, -0.5, -1},
-    {"finer", [](const Member& m) { return of_set(m, m.statistics.finer); }, -2.5, -1}};
+    {"finer", [](const Member& m) { return of_set(m, m.statistics.finer); }, -1.5, -1}};
 // clang-format on
 
 }  // namespace
