@@ -72,6 +72,9 @@ struct Candidate {
   // Another form of what a plainer candidate says (an equidistant lens beside a radial polynomial): where both are as
   // good the plainer one is named, and this one stands beside it.
   bool finer = false;
+  // Its slopes where its search begins stand for it everywhere else that a search can start from: no finite changes are
+  // looked at, and chords that are stuck are not taken up anew by tangents.
+  bool gradual = false;
   const std::string& id() const { return mechanism->id; }
 };
 

@@ -159,7 +159,9 @@ Model Race::started(const Model& from, std::vector<std::size_t> candidates, cons
   m.fit = std::move(reached);
   // Chords that are stuck show by what tangents promise there, however much was gained on the way.
   const double gained = from.fit.cost - m.fit.cost;
-  if (gained < 0.5 * promise || gained < promised) {
+  const bool gradual = std::any_of(m.candidates.begin(), m.candidates.end(),
+                                   [&](std::size_t c) { return system_.problem().candidates()[c].gradual; });
+  if (!gradual && (gained < 0.5 * promise || gained < promised)) {
     Fit anew = fit(system_, std::move(values), active);
     if (anew.cost < m.fit.cost) {
       m.fit = std::move(anew);

@@ -102,7 +102,7 @@ ResidualStructure residual_structure(const Race& race, const Model& model, const
   const auto evidence = std::make_shared<Evidence>();
   Structures& structures = evidence->structures;
   gather(race, model, options, at, structures);
-  const Projection& p = evidence->projection = project(system, model.fit, structures);
+  Projection& p = evidence->projection = project(system, model.fit, structures);
   evidence->scores = block_scores(system, p, structures);
   evidence->folds = std::make_unique<Folds>(system, p.linearisation);
   BlockScores& scores = evidence->scores;

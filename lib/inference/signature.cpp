@@ -71,6 +71,7 @@ std::size_t largest_group(const System& system) {
 void Structures::add_changes(const System& system, const std::vector<double>& values, std::size_t candidate) {
   const Problem& problem = system.problem();
   const Candidate& c = problem.candidates()[candidate];
+  if (c.gradual) return;
   std::vector<double> start;
   for (const std::size_t p : c.parameters) {
     if (!problem.parameters()[p].groups.empty()) return;
@@ -201,7 +202,8 @@ std::vector<Eigen::Index> Projection::foreign(const Structures& structures, std:
 
 Projection project(const System& system, const Fit& fit, const Structures& structures) {
   Projection p;
-  p.linearisation = linearise(system, fit.values, fit.inner, structures.extras, structures.signatures);
+  p.linearisation =
+      linearise(system, fit.values, fit.inner, structures.extras, structures.signatures, nullptr, &p.columns_of);
   const Linearisation& l = p.linearisation;
   for (std::size_t c = 0; c < l.own; ++c) p.own.push_back(c);
   const auto own = static_cast<Eigen::Index>(l.own), all = static_cast<Eigen::Index>(l.columns.size());
@@ -234,11 +236,14 @@ struct GroupScores {
   double norm = 0;
 };
 
-GroupScores group_scores(const System& system, const Projection& p, const Structures& structures, std::size_t group) {
+GroupScores group_scores(const System& system, const Projection& p, const Structures& structures, std::size_t place) {
   const Linearisation& l = p.linearisation;
   const Observations& o = system.observations();
-  std::vector<std::size_t> columns;
-  const Eigen::MatrixXd a = group_columns(system, l, structures.extras, structures.signatures, group, columns);
+  const std::size_t group = system.groups[place];
+  std::vector<std::size_t> columns = l.grams[place].columns;
+  Eigen::MatrixXd anew;
+  if (p.columns_of.empty()) anew = group_columns(system, l, structures.extras, structures.signatures, group, columns);
+  const Eigen::MatrixXd& a = p.columns_of.empty() ? anew : p.columns_of[place];
   const auto foreign = static_cast<Eigen::Index>(l.columns.size() - l.own);
   Eigen::MatrixXd surviving = Eigen::MatrixXd::Zero(a.rows(), foreign);
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -333,10 +338,10 @@ double concentrated_p(const Projection& p, const Structures& structures, const B
   return looks > 0 ? stats::sidak(stats::chi2_upper(largest, 1), looks) : 1;
 }
 
-BlockScores block_scores(const System& system, const Projection& p, const Structures& structures) {
+BlockScores block_scores(const System& system, Projection& p, const Structures& structures) {
   std::vector<GroupScores> by_group(system.groups.size());
-  parallel_for(0, by_group.size(),
-               [&](std::size_t k) { by_group[k] = group_scores(system, p, structures, system.groups[k]); });
+  parallel_for(0, by_group.size(), [&](std::size_t k) { by_group[k] = group_scores(system, p, structures, k); });
+  p.columns_of = {};
   by_group.push_back(prior_scores(p));
   BlockScores result;
   const auto foreign = static_cast<Eigen::Index>(p.linearisation.columns.size() - p.linearisation.own);

@@ -55,11 +55,12 @@ class Structures {
 
 struct Projection {
   Linearisation linearisation;
-  std::vector<std::size_t> own;     // columns of the model's free parameters
-  Eigen::MatrixXd coefficients;     // own x foreign: what the free parameters can imitate
-  Eigen::MatrixXd full, surviving;  // Gram matrices of the foreign columns before and after projection
-  Eigen::VectorXd score;            // surviving columns times residual
-  double squares = 0, rows = 0;     // of the whitened residual
+  std::vector<Eigen::MatrixXd> columns_of;  // [group in play]: group_columns(), until block_scores() has read them
+  std::vector<std::size_t> own;             // columns of the model's free parameters
+  Eigen::MatrixXd coefficients;             // own x foreign: what the free parameters can imitate
+  Eigen::MatrixXd full, surviving;          // Gram matrices of the foreign columns before and after projection
+  Eigen::VectorXd score;                    // surviving columns times residual
+  double squares = 0, rows = 0;             // of the whitened residual
   std::vector<std::size_t> columns(const Structures& structures, std::size_t structure) const;   // in the linearisation
   std::vector<Eigen::Index> foreign(const Structures& structures, std::size_t structure) const;  // in `surviving`
 };
@@ -78,7 +79,7 @@ struct BlockScores {
   Eigen::VectorXd trimmed;
   double norm = 0;  // sum of Observations::norm over the rows in use
 };
-BlockScores block_scores(const System& system, const Projection& projection, const Structures& structures);
+BlockScores block_scores(const System& system, Projection& projection, const Structures& structures);
 
 // What sits in a few blocks (readings that clip) can be flipped in too few ways for a sign-flip test to see it: the
 // chance of the largest trimmed score among all mechanisms and curves. Three blocks of dust do not move it.

@@ -241,18 +241,21 @@ namespace {
 // Curves that free parameters imitate to better than a hundredth of their length get no say: a weak pull to zero on
 // extra columns, this share of their squared length.
 constexpr double least_survivor = 1e-4;
+constexpr double most_entries = 5e7;  // of columns that are kept, 400 MB
 
 GroupGram group_gram(const System& system, const Linearisation& l, std::span<const ExtraColumn> extras,
-                     std::span<const Signature> signatures, std::size_t group, const Slopes* kept) {
+                     std::span<const Signature> signatures, std::size_t group, const Slopes* kept,
+                     Eigen::MatrixXd* columns) {
   GroupGram gram;
   gram.group = group;
-  const Eigen::MatrixXd a = group_columns(system, l, extras, signatures, group, gram.columns, kept);
+  Eigen::MatrixXd a = group_columns(system, l, extras, signatures, group, gram.columns, kept);
   const std::size_t first = system.observations().first[group];
   std::vector<Eigen::Index> rows[2];
   for (Eigen::Index i = 0; i < a.rows(); ++i) rows[system.half(first + static_cast<std::size_t>(i))].push_back(i);
   for (std::size_t h = 0; h < 2; ++h) {
     gram.half[h] = linear::gram_of(a(rows[h], Eigen::all));  // a group of one block has but one half
   }
+  if (columns != nullptr) *columns = std::move(a);
   return gram;
 }
 
@@ -271,8 +274,8 @@ LinearColumn parameter_column(const System& system, std::size_t p, double value)
 }  // namespace
 
 Linearisation linearise(const System& system, std::span<const double> values, std::span<const std::size_t> parameters,
-                        std::span<const ExtraColumn> extras, std::span<const Signature> signatures,
-                        const Slopes* kept) {
+                        std::span<const ExtraColumn> extras, std::span<const Signature> signatures, const Slopes* kept,
+                        std::vector<Eigen::MatrixXd>* of_groups) {
   Linearisation l;
   l.values.assign(values.begin(), values.end());
   l.own = parameters.size();
@@ -294,8 +297,12 @@ Linearisation linearise(const System& system, std::span<const double> values, st
     l.columns.push_back(column);
   }
   l.grams.resize(system.groups.size());
-  parallel_for(0, system.groups.size(),
-               [&](std::size_t k) { l.grams[k] = group_gram(system, l, extras, signatures, system.groups[k], kept); });
+  const double entries = static_cast<double>(system.observations().rows()) * static_cast<double>(l.columns.size());
+  if (of_groups != nullptr) of_groups->resize(entries < most_entries ? system.groups.size() : 0);
+  parallel_for(0, system.groups.size(), [&](std::size_t k) {
+    l.grams[k] = group_gram(system, l, extras, signatures, system.groups[k], kept,
+                            of_groups == nullptr || of_groups->empty() ? nullptr : &(*of_groups)[k]);
+  });
   for (const GroupGram& gram : l.grams)
     for (std::size_t k = 0; k < gram.columns.size(); ++k) {
       const auto place = static_cast<Eigen::Index>(k);

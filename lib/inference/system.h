@@ -125,9 +125,10 @@ Slopes slopes(const System& system, std::span<const double> values, std::vector<
 
 // Columns: `parameters`, then the parameters of `signatures`, then `extras`. `kept`: instead of derivatives at
 // `values`, where it has them.
+// `of_groups`: receives what group_columns() says of each group in play, where that is worth keeping.
 Linearisation linearise(const System& system, std::span<const double> values, std::span<const std::size_t> parameters,
                         std::span<const ExtraColumn> extras = {}, std::span<const Signature> signatures = {},
-                        const Slopes* kept = nullptr);
+                        const Slopes* kept = nullptr, std::vector<Eigen::MatrixXd>* of_groups = nullptr);
 
 // The whitened columns of one group themselves, [columns, residual]; `columns` receives their places in the
 // linearisation.

@@ -214,10 +214,10 @@ Scattered Shader::direct(const SurfaceState& surface, std::size_t f, const Lamp&
   return sum;
 }
 
-Scattered Shader::scattered(const SurfaceState& surface, const Facet& facet) const {
-  if (surface.lambertian()) return {{1, 1, 1}, {}};
-  const Patch& patch = cache_.patches[facet.first_patch];
-  const Vec3 wo = above_horizon(Basis(patch.normal).to_local(patch.wo));
+namespace {
+
+// What a surface sends on towards one direction of light that comes from everywhere.
+Scattered scattered_towards(const SurfaceState& surface, Vec3 wo) {
   const auto sent = [&](const surface::Values& v) { return surface.model->albedo(v, wo); };
   if (!has_parameter(*surface.model, "metal")) return Extremes(surface).split(sent);
   // A metal mirrors what comes from other surfaces; its matte part spreads it.
@@ -231,6 +231,46 @@ Scattered Shader::scattered(const SurfaceState& surface, const Facet& facet) con
   all.base = all.base * (1 - share);
   all.gloss = sent(surface.values) - all.base * surface.values.rgb(albedo);
   return all;
+}
+
+// The same of a metal that is alike all round its normal, which is a quadrature each time: by the cosine, linear
+// between nodes that lie closer towards the horizon.
+class ScatteredBy {
+ public:
+  ScatteredBy(const SurfaceState& surface, std::size_t facets) : surface_(surface) {
+    const auto is_zero = [&](const char* name) {
+      return !has_parameter(*surface.model, name) || surface.values.scalar(parameter_index(*surface.model, name)) == 0;
+    };
+    if (facets < 2 * nodes || is_zero("metal") || !is_zero("anisotropy")) return;
+    for (std::size_t k = 0; k < nodes; ++k) {
+      const double root = std::max(1e-3, static_cast<double>(k) / (nodes - 1)), z = root * root;
+      table_.push_back(scattered_towards(surface, {std::sqrt(1 - z * z), 0, z}));
+    }
+  }
+  Scattered operator()(Vec3 wo) const {
+    if (table_.empty()) return scattered_towards(surface_, wo);
+    const double x = std::sqrt(std::clamp(wo.z, 0.0, 1.0)) * (nodes - 1);
+    const std::size_t k = std::min(static_cast<std::size_t>(x), nodes - 2);
+    const double t = x - static_cast<double>(k);
+    return {table_[k].base * (1 - t) + table_[k + 1].base * t, table_[k].gloss * (1 - t) + table_[k + 1].gloss * t};
+  }
+
+ private:
+  static constexpr std::size_t nodes = 24;
+  const SurfaceState& surface_;
+  std::vector<Scattered> table_;
+};
+
+}  // namespace
+
+Scattered Shader::scattered(const SurfaceState& surface, const Facet& facet) const {
+  if (surface.lambertian()) return {{1, 1, 1}, {}};
+  return scattered_towards(surface, seen_from(facet));
+}
+
+Vec3 Shader::seen_from(const Facet& facet) const {
+  const Patch& patch = cache_.patches[facet.first_patch];
+  return above_horizon(Basis(patch.normal).to_local(patch.wo));
 }
 
 Shading Shader::operator()(const SceneState& state, std::span<const std::uint32_t> picked) const {
@@ -249,13 +289,15 @@ void Shader::again(const SceneState& state, std::span<const std::uint32_t> picke
                    Shading& shading) const {
   const std::vector<Lamp> on = lamps(state);
   const SurfaceState& its = state.surfaces[surface];
+  const bool lambertian = its.lambertian();
+  const ScatteredBy scattered_by(its, picked.size());
   std::size_t slot = 0;
   for (const std::uint32_t p : picked)
     for (std::size_t k = 0; k < cache_.pixels[p].facets; ++k, ++slot) {
       const std::size_t f = cache_.pixels[p].first_facet + k;
       if (cache_.facets[f].surface != surface) continue;
       for (std::size_t i = 0; i < on.size(); ++i) shading.direct[slot * on.size() + i] = direct(its, f, on[i]);
-      shading.indirect[slot] = scattered(its, cache_.facets[f]);
+      shading.indirect[slot] = lambertian ? Scattered{{1, 1, 1}, {}} : scattered_by(seen_from(cache_.facets[f]));
     }
 }
 

@@ -62,6 +62,7 @@ class Shader {
   struct Lamp;
   std::vector<Lamp> lamps(const SceneState& state) const;
   double onward(const Lamp& lamp) const;
+  Vec3 seen_from(const Facet& facet) const;  // in the frame of its normal
   double visible_now(const Lamp& lamp, std::size_t facet, double visible) const;
   Scattered direct(const SurfaceState& surface, std::size_t facet, const Lamp& lamp) const;
   const SceneLayout& layout_;

@@ -20,6 +20,7 @@ constexpr double slope_px = 0.35;  // half the width of a difference that stands
 struct Shifted final : Prepared {
   std::shared_ptr<const FineViews> fine;
   std::shared_ptr<const Places> places;
+  std::shared_ptr<const EdgeSlopes> edges;
 };
 
 // Where pixels of the view look under one set of amounts.
@@ -222,8 +223,12 @@ std::shared_ptr<const Prepared> prepare_shifted(const Setting& s, const Use&) {
   if (!shared.fine)
     shared.fine = std::make_shared<FineViews>(s.scene, s.caster, s.recordings, s.layout.lights, s.model.monomials());
   if (!shared.places) shared.places = find_places(s, *shared.fine);
+  if (!shared.edges) {
+    shared.edges = std::make_shared<EdgeSlopes>();
+    shared.edges->of_image.resize(s.recordings.images.size());
+  }
   auto result = std::make_shared<Shifted>();
-  result->fine = shared.fine, result->places = shared.places;
+  result->fine = shared.fine, result->places = shared.places, result->edges = shared.edges;
   return result;
 }
 
@@ -249,20 +254,70 @@ void add_shifted(const Use& use, const Frame& frame, std::span<double> radiance,
   pictures.add(1, -1, radiance);
 }
 
+namespace {
+
+// Half the width of the difference that stands for the slope of each number; 0: it does not act on the frame's picture.
+std::vector<double> half_widths(const Use& use, const Frame& frame, std::span<const std::size_t> numbers,
+                                std::span<const double> amounts) {
+  const std::size_t count = use.mechanism->parameters.size();
+  std::vector<double> half(numbers.size(), 0.0);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const Number& number = use.numbers[numbers[i]];
+    if (use.amounts(frame.state, use.sets == 1 ? 0 : numbers[i] / count).data() != amounts.data()) continue;
+    half[i] = slope_px / 0.5 * std::abs(number.start - number.neutral);
+    if (half[i] == 0) half[i] = 1e-3 * (number.upper - number.lower);
+  }
+  return half;
+}
+
+// Are the amounts no further from neutral than where the search begins?
+bool at_the_beginning(const Use& use, std::span<const double> amounts) {
+  for (std::size_t k = 0; k < amounts.size(); ++k) {
+    const Number& n = use.numbers[k];
+    if (std::abs(amounts[k] - n.neutral) > 1.001 * std::abs(n.start - n.neutral)) return false;
+  }
+  return true;
+}
+
+void slopes_from_edges(const Use& use, const Frame& frame, std::span<const std::size_t> numbers,
+                       std::span<const double> half, std::span<const double> amounts, Recolour recolour,
+                       std::span<double> columns) {
+  const auto& prepared = static_cast<const Shifted&>(*use.prepared);
+  const std::vector<double>& edges = prepared.edges->of_image[frame.number];
+  const std::vector<Places::Depths>& depths = prepared.places->depths[frame.image.view];
+  const std::size_t rows = 3 * frame.picked.size(), count = use.mechanism->parameters.size();
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    if (half[n] == 0) continue;
+    std::vector<double> more(amounts.begin(), amounts.end()), less = more;
+    more[numbers[n] % count] += half[n], less[numbers[n] % count] -= half[n];
+    const Look one(use, frame, more, recolour), other(use, frame, less, recolour);
+    for (std::size_t i = 0; i < frame.picked.size(); ++i) {
+      const std::uint32_t p = frame.picked[i];
+      const Aims a = aims_of(one, frame.cache.pixels[p], depths[p]),
+                 b = aims_of(other, frame.cache.pixels[p], depths[p]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Vec2 moved = a.parted || b.parted ? a.at[0] - b.at[0] : a.at[c] - b.at[c];
+        columns[n * rows + 3 * i + c] = (edges[6 * i + c] * moved.x + edges[6 * i + 3 + c] * moved.y) / (2 * half[n]);
+      }
+    }
+  }
+}
+
+}  // namespace
+
 void shifted_slopes(const Use& use, const Frame& frame, std::span<const std::size_t> numbers, std::span<double> columns,
                     Recolour recolour) {
   std::fill(columns.begin(), columns.end(), 0.0);
   const std::span<const double> amounts = amounts_for(use, frame);
   if (amounts.empty()) return;
   const std::size_t rows = 3 * frame.picked.size(), count = use.mechanism->parameters.size();
+  const std::vector<double> half = half_widths(use, frame, numbers, amounts);
+  const EdgeSlopes& edges = *static_cast<const Shifted&>(*use.prepared).edges;
+  if (at_the_beginning(use, amounts) && edges.of_image[frame.number].size() == 2 * rows)
+    return slopes_from_edges(use, frame, numbers, half, amounts, recolour, columns);
   Pictures pictures(use, frame, recolour);
-  std::vector<double> half(numbers.size(), 0.0);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const Number& number = use.numbers[numbers[i]];
     const std::size_t k = numbers[i] % count;
-    const bool here = use.amounts(frame.state, use.sets == 1 ? 0 : numbers[i] / count).data() == amounts.data();
-    if (here) half[i] = slope_px / 0.5 * std::abs(number.start - number.neutral);
-    if (here && half[i] == 0) half[i] = 1e-3 * (number.upper - number.lower);
     for (const double side : {1.0, -1.0}) {
       std::vector<double> there(amounts.begin(), amounts.end());
       there[k] += side * half[i];
@@ -285,6 +340,7 @@ Term shifted_term(const mechanism::Mechanism& (*mechanism)(), std::vector<Use> (
           .prepare = prepare_shifted,
           .add = [](const Use& use, const Frame& frame,
                     std::span<double> radiance) { add_shifted(use, frame, radiance, nullptr); },
+          .gradual = true,
           .slopes = [](const Use& use, const Frame& frame, std::span<const std::size_t> numbers,
                        std::span<double> columns) { shifted_slopes(use, frame, numbers, columns, nullptr); }};
 }

@@ -25,6 +25,13 @@ struct Places {
   std::vector<std::vector<std::uint32_t>> nearest;  // [view][block][surface]: facet that shows it nearest by
 };
 
+// By how much a picked pixel's value changes for a look one pixel further to the right, and further down: six numbers
+// for each, channel by channel within each of the two. While a use's amounts are no further from neutral than its
+// search begins, its slopes are read from them: what moves near things moves their edges.
+struct EdgeSlopes {
+  std::vector<std::vector<double>> of_image;  // empty: not known
+};
+
 // One use for all cameras that state the same numbers, with one set of amounts: perspective cameras that have not the
 // mechanism switched on. Bounds are those of displacements by `most_px`, and the search begins at half a pixel.
 std::vector<Use> shifted_uses(const Setting& setting, const mechanism::Mechanism& mechanism);
@@ -46,8 +53,7 @@ void shifted_slopes(const Use& use, const Frame& frame, std::span<const std::siz
                     Recolour recolour);
 std::shared_ptr<const Prepared> prepare_shifted(const Setting& setting, const Use& use);
 
-// By how much a pixel's radiance changes for a look one pixel further to the right, and further down: six numbers for
-// each of the frame's pixels, channel by channel within each of the two. Of the base model; `shared` filled.
+// EdgeSlopes of the frame's pixels, of their radiance under the base model; `shared` filled.
 std::vector<double> slopes_across(const Shared& shared, const Frame& frame);
 
 }  // namespace gonio::relighting

@@ -71,10 +71,12 @@ struct Use {
 
 class FineViews;
 struct Places;
+struct EdgeSlopes;
 // What several terms need: built by the first that asks.
 struct Shared {
   std::shared_ptr<const FineViews> fine;  // relighting/fine_views.h
   std::shared_ptr<const Places> places;   // relighting/shifted_views.h
+  std::shared_ptr<EdgeSlopes> edges;      // the same; filled once pixels are picked
 };
 
 // What a term may look at when it says where it applies and what it builds.
@@ -113,6 +115,8 @@ struct Term {
   void (*shade)(const Use&, const Frame&, Shading&) = nullptr;
   void (*add)(const Use&, const Frame&, std::span<double> radiance) = nullptr;
   void (*record)(const Use&, const Frame&, std::span<double> values) = nullptr;
+  bool pointwise = false;  // record: of a value it asks no other one
+  bool gradual = false;    // Candidate::gradual
   // Terms whose `add` is costly: derivatives of what they add by their own numbers, one column for each of `numbers`.
   void (*slopes)(const Use&, const Frame&, std::span<const std::size_t> numbers, std::span<double> columns) = nullptr;
 };

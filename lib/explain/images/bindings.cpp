@@ -155,6 +155,7 @@ class Collector {
     candidate.on = use.on;
     candidate.family = use.family;
     candidate.finer = use.finer;
+    candidate.gradual = use.term != nullptr && use.term->gradual;
     std::map<std::size_t, std::size_t> parameter_of;
     for (std::size_t i = 0; i < use.numbers.size(); ++i) {
       const Place place{Kind::amount, use.place, i, -1};

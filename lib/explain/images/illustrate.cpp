@@ -93,7 +93,7 @@ Illustration ImagesProblem::illustrate(const Explanation& explanation, const std
   }
   ImageModel model(recordings_, layout_, *monomials_, std::move(caches));
   const SceneState before = raw_state(explanation.base_values), after = raw_state(explanation.values);
-  Shared shared{shared_.fine, nullptr};
+  Shared shared{shared_.fine, nullptr, nullptr};
   const Setting setting{document, *scene_, *caster_, recordings_, layout_, model, &after, &shared};
   std::vector<Use> uses = model_->uses();
   for (Use& use : uses)

@@ -7,7 +7,9 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "explain/images/conditions.h"
+#include "explain/images/derivatives.h"
 #include "explain/images/misplaced.h"
+#include "explain/images/misread.h"
 #include "inference/explanation.h"
 #include "manifest/document.h"
 #include "relighting/repeats.h"
@@ -89,6 +91,7 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
   bind(document);
   fill_rows();
   misplaced_ = misplaced_files(recordings_, *model_, picked_);
+  if (misplaced_.files.empty()) misplaced_ = misread(*scene_, *model_);
   if (!misplaced_.files.empty()) candidates_.clear();  // no physics is fitted to pictures of something else
 }
 
@@ -171,8 +174,11 @@ void ImagesProblem::fill_rows() {
         ff[k] += start[3 * i + k] * start[3 * i + k];
       }
     const SceneState now = model_->edited(layout_.start, g);
-    const std::vector<double> slopes = shared_.places ? slopes_across(shared_, {g, image, cache, mine, now, *model_})
-                                                      : std::vector<double>(6 * mine.size(), 0.0);
+    std::vector<double> slopes = shared_.places ? slopes_across(shared_, {g, image, cache, mine, now, *model_})
+                                                : std::vector<double>(6 * mine.size(), 0.0);
+    double scale[3];
+    for (std::size_t k = 0; k < 3; ++k) scale[k] = ff[k] > 0 ? yf[k] / ff[k] : 1;
+    for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] *= scale[i % 3];
     for (std::size_t i = 0; i < mine.size(); ++i) {
       const Pixel& pixel = cache.pixels[mine[i]];
       const auto [tile, fresh] = tiles.try_emplace({pixel.x / tile_px, pixel.y / tile_px}, blocks);
@@ -180,16 +186,17 @@ void ImagesProblem::fill_rows() {
       const Rgb mean = local_mean(image, pixel.x, pixel.y);
       for (std::size_t k = 0; k < 3; ++k) {
         const double y = image.picture.at(pixel.x, pixel.y, static_cast<int>(k));
-        const double scale = ff[k] > 0 ? yf[k] / ff[k] : 1, grey = image.grey ? std::sqrt(3.0) : 1,
+        const double grey = image.grey ? std::sqrt(3.0) : 1,
                      noise = grey * noise_sigma(image, mean[static_cast<int>(k)]);
         o.value.push_back(y);
-        o.sigma.push_back(std::sqrt(noise * noise + scale * scale * own[3 * i + k]));
+        o.sigma.push_back(std::sqrt(noise * noise + scale[k] * scale[k] * own[3 * i + k]));
         o.norm.push_back(y * y);
         o.block.push_back(tile->second);
-        prediction.push_back(scale * start[3 * i + k]);
-        for (std::size_t a = 0; a < 2; ++a) across[a].push_back(scale * slopes[6 * i + 3 * a + k]);
+        prediction.push_back(scale[k] * start[3 * i + k]);
+        for (std::size_t a = 0; a < 2; ++a) across[a].push_back(slopes[6 * i + 3 * a + k]);
       }
     }
+    if (shared_.edges) shared_.edges->of_image[g] = std::move(slopes);
     o.first.push_back(o.value.size());
     o.group.push_back(image.id);
     picked_.push_back(std::move(mine));
@@ -213,44 +220,6 @@ void ImagesProblem::predict(std::span<const double> values, std::size_t group, s
 
 namespace {
 
-// What of an image has to be computed anew for a parameter.
-struct Touched {
-  Reach reach = Reach::record;
-  std::vector<std::uint32_t> surfaces;
-};
-Touched touched_by(const std::vector<Place>& places, const SceneState& state, const std::vector<Use>& uses) {
-  Touched t;
-  const bool shaded =
-      std::any_of(uses.begin(), uses.end(), [&](const Use& use) { return use.term->shade && !use.neutral(state); });
-  const auto at_least = [&](Reach reach) { t.reach = std::max(t.reach, reach); };
-  for (const Place& p : places) switch (p.kind) {
-      case Place::Kind::surface: {
-        const surface::Model& model = *state.surfaces[p.target].model;
-        at_least(Reach::compose);
-        if (has_parameter(model, "albedo") && p.parameter == parameter_index(model, "albedo")) {
-          // Terms there may depend on it; facets do not, but where their base is out of proportion to it.
-          const bool proportional = model.proportional_to_albedo(state.surfaces[p.target].values);
-          at_least(shaded || !proportional ? Reach::surfaces : Reach::compose);
-          if (!proportional) t.surfaces.push_back(static_cast<std::uint32_t>(p.target));
-          break;
-        }
-        at_least(Reach::surfaces);
-        t.surfaces.push_back(static_cast<std::uint32_t>(p.target));
-        break;
-      }
-      case Place::Kind::intensity:
-      case Place::Kind::gain: at_least(Reach::compose); break;
-      case Place::Kind::amount: {
-        const Use& use = uses[p.target];
-        at_least(use.term->reach);
-        if (use.term->reach != Reach::surfaces) break;
-        for (const std::size_t s : use.targets) t.surfaces.push_back(static_cast<std::uint32_t>(s));
-        break;
-      }
-    }
-  return t;
-}
-
 // The use that knows the slopes of what this number adds.
 const Use* sloped(const std::vector<Place>& places, const std::vector<Use>& uses) {
   if (places.size() != 1 || places[0].kind != Place::Kind::amount) return nullptr;
@@ -261,73 +230,6 @@ const Use* sloped(const std::vector<Place>& places, const std::vector<Use>& uses
 bool acts_on(const Parameter& p, std::size_t group) {
   return p.groups.empty() || std::binary_search(p.groups.begin(), p.groups.end(), group);
 }
-
-// An image at one state, and what of it can be kept where a little of the state changes.
-class Derivatives {
- public:
-  Derivatives(const ImageModel& model, SceneState centre, std::size_t image, std::span<const std::uint32_t> picked)
-      : model_(model), centre_(std::move(centre)), image_(image), picked_(picked), composed_(3 * picked.size()) {
-    const SceneState now = model_.edited(centre_, image_);
-    plain_ = model_.shade(now, image_, picked_);
-    shaded_ = plain_;
-    model_.shade_terms(now, image_, picked_, shaded_);
-    model_.compose(now, image_, picked_, shaded_, composed_);
-    added_ = composed_;
-    model_.add_terms(now, image_, picked_, added_);
-  }
-  const SceneState& centre() const { return centre_; }
-
-  void at(const SceneState& raw, const Touched& touched, std::span<double> out) const {
-    const SceneState now = model_.edited(raw, image_);
-    if (touched.reach == Reach::record) {
-      std::copy(added_.begin(), added_.end(), out.begin());
-    } else if (touched.reach == Reach::add) {
-      std::copy(composed_.begin(), composed_.end(), out.begin());
-      model_.add_terms(now, image_, picked_, out);
-    } else {
-      composed(now, touched, out);
-      // What terms add goes along with what it is added to: their own scenes are not simulated anew for every number.
-      for (std::size_t i = 0; i < out.size(); ++i)
-        if (composed_[i] > 0) out[i] *= added_[i] / composed_[i];
-    }
-    model_.record_terms(now, image_, picked_, out);
-  }
-
-  // Derivatives by numbers of a term that knows the slopes of what it adds, sent on through the camera.
-  void slopes(const Use& use, std::span<const std::size_t> numbers, std::span<double> columns) const {
-    const SceneState now = model_.edited(centre_, image_);
-    const Recording& image = model_.recordings().images[image_];
-    use.term->slopes(use, {image_, image, model_.cache(image.view), picked_, now, model_}, numbers, columns);
-    const std::size_t rows = composed_.size();
-    std::vector<double> above(rows), below(rows);
-    for (std::size_t k = 0; k < numbers.size(); ++k) {
-      const std::span<double> column = columns.subspan(k * rows, rows);
-      const double step = 1e-4 * use.numbers[numbers[k]].upper;
-      for (std::size_t i = 0; i < rows; ++i)
-        above[i] = added_[i] + step * column[i], below[i] = added_[i] - step * column[i];
-      model_.record_terms(now, image_, picked_, above);
-      model_.record_terms(now, image_, picked_, below);
-      for (std::size_t i = 0; i < rows; ++i) column[i] = (above[i] - below[i]) / (2 * step);
-    }
-  }
-
- private:
-  void composed(const SceneState& now, const Touched& touched, std::span<double> out) const {
-    if (touched.reach == Reach::compose) return model_.compose(now, image_, picked_, shaded_, out);
-    Shading shading = touched.reach == Reach::all ? model_.shade(now, image_, picked_) : plain_;
-    if (touched.reach == Reach::surfaces)
-      for (const std::uint32_t s : touched.surfaces) model_.shade_again(now, image_, picked_, s, shading);
-    model_.shade_terms(now, image_, picked_, shading);
-    model_.compose(now, image_, picked_, shading, out);
-  }
-
-  const ImageModel& model_;
-  SceneState centre_;
-  std::size_t image_;
-  std::span<const std::uint32_t> picked_;
-  Shading plain_, shaded_;
-  std::vector<double> composed_, added_;
-};
 
 }  // namespace
 
@@ -376,6 +278,7 @@ void ImagesProblem::conclude(Explanation& explanation) const {
   explanation.verdict = Verdict::unknown;
   explanation.important = true;
   explanation.stage = "recording";
+  explanation.converged = true, explanation.outlier_blocks = 0;  // how well physics fits is not asked
   explanation.outside.reset();
   explanation.plan.clear();
 }

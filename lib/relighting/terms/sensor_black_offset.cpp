@@ -32,6 +32,7 @@ const Term& sensor_black_offset() {
       .order = 80,
       .candidates = candidates,
       .record = record,
+      .pointwise = true,
   };
   return term;
 }

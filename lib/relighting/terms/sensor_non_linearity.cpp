@@ -96,6 +96,7 @@ const Term& sensor_non_linearity() {
       .order = 60,
       .candidates = candidates,
       .record = record,
+      .pointwise = true,
   };
   return term;
 }

@@ -84,6 +84,7 @@ const Term& sensor_prnu() {
       .candidates = candidates,
       .prepare = prepare,
       .record = record,
+      .pointwise = true,
   };
   return term;
 }

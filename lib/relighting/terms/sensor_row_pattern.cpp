@@ -159,6 +159,7 @@ const Term& sensor_row_pattern() {
       .order = 70,
       .candidates = candidates,
       .record = record,
+      .pointwise = true,
   };
   return term;
 }

@@ -35,6 +35,7 @@ const Term& sensor_saturation() {
       .order = 100,
       .candidates = candidates,
       .record = record,
+      .pointwise = true,
   };
   return term;
 }

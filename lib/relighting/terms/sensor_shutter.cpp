@@ -40,6 +40,7 @@ const Term& sensor_shutter() {
       .order = 2,
       .candidates = candidates,
       .record = record,
+      .pointwise = true,
   };
   return term;
 }
