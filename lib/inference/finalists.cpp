@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
+#include <string>
 
 #include "stats/distributions.h"
 
@@ -15,6 +18,8 @@ constexpr double last_digit = 0.0025;     // of what can be repaired: a differen
 constexpr double a_square = 0.5;          // noise widths squared, over all rows: no test parts what differs by less
 constexpr std::size_t enough_groups = 5;  // for a standard error over groups to mean something
 constexpr double at_most_errors = 12;
+constexpr double form_errors = 2;
+constexpr double near_likeliest = 0.5;  // of the likeliest set's probability
 
 bool same_set(std::vector<std::size_t> a, std::vector<std::size_t> b) {
   std::sort(a.begin(), a.end());
@@ -24,6 +29,11 @@ bool same_set(std::vector<std::size_t> a, std::vector<std::size_t> b) {
 
 bool matters(const Finalist& f) {
   return f.refused.empty() && !(f.statistics.times < 0);
+}
+// May it be named, or, a single mechanism, be what is too small to matter? Several of which one is too small are none:
+// the set without that one is weighed in their place.
+bool is_answer(const Finalist& f) {
+  return f.refused.empty() && (matters(f) || f.model.candidates.size() == 1);
 }
 bool holds_more(const Finalist& more, const Finalist& f) {
   const std::vector<std::size_t>&all = more.model.candidates, &own = f.model.candidates;
@@ -150,18 +160,25 @@ void Finalists::refuse(Finalist& f) const {
   if (!(f.statistics.weakest > 1)) f.refused = "does not lower the held-out score beyond its standard error";
 }
 
-void Finalists::weaken(Finalist& f) const {
-  if (f.model.candidates.size() < 2) return;
-  const Slopes kept = race_.slopes_at(f.model);
+// A member that turns out too small to matter leaves a smaller set, which is what may be named.
+std::vector<Model> Finalists::weaken(Finalist& f) const {
+  std::vector<Model> smaller;
+  if (f.model.candidates.size() < 2) return smaller;
+  std::optional<Slopes> kept;
   for (const std::size_t c : f.model.candidates) {
     std::vector<std::size_t> rest = f.model.candidates;
     std::erase(rest, c);
-    const Model without = race_.changed(f.model, rest, &kept);
+    const auto known =
+        std::find_if(list_.begin(), list_.end(), [&](const Finalist& g) { return same_set(g.model.candidates, rest); });
+    if (known == list_.end() && !kept) kept = race_.slopes_at(f.model);
+    const Model without = known != list_.end() ? known->model : race_.changed(f.model, rest, &*kept);
     f.statistics.weakest = std::min(f.statistics.weakest, errors_of_help(without.held_out, f.model.held_out));
     const double effect = race_.effect(without, f.model);
     f.statistics.times =
         std::min(f.statistics.times, std::log(std::max(1e-3, effect / std::max(1e-6, options_.smallest_effect))));
+    if (effect < options_.smallest_effect && known == list_.end()) smaller.push_back(without);
   }
+  return smaller;
 }
 
 void Finalists::look_into(Finalist& f) {
@@ -178,15 +195,16 @@ void Finalists::look_into(Finalist& f) {
   } else {
     f.left = left_over(race_.system().problem(), f.model.candidates, *f.after, options_);
   }
-  weaken(f);
+  std::vector<Model> smaller = weaken(f);
   f.looked_into = true;
   refuse(f);
+  for (Model& m : smaller) add(std::move(m));  // the last use of `f`: the list may move
 }
 
 void Finalists::compare() {
   const Finalist* best = nullptr;
   for (const Finalist& f : list_)
-    if (f.refused.empty() && (best == nullptr || f.gained > best->gained)) best = &f;
+    if (is_answer(f) && (best == nullptr || f.gained > best->gained)) best = &f;
   if (best == nullptr) return;
   double most = best->gained + (best->looked_into ? best->left.any : 0);
   const HeldOut& linear = before_.evidence->folds->own();
@@ -228,9 +246,13 @@ std::vector<Member> Finalists::members(std::vector<std::size_t>* places) const {
   Member outside{Member::Kind::outside, {}};
   const LeftOver all = left_over(race_.system().problem(), {}, before_, options_);
   outside.statistics.times = all.condition ? std::max(0.0, nothing.statistics.largest) : -1;
+  const Finalist* best = nullptr;
+  for (const Finalist& f : list_)
+    if (is_answer(f) && f.looked_into && (best == nullptr || f.gained > best->gained)) best = &f;
+  outside.statistics.any = best != nullptr ? best->statistics.any : 1;
   std::vector<Member> result = {nothing, outside};
   for (std::size_t k = 0; k < list_.size(); ++k) {
-    if (!list_[k].refused.empty()) continue;
+    if (!is_answer(list_[k])) continue;
     result.push_back({Member::Kind::set, list_[k].statistics});
     if (places != nullptr) places->push_back(k);
   }
@@ -263,11 +285,52 @@ void Finalists::weigh(std::size_t most) {
   }
 }
 
+std::set<std::string> Finalists::physics_of(const Finalist& f) const {
+  std::set<std::string> physics;
+  for (const std::size_t c : f.model.candidates) {
+    const Candidate& candidate = race_.system().problem().candidates()[c];
+    std::string name = candidate.id();
+    for (const std::string& on : candidate.on) name += "/" + on;
+    physics.insert(name);
+  }
+  return physics;
+}
+
+// Of forms of one thing the plainest that unseen groups do not clearly call worse: a response is a power law before it
+// is a spline.
+const Finalist& Finalists::plainest_form(const Finalist& of) const {
+  const Finalist* plainest = &of;
+  for (const Finalist& f : list_) {
+    if (!matters(f) || physics_of(f) != physics_of(of) || f.model.candidates.size() != of.model.candidates.size())
+      continue;
+    if (!(f.statistics.numbers < plainest->statistics.numbers)) continue;
+    if (errors_between(f.model.held_out, of.model.held_out, 0) < form_errors) plainest = &f;
+  }
+  return *plainest;
+}
+
 const Finalist* Finalists::likeliest() const {
-  const Finalist* best = nullptr;
-  for (const Finalist& f : list_)
-    if (matters(f) && (best == nullptr || f.probability > best->probability)) best = &f;
-  return best;
+  // The median probability model (Barbieri & Berger, Annals of Statistics 32, 2004): whatever is more likely than not
+  // to be among what was left out, in any set and form; where that is no likely set, the likeliest.
+  std::map<std::string, double> inclusion;
+  double all = 0;
+  for (const Finalist& f : list_) {
+    if (!matters(f)) continue;
+    all += f.probability;
+    for (const std::string& name : physics_of(f)) inclusion[name] += f.probability;
+  }
+  std::set<std::string> median;
+  for (const auto& [name, probability] : inclusion)
+    if (probability > 0.5 * all) median.insert(name);
+  const Finalist *best = nullptr, *best_median = nullptr;
+  for (const Finalist& f : list_) {
+    if (!matters(f)) continue;
+    if (best == nullptr || f.probability > best->probability) best = &f;
+    if (physics_of(f) != median) continue;
+    if (best_median == nullptr || f.probability > best_median->probability) best_median = &f;
+  }
+  if (best_median != nullptr && best_median->probability > near_likeliest * best->probability) best = best_median;
+  return best == nullptr ? nullptr : &plainest_form(*best);
 }
 
 double Finalists::in_library() const {

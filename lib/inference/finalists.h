@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,10 +56,12 @@ class Finalists {
   std::vector<Member> members(std::vector<std::size_t>* places = nullptr) const;
 
  private:
+  std::set<std::string> physics_of(const Finalist& f) const;  // "sensor.non-linearity/camera", whatever the form
+  const Finalist& plainest_form(const Finalist& of) const;
   void look_into(Finalist& f);
   void refuse(Finalist& f) const;
-  void weaken(Finalist& f) const;  // weakest part and its effect, by leaving each out
-  void compare();                  // what depends on the others
+  std::vector<Model> weaken(Finalist& f) const;  // weakest part and its effect, by leaving each out
+  void compare();                                // what depends on the others
   void score();
   double sizes(const Model& model) const;
   double controls(const Finalist& f) const;

@@ -63,12 +63,13 @@ std::string objection(const Finalist& f, const Finalist& top) {
     const double against = t.weight * (t.of(best) - t.of(own));
     if (against > most) most = against, worst = t.name;
   }
-  if (worst == "own" || worst == "clean")
+  const Statistics& s = f.statistics;
+  if (worst == "clean" || (worst == "short" && s.own >= std::max(s.missed, s.any)))
     return "leaves structure over " + f.left.own_over + ", its own condition: it only imitates in part";
-  if (worst == "any") return "leaves structure " + f.left.any_over;
+  if (worst == "short" && s.any >= s.missed) return "leaves structure " + f.left.any_over;
   if (worst == "curve")
     return "a free curve over " + f.curve + " repairs more on unseen groups: it only imitates in part";
-  if (worst == "behind" || worst == "missed") return "another repairs more on unseen groups";
+  if (worst == "behind" || worst == "short") return "another repairs more on unseen groups";
   if (worst == "numbers") return "needs more numbers";
   if (worst == "size") return "larger than such an effect is";
   if (worst == "controls") return "negative controls without physics do better";
@@ -94,7 +95,7 @@ void mark(const Selection& s, const Explanation& e, const Finalist& top, Hypothe
 
 Explanation::Weighed weighed_as(Explanation::Weighed::Kind kind, const Set& candidates, double probability,
                                 const Statistics& of) {
-  Explanation::Weighed w{kind, candidates, probability, {}};
+  Explanation::Weighed w{kind, candidates, std::min(1.0, probability), {}};
   for (const Statistic& s : statistics())
     if (of.*s.value != 0) w.statistics.emplace_back(s.name, of.*s.value);
   return w;
@@ -179,8 +180,43 @@ void add_equals(const Problem& problem, const std::vector<Finalist>& list, std::
   equal.resize(std::min(equal.size(), most_listed_beside));
   for (const std::size_t k : equal) {
     listed.push_back(k);
-    probability += list[k].probability;
+    probability = std::min(1.0, probability + list[k].probability);
   }
+}
+
+// What is likeliest as a whole need not be the likeliest single set.
+void put_first(const std::vector<Finalist>& list, std::size_t top, std::vector<std::size_t>& listed,
+               double& probability) {
+  const auto place = std::find(listed.begin(), listed.end(), top);
+  if (place != listed.end()) {
+    std::rotate(listed.begin(), place, place + 1);
+    return;
+  }
+  listed.insert(listed.begin(), top);
+  probability = std::min(1.0, probability + list[top].probability);
+}
+
+// Of several that the first set shares no mechanism with, and that unseen groups cannot tell from it, one stands beside
+// it: exchanges of single members do not say that the whole may be something else.
+void add_unlike(const std::vector<Finalist>& list, std::vector<std::size_t>& listed, double& probability) {
+  const Finalist& top = list[listed[0]];
+  const auto unlike = [&](const Finalist& f) {
+    return std::none_of(f.model.candidates.begin(), f.model.candidates.end(),
+                        [&](std::size_t c) { return contains(top.model.candidates, c); });
+  };
+  if (top.model.candidates.size() < 2) return;
+  for (const std::size_t k : listed)
+    if (unlike(list[k])) return;
+  std::optional<std::size_t> likeliest;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const Finalist& f = list[k];
+    if (!f.refused.empty() || f.statistics.times < 0 || !unlike(f)) continue;
+    if (f.statistics.behind > equal_errors || f.gained < nearly_one * top.gained) continue;
+    if (!likeliest || f.probability > list[*likeliest].probability) likeliest = k;
+  }
+  if (!likeliest) return;
+  listed.push_back(*likeliest);
+  probability = std::min(1.0, probability + list[*likeliest].probability);
 }
 
 }  // namespace
@@ -201,7 +237,7 @@ void judge(const Problem& problem, const Selection& s, const Options& options, E
   // The groups that no choice has seen speak last.
   const bool no_better = found.kind == Answer::Kind::sets && !(e.held_out_after < e.held_out_before);
   if (no_better) found = {Answer::Kind::outside, {}, finalists.outside()};
-  e.probability = found.probability;
+  e.probability = std::min(1.0, found.probability);
   if (found.kind == Answer::Kind::nothing) {
     e.verdict = Verdict::null;
   } else if (found.kind == Answer::Kind::outside) {
@@ -209,7 +245,9 @@ void judge(const Problem& problem, const Selection& s, const Options& options, E
   } else {
     std::vector<std::size_t> listed;
     for (const std::size_t k : found.sets) listed.push_back(places[k - 2]);
+    put_first(list, static_cast<std::size_t>(top - list.data()), listed, e.probability);
     add_equals(problem, list, listed, e.probability);
+    add_unlike(list, listed, e.probability);
     name_listed(problem, list, listed, e);
   }
   e.important = e.verdict != Verdict::null;

@@ -19,7 +19,8 @@ struct Statistics {
   double missed = 0;  // share of what can be repaired that it does not repair
   double own = 0;     // what a free curve over a condition of its own still repairs, over that and what it repairs
   double clean = 0;   // of what it leaves above the noise, the share that this curve takes: it is no noise that is left
-  double any = 0;     // the same over any condition, fine structure and products of conditions included
+  double any = 0;     // the same over any condition, fine structure and products of conditions included;
+                      // of what is outside: beside the set that repairs most
   double curve = 0;   // by how much more the best curve over one condition repairs than it does, as a share
   double numbers = 0;   // that are fitted with it
   double size = 0;      // mean over its numbers of ln(1 + (distance from neutral / typical size)^2): half-Cauchy

@@ -11,6 +11,8 @@ namespace gonio::inference {
 namespace {
 
 constexpr double least_share = 0.5;     // of what the first choice repaired, for a runner-up to be worth a look
+constexpr double worth_a_turn = 0.02;   // of probability, that another choice brings
+constexpr std::size_t most_idle = 2;    // turns in a row that bring less
 constexpr double near_finalists = 0.3;  // the same, for a place among the finalists as it stands
 
 std::vector<std::size_t> smaller_set(std::vector<std::size_t> set, std::size_t c) {
@@ -114,7 +116,10 @@ class Search {
     finalists_.add(std::move(smaller));
   }
 
+  // Until it is sure enough, or turns have stopped to make anything surer.
   void explore() {
+    std::size_t idle = 0;
+    double surest = finalists_.in_library();
     for (const Turn& turn : turns(paths_[0])) {
       const auto place = static_cast<std::ptrdiff_t>(turn.level);
       const Path& first = paths_[0];
@@ -128,6 +133,9 @@ class Search {
       paths_.push_back(std::move(path));
       finalists_.weigh(effort_.looks);
       if (finalists_.in_library() >= options_.sure) return;
+      idle = finalists_.in_library() > surest + worth_a_turn ? 0 : idle + 1;
+      surest = std::max(surest, finalists_.in_library());
+      if (idle == most_idle) return;
     }
   }
 

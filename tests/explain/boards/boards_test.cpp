@@ -132,24 +132,20 @@ TEST(ExplainBoards, TheFullLensLacksNothingButTheBoardsShape) {
       EXPECT_EQ(name, "board.warp") << camera.prefix;
 }
 
-// A sheet of paper whose printer stretched it along one side. That it is so, and no lens, a fact tells that the fit was
-// never given: the camera's pixels are square, and become so.
-TEST(ExplainBoards, APaperThatThePrinterStretchedIsNamedAndThePixelsBecomeSquare) {
+// A sheet of paper whose printer stretched it along one side. A camera that moved while its rows were read does as much
+// to these views: on thirteen of them neither is clearly better (1.2 standard errors), so that both must be listed.
+TEST(ExplainBoards, APaperThatThePrinterStretchedIsListed) {
   GONIO_NEEDS_DATA("calibration/charuco_realsense_mit");
   const gonio::tests::ScratchFolder folder;
-  const std::string before = calibrated(paper, "radial-tangential", folder.path());
-  const auto ended = run({"explain", "--allow-outside"}, folder.path(), before);
+  const auto ended =
+      run({"explain", "--allow-outside"}, folder.path(), calibrated(paper, "radial-tangential", folder.path()));
   ASSERT_EQ(ended.status, 0) << ended.err;
   const Value document = manifest::parse_json(ended.out, "explain");
   const Value& entry = at(document, "explanations").as_array().at(0);
-  EXPECT_EQ(names(document), std::vector<std::string>{"board.scale"}) << at(entry, "sentence").as_string();
+  EXPECT_EQ(at(entry, "verdict").as_string(), "ambiguous");
+  EXPECT_NE(at(entry, "sentence").as_string().find("board.scale"), std::string::npos)
+      << at(entry, "sentence").as_string();
   EXPECT_LT(at(at(entry, "held_out"), "after").as_number(), 0.8 * at(at(entry, "held_out"), "before").as_number());
-  const auto aspect = [&](const Value& manifest) {
-    const Value& camera = at(manifest, "cameras").as_object().at(0).second;
-    return at(camera, "fy_px").as_number() / at(camera, "fx_px").as_number();
-  };
-  EXPECT_GT(std::abs(aspect(manifest::parse_json(before, "calibrated")) - 1), 2.5e-3);
-  EXPECT_LT(std::abs(aspect(document) - 1), 1e-3);
 }
 
 // A small rig for derivatives: two views of a 4 x 3 board by a lens with every term.
