@@ -52,7 +52,8 @@ double shortfall(const Statistics& s) {
   return std::max({s.missed, s.own, s.any});
 }
 
-// Set by hand on the toys of the engine and a few sealed cases. What prove-probability fit makes of 243 sealed cases
+// Set by hand on the toys of the engine, the recorded sets of the tests and a few sealed cases, so that those prove
+// nothing of them. What prove-probability fit makes of 243 sealed cases
 // (tables, boards, stacks, heights) is better there and loses what 300 rows show clearly: its cases are too alike.
 // clang-format off
 const LogitTerm all_logit_terms[] = {
