@@ -80,8 +80,8 @@ void set_progress_mode(ProgressMode mode) {
 
 struct Progress::State {
   std::string title;
-  std::uint64_t total;
-  std::atomic<std::uint64_t> done{0};
+  std::uint64_t total, before = 0;
+  std::atomic<std::uint64_t> done{before};
   Clock::time_point start = Clock::now();
   std::atomic<Clock::rep> next_draw{(Clock::now() + redraw_interval).time_since_epoch().count()};
 
@@ -94,12 +94,20 @@ struct Progress::State {
     std::string text = std::string(clear_line) + title + " [" + std::string(static_cast<std::size_t>(filled), '#') +
                        std::string(static_cast<std::size_t>(width - filled), '.') + "] " +
                        std::to_string(static_cast<int>(share * 100)) + " %";
-    if (share > 0) text += ", " + clock_time(elapsed_s * (1 - share) / share) + " to go";
+    if (share > 0 && before == 0) text += ", " + clock_time(elapsed_s * (1 - share) / share) + " to go";
     return text;
   }
 };
 
 Progress::Progress(std::string title, std::uint64_t total) : state_(new State{std::move(title), total}) {}
+
+Progress::Progress(std::string title, std::uint64_t total, std::uint64_t done)
+    : state_(new State{std::move(title), total, done}) {
+  const std::lock_guard lock(terminal);
+  if (!bars_wanted()) return;
+  drawn_bar = state_->bar(state_->start);
+  write_stderr(drawn_bar);
+}
 
 Progress::~Progress() {
   const std::lock_guard lock(terminal);

@@ -19,6 +19,8 @@ void set_progress_mode(ProgressMode mode);
 class Progress {
  public:
   Progress(std::string title, std::uint64_t total);
+  // One long step of several, `done` of which others have taken: drawn at once, without a time to go.
+  Progress(std::string title, std::uint64_t total, std::uint64_t done);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

@@ -112,8 +112,8 @@ Runner ForwardStep::polished(const Runner& r) const {
 
 // From where the screening says; a strongly nonlinear mechanism alone also from the point that promises most.
 Runner ForwardStep::fitted(const Entrant& e, std::size_t looks) const {
-  Progress progress("weighing " + race_.name_of(e.candidates), std::max(effort_.fits, runners_.size() + 1));
-  progress.advance(runners_.size());
+  const Progress progress("weighing " + race_.name_of(e.candidates), std::max(effort_.fits, runners_.size() + 1),
+                          runners_.size());
   std::vector<double> begun;
   for (const std::size_t c : model_.candidates)
     for (const std::size_t p : race_.system().problem().candidates()[c].parameters)

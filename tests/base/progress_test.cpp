@@ -57,5 +57,14 @@ TEST_F(ProgressTest, ABarIsDrawnAndClearedAndLeavesMessagesWhole) {
   EXPECT_TRUE(text.ends_with("\r\x1b[K"));
 }
 
+// A step that takes long is seen while it is taken.
+TEST_F(ProgressTest, ALongStepOfSeveralIsDrawnAtOnce) {
+  set_progress_mode(ProgressMode::always);
+  testing::internal::CaptureStderr();
+  { const Progress progress("weighing lens.radial", 4, 1); }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "\r\x1b[Kweighing lens.radial [#######.......................] 25 %\r\x1b[K");
+}
+
 }  // namespace
 }  // namespace gonio
