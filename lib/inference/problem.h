@@ -131,6 +131,10 @@ class Problem {
     return std::nullopt;
   }
 
+  // Candidates that cannot be named together, beside those of one family: the simulation that is written has no form
+  // for both.
+  virtual bool excludes(std::size_t /*candidate*/, std::size_t /*other*/) const { return false; }
+
   virtual std::string domain() const = 0;      // "boards", "images"
   virtual std::string unit() const = 0;        // of the score: "px", "1" (a ratio)
   virtual std::string score_name() const = 0;  // "RMS reprojection error", "relative RMSE"

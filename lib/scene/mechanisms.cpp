@@ -100,6 +100,17 @@ std::vector<std::string> mechanism_targets(const Appearance& appearance, const M
   return {};
 }
 
+bool go_together(const Surface& surface, const Mechanism& a, const Mechanism& b) {
+  const Mechanism &first = a.id < b.id ? a : b, &second = a.id < b.id ? b : a;
+  if (beyond_rendering(first) || beyond_rendering(second)) return true;
+  if (!can_apply(surface, first)) return false;
+  Amounts amounts;
+  for (const mechanism::Parameter& p : first.parameters) amounts.push_back(p.start);
+  Surface changed = surface;
+  edit(changed, first, amounts, {}, "go_together");
+  return can_apply(changed, second);
+}
+
 bool applies_to_scenes(const Mechanism& mechanism) {
   const auto expressed = [&](const auto& all) {
     return std::any_of(all.begin(), all.end(), [&](const auto* m) { return can_express(m->info(), mechanism); });

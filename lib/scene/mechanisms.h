@@ -25,6 +25,10 @@ namespace gonio::scene {
 // Names of the surfaces or lights that `mechanism` can apply to; empty for scene, camera and board mechanisms.
 std::vector<std::string> mechanism_targets(const Appearance& appearance, const mechanism::Mechanism& mechanism);
 
+// Can a scene have both on this surface, one after the other in the order of their ids, as a manifest's are applied?
+// What scenes leave as they are stands beside anything.
+bool go_together(const Surface& surface, const mechanism::Mechanism& a, const mechanism::Mechanism& b);
+
 // Does this room know how to apply it to a scene's appearance (targets scene, surface, light)?
 bool applies_to_scenes(const mechanism::Mechanism& mechanism);
 

@@ -270,5 +270,19 @@ TEST(Refusals, NameThePlace) {
   EXPECT_THAT(problem_of("light.finite-size", use({{"radius_m", -0.1}})), HasSubstr("-0.1"));
 }
 
+// A half space that scatters takes the place of a matte surface alone: neither order lets a gloss stand beside it.
+TEST(Targets, WhatCannotStandOnOneSurfaceTogether) {
+  const Surface clay = appearance().surfaces[0];
+  const auto together = [&](const std::string& a, const std::string& b) {
+    EXPECT_EQ(go_together(clay, mechanism_of(a), mechanism_of(b)), go_together(clay, mechanism_of(b), mechanism_of(a)));
+    return go_together(clay, mechanism_of(a), mechanism_of(b));
+  };
+  EXPECT_TRUE(together("surface.interface", "surface.diffuse-roughness"));
+  EXPECT_TRUE(together("surface.interface", "surface.metal"));
+  EXPECT_TRUE(together("surface.subsurface", "surface.fluorescence"));  // which leaves scenes as they are
+  EXPECT_FALSE(together("surface.subsurface", "surface.interface"));
+  EXPECT_FALSE(together("surface.subsurface", "surface.diffuse-roughness"));
+}
+
 }  // namespace
 }  // namespace gonio::scene

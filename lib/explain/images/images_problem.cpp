@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -16,6 +17,7 @@
 #include "relighting/shifted_views.h"
 #include "relighting/textures.h"
 #include "relighting/uses.h"
+#include "scene/mechanisms.h"
 #include "scene/scene.h"
 
 namespace gonio::explain::images {
@@ -110,6 +112,29 @@ void ImagesProblem::bind(const manifest::Document& document) {
   parameters_ = bindings_.parameters;
   base_ = bindings_.base;
   candidates_ = bindings_.candidates;
+  find_exclusions();
+}
+
+void ImagesProblem::find_exclusions() {
+  const auto of_surfaces = [](const Candidate& c) { return c.mechanism->target == mechanism::Target::surface; };
+  std::map<std::tuple<std::size_t, std::string, std::string>, bool> known;  // surface, two mechanisms
+  for (std::size_t a = 0; a < candidates_.size(); ++a)
+    for (std::size_t b = a + 1; b < candidates_.size(); ++b) {
+      const Candidate &one = candidates_[a], &other = candidates_[b];
+      if (!of_surfaces(one) || !of_surfaces(other) || one.id() == other.id()) continue;
+      for (std::size_t s = 0; s < scene_->appearance.surfaces.size(); ++s) {
+        const scene::Surface& surface = scene_->appearance.surfaces[s];
+        const auto on_it = [&](const Candidate& c) { return std::ranges::count(c.on, surface.id) > 0; };
+        if (!on_it(one) || !on_it(other)) continue;
+        const auto [place, fresh] = known.try_emplace({s, one.id(), other.id()});
+        if (fresh) place->second = scene::go_together(surface, *one.mechanism, *other.mechanism);
+        if (!place->second) exclusions_.insert({a, b});
+      }
+    }
+}
+
+bool ImagesProblem::excludes(std::size_t candidate, std::size_t other) const {
+  return exclusions_.contains({std::min(candidate, other), std::max(candidate, other)});
 }
 
 ImagesProblem::~ImagesProblem() = default;

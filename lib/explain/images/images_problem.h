@@ -6,6 +6,8 @@
 // the recording's, at the local mean of the picture, plus the simulator's own variance.
 #pragma once
 #include <memory>
+#include <set>
+#include <utility>
 
 #include "explain/engine.h"
 #include "explain/images/bindings.h"
@@ -16,7 +18,7 @@
 namespace gonio::explain::images {
 
 struct Options {
-  std::size_t pixels = 9000;                   // sampled over all images together
+  std::size_t pixels = 6000;                   // sampled over all images together
   std::vector<std::filesystem::path> repeats;  // further takes, from which noise is measured
   CacheOptions cache;
 };
@@ -33,6 +35,8 @@ class ImagesProblem final : public Problem {
   // By the path tracer at the sampled pixels.
   std::optional<inference::Bias> bias(std::span<const double> values,
                                       std::span<const std::size_t> candidates) const override;
+  // Two mechanisms of one surface that no scene can have together.
+  bool excludes(std::size_t candidate, std::size_t other) const override;
   std::string domain() const override { return "images"; }
   std::string unit() const override { return "1"; }
   std::string score_name() const override { return "relative RMSE"; }
@@ -59,6 +63,7 @@ class ImagesProblem final : public Problem {
  private:
   SceneState raw_state(std::span<const double> values) const;
   void bind(const manifest::Document& document);
+  void find_exclusions();
   void choose_pixels(std::size_t pixels, std::vector<std::vector<std::array<int, 2>>>& chosen) const;
   void fill_rows();
 
@@ -67,6 +72,7 @@ class ImagesProblem final : public Problem {
   SceneLayout layout_;
   std::unique_ptr<render::Monomials> monomials_;
   Bindings bindings_;
+  std::set<std::pair<std::size_t, std::size_t>> exclusions_;  // places in candidates(), the smaller first
   CacheOptions cache_options_;
   std::unique_ptr<scene::Scene> scene_;
   std::unique_ptr<render::RayCaster> caster_;

@@ -23,6 +23,7 @@ namespace {
 constexpr double likely_alpha = 0.3, softness = 0.02;  // of the search's start; the edge over the object's extent
 
 struct Gleam {
+  std::size_t image;
   Vec3 position_m;  // object frame
   double relative, gloss;
 };
@@ -43,15 +44,21 @@ double likely_gloss(const Setting& s, const Patch& patch, const std::vector<std:
   return sum / static_cast<double>(std::max<std::size_t>(1, lights.size()));
 }
 
-// How much of the residual a gloss within the region takes, in its own standard deviations.
+// How much of the residual a gloss within the region takes, in its own standard deviations. Every image has a
+// brightness of its own (rough.h). `seen`: image after image.
 double alike(const std::vector<Gleam>& seen, const surface::CoatRegion& region) {
-  double ry = 0, rr = 0, yy = 0, r1 = 0, y1 = 0;
-  for (const Gleam& g : seen) {
-    const double r = g.gloss * region.cover(g.position_m);
-    ry += r * g.relative, rr += r * r, yy += g.relative * g.relative, r1 += r, y1 += g.relative;
+  double covariance = 0, of_gloss = 0, of_residual = 0;
+  for (std::size_t first = 0, last = 0; first < seen.size(); first = last) {
+    double ry = 0, rr = 0, yy = 0, r1 = 0, y1 = 0;
+    for (; last < seen.size() && seen[last].image == seen[first].image; ++last) {
+      const Gleam& g = seen[last];
+      const double r = g.gloss * region.cover(g.position_m);
+      ry += r * g.relative, rr += r * r, yy += g.relative * g.relative, r1 += r, y1 += g.relative;
+    }
+    const auto n = static_cast<double>(last - first);
+    covariance += ry - r1 * y1 / n, of_gloss += rr - r1 * r1 / n, of_residual += yy - y1 * y1 / n;
   }
-  const auto n = static_cast<double>(seen.size());
-  const double covariance = ry - r1 * y1 / n, spread = (rr - r1 * r1 / n) * (yy - y1 * y1 / n);
+  const double spread = of_gloss * of_residual;
   return spread > 0 ? covariance / std::sqrt(spread) : 0;
 }
 
@@ -97,7 +104,7 @@ std::vector<Use> candidates(const Setting& s) {
       const Recording& image = s.recordings.images[sight.image];
       const ViewCache& cache = s.model.cache(image.view);
       const Patch& patch = cache.patches[cache.facets[sight.facet].first_patch];
-      seen.push_back({object_from_world * patch.position_m, std::clamp(sight.relative, -1.0, 2.0),
+      seen.push_back({sight.image, object_from_world * patch.position_m, std::clamp(sight.relative, -1.0, 2.0),
                       likely_gloss(s, patch, image.lights)});
     }
     if (seen.size() < 50) continue;
@@ -124,17 +131,21 @@ std::shared_ptr<const Prepared> prepare(const Setting& s, const Use& use) {
   return result;
 }
 
-// The surface bare and coated, each with a black and a white base.
+// The surface bare and coated, each with a black and a white base. Where nothing but the albedo has a colour, one
+// evaluation with a base that is black in red and white in green yields both.
 struct BareAndCoated {
   const surface::Model* model = nullptr;
   surface::Values black, white, coated_black, coated_white;
+  bool at_once = false;
   BareAndCoated(SurfaceState surface, std::span<const double> amounts) {
     widen(surface, *widened(surface, mechanism::surface_interface()));
     model = surface.model;
     const std::size_t albedo = parameter_index(*model, "albedo");
     black = white = surface.values;
     black.v[albedo] = {0, 0, 0};
-    white.v[albedo] = {1, 1, 1};
+    const auto& parameters = model->info().parameters;
+    at_once = std::ranges::count(parameters, 3, &manifest::ParameterInfo::components) == 1;
+    white.v[albedo] = {at_once ? 0.0 : 1.0, 1, 1};
     coated_black = coated(black, amounts);
     coated_white = coated(white, amounts);
   }
@@ -144,6 +155,11 @@ struct BareAndCoated {
     return values;
   }
   Scattered change(Vec3 wo, Vec3 wi) const {
+    if (at_once) {
+      const Rgb had = model->evaluate(white, wo, wi), has = model->evaluate(coated_white, wo, wi);
+      const double gloss = has.x - had.x, base = has.y - has.x - (had.y - had.x);
+      return {{base, base, base}, {gloss, gloss, gloss}};
+    }
     const Rgb had = model->evaluate(black, wo, wi), has = model->evaluate(coated_black, wo, wi);
     return {model->evaluate(coated_white, wo, wi) - has - (model->evaluate(white, wo, wi) - had), has - had};
   }

@@ -106,9 +106,12 @@ std::vector<std::string> EffectOutcome::named() const {
 
 std::string EffectOutcome::told() const {
   std::string text = explanation.sentence;
-  for (const explain::Hypothesis& h : explanation.scoreboard)
+  for (const explain::Hypothesis& h : explanation.scoreboard) {
     text += "\n" + h.name + ": gain " + std::to_string(h.gain) + " +- " + std::to_string(h.gain_sigma) + ", held out " +
             std::to_string(h.held_out) + " " + h.refused;
+    for (const explain::Estimate& e : h.parameters)
+      text += " " + problem.parameters()[e.parameter].name + "=" + std::to_string(e.value);
+  }
   return text;
 }
 

@@ -42,7 +42,7 @@ TEST(Coat, OnAPartIsNamed) {
   const EffectOutcome outcome =
       seen(R"("surface.coat":{"on":["ball"],"f0":0.06,"alpha":0.3,"azimuth_rad":0.3,"elevation_rad":0.2,)"
            R"("from_m":-0.01,"edge_m":0.004})");
-  ASSERT_THAT(outcome.named(), ElementsAre("surface.coat")) << outcome.explanation.sentence;
+  ASSERT_THAT(outcome.named(), ElementsAre("surface.coat")) << outcome.told();
   EXPECT_NEAR(outcome.fitted("f0"), 0.06, 0.012);
 }
 
