@@ -142,10 +142,17 @@ Runner ForwardStep::fitted(const Entrant& e, std::size_t looks) const {
   return r;
 }
 
+// Could it matter, however far beyond its linear form it reaches?
+bool ForwardStep::may_matter(const Entrant& e) const {
+  return allowance * e.effect >= race_.options().smallest_effect;
+}
+
 void ForwardStep::run_singles() {
   const std::vector<Entrant>& singles = screening_.singles();
   double best = 0;
-  for (; fitted_ < std::min(effort_.fits, singles.size()); ++fitted_) {
+  const auto beyond = std::find_if(singles.rbegin(), singles.rend(), [&](const Entrant& e) { return may_matter(e); });
+  const std::size_t worth_it = static_cast<std::size_t>(singles.rend() - beyond);
+  for (; fitted_ < std::min(effort_.fits, worth_it); ++fitted_) {
     const double reach = singles[fitted_].reach;
     if (fitted_ >= effort_.least && !(allowance * reach > best && reach > 0)) break;
     runners_.push_back(fitted(singles[fitted_], singles.size()));
@@ -160,7 +167,7 @@ void ForwardStep::run_pairs() {
   pairs_ = std::min(screening_.pair_count(), effort_.pairs);
   const auto best = std::find_if(runners_.begin(), runners_.end(), passes);
   std::vector<Entrant> pairs = screening_.pairs(effort_.pairs, most_pairs_fitted);
-  std::erase_if(pairs, [&](const Entrant& e) { return !more_than_either(e); });
+  std::erase_if(pairs, [&](const Entrant& e) { return !may_matter(e) || !more_than_either(e); });
   std::optional<Model> rival;  // the best pair that the next round would come to
   if (best != runners_.end() && !pairs.empty()) {
     const std::size_t single = best->hypothesis.candidates[0];

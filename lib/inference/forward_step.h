@@ -37,6 +37,7 @@ class ForwardStep {
   void run_pairs();
   void polish_leaders();
   std::optional<std::size_t> winner() const;
+  bool may_matter(const Entrant& e) const;
   bool more_than_either(const Entrant& pair) const;
   bool plainer(const Runner& a, const Runner& b) const;
 

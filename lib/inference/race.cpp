@@ -13,6 +13,7 @@ namespace gonio::inference {
 namespace {
 
 constexpr int chords = 25;                            // steps of a fit with kept slopes
+constexpr int tangents = 20;                          // of a hypothesis in the race: leaders are fitted to the end
 constexpr int turns = 3;                              // how often the slopes may be taken anew
 constexpr double usual_reach = 3;                     // typical sizes: where a bound lies so near, it may be reached
 constexpr double small_gain = 0.005, small_cost = 4;  // of the sum of whitened squares: not worth new slopes
@@ -162,7 +163,7 @@ Model Race::started(const Model& from, std::vector<std::size_t> candidates, cons
   const bool gradual = std::any_of(m.candidates.begin(), m.candidates.end(),
                                    [&](std::size_t c) { return system_.problem().candidates()[c].gradual; });
   if (!gradual && (gained < 0.5 * promise || gained < promised)) {
-    Fit anew = fit(system_, std::move(values), active);
+    Fit anew = fit(system_, std::move(values), active, tangents);
     if (anew.cost < m.fit.cost) {
       m.fit = std::move(anew);
       turned = slopes(system_, m.fit.values, active);
@@ -199,8 +200,8 @@ Slopes Race::slopes_at(const Model& model) const {
 std::vector<std::size_t> Race::open_to(const Model& model) const {
   std::vector<std::size_t> result;
   for (const std::size_t c : allowed_) {
-    const auto relative = [&](std::size_t other) { return relatives(other, c); };
-    if (std::none_of(model.candidates.begin(), model.candidates.end(), relative)) result.push_back(c);
+    const auto bars = [&](std::size_t other) { return never_together(other, c); };
+    if (std::none_of(model.candidates.begin(), model.candidates.end(), bars)) result.push_back(c);
   }
   return result;
 }
@@ -208,6 +209,10 @@ std::vector<std::size_t> Race::open_to(const Model& model) const {
 bool Race::relatives(std::size_t a, std::size_t b) const {
   const std::vector<Candidate>& all = system_.problem().candidates();
   return family_of(all[a]) == family_of(all[b]);
+}
+
+bool Race::never_together(std::size_t a, std::size_t b) const {
+  return relatives(a, b) || system_.problem().excludes(a, b);
 }
 
 std::string Race::name_of(const std::vector<std::size_t>& candidates) const {

@@ -26,6 +26,7 @@ class Race {
   Race(const System& system, const Options& options);
 
   const System& system() const { return system_; }
+  const Options& options() const { return options_; }
   const std::vector<std::size_t>& allowed() const { return allowed_; }  // candidates that may be named
   const std::vector<std::size_t>& free() const { return free_; }        // base parameters that are not protected
 
@@ -43,9 +44,10 @@ class Race {
                        const Slopes& kept) const;
   // Derivatives of the free parameters and of the model's candidates where the model stands.
   Slopes slopes_at(const Model& model) const;
-  // Candidates that may join: allowed, not in the model, no relative in it.
+  // Candidates that may join: allowed, not in the model, and none in it that they cannot stand beside.
   std::vector<std::size_t> open_to(const Model& model) const;
-  bool relatives(std::size_t a, std::size_t b) const;  // of one family: at most one of them is named
+  bool relatives(std::size_t a, std::size_t b) const;       // of one family
+  bool never_together(std::size_t a, std::size_t b) const;  // relatives, or of no common form: one of them is named
 
   // The step from `before` to `after` as one line of the scoreboard; `refused` says which condition of a name it fails.
   // `negative_controls`: what those achieved on the same model; more than a tenth of them better by its standard
@@ -95,9 +97,18 @@ struct Competitor {
   HeldOut held_out;  // linear
 };
 
+// What a linear form changes, in the unit of Options::smallest_effect: its foreign columns of the projection, and the
+// held-out squares with them.
+double linear_effect(const Race& race, const Evidence& evidence, const std::vector<Eigen::Index>& places,
+                     const HeldOut& with);
+
+// At curves alone where nothing but what a model leaves is asked.
+enum class Looks { at_everything, at_curves };
+
 // The state of knowledge about one model: what structure its residuals still hold, and what free curves and negative
 // controls could repair.
 struct ResidualStructure {
+  Looks looks = Looks::at_everything;
   double global_p = 1;
   std::vector<LocatedCondition> conditions;  // the most telling first
   std::vector<Isolability> isolability;
@@ -109,8 +120,6 @@ struct ResidualStructure {
   std::optional<Interaction> interaction;  // structure in a product of conditions; asked where nothing else is found
   std::shared_ptr<const Evidence> evidence;
 };
-// `looks`: at curves alone where nothing but what a model leaves is asked.
-enum class Looks { at_everything, at_curves };
 ResidualStructure residual_structure(const Race& race, const Model& model, const Options& options,
                                      Looks looks = Looks::at_everything);
 

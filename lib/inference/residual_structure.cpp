@@ -14,6 +14,14 @@ namespace {
 // Further looks at the same residuals cost a tenth of the level each.
 constexpr double price_of_further_looks = 10;
 
+// Of held-out errors.
+double ratio_of(const HeldOut& before, const HeldOut& after) {
+  double squares_before = 0, squares_after = 0;
+  for (std::size_t k = 0; k < before.whitened.size(); ++k)
+    squares_before += before.whitened[k], squares_after += after.whitened[k];
+  return squares_before > 0 ? std::sqrt(squares_after / squares_before) : 1;
+}
+
 // A structure as a hypothesis that enters linearly.
 Competitor linear_competitor(const Race& race, const Evidence& e, std::size_t s) {
   const Structure& structure = e.structures.list[s];
@@ -30,18 +38,8 @@ Competitor linear_competitor(const Race& race, const Evidence& e, std::size_t s)
   const Gain g = gain(before, result.held_out);
   h.gain = g.mean;
   h.gain_sigma = g.sigma;
-  double squares_before = 0, squares_after = 0;
-  for (std::size_t k = 0; k < before.whitened.size(); ++k)
-    squares_before += before.whitened[k], squares_after += result.held_out.whitened[k];
-  const double ratio = squares_before > 0 ? std::sqrt(squares_after / squares_before) : 1;
-  h.held_out = ratio;
-  if (race.system().problem().importance() == Importance::share_of_residual) {
-    h.effect = 1 - ratio;
-    return result;
-  }
-  const Eigen::VectorXd step = e.folds->step(places);
-  const double moved = step.dot(e.scores.raw_surviving(places, places) * step);
-  h.effect = e.scores.norm > 0 ? std::sqrt(std::max(0.0, moved) / e.scores.norm) : 0;
+  h.held_out = ratio_of(before, result.held_out);
+  h.effect = linear_effect(race, e, places, result.held_out);
   return result;
 }
 
@@ -97,6 +95,14 @@ void run_competitors(const Race& race, const Model& model, const Options& option
 
 }  // namespace
 
+double linear_effect(const Race& race, const Evidence& e, const std::vector<Eigen::Index>& places,
+                     const HeldOut& with) {
+  if (race.system().problem().importance() == Importance::share_of_residual) return 1 - ratio_of(e.folds->own(), with);
+  const Eigen::VectorXd step = e.folds->step(places);
+  const double moved = step.dot(e.scores.raw_surviving(places, places) * step);
+  return e.scores.norm > 0 ? std::sqrt(std::max(0.0, moved) / e.scores.norm) : 0;
+}
+
 ResidualStructure residual_structure(const Race& race, const Model& model, const Options& options, Looks at) {
   const System& system = race.system();
   const auto evidence = std::make_shared<Evidence>();
@@ -116,6 +122,7 @@ ResidualStructure residual_structure(const Race& race, const Model& model, const
   }
   scores.families.clear();
   ResidualStructure r;
+  r.looks = at;
   r.global_p = global_p(looks, scores.blocks, scores.inflation, options.draws, options.seed);
   r.global_p = std::min(r.global_p, price_of_further_looks * concentrated_p(p, structures, scores));
   r.serial_correlation = serial_correlation(system, model.fit.values);

@@ -50,6 +50,7 @@ Screening::Screening(const Race& race, const ResidualStructure& residual_structu
     const Form& form = runners[k].forms.back();
     entrants[k] = {{visible[k]}, 0, evidence_.folds->held_out(form.columns), form.point};
     entrants[k].reach = gain(evidence_.folds->own(), entrants[k].held_out).mean;
+    entrants[k].effect = linear_effect(race_, evidence_, form.columns, entrants[k].held_out);
   });
   std::vector<std::size_t> order(visible.size());
   std::iota(order.begin(), order.end(), 0);
@@ -71,7 +72,7 @@ std::vector<Entrant> Screening::pairs(std::size_t most, std::size_t keep, std::o
     for (std::size_t a = sum + 1 > runners_.size() ? sum + 1 - runners_.size() : 0; 2 * a < sum; ++a) {
       const std::size_t b = sum - a;
       if (with && runners_[a].candidate != *with && runners_[b].candidate != *with) continue;
-      if (race_.relatives(runners_[a].candidate, runners_[b].candidate)) continue;
+      if (race_.never_together(runners_[a].candidate, runners_[b].candidate)) continue;
       if (runners_[a].forms[0].columns.size() + runners_[b].forms[0].columns.size() > most_columns) continue;
       if (all.size() < most) all.push_back({a, b, 0, 0, 0});
     }
@@ -102,6 +103,7 @@ std::vector<Entrant> Screening::pairs(std::size_t most, std::size_t keep, std::o
               runners_[p.a].forms[p.form_a].point};
     const std::vector<double>& other = runners_[p.b].forms[p.form_b].point;
     e.start.insert(e.start.end(), other.begin(), other.end());
+    e.effect = linear_effect(race_, evidence_, joined(p, p.form_a, p.form_b), e.held_out);
     result.push_back(std::move(e));
   }
   return result;

@@ -12,6 +12,7 @@ struct Entrant {
   double reach = 0;           // fall of the held-out mean square that its linear form promises
   HeldOut held_out;           // of that form
   std::vector<double> start;  // where the fit had best begin: the candidates' parameters in order
+  double effect = 0;          // of that form, in the unit of Options::smallest_effect
 };
 
 class Screening {

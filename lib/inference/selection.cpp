@@ -66,7 +66,7 @@ class Search {
 
   void run() {
     paths_.push_back({{}, {}, s_.base, std::make_shared<const ResidualStructure>(s_.before)});
-    climb(paths_[0]);
+    climb(paths_[0], effort_.effects);
     enter(paths_[0]);
     finalists_.weigh(effort_.looks);
     if (paths_[0].joined.empty()) return tell(paths_[0]);
@@ -83,20 +83,21 @@ class Search {
     double share = 0;  // of what was repaired when the first choice had joined there
   };
 
-  // Effects join while they pay; no set that is among the finalists already, where `anew`.
-  void climb(Path& path, bool anew = false) const {
-    while (path.after->global_p <= options_.level && path.model.candidates.size() < effort_.effects) {
+  // Effects join while they pay, `most` of them; no set that is among the finalists already, where `anew`.
+  void climb(Path& path, std::size_t most, bool anew = false) const {
+    while (path.after->global_p <= options_.level && path.model.candidates.size() < most) {
       path.levels.push_back(std::make_shared<Level>(race_, effort_, path.model, path.after));
       std::optional<Runner> joined = path.levels.back()->step.next();
       while (anew && joined && finalists_.knows(joined->model.candidates)) joined = path.levels.back()->step.next();
       if (!joined) return;
-      join(path, std::move(*joined));
+      join(path, std::move(*joined), most);
     }
   }
-  void join(Path& path, Runner runner) const {
+  void join(Path& path, Runner runner, std::size_t most) const {
     path.model = runner.model;
     path.joined.push_back(std::move(runner));
-    path.after = std::make_shared<const ResidualStructure>(residual_structure(race_, path.model, options_));
+    const Looks looks = path.model.candidates.size() < most ? Looks::at_everything : Looks::at_curves;
+    path.after = std::make_shared<const ResidualStructure>(residual_structure(race_, path.model, options_, looks));
   }
 
   // All that the path met and that could be: what it chose, and the runners of its rounds.
@@ -118,6 +119,8 @@ class Search {
 
   // Until it is sure enough, or turns have stopped to make anything surer.
   void explore() {
+    // No further than the first path and than two: more of them only imitate one that is not there.
+    const std::size_t most = std::min(effort_.effects, std::max<std::size_t>(2, paths_[0].model.candidates.size()));
     std::size_t idle = 0;
     double surest = finalists_.in_library();
     for (const Turn& turn : turns(paths_[0])) {
@@ -127,8 +130,8 @@ class Search {
                 {first.joined.begin(), first.joined.begin() + place},
                 {},
                 {}};
-      join(path, turn.runner);
-      climb(path, true);
+      join(path, turn.runner, most);
+      climb(path, most, true);
       enter(path);
       paths_.push_back(std::move(path));
       finalists_.weigh(effort_.looks);
@@ -156,7 +159,8 @@ class Search {
     const Finalist* top = finalists_.likeliest();
     if (top == nullptr) return tell(paths_[0]);
     s_.model = top->model;
-    s_.after = top->after != nullptr ? *top->after : residual_structure(race_, s_.model, options_);
+    const bool known = top->after != nullptr && top->after->looks == Looks::at_everything;
+    s_.after = known ? *top->after : residual_structure(race_, s_.model, options_);
     const auto leads_there = [&](const Path& path) {
       return std::all_of(s_.model.candidates.begin(), s_.model.candidates.end(), [&](std::size_t c) {
         return std::find(path.model.candidates.begin(), path.model.candidates.end(), c) != path.model.candidates.end();

@@ -203,6 +203,7 @@ Eigen::MatrixXd group_columns(const System& system, const Linearisation& l, std:
                               std::vector<std::size_t>& columns, const Slopes* kept) {
   std::vector<std::size_t> own;
   std::vector<std::vector<std::size_t>> shifted(signatures.size());
+  std::vector<std::size_t> here;  // of signatures whose slopes are taken where the model stands, in one go
   std::vector<const ExtraColumn*> extra_columns;
   columns.clear();
   for (std::size_t c = 0; c < l.columns.size(); ++c) {
@@ -224,12 +225,24 @@ Eigen::MatrixXd group_columns(const System& system, const Linearisation& l, std:
     a.middleCols(filled, part.cols()) = part;
     filled += part.cols();
   };
-  append(system.jacobian(l.values, group, own, kept));
+  std::vector<char> unmoved(signatures.size(), 0);
   for (std::size_t s = 0; s < signatures.size(); ++s) {
-    if (signatures[s].parameters.empty())
+    unmoved[s] = !signatures[s].parameters.empty() && signatures[s].values == l.values;
+    if (unmoved[s] != 0) here.insert(here.end(), shifted[s].begin(), shifted[s].end());
+  }
+  append(system.jacobian(l.values, group, own, kept));
+  const Eigen::MatrixXd at_once = system.jacobian(l.values, group, here);
+  Eigen::Index taken = 0;
+  for (std::size_t s = 0; s < signatures.size(); ++s) {
+    if (unmoved[s] != 0) {
+      const auto count = static_cast<Eigen::Index>(shifted[s].size());
+      append(at_once.middleCols(taken, count));
+      taken += count;
+    } else if (signatures[s].parameters.empty()) {
       append(r - system.residual(signatures[s].values, group));
-    else
+    } else if (!shifted[s].empty()) {
       append(system.jacobian(signatures[s].values, group, shifted[s]));
+    }
   }
   append(system.extra(extra_columns, group));
   append(r);

@@ -95,7 +95,11 @@ class Indirect {
 
 ImageModel::ImageModel(const Recordings& recordings, const SceneLayout& layout, const render::Monomials& monomials,
                        std::vector<ViewCache> views)
-    : recordings_(recordings), layout_(layout), monomials_(monomials), views_(std::move(views)) {
+    : recordings_(recordings),
+      layout_(layout),
+      monomials_(monomials),
+      views_(std::move(views)),
+      memo_(std::make_unique<ShadingMemo>(recordings.images.size())) {
   for (const ViewCache& cache : views_) sums_.push_back(facet_sums(cache));
 }
 
@@ -113,6 +117,7 @@ void ImageModel::add_uses(std::vector<Use> uses, bool in_play) {
     ordered_.push_back(use.place);
     uses_.push_back(std::move(use));
   }
+  memo_ = std::make_unique<ShadingMemo>(recordings_.images.size());  // terms may be others now
   std::stable_sort(ordered_.begin(), ordered_.end(),
                    [&](std::size_t a, std::size_t b) { return uses_[a].term->order < uses_[b].term->order; });
 }
@@ -121,6 +126,7 @@ void ImageModel::take_uses(const ImageModel& other, std::vector<Use> uses) {
   uses_ = std::move(uses);
   ordered_ = other.ordered_;
   layout_.start = other.layout_.start;
+  memo_ = std::make_unique<ShadingMemo>(recordings_.images.size());
 }
 
 SceneState ImageModel::edited(const SceneState& state, std::size_t image) const {
@@ -163,11 +169,23 @@ void ImageModel::record_terms(const SceneState& edited, std::size_t image, std::
 void ImageModel::predict(const SceneState& state, std::size_t image, std::span<const std::uint32_t> picked,
                          std::span<double> radiance) const {
   const SceneState now = edited(state, image);
-  Shading shading = shade(now, image, picked);
-  shade_terms(now, image, picked, shading);
-  compose(now, image, picked, shading, radiance);
+  compose(now, image, picked, shaded(now, image, picked)->whole(), radiance);
   add_terms(now, image, picked, radiance);
   record_terms(now, image, picked, radiance);
+}
+
+std::shared_ptr<const Shaded> ImageModel::shaded(const SceneState& now, std::size_t image,
+                                                 std::span<const std::uint32_t> picked) const {
+  std::vector<double> key = shading_key(now, uses_);
+  if (auto known = memo_->find(image, key, picked)) return known;
+  auto shaded = std::make_shared<Shaded>(Shaded{shade(now, image, picked), {}});
+  const auto shades = [&](const Use& use) { return use.term->shade != nullptr && !use.neutral(now); };
+  if (std::ranges::any_of(uses_, shades)) {
+    shaded->changed = shaded->plain;
+    shade_terms(now, image, picked, *shaded->changed);
+  }
+  memo_->keep(image, std::move(key), picked, shaded);
+  return shaded;
 }
 
 void ImageModel::predict_from(const ViewCache& cache, std::span<const float> sums, const SceneState& edited,

@@ -18,6 +18,7 @@
 #include "relighting/recordings.h"
 #include "relighting/scene_state.h"
 #include "relighting/shading.h"
+#include "relighting/shading_memo.h"
 #include "relighting/term.h"
 
 namespace gonio::relighting {
@@ -45,6 +46,9 @@ class ImageModel {
                    std::uint32_t surface, Shading& shading) const;
   void shade_terms(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
                    Shading& shading) const;
+  // The first two at once; what has been asked for of late is not computed again.
+  std::shared_ptr<const Shaded> shaded(const SceneState& edited, std::size_t image,
+                                       std::span<const std::uint32_t> picked) const;
   void compose(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
                const Shading& shading, std::span<double> radiance) const;
   void add_terms(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
@@ -87,6 +91,7 @@ class ImageModel {
   std::vector<std::vector<float>> sums_;  // [view]: facet_sums()
   std::vector<Use> uses_;
   std::vector<std::size_t> ordered_;  // uses by their terms' order
+  std::unique_ptr<ShadingMemo> memo_;
 };
 
 // Light by way of other surfaces at one state: what a facet of the view's cache sends to the camera, before exposure

@@ -40,10 +40,8 @@ Derivatives::Derivatives(const ImageModel& model, SceneState centre, std::size_t
                          std::span<const std::uint32_t> picked)
     : model_(model), centre_(std::move(centre)), image_(image), picked_(picked), composed_(3 * picked.size()) {
   const SceneState now = model_.edited(centre_, image_);
-  plain_ = model_.shade(now, image_, picked_);
-  shaded_ = plain_;
-  model_.shade_terms(now, image_, picked_, shaded_);
-  model_.compose(now, image_, picked_, shaded_, composed_);
+  shaded_ = model_.shaded(now, image_, picked_);
+  model_.compose(now, image_, picked_, shaded_->whole(), composed_);
   added_ = composed_;
   model_.add_terms(now, image_, picked_, added_);
   for (const Use& use : model_.uses())
@@ -107,8 +105,8 @@ void Derivatives::find_gains(const SceneState& now) {
 }
 
 void Derivatives::composed(const SceneState& now, const Touched& touched, std::span<double> out) const {
-  if (touched.reach == Reach::compose) return model_.compose(now, image_, picked_, shaded_, out);
-  Shading shading = touched.reach == Reach::all ? model_.shade(now, image_, picked_) : plain_;
+  if (touched.reach == Reach::compose) return model_.compose(now, image_, picked_, shaded_->whole(), out);
+  Shading shading = touched.reach == Reach::all ? model_.shade(now, image_, picked_) : shaded_->plain;
   if (touched.reach == Reach::surfaces)
     for (const std::uint32_t s : touched.surfaces) model_.shade_again(now, image_, picked_, s, shading);
   model_.shade_terms(now, image_, picked_, shading);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -37,7 +38,7 @@ class Derivatives {
   SceneState centre_;
   std::size_t image_;
   std::span<const std::uint32_t> picked_;
-  Shading plain_, shaded_;
+  std::shared_ptr<const Shaded> shaded_;
   std::vector<double> composed_, added_;
   bool recorded_ = false, pointwise_ = true;  // by terms that are not neutral; by such as ask a value alone
   std::vector<double> values_, gain_;         // as recorded, where pointwise

@@ -81,7 +81,7 @@ double lit_rms(const images::ImagesProblem& problem, const std::vector<double>& 
 
 TEST(Gray, LightsAndRoughnessAreNamed) {
   GONIO_NEEDS_DATA("photometric/uw-psm");
-  const images::ImagesProblem problem(gray_manifest());
+  const images::ImagesProblem problem(gray_manifest(), {.pixels = 4500});
   const Explanation e = explain(problem, Options{});
   std::vector<std::string> named;
   for (const std::size_t c : e.named) named.push_back(problem.candidates()[c].id());
