@@ -3,8 +3,8 @@
 //
 // A multinomial logistic model (McFadden, Frontiers in Econometrics, 1974): every member of the comparison has a score,
 // the sum of weight times term, and P = exp(score) / sum of exp(score). The weights stand in one table (logit_terms()).
-// They were estimated by penalised maximum likelihood from cases whose truth is known, on the development seeds alone;
-// what the stated probabilities are worth is measured on other seeds (man page, "How sure").
+// They are set by hand on cases whose truth is known (probability.cpp says which); prove-probability estimates them by
+// penalised maximum likelihood and says what the stated probabilities are worth on cases of other seeds.
 #pragma once
 #include <cstddef>
 #include <span>

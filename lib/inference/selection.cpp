@@ -119,11 +119,13 @@ class Search {
 
   // Until it is sure enough, or turns have stopped to make anything surer.
   void explore() {
-    // No further than the first path and than two: more of them only imitate one that is not there.
-    const std::size_t most = std::min(effort_.effects, std::max<std::size_t>(2, paths_[0].model.candidates.size()));
+    // No more than two: where nothing in the library suffices, further ones only imitate what is not there, and each
+    // costs a round.
+    const std::size_t most = std::min<std::size_t>(effort_.effects, 2);
     std::size_t idle = 0;
     double surest = finalists_.in_library();
     for (const Turn& turn : turns(paths_[0])) {
+      if (turn.level >= most) continue;
       const auto place = static_cast<std::ptrdiff_t>(turn.level);
       const Path& first = paths_[0];
       Path path{{first.levels.begin(), first.levels.begin() + place + 1},
