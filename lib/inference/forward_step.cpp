@@ -142,9 +142,10 @@ Runner ForwardStep::fitted(const Entrant& e, std::size_t looks) const {
   return r;
 }
 
-// Could it matter, however far beyond its linear form it reaches?
+// Could it matter beside what has joined? Of what comes first linear forms say too little: a heating's time constant
+// begins anywhere.
 bool ForwardStep::may_matter(const Entrant& e) const {
-  return allowance * e.effect >= race_.options().smallest_effect;
+  return model_.candidates.empty() || allowance * e.effect >= race_.options().smallest_effect;
 }
 
 void ForwardStep::run_singles() {

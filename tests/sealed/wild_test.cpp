@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/atomic_file.h"
+#include "data.h"
 #include "sealed/reliability.h"
 
 namespace gonio::sealed {
@@ -15,10 +16,9 @@ namespace {
 using std::filesystem::path;
 
 struct WildFolder : testing::Test {
-  path folder = path(testing::TempDir()) / "wild";
+  tests::ScratchFolder scratch;
+  path folder = scratch.path();
   void SetUp() override {
-    std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder);
     write_file(folder / "right.json",
                R"({"lamp": ["light.position", "light.direction"], "tone": ["sensor.non-linearity"], "bump": []})");
   }

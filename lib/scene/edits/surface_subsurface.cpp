@@ -14,8 +14,12 @@ const Mechanism& surface_subsurface();
 namespace gonio::scene::edits {
 namespace {
 
+// Lambert's law alone: the roughness of a matte surface would be lost.
 bool can_scatter(const Surface& surface) {
-  return surface.model->info().id == "diffuse" && !surface.varies() && !surface.base;
+  if (surface.model->info().id != "diffuse" || surface.varies() || surface.base) return false;
+  const auto& own = surface.model->info().parameters;
+  const auto rough = std::ranges::find(own, "sigma_rad", &manifest::ParameterInfo::name);
+  return rough == own.end() || surface.values.scalar(static_cast<std::size_t>(rough - own.begin())) == 0;
 }
 double single_albedo(double albedo) {  // the alpha' at which diffusion theory sends back `albedo`
   const surface::InteriorFresnel interior(1);
