@@ -11,6 +11,7 @@
 
 #include "acquisition/device/devices.h"
 #include "acquisition/device/gige_knock.h"
+#include "acquisition/whole_frame.h"
 #include "base/error.h"
 #include "data.h"
 #include "io/raster.h"
@@ -86,7 +87,7 @@ TEST(GenicamCamera, TakesFramesAsAsked) {
   EXPECT_EQ(camera->identity(), "Aravis Fake gonio");
   std::optional<RawFrame> before;
   for (const double exposure_s : {1e-3, 0.020, 5e-5, 0.004, 0.004, 0.010}) {
-    const RawFrame frame = camera->take({exposure_s, {}});
+    const RawFrame frame = tests::whole_frame(*camera, {exposure_s, {}});
     EXPECT_EQ(frame.width_px * frame.height_px, 512 * 512);
     ASSERT_EQ(frame.samples.size(), 512U * 512U);
     EXPECT_EQ(frame.pixel_format, "Mono8");
@@ -114,8 +115,8 @@ TEST(GenicamCamera, PixelsFollowExposureAndGain) {
     return sum / static_cast<double>(frame.samples.size());
   };
   const auto camera = open_camera("genicam://127.0.0.1?gain-step=0.5", "here");
-  const RawFrame once = camera->take({0.002, 0.0}), twice = camera->take({0.004, 0.0});
-  const RawFrame louder = camera->take({0.002, 2.5});
+  const RawFrame once = tests::whole_frame(*camera, {0.002, 0.0}), twice = tests::whole_frame(*camera, {0.004, 0.0});
+  const RawFrame louder = tests::whole_frame(*camera, {0.002, 2.5});
   EXPECT_NEAR(mean(twice) / mean(once), 2, 0.05);
   EXPECT_GT(mean(louder), 1.5 * mean(once));
   EXPECT_EQ(louder.gain_db, 2.5);
@@ -126,7 +127,7 @@ TEST(GenicamCamera, MosaicsAndDepthsKeepTheirNames) {
   GONIO_NEEDS_FAKE_CAMERA(world);
   for (const char* format : {"BayerRG8", "BayerGB8", "Mono16"}) {
     const auto camera = open_camera(std::string("genicam://127.0.0.1?pixel_format=") + format, "here");
-    const RawFrame frame = camera->take({0.005, {}});
+    const RawFrame frame = tests::whole_frame(*camera, {0.005, {}});
     EXPECT_EQ(frame.pixel_format, format);
     EXPECT_EQ(frame.bits, std::string(format) == "Mono16" ? 16 : 8);
     EXPECT_EQ(frame.samples.size(), 512U * 512U);
@@ -138,7 +139,7 @@ TEST(GenicamCamera, SingleFramesWithoutATrigger) {
   const auto camera = open_camera("genicam://127.0.0.1?trigger=none", "here");
   std::uint64_t last = 0;
   for (const double exposure_s : {0.001, 0.003, 0.002}) {
-    const RawFrame frame = camera->take({exposure_s, {}});
+    const RawFrame frame = tests::whole_frame(*camera, {exposure_s, {}});
     EXPECT_NEAR(frame.exposure_s.value_or(0), exposure_s, 1e-6);
     EXPECT_GT(frame.frame_id, last);
     last = frame.frame_id;
@@ -155,7 +156,7 @@ TEST(GenicamCamera, WhatItCannotIsSaidWithItsLimits) {
     EXPECT_THAT(refused.text, testing::HasSubstr("it can 0.01 to 10000 ms"));
   }
   EXPECT_THAT(wrong({0.001, 3.0}).text, testing::HasSubstr("its gain is a count without a unit"));
-  EXPECT_EQ(camera->take({0.001, {}}).incomplete_packets, 0);  // it goes on
+  EXPECT_EQ(tests::whole_frame(*camera, {0.001, {}}).incomplete_packets, 0);  // it goes on
   const Refusal held = refusal_of([] { open_camera("genicam://127.0.0.1", "here"); });
   EXPECT_EQ(held.code, Exit::unavailable);
   EXPECT_THAT(held.text, testing::HasSubstr("another program holds it"));
@@ -192,13 +193,13 @@ TEST(GenicamCamera, AFrameWithLostPacketsIsSaidToBeOne) {
 
 TEST(GenicamCamera, ACameraThatWentAwayComesBack) {
   GONIO_NEEDS_FAKE_CAMERA(world);
-  const auto camera = open_camera("genicam://127.0.0.1?timeout=500ms", "here");
-  const auto last = camera->take({0.001, {}}).frame_id;
+  const auto camera = open_camera("genicam://127.0.0.1?timeout=2s", "here");
+  const auto last = tests::whole_frame(*camera, {0.001, {}}).frame_id;
   world.stop();
   EXPECT_EQ(refusal_of([&] { camera->take({0.001, {}}); }).code, Exit::unavailable);
   world.start();
   ASSERT_TRUE(world.answers);
-  const RawFrame frame = camera->take({0.002, {}});
+  const RawFrame frame = tests::whole_frame(*camera, {0.002, {}});
   EXPECT_NEAR(frame.exposure_s.value_or(0), 0.002, 1e-6);
   EXPECT_GT(frame.frame_id, last);
 }

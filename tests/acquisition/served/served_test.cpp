@@ -17,6 +17,7 @@
 #include "acquisition/desk/true_laboratory.h"
 #include "acquisition/device/devices.h"
 #include "acquisition/run/instrument.h"
+#include "acquisition/whole_frame.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "data.h"
@@ -196,13 +197,6 @@ TEST(Served, WhatCannotBeServedIsSaidInOneLine) {
   EXPECT_EQ(server.interrupt().status, 0);
 }
 
-// As `acquire` does: a frame of which packets are missing is taken again. A machine that is busy drops datagrams.
-RawFrame whole_frame(CameraDevice& camera, const Shot& shot) {
-  RawFrame frame = camera.take(shot);
-  for (int again = 0; again < 5 && frame.incomplete_packets > 0; ++again) frame = camera.take(shot);
-  return frame;
-}
-
 // Bits laid out by the camera and taken apart by the driver's own unpack(); gains, exposures and numbers come back.
 TEST(GigeCamera, EveryFormatArrivesAsItWasSent) {
   desk::Faults faults;
@@ -224,7 +218,7 @@ TEST(GigeCamera, EveryFormatArrivesAsItWasSent) {
     const auto camera = open_camera(url + format.name, "here");
     const auto parsed = *parse_pixel_format(format.name);
     for (const double exposure_s : {0.001, 0.007}) {
-      const RawFrame frame = whole_frame(*camera, {exposure_s, 2.25});
+      const RawFrame frame = tests::whole_frame(*camera, {exposure_s, 2.25});
       EXPECT_EQ(frame.pixel_format, parsed.unpacked());
       EXPECT_EQ(frame.exposure_s, exposure_s);
       EXPECT_EQ(frame.gain_db, 2.25);
@@ -250,17 +244,17 @@ TEST(GigeCamera, WhatIsWrongWithAFrameShows) {
       },
       faults);
   const auto camera = open_camera("genicam://" + served.address() + "?timeout=1s", "here");
-  EXPECT_EQ(whole_frame(*camera, {0.001, {}}).incomplete_packets, 0);
+  EXPECT_EQ(tests::whole_frame(*camera, {0.001, {}}).incomplete_packets, 0);
   faults.set(desk::Fault::chunk_late, 1);
   const RawFrame late = camera->take({0.004, {}});
   EXPECT_EQ(late.chunk_frame_id, late.frame_id - 1);
   EXPECT_EQ(late.exposure_s, 0.001);
   faults.set(desk::Fault::chunk_late, 0);
   faults.set(desk::Fault::stuck_exposure, 1);
-  EXPECT_EQ(camera->take({0.002, {}}).exposure_s, 0.004);
+  EXPECT_EQ(tests::whole_frame(*camera, {0.002, {}}).exposure_s, 0.004);
   faults.set(desk::Fault::stuck_exposure, 0);
   faults.set(desk::Fault::frame_reordered, 1);
-  EXPECT_EQ(whole_frame(*camera, {0.002, {}}).samples, std::vector<std::uint16_t>(20000, 7));
+  EXPECT_EQ(tests::whole_frame(*camera, {0.002, {}}).samples, std::vector<std::uint16_t>(20000, 7));
   faults.set(desk::Fault::trigger_lost, 1);
   EXPECT_THROW(camera->take({0.002, {}}), Error);
 }
