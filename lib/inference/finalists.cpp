@@ -241,6 +241,11 @@ std::vector<Member> Finalists::members(std::vector<std::size_t>* places) const {
   for (const Finalist& f : list_) largest = std::max(largest, std::exp(f.statistics.times) * options_.smallest_effect);
   for (const Competitor& c : before_.curves)
     if (c.hypothesis.gain > c.hypothesis.gain_sigma) largest = std::max(largest, c.hypothesis.effect);
+  const auto take = [&](const auto& look) {
+    if (look && look->p <= options_.level) largest = std::max(largest, look->effect);
+  };
+  take(before_.serial_correlation);
+  take(before_.interaction);
   nothing.statistics.mismatch = -std::log10(std::max(before_.global_p, 1e-12));
   nothing.statistics.largest = std::log(largest / std::max(1e-6, options_.smallest_effect));
   Member outside{Member::Kind::outside, {}};

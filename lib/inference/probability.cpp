@@ -9,6 +9,7 @@ namespace gonio::inference {
 namespace {
 
 constexpr std::size_t most_listed = 3;
+constexpr double worth_listing = 0.05;  // of the likeliest set's probability
 constexpr double likelier_than_not = 0.5;
 constexpr double grain = 0.02;  // shares below it are no shares: a facet is no Gaussian, a lens no polynomial
 constexpr double most_errors = 6;
@@ -52,6 +53,11 @@ double shortfall(const Statistics& s) {
   return std::max({s.missed, s.own, s.any});
 }
 
+// Does anything matter? What is surely there and everywhere smaller than the smallest of interest is nothing that does.
+double mattering(const Statistics& s) {
+  return std::clamp(1 + s.largest, 0.0, 1.0);
+}
+
 // Set by hand on the toys of the engine, the recorded sets of the tests and a few sealed cases, so that those prove
 // nothing of them. What prove-probability fit makes of 243 sealed cases
 // (tables, boards, stacks, heights) is better there and loses what 300 rows show clearly: its cases are too alike.
@@ -60,7 +66,7 @@ const LogitTerm all_logit_terms[] = {
     {"outside", [](const Member& m) { return m.kind == Member::Kind::outside ? 1.0 : 0.0; }, -0.5, 0},
     {"explained", [](const Member& m) { return of_outside(m, of_share(1) - of_share(m.statistics.any)); }, -1.2, -1},
     {"nothing", [](const Member& m) { return m.kind == Member::Kind::nothing ? 1.0 : 0.0; }, 3.0, 0},
-    {"mismatch", [](const Member& m) { return std::min(m.statistics.mismatch, most_errors); }, -1.0, -1},
+    {"mismatch", [](const Member& m) { return mattering(m.statistics) * std::min(m.statistics.mismatch, most_errors); }, -1.0, -1},
     {"largest", [](const Member& m) { return std::clamp(m.statistics.largest, -3.0, 3.0); }, -1.0, -1},
     {"behind", [](const Member& m) { return of_set(m, std::clamp(m.statistics.behind, 0.0, most_errors)); }, -1.0, -1},
     {"short", [](const Member& m) { return of_set(m, of_share(shortfall(m.statistics))); }, -1.0, -1},
@@ -122,7 +128,9 @@ Answer answer(const std::vector<Member>& members, const std::vector<double>& pro
                    [&](std::size_t a, std::size_t b) { return probability[a] > probability[b]; });
   Answer result{Answer::Kind::sets, {}, 0};
   for (const std::size_t k : sets) {
-    if (result.sets.size() == most_listed || (!result.sets.empty() && result.probability >= sure)) break;
+    if (result.sets.size() == most_listed) break;
+    if (!result.sets.empty() && (result.probability >= sure || probability[k] < worth_listing * probability[sets[0]]))
+      break;
     result.sets.push_back(k);
     result.probability += probability[k];
   }

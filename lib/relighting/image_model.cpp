@@ -32,9 +32,14 @@ class Transport {
   std::size_t terms() const { return terms_; }
   // The constant term is what an ambient source sends straight: no light between surfaces.
   Rgb operator()(const float* coefficient) const {
-    Rgb sum;
-    for (std::size_t m = 1; m < terms_; ++m) sum += values_[m] * double{coefficient[m]};
-    return sum * strength_ + Rgb{coefficient[0], coefficient[0], coefficient[0]};
+    Rgb sum, other;  // two chains of additions
+    std::size_t m = 1;
+    for (; m + 1 < terms_; m += 2) {
+      sum += values_[m] * double{coefficient[m]};
+      other += values_[m + 1] * double{coefficient[m + 1]};
+    }
+    if (m < terms_) sum += values_[m] * double{coefficient[m]};
+    return (sum + other) * strength_ + Rgb{coefficient[0], coefficient[0], coefficient[0]};
   }
 
  private:
@@ -111,6 +116,7 @@ Shader ImageModel::shader(std::size_t image) const {
 void ImageModel::add_uses(std::vector<Use> uses, bool in_play) {
   for (Use& use : uses) {
     use.place = uses_.size();
+    use.in_play = in_play;
     std::vector<double> amounts;
     for (const Number& n : use.numbers) amounts.push_back(in_play || !n.free ? n.start : n.neutral);
     layout_.start.amounts.push_back(std::move(amounts));

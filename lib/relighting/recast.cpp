@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <mutex>
 
 #include "scene/placement.h"
 
@@ -10,24 +12,16 @@ namespace gonio::relighting {
 namespace {
 
 constexpr double step_px = 1.25;
-constexpr double most_steps = 4;  // beyond which a straight line is not to be trusted
+constexpr double most_steps = 12;  // 15 pixels: what stands further away is another scene
 constexpr CacheOptions coarse{.samples = 4, .paths = 0, .patches = 1, .penumbrae = false};
 
 using Facets = std::map<std::uint32_t, std::size_t>;  // surface -> facet seen last
 
-Recasts::Node cast(const Setting& s, const std::vector<scene::Instance>& instances) {
-  const render::RayCaster caster(instances);
-  Recasts::Node node;
-  for (std::size_t v = 0; v < s.model.views(); ++v) {
-    std::vector<std::array<int, 2>> chosen;
-    for (const Pixel& p : s.model.cache(v).pixels) chosen.push_back({p.x, p.y});
-    node.views.push_back(
-        build_cache(caster, s.recordings.views[v], s.layout.lights, s.model.monomials(), chosen, coarse));
-    lend_indirect(s.model.cache(v), node.views.back());
-    node.sums.push_back(facet_sums(node.views.back()));
-  }
-  return node;
-}
+struct Node {
+  std::vector<ViewCache> views;
+  std::vector<std::vector<float>> sums;            // [view]: facet_sums()
+  std::vector<std::vector<std::uint8_t>> differs;  // [view][pixel]: 1 where anything is not that of the unmoved scene
+};
 
 bool same(const Patch& a, const Patch& b) {
   const auto equal = [](Vec3 p, Vec3 q) { return p.x == q.x && p.y == q.y && p.z == q.z; };
@@ -36,7 +30,7 @@ bool same(const Patch& a, const Patch& b) {
 
 // Sub-samples are drawn pixel by pixel: where nothing has moved, on the object or in its shadow, all is the same to the
 // last bit.
-bool same_pixel(const Recasts::Node& a, const Recasts::Node& b, std::size_t view, std::size_t pixel) {
+bool same_pixel(const Node& a, const Node& b, std::size_t view, std::size_t pixel) {
   const ViewCache &u = a.views[view], &w = b.views[view];
   const Pixel &p = u.pixels[pixel], &q = w.pixels[pixel];
   if (p.facets != q.facets || p.sky != q.sky) return false;
@@ -55,18 +49,12 @@ bool same_pixel(const Recasts::Node& a, const Recasts::Node& b, std::size_t view
   return true;
 }
 
-void mark_differences(const Recasts::Node& unmoved, Recasts::Node& node) {
+void mark_differences(const Node& unmoved, Node& node) {
   for (std::size_t v = 0; v < node.views.size(); ++v) {
     node.differs.emplace_back();
     for (std::size_t p = 0; p < node.views[v].pixels.size(); ++p)
       node.differs.back().push_back(!same_pixel(unmoved, node, v, p));
   }
-}
-
-std::vector<scene::Instance> moved_scene(const Setting& s, const Use& use, std::span<const double> amounts) {
-  std::vector<scene::Instance> instances = s.scene.instances;
-  instances[use.targets[0]] = scene::moved(instances[use.targets[0]], *use.mechanism, amounts);
-  return instances;
 }
 
 struct Extent {
@@ -114,28 +102,126 @@ double step_of(const mechanism::Parameter& p, const Extent& e) {
   return step_m / (p.unit == "rad" ? e.radius_m : e.reach_m);
 }
 
+class Recasts final : public Prepared {
+ public:
+  struct About {  // a place of the lattice; empty: the middle of the unmoved scene, nodes of numbers that are not free
+    Node middle;
+    std::vector<Node> minus, plus;
+  };
+
+  Recasts(const Setting& s, const Use& use)
+      : scene_(s.scene),
+        recordings_(s.recordings),
+        lights_(s.layout.lights),
+        model_(s.model),
+        mechanism_(*use.mechanism),
+        instance_(use.targets[0]),
+        unmoved_(cast(s.scene.instances)) {
+    if (s.fitted) {
+      const std::span<const double> amounts = use.amounts(*s.fitted);
+      fitted_ = std::make_unique<Node>(moved({amounts.begin(), amounts.end()}));
+      return;
+    }
+    const Extent e = extent_of(s, s.scene.instances[instance_]);
+    for (std::size_t k = 0; k < use.numbers.size(); ++k) {
+      step_.push_back(step_of(mechanism_.parameters[k], e));
+      free_.push_back(use.numbers[k].free);
+    }
+  }
+
+  const Node& unmoved() const { return unmoved_; }
+  // The scene at the very amounts of a state that is settled; null: any may be asked for.
+  const Node* fitted() const { return fitted_.get(); }
+  double step(std::size_t k) const { return step_[k]; }
+  std::vector<int> place_of(std::span<const double> amounts) const {
+    std::vector<int> place;
+    for (std::size_t k = 0; k < amounts.size(); ++k)
+      place.push_back(static_cast<int>(std::lround(amounts[k] / (2 * step_[k]))));
+    return place;
+  }
+  const About& about(const std::vector<int>& place) const {  // from any thread
+    const std::lock_guard lock(mutex_);
+    std::unique_ptr<const About>& made = made_[place];
+    if (!made) made = std::make_unique<const About>(cast_about(place));
+    return *made;
+  }
+
+ private:
+  Node cast(const std::vector<scene::Instance>& instances) const {
+    const render::RayCaster caster(instances);
+    Node node;
+    for (std::size_t v = 0; v < model_.views(); ++v) {
+      std::vector<std::array<int, 2>> chosen;
+      for (const Pixel& p : model_.cache(v).pixels) chosen.push_back({p.x, p.y});
+      node.views.push_back(build_cache(caster, recordings_.views[v], lights_, model_.monomials(), chosen, coarse));
+      lend_indirect(model_.cache(v), node.views.back());
+      node.sums.push_back(facet_sums(node.views.back()));
+    }
+    return node;
+  }
+  Node moved(const std::vector<double>& amounts) const {
+    std::vector<scene::Instance> instances = scene_.instances;
+    instances[instance_] = scene::moved(instances[instance_], mechanism_, amounts);
+    Node node = cast(instances);
+    mark_differences(unmoved_, node);
+    return node;
+  }
+  About cast_about(const std::vector<int>& place) const {
+    About about;
+    std::vector<double> amounts;
+    for (std::size_t k = 0; k < place.size(); ++k) amounts.push_back(2 * place[k] * step_[k]);
+    if (std::ranges::any_of(place, [](int k) { return k != 0; })) about.middle = moved(amounts);
+    about.minus.resize(place.size());
+    about.plus.resize(place.size());
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      if (!free_[k]) continue;
+      const double middle = amounts[k];
+      amounts[k] = middle - step_[k];
+      about.minus[k] = moved(amounts);
+      amounts[k] = middle + step_[k];
+      about.plus[k] = moved(amounts);
+      amounts[k] = middle;
+    }
+    return about;
+  }
+
+  const scene::Scene& scene_;
+  const Recordings& recordings_;
+  const std::span<const LightSource> lights_;
+  const ImageModel& model_;
+  const mechanism::Mechanism& mechanism_;
+  const std::size_t instance_;
+  const Node unmoved_;
+  std::unique_ptr<const Node> fitted_;
+  std::vector<double> step_;  // one per parameter
+  std::vector<bool> free_;
+  mutable std::mutex mutex_;
+  mutable std::map<std::vector<int>, std::unique_ptr<const About>> made_;
+};
+
 // Adds weight * (P(node) - P(unmoved)) for one image, where the two differ.
 class Change {
  public:
-  Change(const Use& use, const Frame& frame, std::span<double> radiance)
-      : table_(static_cast<const Recasts&>(*use.prepared)), frame_(frame), out_(radiance) {}
-  void add(const Recasts::Node& node, double weight) {
+  Change(const Recasts& recasts, const Frame& frame, std::span<double> radiance)
+      : recasts_(recasts), frame_(frame), out_(radiance) {}
+  void add(const Node& node, double weight) {
+    if (weight == 0 || node.views.empty()) return;
     std::vector<std::uint32_t> picked;
     std::vector<std::size_t> rows;
     for (std::size_t i = 0; i < frame_.picked.size(); ++i)
       if (node.differs[frame_.image.view][frame_.picked[i]]) picked.push_back(frame_.picked[i]), rows.push_back(3 * i);
     std::vector<double> there(3 * picked.size()), unmoved(3 * picked.size());
     predict(node, picked, there);
-    predict(table_.unmoved, picked, unmoved);
+    predict(recasts_.unmoved(), picked, unmoved);
     for (std::size_t i = 0; i < there.size(); ++i) out_[rows[i / 3] + i % 3] += weight * (there[i] - unmoved[i]);
   }
 
  private:
-  void predict(const Recasts::Node& node, std::span<const std::uint32_t> picked, std::span<double> out) const {
+  void predict(const Node& node, std::span<const std::uint32_t> picked, std::span<double> out) const {
     const std::size_t v = frame_.image.view;
     frame_.model.predict_from(node.views[v], node.sums[v], frame_.state, frame_.number, picked, out);
   }
-  const Recasts& table_;
+  const Recasts& recasts_;
   const Frame& frame_;
   std::span<double> out_;
 };
@@ -180,7 +266,7 @@ std::vector<Use> object_uses(const Setting& s, const mechanism::Mechanism& mecha
       Number& n = use.numbers[k];
       n.lower = std::max(n.lower, -most);
       n.upper = std::min(n.upper, most);
-      n.start = std::min(n.start, 0.25 * n.upper);
+      n.start = std::min(n.start, most / most_steps);
       // A ball that turns about its centre is the same ball.
       if (std::holds_alternative<scene::Sphere>(instance.shape) && mechanism.parameters[k].unit == "rad")
         n.free = false, n.start = n.neutral;
@@ -191,56 +277,42 @@ std::vector<Use> object_uses(const Setting& s, const mechanism::Mechanism& mecha
 }
 
 std::shared_ptr<const Prepared> prepare_recasts(const Setting& s, const Use& use) {
-  auto result = std::make_shared<Recasts>();
-  result->unmoved = cast(s, s.scene.instances);
-  if (s.fitted) {
-    result->exact = true;
-    result->plus.push_back(cast(s, moved_scene(s, use, use.amounts(*s.fitted))));
-    mark_differences(result->unmoved, result->plus[0]);
-    return result;
-  }
-  const Extent e = extent_of(s, s.scene.instances[use.targets[0]]);
-  std::vector<double> amounts(use.numbers.size(), 0.0);
-  for (std::size_t k = 0; k < use.numbers.size(); ++k) {
-    const double step = step_of(use.mechanism->parameters[k], e);
-    result->step.push_back(step);
-    amounts[k] = -step;
-    result->minus.push_back(cast(s, moved_scene(s, use, amounts)));
-    amounts[k] = step;
-    result->plus.push_back(cast(s, moved_scene(s, use, amounts)));
-    amounts[k] = 0;
-    mark_differences(result->unmoved, result->minus.back());
-    mark_differences(result->unmoved, result->plus.back());
-  }
-  return result;
+  return std::make_shared<Recasts>(s, use);
 }
 
 void add_recasts(const Use& use, const Frame& frame, std::span<double> radiance) {
-  const auto& table = static_cast<const Recasts&>(*use.prepared);
-  Change change(use, frame, radiance);
-  if (table.exact) return change.add(table.plus[0], 1);
+  const auto& recasts = static_cast<const Recasts&>(*use.prepared);
+  Change change(recasts, frame, radiance);
+  if (recasts.fitted()) return change.add(*recasts.fitted(), 1);
   const std::span<const double> amounts = use.amounts(frame.state);
+  const std::vector<int> place = recasts.place_of(amounts);
+  const Recasts::About& about = recasts.about(place);
+  double middle = 1;
   for (std::size_t k = 0; k < amounts.size(); ++k) {
-    if (amounts[k] == 0) continue;
-    const double t = amounts[k] / table.step[k], inside = std::clamp(t, -1.0, 1.0), beyond = t - inside;
-    // The parabola through the three nodes, and its slope at the end of the step.
-    change.add(table.plus[k], 0.5 * (inside + inside * inside) + beyond * (0.5 + inside));
-    change.add(table.minus[k], -0.5 * (inside - inside * inside) - beyond * (0.5 - inside));
+    const double t = amounts[k] / recasts.step(k) - 2 * place[k];
+    if (t == 0) continue;
+    change.add(about.plus[k], 0.5 * (t + t * t));
+    change.add(about.minus[k], -0.5 * (t - t * t));
+    middle -= t * t;
   }
+  change.add(about.middle, middle);
 }
 
 void recast_slopes(const Use& use, const Frame& frame, std::span<const std::size_t> numbers,
                    std::span<double> columns) {
-  const auto& table = static_cast<const Recasts&>(*use.prepared);
+  const auto& recasts = static_cast<const Recasts&>(*use.prepared);
   const std::span<const double> amounts = use.amounts(frame.state);
+  const std::vector<int> place = recasts.place_of(amounts);
+  const Recasts::About& about = recasts.about(place);
   const std::size_t rows = 3 * frame.picked.size();
   std::fill(columns.begin(), columns.end(), 0.0);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const std::size_t k = numbers[i];
-    const double inside = std::clamp(amounts[k] / table.step[k], -1.0, 1.0);
-    Change change(use, frame, columns.subspan(i * rows, rows));
-    change.add(table.plus[k], (0.5 + inside) / table.step[k]);
-    change.add(table.minus[k], -(0.5 - inside) / table.step[k]);
+    const double step = recasts.step(k), t = amounts[k] / step - 2 * place[k];
+    Change change(recasts, frame, columns.subspan(i * rows, rows));
+    change.add(about.plus[k], (0.5 + t) / step);
+    change.add(about.minus[k], -(0.5 - t) / step);
+    change.add(about.middle, -2 * t / step);
   }
 }
 

@@ -57,6 +57,7 @@ struct Use {
   bool finer = false;                  // Candidate::finer
   std::shared_ptr<const Prepared> prepared{};
   std::size_t place = 0;  // among the model's uses: SceneState::amounts[place]
+  bool in_play = false;   // the manifest has it switched on; else a hypothesis
 
   std::size_t set_of(std::size_t target) const { return sets == 1 ? 0 : target; }
   // The parameters of the target number `target` in `on`, in the mechanism's order.
@@ -64,6 +65,8 @@ struct Use {
     const std::size_t n = mechanism->parameters.size();
     return {state.amounts[place].data() + n * set_of(target), n};
   }
+  // Has it no effect? What is no hypothesis but known of one (a reference, a period read off the recordings) has none
+  // while all that is free is neutral.
   bool neutral(const SceneState& state) const;
   std::span<const double> neutral_amounts() const { return neutral_; }
   std::vector<double> neutral_{};  // one set, in the mechanism's order

@@ -73,7 +73,7 @@ Use given_use(const Setting& s, const Mechanism& m, const manifest::MechanismUse
 bool Use::neutral(const SceneState& state) const {
   if (place >= state.amounts.size()) return true;
   for (std::size_t i = 0; i < numbers.size(); ++i)
-    if (state.amounts[place][i] != numbers[i].neutral) return false;
+    if ((in_play || numbers[i].free) && state.amounts[place][i] != numbers[i].neutral) return false;
   return true;
 }
 

@@ -31,7 +31,7 @@ ToneSlopes slopes_of(double slope, const ToneBends& bends) {
   return p;
 }
 
-ToneCurve::ToneCurve(const ToneSlopes& slopes) : slopes_(slopes), log_light_{} {
+ToneCurve::ToneCurve(const ToneSlopes& slopes) : slopes_(slopes), log_light_{}, linear_(slopes == linear_tone) {
   const std::array<double, nodes>& x = log_nodes();
   log_light_[nodes - 1] = 0;
   for (std::size_t k = nodes - 1; k > 0; --k)

@@ -26,13 +26,14 @@ ToneSlopes slopes_of(double slope, const ToneBends& bends);
 class ToneCurve {
  public:
   explicit ToneCurve(const ToneSlopes& slopes = linear_tone);
-  bool linear() const { return slopes_ == linear_tone; }
+  bool linear() const { return linear_; }
   double light(double reading) const;
   double reading(double light) const;  // its inverse
 
  private:
   double log_light(double log_reading) const;
   ToneSlopes slopes_, log_light_;  // the latter at the nodes
+  bool linear_;
 };
 
 // One reading: the four in this order, each with `reference` as its unit. Unchanged to the last bit where quadratic

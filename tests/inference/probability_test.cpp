@@ -67,6 +67,14 @@ TEST(Probability, NineNumbersYieldToOne) {
   EXPECT_GT(p[3], 5 * p[2]);
 }
 
+// Dust is surely there, and a fourth of what matters.
+TEST(Probability, WhatIsSurelyThereAndSmallIsNothingThatMatters) {
+  Member nothing{Member::Kind::nothing, {}};
+  nothing.statistics.mismatch = 12, nothing.statistics.largest = std::log(0.27);
+  const std::vector<Member> members{nothing, {Member::Kind::outside, {}}};
+  EXPECT_EQ(answer(members, probabilities(members), 0.9).kind, Answer::Kind::nothing);
+}
+
 TEST(Probability, TwinsShareIt) {
   const std::vector<Member> members = against({good(), good()});
   const std::vector<double> p = probabilities(members);
@@ -75,6 +83,14 @@ TEST(Probability, TwinsShareIt) {
   EXPECT_EQ(a.kind, Answer::Kind::sets);
   EXPECT_EQ(a.sets.size(), 2u);
   EXPECT_NEAR(a.probability, p[2] + p[3], 1e-12);
+}
+
+TEST(Answer, ListsNothingThatIsHardlyPossible) {
+  const std::vector<Member> members = against({good(), good()});
+  const Answer one = answer(members, {0.05, 0.052, 0.89, 0.008}, 0.9);
+  EXPECT_THAT(one.sets, ElementsAre(2));
+  EXPECT_EQ(one.probability, 0.89);
+  EXPECT_THAT(answer(members, {0.02, 0.03, 0.85, 0.1}, 0.9).sets, ElementsAre(2, 3));
 }
 
 TEST(Answer, IsOneWhereItIsSureAndSeveralWhereTheyAreTogether) {

@@ -150,6 +150,16 @@ TEST(Displaced, AnObjectThatStandsElsewhereIsNoCamera) {
   ASSERT_THAT(outcome.named(), ElementsAre("geometry.pose")) << outcome.explanation.sentence;
 }
 
+// Further than a silhouette's slope reaches.
+TEST(Displaced, AnObjectFarFromItsPlaceIsFound) {
+  EffectWorld world = two_balls();
+  world.truth = R"("geometry.pose":{"on":["ball"],"shift_x_m":0.02,"shift_y_m":-0.012})";
+  const EffectOutcome outcome(world, rivals);
+  ASSERT_THAT(outcome.named(), ElementsAre("geometry.pose")) << outcome.explanation.sentence;
+  EXPECT_NEAR(outcome.fitted("shift_x_m"), 0.02, 0.001);
+  EXPECT_NEAR(outcome.fitted("shift_y_m"), -0.012, 0.001);
+}
+
 TEST(Displaced, NothingIsNamedWhereNothingIsLeftOut) {
   const EffectOutcome outcome(two_balls(), rivals);
   EXPECT_THAT(outcome.named(), ElementsAre()) << outcome.explanation.sentence;
