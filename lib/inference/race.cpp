@@ -16,6 +16,8 @@ namespace {
 constexpr int chords = 25;                            // steps of a fit with kept slopes
 constexpr int tangents = 20;                          // of a hypothesis in the race: leaders are fitted to the end
 constexpr int turns = 3;                              // how often the slopes may be taken anew
+constexpr double idle = 0.01;                         // of what a fit has gained: what a number does not hold
+constexpr double half_way = 0.1;                      // of the sum of whitened squares, that a fit has gained
 constexpr double usual_reach = 3;                     // typical sizes: where a bound lies so near, it may be reached
 constexpr double small_gain = 0.005, small_cost = 4;  // of the sum of whitened squares: not worth new slopes
 
@@ -158,24 +160,54 @@ Model Race::started(const Model& from, std::vector<std::size_t> candidates, cons
   Model m{std::move(candidates), {}, {}};
   if (kept == nullptr) {
     m.fit = fit(system_, std::move(values), active);
+    put_back(m);
     m.held_out = held_out_by_step(system_, m.fit);
     return m;
   }
   auto [reached, turned, promised] = along_chords(from, values, active, *kept);
   m.fit = std::move(reached);
   // Chords that are stuck show by what tangents promise there, however much was gained on the way.
-  const double gained = from.fit.cost - m.fit.cost;
+  double gained = from.fit.cost - m.fit.cost;
   const bool gradual = std::any_of(m.candidates.begin(), m.candidates.end(),
                                    [&](std::size_t c) { return system_.problem().candidates()[c].gradual; });
   if (!gradual && (gained < 0.5 * promise || gained < promised)) {
     Fit anew = fit(system_, std::move(values), active, tangents);
     if (anew.cost < m.fit.cost) {
       m.fit = std::move(anew);
+      gained = from.fit.cost - m.fit.cost;
       turned = slopes(system_, m.fit.values, active);
     }
   }
+  put_back(m);
   m.held_out = held_out_by_step(system_, m.fit, turned ? &*turned : kept);
+  // Much better on the groups in play and no better on those left out: it stopped half-way, where a step from the joint
+  // optimum says nothing.
+  if (gained > half_way * from.fit.cost && !(gain(from.held_out, m.held_out).mean > 0)) {
+    m.fit = fit(system_, m.fit.values, active);
+    put_back(m);
+    m.held_out = held_out_by_step(system_, m.fit);
+  }
   return m;
+}
+
+void Race::put_back(Model& m) const {
+  const Problem& problem = system_.problem();
+  std::optional<double> nothing;  // cost without any of the candidates
+  for (const std::size_t c : m.candidates)
+    for (const std::size_t p : problem.candidates()[c].parameters) {
+      if (std::find(m.fit.inner.begin(), m.fit.inner.end(), p) != m.fit.inner.end()) continue;
+      std::vector<double> values = m.fit.values;
+      values[p] = problem.parameters()[p].neutral;
+      if (values[p] == m.fit.values[p]) continue;
+      if (!nothing) nothing = fit(system_, beginning(m, {}, {}).first, m.fit.active, 0).cost;
+      const double gained = *nothing - m.fit.cost;
+      const auto as_good = [&](const Fit& other) { return other.cost - m.fit.cost < idle * gained; };
+      Fit other = fit(system_, values, m.fit.active, 0);
+      other.converged = m.fit.converged;
+      if (!as_good(other) && gained > half_way * *nothing && !at_a_limit(problem, m.fit, {c}).empty())
+        other = fit(system_, std::move(values), m.fit.active, tangents);
+      if (as_good(other)) m.fit = std::move(other);
+    }
 }
 
 // Where tangents promise more than a small part of what the chords have gained, they take the chords' place.

@@ -64,6 +64,9 @@ class Race {
   std::pair<std::vector<double>, std::vector<std::size_t>> beginning(const Model& from,
                                                                      const std::vector<std::size_t>& candidates,
                                                                      const std::vector<double>& start) const;
+  // Numbers of the model's candidates that nothing holds (the turn of a bell about its axis) run to a bound, which
+  // would speak against the rest: they go back to neutral.
+  void put_back(Model& m) const;
   struct AlongChords {
     Fit fit;
     std::optional<Slopes> turned;  // where they were taken anew

@@ -243,7 +243,7 @@ void ImageModel::compose_from(const ViewCache& cache, const SceneState& state, s
 std::vector<Rgb> ImageModel::direct_from(const ViewCache& cache, std::span<const float> sums, const SceneState& state,
                                          std::size_t number, std::span<const std::uint32_t> picked) const {
   const Recording& image = recordings_.images[number];
-  const Shading shading = Shader(layout_, image, cache, sums)(state, picked);
+  const Shading shading = Shader(layout_, image, cache, sums).direct_alone(state, picked);
   const std::vector<Rgb> albedos = albedos_of(state);
   std::vector<Rgb> radiance;
   std::size_t slot = 0;

@@ -12,6 +12,7 @@ namespace gonio::relighting {
 namespace {
 
 constexpr double step_px = 1.25;
+constexpr double spacing = 0.5;    // of places, in steps
 constexpr double most_steps = 12;  // 15 pixels: what stands further away is another scene
 constexpr CacheOptions coarse{.samples = 4, .paths = 0, .patches = 1, .penumbrae = false};
 
@@ -136,7 +137,7 @@ class Recasts final : public Prepared {
   std::vector<int> place_of(std::span<const double> amounts) const {
     std::vector<int> place;
     for (std::size_t k = 0; k < amounts.size(); ++k)
-      place.push_back(static_cast<int>(std::lround(amounts[k] / (2 * step_[k]))));
+      place.push_back(static_cast<int>(std::lround(amounts[k] / (spacing * step_[k]))));
     return place;
   }
   const About& about(const std::vector<int>& place) const {  // from any thread
@@ -169,7 +170,7 @@ class Recasts final : public Prepared {
   About cast_about(const std::vector<int>& place) const {
     About about;
     std::vector<double> amounts;
-    for (std::size_t k = 0; k < place.size(); ++k) amounts.push_back(2 * place[k] * step_[k]);
+    for (std::size_t k = 0; k < place.size(); ++k) amounts.push_back(spacing * place[k] * step_[k]);
     if (std::ranges::any_of(place, [](int k) { return k != 0; })) about.middle = moved(amounts);
     about.minus.resize(place.size());
     about.plus.resize(place.size());
@@ -289,7 +290,7 @@ void add_recasts(const Use& use, const Frame& frame, std::span<double> radiance)
   const Recasts::About& about = recasts.about(place);
   double middle = 1;
   for (std::size_t k = 0; k < amounts.size(); ++k) {
-    const double t = amounts[k] / recasts.step(k) - 2 * place[k];
+    const double t = amounts[k] / recasts.step(k) - spacing * place[k];
     if (t == 0) continue;
     change.add(about.plus[k], 0.5 * (t + t * t));
     change.add(about.minus[k], -0.5 * (t - t * t));
@@ -308,7 +309,7 @@ void recast_slopes(const Use& use, const Frame& frame, std::span<const std::size
   std::fill(columns.begin(), columns.end(), 0.0);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const std::size_t k = numbers[i];
-    const double step = recasts.step(k), t = amounts[k] / step - 2 * place[k];
+    const double step = recasts.step(k), t = amounts[k] / step - spacing * place[k];
     Change change(recasts, frame, columns.subspan(i * rows, rows));
     change.add(about.plus[k], (0.5 + t) / step);
     change.add(about.minus[k], -(0.5 - t) / step);

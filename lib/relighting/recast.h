@@ -2,9 +2,10 @@
 // at places of a lattice over the parameters of a mechanism of objects. About the nearest place c the change of a
 // prediction is interpolated between a step to either side, and changes by several parameters are added up:
 //   P(a) - P(0) = P(c) - P(0) + sum over parameters of  D+ (t + t^2) / 2 - D- (t - t^2) / 2,
-//   t = (a - c) / step,  D = P(node) - P(c),  |t| <= 1: places are two steps apart.
-// A step moves the picture by about a pixel: silhouettes pass over a pixel within that. Places are cast where a fit
-// looks, and what one holds depends on its amounts alone. Light by way of other surfaces is that of the unmoved scene.
+//   t = (a - c) / step,  D = P(node) - P(c),  |t| <= 1/4: places are half a step apart.
+// A step moves the picture by about a pixel: silhouettes pass over a pixel within that, and changes of six numbers that
+// are added up must be small beside it. Places are cast where a fit looks, and what one holds depends on its amounts
+// alone. Light by way of other surfaces is that of the unmoved scene.
 #pragma once
 #include "relighting/image_model.h"
 #include "relighting/uses.h"

@@ -42,6 +42,8 @@ Vec3 lobe_axis(Vec3 position_m, Vec3 centre_m, std::span<const double> lobe) {
                             lobe[mechanism::lobe_tilt_y], centre_m);
 }
 
+}  // namespace
+
 // The surface without and with a white base.
 struct Extremes {
   surface::Values black, white;
@@ -85,8 +87,6 @@ struct Extremes {
     return {{base, base, base}, gloss};
   }
 };
-
-}  // namespace
 
 RadiusWeights::RadiusWeights(double radius_m) {
   if (radius_m <= 0) return;
@@ -176,7 +176,7 @@ double Shader::visible_now(const Lamp& lamp, std::size_t f, double visible) cons
                        aim(layout_.lights[lamp.light], at_m).wi, aim(lamp.source, at_m).wi, visible);
 }
 
-Scattered Shader::direct(const SurfaceState& surface, std::size_t f, const Lamp& lamp) const {
+Scattered Shader::direct(const SurfaceState& surface, const Extremes& extremes, std::size_t f, const Lamp& lamp) const {
   const std::size_t lights = layout_.lights.size(), l = lamp.light;
   const bool lambertian = surface.lambertian();
   if (lambertian && !lamp.turned) {
@@ -184,7 +184,6 @@ Scattered Shader::direct(const SurfaceState& surface, std::size_t f, const Lamp&
     return {{base, base, base}, {}};
   }
   const Facet& facet = cache_.facets[f];
-  const Extremes extremes(surface);
   Scattered sum;
   for (std::size_t place = facet.first_patch; place < facet.first_patch + facet.patches; ++place) {
     const Patch& patch = cache_.patches[place];
@@ -273,31 +272,60 @@ Vec3 Shader::seen_from(const Facet& facet) const {
   return above_horizon(Basis(patch.normal).to_local(patch.wo));
 }
 
-Shading Shader::operator()(const SceneState& state, std::span<const std::uint32_t> picked) const {
-  Shading shading;
-  shading.lights = image_.lights.size();
+std::size_t Shader::facets_of(std::span<const std::uint32_t> picked) const {
   std::size_t facets = 0;
   for (const std::uint32_t p : picked) facets += cache_.pixels[p].facets;
-  shading.direct.resize(facets * shading.lights);
-  shading.indirect.resize(facets);
-  for (std::uint32_t s = 0; s < state.surfaces.size(); ++s) again(state, picked, s, shading);
+  return facets;
+}
+
+Shading Shader::direct_alone(const SceneState& state, std::span<const std::uint32_t> picked) const {
+  Shading shading;
+  const std::vector<Lamp> on = lamps(state);
+  shading.lights = on.size();
+  shading.direct.resize(facets_of(picked) * shading.lights);
+  for (std::uint32_t s = 0; s < state.surfaces.size(); ++s) again(state, picked, s, on, shading);
+  return shading;
+}
+
+Shading Shader::operator()(const SceneState& state, std::span<const std::uint32_t> picked) const {
+  Shading shading = direct_alone(state, picked);
+  shading.indirect.resize(facets_of(picked));
+  for (std::uint32_t s = 0; s < state.surfaces.size(); ++s) send_on_again(state, picked, s, shading);
   for (const Lamp& lamp : lamps(state)) shading.onward.push_back(onward(lamp));
   return shading;
 }
 
 void Shader::again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface,
                    Shading& shading) const {
-  const std::vector<Lamp> on = lamps(state);
+  again(state, picked, surface, lamps(state), shading);
+  send_on_again(state, picked, surface, shading);
+}
+
+void Shader::again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface,
+                   std::span<const Lamp> on, Shading& shading) const {
+  const SurfaceState& its = state.surfaces[surface];
+  const Extremes extremes(its);
+  std::size_t slot = 0;
+  for (const std::uint32_t p : picked)
+    for (std::size_t k = 0; k < cache_.pixels[p].facets; ++k, ++slot) {
+      const std::size_t f = cache_.pixels[p].first_facet + k;
+      if (cache_.facets[f].surface != surface) continue;
+      for (std::size_t i = 0; i < on.size(); ++i)
+        shading.direct[slot * on.size() + i] = direct(its, extremes, f, on[i]);
+    }
+}
+
+void Shader::send_on_again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface,
+                           Shading& shading) const {
   const SurfaceState& its = state.surfaces[surface];
   const bool lambertian = its.lambertian();
   const ScatteredBy scattered_by(its, picked.size());
   std::size_t slot = 0;
   for (const std::uint32_t p : picked)
     for (std::size_t k = 0; k < cache_.pixels[p].facets; ++k, ++slot) {
-      const std::size_t f = cache_.pixels[p].first_facet + k;
-      if (cache_.facets[f].surface != surface) continue;
-      for (std::size_t i = 0; i < on.size(); ++i) shading.direct[slot * on.size() + i] = direct(its, f, on[i]);
-      shading.indirect[slot] = lambertian ? Scattered{{1, 1, 1}, {}} : scattered_by(seen_from(cache_.facets[f]));
+      const Facet& facet = cache_.facets[cache_.pixels[p].first_facet + k];
+      if (facet.surface != surface) continue;
+      shading.indirect[slot] = lambertian ? Scattered{{1, 1, 1}, {}} : scattered_by(seen_from(facet));
     }
 }
 

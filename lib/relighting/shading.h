@@ -47,11 +47,15 @@ struct RadiusWeights {
 // Weighted sums of a view's `direct` table over each facet's patches: [facet][light][radius].
 std::vector<float> facet_sums(const ViewCache& cache);
 
+struct Extremes;  // a surface with a black base and with a white one
+
 class Shader {
  public:
   Shader(const SceneLayout& layout, const Recording& image, const ViewCache& cache, std::span<const float> sums)
       : layout_(layout), image_(image), cache_(cache), sums_(sums) {}
   Shading operator()(const SceneState& state, std::span<const std::uint32_t> picked) const;
+  // Without what facets send on of irregular light.
+  Shading direct_alone(const SceneState& state, std::span<const std::uint32_t> picked) const;
   // The facets of one surface anew.
   void again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface,
              Shading& shading) const;
@@ -64,7 +68,12 @@ class Shader {
   double onward(const Lamp& lamp) const;
   Vec3 seen_from(const Facet& facet) const;  // in the frame of its normal
   double visible_now(const Lamp& lamp, std::size_t facet, double visible) const;
-  Scattered direct(const SurfaceState& surface, std::size_t facet, const Lamp& lamp) const;
+  std::size_t facets_of(std::span<const std::uint32_t> picked) const;
+  Scattered direct(const SurfaceState& surface, const Extremes& extremes, std::size_t facet, const Lamp& lamp) const;
+  void again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface,
+             std::span<const Lamp> lamps, Shading& shading) const;
+  void send_on_again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface,
+                     Shading& shading) const;
   const SceneLayout& layout_;
   const Recording& image_;
   const ViewCache& cache_;

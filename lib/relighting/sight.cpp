@@ -26,14 +26,18 @@ void cells_of(Vec2 centre, const Visit& visit) {
 void Sight::look_at(Vec2 centre) {
   cells_of(centre, [&](int i, int j, double) {
     const FineView::Place place = view_.place_of(i, j);
-    tiles_[place.tile].wanted |= std::uint64_t{1} << place.cell;
+    std::int32_t& at = place_[static_cast<std::size_t>(place.tile)];
+    if (at < 0) {
+      at = static_cast<std::int32_t>(tiles_.size());
+      tiles_.push_back({.tile = &view_.tile(place.tile), .direct = {}});
+    }
+    tiles_[static_cast<std::size_t>(at)].wanted |= std::uint64_t{1} << place.cell;
   });
 }
 
 void Sight::shade() {
   std::vector<std::uint32_t> picked;
-  for (auto& [number, shaded] : tiles_) {
-    shaded.tile = &view_.tile(number);
+  for (Shaded& shaded : tiles_) {
     const ViewCache& cells = shaded.tile->cells;
     picked.clear();
     for (std::uint64_t left = shaded.wanted; left != 0; left &= left - 1)
@@ -53,7 +57,7 @@ Sight::Sum Sight::at(Vec2 centre, std::uint32_t pixel, Which which) {
   Sum sum;
   cells_of(centre, [&](int i, int j, double part) {
     const FineView::Place place = view_.place_of(i, j);
-    const Shaded& shaded = tiles_.at(place.tile);
+    const Shaded& shaded = tiles_[static_cast<std::size_t>(place_[static_cast<std::size_t>(place.tile)])];
     const ViewCache& cells = shaded.tile->cells;
     const Pixel& cell = cells.pixels[static_cast<std::size_t>(place.cell)];
     if (which != Which::near && cell.sky > 0) {
@@ -82,11 +86,11 @@ Rgb Sight::onward(std::uint32_t number, const Facet& part) {
 }
 
 Rgb Sight::onward_of(std::size_t facet, Rgb tint) {
-  const auto [found, fresh] = known_.try_emplace(facet);
-  if (fresh) found->second = onward_(facet);
+  std::optional<Rgb>& known = known_[facet];
+  if (!known) known = onward_(facet);
   const Rgb own = frame_.cache.facets[facet].tint;
   const auto over = [](double value, double usual) { return usual > 0 ? value / usual : 1; };
-  return found->second * Rgb{over(tint.x, own.x), over(tint.y, own.y), over(tint.z, own.z)};
+  return *known * Rgb{over(tint.x, own.x), over(tint.y, own.y), over(tint.z, own.z)};
 }
 
 }  // namespace gonio::relighting

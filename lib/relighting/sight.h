@@ -1,7 +1,8 @@
 // What half-pixel cells show at one state of the scene, summed over a pixel's square at any place. Places are first
 // named (look_at), then all are shaded at once, then summed.
 #pragma once
-#include <unordered_map>
+#include <optional>
+#include <vector>
 
 #include "relighting/fine_views.h"
 #include "relighting/image_model.h"
@@ -12,7 +13,12 @@ namespace gonio::relighting {
 class Sight {
  public:
   Sight(const FineView& view, const Places& places, const Frame& frame)
-      : view_(view), places_(places), frame_(frame), onward_(frame.model, frame.state, frame.number) {}
+      : view_(view),
+        places_(places),
+        frame_(frame),
+        onward_(frame.model, frame.state, frame.number),
+        place_(static_cast<std::size_t>(view.tiles()), -1),
+        known_(frame.cache.facets.size()) {}
 
   void look_at(Vec2 centre);
   void shade();
@@ -37,8 +43,9 @@ class Sight {
   const Places& places_;
   const Frame& frame_;
   Onward onward_;
-  std::unordered_map<int, Shaded> tiles_;
-  std::unordered_map<std::size_t, Rgb> known_;
+  std::vector<Shaded> tiles_;
+  std::vector<std::int32_t> place_;        // tile of the view -> place in tiles_, or -1
+  std::vector<std::optional<Rgb>> known_;  // by facet of the frame's cache: what it sends on
 };
 
 inline constexpr int block_px = 16;  // of Places::nearest
