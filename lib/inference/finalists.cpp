@@ -109,7 +109,7 @@ void Finalists::add(Model model, std::shared_ptr<const ResidualStructure> after)
       const double all = static_cast<double>(race_.system().observations().groups());
       s.numbers += on == 0 || !(all > 0) ? 1 : static_cast<double>(on) / all;
     }
-    s.finer += candidate.finer;
+    f.finer += candidate.finer;
   }
   s.more = static_cast<double>(f.model.candidates.size()) - 1;
   s.weakest = errors_of_help(base_.held_out, f.model.held_out);
@@ -181,7 +181,8 @@ std::vector<Model> Finalists::weaken(Finalist& f) const {
   return smaller;
 }
 
-void Finalists::look_into(Finalist& f) {
+void Finalists::look_into(std::size_t place) {
+  Finalist& f = list_[place];
   if (f.after == nullptr) {
     Model polished = race_.changed(f.model, f.model.candidates);
     if (polished.fit.cost < f.model.fit.cost) {
@@ -199,6 +200,29 @@ void Finalists::look_into(Finalist& f) {
   f.looked_into = true;
   refuse(f);
   for (Model& m : smaller) add(std::move(m));  // the last use of `f`: the list may move
+}
+
+// What is there beside a set and too small to matter is no objection to it: what the set leaves, and what it misses, is
+// what is left beside them together.
+void Finalists::look_at_minor(std::size_t place) {
+  if (!(list_[place].left.any > 0)) return;
+  std::optional<std::size_t> best;
+  for (std::size_t k = 0; k < list_.size(); ++k) {
+    const Finalist &more = list_[k], &f = list_[place];
+    if (!more.refused.empty() || !holds_more(more, f) || !(more.gained > f.gained)) continue;
+    if (race_.effect(f.model, more.model) >= options_.smallest_effect) continue;
+    if (!best || more.gained > list_[*best].gained) best = k;
+  }
+  if (!best) return;
+  if (!list_[*best].looked_into) look_into(*best);
+  list_[place].with_minor = {*best};
+}
+
+// Is there a plainer form of the same that could be the answer? Else its being a finer one says nothing.
+bool Finalists::has_plainer(const Finalist& f) const {
+  return std::any_of(list_.begin(), list_.end(), [&](const Finalist& other) {
+    return is_answer(other) && other.finer < f.finer && physics_of(other) == physics_of(f);
+  });
 }
 
 void Finalists::compare() {
@@ -220,6 +244,15 @@ void Finalists::compare() {
     s.own = part_of_all(f.left.own, f.left.own + std::max(0.0, f.gained));
     s.clean = part_of_all(f.left.own, excess_of(f.model.held_out));
     s.any = part_of_all(f.left.any, f.left.any + std::max(0.0, f.gained));
+    for (const std::size_t k : f.with_minor) {
+      const Finalist& more = list_[k];
+      if (!more.refused.empty() || !more.looked_into) continue;
+      s.missed = std::min(s.missed, 1 - part_of_all(more.gained, most));
+      s.own = std::min(s.own, part_of_all(more.left.own, more.left.own + std::max(0.0, more.gained)));
+      s.clean = std::min(s.clean, part_of_all(more.left.own, excess_of(more.model.held_out)));
+      s.any = std::min(s.any, part_of_all(more.left.any, more.left.any + std::max(0.0, more.gained)));
+    }
+    s.finer = has_plainer(f) ? static_cast<double>(f.finer) : 0;
     s.curve = 0;
     for (const Competitor& c : before_.curves) {
       if (!(c.hypothesis.gain > 2 * c.hypothesis.gain_sigma)) continue;
@@ -280,12 +313,14 @@ void Finalists::score() {
 void Finalists::weigh(std::size_t most) {
   score();
   for (std::size_t n = 0; n < most; ++n) {
-    Finalist* next = nullptr;
-    for (Finalist& f : list_)
-      if (!f.looked_into && f.probability > worth_a_look && (next == nullptr || f.probability > next->probability))
-        next = &f;
-    if (next == nullptr) return;
+    std::optional<std::size_t> next;
+    for (std::size_t k = 0; k < list_.size(); ++k) {
+      if (list_[k].looked_into || !(list_[k].probability > worth_a_look)) continue;
+      if (!next || list_[k].probability > list_[*next].probability) next = k;
+    }
+    if (!next) return;
     look_into(*next);
+    look_at_minor(*next);
     score();
   }
 }

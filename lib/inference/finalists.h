@@ -30,11 +30,14 @@ struct Finalist {
   std::string refused;  // by a rule that no probability mends: at a bound, not significant, too small
   Statistics statistics;
   double probability = 0;
-  double gained = 0;  // fall of the held-out mean square from the base model
+  std::size_t finer = 0;  // of its mechanisms, those that are a finer form of a plainer one
+  double gained = 0;      // fall of the held-out mean square from the base model
   bool looked_into = false;
   std::shared_ptr<const ResidualStructure> after;  // of what was looked into whole
   LeftOver left;
   std::string curve;  // over which a free one repairs more
+  // Sets in list() that are this one with mechanisms that are there and too small to matter, once it is looked into.
+  std::vector<std::size_t> with_minor;
 };
 
 class Finalists {
@@ -58,7 +61,9 @@ class Finalists {
  private:
   std::set<std::string> physics_of(const Finalist& f) const;  // "sensor.non-linearity/camera", whatever the form
   const Finalist& plainest_form(const Finalist& of) const;
-  void look_into(Finalist& f);
+  void look_into(std::size_t place);
+  void look_at_minor(std::size_t place);
+  bool has_plainer(const Finalist& f) const;
   void refuse(Finalist& f) const;
   std::vector<Model> weaken(Finalist& f) const;  // weakest part and its effect, by leaving each out
   void compare();                                // what depends on the others

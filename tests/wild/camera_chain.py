@@ -9,7 +9,6 @@ import numpy as np
 
 MARGIN_PX = 10  # that a rendering for a lens is wider on every side
 FINE = 3  # pixels of that rendering along one of ours
-TAKEN = 6  # places within a pixel along each axis at which it is looked up
 
 
 def undistorted(x, y, k1, k2, p1, p2):
@@ -47,19 +46,42 @@ def ideal_place(x, y, camera, lenses, channel):
     return x, y
 
 
+def integral(fine):
+    """Sum of all pixels above and to the left of every corner of a pixel: one more row and column than the picture."""
+    out = np.zeros((fine.shape[0] + 1, fine.shape[1] + 1))
+    out[1:, 1:] = fine.cumsum(0).cumsum(1)
+    return out
+
+
+def at_corner(sums, x, y):
+    """An integral picture between corners: what lies in part of a pixel counts by its area."""
+    x, y = np.clip(x, 0, sums.shape[1] - 1.001), np.clip(y, 0, sums.shape[0] - 1.001)
+    i, j = np.floor(x).astype(int), np.floor(y).astype(int)
+    s, t = x - i, y - j
+    above = (1 - s) * sums[j, i] + s * sums[j, i + 1]
+    below = (1 - s) * sums[j + 1, i] + s * sums[j + 1, i + 1]
+    return (1 - t) * above + t * below
+
+
 def through_lens(fine, camera, lenses):
-    """Picture of the camera's size from a rendering FINE times as fine with MARGIN_PX around it."""
+    """Picture of the camera's size from a rendering FINE times as fine with MARGIN_PX around it. Each pixel is the mean
+    over the upright box between where the middles of its sides look: no displacement is rounded to a finer pixel."""
     height, width = camera["height"], camera["width"]
-    within = (np.arange(TAKEN) + 0.5) / TAKEN - 0.5
-    x = (np.arange(width)[:, None] + within).ravel()
-    y = (np.arange(height)[:, None] + within).ravel()
-    x, y = np.meshgrid(x, y)
+    x, y = np.meshgrid(np.arange(width, dtype=float), np.arange(height, dtype=float))
     out = np.empty((height, width, 3))
     for c in range(3):
-        u, v = ideal_place(x, y, camera, lenses, c)
-        column = np.clip(np.floor((u + 0.5 + MARGIN_PX) * FINE), 0, fine.shape[1] - 1).astype(int)
-        row = np.clip(np.floor((v + 0.5 + MARGIN_PX) * FINE), 0, fine.shape[0] - 1).astype(int)
-        out[:, :, c] = fine[row, column, c].reshape(height, TAKEN, width, TAKEN).mean((1, 3))
+        place = lambda dx, dy: ideal_place(x + dx, y + dy, camera, lenses, c)
+        left, right = (place(dx, 0)[0] for dx in (-0.5, 0.5))
+        top, bottom = (place(0, dy)[1] for dy in (-0.5, 0.5))
+        left, right, top, bottom = ((side + 0.5 + MARGIN_PX) * FINE for side in (left, right, top, bottom))
+        sums = integral(fine[:, :, c])
+        inside = (
+            at_corner(sums, right, bottom)
+            - at_corner(sums, left, bottom)
+            - at_corner(sums, right, top)
+            + at_corner(sums, left, top)
+        )
+        out[:, :, c] = inside / ((right - left) * (bottom - top))
     return out
 
 
