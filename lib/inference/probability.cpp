@@ -9,7 +9,7 @@ namespace gonio::inference {
 namespace {
 
 constexpr std::size_t most_listed = 3;
-constexpr double worth_listing = 0.05;  // of the likeliest set's probability
+constexpr double worth_listing = 0.01;  // of the likeliest set's probability
 constexpr double likelier_than_not = 0.5;
 constexpr double grain = 0.02;  // shares below it are no shares: a facet is no Gaussian, a lens no polynomial
 constexpr double most_errors = 6;
@@ -53,6 +53,9 @@ double shortfall(const Statistics& s) {
   return std::max({s.missed, s.own, s.any});
 }
 
+double of_chance(double mismatch) {
+  return std::min(mismatch, most_errors);
+}
 // Does anything matter? What is surely there and everywhere smaller than the smallest of interest is nothing that does.
 double mattering(const Statistics& s) {
   return std::clamp(1 + s.largest, 0.0, 1.0);
@@ -66,7 +69,7 @@ const LogitTerm all_logit_terms[] = {
     {"outside", [](const Member& m) { return m.kind == Member::Kind::outside ? 1.0 : 0.0; }, -0.5, 0},
     {"explained", [](const Member& m) { return of_outside(m, of_share(1) - of_share(m.statistics.any)); }, -1.2, -1},
     {"nothing", [](const Member& m) { return m.kind == Member::Kind::nothing ? 1.0 : 0.0; }, 3.0, 0},
-    {"mismatch", [](const Member& m) { return mattering(m.statistics) * std::min(m.statistics.mismatch, most_errors); }, -1.0, -1},
+    {"mismatch", [](const Member& m) { return mattering(m.statistics) * of_chance(m.statistics.mismatch); }, -1.0, -1},
     {"largest", [](const Member& m) { return std::clamp(m.statistics.largest, -3.0, 3.0); }, -1.0, -1},
     {"behind", [](const Member& m) { return of_set(m, std::clamp(m.statistics.behind, 0.0, most_errors)); }, -1.0, -1},
     {"short", [](const Member& m) { return of_set(m, of_share(shortfall(m.statistics))); }, -1.0, -1},

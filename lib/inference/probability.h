@@ -61,7 +61,7 @@ std::vector<double> probabilities(const std::vector<Member>& members, std::span<
 
 // The answer that the probabilities give. One set where it is `sure`; else the likeliest, at most three, that are so
 // together, or as many as that if they are likelier than not; else what is likeliest of nothing and outside. A set less
-// than a twentieth as likely as the first is not listed beside it: what speaks against the first is then no other set.
+// than a hundredth as likely as the first is not listed beside it: what speaks against the first is then no other set.
 struct Answer {
   enum class Kind { nothing, outside, sets };
   Kind kind = Kind::nothing;

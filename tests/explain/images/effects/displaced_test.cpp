@@ -153,11 +153,11 @@ TEST(Displaced, AnObjectThatStandsElsewhereIsNoCamera) {
 // Further than a silhouette's slope reaches.
 TEST(Displaced, AnObjectFarFromItsPlaceIsFound) {
   EffectWorld world = two_balls();
-  world.truth = R"("geometry.pose":{"on":["ball"],"shift_x_m":0.02,"shift_y_m":-0.012})";
+  world.truth = R"("geometry.pose":{"on":["ball"],"shift_x_m":0.009,"shift_y_m":-0.008})";
   const EffectOutcome outcome(world, rivals);
   ASSERT_THAT(outcome.named(), ElementsAre("geometry.pose")) << outcome.explanation.sentence;
-  EXPECT_NEAR(outcome.fitted("shift_x_m"), 0.02, 0.001);
-  EXPECT_NEAR(outcome.fitted("shift_y_m"), -0.012, 0.001);
+  EXPECT_NEAR(outcome.fitted("shift_x_m"), 0.009, 0.0005);
+  EXPECT_NEAR(outcome.fitted("shift_y_m"), -0.008, 0.0005);
 }
 
 TEST(Displaced, NothingIsNamedWhereNothingIsLeftOut) {
