@@ -218,11 +218,22 @@ void Finalists::look_at_minor(std::size_t place) {
   list_[place].with_minor = {*best};
 }
 
-// Is there a plainer form of the same that could be the answer? Else its being a finer one says nothing.
-bool Finalists::has_plainer(const Finalist& f) const {
-  return std::any_of(list_.begin(), list_.end(), [&](const Finalist& other) {
+// Of its mechanisms, those that are finer than need be. Where plainer forms of the very same one were refused, its
+// being a finer form says nothing.
+double Finalists::finer_ones(const Finalist& f) const {
+  const std::vector<Candidate>& all = race_.system().problem().candidates();
+  const bool plainer_stands = std::any_of(list_.begin(), list_.end(), [&](const Finalist& other) {
     return is_answer(other) && other.finer < f.finer && physics_of(other) == physics_of(f);
   });
+  double count = 0;
+  for (const std::size_t c : f.model.candidates) {
+    if (!all[c].finer) continue;
+    const bool has_forms = std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
+      return !other.finer && other.id() == all[c].id() && other.on == all[c].on;
+    });
+    count += !has_forms || plainer_stands;
+  }
+  return count;
 }
 
 void Finalists::compare() {
@@ -252,7 +263,7 @@ void Finalists::compare() {
       s.clean = std::min(s.clean, part_of_all(more.left.own, excess_of(more.model.held_out)));
       s.any = std::min(s.any, part_of_all(more.left.any, more.left.any + std::max(0.0, more.gained)));
     }
-    s.finer = has_plainer(f) ? static_cast<double>(f.finer) : 0;
+    s.finer = finer_ones(f);
     s.curve = 0;
     for (const Competitor& c : before_.curves) {
       if (!(c.hypothesis.gain > 2 * c.hypothesis.gain_sigma)) continue;

@@ -63,7 +63,7 @@ class Finalists {
   const Finalist& plainest_form(const Finalist& of) const;
   void look_into(std::size_t place);
   void look_at_minor(std::size_t place);
-  bool has_plainer(const Finalist& f) const;
+  double finer_ones(const Finalist& f) const;
   void refuse(Finalist& f) const;
   std::vector<Model> weaken(Finalist& f) const;  // weakest part and its effect, by leaving each out
   void compare();                                // what depends on the others
