@@ -53,6 +53,15 @@ double excess_of(const HeldOut& h) {
   return rows > 0 ? squares / rows - 1 : 0;
 }
 
+// The shares that depend on what a set leaves; `most`: what can be repaired.
+void set_shares(const Finalist& f, double most, Statistics& s) {
+  const double gained = std::max(0.0, f.gained);
+  s.missed = 1 - part_of_all(f.gained, most);
+  s.own = part_of_all(f.left.own, f.left.own + gained);
+  s.clean = part_of_all(f.left.own, excess_of(f.model.held_out));
+  s.any = part_of_all(f.left.any, f.left.any + gained);
+}
+
 // Standard errors by which `after` is better, as of a normal law: over groups by Student's, or over blocks where groups
 // are few. `floor`: of the standard error.
 double errors_between(const HeldOut& before, const HeldOut& after, double floor) {
@@ -215,7 +224,7 @@ void Finalists::look_at_minor(std::size_t place) {
   }
   if (!best) return;
   if (!list_[*best].looked_into) look_into(*best);
-  list_[place].with_minor = {*best};
+  list_[place].with_minor = best;
 }
 
 // Of its mechanisms, those that are finer than need be. Where plainer forms of the very same one were refused, its
@@ -251,17 +260,12 @@ void Finalists::compare() {
     for (const Finalist& more : list_)
       if (more.refused.empty() && more.looked_into && !(more.statistics.times < 0) && holds_more(more, f))
         s.behind = std::max(s.behind, errors_between(f.model.held_out, more.model.held_out, 0));
-    s.missed = 1 - part_of_all(f.gained, most);
-    s.own = part_of_all(f.left.own, f.left.own + std::max(0.0, f.gained));
-    s.clean = part_of_all(f.left.own, excess_of(f.model.held_out));
-    s.any = part_of_all(f.left.any, f.left.any + std::max(0.0, f.gained));
-    for (const std::size_t k : f.with_minor) {
-      const Finalist& more = list_[k];
-      if (!more.refused.empty() || !more.looked_into) continue;
-      s.missed = std::min(s.missed, 1 - part_of_all(more.gained, most));
-      s.own = std::min(s.own, part_of_all(more.left.own, more.left.own + std::max(0.0, more.gained)));
-      s.clean = std::min(s.clean, part_of_all(more.left.own, excess_of(more.model.held_out)));
-      s.any = std::min(s.any, part_of_all(more.left.any, more.left.any + std::max(0.0, more.gained)));
+    set_shares(f, most, s);
+    if (f.with_minor && list_[*f.with_minor].looked_into && list_[*f.with_minor].refused.empty()) {
+      Statistics beside;
+      set_shares(list_[*f.with_minor], most, beside);
+      for (const auto share : {&Statistics::missed, &Statistics::own, &Statistics::clean, &Statistics::any})
+        s.*share = std::min(s.*share, beside.*share);
     }
     s.finer = finer_ones(f);
     s.curve = 0;

@@ -35,9 +35,8 @@ struct Finalist {
   bool looked_into = false;
   std::shared_ptr<const ResidualStructure> after;  // of what was looked into whole
   LeftOver left;
-  std::string curve;  // over which a free one repairs more
-  // Sets in list() that are this one with mechanisms that are there and too small to matter, once it is looked into.
-  std::vector<std::size_t> with_minor;
+  std::string curve;                      // over which a free one repairs more
+  std::optional<std::size_t> with_minor;  // place of this set together with what is there and too small to matter
 };
 
 class Finalists {
@@ -62,8 +61,8 @@ class Finalists {
   std::set<std::string> physics_of(const Finalist& f) const;  // "sensor.non-linearity/camera", whatever the form
   const Finalist& plainest_form(const Finalist& of) const;
   void look_into(std::size_t place);
-  void look_at_minor(std::size_t place);
-  double finer_ones(const Finalist& f) const;
+  void look_at_minor(std::size_t place);       // what stands beside it, and is too small to matter
+  double finer_ones(const Finalist& f) const;  // Statistics::finer
   void refuse(Finalist& f) const;
   std::vector<Model> weaken(Finalist& f) const;  // weakest part and its effect, by leaving each out
   void compare();                                // what depends on the others

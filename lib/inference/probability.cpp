@@ -53,12 +53,9 @@ double shortfall(const Statistics& s) {
   return std::max({s.missed, s.own, s.any});
 }
 
-double of_chance(double mismatch) {
-  return std::min(mismatch, most_errors);
-}
-// Does anything matter? What is surely there and everywhere smaller than the smallest of interest is nothing that does.
-double mattering(const Statistics& s) {
-  return std::clamp(1 + s.largest, 0.0, 1.0);
+// What is surely there and everywhere smaller than the smallest of interest is nothing that matters.
+double mismatch_that_matters(const Statistics& s) {
+  return std::clamp(1 + s.largest, 0.0, 1.0) * std::min(s.mismatch, most_errors);
 }
 
 // Set by hand on the toys of the engine, the recorded sets of the tests and a few sealed cases, so that those prove
@@ -69,7 +66,7 @@ const LogitTerm all_logit_terms[] = {
     {"outside", [](const Member& m) { return m.kind == Member::Kind::outside ? 1.0 : 0.0; }, -0.5, 0},
     {"explained", [](const Member& m) { return of_outside(m, of_share(1) - of_share(m.statistics.any)); }, -1.2, -1},
     {"nothing", [](const Member& m) { return m.kind == Member::Kind::nothing ? 1.0 : 0.0; }, 3.0, 0},
-    {"mismatch", [](const Member& m) { return mattering(m.statistics) * of_chance(m.statistics.mismatch); }, -1.0, -1},
+    {"mismatch", [](const Member& m) { return mismatch_that_matters(m.statistics); }, -1.0, -1},
     {"largest", [](const Member& m) { return std::clamp(m.statistics.largest, -3.0, 3.0); }, -1.0, -1},
     {"behind", [](const Member& m) { return of_set(m, std::clamp(m.statistics.behind, 0.0, most_errors)); }, -1.0, -1},
     {"short", [](const Member& m) { return of_set(m, of_share(shortfall(m.statistics))); }, -1.0, -1},

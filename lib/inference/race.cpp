@@ -16,8 +16,8 @@ namespace {
 constexpr int chords = 25;                            // steps of a fit with kept slopes
 constexpr int tangents = 20;                          // of a hypothesis in the race: leaders are fitted to the end
 constexpr int turns = 3;                              // how often the slopes may be taken anew
-constexpr double idle = 0.01;                         // of what a fit has gained: what a number does not hold
-constexpr double half_way = 0.1;                      // of the sum of whitened squares, that a fit has gained
+constexpr double idle = 0.01;                         // of what a fit has gained: no number that costs less is held
+constexpr double much = 0.1;                          // of the sum of whitened squares
 constexpr double usual_reach = 3;                     // typical sizes: where a bound lies so near, it may be reached
 constexpr double small_gain = 0.005, small_cost = 4;  // of the sum of whitened squares: not worth new slopes
 
@@ -160,7 +160,7 @@ Model Race::started(const Model& from, std::vector<std::size_t> candidates, cons
   Model m{std::move(candidates), {}, {}};
   if (kept == nullptr) {
     m.fit = fit(system_, std::move(values), active);
-    put_back(m);
+    free_from_bounds(m);
     m.held_out = held_out_by_step(system_, m.fit);
     return m;
   }
@@ -178,19 +178,19 @@ Model Race::started(const Model& from, std::vector<std::size_t> candidates, cons
       turned = slopes(system_, m.fit.values, active);
     }
   }
-  put_back(m);
+  free_from_bounds(m);
   m.held_out = held_out_by_step(system_, m.fit, turned ? &*turned : kept);
   // Much better on the groups in play and no better on those left out: it stopped half-way, where a step from the joint
   // optimum says nothing.
-  if (gained > half_way * from.fit.cost && !(gain(from.held_out, m.held_out).mean > 0)) {
+  if (gained > much * from.fit.cost && !(gain(from.held_out, m.held_out).mean > 0)) {
     m.fit = fit(system_, m.fit.values, active);
-    put_back(m);
+    free_from_bounds(m);
     m.held_out = held_out_by_step(system_, m.fit);
   }
   return m;
 }
 
-void Race::put_back(Model& m) const {
+void Race::free_from_bounds(Model& m) const {
   const Problem& problem = system_.problem();
   std::optional<double> nothing;  // cost without any of the candidates
   for (const std::size_t c : m.candidates)
@@ -201,12 +201,12 @@ void Race::put_back(Model& m) const {
       if (values[p] == m.fit.values[p]) continue;
       if (!nothing) nothing = fit(system_, beginning(m, {}, {}).first, m.fit.active, 0).cost;
       const double gained = *nothing - m.fit.cost;
-      const auto as_good = [&](const Fit& other) { return other.cost - m.fit.cost < idle * gained; };
+      const auto costs_no_more = [&](const Fit& other) { return other.cost - m.fit.cost < idle * gained; };
       Fit other = fit(system_, values, m.fit.active, 0);
       other.converged = m.fit.converged;
-      if (!as_good(other) && gained > half_way * *nothing && !at_a_limit(problem, m.fit, {c}).empty())
+      if (!costs_no_more(other) && gained > much * *nothing && !at_a_limit(problem, m.fit, {c}).empty())
         other = fit(system_, std::move(values), m.fit.active, tangents);
-      if (as_good(other)) m.fit = std::move(other);
+      if (costs_no_more(other)) m.fit = std::move(other);
     }
 }
 

@@ -65,8 +65,8 @@ class Race {
                                                                      const std::vector<std::size_t>& candidates,
                                                                      const std::vector<double>& start) const;
   // Numbers of the model's candidates that nothing holds (the turn of a bell about its axis) run to a bound, which
-  // would speak against the rest: they go back to neutral.
-  void put_back(Model& m) const;
+  // would speak against the rest. They go back to neutral, or to where a fit from there ends, where that is as good.
+  void free_from_bounds(Model& m) const;
   struct AlongChords {
     Fit fit;
     std::optional<Slopes> turned;  // where they were taken anew

@@ -32,14 +32,9 @@ class Transport {
   std::size_t terms() const { return terms_; }
   // The constant term is what an ambient source sends straight: no light between surfaces.
   Rgb operator()(const float* coefficient) const {
-    Rgb sum, other;  // two chains of additions
-    std::size_t m = 1;
-    for (; m + 1 < terms_; m += 2) {
-      sum += values_[m] * double{coefficient[m]};
-      other += values_[m + 1] * double{coefficient[m + 1]};
-    }
-    if (m < terms_) sum += values_[m] * double{coefficient[m]};
-    return (sum + other) * strength_ + Rgb{coefficient[0], coefficient[0], coefficient[0]};
+    Rgb sum;
+    for (std::size_t m = 1; m < terms_; ++m) sum += values_[m] * double{coefficient[m]};
+    return sum * strength_ + Rgb{coefficient[0], coefficient[0], coefficient[0]};
   }
 
  private:
