@@ -12,8 +12,9 @@ namespace gonio::relighting {
 namespace {
 
 constexpr double step_px = 1.25;
-constexpr double spacing = 0.5;    // of places, in steps
-constexpr double most_steps = 12;  // 15 pixels: what stands further away is another scene
+constexpr double spacing = 0.5;       // of places, in steps
+constexpr std::size_t most_kept = 8;  // places: each holds two scenes for every number
+constexpr double most_steps = 12;     // 15 pixels: what stands further away is another scene
 constexpr CacheOptions coarse{.samples = 4, .paths = 0, .patches = 1, .penumbrae = false};
 
 using Facets = std::map<std::uint32_t, std::size_t>;  // surface -> facet seen last
@@ -140,14 +141,19 @@ class Recasts final : public Prepared {
       place.push_back(static_cast<int>(std::lround(amounts[k] / (spacing * step_[k]))));
     return place;
   }
-  const About& about(const std::vector<int>& place) const {  // from any thread
+  std::shared_ptr<const About> about(const std::vector<int>& place) const {  // from any thread
     const std::lock_guard lock(mutex_);
-    std::unique_ptr<const About>& made = made_[place];
-    if (!made) made = std::make_unique<const About>(cast_about(place));
-    return *made;
+    auto found = std::ranges::find(made_, place, &Made::first);
+    if (found == made_.end()) {
+      if (made_.size() == most_kept) made_.pop_back();
+      found = made_.insert(made_.end(), {place, std::make_shared<const About>(cast_about(place))});
+    }
+    std::rotate(made_.begin(), found, found + 1);
+    return made_.front().second;
   }
 
  private:
+  using Made = std::pair<std::vector<int>, std::shared_ptr<const About>>;
   Node cast(const std::vector<scene::Instance>& instances) const {
     const render::RayCaster caster(instances);
     Node node;
@@ -197,7 +203,7 @@ class Recasts final : public Prepared {
   std::vector<double> step_;  // one per parameter
   std::vector<bool> free_;
   mutable std::mutex mutex_;
-  mutable std::map<std::vector<int>, std::unique_ptr<const About>> made_;
+  mutable std::vector<Made> made_;  // the last ones asked for first
 };
 
 // Adds weight * (P(node) - P(unmoved)) for one image, where the two differ.
@@ -287,16 +293,16 @@ void add_recasts(const Use& use, const Frame& frame, std::span<double> radiance)
   if (recasts.fitted()) return change.add(*recasts.fitted(), 1);
   const std::span<const double> amounts = use.amounts(frame.state);
   const std::vector<int> place = recasts.place_of(amounts);
-  const Recasts::About& about = recasts.about(place);
+  const std::shared_ptr<const Recasts::About> about = recasts.about(place);
   double middle = 1;
   for (std::size_t k = 0; k < amounts.size(); ++k) {
     const double t = amounts[k] / recasts.step(k) - spacing * place[k];
     if (t == 0) continue;
-    change.add(about.plus[k], 0.5 * (t + t * t));
-    change.add(about.minus[k], -0.5 * (t - t * t));
+    change.add(about->plus[k], 0.5 * (t + t * t));
+    change.add(about->minus[k], -0.5 * (t - t * t));
     middle -= t * t;
   }
-  change.add(about.middle, middle);
+  change.add(about->middle, middle);
 }
 
 void recast_slopes(const Use& use, const Frame& frame, std::span<const std::size_t> numbers,
@@ -304,16 +310,16 @@ void recast_slopes(const Use& use, const Frame& frame, std::span<const std::size
   const auto& recasts = static_cast<const Recasts&>(*use.prepared);
   const std::span<const double> amounts = use.amounts(frame.state);
   const std::vector<int> place = recasts.place_of(amounts);
-  const Recasts::About& about = recasts.about(place);
+  const std::shared_ptr<const Recasts::About> about = recasts.about(place);
   const std::size_t rows = 3 * frame.picked.size();
   std::fill(columns.begin(), columns.end(), 0.0);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const std::size_t k = numbers[i];
     const double step = recasts.step(k), t = amounts[k] / step - spacing * place[k];
     Change change(recasts, frame, columns.subspan(i * rows, rows));
-    change.add(about.plus[k], (0.5 + t) / step);
-    change.add(about.minus[k], -(0.5 - t) / step);
-    change.add(about.middle, -2 * t / step);
+    change.add(about->plus[k], (0.5 + t) / step);
+    change.add(about->minus[k], -(0.5 - t) / step);
+    change.add(about->middle, -2 * t / step);
   }
 }
 
