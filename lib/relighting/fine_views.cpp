@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "relighting/shading.h"
-#include "relighting/textures.h"
 
 namespace gonio::relighting {
 namespace {
@@ -70,9 +69,9 @@ struct FineView::Slot {
   std::unique_ptr<const FineTile> tile;
 };
 
-FineView::FineView(const scene::Scene& scene, const render::RayCaster& caster, const View& view,
+FineView::FineView(const Tints& tints, const render::RayCaster& caster, const View& view,
                    std::span<const LightSource> lights, const render::Monomials& monomials)
-    : scene_(scene),
+    : tints_(tints),
       caster_(caster),
       fine_{view.camera, view.model.finer(2), view.world_from_camera},
       lights_(lights),
@@ -123,16 +122,17 @@ FineTile FineView::cast(int number) const {
   for (std::size_t k = 0; k < places.size(); ++k)
     even[k] ? append_pixel(plain, places[k], lights_.size(), tile.cells)
             : append_pixel(fine, next++, lights_.size(), tile.cells);
-  tint_facets(scene_, caster_, fine_, tile.cells, 2);
+  tints_.apply(caster_, fine_, tile.cells, 2);
   tile.sums = facet_sums(tile.cells);
   tile.depth_m = depths_of(fine_, tile.cells);
   return tile;
 }
 
 FineViews::FineViews(const scene::Scene& scene, const render::RayCaster& caster, const Recordings& recordings,
-                     std::span<const LightSource> lights, const render::Monomials& monomials) {
+                     std::span<const LightSource> lights, const render::Monomials& monomials)
+    : tints_(scene) {
   for (const View& view : recordings.views)
-    views_.push_back(std::make_unique<const FineView>(scene, caster, view, lights, monomials));
+    views_.push_back(std::make_unique<const FineView>(tints_, caster, view, lights, monomials));
 }
 
 }  // namespace gonio::relighting

@@ -10,6 +10,7 @@
 #include <mutex>
 
 #include "relighting/light_cache.h"
+#include "relighting/textures.h"
 #include "render/ray_caster.h"
 #include "scene/scene.h"
 
@@ -26,8 +27,8 @@ struct FineTile {
 
 class FineView {
  public:
-  FineView(const scene::Scene& scene, const render::RayCaster& caster, const View& view,
-           std::span<const LightSource> lights, const render::Monomials& monomials);
+  FineView(const Tints& tints, const render::RayCaster& caster, const View& view, std::span<const LightSource> lights,
+           const render::Monomials& monomials);
   ~FineView();
   int tiles_x() const { return tiles_x_; }
   int tiles() const { return tiles_x_ * tiles_y_; }
@@ -41,7 +42,7 @@ class FineView {
  private:
   struct Slot;
   FineTile cast(int number) const;
-  const scene::Scene& scene_;
+  const Tints& tints_;
   const render::RayCaster& caster_;
   View fine_;
   std::span<const LightSource> lights_;
@@ -57,6 +58,7 @@ class FineViews {
   const FineView& operator[](std::size_t view) const { return *views_[view]; }
 
  private:
+  Tints tints_;
   std::vector<std::unique_ptr<const FineView>> views_;
 };
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "relighting/image_memo.h"
+#include "relighting/relayed.h"
 #include "relighting/uses.h"
 #include "scene/scene.h"
 
@@ -11,37 +13,6 @@ namespace gonio::relighting {
 namespace {
 
 constexpr std::size_t radius_count = radii_m.size();
-
-// Polynomials in the albedos of a state, colour by colour.
-class Transport {
- public:
-  Transport(const SceneState& state, const render::Monomials& monomials)
-      : strength_(state.indirect), terms_(monomials.size()) {
-    const Vec3 oblique{std::sqrt(0.5), 0, std::sqrt(0.5)};
-    std::vector<Rgb> albedos;
-    for (const SurfaceState& s : state.surfaces)  // what lets light through does not spread it
-      albedos.push_back(s.model->transmits() ? Rgb{} : s.model->albedo(s.values, oblique));
-    std::array<std::vector<double>, 3> values;
-    for (int k = 0; k < 3; ++k) {
-      std::vector<double> albedo;
-      for (const Rgb& a : albedos) albedo.push_back(a[k]);
-      values[static_cast<std::size_t>(k)] = monomials.evaluate(albedo);
-    }
-    for (std::size_t m = 0; m < terms_; ++m) values_.push_back({values[0][m], values[1][m], values[2][m]});
-  }
-  std::size_t terms() const { return terms_; }
-  // The constant term is what an ambient source sends straight: no light between surfaces.
-  Rgb operator()(const float* coefficient) const {
-    Rgb sum;
-    for (std::size_t m = 1; m < terms_; ++m) sum += values_[m] * double{coefficient[m]};
-    return sum * strength_ + Rgb{coefficient[0], coefficient[0], coefficient[0]};
-  }
-
- private:
-  double strength_;
-  std::size_t terms_;
-  std::vector<Rgb> values_;
-};
 
 Rgb albedo_of(const SurfaceState& surface) {
   return has_parameter(*surface.model, "albedo") ? surface.values.rgb(parameter_index(*surface.model, "albedo"))
@@ -55,43 +26,29 @@ std::vector<Rgb> albedos_of(const SceneState& state) {
 }
 
 // What a facet sends on of the light that reaches it by way of others, over its share of the pixel.
-class Indirect {
- public:
-  // `onward`: Shading's, of the image's lights.
-  Indirect(const ViewCache& cache, const SceneState& state, const render::Monomials& monomials, const Recording& image,
-           std::size_t lights, std::vector<double> onward)
-      : cache_(cache),
-        state_(state),
-        image_(image),
-        lights_(lights),
-        onward_(std::move(onward)),
-        transport_(state, monomials),
-        ambient_(max_component(state.ambient) > 0) {}
-  Rgb operator()(std::size_t facet, Rgb albedo, const Scattered& sent_on) const {
-    const bool glossy = max_component(sent_on.gloss) > 0;
-    Rgb irradiance, mirrored;
-    const auto add_source = [&](std::size_t source, Rgb emission) {
-      const std::size_t first = (facet * (lights_ + 1) + source) * transport_.terms();
-      irradiance += transport_(&cache_.indirect[first]) * emission;
-      if (glossy) mirrored += transport_(&cache_.mirrored[first]) * emission;
-    };
-    for (std::size_t j = 0; j < image_.lights.size(); ++j)
-      add_source(image_.lights[j], state_.lights[image_.lights[j]].intensity * onward_[j]);
-    if (ambient_) add_source(lights_, state_.ambient);
-    return (albedo * irradiance * sent_on.base + sent_on.gloss * mirrored) / pi;
-  }
+Rgb sent_on(const Relayed& light, std::size_t slot, std::span<const Rgb> emission, Rgb albedo,
+            const Scattered& scattered) {
+  const std::size_t first = slot * light.sources;
+  Rgb irradiance, mirrored;
+  for (std::size_t j = 0; j < light.sources; ++j) irradiance += light.irradiance[first + j] * emission[j];
+  if (max_component(scattered.gloss) > 0)
+    for (std::size_t j = 0; j < light.sources; ++j) mirrored += light.mirrored[first + j] * emission[j];
+  return (albedo * irradiance * scattered.base + scattered.gloss * mirrored) / pi;
+}
 
- private:
-  const ViewCache& cache_;
-  const SceneState& state_;
-  const Recording& image_;
-  std::size_t lights_;
-  std::vector<double> onward_;
-  Transport transport_;
-  bool ambient_;
-};
+bool any_gloss(const Shading& shading) {
+  return std::ranges::any_of(shading.indirect, [](const Scattered& s) { return max_component(s.gloss) > 0; });
+}
 
 }  // namespace
+
+// Fits change what does not reach the shading (albedos, intensities, gains, the camera's chain) far more often than
+// what does, and albedos in the columns of a few numbers alone.
+struct ImageModel::Memos {
+  explicit Memos(std::size_t images) : shaded(images), relayed(images) {}
+  ImageMemo<Shaded> shaded;
+  ImageMemo<Relayed> relayed;
+};
 
 ImageModel::ImageModel(const Recordings& recordings, const SceneLayout& layout, const render::Monomials& monomials,
                        std::vector<ViewCache> views)
@@ -99,9 +56,12 @@ ImageModel::ImageModel(const Recordings& recordings, const SceneLayout& layout, 
       layout_(layout),
       monomials_(monomials),
       views_(std::move(views)),
-      memo_(std::make_unique<ShadingMemo>(recordings.images.size())) {
+      memos_(std::make_unique<Memos>(recordings.images.size())) {
   for (const ViewCache& cache : views_) sums_.push_back(facet_sums(cache));
 }
+
+ImageModel::~ImageModel() = default;
+ImageModel::ImageModel(ImageModel&&) noexcept = default;
 
 Shader ImageModel::shader(std::size_t image) const {
   const Recording& recording = recordings_.images[image];
@@ -118,7 +78,7 @@ void ImageModel::add_uses(std::vector<Use> uses, bool in_play) {
     ordered_.push_back(use.place);
     uses_.push_back(std::move(use));
   }
-  memo_ = std::make_unique<ShadingMemo>(recordings_.images.size());  // terms may be others now
+  memos_ = std::make_unique<Memos>(recordings_.images.size());  // terms may be others now
   std::stable_sort(ordered_.begin(), ordered_.end(),
                    [&](std::size_t a, std::size_t b) { return uses_[a].term->order < uses_[b].term->order; });
 }
@@ -127,7 +87,7 @@ void ImageModel::take_uses(const ImageModel& other, std::vector<Use> uses) {
   uses_ = std::move(uses);
   ordered_ = other.ordered_;
   layout_.start = other.layout_.start;
-  memo_ = std::make_unique<ShadingMemo>(recordings_.images.size());
+  memos_ = std::make_unique<Memos>(recordings_.images.size());
 }
 
 SceneState ImageModel::edited(const SceneState& state, std::size_t image) const {
@@ -178,22 +138,25 @@ void ImageModel::predict(const SceneState& state, std::size_t image, std::span<c
 std::shared_ptr<const Shaded> ImageModel::shaded(const SceneState& now, std::size_t image,
                                                  std::span<const std::uint32_t> picked) const {
   std::vector<double> key = shading_key(now, uses_);
-  if (auto known = memo_->find(image, key, picked)) return known;
+  if (auto known = memos_->shaded.find(image, key, picked)) return known;
   auto shaded = std::make_shared<Shaded>(Shaded{shade(now, image, picked), {}});
   const auto shades = [&](const Use& use) { return use.term->shade != nullptr && !use.neutral(now); };
   if (std::ranges::any_of(uses_, shades)) {
     shaded->changed = shaded->plain;
     shade_terms(now, image, picked, *shaded->changed);
   }
-  memo_->keep(image, std::move(key), picked, shaded);
+  memos_->shaded.keep(image, std::move(key), picked, shaded);
   return shaded;
 }
 
 void ImageModel::predict_from(const ViewCache& cache, std::span<const float> sums, const SceneState& edited,
                               std::size_t image, std::span<const std::uint32_t> picked,
                               std::span<double> radiance) const {
-  const Shading shading = Shader(layout_, recordings_.images[image], cache, sums)(edited, picked);
-  compose_from(cache, edited, image, picked, shading, radiance);
+  const Recording& recording = recordings_.images[image];
+  const Shading shading = Shader(layout_, recording, cache, sums)(edited, picked);
+  const Relayed light = relayed(cache, Transport(edited, monomials_), sources_of(edited, recording),
+                                layout_.lights.size(), any_gloss(shading), picked);
+  compose_from(cache, light, edited, image, picked, shading, radiance);
 }
 
 Shading ImageModel::shade(const SceneState& state, std::size_t image, std::span<const std::uint32_t> picked) const {
@@ -207,14 +170,30 @@ void ImageModel::shade_again(const SceneState& state, std::size_t image, std::sp
 
 void ImageModel::compose(const SceneState& state, std::size_t number, std::span<const std::uint32_t> picked,
                          const Shading& shading, std::span<double> radiance) const {
-  compose_from(views_[recordings_.images[number].view], state, number, picked, shading, radiance);
+  const std::size_t view = recordings_.images[number].view;
+  compose_from(views_[view], *light_at(state, number, picked, any_gloss(shading)), state, number, picked, shading,
+               radiance);
 }
 
-void ImageModel::compose_from(const ViewCache& cache, const SceneState& state, std::size_t number,
+std::shared_ptr<const Relayed> ImageModel::light_at(const SceneState& state, std::size_t number,
+                                                    std::span<const std::uint32_t> picked, bool mirrored) const {
+  const Recording& image = recordings_.images[number];
+  const Transport transport(state, monomials_);
+  const std::vector<std::size_t> sources = sources_of(state, image);
+  std::vector<double> key = transport.key();
+  key.insert(key.end(), {static_cast<double>(sources.size()), mirrored ? 1.0 : 0.0});
+  if (auto known = memos_->relayed.find(number, key, picked)) return known;
+  auto light = std::make_shared<const Relayed>(
+      relayed(views_[image.view], transport, sources, layout_.lights.size(), mirrored, picked));
+  memos_->relayed.keep(number, std::move(key), picked, light);
+  return light;
+}
+
+void ImageModel::compose_from(const ViewCache& cache, const Relayed& light, const SceneState& state, std::size_t number,
                               std::span<const std::uint32_t> picked, const Shading& shading,
                               std::span<double> radiance) const {
   const Recording& image = recordings_.images[number];
-  const Indirect indirect(cache, state, monomials_, image, layout_.lights.size(), shading.onward);
+  const std::vector<Rgb> emission = emission_of(state, image, shading.onward);
   const std::vector<Rgb> albedos = albedos_of(state);
   std::size_t slot = 0;
   for (std::size_t i = 0; i < picked.size(); ++i) {
@@ -228,7 +207,7 @@ void ImageModel::compose_from(const ViewCache& cache, const SceneState& state, s
         const Scattered& direct = shading.direct[slot * shading.lights + j];
         sum += (albedo * direct.base + direct.gloss) * state.lights[image.lights[j]].intensity;
       }
-      sum += indirect(f, albedo, shading.indirect[slot]) * facet.weight;
+      sum += sent_on(light, slot, emission, albedo, shading.indirect[slot]) * facet.weight;
     }
     sum *= exposure_of(state, image, number, pixel);
     for (int c = 0; c < 3; ++c) radiance[3 * i + static_cast<std::size_t>(c)] = sum[c];
@@ -259,7 +238,10 @@ std::vector<Rgb> ImageModel::direct_from(const ViewCache& cache, std::span<const
 struct Onward::Impl {
   const ViewCache& cache;
   const SceneState& state;
-  Indirect indirect;
+  std::size_t lights;
+  Transport transport;
+  std::vector<std::size_t> sources;
+  std::vector<Rgb> emission;
   Shader shader;
   std::vector<Rgb> albedos;
 };
@@ -268,17 +250,19 @@ Onward::Onward(const ImageModel& model, const SceneState& state, std::size_t num
   const Recording& image = model.recordings().images[number];
   const ViewCache& cache = model.cache(image.view);
   impl_ = std::unique_ptr<const Impl>(
-      new Impl{cache, state,
-               Indirect(cache, state, model.monomials(), image, model.layout().lights.size(),
-                        model.shade(state, number, {}).onward),
+      new Impl{cache, state, model.layout().lights.size(), Transport(state, model.monomials()), sources_of(state, image),
+               emission_of(state, image, model.shade(state, number, {}).onward),
                Shader(model.layout(), image, cache, {}), albedos_of(state)});
 }
 Onward::~Onward() = default;
 
 Rgb Onward::operator()(std::size_t f) const {
   const Facet& facet = impl_->cache.facets[f];
-  return impl_->indirect(f, impl_->albedos[facet.surface] * facet.tint,
-                         impl_->shader.scattered(impl_->state.surfaces[facet.surface], facet));
+  const Scattered scattered = impl_->shader.scattered(impl_->state.surfaces[facet.surface], facet);
+  Relayed light{impl_->sources.size(), {}, {}};
+  add_relayed(impl_->cache, impl_->transport, impl_->sources, impl_->lights, max_component(scattered.gloss) > 0, f,
+              light);
+  return sent_on(light, 0, impl_->emission, impl_->albedos[facet.surface] * facet.tint, scattered);
 }
 
 void ImageModel::variance(const SceneState& state, std::size_t number, std::span<const std::uint32_t> picked,

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <vector>
 
 namespace gonio::relighting {
 namespace {
@@ -80,18 +79,20 @@ bool is_even(const scene::Scene& scene, const render::RayCaster& caster, const V
   return !textured || (one && !sky && max_component(most - least) <= even_change);
 }
 
-void tint_facets(const scene::Scene& scene, const render::RayCaster& caster, const View& view, ViewCache& cache,
-                 int rays) {
+Tints::Tints(const scene::Scene& scene) : scene_(scene) {
   if (!has_textures(scene)) return;
-  std::vector<Rgb> means;
   for (const scene::Surface& surface : scene.appearance.surfaces) {
     const scene::Texture* texture = albedo_texture(surface);
-    means.push_back(texture != nullptr ? mean_texel(*texture->picture) : Rgb{});
+    means_.push_back(texture != nullptr ? mean_texel(*texture->picture) : Rgb{});
   }
+}
+
+void Tints::apply(const render::RayCaster& caster, const View& view, ViewCache& cache, int rays) const {
+  if (means_.empty()) return;
   for (const Pixel& pixel : cache.pixels)
     for (std::size_t f = pixel.first_facet; f < pixel.first_facet + pixel.facets; ++f) {
       const std::uint32_t surface = cache.facets[f].surface;
-      const scene::Texture* texture = albedo_texture(scene.appearance.surfaces[surface]);
+      const scene::Texture* texture = albedo_texture(scene_.appearance.surfaces[surface]);
       if (texture == nullptr) continue;
       Rgb sum, square;
       double n = 0;
@@ -102,7 +103,7 @@ void tint_facets(const scene::Scene& scene, const render::RayCaster& caster, con
         n += 1;
       });
       if (n == 0) continue;
-      const Rgb mean = means[surface], here = sum / n;
+      const Rgb mean = means_[surface], here = sum / n;
       const auto over = [](double value, double usual) { return usual > 0 ? value / usual : 1; };
       cache.facets[f].tint = {over(here.x, mean.x), over(here.y, mean.y), over(here.z, mean.z)};
       const double spread = std::sqrt(std::max(0.0, max_component(square / n - here * here)));

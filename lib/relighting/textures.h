@@ -7,6 +7,7 @@
 // than `even_change`.
 #pragma once
 #include <array>
+#include <vector>
 
 #include "relighting/light_cache.h"
 #include "relighting/recordings.h"
@@ -24,8 +25,16 @@ void settle_textures(const scene::Scene& scene, SceneLayout& layout);
 // True where no textured surface is met.
 bool is_even(const scene::Scene& scene, const render::RayCaster& caster, const View& view, int x, int y);
 
-// `rays`: along each side of a pixel.
-void tint_facets(const scene::Scene& scene, const render::RayCaster& caster, const View& view, ViewCache& cache,
-                 int rays = 5);
+// What facets' tints are asked of. The pictures' means are taken once: pictures may be large, and pixels few.
+class Tints {
+ public:
+  explicit Tints(const scene::Scene& scene);
+  // Sets the tints of a cache's facets. `rays`: along each side of a pixel.
+  void apply(const render::RayCaster& caster, const View& view, ViewCache& cache, int rays = 5) const;
+
+ private:
+  const scene::Scene& scene_;
+  std::vector<Rgb> means_;  // by surface; empty: nothing has a texture
+};
 
 }  // namespace gonio::relighting

@@ -83,13 +83,14 @@ Illustration ImagesProblem::illustrate(const Explanation& explanation, const std
   std::vector<ViewCache> caches;
   std::vector<int> strides;
   CacheOptions coarse{.samples = 4, .paths = 64, .seed = cache_options_.seed + 1};
+  const Tints tints(*scene_);
   for (const View& view : recordings_.views) {
     strides.push_back(stride_for(view));
     std::vector<std::array<int, 2>> grid;
     for (int y = 0; y < view.model.height_px(); y += strides.back())
       for (int x = 0; x < view.model.width_px(); x += strides.back()) grid.push_back({x, y});
     caches.push_back(build_cache(*caster_, view, layout_.lights, *monomials_, grid, coarse));
-    tint_facets(*scene_, *caster_, view, caches.back());
+    tints.apply(*caster_, view, caches.back());
   }
   ImageModel model(recordings_, layout_, *monomials_, std::move(caches));
   const SceneState before = raw_state(explanation.base_values), after = raw_state(explanation.values);

@@ -82,12 +82,13 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
   monomials_ = std::make_unique<render::Monomials>(surfaces.size(), degree_for(surfaces.size()));
   std::vector<std::vector<std::array<int, 2>>> chosen(recordings_.views.size());
   choose_pixels(options.pixels, chosen);
+  const Tints tints(scene);
   std::vector<ViewCache> caches;
   cache_options_.shadows = layout_.lights.size() <= most_lamps_with_shadows;
   for (std::size_t v = 0; v < chosen.size(); ++v) {
     caches.push_back(
         build_cache(*caster_, recordings_.views[v], layout_.lights, *monomials_, chosen[v], cache_options_));
-    tint_facets(scene, *caster_, recordings_.views[v], caches.back());
+    tints.apply(*caster_, recordings_.views[v], caches.back());
   }
   model_ = std::make_unique<ImageModel>(recordings_, layout_, *monomials_, std::move(caches));
   bind(document);

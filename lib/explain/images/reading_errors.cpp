@@ -260,12 +260,13 @@ std::vector<double> ReadingErrors::lit(const Reading& reading) const {
   const render::RayCaster caster(other.instances);
   std::vector<LightSource> lamps;
   for (const LightSource& lamp : model_.layout().lights) lamps.push_back(meant(lamp, reading));
+  const Tints tints(other);
   std::vector<ViewCache> caches;
   std::vector<std::vector<float>> sums;
   for (std::size_t v = 0; v < model_.views(); ++v) {
     const View view = meant(model_.recordings().views[v], reading);
     caches.push_back(build_cache(caster, view, lamps, model_.monomials(), chosen_[v], coarse));
-    tint_facets(other, caster, view, caches.back(), coarse.samples);
+    tints.apply(caster, view, caches.back(), coarse.samples);
     sums.push_back(facet_sums(caches.back()));
   }
   return errors(reading, [&](std::size_t image, std::span<const std::uint32_t> kept) {
