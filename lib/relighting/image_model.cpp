@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "relighting/image_memo.h"
 #include "relighting/relayed.h"
@@ -25,15 +26,23 @@ std::vector<Rgb> albedos_of(const SceneState& state) {
   return albedos;
 }
 
-// What a facet sends on of the light that reaches it by way of others, over its share of the pixel.
-Rgb sent_on(const Relayed& light, std::size_t slot, std::span<const Rgb> emission, Rgb albedo,
-            const Scattered& scattered) {
+// What a facet sends on of the light that reaches it by way of others, over its share of the pixel. `onward`: what is
+// left of each lamp's; empty: all.
+Rgb sent_on(const Relayed& light, std::size_t slot, std::span<const Rgb> emission, std::span<const double> onward,
+            Rgb albedo, const Scattered& scattered) {
   const std::size_t first = slot * light.sources;
+  const bool glossy = max_component(scattered.gloss) > 0;
   Rgb irradiance, mirrored;
-  for (std::size_t j = 0; j < light.sources; ++j) irradiance += light.irradiance[first + j] * emission[j];
-  if (max_component(scattered.gloss) > 0)
-    for (std::size_t j = 0; j < light.sources; ++j) mirrored += light.mirrored[first + j] * emission[j];
+  for (std::size_t j = 0; j < light.sources; ++j) {
+    const Rgb sent = j < onward.size() ? emission[j] * onward[j] : emission[j];
+    irradiance += light.irradiance[first + j] * sent;
+    if (glossy) mirrored += light.mirrored[first + j] * sent;
+  }
   return (albedo * irradiance * scattered.base + scattered.gloss * mirrored) / pi;
+}
+
+std::span<const double> onward_at(const std::vector<double>& onward, std::size_t slot, std::size_t lights) {
+  return onward.empty() ? std::span<const double>{} : std::span(onward).subspan(slot * lights, lights);
 }
 
 bool any_gloss(const Shading& shading) {
@@ -193,7 +202,7 @@ void ImageModel::compose_from(const ViewCache& cache, const Relayed& light, cons
                               std::span<const std::uint32_t> picked, const Shading& shading,
                               std::span<double> radiance) const {
   const Recording& image = recordings_.images[number];
-  const std::vector<Rgb> emission = emission_of(state, image, shading.onward);
+  const std::vector<Rgb> emission = emission_of(state, image);
   const std::vector<Rgb> albedos = albedos_of(state);
   std::size_t slot = 0;
   for (std::size_t i = 0; i < picked.size(); ++i) {
@@ -207,7 +216,9 @@ void ImageModel::compose_from(const ViewCache& cache, const Relayed& light, cons
         const Scattered& direct = shading.direct[slot * shading.lights + j];
         sum += (albedo * direct.base + direct.gloss) * state.lights[image.lights[j]].intensity;
       }
-      sum += sent_on(light, slot, emission, albedo, shading.indirect[slot]) * facet.weight;
+      sum += sent_on(light, slot, emission, onward_at(shading.onward, slot, shading.lights), albedo,
+                     shading.indirect[slot]) *
+             facet.weight;
     }
     sum *= exposure_of(state, image, number, pixel);
     for (int c = 0; c < 3; ++c) radiance[3 * i + static_cast<std::size_t>(c)] = sum[c];
@@ -241,18 +252,23 @@ struct Onward::Impl {
   std::size_t lights;
   Transport transport;
   std::vector<std::size_t> sources;
+  std::size_t on;  // lamps of the image
   std::vector<Rgb> emission;
   Shader shader;
+  std::vector<double> onward;  // of all facets
   std::vector<Rgb> albedos;
 };
 
 Onward::Onward(const ImageModel& model, const SceneState& state, std::size_t number) {
   const Recording& image = model.recordings().images[number];
   const ViewCache& cache = model.cache(image.view);
-  impl_ = std::unique_ptr<const Impl>(
+  impl_ = std::unique_ptr<Impl>(
       new Impl{cache, state, model.layout().lights.size(), Transport(state, model.monomials()), sources_of(state, image),
-               emission_of(state, image, model.shade(state, number, {}).onward),
-               Shader(model.layout(), image, cache, {}), albedos_of(state)});
+               image.lights.size(),
+               emission_of(state, image), Shader(model.layout(), image, cache, {}), {}, albedos_of(state)});
+  std::vector<std::uint32_t> all(cache.pixels.size());
+  std::iota(all.begin(), all.end(), 0u);
+  impl_->onward = impl_->shader.onward(state, all);
 }
 Onward::~Onward() = default;
 
@@ -262,7 +278,8 @@ Rgb Onward::operator()(std::size_t f) const {
   Relayed light{impl_->sources.size(), {}, {}};
   add_relayed(impl_->cache, impl_->transport, impl_->sources, impl_->lights, max_component(scattered.gloss) > 0, f,
               light);
-  return sent_on(light, 0, impl_->emission, impl_->albedos[facet.surface] * facet.tint, scattered);
+  const std::span<const double> onward = onward_at(impl_->onward, f, impl_->on);
+  return sent_on(light, 0, impl_->emission, onward, impl_->albedos[facet.surface] * facet.tint, scattered);
 }
 
 void ImageModel::variance(const SceneState& state, std::size_t number, std::span<const std::uint32_t> picked,

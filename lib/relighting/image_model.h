@@ -112,7 +112,7 @@ class Onward {
 
  private:
   struct Impl;
-  std::unique_ptr<const Impl> impl_;
+  std::unique_ptr<Impl> impl_;
 };
 
 // Factor of gain and vignetting on the radiance of a pixel.

@@ -105,9 +105,13 @@ Vec3 cosine_about(Vec3 normal, Vec2 u) {  // density cos / pi
 
 // Sums of what paths brought from every source, term by term, and the spread of that at albedo 1/2.
 struct Gathered {
-  std::vector<double> coefficient, sum, square, path;
-  Gathered(std::size_t sources, std::size_t terms)
-      : coefficient(sources * terms), sum(sources), square(sources), path(sources) {}
+  std::vector<double> coefficient, sum, square, path, lit;
+  Gathered(std::size_t lights, const render::Monomials& monomials)
+      : coefficient((lights + 1) * monomials.size()),
+        sum(lights + 1),
+        square(lights + 1),
+        path(lights + 1),
+        lit(lights * monomials.surfaces() * 4) {}
 };
 
 // The cache of one pixel: facets, patches and tables numbered from zero.
@@ -282,6 +286,10 @@ class PixelBuilder {
         const double irradiance = small_light(caster_, *next, lights_[l]).irradiance;
         gathered.coefficient[l * terms + term] += irradiance;
         gathered.path[l] += irradiance * albedo;
+        if (lights_[l].directional || irradiance == 0) continue;
+        const Vec3 away = normalized(next->position_m - lights_[l].position_m) * (irradiance * albedo);
+        double* lit = &gathered.lit[(l * monomials_.surfaces() + next->surface) * 4];
+        lit[0] += away.x, lit[1] += away.y, lit[2] += away.z, lit[3] += irradiance * albedo;
       }
       at = *next;
       const double u = random.uniform();
@@ -296,7 +304,7 @@ class PixelBuilder {
   // Light by way of other surfaces. Paths start at the sub-samples in turn.
   void add_indirect(const std::vector<const SubSample*>& mine, Random& random, ViewCache& out) const {
     if (options_.paths == 0) return;
-    Gathered diffuse(lights_.size() + 1, monomials_.size()), gloss = diffuse;
+    Gathered diffuse(lights_.size(), monomials_), gloss = diffuse;
     for (int k = 0; k < options_.paths; ++k) {
       const SurfacePoint& at = mine[static_cast<std::size_t>(k) % mine.size()]->point;
       const double u = (k + random.uniform()) / options_.paths;
@@ -316,6 +324,7 @@ class PixelBuilder {
     }
     const double n = std::max(1, options_.paths), m = std::max(1, reflected);
     for (const double c : diffuse.coefficient) out.indirect.push_back(static_cast<float>(c / n));
+    for (const double c : diffuse.lit) out.lit.push_back(static_cast<float>(c / n));
     for (const double c : gloss.coefficient) out.mirrored.push_back(static_cast<float>(c / m));
     for (std::size_t s = 0; s < diffuse.sum.size(); ++s) {
       const double mean = diffuse.sum[s] / n;
@@ -359,6 +368,7 @@ ViewCache build_cache(const RayCaster& caster, const View& view, std::span<const
     append(all.shadows, part.shadows);
     append(all.indirect, part.indirect);
     append(all.mirrored, part.mirrored);
+    append(all.lit, part.lit);
     append(all.indirect_sigma, part.indirect_sigma);
     append(all.direct_sigma, part.direct_sigma);
     append(all.margin, part.margin);

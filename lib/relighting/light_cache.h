@@ -17,7 +17,9 @@
 // Indirect light: per facet and source a polynomial in the albedos of the surfaces (render/geometry_cache.h), from
 // diffuse paths; the constant term of the ambient source is the visible sky. `mirrored` is the same for what arrives
 // from about the mirror direction. Paths that are glossy twice are left out. `indirect_sigma` is the Monte Carlo error
-// at albedo 1/2.
+// at albedo 1/2. `lit` says where the light went first that comes by way of others, for lamps that do not shine all
+// round: of each surface that it met first the sum of the unit directions from the lamp, weighted by what arrives at
+// albedo 1/2, and of the weights.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -71,6 +73,7 @@ struct ViewCache {
   std::vector<std::uint8_t> shadows;       // [table][node]
   std::vector<float> indirect;             // [facet][source][monomial]
   std::vector<float> mirrored;  // [facet][source][monomial]: pi times the mean radiance about the mirror direction
+  std::vector<float> lit;  // [facet][light][surface]: x, y, z, weight; directional lights: zeros
   std::vector<float> indirect_sigma;  // [facet][source]
   std::vector<float> direct_sigma;    // [facet][light]: error of the mean over the sub-samples
   std::vector<float>

@@ -242,7 +242,7 @@ void lend_indirect(const ViewCache& from, ViewCache& to) {
     target.resize(stride * facets_to);
     for (std::size_t k = 0; k < stride; ++k) target[b * stride + k] = source[a * stride + k];
   };
-  to.indirect.clear(), to.mirrored.clear(), to.indirect_sigma.clear();
+  to.indirect.clear(), to.mirrored.clear(), to.lit.clear(), to.indirect_sigma.clear();
   Facets last;
   for (std::size_t f = 0; f < from.facets.size(); ++f) last.try_emplace(from.facets[f].surface, f);
   for (std::size_t p = 0; p < to.pixels.size(); ++p) {
@@ -255,6 +255,7 @@ void lend_indirect(const ViewCache& from, ViewCache& to) {
       to.facets[f].tint = from.facets[found->second].tint;
       lend(from.indirect, to.indirect, from.facets.size(), to.facets.size(), found->second, f);
       lend(from.mirrored, to.mirrored, from.facets.size(), to.facets.size(), found->second, f);
+      lend(from.lit, to.lit, from.facets.size(), to.facets.size(), found->second, f);
       lend(from.indirect_sigma, to.indirect_sigma, from.facets.size(), to.facets.size(), found->second, f);
     }
   }

@@ -37,10 +37,9 @@ std::vector<std::size_t> sources_of(const SceneState& state, const Recording& im
   return sources;
 }
 
-std::vector<Rgb> emission_of(const SceneState& state, const Recording& image, std::span<const double> onward) {
+std::vector<Rgb> emission_of(const SceneState& state, const Recording& image) {
   std::vector<Rgb> emission;
-  for (std::size_t j = 0; j < image.lights.size(); ++j)
-    emission.push_back(state.lights[image.lights[j]].intensity * onward[j]);
+  for (const std::size_t l : image.lights) emission.push_back(state.lights[l].intensity);
   if (max_component(state.ambient) > 0) emission.push_back(state.ambient);
   return emission;
 }

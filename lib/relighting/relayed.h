@@ -46,7 +46,7 @@ void add_relayed(const ViewCache& cache, const Transport& transport, std::span<c
 Relayed relayed(const ViewCache& cache, const Transport& transport, std::span<const std::size_t> sources,
                 std::size_t lights, bool mirrored, std::span<const std::uint32_t> picked);
 
-// Emission of an image's sources. `onward`: Shading's.
-std::vector<Rgb> emission_of(const SceneState& state, const Recording& image, std::span<const double> onward);
+// Emission of an image's sources.
+std::vector<Rgb> emission_of(const SceneState& state, const Recording& image);
 
 }  // namespace gonio::relighting

@@ -40,6 +40,7 @@ void append_facets(const ViewCache& more, ViewCache& cache) {
   append(more.visible, cache.visible);
   append(more.indirect, cache.indirect);
   append(more.mirrored, cache.mirrored);
+  append(more.lit, cache.lit);
   append(more.indirect_sigma, cache.indirect_sigma);
   append(more.direct_sigma, cache.direct_sigma);
   append(more.margin, cache.margin);

@@ -154,16 +154,41 @@ std::vector<Shader::Lamp> Shader::lamps(const SceneState& state) const {
   return all;
 }
 
-// Of a lamp with a lobe: what reaches all that the view sees, over what it would get from one that shines all round.
-double Shader::onward(const Lamp& lamp) const {
-  if (lamp.profile.empty()) return 1;
+// Of a lamp with a lobe: what it sends to where its light goes first that reaches the facet by way of others, over what
+// it would send there if it shone all round. Directions to one surface are spread about their mean: a quarter of them
+// along it, the rest around a cone that has their mean cosine.
+double Shader::onward(const Lamp& lamp, std::size_t facet) const {
+  if (lamp.profile.empty() || cache_.lit.empty()) return 1;
+  constexpr int around = 6;
+  constexpr double along = 0.25;
+  const std::size_t surfaces = cache_.lit.size() / (4 * layout_.lights.size() * cache_.facets.size());
+  const float* lit = &cache_.lit[(facet * layout_.lights.size() + lamp.light) * surfaces * 4];
   double all = 0, left = 0;
-  for (std::size_t f = 0; f < cache_.facets.size(); ++f) {
-    const double sent = sums_[(f * layout_.lights.size() + lamp.light) * radius_count];
-    all += sent;
-    left += sent * lamp.lobe(aim(lamp.source, cache_.patches[cache_.facets[f].first_patch].position_m).wi);
+  for (std::size_t s = 0; s < surfaces; ++s, lit += 4) {
+    const Vec3 sum{lit[0], lit[1], lit[2]};
+    const double weight = lit[3], length = norm(sum);
+    if (!(weight > 0) || !(length > 0)) continue;
+    const Basis about(sum / length);
+    const double cosine = std::clamp((length / weight - along) / (1 - along), -1.0, 1.0);
+    const double sine = std::sqrt(1 - cosine * cosine);
+    double share = along * lamp.lobe(-about.to_world({0, 0, 1}));
+    for (int k = 0; k < around; ++k) {
+      const double phi = 2 * pi * k / around;
+      share += (1 - along) / around * lamp.lobe(-about.to_world({sine * std::cos(phi), sine * std::sin(phi), cosine}));
+    }
+    all += weight, left += weight * share;
   }
   return all > 0 ? left / all : 1;
+}
+
+std::vector<double> Shader::onward(const SceneState& state, std::span<const std::uint32_t> picked) const {
+  const std::vector<Lamp> on = lamps(state);
+  std::vector<double> shares;
+  if (std::ranges::all_of(on, [](const Lamp& lamp) { return lamp.profile.empty(); })) return shares;
+  for (const std::uint32_t p : picked)
+    for (std::size_t k = 0; k < cache_.pixels[p].facets; ++k)
+      for (const Lamp& lamp : on) shares.push_back(onward(lamp, cache_.pixels[p].first_facet + k));
+  return shares;
 }
 
 // The share of the lamp that is not hidden where it now stands, of a patch that sees `visible` of it where it stood.
@@ -291,7 +316,7 @@ Shading Shader::operator()(const SceneState& state, std::span<const std::uint32_
   Shading shading = direct_alone(state, picked);
   shading.indirect.resize(facets_of(picked));
   for (std::uint32_t s = 0; s < state.surfaces.size(); ++s) send_on_again(state, picked, s, shading);
-  for (const Lamp& lamp : lamps(state)) shading.onward.push_back(onward(lamp));
+  shading.onward = onward(state, picked);
   return shading;
 }
 

@@ -28,7 +28,9 @@ struct Shading {
   std::size_t lights = 0;           // on in this image
   std::vector<Scattered> direct;    // [facet of the picked pixels, in order][light of the image]
   std::vector<Scattered> indirect;  // [facet of the picked pixels, in order]
-  std::vector<double> onward;       // [light of the image]: of its light, the share that surfaces still get to send on
+  // [facet of the picked pixels, in order][light of the image]: of the light that comes by way of other surfaces the
+  // share that a lamp's lobe leaves; empty: all of it.
+  std::vector<double> onward;
 };
 
 // Weights of the radius table's entries at one radius: cubic Hermite with tangents from the neighbouring nodes (Catmull
@@ -59,13 +61,15 @@ class Shader {
   // The facets of one surface anew.
   void again(const SceneState& state, std::span<const std::uint32_t> picked, std::uint32_t surface,
              Shading& shading) const;
+  // Shading::onward alone.
+  std::vector<double> onward(const SceneState& state, std::span<const std::uint32_t> picked) const;
   // What the surface sends on of light that comes from everywhere, at a facet.
   Scattered scattered(const SurfaceState& surface, const Facet& facet) const;
 
  private:
   struct Lamp;
   std::vector<Lamp> lamps(const SceneState& state) const;
-  double onward(const Lamp& lamp) const;
+  double onward(const Lamp& lamp, std::size_t facet) const;
   Vec3 seen_from(const Facet& facet) const;  // in the frame of its normal
   double visible_now(const Lamp& lamp, std::size_t facet, double visible) const;
   std::size_t facets_of(std::span<const std::uint32_t> picked) const;

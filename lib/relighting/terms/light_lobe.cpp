@@ -1,6 +1,6 @@
 // light.lobe: lamps at a finite distance that fade to the sides or have a cone, facing the scene's centre or beside it
 // as in scene/edits/light_lobe.cpp. Forms (light/mechanisms/light_lobe.h): one for all lamps, where they are of one
-// kind; one with its axis for a single lamp; each its own. Light between surfaces loses what the view as a whole does.
+// kind; each with its own axis; a cone with its axis for a single lamp; each its own.
 #include "light/mechanisms/light_lobe.h"
 
 #include <algorithm>
@@ -189,13 +189,15 @@ std::vector<Use> candidates(const Setting& s) {
     begin(uses.back(), 0, lobe);
   }
   Use each = target_use(*all->mechanism, all->on, all->targets, false);
-  free_alone(each, mechanism::aimed_shade);
+  for (std::size_t i = 0; i < each.numbers.size(); ++i)
+    each.numbers[i].groups = lit_by(s.recordings, all->targets[i / mechanism::lobe_numbers]);
+  uses.push_back(each);
+  free_alone(uses.back(), mechanism::aimed_fade);
+  free_alone(each, mechanism::aimed_lobe);
   std::size_t coned = 0;
   for (std::size_t t = 0; t < all->targets.size(); ++t) {
     Use one = of_lamp(*all, t, s.recordings);
-    free_alone(one, mechanism::aimed_shade);
-    for (std::size_t k = 0; k < mechanism::lobe_numbers; ++k)
-      each.numbers[t * mechanism::lobe_numbers + k].groups = one.numbers[k].groups;
+    free_alone(one, mechanism::aimed_lobe);
     if (!search.best_cone({all->targets[t]}, true, lobe)) continue;
     ++coned;
     begin(one, 0, lobe);
