@@ -53,12 +53,12 @@ class Recorder:
             samples = SAMPLES if not self.made else SAMPLES // 4
             if self.lens or any(e["name"] == "fog" for e in plan["effects"]):
                 samples *= 2
-            shapes, views = scene.renderings(plan, samples, self.scratch, self.lens)
+            shapes, views = scene.renderings(plan, samples, self.scratch, self.lens, not self.made)
             self.made[key] = shapes, [self.seen(v) for v in views]
         return self.made[key]
 
     def seen(self, view):
-        if self.lens:  # surfaces at the pixels' middles; radiance stays fine until a lens is chosen
+        if self.lens and "surface" in view:  # surfaces at the pixels' middles; radiance stays fine until a lens is chosen
             n, m = camera_chain.FINE, camera_chain.MARGIN_PX
             inner = view["surface"][n * m : -n * m, n * m : -n * m]
             view["surface"] = inner[n // 2 :: n, n // 2 :: n]
@@ -67,10 +67,8 @@ class Recorder:
     def radiance(self, views, picture, half, lenses):
         """{lamp: picture} of what shines in it."""
         view, camera = views[picture["camera"]], self.plan["cameras"][picture["camera"]]
-        wanted = [f"lamp{i}" for i in picture["lamps"]] + [g for g in ("extra", "sky") if g in view]
-        if "card" in view and scene.find(self.plan, "card")["lamp"] in picture["lamps"]:
-            wanted.append("card")
-        found = {g: view[g][half] if half is not None else 0.5 * (view[g][0] + view[g][1]) for g in wanted}
+        here = {g: takes[picture["number"]] for g, takes in view.items() if g != "surface" and picture["number"] in takes}
+        found = {g: both[half] if half is not None else 0.5 * (both[0] + both[1]) for g, both in here.items()}
         if self.lens:
             found = {g: camera_chain.through_lens(v, camera, lenses) for g, v in found.items()}
         return found

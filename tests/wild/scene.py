@@ -310,9 +310,17 @@ def one_rendering(name, samples, seed, scratch):
     return radiance, np.rint(layers["ViewLayer.IndexMA.X"]).astype(int)
 
 
-def renderings(plan, samples, scratch, lens):
-    """Shapes, and for each camera {lamp: [half, half]} of radiance with {"surface": index of material}. `samples` of a
-    pixel and half are shared among the lamps; equal seeds for equal places, so that versions of a scene differ little.
+def shines_in(plan, name, picture):
+    """Does what bears this name send light into the picture?"""
+    if name == "card":
+        return find(plan, "card")["lamp"] in picture["lamps"]
+    return not name.startswith("lamp") or int(name[4:]) in picture["lamps"]
+
+
+def renderings(plan, samples, scratch, lens, apart):
+    """Shapes, and for each camera {lamp: {number of the picture: [half, half]}} of radiance with {"surface": index of
+    material}. `samples` of a pixel and half are shared among the lamps; equal seeds for equal places, so that versions
+    of a scene differ little. `apart`: every picture has samples of its own, as no two photographs share their noise.
     """
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.preferences.addon_enable(module="io_mesh_ply")
@@ -332,8 +340,16 @@ def renderings(plan, samples, scratch, lens):
         render.resolution_x, render.resolution_y = width, height
         found = {}
         for number, name in enumerate(names):
+            pictures = [p["number"] for p in plan["pictures"] if p["camera"] == c and shines_in(plan, name, p)]
+            if not pictures:
+                continue
             shine_alone(name, dark, sky)
-            both = [one_rendering(name, each, 1 + 100 * c + 10 * number + half, scratch) for half in range(2)]
-            found[name], found["surface"] = [radiance for radiance, _ in both], both[0][1]
+            takes = []
+            for take in range(len(pictures) if apart else 1):
+                seed = 1 + 1000 * take + 100 * c + 10 * number
+                both = [one_rendering(name, each, seed + half, scratch) for half in range(2)]
+                takes.append([radiance for radiance, _ in both])
+                found["surface"] = both[0][1]
+            found[name] = {p: takes[k if apart else 0] for k, p in enumerate(pictures)}
         views.append(found)
     return shapes, views
