@@ -63,6 +63,32 @@ Eigen::MatrixXd without_own_numbers(const Linearisation& l, const GroupGram& gra
   return result;
 }
 
+// b' H b of a basis whose rows are unit vectors but for the few that belong to the model's own columns:
+// with b = E + D, E the unit rows, it is E'HE + E'HD + (E'HD)' + D'HD, a sorting and products as thin as D.
+Eigen::MatrixXd seen_along(const Eigen::MatrixXd& h, const Linearisation& l, const GroupGram& gram,
+                           const Eigen::MatrixXd& basis) {
+  std::vector<Eigen::Index> unit, place, dense;
+  for (std::size_t k = 0; k < gram.columns.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    if (gram.columns[k] < l.own) {
+      dense.push_back(row);
+    } else {
+      unit.push_back(row);
+      place.push_back(static_cast<Eigen::Index>(gram.columns[k] - l.own));
+    }
+  }
+  unit.push_back(h.rows() - 1);
+  place.push_back(basis.cols() - 1);
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(basis.cols(), basis.cols());
+  sum(place, place) = h(unit, unit);
+  if (dense.empty()) return sum;
+  const Eigen::MatrixXd d = basis(dense, Eigen::all), coupling = h(unit, dense) * d, own = h(dense, dense) * d;
+  sum(place, Eigen::all) += coupling;
+  sum(Eigen::all, place) += coupling.transpose();
+  sum.noalias() += d.transpose() * own;
+  return sum;
+}
+
 }  // namespace
 
 Folds::Fold Folds::everything(const Linearisation& l, const Eigen::MatrixXd& joint) {
@@ -117,8 +143,8 @@ Folds::Fold Folds::without(const System& system, const Linearisation& l, const G
   fold.halved = !numbers.empty();
   for (std::size_t half = 0; half < 2; ++half) {
     const Eigen::MatrixXd b = numbers.empty() ? basis : without_own_numbers(l, left_out, basis, numbers, half);
-    fold.judged[half] = b.transpose() * (left_out.half[1 - half] * b);
-    if (foreign_numbers) fold.fitted[half] = b.transpose() * (left_out.half[half] * b);
+    fold.judged[half] = seen_along(left_out.half[1 - half], l, left_out, b);
+    if (foreign_numbers) fold.fitted[half] = seen_along(left_out.half[half], l, left_out, b);
   }
   return fold;
 }

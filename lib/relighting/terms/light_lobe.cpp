@@ -27,6 +27,21 @@ class LobeSearch {
     for (std::size_t i = 0; i < rough.sights.size(); i += stride) look(rough.sights[i]);
   }
 
+  // The best lobe of a lamp that fades about an axis near the centre, by a coarse grid; false where it leaves nearly as
+  // much as none.
+  bool best_fade(std::size_t lamp, Lobe& best) const {
+    const double before = left({lamp}, {0, pi, 0.8, 0, 0});
+    double least = before;
+    for (const double exponent : {0.25, 0.5, 1.0, 2.0, 4.0, 8.0})
+      for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y) {
+          const Lobe lobe{exponent, pi, 0.8, fade_tilt * x, fade_tilt * y};
+          const double now = left({lamp}, lobe);
+          if (now < least) least = now, best = lobe;
+        }
+    return least < worth * before;
+  }
+
   // The best lobe of these lamps among a coarse grid of cones; false where it leaves nearly as much as none.
   bool best_cone(const std::vector<std::size_t>& lamps, bool aimed, Lobe& best) const {
     const double widest = widest_angle(lamps);
@@ -69,6 +84,7 @@ class LobeSearch {
 
   static constexpr std::size_t most_sights = 3000;
   static constexpr double worth = 0.95;
+  static constexpr double fade_tilt = 0.15;  // rad
   struct Beam {  // of one lamp at one sight
     std::size_t lamp;
     Vec3 away;  // from the lamp
@@ -191,8 +207,15 @@ std::vector<Use> candidates(const Setting& s) {
   Use each = target_use(*all->mechanism, all->on, all->targets, false);
   for (std::size_t i = 0; i < each.numbers.size(); ++i)
     each.numbers[i].groups = lit_by(s.recordings, all->targets[i / mechanism::lobe_numbers]);
-  uses.push_back(each);
-  free_alone(uses.back(), mechanism::aimed_fade);
+  Use fading = each;
+  free_alone(fading, mechanism::aimed_fade);
+  std::size_t faded = 0;
+  for (std::size_t t = 0; t < all->targets.size(); ++t) {
+    if (!search.best_fade(all->targets[t], lobe)) continue;
+    ++faded;
+    begin(fading, t, lobe);
+  }
+  if (faded > 0) uses.push_back(std::move(fading));
   free_alone(each, mechanism::aimed_lobe);
   std::size_t coned = 0;
   for (std::size_t t = 0; t < all->targets.size(); ++t) {
