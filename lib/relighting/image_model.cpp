@@ -262,10 +262,16 @@ struct Onward::Impl {
 Onward::Onward(const ImageModel& model, const SceneState& state, std::size_t number) {
   const Recording& image = model.recordings().images[number];
   const ViewCache& cache = model.cache(image.view);
-  impl_ = std::unique_ptr<Impl>(
-      new Impl{cache, state, model.layout().lights.size(), Transport(state, model.monomials()), sources_of(state, image),
-               image.lights.size(),
-               emission_of(state, image), Shader(model.layout(), image, cache, {}), {}, albedos_of(state)});
+  impl_ = std::unique_ptr<Impl>(new Impl{cache,
+                                         state,
+                                         model.layout().lights.size(),
+                                         Transport(state, model.monomials()),
+                                         sources_of(state, image),
+                                         image.lights.size(),
+                                         emission_of(state, image),
+                                         Shader(model.layout(), image, cache, {}),
+                                         {},
+                                         albedos_of(state)});
   std::vector<std::uint32_t> all(cache.pixels.size());
   std::iota(all.begin(), all.end(), 0u);
   impl_->onward = impl_->shader.onward(state, all);

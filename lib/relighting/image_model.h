@@ -17,8 +17,8 @@
 #include "relighting/light_cache.h"
 #include "relighting/recordings.h"
 #include "relighting/scene_state.h"
-#include "relighting/shading.h"
 #include "relighting/shaded.h"
+#include "relighting/shading.h"
 #include "relighting/term.h"
 
 namespace gonio::relighting {

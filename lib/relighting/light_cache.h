@@ -73,7 +73,7 @@ struct ViewCache {
   std::vector<std::uint8_t> shadows;       // [table][node]
   std::vector<float> indirect;             // [facet][source][monomial]
   std::vector<float> mirrored;  // [facet][source][monomial]: pi times the mean radiance about the mirror direction
-  std::vector<float> lit;  // [facet][light][surface]: x, y, z, weight; directional lights: zeros
+  std::vector<float> lit;       // [facet][light][surface]: x, y, z, weight; directional lights: zeros
   std::vector<float> indirect_sigma;  // [facet][source]
   std::vector<float> direct_sigma;    // [facet][light]: error of the mean over the sub-samples
   std::vector<float>

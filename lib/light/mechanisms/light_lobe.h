@@ -14,8 +14,8 @@ const Mechanism& light_lobe();
 // Places of the parameters.
 enum LobeNumber : std::size_t { lobe_exponent, lobe_outer, lobe_inner, lobe_tilt_x, lobe_tilt_y, lobe_numbers };
 
-// Which numbers are free together, the plainest first: a lamp that fades, one with a cone; one that faces elsewhere than
-// to the centre and fades about there; one that has a cone besides, as a spot has whose lens makes it fade.
+// Which numbers are free together, the plainest first: a lamp that fades, one with a cone; one that faces elsewhere
+// than to the centre and fades about there; one that has a cone besides, as a spot has whose lens makes it fade.
 inline constexpr std::array<LobeNumber, 1> fading_lobe = {lobe_exponent};
 inline constexpr std::array<LobeNumber, 2> shaded_lobe = {lobe_outer, lobe_inner};
 inline constexpr std::array<LobeNumber, 3> aimed_fade = {lobe_exponent, lobe_tilt_x, lobe_tilt_y};

@@ -85,7 +85,7 @@ class LobeSearch {
   static constexpr std::size_t most_sights = 3000;
   static constexpr double worth = 0.95;
   static constexpr double fade_tilt = 0.15;  // rad
-  struct Beam {  // of one lamp at one sight
+  struct Beam {                              // of one lamp at one sight
     std::size_t lamp;
     Vec3 away;  // from the lamp
     double share;

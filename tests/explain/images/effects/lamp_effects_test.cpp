@@ -78,22 +78,22 @@ TEST(LampPlace, ShadowsGoWithTheLamp) {
   EXPECT_LT(after, 0.25 * before + floor) << floor << " " << before << " " << after;
 }
 
-// A white wall behind the ball sends lamp-1's light on to the table. Of a lamp that fades to the sides it gets a part, and
-// the table beside it another: one factor for all light by way of surfaces is wrong at both.
+// A white wall behind the ball sends lamp-1's light on to the table. Of a lamp that fades to the sides it gets a part,
+// and the table beside it another: one factor for all light by way of surfaces is wrong at both.
 TEST(Lobe, LightByWayOfAWallFadesWithWhatTheWallGets) {
   EffectWorld world;
   world.spp = 400;
   world.noise = 1e-6;
   world.more_meshes = R"(,"wall":{"plane":{"size_m":[1.2,1.2]}})";
   world.more_surfaces = R"(,"wall":{"model":"diffuse","albedo":{"value":[0.8,0.8,0.8],"free":true}})";
-  world.more_objects =
-      R"(,{"id":"wall","mesh":"wall","surface":"wall","world_from_object":)"
-      R"({"matrix":[[0,0,1,-0.2],[1,0,0,0],[0,1,0,0.3],[0,0,0,1]]}})";
+  world.more_objects = R"(,{"id":"wall","mesh":"wall","surface":"wall","world_from_object":)"
+                       R"({"matrix":[[0,0,1,-0.2],[1,0,0,0],[0,1,0,0.3],[0,0,0,1]]}})";
   const ScratchFolder all_round, fading;
   const explain::images::ImagesProblem there(world.record(all_round), {.pixels = 2000});
   world.truth = R"("light.lobe":{"exponent":4})";
   const explain::images::ImagesProblem lobed(world.record(fading), {.pixels = 2000});
-  const double floor = off_by(there, {}), before = off_by(lobed, {}), after = off_by(lobed, {{"light.lobe.exponent", 4}});
+  const double floor = off_by(there, {}), before = off_by(lobed, {}),
+               after = off_by(lobed, {{"light.lobe.exponent", 4}});
   EXPECT_GT(before, 10 * floor);
   EXPECT_LT(after, 1.5 * floor) << floor << " " << before << " " << after;
 }
