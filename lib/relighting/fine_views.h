@@ -55,6 +55,8 @@ class FineViews {
  public:
   FineViews(const scene::Scene& scene, const render::RayCaster& caster, const Recordings& recordings,
             std::span<const LightSource> lights, const render::Monomials& monomials);
+  FineViews(const FineViews&) = delete;  // its views look at its tints
+  FineViews& operator=(const FineViews&) = delete;
   const FineView& operator[](std::size_t view) const { return *views_[view]; }
 
  private:

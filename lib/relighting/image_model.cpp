@@ -70,7 +70,6 @@ ImageModel::ImageModel(const Recordings& recordings, const SceneLayout& layout, 
 }
 
 ImageModel::~ImageModel() = default;
-ImageModel::ImageModel(ImageModel&&) noexcept = default;
 
 Shader ImageModel::shader(std::size_t image) const {
   const Recording& recording = recordings_.images[image];

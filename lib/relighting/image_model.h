@@ -29,7 +29,6 @@ class ImageModel {
  public:
   ImageModel(const Recordings& recordings, const SceneLayout& layout, const render::Monomials& monomials,
              std::vector<ViewCache> views);
-  ImageModel(ImageModel&&) noexcept;
   ~ImageModel();
 
   // Terms in play, numbered through; their starting amounts enter layout().start. Given ones first.
