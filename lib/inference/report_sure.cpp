@@ -79,9 +79,10 @@ void weighed_answers(report::Page& page, const Problem& problem, const Explanati
   constexpr std::size_t most = 8;
   constexpr double least = 0.001;
   if (!e.significant || e.weighed.empty()) return;
-  report::TableText table{"Probabilities from the statistics beside them, calibrated on cases of known truth.",
-                          {{"answer", "", false}, {"probability", ""}, {"for and against", "", false}},
-                          {}};
+  report::TableText table{
+      "Probabilities from the statistics beside them; how often they hold is measured by scripts/prove.",
+      {{"answer", "", false}, {"probability", ""}, {"for and against", "", false}},
+      {}};
   for (const Explanation::Weighed& w : e.weighed) {
     if (table.rows.size() == most || (w.probability < least && !table.rows.empty())) break;
     std::string answer, why;

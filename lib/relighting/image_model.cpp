@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "relighting/image_memo.h"
-#include "relighting/relayed.h"
 #include "relighting/uses.h"
 #include "scene/scene.h"
 
@@ -14,6 +12,37 @@ namespace gonio::relighting {
 namespace {
 
 constexpr std::size_t radius_count = radii_m.size();
+
+// Polynomials in the albedos of a state, colour by colour.
+class Transport {
+ public:
+  Transport(const SceneState& state, const render::Monomials& monomials)
+      : strength_(state.indirect), terms_(monomials.size()) {
+    const Vec3 oblique{std::sqrt(0.5), 0, std::sqrt(0.5)};
+    std::vector<Rgb> albedos;
+    for (const SurfaceState& s : state.surfaces)  // what lets light through does not spread it
+      albedos.push_back(s.model->transmits() ? Rgb{} : s.model->albedo(s.values, oblique));
+    std::array<std::vector<double>, 3> values;
+    for (int k = 0; k < 3; ++k) {
+      std::vector<double> albedo;
+      for (const Rgb& a : albedos) albedo.push_back(a[k]);
+      values[static_cast<std::size_t>(k)] = monomials.evaluate(albedo);
+    }
+    for (std::size_t m = 0; m < terms_; ++m) values_.push_back({values[0][m], values[1][m], values[2][m]});
+  }
+  std::size_t terms() const { return terms_; }
+  // The constant term is what an ambient source sends straight: no light between surfaces.
+  Rgb operator()(const float* coefficient) const {
+    Rgb sum;
+    for (std::size_t m = 1; m < terms_; ++m) sum += values_[m] * double{coefficient[m]};
+    return sum * strength_ + Rgb{coefficient[0], coefficient[0], coefficient[0]};
+  }
+
+ private:
+  double strength_;
+  std::size_t terms_;
+  std::vector<Rgb> values_;
+};
 
 Rgb albedo_of(const SurfaceState& surface) {
   return has_parameter(*surface.model, "albedo") ? surface.values.rgb(parameter_index(*surface.model, "albedo"))
@@ -26,38 +55,44 @@ std::vector<Rgb> albedos_of(const SceneState& state) {
   return albedos;
 }
 
-// What a facet sends on of the light that reaches it by way of others, over its share of the pixel. `onward`: what is
-// left of each lamp's; empty: all.
-Rgb sent_on(const Relayed& light, std::size_t slot, std::span<const Rgb> emission, std::span<const double> onward,
-            Rgb albedo, const Scattered& scattered) {
-  const std::size_t first = slot * light.sources;
-  const bool glossy = max_component(scattered.gloss) > 0;
-  Rgb irradiance, mirrored;
-  for (std::size_t j = 0; j < light.sources; ++j) {
-    const Rgb sent = j < onward.size() ? emission[j] * onward[j] : emission[j];
-    irradiance += light.irradiance[first + j] * sent;
-    if (glossy) mirrored += light.mirrored[first + j] * sent;
+// What a facet sends on of the light that reaches it by way of others, over its share of the pixel.
+class Indirect {
+ public:
+  Indirect(const ViewCache& cache, const SceneState& state, const render::Monomials& monomials, const Recording& image,
+           std::size_t lights)
+      : cache_(cache),
+        state_(state),
+        image_(image),
+        lights_(lights),
+        transport_(state, monomials),
+        ambient_(max_component(state.ambient) > 0) {}
+  // `onward`: Shading's, of all facets that are asked for; `slot`: the facet's place there.
+  Rgb operator()(std::size_t facet, Rgb albedo, const Scattered& sent_on, std::span<const double> onward,
+                 std::size_t slot) const {
+    const bool glossy = max_component(sent_on.gloss) > 0;
+    Rgb irradiance, mirrored;
+    const auto add_source = [&](std::size_t source, Rgb emission) {
+      const std::size_t first = (facet * (lights_ + 1) + source) * transport_.terms();
+      irradiance += transport_(&cache_.indirect[first]) * emission;
+      if (glossy) mirrored += transport_(&cache_.mirrored[first]) * emission;
+    };
+    for (std::size_t j = 0; j < image_.lights.size(); ++j)
+      add_source(image_.lights[j], state_.lights[image_.lights[j]].intensity *
+                                       (onward.empty() ? 1 : onward[slot * image_.lights.size() + j]));
+    if (ambient_) add_source(lights_, state_.ambient);
+    return (albedo * irradiance * sent_on.base + sent_on.gloss * mirrored) / pi;
   }
-  return (albedo * irradiance * scattered.base + scattered.gloss * mirrored) / pi;
-}
 
-std::span<const double> onward_at(const std::vector<double>& onward, std::size_t slot, std::size_t lights) {
-  return onward.empty() ? std::span<const double>{} : std::span(onward).subspan(slot * lights, lights);
-}
-
-bool any_gloss(const Shading& shading) {
-  return std::ranges::any_of(shading.indirect, [](const Scattered& s) { return max_component(s.gloss) > 0; });
-}
+ private:
+  const ViewCache& cache_;
+  const SceneState& state_;
+  const Recording& image_;
+  std::size_t lights_;
+  Transport transport_;
+  bool ambient_;
+};
 
 }  // namespace
-
-// Fits change what does not reach the shading (albedos, intensities, gains, the camera's chain) far more often than
-// what does, and albedos in the columns of a few numbers alone.
-struct ImageModel::Memos {
-  explicit Memos(std::size_t images) : shaded(images), relayed(images) {}
-  ImageMemo<Shaded> shaded;
-  ImageMemo<Relayed> relayed;
-};
 
 ImageModel::ImageModel(const Recordings& recordings, const SceneLayout& layout, const render::Monomials& monomials,
                        std::vector<ViewCache> views)
@@ -65,11 +100,9 @@ ImageModel::ImageModel(const Recordings& recordings, const SceneLayout& layout, 
       layout_(layout),
       monomials_(monomials),
       views_(std::move(views)),
-      memos_(std::make_unique<Memos>(recordings.images.size())) {
+      memo_(std::make_unique<ShadingMemo>(recordings.images.size())) {
   for (const ViewCache& cache : views_) sums_.push_back(facet_sums(cache));
 }
-
-ImageModel::~ImageModel() = default;
 
 Shader ImageModel::shader(std::size_t image) const {
   const Recording& recording = recordings_.images[image];
@@ -86,7 +119,7 @@ void ImageModel::add_uses(std::vector<Use> uses, bool in_play) {
     ordered_.push_back(use.place);
     uses_.push_back(std::move(use));
   }
-  memos_ = std::make_unique<Memos>(recordings_.images.size());  // terms may be others now
+  memo_ = std::make_unique<ShadingMemo>(recordings_.images.size());  // terms may be others now
   std::stable_sort(ordered_.begin(), ordered_.end(),
                    [&](std::size_t a, std::size_t b) { return uses_[a].term->order < uses_[b].term->order; });
 }
@@ -95,7 +128,7 @@ void ImageModel::take_uses(const ImageModel& other, std::vector<Use> uses) {
   uses_ = std::move(uses);
   ordered_ = other.ordered_;
   layout_.start = other.layout_.start;
-  memos_ = std::make_unique<Memos>(recordings_.images.size());
+  memo_ = std::make_unique<ShadingMemo>(recordings_.images.size());
 }
 
 SceneState ImageModel::edited(const SceneState& state, std::size_t image) const {
@@ -146,25 +179,22 @@ void ImageModel::predict(const SceneState& state, std::size_t image, std::span<c
 std::shared_ptr<const Shaded> ImageModel::shaded(const SceneState& now, std::size_t image,
                                                  std::span<const std::uint32_t> picked) const {
   std::vector<double> key = shading_key(now, uses_);
-  if (auto known = memos_->shaded.find(image, key, picked)) return known;
+  if (auto known = memo_->find(image, key, picked)) return known;
   auto shaded = std::make_shared<Shaded>(Shaded{shade(now, image, picked), {}});
   const auto shades = [&](const Use& use) { return use.term->shade != nullptr && !use.neutral(now); };
   if (std::ranges::any_of(uses_, shades)) {
     shaded->changed = shaded->plain;
     shade_terms(now, image, picked, *shaded->changed);
   }
-  memos_->shaded.keep(image, std::move(key), picked, shaded);
+  memo_->keep(image, std::move(key), picked, shaded);
   return shaded;
 }
 
 void ImageModel::predict_from(const ViewCache& cache, std::span<const float> sums, const SceneState& edited,
                               std::size_t image, std::span<const std::uint32_t> picked,
                               std::span<double> radiance) const {
-  const Recording& recording = recordings_.images[image];
-  const Shading shading = Shader(layout_, recording, cache, sums)(edited, picked);
-  const Relayed light = relayed(cache, Transport(edited, monomials_), sources_of(edited, recording),
-                                layout_.lights.size(), any_gloss(shading), picked);
-  compose_from(cache, light, edited, image, picked, shading, radiance);
+  const Shading shading = Shader(layout_, recordings_.images[image], cache, sums)(edited, picked);
+  compose_from(cache, edited, image, picked, shading, radiance);
 }
 
 Shading ImageModel::shade(const SceneState& state, std::size_t image, std::span<const std::uint32_t> picked) const {
@@ -178,30 +208,14 @@ void ImageModel::shade_again(const SceneState& state, std::size_t image, std::sp
 
 void ImageModel::compose(const SceneState& state, std::size_t number, std::span<const std::uint32_t> picked,
                          const Shading& shading, std::span<double> radiance) const {
-  const std::size_t view = recordings_.images[number].view;
-  compose_from(views_[view], *light_at(state, number, picked, any_gloss(shading)), state, number, picked, shading,
-               radiance);
+  compose_from(views_[recordings_.images[number].view], state, number, picked, shading, radiance);
 }
 
-std::shared_ptr<const Relayed> ImageModel::light_at(const SceneState& state, std::size_t number,
-                                                    std::span<const std::uint32_t> picked, bool mirrored) const {
-  const Recording& image = recordings_.images[number];
-  const Transport transport(state, monomials_);
-  const std::vector<std::size_t> sources = sources_of(state, image);
-  std::vector<double> key = transport.key();
-  key.insert(key.end(), {static_cast<double>(sources.size()), mirrored ? 1.0 : 0.0});
-  if (auto known = memos_->relayed.find(number, key, picked)) return known;
-  auto light = std::make_shared<const Relayed>(
-      relayed(views_[image.view], transport, sources, layout_.lights.size(), mirrored, picked));
-  memos_->relayed.keep(number, std::move(key), picked, light);
-  return light;
-}
-
-void ImageModel::compose_from(const ViewCache& cache, const Relayed& light, const SceneState& state, std::size_t number,
+void ImageModel::compose_from(const ViewCache& cache, const SceneState& state, std::size_t number,
                               std::span<const std::uint32_t> picked, const Shading& shading,
                               std::span<double> radiance) const {
   const Recording& image = recordings_.images[number];
-  const std::vector<Rgb> emission = emission_of(state, image);
+  const Indirect indirect(cache, state, monomials_, image, layout_.lights.size());
   const std::vector<Rgb> albedos = albedos_of(state);
   std::size_t slot = 0;
   for (std::size_t i = 0; i < picked.size(); ++i) {
@@ -215,9 +229,7 @@ void ImageModel::compose_from(const ViewCache& cache, const Relayed& light, cons
         const Scattered& direct = shading.direct[slot * shading.lights + j];
         sum += (albedo * direct.base + direct.gloss) * state.lights[image.lights[j]].intensity;
       }
-      sum += sent_on(light, slot, emission, onward_at(shading.onward, slot, shading.lights), albedo,
-                     shading.indirect[slot]) *
-             facet.weight;
+      sum += indirect(f, albedo, shading.indirect[slot], shading.onward, slot) * facet.weight;
     }
     sum *= exposure_of(state, image, number, pixel);
     for (int c = 0; c < 3; ++c) radiance[3 * i + static_cast<std::size_t>(c)] = sum[c];
@@ -248,11 +260,7 @@ std::vector<Rgb> ImageModel::direct_from(const ViewCache& cache, std::span<const
 struct Onward::Impl {
   const ViewCache& cache;
   const SceneState& state;
-  std::size_t lights;
-  Transport transport;
-  std::vector<std::size_t> sources;
-  std::size_t on;  // lamps of the image
-  std::vector<Rgb> emission;
+  Indirect indirect;
   Shader shader;
   std::vector<double> onward;  // of all facets
   std::vector<Rgb> albedos;
@@ -261,30 +269,19 @@ struct Onward::Impl {
 Onward::Onward(const ImageModel& model, const SceneState& state, std::size_t number) {
   const Recording& image = model.recordings().images[number];
   const ViewCache& cache = model.cache(image.view);
-  impl_ = std::unique_ptr<Impl>(new Impl{cache,
-                                         state,
-                                         model.layout().lights.size(),
-                                         Transport(state, model.monomials()),
-                                         sources_of(state, image),
-                                         image.lights.size(),
-                                         emission_of(state, image),
-                                         Shader(model.layout(), image, cache, {}),
-                                         {},
-                                         albedos_of(state)});
+  const Shader shader(model.layout(), image, cache, {});
   std::vector<std::uint32_t> all(cache.pixels.size());
   std::iota(all.begin(), all.end(), 0u);
-  impl_->onward = impl_->shader.onward(state, all);
+  impl_ = std::unique_ptr<const Impl>(
+      new Impl{cache, state, Indirect(cache, state, model.monomials(), image, model.layout().lights.size()), shader,
+               shader.onward(state, all), albedos_of(state)});
 }
 Onward::~Onward() = default;
 
 Rgb Onward::operator()(std::size_t f) const {
   const Facet& facet = impl_->cache.facets[f];
-  const Scattered scattered = impl_->shader.scattered(impl_->state.surfaces[facet.surface], facet);
-  Relayed light{impl_->sources.size(), {}, {}};
-  add_relayed(impl_->cache, impl_->transport, impl_->sources, impl_->lights, max_component(scattered.gloss) > 0, f,
-              light);
-  const std::span<const double> onward = onward_at(impl_->onward, f, impl_->on);
-  return sent_on(light, 0, impl_->emission, onward, impl_->albedos[facet.surface] * facet.tint, scattered);
+  return impl_->indirect(f, impl_->albedos[facet.surface] * facet.tint,
+                         impl_->shader.scattered(impl_->state.surfaces[facet.surface], facet), impl_->onward, f);
 }
 
 void ImageModel::variance(const SceneState& state, std::size_t number, std::span<const std::uint32_t> picked,

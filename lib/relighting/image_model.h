@@ -17,19 +17,16 @@
 #include "relighting/light_cache.h"
 #include "relighting/recordings.h"
 #include "relighting/scene_state.h"
-#include "relighting/shaded.h"
 #include "relighting/shading.h"
+#include "relighting/shading_memo.h"
 #include "relighting/term.h"
 
 namespace gonio::relighting {
-
-struct Relayed;  // relayed.h
 
 class ImageModel {
  public:
   ImageModel(const Recordings& recordings, const SceneLayout& layout, const render::Monomials& monomials,
              std::vector<ViewCache> views);
-  ~ImageModel();
 
   // Terms in play, numbered through; their starting amounts enter layout().start. Given ones first.
   void add_uses(std::vector<Use> uses, bool in_play);
@@ -82,10 +79,7 @@ class ImageModel {
 
  private:
   Shader shader(std::size_t image) const;
-  // What reaches the facets by way of others; what has been asked for of late is not computed again.
-  std::shared_ptr<const Relayed> light_at(const SceneState& edited, std::size_t image,
-                                          std::span<const std::uint32_t> picked, bool mirrored) const;
-  void compose_from(const ViewCache& cache, const Relayed& light, const SceneState& edited, std::size_t image,
+  void compose_from(const ViewCache& cache, const SceneState& edited, std::size_t image,
                     std::span<const std::uint32_t> picked, const Shading& shading, std::span<double> radiance) const;
   template <class Hook>
   void run_hooks(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
@@ -97,8 +91,7 @@ class ImageModel {
   std::vector<std::vector<float>> sums_;  // [view]: facet_sums()
   std::vector<Use> uses_;
   std::vector<std::size_t> ordered_;  // uses by their terms' order
-  struct Memos;
-  std::unique_ptr<Memos> memos_;
+  std::unique_ptr<ShadingMemo> memo_;
 };
 
 // Light by way of other surfaces at one state: what a facet of the view's cache sends to the camera, before exposure
@@ -111,7 +104,7 @@ class Onward {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<const Impl> impl_;
 };
 
 // Factor of gain and vignetting on the radiance of a pixel.

@@ -1,9 +1,12 @@
-#include "relighting/shaded.h"
+#include "relighting/shading_memo.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace gonio::relighting {
 namespace {
+
+constexpr std::size_t kept = 3;  // of an image
 
 void append(std::vector<double>& key, const Rgb& rgb) {
   key.insert(key.end(), {rgb.x, rgb.y, rgb.z});
@@ -15,6 +18,11 @@ void append(std::vector<double>& key, const void* address) {
   std::memcpy(&bits, &address, sizeof address);
   key.push_back(bits);
 }
+// By their bits: a NaN equals itself.
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
 void append_surface(std::vector<double>& key, const SurfaceState& surface, bool any_albedo) {
   append(key, static_cast<const void*>(surface.model));
   append(key, static_cast<const void*>(surface.values.prepared));
@@ -51,6 +59,22 @@ std::vector<double> shading_key(const SceneState& edited, std::span<const Use> u
   key.insert(key.end(), {edited.falloff, edited.indirect});
   for (const Rgb& gain : edited.gain) append(key, gain);
   return key;
+}
+
+std::shared_ptr<const Shaded> ShadingMemo::find(std::size_t image, const std::vector<double>& key,
+                                                std::span<const std::uint32_t> picked) const {
+  const std::lock_guard lock(mutex_);
+  for (const Entry& e : of_image_[image])
+    if (same(e.key, key) && std::ranges::equal(e.picked, picked)) return e.shaded;
+  return nullptr;
+}
+
+void ShadingMemo::keep(std::size_t image, std::vector<double> key, std::span<const std::uint32_t> picked,
+                       std::shared_ptr<const Shaded> shaded) {
+  const std::lock_guard lock(mutex_);
+  std::vector<Entry>& entries = of_image_[image];
+  entries.insert(entries.begin(), {std::move(key), {picked.begin(), picked.end()}, std::move(shaded)});
+  if (entries.size() > kept) entries.pop_back();
 }
 
 }  // namespace gonio::relighting
