@@ -185,6 +185,26 @@ void tell(const LawData& data, const Judged& law, Explanation& e) {
   Outside told = outside;
   tell_terms(data, law.terms, told);
   if (!has_sane_constants(told.terms)) return;
+  const Eigen::MatrixXd projected = data.projected({told.per_row});
+  std::vector<double> before(told.per_row.size()), after(before.size());
+  double squares = 0, fall = 0, rows = 0, moved = 0, mismatch = 0, left_over = 0, norm = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double w = system.weight(i);
+    if (!(w > 0)) continue;
+    const auto row = static_cast<Eigen::Index>(i);
+    const double r = projected(row, 1), left = r - projected(row, 0);
+    squares += r * r;
+    fall += r * r - left * left;
+    rows += 1;
+    before[i] = r / w, after[i] = left / w;
+    moved += std::pow(before[i] - after[i], 2), mismatch += before[i] * before[i], left_over += after[i] * after[i];
+    norm += system.observations().norm[i];
+  }
+  // As of a mechanism (Race::effect): what is smaller than what matters is no law to report.
+  const double effect = system.problem().importance() == Importance::share_of_residual
+                            ? 1 - std::sqrt(left_over / std::max(mismatch, 1e-300))
+                            : std::sqrt(moved / std::max(norm, 1e-300));
+  if (effect < e.smallest_effect) return;
   outside = std::move(told);
   outside.condition = leading.name;
   outside.stage = leading.stage;
@@ -195,19 +215,6 @@ void tell(const LawData& data, const Judged& law, Explanation& e) {
   outside.extrapolated = (law.leading.by_size ? "the size of " : "") + leading.name +
                          (law.leading.outwards.tells() ? " beyond " : " below ") +
                          quantity(law.leading.split, leading.unit);
-  const Eigen::MatrixXd projected = data.projected({outside.per_row});
-  std::vector<double> before(outside.per_row.size()), after(before.size());
-  double squares = 0, fall = 0, rows = 0;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const double w = system.weight(i);
-    if (!(w > 0)) continue;
-    const auto row = static_cast<Eigen::Index>(i);
-    const double r = projected(row, 1), left = r - projected(row, 0);
-    squares += r * r;
-    fall += r * r - left * left;
-    rows += 1;
-    before[i] = r / w, after[i] = left / w;
-  }
   const double excess = squares - (rows - static_cast<double>(e.active.size()));
   outside.share = excess > 0 ? std::clamp(fall / excess, 0.0, 1.0) : 0;
   outside.curve = residual_curve(system, law.leading.condition, before, after, 16);

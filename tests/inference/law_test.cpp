@@ -15,11 +15,12 @@ namespace {
 using World = LawProblem::World;
 
 // Fair refit and law, as the engine does it where structure remains over `condition`.
-Explanation law_of(const LawProblem& problem, const std::string& condition) {
+Explanation law_of(const LawProblem& problem, const std::string& condition, double smallest_effect = 0.01) {
   const System system(problem, 1);
   std::vector<double> start(problem.parameters().size(), 0.0);
   const Fit base = fit(system, start, problem.base());
   Explanation e;
+  e.smallest_effect = smallest_effect;
   e.values = e.base_values = base.values;
   e.active = base.inner;
   e.conditions = {{.name = condition}, {.name = condition == "plate.height" ? "clock.time" : "plate.height"}};
@@ -202,6 +203,17 @@ TEST(Law, AnExponentialFarFromWhereItWasSeenIsNotTold) {
         EXPECT_LE(1 / std::abs(t.scale), 7.01) << e.outside->law;
       }
   }
+}
+
+// "From 3.6 % to 3.6 %" is no law to report, however surely it is there.
+TEST(Law, WhatIsSmallerThanWhatMattersIsNotTold) {
+  const LawProblem problem({.law = [](double x, double z) { return 0.25 * x * x * z; }}, 5);
+  const Explanation told = law_of(problem, "clock.time");
+  ASSERT_FALSE(told.outside->terms.empty());
+  const double effect = 1 - told.outside->held_out_after / told.outside->held_out_before;
+  ASSERT_LT(effect, 0.9);
+  EXPECT_FALSE(law_of(problem, "clock.time", 0.2 * effect).outside->terms.empty());
+  EXPECT_TRUE(law_of(problem, "clock.time", std::min(0.99, 3 * effect)).outside->terms.empty());
 }
 
 // Half of what is there follows a parabola and the rest jumps to and fro: what little of it a power holds is no law.
