@@ -3,23 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <set>
 #include <string>
-
-#include "stats/distributions.h"
 
 namespace gonio::inference {
 namespace {
 
-constexpr double worth_a_look = 0.02;     // probability, before what it leaves is known
-constexpr double last_digit = 0.0025;     // of what can be repaired: a difference that could be anyone's
-constexpr double a_square = 0.5;          // noise widths squared, over all rows: no test parts what differs by less
-constexpr std::size_t enough_groups = 5;  // for a standard error over groups to mean something
-constexpr double at_most_errors = 12;
-constexpr double form_errors = 2;
-constexpr double near_likeliest = 0.5;  // of the likeliest set's probability
+constexpr double worth_a_look = 0.02;  // probability, before what it leaves is known
+constexpr double last_digit = 0.0025;  // of what can be repaired: a difference that could be anyone's
+constexpr double a_square = 0.5;       // noise widths squared, over all rows: no test parts what differs by less
 
 bool same_set(std::vector<std::size_t> a, std::vector<std::size_t> b) {
   std::sort(a.begin(), a.end());
@@ -27,9 +19,6 @@ bool same_set(std::vector<std::size_t> a, std::vector<std::size_t> b) {
   return a == b;
 }
 
-bool matters(const Finalist& f) {
-  return f.refused.empty() && !(f.statistics.times < 0);
-}
 // May it be named, or, a single mechanism, be what is too small to matter? Several of which one is too small are none:
 // the set without that one is weighed in their place.
 bool is_answer(const Finalist& f) {
@@ -62,24 +51,6 @@ void set_shares(const Finalist& f, double most, Statistics& s) {
   s.any = part_of_all(f.left.any, f.left.any + gained);
 }
 
-// Standard errors by which `after` is better, as of a normal law: over groups by Student's, or over blocks where groups
-// are few. `floor`: of the standard error.
-double errors_between(const HeldOut& before, const HeldOut& after, double floor) {
-  const Gain g = gain(before, after);
-  const std::size_t groups = before.whitened.size();
-  if (!(g.sigma < std::numeric_limits<double>::max())) return -at_most_errors;
-  if (groups < enough_groups) {
-    const double blocks = block_z(before, after);
-    const double sigma = blocks != 0 ? std::abs(g.mean / blocks) : 0;
-    const double all = std::hypot(sigma, floor);
-    return all > 0 ? std::clamp(g.mean / all, -at_most_errors, at_most_errors) : 0;
-  }
-  const double sigma = std::hypot(g.sigma, floor);
-  if (!(sigma > 0)) return g.mean > 0 ? at_most_errors : 0;
-  const double t = g.mean / sigma;
-  const double tail = stats::student_upper(std::abs(t), static_cast<double>(groups) - 1);
-  return std::copysign(std::min(stats::normal_upper_quantile(tail), at_most_errors), t);
-}
 // How clearly `after` helps: by groups or by blocks, whichever say it. Groups that an effect touches unequally disagree
 // about its size, not about its being there.
 double errors_of_help(const HeldOut& before, const HeldOut& after) {
@@ -349,49 +320,6 @@ std::set<std::string> Finalists::physics_of(const Finalist& f) const {
     physics.insert(name);
   }
   return physics;
-}
-
-// Of forms of one thing the plainest that unseen groups do not clearly call worse: a response is a power law before it
-// is a spline.
-const Finalist& Finalists::plainest_form(const Finalist& of) const {
-  const Finalist* plainest = &of;
-  for (const Finalist& f : list_) {
-    if (!matters(f) || physics_of(f) != physics_of(of) || f.model.candidates.size() != of.model.candidates.size())
-      continue;
-    if (!(f.statistics.numbers < plainest->statistics.numbers)) continue;
-    if (errors_between(f.model.held_out, of.model.held_out, 0) < form_errors) plainest = &f;
-  }
-  return *plainest;
-}
-
-const Finalist* Finalists::likeliest() const {
-  // The median probability model (Barbieri & Berger, Annals of Statistics 32, 2004): whatever is more likely than not
-  // to be among what was left out, in any set and form; where that is no likely set, the likeliest.
-  std::map<std::string, double> inclusion;
-  double all = 0;
-  for (const Finalist& f : list_) {
-    if (!matters(f)) continue;
-    all += f.probability;
-    for (const std::string& name : physics_of(f)) inclusion[name] += f.probability;
-  }
-  std::set<std::string> median;
-  for (const auto& [name, probability] : inclusion)
-    if (probability > 0.5 * all) median.insert(name);
-  const Finalist *best = nullptr, *best_median = nullptr;
-  for (const Finalist& f : list_) {
-    if (!matters(f)) continue;
-    if (best == nullptr || f.probability > best->probability) best = &f;
-    if (physics_of(f) != median) continue;
-    if (best_median == nullptr || f.probability > best_median->probability) best_median = &f;
-  }
-  if (best_median != nullptr && best_median->probability > near_likeliest * best->probability) best = best_median;
-  return best == nullptr ? nullptr : &plainest_form(*best);
-}
-
-double Finalists::in_library() const {
-  double sum = 0;
-  for (const Finalist& f : list_) sum += matters(f) ? f.probability : 0;
-  return sum;
 }
 
 }  // namespace gonio::inference

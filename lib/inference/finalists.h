@@ -39,6 +39,13 @@ struct Finalist {
   std::optional<std::size_t> with_minor;  // place of this set together with what is there and too small to matter
 };
 
+// Is it what may be named: refused by no rule, none of its mechanisms too small?
+bool matters(const Finalist& f);
+// Standard errors by which `after` is better, as of a normal law: over groups by Student's, or over blocks where groups
+// are few. `floor`: of the standard error.
+inline constexpr double at_most_errors = 12;
+double errors_between(const HeldOut& before, const HeldOut& after, double floor);
+
 class Finalists {
  public:
   Finalists(const Race& race, const Options& options, const Model& base, const ResidualStructure& before);
@@ -52,6 +59,8 @@ class Finalists {
   const std::vector<Finalist>& list() const { return list_; }
   const Finalist* likeliest() const;  // of the sets; null: there is none that could be
   double in_library() const;          // the probability that it is any of the sets
+  // That these are among what was left out, in any form and whatever else is.
+  double with(const Finalist& some) const;
   double nothing() const { return nothing_; }
   double outside() const { return outside_; }
   // Nothing, outside, then those of list() that no rule refuses; `places`: theirs in list().

@@ -233,6 +233,12 @@ void judge(const Problem& problem, const Selection& s, const Options& options, E
   std::vector<double> p = probabilities(members);
   if (top != nullptr) p = by_physics(problem, list, *top, places, std::move(p));
   Answer found = answer(members, p, options.sure);
+  // Of many sets that differ in what else there is, what all of them hold is sure: that is the answer.
+  if (top != nullptr && found.probability < options.sure && finalists.with(*top) >= options.sure) {
+    const auto own = std::find(places.begin(), places.end(), static_cast<std::size_t>(top - list.data()));
+    if (own != places.end())
+      found = {Answer::Kind::sets, {static_cast<std::size_t>(own - places.begin()) + 2}, finalists.with(*top)};
+  }
   if (!e.significant) found = {Answer::Kind::nothing, {}, finalists.nothing()};
   // The groups that no choice has seen speak last.
   const bool no_better = found.kind == Answer::Kind::sets && !(e.held_out_after < e.held_out_before);

@@ -114,13 +114,13 @@ std::vector<double> probabilities(const std::vector<Member>& members) {
 
 Answer answer(const std::vector<Member>& members, const std::vector<double>& probability, double sure) {
   std::vector<std::size_t> sets;
-  double nothing = 0, outside = 0;
+  double nothing = 0, outside = 0, library = 0;
   for (std::size_t k = 0; k < members.size(); ++k) {
     // Whatever is smaller than what matters is nothing that matters.
     if (members[k].kind == Member::Kind::nothing || members[k].statistics.times < 0)
       nothing += probability[k];
     else if (is_set(members[k]))
-      sets.push_back(k);
+      sets.push_back(k), library += probability[k];
     else
       outside += probability[k];
   }
@@ -134,7 +134,7 @@ Answer answer(const std::vector<Member>& members, const std::vector<double>& pro
     result.sets.push_back(k);
     result.probability += probability[k];
   }
-  if (result.probability > likelier_than_not) return result;
+  if (library > likelier_than_not) return result;
   if (nothing > outside) return {Answer::Kind::nothing, {}, nothing};
   return {Answer::Kind::outside, {}, outside};
 }

@@ -59,8 +59,8 @@ std::vector<double> probabilities(const std::vector<Member>& members);
 // The same with other weights, in the order of logit_terms(): to estimate them.
 std::vector<double> probabilities(const std::vector<Member>& members, std::span<const double> weights);
 
-// The answer that the probabilities give. One set where it is `sure`; else the likeliest, at most three, that are so
-// together, or as many as that if they are likelier than not; else what is likeliest of nothing and outside. A set less
+// The answer that the probabilities give. Where all sets together are likelier than not: one set if it is `sure`, else
+// the likeliest, at most three, until they are so together. Else what is likeliest of nothing and outside. A set less
 // than a hundredth as likely as the first is not listed beside it: what speaks against the first is then no other set.
 struct Answer {
   enum class Kind { nothing, outside, sets };

@@ -75,6 +75,9 @@ struct Candidate {
   // Its slopes where its search begins stand for it everywhere else that a search can start from: no finite changes are
   // looked at, and chords that are stuck are not taken up anew by tangents.
   bool gradual = false;
+  // Where predict() can tell only a part of what it does (which pixels of a sensor are the sensitive ones, from a few
+  // pictures): the parameter whose distance from neutral is all of it, as a share of every reading.
+  std::optional<std::size_t> share_of_readings{};
   const std::string& id() const { return mechanism->id; }
 };
 

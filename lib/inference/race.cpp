@@ -285,7 +285,13 @@ double Race::effect(const Model& before, const Model& after) const {
   });
   double sum = 0, total = 0;
   for (std::size_t k = 0; k < moved.size(); ++k) sum += moved[k], total += norm[k];
-  return total > 0 ? std::sqrt(sum / total) : 0;
+  double share = total > 0 ? std::sqrt(sum / total) : 0;
+  for (const std::size_t c : after.candidates) {
+    const std::optional<std::size_t> all = system_.problem().candidates()[c].share_of_readings;
+    if (!all || std::ranges::find(before.candidates, c) != before.candidates.end()) continue;
+    share = std::max(share, std::abs(after.fit.values[*all] - system_.problem().parameters()[*all].neutral));
+  }
+  return share;
 }
 
 Hypothesis Race::judged(const Model& before, const Model& after, const std::vector<std::size_t>& added,

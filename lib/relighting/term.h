@@ -118,8 +118,9 @@ struct Term {
   void (*shade)(const Use&, const Frame&, Shading&) = nullptr;
   void (*add)(const Use&, const Frame&, std::span<double> radiance) = nullptr;
   void (*record)(const Use&, const Frame&, std::span<double> values) = nullptr;
-  bool pointwise = false;  // record: of a value it asks no other one
-  bool gradual = false;    // Candidate::gradual
+  bool pointwise = false;                          // record: of a value it asks no other one
+  bool gradual = false;                            // Candidate::gradual
+  std::optional<std::size_t> share_of_readings{};  // Candidate's: which of a set's numbers
   // Terms whose `add` is costly: derivatives of what they add by their own numbers, one column for each of `numbers`.
   void (*slopes)(const Use&, const Frame&, std::span<const std::size_t> numbers, std::span<double> columns) = nullptr;
 };

@@ -1,7 +1,8 @@
 // From a rendered picture to what a camera records: a chain of mechanisms, each of which vanishes exactly at its
 // neutral value. Values are linear and in the rendering's unit throughout, black offset and full scale too. The steps,
 // in this order (render/link.h); which mechanism acts at which step its file in render/links says:
-//   optics      pictures before the filters: lateral colour, shutter, ghost, veiling glare, crosstalk
+//   optics      pictures before the filters: lateral colour, shutter, ghost, bloom, veiling glare,
+//               crosstalk
 //               the camera's mosaic: one channel Y behind colour filters; "polarizers": behind these (render/mosaic.h)
 //   light       sensitivity of pixels
 //               photon noise, Poisson: v is v * gain electrons (Janesick 2007, equation 2.14)

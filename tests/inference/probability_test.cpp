@@ -106,6 +106,16 @@ TEST(Answer, IsOneWhereItIsSureAndSeveralWhereTheyAreTogether) {
   EXPECT_EQ(answer(m, {0.6, 0.1, 0.2, 0.1, 0, 0}, 0.9).kind, Answer::Kind::nothing);
 }
 
+// A vignette beside which a dent imitates now this and now that: no three sets are likelier than not, and still it is
+// neither nothing nor outside.
+TEST(Answer, IsAmongTheSetsWhereTheseAreLikelierThanNotTogether) {
+  const std::vector<Member> m = against({good(), good(), good(), good(), good(), good(), good()});
+  const Answer a = answer(m, {0.01, 0.04, 0.16, 0.15, 0.14, 0.13, 0.13, 0.12, 0.12}, 0.9);
+  EXPECT_EQ(a.kind, Answer::Kind::sets);
+  EXPECT_THAT(a.sets, ElementsAre(2, 3, 4));
+  EXPECT_NEAR(a.probability, 0.45, 1e-12);
+}
+
 TEST(Probability, NamesOfStatisticsAreUnique) {
   std::vector<std::string> names;
   for (const Statistic& s : statistics()) names.emplace_back(s.name);

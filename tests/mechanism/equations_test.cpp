@@ -75,10 +75,11 @@ constexpr int draws = 300;
 TEST(Equations, OfWhateverActsOnSingleValuesAreDeclared) {
   std::set<std::string> ids;
   for (const Mechanism* m : with_equation()) ids.insert(m->id);
-  for (const char* id : {"light.ambient", "light.drift", "light.inverse-square", "light.spectrum", "optics.ghost",
-                         "optics.veiling-glare", "optics.vignetting", "reference.tile", "sensor.black-offset",
-                         "sensor.crosstalk", "sensor.non-linearity", "sensor.prnu", "sensor.row-pattern",
-                         "sensor.saturation", "sensor.shutter", "surface.fluorescence", "volume.absorption"})
+  for (const char* id :
+       {"light.ambient", "light.drift", "light.inverse-square", "light.spectrum", "optics.bloom", "optics.ghost",
+        "optics.veiling-glare", "optics.vignetting", "reference.tile", "sensor.black-offset", "sensor.crosstalk",
+        "sensor.non-linearity", "sensor.prnu", "sensor.row-pattern", "sensor.saturation", "sensor.shutter",
+        "surface.fluorescence", "volume.absorption"})
     EXPECT_TRUE(ids.contains(id)) << id;
 }
 
@@ -198,16 +199,21 @@ TEST(Bindings, LinksOnWholePicturesSayWhatTheEquationSays) {
       for (float& v : picture.data) v = static_cast<float>(random.uniform(0, 5));
       const auto& d = picture.data;
       const double exposure_s = between(1e-4, 10, random);
+      const Numbers p = amounts_of(m, random);
       const auto at = [&](std::size_t k) -> Numbers {
         if (m.id == "sensor.shutter") return {exposure_s};
         if (m.id == "optics.ghost") return {d[(k + 3) % 6]};
+        if (m.id == "optics.bloom") {  // of the two pixels; k(r) of its declaration
+          const double square = p[1] * p[1], beside = std::pow(1 + 1 / square, -1.5);
+          return {(d[k] + beside * d[(k + 3) % 6]) / (2 * pi * square)};
+        }
         if (m.id == "optics.veiling-glare") return {0.5 * (double{d[k % 3]} + d[k % 3 + 3])};
         return {double{d[k - k % 3]} + d[k - k % 3 + 1] + d[k - k % 3 + 2]};  // crosstalk
       };
-      expect_same_picture(*link, picture, exposure_s, amounts_of(m, random), at);
+      expect_same_picture(*link, picture, exposure_s, p, at);
     }
   }
-  EXPECT_EQ(pictures, 4);
+  EXPECT_EQ(pictures, 5);
 }
 
 TEST(Bindings, ScenesSayOfTimeWhatTheEquationSays) {

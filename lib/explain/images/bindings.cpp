@@ -167,6 +167,8 @@ class Collector {
       }
     }
     if (candidate.parameters.empty()) return;
+    if (use.term != nullptr && use.term->share_of_readings && use.sets == 1)
+      candidate.share_of_readings = parameter_of.at(*use.term->share_of_readings);
     out_.candidates.push_back(std::move(candidate));
     out_.use_of.push_back(use.place);
   }

@@ -85,6 +85,7 @@ const Term& sensor_prnu() {
       .prepare = prepare,
       .record = record,
       .pointwise = true,
+      .share_of_readings = 0,
   };
   return term;
 }

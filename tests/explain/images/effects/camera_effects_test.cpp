@@ -39,6 +39,16 @@ TEST(Prnu, APatternThatStaysWhileTheSceneMovesIsNamed) {
   EXPECT_NEAR(outcome.fitted("sigma"), 0.03, 0.003);
 }
 
+// Of a pattern within the noise the pictures show little; it is as large as it is.
+TEST(Prnu, APatternWithinTheNoiseIsNoSmallerThanItsSize) {
+  EffectWorld world;
+  world.noise = 0.004;
+  world.change = [](std::size_t, std::size_t, io::Image& picture) { with_pattern(picture, 0.014); };
+  const EffectOutcome outcome(world);
+  ASSERT_THAT(outcome.named(), ElementsAre("sensor.prnu")) << outcome.told();
+  EXPECT_NEAR(outcome.fitted("sigma"), 0.014, 0.004);
+}
+
 TEST(Prnu, CannotBeSeenFromOneView) {
   EffectWorld world;
   world.views = 1;
@@ -50,6 +60,31 @@ TEST(Prnu, CannotBeSeenFromOneView) {
   for (const explain::Isolability& i : outcome.explanation.isolability)
     if (outcome.problem.candidates()[i.candidate].id() == "sensor.prnu") said = !i.visible;
   EXPECT_TRUE(said);
+}
+
+// Every pixel into every other one, one by one; the share of the light that this profile holds within `radius` is 29 %.
+void with_halos(io::Image& picture, double share, double radius) {
+  const io::Image from = picture;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x)
+      for (int c = 0; c < 3; ++c) {
+        double halo = 0;
+        for (int v = 0; v < picture.height; ++v)
+          for (int u = 0; u < picture.width; ++u) {
+            const double q = 1 + ((u - x) * (u - x) + (v - y) * (v - y)) / (radius * radius);
+            halo += from.at(u, v, c) / (q * std::sqrt(q) * 2 * pi * radius * radius);
+          }
+        picture.at(x, y, c) = static_cast<float>((1 - share) * from.at(x, y, c) + share * halo);
+      }
+}
+
+TEST(Bloom, AHaloAboutBrightPlacesIsNamed) {
+  EffectWorld world;
+  world.change = [](std::size_t, std::size_t, io::Image& picture) { with_halos(picture, 0.12, 3.0); };
+  const EffectOutcome outcome(world);
+  ASSERT_THAT(outcome.named(), ElementsAre("optics.bloom")) << outcome.told();
+  EXPECT_NEAR(outcome.fitted("share"), 0.12, 0.015);
+  EXPECT_NEAR(outcome.fitted("radius_px"), 3.0, 0.6);
 }
 
 // Cut off, then resampled by half a pixel to one side and back again, as undistortion does in the worst place.
