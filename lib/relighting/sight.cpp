@@ -1,5 +1,6 @@
 #include "relighting/sight.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -55,6 +56,8 @@ void Sight::shade() {
 Sight::Sum Sight::at(Vec2 centre, std::uint32_t pixel, Which which) {
   const float split_m = places_.depths[frame_.image.view][pixel].split_m;
   Sum sum;
+  std::uint32_t surface = 0xffffffffu;  // that `sent_on` is of: neighbouring cells show one
+  Rgb sent_on;
   cells_of(centre, [&](int i, int j, double part) {
     const FineView::Place place = view_.place_of(i, j);
     const Shaded& shaded = tiles_[static_cast<std::size_t>(place_[static_cast<std::size_t>(place.tile)])];
@@ -67,30 +70,43 @@ Sight::Sum Sight::at(Vec2 centre, std::uint32_t pixel, Which which) {
     for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facets; ++f) {
       if (which != Which::all && (shaded.tile->depth_m[f] < split_m) != (which == Which::near)) continue;
       const Facet& facet = cells.facets[f];
-      sum.radiance += (shaded.direct[f] + onward(pixel, facet) * facet.weight) * part;
+      if (facet.surface != surface) surface = facet.surface, sent_on = onward(pixel, surface, centre);
+      sum.radiance += (shaded.direct[f] + sent_on * facet.tint * facet.weight) * part;
       sum.share += part * facet.weight;
     }
   });
   return sum;
 }
 
-Rgb Sight::onward(std::uint32_t number, const Facet& part) {
+Rgb Sight::onward(std::uint32_t number, std::uint32_t surface, Vec2 centre) {
+  constexpr double most = 0.5;  // of a value, that it changes on the way: planes are none far away
   const Pixel& pixel = frame_.cache.pixels[number];
-  for (std::uint32_t f = pixel.first_facet; f < pixel.first_facet + pixel.facets; ++f)
-    if (frame_.cache.facets[f].surface == part.surface) return onward_of(f, part.tint);
+  for (std::uint32_t f = pixel.first_facet; f < pixel.first_facet + pixel.facets; ++f) {
+    if (frame_.cache.facets[f].surface != surface) continue;
+    const Rgb own = onward_of(f);
+    const Vec2 way = centre - Vec2{static_cast<double>(pixel.x), static_cast<double>(pixel.y)};
+    if (way.x == 0 && way.y == 0) return own;
+    const Slope& slope = places_.slopes[frame_.image.view][f];
+    Rgb change;
+    for (std::size_t k = 0; k < Slope::most; ++k)
+      if (slope.beside[k] != f) change += (onward_of(slope.beside[k]) - own) * dot(slope.factor[k], way);
+    const auto within = [](double v, double limit) { return std::clamp(v, -limit, limit); };
+    return own + Rgb{within(change.x, most * own.x), within(change.y, most * own.y), within(change.z, most * own.z)};
+  }
   const std::size_t surfaces = frame_.state.surfaces.size();
   const int across = blocks_across(frame_.image.picture.width);
   const auto block = static_cast<std::size_t>(pixel.y / block_px * across + pixel.x / block_px);
-  const std::uint32_t nearest = places_.nearest[frame_.image.view][block * surfaces + part.surface];
-  return nearest < frame_.cache.facets.size() ? onward_of(nearest, part.tint) : Rgb{};
+  const std::uint32_t nearest = places_.nearest[frame_.image.view][block * surfaces + surface];
+  return nearest < frame_.cache.facets.size() ? onward_of(nearest) : Rgb{};
 }
 
-Rgb Sight::onward_of(std::size_t facet, Rgb tint) {
+Rgb Sight::onward_of(std::size_t facet) {
   std::optional<Rgb>& known = known_[facet];
-  if (!known) known = onward_(facet);
-  const Rgb own = frame_.cache.facets[facet].tint;
-  const auto over = [](double value, double usual) { return usual > 0 ? value / usual : 1; };
-  return *known * Rgb{over(tint.x, own.x), over(tint.y, own.y), over(tint.z, own.z)};
+  if (known) return *known;
+  const Rgb tint = frame_.cache.facets[facet].tint, sent = onward_(facet);
+  const auto over = [](double value, double usual) { return usual > 0 ? value / usual : value; };
+  known = Rgb{over(sent.x, tint.x), over(sent.y, tint.y), over(sent.z, tint.z)};
+  return *known;
 }
 
 }  // namespace gonio::relighting

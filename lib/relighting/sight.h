@@ -28,7 +28,8 @@ class Sight {
     double share = 0;
   };
   enum class Which { all, near, far };
-  // About `centre`, with the light by way of other surfaces that the sampled pixel number `pixel` of the view has.
+  // About `centre`, with the light by way of other surfaces that the sampled pixel number `pixel` of the view has, and
+  // as that changes from the pixel to the centre.
   Sum at(Vec2 centre, std::uint32_t pixel, Which which);
 
  private:
@@ -37,8 +38,9 @@ class Sight {
     const FineTile* tile = nullptr;
     std::vector<Rgb> direct;  // by facet of the tile
   };
-  Rgb onward(std::uint32_t pixel, const Facet& part);
-  Rgb onward_of(std::size_t facet, Rgb tint);
+  // Of a surface with a white tint.
+  Rgb onward(std::uint32_t pixel, std::uint32_t surface, Vec2 centre);
+  Rgb onward_of(std::size_t facet);
   const FineView& view_;
   const Places& places_;
   const Frame& frame_;
