@@ -193,53 +193,6 @@ std::vector<std::uint32_t> nearest_facets(const ViewCache& cache, int width_px, 
   return nearest;
 }
 
-// From the nearest ones within a block's length whose surface is not turned away.
-std::vector<Slope> slopes_of(const ViewCache& cache, int width_px, int height_px) {
-  constexpr double alike = 0.95;  // cosine of two normals
-  const int across = blocks_across(width_px), down = blocks_across(height_px);
-  std::vector<Vec2> place(cache.facets.size());
-  std::vector<std::vector<std::uint32_t>> in_block(static_cast<std::size_t>(across * down));
-  for (const Pixel& pixel : cache.pixels)
-    for (std::uint32_t f = pixel.first_facet; f < pixel.first_facet + pixel.facets; ++f) {
-      place[f] = place_of(pixel);
-      in_block[static_cast<std::size_t>(pixel.y / block_px * across + pixel.x / block_px)].push_back(f);
-    }
-  const auto normal = [&](std::uint32_t f) { return cache.patches[cache.facets[f].first_patch].normal; };
-  std::vector<Slope> slopes(cache.facets.size());
-  parallel_for(
-      0, slopes.size(),
-      [&](std::size_t i) {
-        const auto f = static_cast<std::uint32_t>(i);
-        std::vector<std::pair<double, std::uint32_t>> found;  // by distance
-        const int bx = static_cast<int>(place[f].x) / block_px, by = static_cast<int>(place[f].y) / block_px;
-        for (int v = std::max(0, by - 1); v <= std::min(down - 1, by + 1); ++v)
-          for (int u = std::max(0, bx - 1); u <= std::min(across - 1, bx + 1); ++u)
-            for (const std::uint32_t g : in_block[static_cast<std::size_t>(v * across + u)]) {
-              const double d = norm(place[g] - place[f]);
-              if (d == 0 || d > block_px || cache.facets[g].surface != cache.facets[f].surface) continue;
-              if (dot(normal(f), normal(g)) >= alike) found.emplace_back(d, g);
-            }
-        std::ranges::sort(found);
-        found.resize(std::min(found.size(), Slope::most));
-        double xx = 0, xy = 0, yy = 0;
-        for (const auto& [d, g] : found) {
-          const Vec2 to = place[g] - place[f];
-          xx += to.x * to.x, xy += to.x * to.y, yy += to.y * to.y;
-        }
-        Slope& slope = slopes[i];
-        slope.beside.fill(f);
-        const double determinant = xx * yy - xy * xy;
-        if (!(determinant > 0.05 * (xx + yy) * (xx + yy))) return;  // all on one line
-        for (std::size_t k = 0; k < found.size(); ++k) {
-          const Vec2 to = place[found[k].second] - place[f];
-          slope.beside[k] = found[k].second;
-          slope.factor[k] = {(yy * to.x - xy * to.y) / determinant, (xx * to.y - xy * to.x) / determinant};
-        }
-      },
-      64);
-  return slopes;
-}
-
 std::shared_ptr<const Places> find_places(const Setting& s, const FineViews& fine) {
   auto places = std::make_shared<Places>();
   for (std::size_t v = 0; v < s.recordings.views.size(); ++v) {
@@ -256,7 +209,6 @@ std::shared_ptr<const Places> find_places(const Setting& s, const FineViews& fin
     parallel_for(
         0, pixels.size(), [&](std::size_t p) { depths[p] = depths_about(fine[v], pixels[p]); }, 16);
     const camera::CameraModel& camera = s.recordings.views[v].model;
-    places->slopes.push_back(slopes_of(s.model.cache(v), camera.width_px(), camera.height_px()));
     places->nearest.push_back(
         nearest_facets(s.model.cache(v), camera.width_px(), camera.height_px(), s.layout.surfaces.size()));
   }

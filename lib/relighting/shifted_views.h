@@ -9,21 +9,11 @@
 // d comes from the view that the mechanism makes of the believed one (scene/mechanisms.h), by a ray through p and the
 // place of its point in the believed view; no equation of a lens stands here.
 #pragma once
-#include <array>
-
 #include "relighting/fine_views.h"
 #include "relighting/image_model.h"
 #include "relighting/uses.h"
 
 namespace gonio::relighting {
-
-// How what a facet shows changes across the picture, from sampled facets of the same surface about it: sum of factor
-// times (their value less its own), the plane of least squares through it. Unused places name the facet itself.
-struct Slope {
-  static constexpr std::size_t most = 6;
-  std::array<std::uint32_t, most> beside{};
-  std::array<Vec2, most> factor{};  // per pixel to the right, and down
-};
 
 // Of the sampled pixels of a model.
 struct Places {
@@ -33,7 +23,6 @@ struct Places {
   };
   std::vector<std::vector<Depths>> depths;          // [view][pixel]
   std::vector<std::vector<std::uint32_t>> nearest;  // [view][block][surface]: facet that shows it nearest by
-  std::vector<std::vector<Slope>> slopes;           // [view][facet]
 };
 
 // By how much a picked pixel's value changes for a look one pixel further to the right, and further down: six numbers

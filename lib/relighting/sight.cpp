@@ -70,7 +70,7 @@ Sight::Sum Sight::at(Vec2 centre, std::uint32_t pixel, Which which) {
     for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facets; ++f) {
       if (which != Which::all && (shaded.tile->depth_m[f] < split_m) != (which == Which::near)) continue;
       const Facet& facet = cells.facets[f];
-      if (facet.surface != surface) surface = facet.surface, sent_on = onward(pixel, surface, centre);
+      if (facet.surface != surface) surface = facet.surface, sent_on = onward(pixel, surface);
       sum.radiance += (shaded.direct[f] + sent_on * facet.tint * facet.weight) * part;
       sum.share += part * facet.weight;
     }
@@ -78,21 +78,10 @@ Sight::Sum Sight::at(Vec2 centre, std::uint32_t pixel, Which which) {
   return sum;
 }
 
-Rgb Sight::onward(std::uint32_t number, std::uint32_t surface, Vec2 centre) {
-  constexpr double most = 0.5;  // of a value, that it changes on the way: planes are none far away
+Rgb Sight::onward(std::uint32_t number, std::uint32_t surface) {
   const Pixel& pixel = frame_.cache.pixels[number];
-  for (std::uint32_t f = pixel.first_facet; f < pixel.first_facet + pixel.facets; ++f) {
-    if (frame_.cache.facets[f].surface != surface) continue;
-    const Rgb own = onward_of(f);
-    const Vec2 way = centre - Vec2{static_cast<double>(pixel.x), static_cast<double>(pixel.y)};
-    if (way.x == 0 && way.y == 0) return own;
-    const Slope& slope = places_.slopes[frame_.image.view][f];
-    Rgb change;
-    for (std::size_t k = 0; k < Slope::most; ++k)
-      if (slope.beside[k] != f) change += (onward_of(slope.beside[k]) - own) * dot(slope.factor[k], way);
-    const auto within = [](double v, double limit) { return std::clamp(v, -limit, limit); };
-    return own + Rgb{within(change.x, most * own.x), within(change.y, most * own.y), within(change.z, most * own.z)};
-  }
+  for (std::uint32_t f = pixel.first_facet; f < pixel.first_facet + pixel.facets; ++f)
+    if (frame_.cache.facets[f].surface == surface) return onward_of(f);
   const std::size_t surfaces = frame_.state.surfaces.size();
   const int across = blocks_across(frame_.image.picture.width);
   const auto block = static_cast<std::size_t>(pixel.y / block_px * across + pixel.x / block_px);

@@ -28,8 +28,7 @@ class Sight {
     double share = 0;
   };
   enum class Which { all, near, far };
-  // About `centre`, with the light by way of other surfaces that the sampled pixel number `pixel` of the view has, and
-  // as that changes from the pixel to the centre.
+  // About `centre`, with the light by way of other surfaces that the sampled pixel number `pixel` of the view has.
   Sum at(Vec2 centre, std::uint32_t pixel, Which which);
 
  private:
@@ -39,7 +38,7 @@ class Sight {
     std::vector<Rgb> direct;  // by facet of the tile
   };
   // Of a surface with a white tint.
-  Rgb onward(std::uint32_t pixel, std::uint32_t surface, Vec2 centre);
+  Rgb onward(std::uint32_t pixel, std::uint32_t surface);
   Rgb onward_of(std::size_t facet);
   const FineView& view_;
   const Places& places_;
