@@ -24,6 +24,7 @@ std::vector<Untouched> stack_reasons() {
        "a second lamp beside each would need its own direction in every picture, as many numbers as a patch has "
        "readings; what all have in common is light.ambient"},
       {"light.spectrum", "strength in each channel is the tint of every patch"},
+      {"optics.bloom", "sites lie where their neighbours are even: a halo there is the veil of optics.veiling-glare"},
       {"optics.defocus",
        "every pixel is fitted alone: what its neighbours send it is the same in all pictures but where shadows "
        "end"},
