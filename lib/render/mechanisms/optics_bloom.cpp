@@ -40,7 +40,8 @@ const Mechanism& optics_bloom() {
                         .told_apart = "photograph a bright edge: a halo falls with the distance from it"},
                        {.with = "optics.defocus", .told_apart = "stop the lens down: a halo stays as it is"},
                        {.with = "sensor.non-linearity",
-                        .told_apart = "photograph the same at several exposures: a halo grows with them"}},
+                        .told_apart =
+                            "photograph the same at several exposures: a halo grows in proportion, a bend moves"}},
       .inputs = {{.name = "halo", .unit = "W/(m^2 sr)", .lower = 0, .upper = 10}},
       .act = [](double v, std::span<const double> at,
                 std::span<const double> p) { return equation::optics_bloom(v, p[0], at[0]); },
