@@ -69,6 +69,8 @@ class Finalists {
  private:
   std::set<std::string> physics_of(const Finalist& f) const;  // "sensor.non-linearity/camera", whatever the form
   const Finalist& plainest_form(const Finalist& of) const;
+  // Where no few sets are likelier than not together: what all likely ones hold, if that is a set of its own.
+  const Finalist* sure_part() const;
   void look_into(std::size_t place);
   void look_at_minor(std::size_t place);       // what stands beside it, and is too small to matter
   double finer_ones(const Finalist& f) const;  // Statistics::finer

@@ -1,8 +1,10 @@
 // See finalists.h: what all the sets say together, and which of them comes first.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <string>
 
@@ -52,7 +54,31 @@ const Finalist& Finalists::plainest_form(const Finalist& of) const {
   return *plainest;
 }
 
+const Finalist* Finalists::sure_part() const {
+  std::map<std::string, double> inclusion;
+  std::map<std::set<std::string>, double> sets;
+  for (const Finalist& f : list_) {
+    if (!matters(f)) continue;
+    const std::set<std::string> physics = physics_of(f);
+    sets[physics] += f.probability;
+    for (const std::string& name : physics) inclusion[name] += f.probability;
+  }
+  std::vector<double> largest;
+  for (const auto& [physics, probability] : sets) largest.push_back(probability);
+  std::ranges::sort(largest, std::greater<>());
+  largest.resize(std::min(largest.size(), most_listed));
+  if (std::accumulate(largest.begin(), largest.end(), 0.0) > likelier_than_not) return nullptr;
+  std::set<std::string> sure;
+  for (const auto& [name, probability] : inclusion)
+    if (probability >= options_.sure) sure.insert(name);
+  const Finalist* part = nullptr;
+  for (const Finalist& f : list_)
+    if (matters(f) && physics_of(f) == sure && (part == nullptr || f.gained > part->gained)) part = &f;
+  return part;
+}
+
 const Finalist* Finalists::likeliest() const {
+  if (const Finalist* part = sure_part()) return &plainest_form(*part);
   // The median probability model (Barbieri & Berger, Annals of Statistics 32, 2004): whatever is more likely than not
   // to be among what was left out, in any set and form; where that is no likely set, the likeliest.
   std::map<std::string, double> inclusion;

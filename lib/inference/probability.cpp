@@ -8,10 +8,8 @@
 namespace gonio::inference {
 namespace {
 
-constexpr std::size_t most_listed = 3;
 constexpr double worth_listing = 0.01;  // of the likeliest set's probability
-constexpr double likelier_than_not = 0.5;
-constexpr double grain = 0.02;  // shares below it are no shares: a facet is no Gaussian, a lens no polynomial
+constexpr double grain = 0.02;          // shares below it are no shares: a facet is no Gaussian, a lens no polynomial
 constexpr double most_errors = 6;
 constexpr double enough = 3;  // beyond them a mechanism is not there the more surely
 

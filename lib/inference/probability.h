@@ -62,6 +62,8 @@ std::vector<double> probabilities(const std::vector<Member>& members, std::span<
 // The answer that the probabilities give. Where all sets together are likelier than not: one set if it is `sure`, else
 // the likeliest, at most three, until they are so together. Else what is likeliest of nothing and outside. A set less
 // than a hundredth as likely as the first is not listed beside it: what speaks against the first is then no other set.
+inline constexpr std::size_t most_listed = 3;
+inline constexpr double likelier_than_not = 0.5;
 struct Answer {
   enum class Kind { nothing, outside, sets };
   Kind kind = Kind::nothing;

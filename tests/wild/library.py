@@ -37,6 +37,8 @@ def values(effect, lamps, scale):
         return of("camera.aspect", relative=e["growth_y"])
     if name == "principal_point":
         return of("camera.principal-point", x_px=e["x_px"], y_px=e["y_px"])
+    if name == "bloom":  # its kernel has a sum of one over twice the picture, the library's over the plane
+        return of("optics.bloom", exact=False, share=e["share"], radius_px=e["radius_px"])
     if name == "saturation" and "full_scale" in e:
         return of("sensor.saturation", full_scale=e["full_scale"])
     if name == "ambient" and not e["from_above"]:
