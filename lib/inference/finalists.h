@@ -41,10 +41,6 @@ struct Finalist {
 
 // Is it what may be named: refused by no rule, none of its mechanisms too small?
 bool matters(const Finalist& f);
-// Standard errors by which `after` is better, as of a normal law: over groups by Student's, or over blocks where groups
-// are few. `floor`: of the standard error.
-inline constexpr double at_most_errors = 12;
-double errors_between(const HeldOut& before, const HeldOut& after, double floor);
 
 class Finalists {
  public:
@@ -60,7 +56,7 @@ class Finalists {
   const Finalist* likeliest() const;  // of the sets; null: there is none that could be
   double in_library() const;          // the probability that it is any of the sets
   // That these are among what was left out, in any form and whatever else is.
-  double with(const Finalist& some) const;
+  double inclusion(const Finalist& some) const;
   double nothing() const { return nothing_; }
   double outside() const { return outside_; }
   // Nothing, outside, then those of list() that no rule refuses; `places`: theirs in list().
@@ -69,6 +65,7 @@ class Finalists {
  private:
   std::set<std::string> physics_of(const Finalist& f) const;  // "sensor.non-linearity/camera", whatever the form
   const Finalist& plainest_form(const Finalist& of) const;
+  std::map<std::string, double> inclusions() const;  // by physics_of
   // Where no few sets are likelier than not together: what all likely ones hold, if that is a set of its own.
   const Finalist* sure_part() const;
   void look_into(std::size_t place);

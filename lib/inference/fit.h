@@ -68,5 +68,9 @@ Gain gain(const HeldOut& before, const HeldOut& after);
 // The same fall over its standard error over blocks: what the noise of these very recordings could do, whatever their
 // groups have in common (Vuong, Econometrica 57, 1989).
 double block_z(const HeldOut& before, const HeldOut& after);
+// Standard errors by which `after` is better, as of a normal law: over groups by Student's, or over blocks where groups
+// are few. `floor`: of the standard error.
+inline constexpr double at_most_errors = 12;
+double errors_between(const HeldOut& before, const HeldOut& after, double floor);
 
 }  // namespace gonio::inference

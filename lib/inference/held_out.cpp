@@ -12,6 +12,7 @@
 #include "inference/fit.h"
 #include "inference/scaling.h"
 #include "linear/solve.h"
+#include "stats/distributions.h"
 
 namespace gonio::inference {
 namespace {
@@ -227,6 +228,24 @@ double block_z(const HeldOut& before, const HeldOut& after) {
     squares += fall * fall;
   }
   return squares > 0 ? sum / std::sqrt(squares) : 0;
+}
+
+double errors_between(const HeldOut& before, const HeldOut& after, double floor) {
+  constexpr std::size_t enough_groups = 5;  // for a standard error over groups to mean something
+  const Gain g = gain(before, after);
+  const std::size_t groups = before.whitened.size();
+  if (!(g.sigma < std::numeric_limits<double>::max())) return -at_most_errors;
+  if (groups < enough_groups) {
+    const double blocks = block_z(before, after);
+    const double sigma = blocks != 0 ? std::abs(g.mean / blocks) : 0;
+    const double all = std::hypot(sigma, floor);
+    return all > 0 ? std::clamp(g.mean / all, -at_most_errors, at_most_errors) : 0;
+  }
+  const double sigma = std::hypot(g.sigma, floor);
+  if (!(sigma > 0)) return g.mean > 0 ? at_most_errors : 0;
+  const double t = g.mean / sigma;
+  const double tail = stats::student_upper(std::abs(t), static_cast<double>(groups) - 1);
+  return std::copysign(std::min(stats::normal_upper_quantile(tail), at_most_errors), t);
 }
 
 }  // namespace gonio::inference

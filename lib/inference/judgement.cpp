@@ -151,11 +151,16 @@ void name_listed(const Problem& problem, const std::vector<Finalist>& list, cons
   }
 }
 
+// Place of a set among the members, behind nothing and outside.
+std::size_t member_of(const std::vector<std::size_t>& places, const std::vector<Finalist>& list, const Finalist& f) {
+  const auto own = static_cast<std::size_t>(&f - list.data());
+  return static_cast<std::size_t>(std::ranges::find(places, own) - places.begin()) + 2;
+}
+
 // Forms of the likeliest set count for it.
 std::vector<double> by_physics(const Problem& problem, const std::vector<Finalist>& list, const Finalist& top,
                                const std::vector<std::size_t>& places, std::vector<double> p) {
-  const auto own = static_cast<std::size_t>(&top - list.data());
-  const auto at = static_cast<std::size_t>(std::find(places.begin(), places.end(), own) - places.begin()) + 2;
+  const std::size_t at = member_of(places, list, top);
   for (std::size_t k = 0; k < places.size(); ++k)
     if (is_form(problem, top, list[places[k]])) p[at] += p[k + 2], p[k + 2] = 0;
   return p;
@@ -234,11 +239,9 @@ void judge(const Problem& problem, const Selection& s, const Options& options, E
   if (top != nullptr) p = by_physics(problem, list, *top, places, std::move(p));
   Answer found = answer(members, p, options.sure);
   // Of many sets that differ in what else there is, what all of them hold is sure: that is the answer.
-  if (top != nullptr && found.probability < options.sure && finalists.with(*top) >= options.sure) {
-    const auto own = std::find(places.begin(), places.end(), static_cast<std::size_t>(top - list.data()));
-    if (own != places.end())
-      found = {Answer::Kind::sets, {static_cast<std::size_t>(own - places.begin()) + 2}, finalists.with(*top)};
-  }
+  if (const double part = top != nullptr ? finalists.inclusion(*top) : 0;
+      found.probability < options.sure && part >= options.sure)
+    found = {Answer::Kind::sets, {member_of(places, list, *top)}, part};
   if (!e.significant) found = {Answer::Kind::nothing, {}, finalists.nothing()};
   // The groups that no choice has seen speak last.
   const bool no_better = found.kind == Answer::Kind::sets && !(e.held_out_after < e.held_out_before);

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "geom/cubic_weights.h"
 #include "mesh/topology.h"
 #include "relighting/clearance.h"
 #include "relighting/image_model.h"
@@ -195,9 +196,7 @@ BodyWalks::Weights BodyWalks::weights(double path_m, double albedo) const {
   if (halves < 0) w.own_share = 1 - mean_path_m / shortest_m;
   const double place = std::clamp(halves, 0.0, last);
   const auto lower = std::min(static_cast<std::size_t>(place), table_count - 2);
-  const double t = place - static_cast<double>(lower);
-  w.of_table = {0.5 * t * (t * (2 - t) - 1), 0.5 * (t * t * (3 * t - 5) + 2), 0.5 * t * (t * (4 - 3 * t) + 1),
-                0.5 * t * t * (t - 1)};
+  w.of_table = cubic_weights(place - static_cast<double>(lower));
   w.tables = {lower > 0 ? lower - 1 : 0, lower, lower + 1, std::min(lower + 2, table_count - 1)};
   for (std::size_t k = 0; k < 4; ++k)
     if (w.of_table[k] != 0) tables_->need(w.tables[k]);

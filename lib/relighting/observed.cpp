@@ -45,13 +45,17 @@ std::vector<Use> camera_uses(const Setting& setting, const mechanism::Mechanism&
   return uses;
 }
 
+std::optional<std::size_t> camera_target(const Use& use, const Recordings& recordings, const Recording& image) {
+  if (use.on.empty()) return 0;
+  auto found = std::ranges::find(use.on, image.id);
+  if (found == use.on.end()) found = std::ranges::find(use.on, recordings.views[image.view].camera);
+  if (found == use.on.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - use.on.begin());
+}
+
 std::span<const double> camera_amounts(const Use& use, const Frame& frame) {
-  const std::string& camera = frame.model.recordings().views[frame.image.view].camera;
-  auto found = std::find(use.on.begin(), use.on.end(), frame.image.id);  // one picture of it
-  if (found == use.on.end()) found = std::find(use.on.begin(), use.on.end(), camera);
-  if (found != use.on.end()) return use.amounts(frame.state, static_cast<std::size_t>(found - use.on.begin()));
-  if (use.on.empty()) return use.amounts(frame.state);
-  return use.neutral_amounts();
+  const std::optional<std::size_t> target = camera_target(use, frame.model.recordings(), frame.image);
+  return target ? use.amounts(frame.state, *target) : use.neutral_amounts();
 }
 
 }  // namespace gonio::relighting

@@ -16,6 +16,9 @@ std::size_t readings_near(const Recordings& recordings, double value);
 
 // One use for each camera of the recordings that has not the mechanism already; a mechanism of cameras.
 std::vector<Use> camera_uses(const Setting& setting, const mechanism::Mechanism& mechanism);
+// The place in `on` that holds for an image: its own, else its camera's; 0 where the use names nothing and means all.
+// Nothing: the use does not mean it.
+std::optional<std::size_t> camera_target(const Use& use, const Recordings& recordings, const Recording& image);
 // The numbers that hold for the frame's picture or its camera; neutral ones where the use does not mean it.
 std::span<const double> camera_amounts(const Use& use, const Frame& frame);
 

@@ -3,8 +3,8 @@
 //   K (1 + s (1 - K) + s^2 (1 - K)^2 + ...) of what is recorded,
 // and K^n is the convolution with n times the radius (render/halo.h): three radii suffice, what is left is of the order
 // of s^3. Of the pixel itself the predicted value is taken, so that no reading is held against its own noise. Halos are
-// tabulated over the radius' logarithm, half an octave apart, and interpolated by cubics (Catmull & Rom 1974); where
-// the amounts are settled, at the three radii alone.
+// tabulated over the radius' logarithm, half an octave apart, with cubics between; where the amounts are settled, at
+// the three radii alone.
 #include "render/mechanisms/optics_bloom.h"
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "geom/cubic_weights.h"
 #include "relighting/image_model.h"
 #include "relighting/observed.h"
 #include "relighting/uses.h"
@@ -27,8 +28,7 @@ constexpr std::size_t channels = 3;
 struct Halos final : Prepared {
   std::vector<double> radii_px;  // of the nodes, evenly spaced in the logarithm; where settled: R, 2 R, 3 R
   bool settled = false;
-  std::vector<std::vector<float>>
-      around;  // [image; empty: of another camera][pixel of the view's cache][node][channel]
+  std::vector<std::vector<float>> around;  // [image; empty: not meant][pixel of the view's cache][node][channel]
 
   // Around the pixel, by `power` times the radius.
   Rgb at(std::size_t image, std::uint32_t pixel, double radius_px, std::size_t power) const {
@@ -42,11 +42,9 @@ struct Halos final : Prepared {
         std::clamp(nodes_per_doubling * std::log2(static_cast<double>(power) * radius_px / radii_px[0]), 0.0,
                    static_cast<double>(radii_px.size()) - 1);
     const std::size_t k = std::min(static_cast<std::size_t>(place), radii_px.size() - 2);
-    const double t = place - static_cast<double>(k), t2 = t * t, t3 = t2 * t;
-    const Rgb a = value(k), b = value(k + 1);
-    const Rgb before = k > 0 ? value(k - 1) : a * 2 - b, after = k + 2 < radii_px.size() ? value(k + 2) : b * 2 - a;
-    const Rgb slope_a = (b - before) * 0.5, slope_b = (after - a) * 0.5;
-    return a * (2 * t3 - 3 * t2 + 1) + slope_a * (t3 - 2 * t2 + t) + b * (3 * t2 - 2 * t3) + slope_b * (t3 - t2);
+    const std::array<double, 4> weight = cubic_weights(place - static_cast<double>(k));
+    return value(k > 0 ? k - 1 : 0) * weight[0] + value(k) * weight[1] + value(k + 1) * weight[2] +
+           value(std::min(k + 2, radii_px.size() - 1)) * weight[3];
   }
 };
 
@@ -67,8 +65,7 @@ std::shared_ptr<const Prepared> prepare(const Setting& s, const Use& use) {
       result->radii_px.push_back(r);
   }
   for (const Recording& image : s.recordings.images) {
-    const std::string& camera = s.recordings.views[image.view].camera;
-    if (std::ranges::find(use.on, camera) == use.on.end()) {
+    if (!camera_target(use, s.recordings, image)) {
       result->around.emplace_back();
       continue;
     }

@@ -1,11 +1,12 @@
 // lens.lateral-colour: red and blue of a rendered picture, taken from where green shows what they show. Between pixels
-// by cubic convolution (Keys 1981), which keeps second-order polynomials.
+// by cubic convolution (geom/cubic_weights.h).
 #include "camera/mechanisms/lens_lateral_colour.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "geom/cubic_weights.h"
 #include "render/link.h"
 
 namespace gonio::mechanism {
@@ -14,12 +15,6 @@ const Mechanism& lens_lateral_colour();
 
 namespace gonio::render::links {
 namespace {
-
-// Weights of the pixels -1, 0, 1, 2 for a place t beyond pixel 0.
-std::array<double, 4> cubic_weights(double t) {
-  const double t2 = t * t, t3 = t2 * t;
-  return {0.5 * (2 * t2 - t - t3), 0.5 * (3 * t3 - 5 * t2 + 2), 0.5 * (4 * t2 + t - 3 * t3), 0.5 * (t3 - t2)};
-}
 
 double between_pixels(const io::Image& picture, Vec2 at, int channel) {
   const double x = std::floor(at.x), y = std::floor(at.y);

@@ -87,6 +87,14 @@ TEST(Bloom, AHaloAboutBrightPlacesIsNamed) {
   EXPECT_NEAR(outcome.fitted("radius_px"), 3.0, 0.6);
 }
 
+// Switched on for every camera, without naming one.
+TEST(Bloom, ThatTheSceneHasIsNoneThatIsLeftOut) {
+  EffectWorld world;
+  world.truth = world.believed = R"("optics.bloom":{"share":0.12,"radius_px":3})";
+  const EffectOutcome outcome(world, {"optics.bloom", "optics.veiling-glare", "sensor.non-linearity"});
+  EXPECT_THAT(outcome.named(), ElementsAre()) << outcome.told();
+}
+
 // Cut off, then resampled by half a pixel to one side and back again, as undistortion does in the worst place.
 void clip_and_resample(io::Image& picture, float full_scale) {
   for (float& v : picture.data) v = std::min(v, full_scale);
