@@ -87,6 +87,30 @@ TEST(Bloom, AHaloAboutBrightPlacesIsNamed) {
   EXPECT_NEAR(outcome.fitted("radius_px"), 3.0, 0.6);
 }
 
+// Switched on for one picture by its name: the others have none.
+TEST(Bloom, IsThatOfThePictureThatItIsSwitchedOnFor) {
+  EffectWorld world;
+  world.spp = 4;
+  const ScratchFolder plain, bloomed;
+  const explain::images::ImagesProblem without(world.record(plain), {.pixels = 1000});
+  world.believed = R"("optics.bloom":{"share":0.12,"radius_px":3,"on":["00"]})";
+  const explain::images::ImagesProblem with(world.record(bloomed), {.pixels = 1000});
+  const auto start = [](const explain::Problem& problem) {
+    std::vector<double> values;
+    for (const explain::Parameter& p : problem.parameters()) values.push_back(p.start);
+    for (const explain::Candidate& c : problem.candidates())
+      for (const std::size_t p : c.parameters) values[p] = problem.parameters()[p].neutral;
+    return values;
+  };
+  for (std::size_t g = 0; g < with.observations().groups(); ++g) {
+    const std::size_t rows = with.observations().first[g + 1] - with.observations().first[g];
+    std::vector<double> a(rows), b(rows);
+    without.predict(start(without), g, a);
+    with.predict(start(with), g, b);
+    EXPECT_EQ(a != b, with.observations().group[g] == "00") << with.observations().group[g];
+  }
+}
+
 // Switched on for every camera, without naming one.
 TEST(Bloom, ThatTheSceneHasIsNoneThatIsLeftOut) {
   EffectWorld world;
