@@ -212,7 +212,12 @@ manifest::Value entry_of(const Problem& problem, const Explanation& e, const Ill
   for (const std::size_t g : e.test_groups) entry.held_out.test_groups.push_back(problem.observations().group[g]);
   entry.fitted = {e.fitted_before, e.fitted_after};
   entry.null_test = {e.global_p, e.significant, e.important, e.smallest_effect};
-  entry.noise = {e.noise_factor, static_cast<std::int64_t>(e.outlier_blocks)};
+  entry.noise.factor = e.noise_factor;
+  entry.noise.blocks_set_aside = static_cast<std::int64_t>(e.outlier_blocks);
+  if (e.outliers) {
+    entry.noise.outlying_readings = static_cast<std::int64_t>(e.outliers->readings);
+    entry.noise.outlying_effect = e.outliers->effect;
+  }
   entry.negative_controls = {static_cast<std::int64_t>(e.negative_controls), e.false_alarm};
   entry.scoreboard = scoreboard(e);
   entry.isolability = isolability(problem, e);

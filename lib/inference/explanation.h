@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "inference/outliers.h"
 #include "inference/problem.h"
 #include "manifest/value.h"
 
@@ -151,6 +152,7 @@ struct Explanation {
   bool significant = false, important = false;
   double noise_factor = 1;
   std::size_t outlier_blocks = 0;
+  std::optional<Outliers> outliers{};  // of the base model
   double smallest_effect = 0.01;
 
   std::vector<std::size_t> at_limits{};  // free parameters of the base model that its fit leaves at a bound

@@ -265,15 +265,17 @@ std::vector<Member> Finalists::members(std::vector<std::size_t>* places) const {
   };
   take(before_.serial_correlation);
   take(before_.interaction);
+  Member outside{Member::Kind::outside, {}};
+  if (before_.outliers && before_.global_p <= options_.level) {
+    largest = std::max(largest, before_.outliers->effect);
+    const double times = before_.outliers->effect / std::max(1e-6, options_.smallest_effect);
+    outside.statistics.outlying = std::log(std::max(1.0, times));
+  }
   nothing.statistics.mismatch = -std::log10(std::max(before_.global_p, 1e-12));
   nothing.statistics.largest = std::log(largest / std::max(1e-6, options_.smallest_effect));
-  Member outside{Member::Kind::outside, {}};
   const LeftOver all = left_over(race_.system().problem(), {}, before_, options_);
-  outside.statistics.times = all.condition ? std::max(0.0, nothing.statistics.largest) : -1;
-  const Finalist* best = nullptr;
-  for (const Finalist& f : list_)
-    if (is_answer(f) && f.looked_into && (best == nullptr || f.gained > best->gained)) best = &f;
-  outside.statistics.any = best != nullptr ? best->statistics.any : 1;
+  outside.statistics.times =
+      all.condition || outside.statistics.outlying > 0 ? std::max(0.0, nothing.statistics.largest) : -1;
   std::vector<Member> result = {nothing, outside};
   for (std::size_t k = 0; k < list_.size(); ++k) {
     if (!is_answer(list_[k])) continue;
@@ -286,14 +288,13 @@ std::vector<Member> Finalists::members(std::vector<std::size_t>* places) const {
 void Finalists::score() {
   compare();
   std::vector<std::size_t> places;
-  const std::vector<double> p = probabilities(members(&places));
-  nothing_ = p[0], outside_ = p[1];
-  if (members()[1].statistics.times < 0) nothing_ += outside_, outside_ = 0;
+  const std::vector<Member> all = members(&places);
+  const std::vector<double> p = probabilities(all);
+  const Rest rest = rest_of(all, p);
+  nothing_ = rest.nothing, outside_ = rest.outside;
   for (Finalist& f : list_) f.probability = 0;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    Finalist& f = list_[places[k]];
-    (matters(f) ? f.probability : nothing_) += p[k + 2];
-  }
+  for (std::size_t k = 0; k < places.size(); ++k)
+    if (Finalist& f = list_[places[k]]; matters(f)) f.probability = p[k + 2];
 }
 
 void Finalists::weigh(std::size_t most) {

@@ -236,4 +236,9 @@ Eigen::VectorXd Folds::step(const std::vector<Eigen::Index>& foreign) const {
   return solved(all_, foreign);
 }
 
+double Folds::promise(const std::vector<Eigen::Index>& foreign) const {
+  const Eigen::VectorXd t = solved(all_, foreign);  // a minimum within the signs allowed: the fall is b't
+  return rows_ > 0 ? all_.normal(foreign, all_.normal.cols() - 1).dot(t) / rows_ : 0;
+}
+
 }  // namespace gonio::inference

@@ -28,6 +28,8 @@ class Folds {
   const HeldOut& own() const { return own_; }
   // The step that all groups together want, and the share of each column's squared length that survives in it.
   Eigen::VectorXd step(const std::vector<Eigen::Index>& foreign) const;
+  // Mean fall of the square per row that this step promises, of the very groups that it was fitted to.
+  double promise(const std::vector<Eigen::Index>& foreign) const;
 
  private:
   struct Fold {

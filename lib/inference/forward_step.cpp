@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "base/progress.h"
+#include "inference/finalists.h"
 
 namespace gonio::inference {
 namespace {
@@ -13,6 +15,7 @@ namespace {
 // overtook in the tests of strongly nonlinear mechanisms.
 constexpr double allowance = 3;
 constexpr std::size_t most_pairs_fitted = 4;
+constexpr std::size_t most_overlooked = 4;  // times the fits of a round
 constexpr std::size_t most_leaders = 4;
 constexpr double leading_share = 0.6;  // of the best gain: may be the winner once fitted to the end
 
@@ -46,12 +49,14 @@ ForwardStep::ForwardStep(const Race& race, const Effort& effort, const Model& mo
   for (const double rows : left.evidence->folds->own().rows) rows_ += rows;
   run_singles();
   run_pairs();
+  run_overlooked();
   polish_leaders();
 }
 
 std::vector<Hypothesis> ForwardStep::screened_out() const {
   std::vector<Hypothesis> list;
   for (std::size_t k = fitted_; k < screening_.singles().size(); ++k) {
+    if (std::ranges::find(overlooked_, k) != overlooked_.end()) continue;
     const Entrant& e = screening_.singles()[k];
     const Gain g = gain(left_.evidence->folds->own(), e.held_out);
     Hypothesis h;
@@ -190,6 +195,23 @@ void ForwardStep::run_pairs() {
     }
     runners_.push_back(std::move(r));
   }
+}
+
+// Where something that matters is there and none of those passes: a linear form is no word on what moves edges, of
+// shadows above all. What it promises where it is fitted can be great, and its prediction of another group still be
+// worse than none; so what was screened out is fitted as well, the most promising first.
+void ForwardStep::run_overlooked() {
+  if (!model_.candidates.empty() || std::any_of(runners_.begin(), runners_.end(), passes)) return;
+  const Options& options = race_.options();
+  const bool matters = left_over(race_.system().problem(), {}, left_, options).any > 0 ||
+                       (left_.outliers && left_.outliers->effect >= options.smallest_effect);
+  if (left_.global_p > options.level || !matters) return;
+  const std::vector<Entrant>& singles = screening_.singles();
+  for (std::size_t k = fitted_; k < singles.size(); ++k)
+    if (singles[k].promise > 0) overlooked_.push_back(k);
+  std::ranges::stable_sort(overlooked_, std::greater<>(), [&](std::size_t k) { return singles[k].promise; });
+  overlooked_.resize(std::min(overlooked_.size(), most_overlooked * effort_.fits));
+  for (const std::size_t k : overlooked_) runners_.push_back(fitted(singles[k], singles.size()));
 }
 
 void ForwardStep::admit_pairs() {

@@ -35,6 +35,7 @@ class ForwardStep {
   Runner polished(const Runner& r) const;
   void run_singles();
   void run_pairs();
+  void run_overlooked();
   void polish_leaders();
   std::optional<std::size_t> winner() const;
   bool may_matter(const Entrant& e) const;
@@ -49,7 +50,8 @@ class ForwardStep {
   Slopes kept_;
   std::vector<Runner> runners_;
   std::vector<Entrant> passed_over_;
-  std::size_t fitted_ = 0, pairs_ = 0;
+  std::size_t fitted_ = 0, pairs_ = 0;   // of the singles, those before this place
+  std::vector<std::size_t> overlooked_;  // places of singles that were fitted behind it
   double rows_ = 0;
 };
 

@@ -115,7 +115,8 @@ void list_weighed(const Finalists& finalists, Explanation& e) {
 void begin_outside(const Problem& problem, const LeftOver& left, const ResidualStructure& before, bool unknown,
                    Explanation& e) {
   std::optional<std::size_t> condition = left.condition;
-  if (!condition && unknown && !before.curves.empty()) condition = before.curves[0].condition;
+  const bool outlying = before.outliers && before.outliers->effect >= e.smallest_effect;
+  if (!condition && unknown && !outlying && !before.curves.empty()) condition = before.curves[0].condition;
   if (!condition) return;
   Outside outside;
   outside.condition = problem.observations().conditions[*condition].name;
@@ -230,6 +231,7 @@ void judge(const Problem& problem, const Selection& s, const Options& options, E
   const Finalists& finalists = *s.finalists;
   const std::vector<Finalist>& list = finalists.list();
   e.significant = s.before.global_p <= options.level;
+  e.outliers = s.before.outliers;
   list_weighed(finalists, e);
   const Finalist* top = finalists.likeliest();
   const LeftOver at_first = left_over(problem, {}, s.before, options);

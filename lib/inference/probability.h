@@ -3,8 +3,8 @@
 //
 // A multinomial logistic model (McFadden, Frontiers in Econometrics, 1974): every member of the comparison has a score,
 // the sum of weight times term, and P = exp(score) / sum of exp(score). The weights stand in one table (logit_terms()).
-// They are set by hand on cases whose truth is known (probability.cpp says which); prove-probability estimates them by
-// penalised maximum likelihood and says what the stated probabilities are worth on cases of other seeds.
+// prove-probability estimates them by penalised maximum likelihood from cases whose truth is known (probability.cpp
+// says which) and says what the stated probabilities are worth on cases of other seeds.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -19,8 +19,7 @@ struct Statistics {
   double missed = 0;  // share of what can be repaired that it does not repair
   double own = 0;     // what a free curve over a condition of its own still repairs, over that and what it repairs
   double clean = 0;   // of what it leaves above the noise, the share that this curve takes: it is no noise that is left
-  double any = 0;     // the same over any condition, fine structure and products of conditions included;
-                      // of what is outside: beside the set that repairs most
+  double any = 0;     // the same over any condition, fine structure and products of conditions included
   double curve = 0;   // by how much more the best curve over one condition repairs than it does, as a share
   double numbers = 0;   // that are fitted with it
   double size = 0;      // mean over its numbers of ln(1 + (distance from neutral / typical size)^2): half-Cauchy
@@ -33,6 +32,9 @@ struct Statistics {
   // Of "nothing" alone: -log10 of the chance of such residuals without a mismatch, and ln of the largest effect that
   // anything fitted has over the smallest of interest.
   double mismatch = 0, largest = 0;
+  // Of "outside" alone: ln of the effect of readings that stand out over the smallest of interest; zero: there are none
+  // that matter (outliers.h).
+  double outlying = 0;
 };
 struct Statistic {
   std::string_view name, meaning;
@@ -58,6 +60,13 @@ std::span<const LogitTerm> logit_terms();
 std::vector<double> probabilities(const std::vector<Member>& members);
 // The same with other weights, in the order of logit_terms(): to estimate them.
 std::vector<double> probabilities(const std::vector<Member>& members, std::span<const double> weights);
+
+// What falls to "nothing that matters" and to "something outside": a set that is too small to matter is nothing, unless
+// readings stand out, which it does not repair; what is outside, where nothing that matters is left, is nothing, too.
+struct Rest {
+  double nothing = 0, outside = 0;
+};
+Rest rest_of(const std::vector<Member>& members, const std::vector<double>& probability);
 
 // The answer that the probabilities give. Where all sets together are likelier than not: one set if it is `sure`, else
 // the likeliest, at most three, until they are so together. Else what is likeliest of nothing and outside. A set less

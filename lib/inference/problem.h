@@ -148,8 +148,9 @@ class Problem {
   // stated noise stands. `residual`: y - f for all rows after the most flexible fit.
   virtual std::optional<double> noise_factor(std::span<const double> residual) const;
   // Blocks beyond five noise widths under the most flexible fit are set aside and counted (mis-detected corners).
-  // Images say no: a highlight is an effect, not an outlier.
   virtual bool sets_outliers_aside() const { return false; }
+  // Are readings far beyond the noise effects (outliers.h)? Images say yes: a highlight elsewhere is no mistake.
+  virtual bool outliers_are_effects() const { return false; }
 
   // Measurements within the user's reach that could separate hypotheses: another range, exposure, light, turn, in an
   // order that does not depend on the data. `values`: the fit about which they are planned. The engine predicts each

@@ -10,6 +10,7 @@
 #include "inference/fit.h"
 #include "inference/folds.h"
 #include "inference/interaction.h"
+#include "inference/outliers.h"
 #include "inference/serial_correlation.h"
 #include "inference/signature.h"
 
@@ -121,6 +122,7 @@ struct ResidualStructure {
   double false_alarm = 0;                               // share of negative controls that would have been named
   std::optional<SerialCorrelation> serial_correlation;  // structure that no smooth curve follows
   std::optional<Interaction> interaction;  // structure in a product of conditions; asked where nothing else is found
+  std::optional<Outliers> outliers;        // too few for any curve
   std::shared_ptr<const Evidence> evidence;
 };
 ResidualStructure residual_structure(const Race& race, const Model& model, const Options& options,

@@ -132,6 +132,7 @@ ResidualStructure residual_structure(const Race& race, const Model& model, const
   const stats::SignFlipResult negative_control_test =
       stats::sign_flip_test(negative_control, scores.blocks, scores.inflation, 1, options.seed);
   r.inflation = inflation(system, p, structures, scores);
+  if (at == Looks::at_everything) r.outliers = outliers(system, model.fit.values);
   r.isolability = isolability(system, p, structures, scores, r.inflation, options);
   r.conditions = locate(system, p, structures);
   r.evidence = evidence;

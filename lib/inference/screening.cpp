@@ -48,7 +48,10 @@ Screening::Screening(const Race& race, const ResidualStructure& residual_structu
   parallel_for(0, visible.size(), [&](std::size_t k) {
     runners[k] = runner_of(visible[k]);
     const Form& form = runners[k].forms.back();
-    entrants[k] = {{visible[k]}, 0, evidence_.folds->held_out(form.columns), form.point};
+    entrants[k] = {.candidates = {visible[k]},
+                   .promise = evidence_.folds->promise(form.columns),
+                   .held_out = evidence_.folds->held_out(form.columns),
+                   .start = form.point};
     entrants[k].reach = gain(evidence_.folds->own(), entrants[k].held_out).mean;
     entrants[k].effect = linear_effect(race_, evidence_, form.columns, entrants[k].held_out);
   });
@@ -97,10 +100,10 @@ std::vector<Entrant> Screening::pairs(std::size_t most, std::size_t keep, std::o
   std::vector<Entrant> result;
   for (std::size_t k = 0; k < std::min(keep, all.size()); ++k) {
     const Pair& p = all[k];
-    Entrant e{{runners_[p.a].candidate, runners_[p.b].candidate},
-              p.reach,
-              evidence_.folds->held_out(joined(p, p.form_a, p.form_b)),
-              runners_[p.a].forms[p.form_a].point};
+    Entrant e{.candidates = {runners_[p.a].candidate, runners_[p.b].candidate},
+              .reach = p.reach,
+              .held_out = evidence_.folds->held_out(joined(p, p.form_a, p.form_b)),
+              .start = runners_[p.a].forms[p.form_a].point};
     const std::vector<double>& other = runners_[p.b].forms[p.form_b].point;
     e.start.insert(e.start.end(), other.begin(), other.end());
     e.effect = linear_effect(race_, evidence_, joined(p, p.form_a, p.form_b), e.held_out);

@@ -10,6 +10,7 @@ namespace gonio::inference {
 struct Entrant {
   std::vector<std::size_t> candidates;
   double reach = 0;           // fall of the held-out mean square that its linear form promises
+  double promise = 0;         // the same of the groups that it is fitted to
   HeldOut held_out;           // of that form
   std::vector<double> start;  // where the fit had best begin: the candidates' parameters in order
   double effect = 0;          // of that form, in the unit of Options::smallest_effect

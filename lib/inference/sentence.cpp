@@ -118,12 +118,28 @@ std::string structured(const Problem& problem, const Explanation& e, const std::
   return ", structured over the " + condition_in_words(where) + (range.empty() ? "" : " (most of it " + range + ")");
 }
 
+// "few readings (45 of 17904, at 18 places, most of them in p04, p05)"; empty where none stand out so that it matters.
+std::string outlying_in_words(const Problem& problem, const Explanation& e) {
+  constexpr std::size_t most_names = 3;
+  if (!e.outliers || e.outliers->effect < e.smallest_effect) return "";
+  const Observations& o = problem.observations();
+  std::string names;
+  for (std::size_t k = 0; k < std::min(most_names, e.outliers->of_groups.size()); ++k)
+    names += (k == 0 ? "" : ", ") + o.group[e.outliers->of_groups[k].first];
+  return "few readings that stand out (" + std::to_string(e.outliers->readings) + " of " + std::to_string(o.rows()) +
+         ", at " + std::to_string(e.outliers->places) + " places, most of them in " + names + ")";
+}
+
 std::string plain_sentence(const Problem& problem, const Explanation& e) {
   const std::string score = problem.score_name() + " " + score_in_words(e.held_out_before, problem.unit());
   if (e.verdict == Verdict::unknown) {
     const std::string where = e.outside ? e.outside->condition : e.conditions.empty() ? "" : e.conditions[0].name;
+    const std::string few = outlying_in_words(problem, e);
     std::string text = "There is a mismatch that matters";
-    if (!where.empty()) text += structured(problem, e, where);
+    if (!few.empty() && !e.outside)
+      text += ", in " + few;
+    else if (!where.empty())
+      text += structured(problem, e, where);
     text += ", and no physics in the library repairs it on unseen " + problem.group_noun() + "s (" + score + ").";
     text += likeliest_sentence(problem, e);
     return e.outside ? text + law_sentence(problem, *e.outside) : text;
@@ -226,6 +242,9 @@ std::string measurement(const Problem& problem, const Explanation& e) {
     if (!m.mistaken_for.empty())
       return "To confirm " + m.id + " against " + m.mistaken_for[0].with + ": " + m.mistaken_for[0].told_apart + ".";
   }
+  if (const std::string few = outlying_in_words(problem, e);
+      e.verdict == Verdict::unknown && !e.outside && !few.empty())
+    return "Look at the places of the " + few + " first: an object that the manifest lacks, or light from elsewhere.";
   if (e.verdict == Verdict::unknown && !e.conditions.empty() && tells_where(e.conditions[0]))
     return "Record more " + problem.group_noun() + "s that vary the " +
            condition_in_words(e.outside ? e.outside->condition : e.conditions[0].name) + ".";

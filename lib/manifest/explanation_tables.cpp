@@ -70,7 +70,10 @@ const std::vector<Field<ExplainedNoise>>& explained_noise_fields() {
   using T = ExplainedNoise;
   static const std::vector<Field<T>> table{
       number_field("factor", &T::factor, "", "found over stated standard deviation").range(0, infinite),
-      field("blocks_set_aside", &T::blocks_set_aside, "", "outliers: blocks that fit nothing").range(0, infinite)};
+      field("blocks_set_aside", &T::blocks_set_aside, "", "outliers: blocks that fit nothing").range(0, infinite),
+      field("outlying_readings", &T::outlying_readings, "", "beyond five noise widths of the base model; 0: too few")
+          .range(0, infinite),
+      number_field("outlying_effect", &T::outlying_effect, "", "theirs, as what `smallest_effect` is held against")};
   return table;
 }
 

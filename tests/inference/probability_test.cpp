@@ -71,8 +71,25 @@ TEST(Probability, NineNumbersYieldToOne) {
 TEST(Probability, WhatIsSurelyThereAndSmallIsNothingThatMatters) {
   Member nothing{Member::Kind::nothing, {}};
   nothing.statistics.mismatch = 12, nothing.statistics.largest = std::log(0.27);
-  const std::vector<Member> members{nothing, {Member::Kind::outside, {}}};
-  EXPECT_EQ(answer(members, probabilities(members), 0.9).kind, Answer::Kind::nothing);
+  Member outside{Member::Kind::outside, {}};
+  outside.statistics.times = -1;  // no condition carries any that matters
+  const std::vector<Member> members{nothing, outside};
+  const Answer a = answer(members, probabilities(members), 0.9);
+  EXPECT_EQ(a.kind, Answer::Kind::nothing);
+  EXPECT_NEAR(a.probability, 1, 1e-12);
+}
+
+// What is too small to matter is nothing that matters, but not where readings stand out that it does not repair.
+TEST(Probability, SmallSetsDoNotRepairReadingsThatStandOut) {
+  Member small = good();
+  small.statistics.times = -0.5;
+  std::vector<Member> members = against({small});
+  members[1].statistics.times = -1;
+  EXPECT_NEAR(rest_of(members, {0.1, 0.2, 0.7}).nothing, 1, 1e-12);
+  members[1].statistics.times = members[1].statistics.outlying = 0.5;
+  EXPECT_NEAR(rest_of(members, {0.1, 0.2, 0.7}).nothing, 0.1, 1e-12);
+  EXPECT_NEAR(rest_of(members, {0.1, 0.2, 0.7}).outside, 0.9, 1e-12);
+  EXPECT_EQ(answer(members, {0.1, 0.2, 0.7}, 0.9).kind, Answer::Kind::outside);
 }
 
 TEST(Probability, TwinsShareIt) {
@@ -121,7 +138,7 @@ TEST(Probability, NamesOfStatisticsAreUnique) {
   for (const Statistic& s : statistics()) names.emplace_back(s.name);
   std::sort(names.begin(), names.end());
   EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
-  EXPECT_EQ(names.size(), 15u);
+  EXPECT_EQ(names.size(), 16u);
 }
 
 }  // namespace

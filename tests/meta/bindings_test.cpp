@@ -43,10 +43,6 @@ std::set<std::string> stems() {
   return all;
 }
 
-std::string without_comment(const std::string& line) {
-  return line.substr(0, line.find("//"));
-}
-
 // In code, not in the help that a field or an option prints: an id alone between quotes, or in front of a full stop.
 TEST(Bindings, NoSourceQuotesAnIdThatAFileDeclares) {
   std::vector<std::string> quoted;

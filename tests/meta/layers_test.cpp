@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <regex>
 #include <set>
 
 #include "meta/source_tree.h"
@@ -127,6 +128,19 @@ TEST(Layers, ProgramsSeeNoLibraryButTheMatricesOfTheirRoom) {
       const auto reason = tainted.find("lib/" + include.name);
       EXPECT_TRUE(reason == tainted.end())
           << place(file, include.line) << ": " << include.name << " brings in a library: " << reason->second;
+    }
+}
+
+// Half a minute of every source that names one: linear/svd.h and its neighbours have them compiled once.
+TEST(Layers, SlowDecompositionsAreCompiledOnce) {
+  const std::regex slow(
+      "Eigen::(BDCSVD|JacobiSVD|SelfAdjointEigenSolver|EigenSolver|ColPivHouseholderQR)<|(bdc|jacobi)Svd");
+  for (const auto& folder : {"lib", "tools", "tests"})
+    for (const auto& file : source_files(folder, {".h", ".cpp"})) {
+      if (file.path.starts_with("lib/linear/") || file.path.starts_with("tests/linear/")) continue;
+      for (std::size_t i = 0; i < file.lines.size(); ++i)
+        EXPECT_FALSE(std::regex_search(without_comment(file.lines[i]), slow))
+            << place(file, i + 1) << ": compiled once in lib/linear";
     }
 }
 

@@ -42,6 +42,10 @@ std::vector<Include> includes_of(const SourceFile& file) {
   return includes;
 }
 
+std::string without_comment(const std::string& line) {
+  return line.substr(0, line.find("//"));
+}
+
 std::string place(const SourceFile& file, int line) {
   return file.path + ":" + std::to_string(line);
 }

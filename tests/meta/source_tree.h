@@ -14,6 +14,8 @@ struct SourceFile {
 // Files below root/`folder` with one of `extensions`, sorted by path.
 std::vector<SourceFile> source_files(const std::string& folder, const std::vector<std::string>& extensions);
 
+std::string without_comment(const std::string& line);
+
 struct Include {
   std::string name;  // as between the quotes or angle brackets
   bool quoted;

@@ -102,6 +102,16 @@ Case case_of(const Value& entry, const Rights& required, const Rights& allowed, 
   }
   if (std::none_of(c.right.begin(), c.right.end(), [](char r) { return r != 0; }))
     for (std::size_t k = 0; k < c.members.size(); ++k) c.right[k] = c.members[k].kind == Member::Kind::outside;
+  // What falls to nothing, or to outside, is right with it.
+  for (std::size_t k = 0; k < c.members.size(); ++k) {
+    std::vector<double> alone(c.members.size());
+    alone[k] = 1;
+    const inference::Rest rest = inference::rest_of(c.members, alone);
+    for (std::size_t j = 0; j < c.members.size(); ++j)
+      if (c.right[j] != 0 && ((rest.nothing > 0 && c.members[j].kind == Member::Kind::nothing) ||
+                              (rest.outside > 0 && c.members[j].kind == Member::Kind::outside)))
+        c.right[k] = 1;
+  }
   return c;
 }
 
@@ -237,16 +247,15 @@ struct Figures {
 };
 void ask(const Case& c, const std::vector<double>& p, Figures& f) {
   inference::Answer a = inference::answer(c.members, p, sure);
-  if (!c.significant) a = {inference::Answer::Kind::nothing, {}, 0};
+  if (!c.significant) a = {inference::Answer::Kind::nothing, {}, inference::rest_of(c.members, p).nothing};
   bool held = false, nothing = false, outside = false;
   for (std::size_t k = 0; k < p.size(); ++k) {
     const bool right = c.right[k] != 0;
     nothing = nothing || (right && c.members[k].kind == Member::Kind::nothing);
     outside = outside || (right && c.members[k].kind == Member::Kind::outside);
-    if (a.kind == inference::Answer::Kind::nothing && c.members[k].kind == Member::Kind::nothing)
-      a.probability = p[k], held = held || right;
-    if (a.kind == inference::Answer::Kind::outside && c.members[k].kind == Member::Kind::outside) held = held || right;
   }
+  held = (nothing && a.kind == inference::Answer::Kind::nothing) ||
+         (outside && a.kind == inference::Answer::Kind::outside);
   for (const std::size_t k : a.sets) held = held || c.right[k] != 0;
   f.stated.push_back(a.probability);
   f.held.push_back(held);

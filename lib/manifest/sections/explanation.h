@@ -109,6 +109,8 @@ struct NullTest {
 struct ExplainedNoise {
   double factor = not_known;
   std::int64_t blocks_set_aside = 0;
+  std::int64_t outlying_readings = 0;
+  double outlying_effect = not_known;
 };
 struct NegativeControls {
   std::int64_t run = 0;

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 
+#include "linear/svd.h"
 #include "nrsfm/solve/deforming_fit.h"
 #include "tracks_world.h"
 
@@ -28,7 +29,7 @@ DeformingShape truth_of(const Film& f, const Sequence& s) {
     t.rotation.push_back(s.cameras[static_cast<std::size_t>(k)].rotation);
     rows.row(k) = shape_of(*s.truth, k).reshaped().transpose();
   }
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const linear::DividedSvd svd(rows, Eigen::ComputeThinU | Eigen::ComputeThinV);
   t.weights = svd.matrixU().leftCols(f.shapes);
   t.basis.resize(3 * f.shapes, s.points());
   for (Eigen::Index p = 0; p < s.points(); ++p)

@@ -13,6 +13,7 @@
 #include "data.h"
 #include "goniometry/reconstruction/small_basis.h"
 #include "io/merl.h"
+#include "linear/svd.h"
 
 namespace gonio::tests {
 namespace {
@@ -40,7 +41,7 @@ TEST(Basis, IsTheSingularValueDecomposition) {
   const Eigen::MatrixXd levels = levels_of(*tables);
   const Eigen::RowVectorXd mean = levels.colwise().mean();
   const Eigen::MatrixXd centred = levels.rowwise() - mean;
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(centred, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const linear::DividedSvd svd(centred, Eigen::ComputeThinU | Eigen::ComputeThinV);
   ASSERT_EQ(basis.components(), 10u);
   ASSERT_EQ(basis.samples(), 36u);
   const double first = svd.singularValues()[0];
