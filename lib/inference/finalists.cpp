@@ -276,6 +276,10 @@ std::vector<Member> Finalists::members(std::vector<std::size_t>* places) const {
   const LeftOver all = left_over(race_.system().problem(), {}, before_, options_);
   outside.statistics.times =
       all.condition || outside.statistics.outlying > 0 ? std::max(0.0, nothing.statistics.largest) : -1;
+  const Finalist* best = nullptr;
+  for (const Finalist& f : list_)
+    if (is_answer(f) && f.looked_into && (best == nullptr || f.gained > best->gained)) best = &f;
+  outside.statistics.any = best != nullptr ? best->statistics.any : 1;
   std::vector<Member> result = {nothing, outside};
   for (std::size_t k = 0; k < list_.size(); ++k) {
     if (!is_answer(list_[k])) continue;
@@ -289,7 +293,7 @@ void Finalists::score() {
   compare();
   std::vector<std::size_t> places;
   const std::vector<Member> all = members(&places);
-  const std::vector<double> p = probabilities(all);
+  const std::vector<double> p = probabilities(all, race_.system().problem().simulator());
   const Rest rest = rest_of(all, p);
   nothing_ = rest.nothing, outside_ = rest.outside;
   for (Finalist& f : list_) f.probability = 0;

@@ -237,7 +237,7 @@ void judge(const Problem& problem, const Selection& s, const Options& options, E
   const LeftOver at_first = left_over(problem, {}, s.before, options);
   std::vector<std::size_t> places;
   const std::vector<Member> members = finalists.members(&places);
-  std::vector<double> p = probabilities(members);
+  std::vector<double> p = probabilities(members, problem.simulator());
   if (top != nullptr) p = by_physics(problem, list, *top, places, std::move(p));
   Answer found = answer(members, p, options.sure);
   // Of many sets that differ in what else there is, what all of them hold is sure: that is the answer.

@@ -19,7 +19,8 @@ struct Statistics {
   double missed = 0;  // share of what can be repaired that it does not repair
   double own = 0;     // what a free curve over a condition of its own still repairs, over that and what it repairs
   double clean = 0;   // of what it leaves above the noise, the share that this curve takes: it is no noise that is left
-  double any = 0;     // the same over any condition, fine structure and products of conditions included
+  double any = 0;     // the same over any condition, fine structure and products of conditions included;
+                      // of what is outside: beside the set that repairs most
   double curve = 0;   // by how much more the best curve over one condition repairs than it does, as a share
   double numbers = 0;   // that are fitted with it
   double size = 0;      // mean over its numbers of ln(1 + (distance from neutral / typical size)^2): half-Cauchy
@@ -48,16 +49,21 @@ struct Member {
   Statistics statistics;
 };
 
+// Does the domain's simulator err by itself, beyond noise and beside all that a mechanism could repair (pictures of
+// sampled light)? What a set leaves says less then.
+enum class Simulator { exact, errs };
+
 struct LogitTerm {
   std::string_view name;
   double (*of)(const Member&);
-  double weight;
-  int sign;  // that a sane weight has
+  double weight, where_it_errs;  // of simulators that are exact, and of those that are not
+  int sign;                      // that a sane weight has
 };
 std::span<const LogitTerm> logit_terms();
+std::vector<double> weights_of(Simulator simulator);  // in the order of logit_terms()
 
 // Of every member; they add up to one.
-std::vector<double> probabilities(const std::vector<Member>& members);
+std::vector<double> probabilities(const std::vector<Member>& members, Simulator simulator = Simulator::exact);
 // The same with other weights, in the order of logit_terms(): to estimate them.
 std::vector<double> probabilities(const std::vector<Member>& members, std::span<const double> weights);
 

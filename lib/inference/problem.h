@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "inference/probability.h"
 #include "manifest/sections/forward.h"
 #include "manifest/value.h"
 #include "mechanism/mechanism.h"
@@ -149,6 +150,8 @@ class Problem {
   virtual std::optional<double> noise_factor(std::span<const double> residual) const;
   // Blocks beyond five noise widths under the most flexible fit are set aside and counted (mis-detected corners).
   virtual bool sets_outliers_aside() const { return false; }
+  // Of images, whose light is sampled and cached, the simulator errs.
+  virtual Simulator simulator() const { return Simulator::exact; }
   // Are readings far beyond the noise effects (outliers.h)? Images say yes: a highlight elsewhere is no mistake.
   virtual bool outliers_are_effects() const { return false; }
 

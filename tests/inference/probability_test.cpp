@@ -39,7 +39,10 @@ TEST(Probability, AddsUpToOneAndWhatIsPlainIsSure) {
 
 // Everything that speaks against a set takes from it, and never to its favour.
 TEST(Probability, EveryStatisticSpeaksInOneDirection) {
-  for (const LogitTerm& t : logit_terms()) EXPECT_GE(t.weight * t.sign, 0) << t.name;
+  for (const LogitTerm& t : logit_terms()) {
+    EXPECT_GE(t.weight * t.sign, 0) << t.name;
+    EXPECT_GE(t.where_it_errs * t.sign, 0) << t.name;
+  }
   const double plain = first({good()});
   const auto worse = [&](double Statistics::*which, double value) {
     Member m = good();

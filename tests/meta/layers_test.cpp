@@ -138,6 +138,7 @@ TEST(Layers, SlowDecompositionsAreCompiledOnce) {
   for (const auto& folder : {"lib", "tools", "tests"})
     for (const auto& file : source_files(folder, {".h", ".cpp"})) {
       if (file.path.starts_with("lib/linear/") || file.path.starts_with("tests/linear/")) continue;
+      if (file.path.starts_with("tests/sealed/")) continue;  // has mathematics of its own
       for (std::size_t i = 0; i < file.lines.size(); ++i)
         EXPECT_FALSE(std::regex_search(without_comment(file.lines[i]), slow))
             << place(file, i + 1) << ": compiled once in lib/linear";

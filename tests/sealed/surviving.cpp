@@ -1,8 +1,7 @@
 #include "sealed/surviving.h"
 
+#include <Eigen/Dense>
 #include <cmath>
-
-#include "linear/qr.h"
 
 namespace gonio::sealed {
 namespace {
@@ -18,8 +17,11 @@ Eigen::MatrixXd basis_of(Eigen::MatrixXd columns) {
   for (Eigen::Index c = 0; c < columns.cols(); ++c)
     if (const double n = columns.col(c).norm(); n > 0) columns.col(c) /= n;
   if (columns.cols() == 0) return columns;
-  const linear::PivotedQr qr(columns, smallest);
-  return qr.orthonormal(qr.rank());
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
+  qr.setThreshold(smallest);
+  Eigen::MatrixXd q = Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
+  q.applyOnTheLeft(qr.householderQ());
+  return q;
 }
 
 }  // namespace
