@@ -266,10 +266,9 @@ std::vector<Member> Finalists::members(std::vector<std::size_t>* places) const {
   take(before_.serial_correlation);
   take(before_.interaction);
   Member outside{Member::Kind::outside, {}};
-  if (before_.outliers && before_.global_p <= options_.level) {
+  if (before_.global_p <= options_.level && matter(before_.outliers, options_.smallest_effect)) {
     largest = std::max(largest, before_.outliers->effect);
-    const double times = before_.outliers->effect / std::max(1e-6, options_.smallest_effect);
-    outside.statistics.outlying = std::log(std::max(1.0, times));
+    outside.statistics.outlying = std::log(before_.outliers->effect / std::max(1e-6, options_.smallest_effect));
   }
   nothing.statistics.mismatch = -std::log10(std::max(before_.global_p, 1e-12));
   nothing.statistics.largest = std::log(largest / std::max(1e-6, options_.smallest_effect));

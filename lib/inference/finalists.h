@@ -11,19 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "inference/left_over.h"
 #include "inference/probability.h"
 #include "inference/race.h"
 
 namespace gonio::inference {
-
-// What a model leaves that matters, in squared noise per observation, and where.
-struct LeftOver {
-  double own = 0, any = 0;
-  std::string own_over, any_over;
-  std::optional<std::size_t> condition;  // that carries most of it
-};
-LeftOver left_over(const Problem& problem, const std::vector<std::size_t>& candidates, const ResidualStructure& after,
-                   const Options& options);
 
 struct Finalist {
   Model model;

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "base/progress.h"
-#include "inference/finalists.h"
+#include "inference/left_over.h"
 
 namespace gonio::inference {
 namespace {
@@ -204,7 +204,7 @@ void ForwardStep::run_overlooked() {
   if (!model_.candidates.empty() || std::any_of(runners_.begin(), runners_.end(), passes)) return;
   const Options& options = race_.options();
   const bool matters = left_over(race_.system().problem(), {}, left_, options).any > 0 ||
-                       (left_.outliers && left_.outliers->effect >= options.smallest_effect);
+                       matter(left_.outliers, options.smallest_effect);
   if (left_.global_p > options.level || !matters) return;
   const std::vector<Entrant>& singles = screening_.singles();
   for (std::size_t k = fitted_; k < singles.size(); ++k)

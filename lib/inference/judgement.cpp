@@ -115,8 +115,8 @@ void list_weighed(const Finalists& finalists, Explanation& e) {
 void begin_outside(const Problem& problem, const LeftOver& left, const ResidualStructure& before, bool unknown,
                    Explanation& e) {
   std::optional<std::size_t> condition = left.condition;
-  const bool outlying = before.outliers && before.outliers->effect >= e.smallest_effect;
-  if (!condition && unknown && !outlying && !before.curves.empty()) condition = before.curves[0].condition;
+  if (!condition && unknown && !matter(before.outliers, e.smallest_effect) && !before.curves.empty())
+    condition = before.curves[0].condition;
   if (!condition) return;
   Outside outside;
   outside.condition = problem.observations().conditions[*condition].name;

@@ -1,7 +1,7 @@
-// See finalists.h: what a model leaves that matters.
-#include <algorithm>
+// See left_over.h.
+#include "inference/left_over.h"
 
-#include "inference/finalists.h"
+#include <algorithm>
 
 namespace gonio::inference {
 namespace {

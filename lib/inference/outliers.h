@@ -20,6 +20,10 @@ struct Outliers {
   double effect = 0;                                           // what --smallest-effect is held against
   std::vector<std::pair<std::size_t, std::size_t>> of_groups;  // group and readings in it, the most first
 };
+inline bool matter(const std::optional<Outliers>& found, double smallest_effect) {
+  return found && found->effect >= smallest_effect;
+}
+
 // Of the base model at `values`. Nothing where they are fewer, or where they are no effects to the domain.
 std::optional<Outliers> outliers(const System& system, const std::vector<double>& values);
 

@@ -3,8 +3,8 @@
 //
 // A multinomial logistic model (McFadden, Frontiers in Econometrics, 1974): every member of the comparison has a score,
 // the sum of weight times term, and P = exp(score) / sum of exp(score). The weights stand in one table (logit_terms()).
-// prove-probability estimates them by penalised maximum likelihood from cases whose truth is known (probability.cpp
-// says which) and says what the stated probabilities are worth on cases of other seeds.
+// They come from cases whose truth is known (probability.cpp says which, and how): prove-probability estimates them by
+// penalised maximum likelihood, and says what the stated probabilities are worth on cases of other seeds.
 #pragma once
 #include <cstddef>
 #include <span>

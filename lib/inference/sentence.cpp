@@ -121,7 +121,7 @@ std::string structured(const Problem& problem, const Explanation& e, const std::
 // "few readings (45 of 17904, at 18 places, most of them in p04, p05)"; empty where none stand out so that it matters.
 std::string outlying_in_words(const Problem& problem, const Explanation& e) {
   constexpr std::size_t most_names = 3;
-  if (!e.outliers || e.outliers->effect < e.smallest_effect) return "";
+  if (!matter(e.outliers, e.smallest_effect)) return "";
   const Observations& o = problem.observations();
   std::string names;
   for (std::size_t k = 0; k < std::min(most_names, e.outliers->of_groups.size()); ++k)

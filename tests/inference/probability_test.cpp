@@ -74,9 +74,9 @@ TEST(Probability, NineNumbersYieldToOne) {
 TEST(Probability, WhatIsSurelyThereAndSmallIsNothingThatMatters) {
   Member nothing{Member::Kind::nothing, {}};
   nothing.statistics.mismatch = 12, nothing.statistics.largest = std::log(0.27);
-  Member outside{Member::Kind::outside, {}};
-  outside.statistics.times = -1;  // no condition carries any that matters
-  const std::vector<Member> members{nothing, outside};
+  std::vector<Member> members{nothing, {Member::Kind::outside, {}}};
+  EXPECT_EQ(answer(members, probabilities(members), 0.9).kind, Answer::Kind::nothing);
+  members[1].statistics.times = -1;  // no condition carries any that matters
   const Answer a = answer(members, probabilities(members), 0.9);
   EXPECT_EQ(a.kind, Answer::Kind::nothing);
   EXPECT_NEAR(a.probability, 1, 1e-12);

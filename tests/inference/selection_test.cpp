@@ -42,14 +42,14 @@ std::string race(const Explanation& e) {
   return text;
 }
 
-// A large effect that is sure, and beside it a ripple that fourteen others imitate alike: where no three sets are
-// likely together, what all of them hold is named, and sure.
+// A large effect that is sure, and beside it a ripple that ten others imitate alike: where no three sets are likely
+// together, what all of them hold is named, and sure.
 TEST(Selection, WhatAllLikelySetsHoldIsNamed) {
   int named = 0, runs = 0;
   std::string missed;
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     std::vector<ToyEffect> effects{{"toy.square", [](double x, double) { return x * x; }}};
-    for (int k = 0; k < 14; ++k) {
+    for (int k = 0; k < 10; ++k) {
       const double phase = (k % 2 == 0 ? 1 : -1) * (0.3 + 0.02 * k);
       effects.push_back({"toy.ripple-" + std::to_string(k), [=](double, double z) { return std::sin(5 * z + phase); }});
     }
@@ -60,7 +60,7 @@ TEST(Selection, WhatAllLikelySetsHoldIsNamed) {
     named += right;
     if (!right) missed += verdict_name(e.verdict) + ": " + e.sentence + "\n" + race(e);
   }
-  EXPECT_GE(named, runs - 1) << missed;
+  EXPECT_GE(named, runs - 1) << missed;  // of eight runs one lists three at 53 %
 }
 
 // A narrow peak far from where its search starts, a ripple of another pitch, a short decay: nothing that could win is

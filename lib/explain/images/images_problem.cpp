@@ -98,6 +98,10 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
   if (!misplaced_.files.empty()) candidates_.clear();  // no physics is fitted to pictures of something else
 }
 
+bool ImagesProblem::outliers_are_effects() const {
+  return document_->boards.empty();
+}
+
 void ImagesProblem::bind(const manifest::Document& document) {
   const Setting setting{document, *scene_, *caster_, recordings_, layout_, *model_, nullptr, &shared_};
   const auto prepared = [&](std::vector<Use> uses) {
