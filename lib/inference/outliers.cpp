@@ -21,6 +21,10 @@ std::optional<Outliers> outliers(const System& system, const std::vector<double>
   if (!system.problem().outliers_are_effects()) return std::nullopt;
   const Observations& o = system.observations();
   const std::vector<double> residual = system.raw_residual(values);
+  // Of a row's residual, what its place does not excuse.
+  const auto unexcused = [&](std::size_t i) {
+    return std::max(0.0, std::abs(residual[i]) - (o.place_error.empty() ? 0 : o.place_error[i]));
+  };
   std::vector<double> size;
   double squares = 0, norm = 0;
   for (const std::size_t g : system.groups)
@@ -38,11 +42,11 @@ std::optional<Outliers> outliers(const System& system, const std::vector<double>
   for (const std::size_t g : system.groups) {
     const std::size_t known = found.readings;
     for (std::size_t i = o.first[g]; i < o.first[g + 1]; ++i) {
-      const double z = residual[i] * system.weight(i);
-      if (!(std::abs(z) > limit)) continue;
+      const double off = unexcused(i), z = off * system.weight(i);
+      if (!(z > limit)) continue;
       ++found.readings;
       blocks.insert(o.block[i]);
-      power += z * z, raw += residual[i] * residual[i];
+      power += z * z, raw += off * off;
     }
     if (found.readings > known) found.of_groups.emplace_back(g, found.readings - known);
   }

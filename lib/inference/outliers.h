@@ -3,7 +3,8 @@
 //
 // A reading stands out where its residual is more than five times the bulk's width: 1.48 times the median of the
 // absolute residuals over sigma, and at least one (Hampel, J. Am. Stat. Assoc. 69, 1974). A few may do so whatever
-// there is, as renderers and sensors have tails heavier than Gauss's: it takes eight blocks.
+// there is, as renderers and sensors have tails heavier than Gauss's: it takes eight blocks. Beside an edge a reading
+// counts by what is left of its residual when the edge may stand a little elsewhere (Observations::place_error).
 #pragma once
 #include <cstddef>
 #include <optional>

@@ -49,6 +49,8 @@ struct Observations {
   std::vector<std::size_t> first;     // group g holds rows first[g] .. first[g + 1] - 1; size groups + 1
   std::vector<std::string> group;     // names, as the user knows them: "left03"
   std::vector<Condition> conditions;  // the most telling ones suffice: ten or so
+  std::vector<double> place_error;  // what a row may be off by, >= 0, as its place is known no better (readings beside
+                                    // an edge in a picture); empty: nothing. Outliers alone ask
   std::size_t rows() const { return value.size(); }
   std::size_t groups() const { return group.size(); }
 };

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double least_share = 0.5;     // of what the first choice repaired, for a runner-up to be worth a look
 constexpr double worth_a_turn = 0.02;   // of probability, that another choice brings
-constexpr std::size_t most_idle = 2;    // turns in a row that bring less
+constexpr std::size_t most_idle = 1;    // turns in a row that bring less
 constexpr double near_finalists = 0.3;  // the same, for a place among the finalists as it stands
 
 std::vector<std::size_t> smaller_set(std::vector<std::size_t> set, std::size_t c) {

@@ -59,6 +59,20 @@ TEST(Outliers, AreNotSeenInNoise) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) EXPECT_FALSE(found_in(Scene(false, seed)).has_value()) << seed;
 }
 
+// Rows whose place excuses all that was put in are none; where it excuses a half, the rest of them stands out.
+TEST(Outliers, AreWhatIsLeftWhenTheirPlaceMayBeALittleElsewhere) {
+  class Excused : public Scene {
+   public:
+    explicit Excused(double most) : Scene(true, 5) { observations_.place_error.assign(observations_.rows(), most); }
+  };
+  EXPECT_FALSE(found_in(Excused(height)).has_value());
+  const std::optional<Outliers> all = found_in(Scene(true, 5)), half = found_in(Excused(height / 2));
+  ASSERT_TRUE(all && half);
+  EXPECT_EQ(half->readings, all->readings);
+  EXPECT_NEAR(half->power, all->power / 4, 0.1 * all->power);
+  EXPECT_NEAR(half->effect, all->effect / 4, 0.1 * all->effect);
+}
+
 TEST(Outliers, AreMistakesToADomainThatDoesNotCallThemEffects) {
   EXPECT_FALSE(found_in(NonlinearToy(library(), {}, {speckle, noise, 0}, 5, {10, 40, 2})).has_value());
 }

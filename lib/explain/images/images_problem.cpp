@@ -28,6 +28,7 @@ constexpr std::uint64_t pixel_seed = 20;
 constexpr std::size_t most_lamps_with_shadows = 12;  // that follow them: more are surroundings, or light stages
 // Of the places where a texture changes: they tell where things are seen, and little of light.
 constexpr double uneven_share = 0.25;
+constexpr double place_error_px = 0.1;  // of what is seen, between two renderers or a fitted pose and the true one
 
 std::size_t at(const io::Image& picture, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x);
@@ -96,10 +97,6 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
   misplaced_ = misplaced_files(recordings_, *model_, picked_);
   if (misplaced_.files.empty()) misplaced_ = misread(*scene_, *model_);
   if (!misplaced_.files.empty()) candidates_.clear();  // no physics is fitted to pictures of something else
-}
-
-bool ImagesProblem::outliers_are_effects() const {
-  return document_->boards.empty();
 }
 
 void ImagesProblem::bind(const manifest::Document& document) {
@@ -224,6 +221,7 @@ void ImagesProblem::fill_rows() {
         o.block.push_back(tile->second);
         prediction.push_back(scale[k] * start[3 * i + k]);
         for (std::size_t a = 0; a < 2; ++a) across[a].push_back(slopes[6 * i + 3 * a + k]);
+        o.place_error.push_back(place_error_px * std::hypot(across[0].back(), across[1].back()));
       }
     }
     if (shared_.edges) shared_.edges->of_image[g] = std::move(slopes);

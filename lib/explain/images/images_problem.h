@@ -42,8 +42,7 @@ class ImagesProblem final : public Problem {
   std::string score_name() const override { return "relative RMSE"; }
   std::string group_noun() const override { return "image"; }
   Importance importance() const override { return Importance::share_of_signal; }
-  // Not of pictures of boards: what their edges are off by is asked of their corners.
-  bool outliers_are_effects() const override;
+  bool outliers_are_effects() const override { return true; }
   inference::Simulator simulator() const override { return inference::Simulator::errs; }
   double fit_tolerance() const override { return 1e-6; }  // of some ten thousand squares
   // Each of the first images again at four times and a quarter of its exposure, and with the lamps off.
