@@ -6,6 +6,8 @@
 namespace gonio::camera {
 
 Detection detect_checkerboard(const GreyPicture& picture, const Board& board, const DetectionOptions& options);
+// Where no whole board is found: the largest part of it, laid where it fits (checkerboard_part.cpp). No corners: none.
+Detection detect_checkerboard_part(const GreyPicture& picture, const Board& board, const DetectionOptions& options);
 Detection detect_charuco(const GreyPicture& picture, const Board& board, const DetectionOptions& options);
 
 }  // namespace gonio::camera

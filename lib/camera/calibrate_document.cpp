@@ -16,6 +16,8 @@
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
+#include "mechanism/mechanism.h"
 
 namespace gonio::camera {
 namespace {
@@ -77,6 +79,22 @@ void check_models(const Session& session, const CalibrationRequest& request, con
   for (std::size_t c = 0; c < sized.cameras.size(); ++c) camera_setup(sized, c, checked, document);
 }
 
+// A term that moves corners and that this fit does not have would end in the lens, or in the board's poses.
+void refuse_mechanisms(const manifest::Document& document) {
+  for (const auto& [id, use] : document.mechanisms) {
+    const mechanism::Mechanism* m = mechanism::find_mechanism(id);
+    if (m == nullptr || std::ranges::find(m->domains, "boards") == m->domains.end()) continue;
+    for (const mechanism::Parameter& p : m->parameters) {
+      const auto given = use.parameters.find(p.name);
+      if (given == use.parameters.end()) continue;
+      if (std::ranges::all_of(given->second.value, [&](double v) { return v == p.neutral; })) continue;
+      throw Error(Exit::data, manifest::place(document, "/mechanisms/" + id),
+                  "moves the corners of boards and is no part of this fit",
+                  "explain(1) fits corners with it; or take it out of the manifest");
+    }
+  }
+}
+
 void tell_views(const Session& session, const Calibration& calibration, const manifest::Document& document) {
   for (const Picture& picture : session.pictures) {
     for (const Sighting& s : picture.sightings) {
@@ -84,6 +102,10 @@ void tell_views(const Session& session, const Calibration& calibration, const ma
       const std::string id = document.images[picture.entry].id + ": ";
       const std::string& note = s.detection.problem.empty() ? view.note : s.detection.problem;
       if (!note.empty()) log(LogLevel::warning, id + note);
+      if (s.detection.part && !s.detection.corners.empty())
+        log(LogLevel::info, id + std::to_string(s.detection.corners.size()) +
+                                " corners of a part of the board; which part is told by its colours and the picture's "
+                                "border alone");
       if (s.detection.gross_errors > 0) {
         log(LogLevel::warning,
             id + std::to_string(s.detection.gross_errors) + " corners left out that do not fit their neighbours");
@@ -235,6 +257,7 @@ void enter_rig(const std::vector<std::string>& cameras, const std::vector<std::s
 }
 
 void check_calibration(const manifest::Document& document) {
+  refuse_mechanisms(document);
   sessions_of(document);
 }
 

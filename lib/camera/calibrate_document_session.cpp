@@ -83,7 +83,8 @@ void enter_sightings(const manifest::Document& document, std::size_t index, Sess
   }
 }
 
-void look(Picture& picture, const std::vector<Board>& boards, const DetectionOptions& options) {
+void look(Picture& picture, const std::vector<Board>& boards, DetectionOptions options) {
+  options.parts = picture.by_itself;
   const io::GreyImage image = io::read_grey(picture.path);
   picture.width_px = image.width;
   picture.height_px = image.height;
@@ -112,6 +113,23 @@ void settle_layout(Session& session, std::size_t index, const DetectionOptions& 
     if (other) others.push_back(&picture);
   }
   parallel_for(0, others.size(), [&](std::size_t i) { look(*others[i], session.boards, options); });
+}
+
+// A board of another size than stated would be a part of itself in every picture.
+void drop_parts_of_what_is_never_whole(Session& session, std::size_t board) {
+  std::vector<Detection*> parts;
+  for (Picture& picture : session.pictures)
+    for (Sighting& s : picture.sightings) {
+      if (s.board != board || s.detection.corners.empty()) continue;
+      if (!s.detection.part) return;
+      parts.push_back(&s.detection);
+    }
+  for (Detection* d : parts) {
+    const std::size_t corners = d->corners.size();
+    *d = {};
+    d->part = true;
+    d->problem = "only a part of the checkerboard, " + std::to_string(corners) + " inner corners";
+  }
 }
 
 void check_sizes(const manifest::Document& document, const Session& session) {
@@ -262,6 +280,7 @@ std::vector<Session> sessions_of(const manifest::Document& document) {
     picture.shot =
         image.shot.empty() ? document.images.size() + i : shots.emplace(image.shot, shots.size()).first->second;
     enter_sightings(document, i, session, picture);
+    picture.by_itself = image.shot.empty() && !image.base_from_tool && image.joints_rad.empty();
     session.pictures.push_back(std::move(picture));
   }
   return list;
@@ -275,7 +294,10 @@ void look_at_all(Session& session, const DetectionOptions& options) {
       progress.advance();
     });
   }
-  for (std::size_t b = 0; b < session.boards.size(); ++b) settle_layout(session, b, options);
+  for (std::size_t b = 0; b < session.boards.size(); ++b) {
+    settle_layout(session, b, options);
+    if (session.boards[b].kind == BoardKind::checkerboard) drop_parts_of_what_is_never_whole(session, b);
+  }
 }
 
 void check_pictures(const manifest::Document& document, const Session& session) {

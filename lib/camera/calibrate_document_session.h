@@ -19,6 +19,7 @@ struct Picture {
   int width_px = 0, height_px = 0;
   std::size_t camera = 0, shot = 0;
   std::vector<Sighting> sightings;
+  bool by_itself = true;  // no other camera and no robot says where the board stands: parts of plain boards serve
 };
 struct Session {
   std::vector<std::string> cameras, board_ids;
@@ -31,7 +32,8 @@ std::string image_pointer(std::size_t index);
 // Cameras that share shots stand in one session; Error(data) for what the manifest leaves open.
 std::vector<Session> sessions_of(const manifest::Document& document);
 
-// Searches all pictures; the layout of ChArUco boards is the one that the majority of all markers fit.
+// Searches all pictures; the layout of ChArUco boards is the one that the majority of all markers fit. Parts of plain
+// boards count where another picture of the session shows the whole.
 void look_at_all(Session& session, const DetectionOptions& options);
 
 // Error(data) for pictures of other sizes, the same picture twice, mirrored pictures, a board that no picture shows.

@@ -42,12 +42,23 @@ manifest::Value covariance_of(const Calibration& calibration, std::size_t camera
   return manifest::Value::object({{"order", order}, {"values", values}});
 }
 
+// Has none of this camera's pictures been calibrated before? Then its numbers come from others.
+bool are_fresh(const Session& session, std::size_t camera, const manifest::Document& document) {
+  return std::ranges::none_of(session.pictures, [&](const Picture& picture) {
+    return picture.camera == camera && document.images[picture.entry].camera_from_board;
+  });
+}
+
 void store_camera(const Session& session, const CameraSetup& setup, std::size_t index, const Calibration& calibration,
                   manifest::Document& document) {
   manifest::Camera& camera = document.cameras[session.cameras[index]];
   const CalibratedCamera& found = calibration.cameras[index];
   camera.rms_px = found.rms_px;
-  if (setup.fixed.contains("intrinsics")) return;  // with all that is known about them
+  if (setup.fixed.contains("intrinsics")) {  // with all that is known about them
+    if (are_fresh(session, index, document)) camera.held = true;
+    return;
+  }
+  camera.held.reset();
   camera.model = setup.model;
   camera.width_px = setup.width_px;
   camera.height_px = setup.height_px;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "camera/mechanisms/camera_flat_port.h"
 #include "camera/mechanisms/camera_rolling_shutter.h"
 #include "camera/mechanisms/lens_non_central.h"
 #include "manifest/sections/camera.h"
@@ -117,6 +118,12 @@ CameraModel CameraModel::with_pupil(double pupil_m) const {
   return other;
 }
 
+CameraModel CameraModel::with_port(const equation::FlatPort& port) const {
+  CameraModel other = *this;
+  other.port_ = {port.index, port.distance_m, port.tilt_x_rad, port.tilt_y_rad};
+  return other;
+}
+
 CameraModel CameraModel::with_motion(Vec2 motion_m) const {
   CameraModel other = *this;
   other.motion_m_ = motion_m;
@@ -146,6 +153,7 @@ std::optional<Vec2> CameraModel::project(Vec3 p) const {
 }
 
 std::optional<Vec2> CameraModel::project_at_rest(Vec3 p) const {
+  if (port_[0] != 1 && !orthographic_) p = equation::camera_flat_port({port_[0], port_[1], port_[2], port_[3]}, p);
   if (pupil_m_ != 0) p.z -= equation::lens_non_central_place(pupil_m_, p);
   if (orthographic_) return Vec2{lens_.fx_px * p.x + lens_.cx_px, lens_.fy_px * p.y + lens_.cy_px};
   const std::array<double, 3> direction{p.x, p.y, p.z};
@@ -162,6 +170,8 @@ std::optional<Vec2> CameraModel::project_at_rest(Vec3 p) const {
 Ray CameraModel::ray(Vec2 pixel) const {
   Ray ray = central_ray(pixel);
   if (pupil_m_ != 0 && !orthographic_) ray.origin_m.z += equation::lens_non_central(pupil_m_, ray.direction);
+  if (port_[0] != 1 && !orthographic_)
+    equation::camera_flat_port_ray({port_[0], port_[1], port_[2], port_[3]}, ray.origin_m, ray.direction);
   if (!(motion_m_ == Vec2{})) ray.origin_m = ray.origin_m - shift_of_row(pixel.y);
   return ray;
 }

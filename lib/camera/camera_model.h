@@ -1,11 +1,16 @@
 // The camera as a mapping between rays and pixels. Camera axes: x right, y down, z forward; pixel centres at integers.
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 
 #include "camera/intrinsics.h"
 #include "geom/vector.h"
 #include "manifest/sections/forward.h"
+
+namespace gonio::equation {
+struct FlatPort;  // camera/mechanisms/camera_flat_port.h
+}
 
 namespace gonio::camera {
 
@@ -39,6 +44,8 @@ class CameraModel {
   CameraModel finer(int factor) const;
   // lens.non-central: rays at the angle theta pass through (0, 0, pupil_m sin^2 theta).
   CameraModel with_pupil(double pupil_m) const;
+  // camera.flat-port: beyond a plane rays go on refracted. Not of orthographic cameras.
+  CameraModel with_port(const equation::FlatPort& port) const;
   // camera.rolling-shutter: all that is seen shifts by (x, y, 0) in the camera frame during one readout.
   CameraModel with_motion(Vec2 motion_m) const;
 
@@ -60,6 +67,7 @@ class CameraModel {
   Intrinsics lens_;  // orthographic: fx_px, fy_px are pixels per metre
   bool distorted_ = false, orthographic_ = false;
   double pupil_m_ = 0;
+  std::array<double, 4> port_{1, 0, 0, 0};  // index, distance, tilts
   Vec2 motion_m_;
   int factor_ = 1;           // pixels a side for one of the sensor's
   double radius_limit_ = 0;  // largest radius on the plane at which the radial part still grows

@@ -19,6 +19,7 @@
 
 #include "camera/aruco_dictionary.h"
 #include "camera/board_detectors.h"
+#include "camera/corner_growth.h"
 #include "camera/corner_refinement.h"
 #include "camera/grey_picture.h"
 #include "camera/marker_dictionary.h"
@@ -41,11 +42,6 @@ constexpr std::size_t least_markers = 3;  // that say where the others are
 constexpr double least_marker_px = 9;
 constexpr double layout_tolerance = 0.35;  // of a square: halfway between a fit and a shift by one square is 0.5
 constexpr double stray_tolerance = 1.0;    // of a square: lens distortion stays below, wrong ids do not
-
-constexpr double neighbourhood = 3.2;  // squares
-constexpr std::size_t least_neighbours = 6;
-constexpr int growth_rounds = 3;
-constexpr double growth_move = 0.1, growth_sigmas = 3;  // of a square; of the median sigma
 
 std::vector<Found> find_markers_at(const Reduced& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary) {
   const auto parameters = cv::aruco::DetectorParameters::create();
@@ -231,65 +227,6 @@ std::vector<Prediction> predict_corners(const std::vector<Found>& found, const M
   return predictions;
 }
 
-// The next corner as the homography of its neighbours predicts it; nothing where these are few or on one line.
-std::optional<Prediction> predict_beside(const std::vector<Corner>& corners, const Board& board, int id, bool legacy) {
-  const Vec2 corner = board.corner_m(id);
-  std::vector<std::pair<double, const Corner*>> near;
-  for (const Corner& c : corners) {
-    const double distance = norm(board.corner_m(c.id) - corner) / board.square_m;
-    if (distance < neighbourhood) near.emplace_back(distance, &c);
-  }
-  if (near.size() < least_neighbours) return {};
-  std::vector<cv::Point2f> from, to;
-  for (const auto& [distance, c] : near) {
-    const Vec2 at = (board.corner_m(c->id) - corner) * (1 / board.square_m);
-    from.emplace_back(static_cast<float>(at.x), static_cast<float>(at.y));
-    to.emplace_back(static_cast<float>(c->pixel.x), static_cast<float>(c->pixel.y));
-  }
-  const auto spread = cv::minAreaRect(from).size;
-  if (std::min(spread.width, spread.height) < 0.9F) return {};
-  const cv::Mat homography = cv::findHomography(from, to, 0);
-  if (homography.empty()) return {};
-  std::vector<cv::Point2f> p;
-  cv::perspectiveTransform(std::vector<cv::Point2f>{{0, 0}, {0.5F, 0}, {-0.5F, 0}, {0, 0.5F}, {0, -0.5F}}, p,
-                           homography);
-  return Prediction{id, p[0], p[1] - p[2], p[3] - p[4], bare_squares(board, id, legacy)};
-}
-
-// Corners whose own markers are cut off, blurred or covered, from the corners beside them, outwards. These must lie
-// where they are expected and be as sharp as the others.
-void grow(const GreyPicture& picture, const Board& board, bool legacy, const DetectionOptions& options,
-          std::vector<Corner>& corners) {
-  for (int round = 0; round < growth_rounds && corners.size() >= least_neighbours; ++round) {
-    std::vector<double> sigmas;
-    std::set<int> present;
-    for (const Corner& c : corners) {
-      sigmas.push_back(c.sigma_px);
-      present.insert(c.id);
-    }
-    const double usual = stats::median(sigmas);
-    std::map<int, Prediction> predictions;
-    std::vector<Prediction> list;
-    for (int id = 0; id < board.corners(); ++id) {
-      if (present.contains(id)) continue;
-      if (const auto p = predict_beside(corners, board, id, legacy)) {
-        predictions[id] = *p;
-        list.push_back(*p);
-      }
-    }
-    std::size_t added = 0;
-    for (const Corner& c : refine(picture.values, list, 0.5 * (1 - board.marker_m / board.square_m), options)) {
-      const Prediction& p = predictions.at(c.id);
-      const double moved = cv::norm(cv::Point2d(c.pixel.x, c.pixel.y) - p.pixel);
-      if (moved > growth_move * p.square_px() || c.sigma_px > growth_sigmas * usual) continue;
-      corners.push_back(c);
-      ++added;
-    }
-    if (added == 0) break;
-  }
-  std::ranges::sort(corners, {}, &Corner::id);
-}
-
 }  // namespace
 
 Detection detect_charuco(const GreyPicture& picture, const Board& board, const DetectionOptions& options) {
@@ -312,7 +249,10 @@ Detection detect_charuco(const GreyPicture& picture, const Board& board, const D
   const double clear = 0.5 * (1 - board.marker_m / board.square_m);
   const auto predictions = predict_corners(sight.trusted, places[sight.legacy ? 1 : 0], board, sight.legacy);
   result.corners = refine(picture.values, predictions, clear, options);
-  grow(picture, board, sight.legacy, options, result.corners);
+  // Corners whose own markers are cut off, blurred or covered.
+  Growth growth;
+  growth.clear_share = clear, growth.bare = bare_squares, growth.legacy = sight.legacy;
+  grow(picture, board, growth, options, result.corners);
   if (result.corners.empty()) result.problem = "markers, but no corner between them could be refined";
   return result;
 }

@@ -1,5 +1,5 @@
-// Plain checkerboards: all inner corners or none, in an order that depends on the board alone wherever its colours
-// allow.
+// Plain checkerboards: all inner corners (parts: checkerboard_part.cpp), in an order that depends on the board alone
+// wherever its colours allow.
 //
 // OpenCV's finder returns some row-wise order. It is brought to the one of board.h: right-handed as seen (no mirror
 // image), the square inside the first four corners black. Where the numbers of columns and rows differ in parity this
@@ -11,6 +11,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "camera/board_detectors.h"
+#include "camera/checkerboard_grid.h"
 #include "camera/corner_refinement.h"
 #include "camera/grey_picture.h"
 
@@ -18,12 +19,6 @@ namespace gonio::camera {
 namespace {
 
 constexpr int search_sides_px[] = {1300, 2600, 1 << 20};
-
-struct Grid {
-  int columns = 0, rows = 0;
-  std::vector<cv::Point2f> points;
-  cv::Point2f at(int column, int row) const { return points[static_cast<std::size_t>(row * columns + column)]; }
-};
 
 std::vector<cv::Point2f> find_grid(const GreyPicture& picture, const cv::Size& size) {
   double last_scale = 0;
@@ -42,65 +37,43 @@ std::vector<cv::Point2f> find_grid(const GreyPicture& picture, const cv::Size& s
   return {};
 }
 
-Grid turned_by_quarter(const Grid& g) {  // only for square grids
-  Grid result{g.rows, g.columns, {}};
+CornerGrid turned_by_quarter(const CornerGrid& g) {  // only for square grids
+  CornerGrid result{g.rows, g.columns, {}};
   for (int row = 0; row < result.rows; ++row) {
     for (int column = 0; column < result.columns; ++column) result.points.push_back(g.at(row, g.rows - 1 - column));
   }
   return result;
 }
 
-Grid mirrored(const Grid& g) {
-  Grid result{g.columns, g.rows, {}};
-  for (int row = 0; row < g.rows; ++row) {
-    for (int column = 0; column < g.columns; ++column) result.points.push_back(g.at(g.columns - 1 - column, row));
-  }
-  return result;
-}
-
-bool right_handed(const Grid& g) {
-  const cv::Point2f x = g.at(g.columns - 1, 0) - g.at(0, 0), y = g.at(0, g.rows - 1) - g.at(0, 0);
-  return x.cross(y) > 0;
-}
-
-double mean_inside(const cv::Mat& values, const Grid& g, int column, int row) {
-  const cv::Point2f middle =
-      0.25F * (g.at(column, row) + g.at(column + 1, row) + g.at(column, row + 1) + g.at(column + 1, row + 1));
-  double sum = 0;
-  for (const cv::Point2f corner :
-       {g.at(column, row), g.at(column + 1, row), g.at(column, row + 1), g.at(column + 1, row + 1)}) {
-    const cv::Point2f p = middle + 0.3F * (corner - middle);
-    cv::Mat pixel;
-    cv::getRectSubPix(values, cv::Size(1, 1), p, pixel, CV_32F);
-    sum += 0.25 * static_cast<double>(pixel.at<float>(0, 0));
-  }
-  return sum;
+double mean_in_square(const cv::Mat& values, const CornerGrid& g, int column, int row) {
+  return mean_inside(values,
+                     {g.at(column, row), g.at(column + 1, row), g.at(column, row + 1), g.at(column + 1, row + 1)});
 }
 
 // Squares of the first one's colour minus the others: positive where the first square is the brighter one.
-double brightness_of_first(const cv::Mat& values, const Grid& g) {
+double brightness_of_first(const cv::Mat& values, const CornerGrid& g) {
   double sum = 0;
   int count = 0;
   for (int row = 0; row + 1 < g.rows; ++row) {
     for (int column = 0; column + 1 < g.columns; ++column, ++count) {
-      sum += ((row + column) % 2 == 0 ? 1 : -1) * mean_inside(values, g, column, row);
+      sum += ((row + column) % 2 == 0 ? 1 : -1) * mean_in_square(values, g, column, row);
     }
   }
   const bool one_more = count % 2 == 1;
-  return one_more ? sum - mean_inside(values, g, 0, 0) : sum;
+  return one_more ? sum - mean_in_square(values, g, 0, 0) : sum;
 }
 
-Grid in_board_order(const cv::Mat& values, Grid grid) {
+CornerGrid in_board_order(const cv::Mat& values, CornerGrid grid) {
   if (!right_handed(grid)) grid = mirrored(grid);
-  std::vector<Grid> turns{grid};
-  Grid half = grid;
+  std::vector<CornerGrid> turns{grid};
+  CornerGrid half = grid;
   std::ranges::reverse(half.points);
   turns.push_back(half);
   if (grid.columns == grid.rows) {
     turns.push_back(turned_by_quarter(grid));
     turns.push_back(turned_by_quarter(half));
   }
-  const auto rank = [&](const Grid& g) {
+  const auto rank = [&](const CornerGrid& g) {
     const cv::Point2f first = g.at(0, 0);
     return std::pair(brightness_of_first(values, g) > 0, first.x + first.y);
   };
@@ -111,24 +84,17 @@ Grid in_board_order(const cv::Mat& values, Grid grid) {
 
 Detection detect_checkerboard(const GreyPicture& picture, const Board& board, const DetectionOptions& options) {
   Detection result;
-  Grid grid{board.corner_columns, board.corner_rows, find_grid(picture, {board.corner_columns, board.corner_rows})};
+  CornerGrid grid{board.corner_columns, board.corner_rows,
+                  find_grid(picture, {board.corner_columns, board.corner_rows})};
   if (grid.points.empty()) {
+    if (options.parts) result = detect_checkerboard_part(picture, board, options);
+    if (!result.corners.empty()) return result;
     result.problem = "no whole checkerboard of " + std::to_string(board.corner_columns) + " x " +
                      std::to_string(board.corner_rows) + " inner corners";
     return result;
   }
   grid = in_board_order(picture.values, grid);
-  std::vector<Prediction> predictions;
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      const int left = std::max(0, column - 1), right = std::min(grid.columns - 1, column + 1);
-      const int above = std::max(0, row - 1), below = std::min(grid.rows - 1, row + 1);
-      const cv::Point2d along_columns = (grid.at(right, row) - grid.at(left, row)) * (1.0 / (right - left));
-      const cv::Point2d along_rows = (grid.at(column, below) - grid.at(column, above)) * (1.0 / (below - above));
-      predictions.push_back({row * grid.columns + column, grid.at(column, row), along_columns, along_rows});
-    }
-  }
-  result.corners = refine(picture.values, predictions, 1, options);
+  result.corners = refine(picture.values, predictions_of(grid), 1, options);
   if (result.corners.empty()) result.problem = "a checkerboard too small or too close to the edge to be refined";
   return result;
 }

@@ -19,6 +19,9 @@ namespace gonio::camera {
 struct DetectionOptions {
   // How far from a corner along the edges its refinement looks. 0: 0.42 of the local side of a square, 2.5 to 12 px.
   int window_px = 0;
+  // Plain boards that are cut off or covered: take the part that is seen. Which part it is can be told from colours and
+  // the picture's border alone, so that all of its corners may be numbered wrongly, by whole squares.
+  bool parts = false;
 };
 
 struct Corner {
@@ -31,6 +34,7 @@ struct Detection {
   std::vector<Corner> corners;        // sorted by id; empty where the board was not found
   double noise_px = 0;                // of one coordinate, estimated without any lens model; 0: no corners
   int gross_errors = 0;               // corners left out because they do not fit their neighbours
+  bool part = false;                  // checkerboard: not the whole board (DetectionOptions::parts)
   int markers = 0;                    // charuco: markers that belong to the board
   int foreign_markers = 0;            // charuco: of the dictionary, but with ids that the board does not have
   bool legacy = false;                // charuco: the layout in which the corners were numbered

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/mechanisms/camera_flat_port.h"
 #include "camera/mechanisms/camera_rolling_shutter.h"
 #include "camera/mechanisms/lens_lateral_colour.h"
 #include "camera/mechanisms/lens_non_central.h"
@@ -19,9 +20,9 @@ constexpr double settled_px = 1e-10;
 
 constexpr std::array<std::string_view, 4> pinhole_names = {"fx_px", "fy_px", "cx_px", "cy_px"};
 constexpr std::array<std::string_view, C::count - BoardColumn::warp> further_names = {
-    "sag_x_m",    "sag_y_m",    "motion_x_m",  "motion_y_m", "scale_x",   "scale_y",   "pupil_m",
-    "red_linear", "red_cubic",  "blue_linear", "blue_cubic", "bias_x_px", "bias_y_px", "focal_per_K",
-    "x_px_per_K", "y_px_per_K", "focal_per_s", "x_px_per_s", "y_px_per_s"};
+    "sag_x_m",     "sag_y_m",     "motion_x_m", "motion_y_m", "scale_x",    "scale_y",     "pupil_m",    "red_linear",
+    "red_cubic",   "blue_linear", "blue_cubic", "bias_x_px",  "bias_y_px",  "focal_per_K", "x_px_per_K", "y_px_per_K",
+    "focal_per_s", "x_px_per_s",  "y_px_per_s", "index",      "distance_m", "tilt_x_rad",  "tilt_y_rad", "relative"};
 
 // f and c as the recording's temperature and time leave them.
 struct Pinhole {
@@ -32,8 +33,12 @@ Pinhole pinhole_of(const CornerModel& m) {
   const auto drift = [&](std::size_t k) {
     return v[C::by_temperature + k] * m.warmer_K + v[C::by_time + k] * m.later_s;
   };
-  const double stretch = 1 + drift(0);
+  const double stretch = 1 + v[C::focal] + drift(0);
   return {v[0] * stretch, v[1] * stretch, v[2] + drift(1), v[3] + drift(2)};
+}
+
+equation::FlatPort port_of(const Values& v) {
+  return {v[C::port], v[C::port + 1], v[C::port + 2], v[C::port + 3]};
 }
 
 // Height s of the entrance pupil for a point at p: s = pupil g(X, Y, Z - s), g = (X^2 + Y^2) / |.|^2 = sin^2 theta,
@@ -71,7 +76,8 @@ Vec2 scaled(const Values& v, Vec2 at) {
 bool project(const CornerModel& m, const BoardPose& pose, const CornerPlace& place, Vec2& pixel) {
   const Values& v = m.values;
   const Vec2 at = scaled(v, place.board_m);
-  const Vec3 p = pose * Vec3{at.x, at.y, board_height(m.extent, at, &v[BoardColumn::warp])};
+  const Vec3 p = equation::camera_flat_port(port_of(v),
+                                            pose * Vec3{at.x, at.y, board_height(m.extent, at, &v[BoardColumn::warp])});
   const std::array point{p.x, p.y, v[C::pupil] != 0 ? p.z - pupil_of(v[C::pupil], p).s : p.z};
   const double* lens = &v[BoardColumn::distortion];
   double x = 0, y = 0, xd = 0, yd = 0;
@@ -152,6 +158,7 @@ void camera_columns(const CornerModel& m, const CornerPlace& place, const Pinhol
     j[C::by_temperature + 3 * s] = base * since[s] * own;
     j[C::by_temperature + 3 * s + 1 + axis] = since[s];
   }
+  j[C::focal] = base * own;
   const double c = std::cos(place.turned_rad), s = std::sin(place.turned_rad);
   j[C::bias] = axis == 0 ? c : s;
   j[C::bias + 1] = axis == 0 ? -s : c;
@@ -163,7 +170,9 @@ bool differentiate(const CornerModel& m, const BoardPose& pose, const CornerPlac
   const Vec2 at = scaled(v, place.board_m), half = m.extent.half_m, from = at - m.extent.middle_m;
   const Mat3 r = matrix_of(pose.rotation);
   const Vec3 q = r * Vec3{at.x, at.y, board_height(m.extent, at, &v[BoardColumn::warp])};
-  const Vec3 p = q + pose.translation_m;
+  const equation::FlatPort port = port_of(v);
+  const auto bent = equation::camera_flat_port_slopes(port, q + pose.translation_m);
+  const Vec3 p = equation::camera_flat_port(port, q + pose.translation_m);
   const Pupil pupil = pupil_of(v[C::pupil], p);
   LensMap map;
   if (!lens_map_derivatives(&v[BoardColumn::distortion], p - Vec3{0, 0, pupil.s}, map)) return false;
@@ -179,7 +188,9 @@ bool differentiate(const CornerModel& m, const BoardPose& pose, const CornerPlac
     const auto by = [&](std::size_t i) {
       return f * (seen_at.by[2 * axis] * map.by_direction[0][i] + seen_at.by[2 * axis + 1] * map.by_direction[1][i]);
     };
-    const Vec3 g = Vec3{by(0), by(1), by(2)} - pupil.by_point * by(2);
+    const Vec3 by_seen = Vec3{by(0), by(1), by(2)} - pupil.by_point * by(2);
+    const Vec3 g{dot(by_seen, bent.by_point[0]), dot(by_seen, bent.by_point[1]), dot(by_seen, bent.by_point[2])};
+    for (std::size_t i = 0; i < 4; ++i) j[C::port + i] = dot(by_seen, bent.by_port[i]);
     const Vec3 turn = cross(q, g);  // g . (w x q) = w . (q x g)
     const double lift = g.x * r(0, 2) + g.y * r(1, 2) + g.z * r(2, 2);
     for (int i = 0; i < 3; ++i) {

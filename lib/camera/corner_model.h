@@ -9,16 +9,19 @@
 //   lens.non-central        the ray at the angle theta from the axis passes through (0, 0, s), s = pupil_m sin^2 theta,
 //                           so that (X, Y, Z) is seen as (X, Y, Z - s) by a central lens (moving entrance pupil,
 //                           Gennery, IJCV 68(3), 2006, to first order in theta^2)
+//   camera.flat-port        (X, Y, Z) is seen where its ray leaves a plane before the lens, refracted there
+//                           (camera/mechanisms/camera_flat_port.h); the lens sees that place
 //   lens.lateral-colour     (x', y') of lens_terms.h times 1 + linear + cubic r'^2, r' = |(x', y')|, with numbers of
 //                           their own for red and blue; green is the reference
 //   camera.thermal          fx, fy times 1 + focal_per_K dT + focal_per_s dt, and cx, cy shifted by the x_px, y_px
 //                           rates, dT and dt counted from the mean of the recordings
+//   camera.focal-length     fx, fy times 1 + relative, beside what camera.thermal does
 //   board.corner-bias       (u, v) += R(turned) bias_px, `turned` the angle by which the picture was turned before its
 //                           corners were sought
 //
 // Everything is one vector of numbers, named as the mechanisms name their parameters: whoever knows a parameter's name
-// finds its column. Invariant: at the neutral values (all zero) the prediction is bit-identical to that of
-// camera::predict.
+// finds its column. Invariant: at the neutral values (all zero, an index of one) the prediction is bit-identical to
+// that of camera::predict.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -37,14 +40,21 @@ struct CornerColumn {                                         // continues Board
   static constexpr std::size_t bias = colour + 4;             // x, y: px
   static constexpr std::size_t by_temperature = bias + 2;     // focal, x, y: 1/K, px/K
   static constexpr std::size_t by_time = by_temperature + 3;  // focal, x, y: 1/s, px/s
-  static constexpr std::size_t count = by_time + 3;
+  static constexpr std::size_t port = by_time + 3;            // index, distance: m, tilt x, tilt y: rad
+  static constexpr std::size_t focal = port + 4;              // relative change of fx and fy
+  static constexpr std::size_t count = focal + 1;
 };
+constexpr std::array<double, CornerColumn::count> neutral_corner_values() {
+  std::array<double, CornerColumn::count> values{};
+  values[CornerColumn::port] = 1;
+  return values;
+}
 
 // Column of a parameter by its name in the mechanisms' declarations ("k1", "sag_x_m", "pupil_m"); nothing for others.
 std::optional<std::size_t> corner_column(std::string_view parameter);
 
-struct CornerModel {                                 // of one view
-  std::array<double, CornerColumn::count> values{};  // those of the pose are not read
+struct CornerModel {                                                         // of one view
+  std::array<double, CornerColumn::count> values = neutral_corner_values();  // those of the pose are not read
   BoardPose pose;
   BoardExtent extent;
   int height_px = 0;

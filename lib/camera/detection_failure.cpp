@@ -27,7 +27,7 @@ std::string remedy_charuco(const Board& board, const io::Image& picture) {
          std::to_string(guess.largest_id) + "): give that dictionary";
 }
 
-std::string remedy_checkerboard(const Board& board, const io::Image& picture) {
+std::string remedy_checkerboard(const Board& board, const io::Image& picture, std::ptrdiff_t parts) {
   for (const int d : {-1, 1}) {
     Board other = board;
     other.corner_columns += d;
@@ -37,6 +37,10 @@ std::string remedy_checkerboard(const Board& board, const io::Image& picture) {
     return "the first photograph shows " + std::to_string(other.corner_columns) + " x " +
            std::to_string(other.corner_rows) + " inner corners: count corners between squares, not squares";
   }
+  if (parts > 0)
+    return std::to_string(parts) +
+           " of them show less of one: give the number of inner corners that can be seen, or "
+           "photograph the whole board once";
   return "count inner corners, not squares; the whole board must be in the picture with a white margin";
 }
 
@@ -47,9 +51,9 @@ Error no_board_found(const Board& board, const io::Image& first, const std::vect
   const std::string count = std::to_string(detections.size()) + (detections.size() == 1 ? " picture" : " pictures");
   if (board.kind == BoardKind::checkerboard) {
     return {Exit::data, place,
-            "none of " + count + " shows a checkerboard of " + std::to_string(board.corner_columns) + " x " +
+            "none of " + count + " shows a whole checkerboard of " + std::to_string(board.corner_columns) + " x " +
                 std::to_string(board.corner_rows) + " inner corners",
-            remedy_checkerboard(board, first)};
+            remedy_checkerboard(board, first, std::ranges::count_if(detections, &Detection::part))};
   }
   const std::string doubt = board_doubt(board, detections);
   return {Exit::data, place,

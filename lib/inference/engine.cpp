@@ -11,6 +11,7 @@
 #include "inference/judgement.h"
 #include "inference/law.h"
 #include "inference/noise.h"
+#include "inference/odd_group.h"
 #include "inference/plan.h"
 #include "inference/profile.h"
 #include "inference/race.h"
@@ -36,9 +37,8 @@ std::vector<std::size_t> draw_test_groups(const std::vector<std::size_t>& groups
   return order;
 }
 
-void set_aside_groups(const std::vector<std::size_t>& test_groups, System& system) {
-  std::erase_if(system.groups,
-                [&](std::size_t g) { return std::binary_search(test_groups.begin(), test_groups.end(), g); });
+void set_aside_groups(const std::vector<std::size_t>& groups, System& system) {  // ascending
+  std::erase_if(system.groups, [&](std::size_t g) { return std::binary_search(groups.begin(), groups.end(), g); });
 }
 
 // Whether there is a mismatch is asked of all groups: it chooses nothing, and the groups set aside judge names, not
@@ -49,8 +49,9 @@ double mismatch_p(const System& all, const std::vector<double>& start, Options o
   return residual_structure(race, race.base(start), options).global_p;
 }
 
-System in_play(const Problem& problem, const Options& options) {
+System in_play(const Problem& problem, const Options& options, const std::vector<std::size_t>& without = {}) {
   System system(problem, options.seed);
+  set_aside_groups(without, system);
   if (system.groups.empty())
     throw Error(Exit::data, problem.domain(),
                 "not one of the observations of " + std::to_string(problem.observations().groups()) + " " +
@@ -227,11 +228,14 @@ void place_stage(const Problem& problem, Explanation& e) {
 
 }  // namespace
 
-Explanation explain(const Problem& problem, const Options& options) {
+namespace {
+
+Explanation explain_without(const Problem& problem, const Options& options, const std::vector<std::size_t>& odd) {
   Explanation e;
+  e.odd_groups = odd;
   e.smallest_effect = options.smallest_effect;
   e.sure = options.sure;
-  System all = in_play(problem, options);
+  System all = in_play(problem, options, odd);
   const std::vector<double> start = starting_values(problem);
   const NoiseFindings noise = settle_noise(all, start);
   e.noise_factor = noise.factor;
@@ -259,6 +263,7 @@ Explanation explain(const Problem& problem, const Options& options) {
   if (e.named.empty()) kept.model = kept.base;
   final_fit(all, Race(all, options), kept, e);
   if (e.named.empty()) e.held_out_after = e.held_out_before;
+  if (!odd.empty()) e.odd_score = unseen_groups(chosen_on, kept.model.fit, odd).score();
   locate_groups(all, e);
   place_conditions(all, e);
   place_stage(problem, e);
@@ -272,6 +277,20 @@ Explanation explain(const Problem& problem, const Options& options) {
     e.weighed.clear();  // by a test of the domain's own, which has its level
   write_sentence(problem, e);
   return e;
+}
+
+}  // namespace
+
+Explanation explain(const Problem& problem, const Options& options) {
+  Explanation e = explain_without(problem, options, {});
+  if (!e.significant || !e.named.empty() || !e.misplaced.files.empty()) return e;
+  System all = in_play(problem, options);
+  const std::vector<double> start = starting_values(problem);
+  settle_noise(all, start);
+  const std::optional<std::size_t> odd = odd_group(Race(all, options), start);
+  if (!odd) return e;
+  Explanation without = explain_without(problem, options, {*odd});
+  return without.verdict == Verdict::unknown ? e : without;
 }
 
 }  // namespace gonio::inference

@@ -214,6 +214,7 @@ manifest::Value entry_of(const Problem& problem, const Explanation& e, const Ill
   entry.null_test = {e.global_p, e.significant, e.important, e.smallest_effect};
   entry.noise.factor = e.noise_factor;
   entry.noise.blocks_set_aside = static_cast<std::int64_t>(e.outlier_blocks);
+  for (const std::size_t g : e.odd_groups) entry.noise.groups_set_aside.push_back(problem.observations().group[g]);
   if (e.outliers) {
     entry.noise.outlying_readings = static_cast<std::int64_t>(e.outliers->readings);
     entry.noise.outlying_effect = e.outliers->effect;

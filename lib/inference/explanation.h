@@ -145,6 +145,7 @@ struct Explanation {
     std::vector<std::size_t> candidates;
     double probability = 0;
     std::vector<std::pair<std::string, double>> statistics;  // those that are not zero
+    std::vector<double> values{};                            // of all parameters, as a set's fit has them
   };
   std::vector<Weighed> weighed;
   double probability = 0, sure = 0.9;  // of the verdict: that it is what is named, or among what is listed
@@ -152,7 +153,9 @@ struct Explanation {
   bool significant = false, important = false;
   double noise_factor = 1;
   std::size_t outlier_blocks = 0;
-  std::optional<Outliers> outliers{};  // of the base model
+  std::optional<Outliers> outliers{};     // of the base model
+  std::vector<std::size_t> odd_groups{};  // set aside, as they fit nothing that explains the others (odd_group.h)
+  double odd_score = 0;                   // theirs, with numbers of their own fitted
   double smallest_effect = 0.01;
 
   std::vector<std::size_t> at_limits{};  // free parameters of the base model that its fit leaves at a bound

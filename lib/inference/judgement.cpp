@@ -95,7 +95,7 @@ void mark(const Selection& s, const Explanation& e, const Finalist& top, Hypothe
 
 Explanation::Weighed weighed_as(Explanation::Weighed::Kind kind, const Set& candidates, double probability,
                                 const Statistics& of) {
-  Explanation::Weighed w{kind, candidates, std::min(1.0, probability), {}};
+  Explanation::Weighed w{kind, candidates, std::min(1.0, probability), {}, {}};
   for (const Statistic& s : statistics())
     if (of.*s.value != 0) w.statistics.emplace_back(s.name, of.*s.value);
   return w;
@@ -107,7 +107,10 @@ void list_weighed(const Finalists& finalists, Explanation& e) {
   e.weighed = {weighed_as(Kind::nothing, {}, finalists.nothing(), members[0].statistics),
                weighed_as(Kind::outside, {}, finalists.outside(), members[1].statistics)};
   for (const Finalist& f : finalists.list())
-    if (f.refused.empty()) e.weighed.push_back(weighed_as(Kind::set, f.model.candidates, f.probability, f.statistics));
+    if (f.refused.empty()) {
+      e.weighed.push_back(weighed_as(Kind::set, f.model.candidates, f.probability, f.statistics));
+      e.weighed.back().values = f.model.fit.values;
+    }
   std::stable_sort(e.weighed.begin(), e.weighed.end(),
                    [](const auto& a, const auto& b) { return a.probability > b.probability; });
 }

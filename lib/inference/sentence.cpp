@@ -230,6 +230,19 @@ std::string unseen(const Problem& problem, const Explanation& e) {
   return "These recordings cannot show " + ids + ".";
 }
 
+// A group that was set aside, and by how much what explains the others misses it.
+std::string odd_sentence(const Problem& problem, const Explanation& e) {
+  const Observations& o = problem.observations();
+  std::string text;
+  for (const std::size_t g : e.odd_groups) {
+    const std::string name = o.group[g].starts_with(problem.group_noun()) ? "" : problem.group_noun() + " ";
+    text += " " + name + o.group[g] + " is set aside: it alone fits nothing that explains the others (" +
+            score_in_words(e.odd_score, problem.unit()) + " there).";
+  }
+  if (!text.empty()) text[1] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[1])));
+  return text;
+}
+
 std::string measurement(const Problem& problem, const Explanation& e) {
   for (const std::vector<std::size_t>& set : e.not_told_apart)
     for (std::size_t k = 1; k < set.size(); ++k) {
@@ -267,7 +280,7 @@ void write_sentence(const Problem& problem, Explanation& e) {
   }
   e.sentence =
       limits_sentence(problem, e) + (e.named.empty() ? plain_sentence(problem, e) : named_sentence(problem, e));
-  e.sentence += minor_sentence(problem, e) + unused_sentence(problem);
+  e.sentence += minor_sentence(problem, e) + unused_sentence(problem) + odd_sentence(problem, e);
   if (const std::string remarks = problem.remarks(e); !remarks.empty()) e.sentence += " " + remarks;
   if (!e.shortened.empty()) e.sentence += " " + e.shortened;
   e.next_measurement = measurement(problem, e);

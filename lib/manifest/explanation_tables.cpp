@@ -73,7 +73,8 @@ const std::vector<Field<ExplainedNoise>>& explained_noise_fields() {
       field("blocks_set_aside", &T::blocks_set_aside, "", "outliers: blocks that fit nothing").range(0, infinite),
       field("outlying_readings", &T::outlying_readings, "", "beyond five noise widths of the base model; 0: too few")
           .range(0, infinite),
-      number_field("outlying_effect", &T::outlying_effect, "", "theirs, as what `smallest_effect` is held against")};
+      number_field("outlying_effect", &T::outlying_effect, "", "theirs, as what `smallest_effect` is held against"),
+      field("groups_set_aside", &T::groups_set_aside, "", "recordings that fit nothing that explains the others")};
   return table;
 }
 

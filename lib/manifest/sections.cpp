@@ -96,6 +96,8 @@ const std::vector<Field<Camera>>& camera_fields() {
           .range(0, infinite),
       field("covariance", &Camera::covariance, "", "of the fit: {\"order\": [names], \"values\": [[...]]}"),
       field("quality", &Camera::quality, "", "how well it predicts pixels"),
+      field("held", &Camera::held, "",
+            "true: calibrated on other views (--fix intrinsics); explain keeps to its sigmas"),
       field("mosaic", &Camera::mosaic, "",
             "filters over the pixels; polarizers: [90 45; 135 0] degrees, rows from the top")
           .one_of({"RGGB", "GRBG", "GBRG", "BGGR", "polarizers"})};

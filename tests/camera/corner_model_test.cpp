@@ -61,7 +61,7 @@ TEST(CornerModel, HasAColumnForEveryParameterOfTheRegistry) {
       ASSERT_TRUE(found.has_value()) << m->id << " " << p.name;
       columns.insert(*found);
       ++parameters;
-      EXPECT_EQ(p.neutral, 0) << m->id << " " << p.name;
+      EXPECT_EQ(p.neutral, CornerModel{}.values[*found]) << m->id << " " << p.name;
     }
     EXPECT_FALSE(m->conditions.empty()) << m->id;
     EXPECT_FALSE(m->mistaken_for.empty()) << m->id;
@@ -75,24 +75,13 @@ TEST(CornerModel, HasAColumnForEveryParameterOfTheRegistry) {
 // At every term's own values, with all others in play beside it.
 TEST(CornerModel, DerivativesAreThoseOfDifferences) {
   CornerModel m = model();
-  for (const auto& [name, value] : std::initializer_list<std::pair<const char*, double>>{{"sag_y_m", -2e-4},
-                                                                                         {"motion_x_m", 4e-3},
-                                                                                         {"motion_y_m", -6e-3},
-                                                                                         {"scale_x", 4e-3},
-                                                                                         {"scale_y", -2e-3},
-                                                                                         {"pupil_m", 6e-3},
-                                                                                         {"red_linear", 2e-3},
-                                                                                         {"red_cubic", -4e-3},
-                                                                                         {"blue_linear", -1e-3},
-                                                                                         {"blue_cubic", 3e-3},
-                                                                                         {"bias_x_px", 0.4},
-                                                                                         {"bias_y_px", -0.3},
-                                                                                         {"focal_per_K", 1e-4},
-                                                                                         {"x_px_per_K", 0.1},
-                                                                                         {"y_px_per_K", -0.2},
-                                                                                         {"focal_per_s", 1e-6},
-                                                                                         {"x_px_per_s", 1e-3},
-                                                                                         {"y_px_per_s", -2e-3}})
+  for (const auto& [name, value] : std::initializer_list<std::pair<const char*, double>>{
+           {"sag_y_m", -2e-4},     {"motion_x_m", 4e-3},  {"motion_y_m", -6e-3}, {"scale_x", 4e-3},
+           {"scale_y", -2e-3},     {"pupil_m", 6e-3},     {"red_linear", 2e-3},  {"red_cubic", -4e-3},
+           {"blue_linear", -1e-3}, {"blue_cubic", 3e-3},  {"bias_x_px", 0.4},    {"bias_y_px", -0.3},
+           {"focal_per_K", 1e-4},  {"x_px_per_K", 0.1},   {"y_px_per_K", -0.2},  {"focal_per_s", 1e-6},
+           {"x_px_per_s", 1e-3},   {"y_px_per_s", -2e-3}, {"index", 1.31},       {"distance_m", 0.05},
+           {"tilt_x_rad", 0.06},   {"tilt_y_rad", -0.09}, {"relative", 0.02}})
     m.values[column(name)] = value;
   for (const CornerPlace& place : places()) {
     Vec2 at, up, down;
@@ -140,6 +129,27 @@ TEST(CornerModel, PointsOfOneRayAreSeenAtOnePixel) {
   }
   EXPECT_LT(norm(pixels[0] - pixels[1]), 1e-9);
   EXPECT_LT(norm(pixels[0] - pixels[2]), 1e-9);
+}
+
+// Where the index is one, only the index moves pixels, and by what its difference says.
+TEST(CornerModel, APortOfAirIsNone) {
+  CornerModel m = model();
+  m.values[column("distance_m")] = 0.05, m.values[column("tilt_x_rad")] = 0.1;
+  for (const CornerPlace& place : places()) {
+    Vec2 plain, same, up, down;
+    CornerJacobian j{};
+    ASSERT_TRUE(predict(model(), place, plain));
+    ASSERT_TRUE(predict(m, place, same, j));
+    EXPECT_LT(norm(same - plain), 1e-9);
+    CornerModel high = m, low = m;
+    high.values[column("index")] += 1e-6, low.values[column("index")] -= 1e-6;
+    ASSERT_TRUE(predict(high, place, up));
+    ASSERT_TRUE(predict(low, place, down));
+    EXPECT_NEAR(j[0][column("index")], (up.x - down.x) / 2e-6, 1e-3 * (1 + std::abs(j[0][column("index")])));
+    EXPECT_NEAR(j[1][column("index")], (up.y - down.y) / 2e-6, 1e-3 * (1 + std::abs(j[1][column("index")])));
+    for (const char* name : {"distance_m", "tilt_x_rad", "tilt_y_rad"})
+      for (std::size_t axis = 0; axis < 2; ++axis) EXPECT_EQ(j[axis][column(name)], 0) << name;
+  }
 }
 
 TEST(CornerModel, GreenIsTheReferenceAndEachTermDoesWhatItSays) {

@@ -54,7 +54,49 @@ TEST(PartialBoards, WhatABorderLeavesOfACharucoBoardIsFoundAndExact) {
   }
 }
 
-TEST(PartialBoards, APlainBoardMustBeSeenWhole) {
+// Seen in part where that is asked for: exact up to a shift by whole squares, which the board's pose takes up.
+TEST(PartialBoards, WhatABorderLeavesOfAPlainBoardIsExactUpToWholeSquares) {
+  const Board board{BoardKind::checkerboard, 9, 6, 0.02, 0, "", {}};
+  DetectionOptions parts;
+  parts.parts = true;
+  for (const Vec2 shift : {Vec2{0.8, 0}, Vec2{-0.9, 0.3}, Vec2{0.2, -0.8}}) {
+    const BoardPose pose = pose_at(board, {0.25, -0.2, 0.15}, 0.25, shift);
+    const int inside = corners_inside(board, pose, 14), near = corners_inside(board, pose, 2);
+    ASSERT_GT(inside, 0.4 * board.corners());
+    ASSERT_LT(near, board.corners());
+    const Detection found = detect_board(photograph(board, lens, pose, width, height, {0.7, 0.01, 4, 5}), board, parts);
+    EXPECT_TRUE(found.part);
+    EXPECT_GE(static_cast<int>(found.corners.size()), 0.9 * inside);
+    EXPECT_LE(static_cast<int>(found.corners.size()), near);
+    double best = 1e9;
+    for (int columns = -8; columns <= 8; ++columns)
+      for (int rows = -5; rows <= 5; ++rows) {
+        BoardPose shifted = pose;
+        shifted.translation_m = pose * Vec3{columns * board.square_m, rows * board.square_m, 0};
+        best = std::min(best, rms_error(found, board, shifted));
+      }
+    EXPECT_LT(best, 0.04);
+    // The side that is missing lies outside: the place that leaves least unseen is the true one.
+    EXPECT_LT(rms_error(found, board, pose), 0.04) << shift.x << " " << shift.y;
+  }
+}
+
+// Where the whole is in the picture, asking for parts changes nothing; where nothing of a board is, nothing is found.
+TEST(PartialBoards, AskingForPartsChangesNothingElsewhere) {
+  const Board board{BoardKind::checkerboard, 9, 6, 0.02, 0, "", {}};
+  DetectionOptions parts;
+  parts.parts = true;
+  const io::Image whole =
+      photograph(board, lens, pose_at(board, {0.2, 0.1, 0.1}, 0.42), width, height, {0.7, 0.01, 4, 5});
+  const Detection a = detect_board(whole, board, {}), b = detect_board(whole, board, parts);
+  ASSERT_EQ(a.corners.size(), 54U);
+  EXPECT_FALSE(b.part);
+  ASSERT_EQ(b.corners.size(), a.corners.size());
+  for (std::size_t i = 0; i < a.corners.size(); ++i) EXPECT_EQ(a.corners[i].pixel, b.corners[i].pixel);
+  EXPECT_TRUE(detect_board(io::Image(width, height, {"Y"}), board, parts).corners.empty());
+}
+
+TEST(PartialBoards, APlainBoardMustBeSeenWholeWherePartsAreNotAskedFor) {
   const Board plain{BoardKind::checkerboard, 9, 6, 0.02, 0, "", {}};
   const BoardPose pose = pose_at(plain, {0.2, 0.1, 0.1}, 0.25, {0.8, 0});
   const Detection detection = detect_board(photograph(plain, lens, pose, width, height, {0.7, 0.01, 4, 5}), plain, {});

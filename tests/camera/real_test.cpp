@@ -14,6 +14,7 @@
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/rig.h"
 #include "process.h"
 
@@ -203,6 +204,52 @@ TEST(RealPhotographs, HeldOutViewsChooseTheModel) {
   EXPECT_TRUE(document.boards.at("board").flatness_m);
   for (const std::string& model : calibrated_models()) EXPECT_THAT(ended.err, testing::HasSubstr(model + ": "));
   EXPECT_THAT(ended.err, testing::HasSubstr("; chosen, "));
+}
+
+// Cut off by the picture's border and over-exposed: parts of the board serve where others show it whole. The peer's
+// corners (its own file) lie on the same crossings.
+TEST(RealBoards, PartsOfAPlainBoardAreFoundInAirAndUnderWater) {
+  constexpr const char* set = "explain/refraction_air_water";
+  GONIO_NEEDS_DATA(set);
+  for (const char* medium : {"air", "water"}) {
+    const Words board{"--checkerboard", "8x7", "--square", "33.8mm", "--no-quality"};
+    const tests::Ended ended = tests::run(call(board, pictures(set, medium)));
+    EXPECT_THAT(ended.err, testing::HasSubstr("of a part of the board"));
+    const auto document = document_of(ended);
+    ASSERT_EQ(document.images.size(), 8U);
+    for (const auto& image : document.images) EXPECT_LT(image.rms_px.value_or(99), 0.8) << image.id;
+    const double f = document.cameras.at("camera").fx_px.scalar();
+    if (std::string(medium) == "air")
+      EXPECT_NEAR(f, 694, 10);  // the peer's; the authors' own is 702.6
+    else
+      EXPECT_NEAR(f, 922, 15);
+  }
+}
+
+// A board of another size than stated would be a part of itself everywhere: that is said.
+TEST(RealBoards, ABoardThatIsNeverWholeIsOfAnotherSize) {
+  GONIO_NEEDS_DATA(checkerboard_set);
+  const Words board{"--checkerboard", "11x7", "--square", "25mm"};
+  const tests::Ended ended = tests::run(call(board, pictures(checkerboard_set, "left0")));
+  EXPECT_EQ(ended.status, 65) << ended.err;
+  EXPECT_THAT(ended.err, testing::HasSubstr("show less of one"));
+}
+
+// A pupil that moves would end in the lens: what the manifest switches on is fitted by explain, or not at all.
+TEST(RealBoards, MechanismsThatMoveCornersAreRefused) {
+  GONIO_NEEDS_DATA(checkerboard_set);
+  const auto found = document_of(tests::run(call(checkerboard, pictures(checkerboard_set, "left0"))));
+  const tests::ScratchFolder folder;
+  for (const double pupil_m : {0.0, 0.004}) {
+    manifest::Document given = found;
+    given.mechanisms["lens.non-central"].parameters["pupil_m"] = manifest::Parameter(pupil_m);
+    const tests::Ended again = tests::run({"calib-charuco", "--allow-outside", "--no-quality"}, folder.path(),
+                                          manifest::print_document(given, folder.path()));
+    EXPECT_EQ(again.status, pupil_m == 0 ? 0 : 65) << again.err;
+    EXPECT_THAT(again.err, pupil_m == 0
+                               ? testing::Not(testing::HasSubstr("/mechanisms/"))
+                               : testing::Matcher<std::string>(testing::HasSubstr("/mechanisms/lens.non-central")));
+  }
 }
 
 // A checkerboard's mirror image is a checkerboard; that of a marker is none.

@@ -40,7 +40,7 @@ const std::set<std::string> besides = words(
     "lens.rational surface.residue surface.walls tracks.scale ct.threshold ct.scale ct.blur ct.cupping "
     "ct.beam-hardening ct.scatter ct.ring ct.streak ct.axis-tilt robot.warm-up robot.joule-heating "
     "robot.friction-heating marker.offset marker.refracted sensor.exposure light.reflector surface.metal surface.coat "
-    "surface.sheen surface.translucent optics.bloom camera.focal-length "
+    "surface.sheen surface.translucent optics.bloom camera.flat-port camera.focal-length "
     "camera.principal-point camera.aspect camera.pose");
 
 // Owed and not there yet: printed, until they are declared and leave this list.

@@ -4,6 +4,8 @@
 #include "base/error.h"
 #include "base/quantity.h"
 #include "cli/board_options.h"
+#include "manifest/document.h"
+#include "manifest/sections/camera.h"
 #include "tools/calib-charuco/page.h"
 
 namespace gonio::tools::calib_charuco {
@@ -46,6 +48,23 @@ std::vector<std::string> model_choices() {
 
 }  // namespace
 
+namespace {
+
+// Cameras of another calibration, as they are known there; what its pages and maps were stays with it.
+void enter_cameras(cli::Invocation& call, const std::string& path) {
+  const manifest::Document other = manifest::read_document(path, {.allow_outside = true});
+  if (other.cameras.empty()) throw Error(Exit::data, path, "has no cameras", "name what calib-charuco wrote");
+  for (const auto& [name, camera] : other.cameras) {
+    if (call.document.cameras.contains(name))
+      throw Error(Exit::data, path, "has a camera " + name + " as the manifest has", "give --cameras or -i");
+    manifest::Camera& entered = call.document.cameras[name] = camera;
+    entered.quality.reset();
+  }
+  call.note_input(path);
+}
+
+}  // namespace
+
 CalibrationRequest request_of(cli::Invocation& call) {
   CalibrationRequest request;
   request.model = call.text("model");
@@ -80,6 +99,7 @@ void enter_command_line(cli::Invocation& call) {
     if (!call.given("IMAGE")) throw Error(Exit::usage, "IMAGE", "is missing", "name photographs of the board");
   }
   if (cli::describes_board(call)) cli::enter_described_board(call);
+  if (call.given("cameras")) enter_cameras(call, call.text("cameras"));
   // What the user names may lie anywhere.
   if (call.given("IMAGE") || call.given("dictionary-file")) call.document.allow_outside = true;
   if (!call.given("IMAGE")) {
@@ -106,6 +126,10 @@ std::vector<cli::Option> calibration_options() {
        .help = "Lens model; a camera of the manifest keeps its own unless this is given. auto: by held-out views.",
        .preset = "radial-tangential",
        .choices = model_choices()},
+      {.name = "cameras",
+       .type = Type::input_file,
+       .help = "Take the cameras from this manifest: calibrated on other pictures, to be held here (--fix intrinsics).",
+       .metavar = "FILE"},
       {.name = "fix",
        .type = Type::choice,
        .help = "Hold a term: at the manifest's value, else at 0, equal focal lengths, the middle of the picture.",

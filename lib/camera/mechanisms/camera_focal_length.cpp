@@ -1,5 +1,6 @@
-// camera.focal-length: a focal length other than stated. On boards the base model frees fx and fy. Equation:
-// scene/edits/camera_focal_length.cpp.
+// camera.focal-length: a focal length other than stated. On boards the base model frees fx and fy, and this is asked of
+// cameras that other views have calibrated ("held"). Equation: scene/edits/camera_focal_length.cpp,
+// camera/corner_model.h.
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {
@@ -15,16 +16,18 @@ const Mechanism& camera_focal_length() {
       .source = "Hartley & Zisserman 2004, section 6.1",
       .stage = "optics",
       .target = Target::camera,
-      .domains = {"images"},
+      .domains = {"boards", "images"},
       .parameters = {{.name = "relative",
                       .unit = "1",
-                      .lower = -0.3,
-                      .upper = 0.3,
+                      .lower = -0.5,
+                      .upper = 0.5,
                       .start = 0.01,
                       .typical = 0.01,
                       .meaning = "change of fx and fy over themselves"}},
       .conditions = {"camera.edge-shift-radial", "camera.image-radius"},
-      .mistaken_for = {{.with = "camera.pose", .told_apart = "photograph from two ranges"},
+      .mistaken_for = {{.with = "camera.flat-port",
+                        .told_apart = "photograph the board at two ranges, and outside of the water"},
+                       {.with = "camera.pose", .told_apart = "photograph from two ranges"},
                        {.with = "geometry.scale",
                         .told_apart = "photograph the object from two ranges, or measure it with a caliper"},
                        {.with = "lens.radial", .told_apart = "fill the corners of the image"}},

@@ -24,6 +24,21 @@ bool is_corner_table(const manifest::Table& table) {
   return table.model == "camera";
 }
 
+// Standard errors as the section states them; what has none is held as good as exactly.
+void read_sigma(const manifest::Camera& section, BoardsInput::Camera& camera) {
+  constexpr double exact = 1e-6;
+  const auto stated = [&](const std::string& name, double otherwise) {
+    const auto found = section.sigma.find(name);
+    return found != section.sigma.end() && !found->second.empty() && found->second[0] > 0 ? found->second[0]
+                                                                                          : otherwise;
+  };
+  const camera::Intrinsics& k = camera.intrinsics;
+  const std::array<const char*, 4> names = {"fx_px", "fy_px", "cx_px", "cy_px"};
+  for (std::size_t i = 0; i < 4; ++i) camera.sigma[i] = stated(names[i], exact * k.fx_px);
+  for (const std::size_t t : camera.terms)
+    camera.sigma[4 + t] = stated(std::string(camera::distortion_names[t]), exact);
+}
+
 BoardsInput::Camera camera_input(const manifest::Document& document, const std::string& name) {
   const std::string place = manifest::place(document, "/cameras/" + name);
   const auto found = document.cameras.find(name);
@@ -37,6 +52,8 @@ BoardsInput::Camera camera_input(const manifest::Document& document, const std::
   for (const auto& [term, value] : found->second.distortion)
     camera.terms.push_back(camera::distortion_index(term, place));
   std::sort(camera.terms.begin(), camera.terms.end());
+  camera.held = found->second.held.value_or(false);
+  if (camera.held) read_sigma(found->second, camera);
   return camera;
 }
 

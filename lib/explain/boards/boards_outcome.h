@@ -51,6 +51,11 @@ Vec2 by_millimetre(const BoardsInput& input, const BoardsInput::View& view, cons
 // Where a board's columns or rows stand beside where they should, by as much in all views: words, or nothing.
 std::string uneven_print(const BoardsInput& input, const Explanation& explanation);
 
+// How far off the base model puts the board, and rivals that could stand in the place of what is named, with their
+// numbers, where that is 2 % or more of its distance; words, or nothing.
+std::string rivals_cost(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
+                        const Explanation& explanation);
+
 void upgrade_boards(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
                     const Explanation& explanation, manifest::Document& document);
 Illustration illustrate_boards(const BoardsInput& input, const Observations& observations,

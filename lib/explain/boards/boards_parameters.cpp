@@ -32,6 +32,7 @@ double size_of(std::size_t column) {
   if (column < CornerColumn::scale) return 1e-4;  // warp and motion, m
   if (column < CornerColumn::bias) return 1e-3;   // scale, pupil, colour
   if (column < CornerColumn::by_temperature) return 0.1;
+  if (column >= CornerColumn::port) return 0.01;  // index, m, rad, a share
   const bool by_time = column >= CornerColumn::by_time;
   const bool focal = column == CornerColumn::by_temperature || column == CornerColumn::by_time;
   return (focal ? 1e-5 : 0.02) * (by_time ? 0.01 : 1);
@@ -82,12 +83,27 @@ class Declaration {
     // Views that leave the camera open (all frontal, from one range) leave it where its section puts it, roughly; views
     // that determine it are moved by a thousandth of their own uncertainty.
     const double half_px = 0.5 * std::hypot(own.width_px, own.height_px);
-    for (std::size_t i = 0; i < 4; ++i)
-      declare_base(prefix + intrinsic_names[i], "px", start[i], i < 2 ? 0.2 * start[i] : -infinity,
-                   i < 2 ? 5 * start[i] : infinity, 1, {c, none, none, i}, i < 2 ? 0.3 * start[i] : half_px);
-    for (const std::size_t t : own.terms)
-      declare_base(prefix + std::string(camera::distortion_names[t]), "1", k.distortion[t], -infinity, infinity, 0.01,
-                   {c, none, none, BoardColumn::distortion + t});
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::string name = prefix + intrinsic_names[i];
+      if (own.held)
+        declare_held(name, "px", start[i], own.sigma[i], 1, {c, none, none, i});
+      else
+        declare_base(name, "px", start[i], i < 2 ? 0.2 * start[i] : -infinity, i < 2 ? 5 * start[i] : infinity, 1,
+                     {c, none, none, i}, i < 2 ? 0.3 * start[i] : half_px);
+    }
+    for (const std::size_t t : own.terms) {
+      const std::string name = prefix + std::string(camera::distortion_names[t]);
+      const BoardRole role{c, none, none, BoardColumn::distortion + t};
+      if (own.held)
+        declare_held(name, "1", k.distortion[t], own.sigma[4 + t], 0.01, role);
+      else
+        declare_base(name, "1", k.distortion[t], -infinity, infinity, 0.01, role);
+    }
+  }
+  // What other views say of a number: it stays within four of its standard errors, whatever it could repair here.
+  void declare_held(const std::string& name, const std::string& unit, double value, double sigma, double size,
+                    BoardRole role) {
+    declare_base(name, unit, value, value - 4 * sigma, value + 4 * sigma, size, role, sigma);
   }
 
   void declare_board(std::size_t b) {
@@ -216,6 +232,8 @@ class Declaration {
     if (role.board != none && column < CornerColumn::motion) return !input_.boards[role.board].warped;
     if (column == CornerColumn::scale + 1) return false;  // only the ratio of the two shows
     if (column >= CornerColumn::colour && column < CornerColumn::bias) return has_colour(role.camera, column);
+    if (column >= CornerColumn::focal) return input_.cameras[role.camera].held;
+    if (column >= CornerColumn::port) return true;
     if (column >= CornerColumn::by_time) return varies(&BoardsInput::View::later_s);
     if (column >= CornerColumn::by_temperature) return varies(&BoardsInput::View::warmer_K);
     return true;

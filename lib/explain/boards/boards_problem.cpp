@@ -135,7 +135,10 @@ class BoardsProblem : public Problem {
     return rows;
   }
 
-  std::string remarks(const Explanation& e) const override { return uneven_print(input_, e); }
+  std::string remarks(const Explanation& e) const override {
+    const std::string cost = rivals_cost(*this, input_, roles_, e), print = uneven_print(input_, e);
+    return cost + (cost.empty() || print.empty() ? "" : " ") + print;
+  }
   void apply(const Explanation& e, manifest::Document& document) const override {
     upgrade_boards(*this, input_, roles_, e, document);
   }

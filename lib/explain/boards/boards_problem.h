@@ -1,7 +1,8 @@
 // Board corners as a problem for the engine. Observations: u and v of every detected corner (px), one group per board
 // view, one block per corner. Free in the base model: the intrinsics and lens terms which the camera section gives, the
 // board's warp where its section gives one, the terms that the manifest's "mechanisms" switch on, and six numbers of
-// pose for every view as its nuisance. Hypotheses: every mechanism of the registry for "boards" which the base model
+// pose for every view as its nuisance. Intrinsics that other views have calibrated (the section says "held") keep to
+// what they said. Hypotheses: every mechanism of the registry for "boards" which the base model
 // lacks and the table can show; a parameter is found in the forward model by its name.
 //
 // Views of one camera and one board that state the same camera_from_board, to the last digit, and whose corners lie
@@ -25,6 +26,9 @@ struct BoardsInput {
     camera::Intrinsics intrinsics;
     int width_px = 0, height_px = 0;
     std::vector<std::size_t> terms;  // of camera::distortion_names which the base model has
+    // Calibrated on other views: fx, fy, cx, cy and the lens terms have these standard errors, and stay within four.
+    bool held = false;
+    std::array<double, 4 + camera::distortion_terms> sigma{};
   };
   struct Board {
     std::string name;

@@ -29,7 +29,6 @@ const Domain& boards() {
       .untouched =
           {{"light.", "corners are places, and keep no brightness"},
            {"camera.aspect", "the base model's own: free in every calibration from corners"},
-           {"camera.focal-length", "the base model's own: free in every calibration from corners"},
            {"camera.principal-point", "the base model's own: free in every calibration from corners"},
            {"camera.pose", "every view's pose is free"},
            {"optics.",

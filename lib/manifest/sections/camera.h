@@ -19,6 +19,7 @@ struct Camera {                   // "cameras"
   std::optional<double> rms_px;
   Value covariance;  // {"order": [...], "values": [[...]]} or null
   std::optional<CameraQuality> quality;
+  std::optional<bool> held{};  // true: calibrated on other views than this document's, and not asked of these again
   std::string mosaic{};  // filters over the pixels: "RGGB", "GRBG", "GBRG", "BGGR"; "polarizers": [90 45; 135 0]
 };
 

@@ -111,6 +111,7 @@ struct ExplainedNoise {
   std::int64_t blocks_set_aside = 0;
   std::int64_t outlying_readings = 0;
   double outlying_effect = not_known;
+  std::vector<std::string> groups_set_aside{};
 };
 struct NegativeControls {
   std::int64_t run = 0;

@@ -132,6 +132,47 @@ TEST(ExplainBoards, TheFullLensLacksNothingButTheBoardsShape) {
       EXPECT_EQ(name, "board.warp") << camera.prefix;
 }
 
+// A camera that was calibrated in air, and a board in a tank: the plane of water between them, by its index. A focal
+// length could stand in for it, and is listed; with the focal length of the air left free nothing is refracted any
+// more.
+TEST(ExplainBoards, WaterBetweenCameraAndBoardIsAFlatPort) {
+  constexpr const char* set = "explain/refraction_air_water";
+  GONIO_NEEDS_DATA(set);
+  const gonio::tests::ScratchFolder folder;
+  const auto pictures = [&](std::vector<std::string> words, const std::string& medium) {
+    const std::size_t options = words.size();
+    for (const auto& entry : std::filesystem::directory_iterator(data(set)))
+      if (entry.path().filename().string().starts_with(medium)) words.push_back(entry.path());
+    std::sort(words.begin() + static_cast<std::ptrdiff_t>(options), words.end());
+    return words;
+  };
+  const auto air =
+      run(pictures({"calib-charuco", "--checkerboard", "8x7", "--square", "33.8mm", "--no-quality"}, "air_"),
+          folder.path());
+  ASSERT_EQ(air.status, 0) << air.err;
+  write_file(folder.path() / "air.json", air.out);
+  const auto water = run(pictures({"calib-charuco", "--checkerboard", "8x7", "--square", "33.8mm", "--cameras",
+                                   "air.json", "--fix", "intrinsics", "--no-quality"},
+                                  "water_"),
+                         folder.path());
+  ASSERT_EQ(water.status, 2) << water.err;  // corners miss by more than 3 px
+  const auto ended = run({"explain", "--allow-outside"}, folder.path(), water.out);
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  gonio::tests::expect_described(ended.out);
+  const Value document = manifest::parse_json(ended.out, "explain");
+  const Value& entry = at(document, "explanations").as_array().at(0);
+  EXPECT_EQ(names(document), std::vector<std::string>{"camera.flat-port"}) << at(entry, "sentence").as_string();
+  const Value::Array& index = at(at(at(entry, "named").as_array().at(0), "interval_95"), "index").as_array();
+  EXPECT_LT(index.at(0).as_number(), 1.333);
+  EXPECT_GT(index.at(1).as_number(), 1.333);
+  EXPECT_LT(index.at(1).as_number() - index.at(0).as_number(), 0.06);
+  EXPECT_GT(at(at(entry, "held_out"), "before").as_number(), 3);
+  EXPECT_LT(at(at(entry, "held_out"), "after").as_number(), 0.6);
+  // What imitates it, and what that would cost: a third longer, the board a quarter nearer.
+  EXPECT_NE(at(entry, "sentence").as_string().find("camera.focal-length (relative 3"), std::string::npos);
+  EXPECT_NE(at(entry, "sentence").as_string().find("% nearer"), std::string::npos);
+}
+
 // A sheet of paper whose printer stretched it along one side. A camera that moved while its rows were read does as much
 // to these views: on thirteen of them neither is clearly better (1.2 standard errors), so that both must be listed.
 TEST(ExplainBoards, APaperThatThePrinterStretchedIsListed) {
@@ -184,8 +225,9 @@ TEST(ExplainBoards, DerivativesAgreeWithDifferences) {
   std::vector<double> analytic(rows * count), numeric(rows * count);
   problem->jacobian(values, 1, columns, analytic);
   problem->Problem::jacobian(values, 1, columns, numeric);
+  // The smallest steps are 1e-8: where a row and a crossing are found by iteration, pixels round to some 1e-13.
   for (std::size_t k = 0; k < analytic.size(); ++k)
-    EXPECT_NEAR(analytic[k], numeric[k], 1e-5 * (1 + std::abs(numeric[k]))) << problem->parameters()[k / rows].name;
+    EXPECT_NEAR(analytic[k], numeric[k], 4e-5 * (1 + std::abs(numeric[k]))) << problem->parameters()[k / rows].name;
 }
 
 TEST(ExplainBoards, MechanismsAtNeutralLeaveThePredictionBitIdentical) {
