@@ -114,8 +114,11 @@ void final_fit(const System& system, const Race& race, const Selection& selectio
   e.base_values = base.fit.values;
   e.residual_before = system.raw_residual(e.base_values);
   e.residual_after = system.raw_residual(model.fit.values);
+  // At a bound under the base model, and not freed of it by what is named: a mismatch that is explained pressed it
+  // there.
+  const auto inside = [](const Fit& f, std::size_t p) { return std::ranges::find(f.inner, p) != f.inner.end(); };
   for (const std::size_t p : base.fit.active)
-    if (std::find(base.fit.inner.begin(), base.fit.inner.end(), p) == base.fit.inner.end()) e.at_limits.push_back(p);
+    if (!inside(base.fit, p) && (model.candidates.empty() || !inside(model.fit, p))) e.at_limits.push_back(p);
   e.fitted_before = in_sample_score(system, e.residual_before);
   e.fitted_after = in_sample_score(system, e.residual_after);
   // What is reported by numbers is fitted to the exact simulation, where there is one.

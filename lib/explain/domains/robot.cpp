@@ -37,6 +37,8 @@ const Domain& robot() {
             "the corners themselves"},
            {"camera.rolling-shutter",
             "the arm stands still while a picture is taken; robot.time-offset is the delay of what moves"},
+           {"camera.flat-port",
+            "left to boards, which has the corners themselves: poses seen through it are off together"},
            {"camera.thermal",
             "hand-eye sets state no temperature of the camera; corners with a column of it are boards"},
            {"robot.friction-heating", "needs temperatures of the joints, a table of the model temperature"},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/atomic_file.h"
 #include "data.h"
 #include "explain/engine.h"
 #include "explain/nrsfm/tracks/mat_file.h"
@@ -198,6 +199,18 @@ TEST_P(TracksRecorded, AreSeenInPerspective) {
   std::printf("%s: %s focal length %.0f px (stated %.0f)\n", name.c_str(), a.e.sentence.c_str(),
               1 / a.estimate("tracks.perspective.inverse_focal_per_px").value, recorded.fx_px);
 }
+// A recorded film of which one frame's truth is 12.6 px off (the others 0.4): set aside and said, and the focal length
+// of the rest is the one that its calibration has.
+TEST(Tracks, AFrameThatSpoilsTheOthersIsSetAside) {
+  GONIO_NEEDS_DATA("cases");
+  const Answer a = explained(read_file(gonio::tests::data("cases") / "one-bad-frame.json"));
+  EXPECT_THAT(a.named, testing::ElementsAre("tracks.perspective")) << a.e.sentence;
+  ASSERT_EQ(a.e.odd_groups.size(), 1U) << a.e.sentence;
+  EXPECT_THAT(a.e.sentence, testing::HasSubstr("rame 8 is set aside"));
+  EXPECT_NEAR(1 / a.estimate("tracks.perspective.inverse_focal_per_px").value, 3785, 3785 * 5e-4);
+  EXPECT_LT(a.e.held_out_after, 0.6);
+}
+
 INSTANTIATE_TEST_SUITE_P(Films, TracksRecorded,
                          testing::Values(Recorded{"cushion", 1e-3}, Recorded{"kinectPaper", 1e-3},
                                          Recorded{"whiteCartoonTshirt", 1e-2}),
