@@ -10,6 +10,7 @@ complete -c calib-charuco -l rig -x -d 'Cameras held together, by words that the
 complete -c calib-charuco -l model -x -a 'pinhole radial-tangential rational thin-prism fisheye auto' -d 'Lens model; a camera of the manifest keeps its own unless this is given. auto: by held-out views.'
 complete -c calib-charuco -l cameras -r -d 'Take the cameras from this manifest: calibrated on other pictures, to be held here (--fix intrinsics).'
 complete -c calib-charuco -l fix -x -a 'intrinsics distortion aspect principal-point k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4' -d 'Hold a term: at the manifests value, else at 0, equal focal lengths, the middle of the picture.'
+complete -c calib-charuco -l parts -d 'Also use parts of plain boards: for a lens, not for poses, which may be off by whole squares.'
 complete -c calib-charuco -l board-warp -d 'Also fit how far the board sags (two parameters).'
 complete -c calib-charuco -l refine-window -x -d 'Half-window of corner refinement in pixels instead of the one that follows the squares.'
 complete -c calib-charuco -l distance -x -d 'Judge the prediction at this distance; may be repeated. Default: the boards median, and twice that.'

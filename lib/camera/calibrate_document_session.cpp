@@ -84,7 +84,7 @@ void enter_sightings(const manifest::Document& document, std::size_t index, Sess
 }
 
 void look(Picture& picture, const std::vector<Board>& boards, DetectionOptions options) {
-  options.parts = picture.by_itself;
+  options.parts = options.parts && picture.by_itself;
   const io::GreyImage image = io::read_grey(picture.path);
   picture.width_px = image.width;
   picture.height_px = image.height;

@@ -1,6 +1,7 @@
 // A rectangle of corners of a plain checkerboard in a picture, row by row. For sources of this folder only: the types
 // are OpenCV's.
 #pragma once
+#include <array>
 #include <opencv2/core.hpp>
 #include <vector>
 

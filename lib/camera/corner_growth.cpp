@@ -5,6 +5,7 @@
 #include <map>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <set>
 
 #include "stats/intervals.h"
@@ -16,8 +17,7 @@ constexpr double neighbourhood = 3.2;  // squares
 constexpr std::size_t least_neighbours = 6;
 constexpr double most_moved = 0.1, most_sigmas = 3;  // of a square; of the median sigma
 
-}  // namespace
-
+// Where a corner would be; nothing where its neighbours are few, or on one line.
 std::optional<Prediction> predict_beside(const std::vector<Corner>& corners, const Board& board, int id) {
   const Vec2 corner = board.corner_m(id);
   std::vector<std::pair<double, const Corner*>> near;
@@ -41,6 +41,8 @@ std::optional<Prediction> predict_beside(const std::vector<Corner>& corners, con
                            homography);
   return Prediction{id, p[0], p[1] - p[2], p[3] - p[4], 0};
 }
+
+}  // namespace
 
 void grow(const GreyPicture& picture, const Board& board, const Growth& growth, const DetectionOptions& options,
           std::vector<Corner>& corners) {

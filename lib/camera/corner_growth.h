@@ -22,7 +22,4 @@ struct Growth {
 void grow(const GreyPicture& picture, const Board& board, const Growth& growth, const DetectionOptions& options,
           std::vector<Corner>& corners);
 
-// Where a corner would be; nothing where its neighbours are fewer than six within three squares, or on one line.
-std::optional<Prediction> predict_beside(const std::vector<Corner>& corners, const Board& board, int id);
-
 }  // namespace gonio::camera

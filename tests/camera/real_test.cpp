@@ -212,7 +212,7 @@ TEST(RealBoards, PartsOfAPlainBoardAreFoundInAirAndUnderWater) {
   constexpr const char* set = "explain/refraction_air_water";
   GONIO_NEEDS_DATA(set);
   for (const char* medium : {"air", "water"}) {
-    const Words board{"--checkerboard", "8x7", "--square", "33.8mm", "--no-quality"};
+    const Words board{"--parts", "--checkerboard", "8x7", "--square", "33.8mm", "--no-quality"};
     const tests::Ended ended = tests::run(call(board, pictures(set, medium)));
     EXPECT_THAT(ended.err, testing::HasSubstr("of a part of the board"));
     const auto document = document_of(ended);
@@ -229,7 +229,7 @@ TEST(RealBoards, PartsOfAPlainBoardAreFoundInAirAndUnderWater) {
 // A board of another size than stated would be a part of itself everywhere: that is said.
 TEST(RealBoards, ABoardThatIsNeverWholeIsOfAnotherSize) {
   GONIO_NEEDS_DATA(checkerboard_set);
-  const Words board{"--checkerboard", "11x7", "--square", "25mm"};
+  const Words board{"--parts", "--checkerboard", "11x7", "--square", "25mm"};
   const tests::Ended ended = tests::run(call(board, pictures(checkerboard_set, "left0")));
   EXPECT_EQ(ended.status, 65) << ended.err;
   EXPECT_THAT(ended.err, testing::HasSubstr("show less of one"));

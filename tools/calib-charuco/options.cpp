@@ -72,6 +72,7 @@ CalibrationRequest request_of(cli::Invocation& call) {
   request.board_warp = call.flag("board-warp");
   for (const std::string& term : call.texts("fix")) request.fixed.insert(term);
   if (call.given("refine-window")) request.detection.window_px = static_cast<int>(call.integer("refine-window"));
+  request.detection.parts = call.flag("parts");
   request.judge = !call.flag("no-quality");
   for (const std::string& text : call.texts("distance"))
     request.distances_m.push_back(parse_quantity(text, Dimension::length, "--distance"));
@@ -135,6 +136,9 @@ std::vector<cli::Option> calibration_options() {
        .help = "Hold a term: at the manifest's value, else at 0, equal focal lengths, the middle of the picture.",
        .choices = fixable_terms(),
        .repeat = true},
+      {.name = "parts",
+       .type = Type::flag,
+       .help = "Also use parts of plain boards: for a lens, not for poses, which may be off by whole squares."},
       {.name = "board-warp", .type = Type::flag, .help = "Also fit how far the board sags (two parameters)."},
       {.name = "refine-window",
        .type = Type::integer,

@@ -74,7 +74,7 @@ const cli::Program& gonio_program() {
                     .repeat = true}},
       .standalone = {"draw"},
       .takes_out = true,
-      .sections_read = {"files", "boards", "cameras", "images", "plans", "runs"},
+      .sections_read = {"files", "boards", "cameras", "images", "mechanisms", "plans", "runs"},
       .sections_written = {"files", "boards", "cameras", "rigs", "images", "tables", "plans"},
       .files = {{"corners.csv", "found corners: image, corner, board and pixel coordinates, sigma"},
                 {"calibration.html",

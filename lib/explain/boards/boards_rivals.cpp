@@ -1,5 +1,5 @@
 // What it costs to leave out what is named, or to take a rival that explains the corners as well: both put the board
-// elsewhere. Without its water a board in a tank is believed a quarter nearer than it stands.
+// elsewhere, as a board in a tank looks nearer than it stands.
 #include <algorithm>
 #include <cmath>
 

@@ -44,9 +44,8 @@ const Domain& images() {
            {"reference.", "pictures are held against a simulation, and no white tile"},
            {"camera.thermal", "pictures of a scene state no temperature; corners with a column of it are boards"},
            {"camera.flat-port",
-            "moves the whole picture by more than the fast model looks around a pixel; corners of a board behind it "
-            "are "
-            "boards, and render has it"},
+            "moves the whole picture by more than the fast model looks around a pixel; corners of a board "
+            "behind it are boards, and render has it"},
            {"surface.micro-ridges",
             "glints between two and ten pixels wide: the model of a mean lobe holds for tables of a sample alone"},
            {"surface.residue", "reliefs turn with the sample, which is measured by tables of reflectance"},

@@ -147,12 +147,12 @@ TEST(ExplainBoards, WaterBetweenCameraAndBoardIsAFlatPort) {
     return words;
   };
   const auto air =
-      run(pictures({"calib-charuco", "--checkerboard", "8x7", "--square", "33.8mm", "--no-quality"}, "air_"),
+      run(pictures({"calib-charuco", "--parts", "--checkerboard", "8x7", "--square", "33.8mm", "--no-quality"}, "air_"),
           folder.path());
   ASSERT_EQ(air.status, 0) << air.err;
   write_file(folder.path() / "air.json", air.out);
-  const auto water = run(pictures({"calib-charuco", "--checkerboard", "8x7", "--square", "33.8mm", "--cameras",
-                                   "air.json", "--fix", "intrinsics", "--no-quality"},
+  const auto water = run(pictures({"calib-charuco", "--parts", "--checkerboard", "8x7", "--square", "33.8mm",
+                                   "--cameras", "air.json", "--fix", "intrinsics", "--no-quality"},
                                   "water_"),
                          folder.path());
   ASSERT_EQ(water.status, 2) << water.err;  // corners miss by more than 3 px
