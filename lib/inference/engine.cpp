@@ -288,6 +288,7 @@ Explanation explain(const Problem& problem, const Options& options) {
   Explanation e = explain_without(problem, options, {});
   if (!e.significant || !e.named.empty() || !e.misplaced.files.empty()) return e;
   System all = in_play(problem, options);
+  if (!odd_group_can_be_asked(all)) return e;
   const std::vector<double> start = starting_values(problem);
   settle_noise(all, start);
   const std::optional<std::size_t> odd = odd_group(Race(all, options), start);

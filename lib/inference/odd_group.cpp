@@ -32,13 +32,16 @@ std::vector<double> costs(const System& all, const std::vector<double>& start, c
 
 }  // namespace
 
-std::optional<std::size_t> odd_group(const Race& race, const std::vector<double>& start) {
-  const System& system = race.system();
-  const std::size_t groups = system.groups.size();
-  if (groups < fewest_groups || groups > most_groups) return std::nullopt;
+bool odd_group_can_be_asked(const System& system) {
+  const std::size_t groups = system.groups.size(), hypotheses = system.problem().candidates().size() + 1;
+  if (groups < fewest_groups || groups > most_groups) return false;
   double rows = 0;
   for (const std::size_t g : system.groups) rows += static_cast<double>(system.used_rows(g));
-  if (rows * static_cast<double>(groups * (race.allowed().size() + 1)) > most_rows) return std::nullopt;
+  return rows * static_cast<double>(groups * hypotheses) <= most_rows;
+}
+
+std::optional<std::size_t> odd_group(const Race& race, const std::vector<double>& start) {
+  const System& system = race.system();
   std::optional<std::size_t> odd;
   double least = under;
   const auto ask = [&](const std::vector<double>& from, const std::vector<std::size_t>& active) {

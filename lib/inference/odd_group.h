@@ -15,8 +15,9 @@ namespace gonio::inference {
 class Race;
 class System;
 
-// Among the groups of the race's system. Nothing where there are fewer than five or more than forty, or where the fits
-// would take more than seconds.
+// Are there five to forty groups, and would the fits take seconds only?
+bool odd_group_can_be_asked(const System& system);
+// Among the groups of the race's system.
 std::optional<std::size_t> odd_group(const Race& race, const std::vector<double>& start);
 
 }  // namespace gonio::inference
