@@ -5,6 +5,7 @@ complete -c explain -l level -x -d 'False alarms allowed to the null test and to
 complete -c explain -l hypotheses -x -d 'Consider this mechanism only; may be repeated. Default: all that apply.'
 complete -c explain -l protect -x -d 'Keep this parameter, or all whose name begins with it and a slash, at the manifests value: cameras/c.'
 complete -c explain -l negative-controls -x -d 'Mechanisms without physics that run in the same race.'
+complete -c explain -l resample -x -d 'Explain so many draws of three quarters of the recordings as well, and say how often the answer came out; it takes as many times longer.'
 complete -c explain -l repeat -r -d 'A further take of the same recordings, from which noise is measured; may be repeated.'
 complete -c explain -l budget -x -d 'Time to spend, turned into an amount of work that is the same on every machine; default: no limit.'
 complete -c explain -l html -r -d 'Write the report page here; with --out it is DIR/report.html.'

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/mechanisms/board_shape.h"
 #include "camera/mechanisms/camera_flat_port.h"
 #include "camera/mechanisms/camera_rolling_shutter.h"
 #include "camera/mechanisms/lens_lateral_colour.h"
@@ -19,7 +20,7 @@ constexpr int most_iterations = 50;
 constexpr double settled_px = 1e-10;
 
 constexpr std::array<std::string_view, 4> pinhole_names = {"fx_px", "fy_px", "cx_px", "cy_px"};
-constexpr std::array<std::string_view, C::count - BoardColumn::warp> further_names = {
+constexpr std::array<std::string_view, C::shape - BoardColumn::warp> further_names = {
     "sag_x_m",     "sag_y_m",     "motion_x_m", "motion_y_m", "scale_x",    "scale_y",     "pupil_m",    "red_linear",
     "red_cubic",   "blue_linear", "blue_cubic", "bias_x_px",  "bias_y_px",  "focal_per_K", "x_px_per_K", "y_px_per_K",
     "focal_per_s", "x_px_per_s",  "y_px_per_s", "index",      "distance_m", "tilt_x_rad",  "tilt_y_rad", "relative"};
@@ -72,12 +73,23 @@ Vec2 scaled(const Values& v, Vec2 at) {
   return {at.x * (1 + v[C::scale]), at.y * (1 + v[C::scale + 1])};
 }
 
+// Where a corner is on the board.
+Vec3 on_board(const CornerModel& m, Vec2 printed_m) {
+  static_assert(C::count - C::shape == equation::board_shape_terms.size());
+  const Vec2 at = scaled(m.values, printed_m);
+  const double* coefficients = &m.values[C::shape];
+  const double height = board_height(m.extent, at, &m.values[BoardColumn::warp]);
+  if (std::all_of(coefficients, coefficients + equation::board_shape_terms.size(), [](double c) { return c == 0; }))
+    return {at.x, at.y, height};
+  const Vec2 from = printed_m - m.extent.middle_m;
+  return Vec3{at.x, at.y, height} +
+         equation::board_shape(coefficients, from.x / m.extent.half_m.x, from.y / m.extent.half_m.y);
+}
+
 // The pixel for a board at rest at `pose`, without the bias.
 bool project(const CornerModel& m, const BoardPose& pose, const CornerPlace& place, Vec2& pixel) {
   const Values& v = m.values;
-  const Vec2 at = scaled(v, place.board_m);
-  const Vec3 p = equation::camera_flat_port(port_of(v),
-                                            pose * Vec3{at.x, at.y, board_height(m.extent, at, &v[BoardColumn::warp])});
+  const Vec3 p = equation::camera_flat_port(port_of(v), pose * on_board(m, place.board_m));
   const std::array point{p.x, p.y, v[C::pupil] != 0 ? p.z - pupil_of(v[C::pupil], p).s : p.z};
   const double* lens = &v[BoardColumn::distortion];
   double x = 0, y = 0, xd = 0, yd = 0;
@@ -169,7 +181,7 @@ bool differentiate(const CornerModel& m, const BoardPose& pose, const CornerPlac
   const Values& v = m.values;
   const Vec2 at = scaled(v, place.board_m), half = m.extent.half_m, from = at - m.extent.middle_m;
   const Mat3 r = matrix_of(pose.rotation);
-  const Vec3 q = r * Vec3{at.x, at.y, board_height(m.extent, at, &v[BoardColumn::warp])};
+  const Vec3 q = r * on_board(m, place.board_m);
   const equation::FlatPort port = port_of(v);
   const auto bent = equation::camera_flat_port_slopes(port, q + pose.translation_m);
   const Vec3 p = equation::camera_flat_port(port, q + pose.translation_m);
@@ -181,6 +193,8 @@ bool differentiate(const CornerModel& m, const BoardPose& pose, const CornerPlac
   const double rise_x = 1 - from.x * from.x / (half.x * half.x), rise_y = 1 - from.y * from.y / (half.y * half.y);
   const Vec2 slope{-2 * v[BoardColumn::warp] * from.x / (half.x * half.x),
                    -2 * v[BoardColumn::warp + 1] * from.y / (half.y * half.y)};
+  const Vec2 printed = place.board_m - m.extent.middle_m;
+  const auto shape = equation::board_shape_basis(printed.x / half.x, printed.y / half.y);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     auto& j = jacobian[axis];
     camera_columns(m, place, k, map, seen_at, axis, j);
@@ -203,6 +217,9 @@ bool differentiate(const CornerModel& m, const BoardPose& pose, const CornerPlac
     const double along_y = g.x * r(0, 1) + g.y * r(1, 1) + g.z * r(2, 1);
     j[C::scale] = place.board_m.x * (along_x + lift * slope.x);
     j[C::scale + 1] = place.board_m.y * (along_y + lift * slope.y);
+    const std::array<double, 3> along = {along_x, along_y, lift};
+    for (std::size_t t = 0; t < shape.size(); ++t)
+      j[C::shape + t] = along[static_cast<std::size_t>(equation::board_shape_terms[t].axis)] * shape[t];
     j[C::pupil] = -by(2) * pupil.by_pupil;
   }
   return true;
@@ -238,7 +255,11 @@ std::optional<std::size_t> corner_column(std::string_view parameter) {
   };
   if (const auto p = place(pinhole_names, BoardColumn::intrinsics)) return p;
   if (const auto p = place(distortion_names, BoardColumn::distortion)) return p;
-  return place(further_names, BoardColumn::warp);
+  if (const auto p = place(further_names, BoardColumn::warp)) return p;
+  const auto& terms = equation::board_shape_terms;
+  const auto found = std::ranges::find(terms, parameter, &equation::BoardShapeTerm::name);
+  if (found == terms.end()) return {};
+  return C::shape + static_cast<std::size_t>(found - terms.begin());
 }
 
 bool predict(const CornerModel& model, const CornerPlace& place, Vec2& pixel) {

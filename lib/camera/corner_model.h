@@ -2,6 +2,8 @@
 // that a table of corners can show. Frames: board (x along columns, y down the rows), camera (x right, y down, z
 // forward); metres, pixels, radians.
 //
+//   board.shape             (x, y, z) += sum of coefficient P_i P_j over the printed place
+//                           (camera/mechanisms/board_shape.h)
 //   board.scale             (x, y) -> ((1 + scale_x) x, (1 + scale_y) y) on the board; the warp's height at that place
 //   camera.rolling-shutter  the board stands at t + tau (motion_x_m, motion_y_m, 0) when row v is read,
 //                           tau = (v - (h - 1) / 2) / h; v solves v = P_v(t + tau(v) m) (Oth, Furgale, Kneip &
@@ -42,7 +44,8 @@ struct CornerColumn {                                         // continues Board
   static constexpr std::size_t by_time = by_temperature + 3;  // focal, x, y: 1/s, px/s
   static constexpr std::size_t port = by_time + 3;            // index, distance: m, tilt x, tilt y: rad
   static constexpr std::size_t focal = port + 4;              // relative change of fx and fy
-  static constexpr std::size_t count = focal + 1;
+  static constexpr std::size_t shape = focal + 1;             // as equation::board_shape_terms: m
+  static constexpr std::size_t count = shape + 26;
 };
 constexpr std::array<double, CornerColumn::count> neutral_corner_values() {
   std::array<double, CornerColumn::count> values{};

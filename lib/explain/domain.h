@@ -3,11 +3,13 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "explain/engine.h"
+#include "inference/explanation.h"
 
 namespace gonio::explain {
 
@@ -24,6 +26,18 @@ struct Untouched {
   std::string why;  // in words that hold for all of them
 };
 
+// What recordings that had no part in an answer say of it: a quantity of theirs that is smaller the truer the answer
+// is, without what it names and with it.
+struct Testimony {
+  std::string by, quantity, unit;  // "the arm", "turn of the board between its poses", "rad"
+  double before = 0, after = 0;    // root mean squares over its recordings
+  double errors = 0;               // by how many standard errors (over recordings) the mean square grows
+
+  bool refuted = false;  // by a rule of the witness's own
+  // One right answer in a thousand is contradicted by chance; and what grows by less than a twentieth is no objection.
+  bool contradicts() const { return refuted || (errors > 3 && after > 1.05 * before); }
+};
+
 struct Domain {
   std::string name;      // "boards", "images", "tables": the folder's
   std::string sentence;  // what recordings it takes
@@ -35,6 +49,12 @@ struct Domain {
   // What it leaves to another domain of the same recordings: mechanisms whose ids begin so ("lens.") are named here
   // only where that domain names them. Corners say of the lens all that poses fitted to them could say.
   std::string leaves{}, leaves_to{};
+  // Name of the domain whose answers its recordings are a witness of (explain/witness.h); empty: of none. `testify`
+  // compares the document without what was named and with it.
+  std::string witness_of{};
+  std::vector<Testimony> (*testify)(const manifest::Document& stated, const manifest::Document& mended) = nullptr;
+  // What the domain's own fit says against a candidate that it has named.
+  std::optional<Testimony> (*objects)(const Problem& problem, const Explanation& e, std::size_t candidate) = nullptr;
   bool (*applies)(const manifest::Document& document) = nullptr;
   std::vector<std::unique_ptr<Problem>> (*problems)(const manifest::Document& document,
                                                     const ProblemOptions& options) = nullptr;

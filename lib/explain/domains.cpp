@@ -59,10 +59,11 @@ std::set<std::string> refused_before(const Domain& domain, std::span<const Answe
   return refused;
 }
 
-Explanation explain_without(const Problem& problem, const Options& options, const std::set<std::string>& refused) {
+Explanation explain_without(const Problem& problem, const Options& options, const std::set<std::string>& refused,
+                            const std::vector<std::size_t>& left_out) {
   Options now = options;
   for (;;) {
-    Explanation e = explain(problem, now);
+    Explanation e = explain(problem, now, left_out);
     std::set<std::string> wrong;
     for (const std::size_t c : e.named)
       if (const std::string& id = problem.candidates()[c].id(); refused.contains(id)) wrong.insert(id);

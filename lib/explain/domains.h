@@ -30,8 +30,9 @@ struct Answered {
 // Mechanisms that `domain` leaves to one of `before` (Domain::leaves), and that this one looked at and did not name.
 std::set<std::string> refused_before(const Domain& domain, std::span<const Answered> before);
 // The explanation of `problem` in which none of `refused` is named: where one is, it is asked again without that one.
-// What they could explain still counts as a mismatch.
-Explanation explain_without(const Problem& problem, const Options& options, const std::set<std::string>& refused);
+// What they could explain still counts as a mismatch. `left_out`: groups that count as not recorded.
+Explanation explain_without(const Problem& problem, const Options& options, const std::set<std::string>& refused,
+                            const std::vector<std::size_t>& left_out = {});
 
 // Files of the manifest that these problems read: pictures, masks, meshes, tables, calibrations of robots.
 std::vector<std::filesystem::path> files_of(const manifest::Document& document);

@@ -11,9 +11,12 @@
 #include "base/atomic_file.h"
 #include "base/progress.h"
 #include "explain/domains.h"
+#include "explain/witness.h"
 #include "inference/entry.h"
 #include "inference/evidence.h"
 #include "inference/report.h"
+#include "inference/sentence.h"
+#include "inference/stability.h"
 #include "manifest/document.h"
 #include "mechanism/listing.h"
 
@@ -50,6 +53,15 @@ bool is_unmended(const std::deque<Told>& told, const std::string& domain) {
       told, [&](const Told& t) { return t.problem->domain() == domain && t.explanation.verdict == Verdict::unknown; });
 }
 
+// The same question of parts of the recordings: how often does the answer come out?
+void ask_parts(const Problem& problem, const ExplainRequest& request, std::set<std::string> refused, Explanation& e) {
+  for (const Explanation::Contradicted& c : e.contradicted) refused.insert(c.mechanism);
+  e.stability = inference::stability(problem, request.resample, request.options.seed, [&](const auto& left_out) {
+    return explain_without(problem, request.options, refused, left_out);
+  });
+  inference::write_sentence(problem, e);
+}
+
 // Matrices of some megabytes come and go by the thousand. Handed back to the system at once, a third of the time goes
 // into fetching their pages again.
 void keep_freed_memory() {
@@ -74,7 +86,9 @@ Exit explain_document(manifest::Document& document, const ExplainRequest& reques
     for (const Told& t : told) before.push_back({t.problem.get(), &t.explanation});
     Told& t = told.emplace_back(std::move(asked));
     const Problem& problem = *t.problem;
-    Explanation& e = t.explanation = explain_without(problem, request.options, refused_before(domain, before));
+    Explanation& e = t.explanation =
+        explain_before_witnesses(domain, problem, request.options, refused_before(domain, before), document);
+    if (request.resample > 0) ask_parts(problem, request, refused_before(domain, before), e);
     t.illustration = problem.illustrate(e, request.out, document);
     if (e.significant && !request.out.empty())
       t.illustration.observations = write_evidence(problem, e, evidence_name(told), request.out, document);

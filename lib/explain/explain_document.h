@@ -14,6 +14,7 @@ namespace gonio::explain {
 struct ExplainRequest {
   Options options;
   ProblemOptions recordings;
+  std::size_t resample = 0;    // so many draws of a part of the recordings are explained as well (Stability)
   std::filesystem::path out;   // folder for masks; empty: none are written
   std::filesystem::path page;  // report page; empty: none
 };

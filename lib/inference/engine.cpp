@@ -233,12 +233,14 @@ void place_stage(const Problem& problem, Explanation& e) {
 
 namespace {
 
-Explanation explain_without(const Problem& problem, const Options& options, const std::vector<std::size_t>& odd) {
+Explanation explain_without(const Problem& problem, const Options& options, const std::vector<std::size_t>& left_out,
+                            const std::vector<std::size_t>& odd) {
   Explanation e;
   e.odd_groups = odd;
   e.smallest_effect = options.smallest_effect;
   e.sure = options.sure;
-  System all = in_play(problem, options, odd);
+  System all = in_play(problem, options, left_out);
+  set_aside_groups(odd, all);
   const std::vector<double> start = starting_values(problem);
   const NoiseFindings noise = settle_noise(all, start);
   e.noise_factor = noise.factor;
@@ -284,16 +286,16 @@ Explanation explain_without(const Problem& problem, const Options& options, cons
 
 }  // namespace
 
-Explanation explain(const Problem& problem, const Options& options) {
-  Explanation e = explain_without(problem, options, {});
+Explanation explain(const Problem& problem, const Options& options, const std::vector<std::size_t>& left_out) {
+  Explanation e = explain_without(problem, options, left_out, {});
   if (!e.significant || !e.named.empty() || !e.misplaced.files.empty()) return e;
-  System all = in_play(problem, options);
+  System all = in_play(problem, options, left_out);
   if (!odd_group_can_be_asked(all)) return e;
   const std::vector<double> start = starting_values(problem);
   settle_noise(all, start);
   const std::optional<std::size_t> odd = odd_group(Race(all, options), start);
   if (!odd) return e;
-  Explanation without = explain_without(problem, options, {*odd});
+  Explanation without = explain_without(problem, options, left_out, {*odd});
   return without.verdict == Verdict::unknown ? e : without;
 }
 

@@ -25,7 +25,8 @@ struct Options {
   double budget_s = 0;  // 0: none; see ProblemOptions::budget_s
 };
 
-Explanation explain(const Problem& problem, const Options& options);
+// `left_out`: groups that count as not recorded, ascending.
+Explanation explain(const Problem& problem, const Options& options, const std::vector<std::size_t>& left_out = {});
 
 // The first steps alone, noise, fair refit and the null test, exactly as explain() takes them: the chance of such
 // structure in the residuals of the base model where nothing was left out. A mismatch is there at the level alpha where

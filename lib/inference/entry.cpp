@@ -191,6 +191,17 @@ std::vector<manifest::NotToldApart> not_told_apart(const Problem& problem, const
   return list;
 }
 
+manifest::AnswerStability stability(const Problem& problem, const Explanation& e) {
+  const Stability& s = *e.stability;
+  manifest::AnswerStability entry{static_cast<std::int64_t>(s.draws),
+                                  static_cast<std::int64_t>(s.groups),
+                                  static_cast<std::int64_t>(s.same(e.verdict, e.named)),
+                                  {}};
+  for (const Stability::Answer& a : s.answers)
+    entry.answers.push_back({verdict_name(a.verdict), ids_of(problem, a.named), static_cast<std::int64_t>(a.times)});
+  return entry;
+}
+
 }  // namespace
 
 manifest::Value entry_of(const Problem& problem, const Explanation& e, const Illustration& illustration) {
@@ -202,6 +213,9 @@ manifest::Value entry_of(const Problem& problem, const Explanation& e, const Ill
   for (const std::size_t c : e.named) entry.named.push_back(named_mechanism(problem, e, c));
   entry.not_told_apart = not_told_apart(problem, e);
   if (e.outside) entry.outside = outside(*e.outside);
+  for (const Explanation::Contradicted& c : e.contradicted)
+    entry.contradicted.push_back({c.mechanism, c.by, c.quantity, c.before, c.after, c.unit});
+  if (e.stability && e.stability->draws > 0) entry.stability = stability(problem, e);
   entry.located = located(e, illustration);
   entry.held_out = {.before = e.held_out_before,
                     .after = e.held_out_after,

@@ -131,6 +131,19 @@ struct PlannedMeasurement {
   double z = 0;                        // by how many standard errors it would part them
 };
 
+// What comes out where only a part of the groups had been recorded (stability.h).
+struct Stability {
+  std::size_t draws = 0, groups = 0;  // so many draws of so many groups
+  struct Answer {
+    Verdict verdict = Verdict::null;
+    std::vector<std::size_t> named;  // candidates, ascending; empty: nothing was named
+    std::size_t times = 0;
+  };
+  std::vector<Answer> answers;  // the most frequent first
+  // Draws whose answer names what `named` holds, no more and no less, or names nothing, as `verdict` has it.
+  std::size_t same(Verdict verdict, std::vector<std::size_t> named) const;
+};
+
 struct Explanation {
   Verdict verdict = Verdict::null;
   Misplaced misplaced;             // said before anything else; the verdict is then `unknown`
@@ -157,6 +170,14 @@ struct Explanation {
   std::vector<std::size_t> odd_groups{};  // set aside, as they fit nothing that explains the others (odd_group.h)
   double odd_score = 0;                   // theirs, with numbers of their own fitted
   double smallest_effect = 0.01;
+  // Names that other recordings of the same manifest speak against, and which are not named for that: a quantity of
+  // theirs, which a true name makes smaller or leaves alone, without it and with it.
+  struct Contradicted {
+    std::string mechanism, by, quantity, unit;
+    double before = 0, after = 0;
+  };
+  std::vector<Contradicted> contradicted{};
+  std::optional<Stability> stability{};
 
   std::vector<std::size_t> at_limits{};  // free parameters of the base model that its fit leaves at a bound
   std::vector<double> base_values;       // fair refit of the base model, all groups

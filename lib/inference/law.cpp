@@ -204,11 +204,11 @@ void tell(const LawData& data, const Judged& law, Explanation& e) {
   const double effect = system.problem().importance() == Importance::share_of_residual
                             ? 1 - std::sqrt(left_over / std::max(mismatch, 1e-300))
                             : std::sqrt(moved / std::max(norm, 1e-300));
-  if (effect < e.smallest_effect) return;
+  const Way& way = law.leading.outwards.tells() ? law.leading.outwards : law.leading.inwards;
+  if (effect < e.smallest_effect || way.after > (1 - e.smallest_effect) * way.before) return;
   outside = std::move(told);
   outside.condition = leading.name;
   outside.stage = leading.stage;
-  const Way& way = law.leading.outwards.tells() ? law.leading.outwards : law.leading.inwards;
   outside.held_out_before = way.before;
   outside.held_out_after = way.after;
   outside.split = law.leading.split;

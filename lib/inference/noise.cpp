@@ -15,15 +15,19 @@ NoiseFindings settle_noise(System& system, const std::vector<double>& start) {
   std::vector<std::size_t> active = problem.base();
   std::map<std::string, bool> taken;
   std::vector<double> values = start;
-  for (const Candidate& c : problem.candidates()) {
+  const auto take = [&](const Candidate& c) {
     std::string family = c.family.empty() ? c.id() : c.family;
     for (const std::string& on : c.on) family += "/" + on;
-    if (!taken.try_emplace(family, true).second) continue;
+    if (!taken.try_emplace(family, true).second) return;
     for (const std::size_t p : c.parameters) {
       active.push_back(p);
       values[p] = problem.parameters()[p].start;
     }
-  }
+  };
+  // Of one family the plain form: a finer one follows single strays where there are few groups.
+  for (const bool finer : {false, true})
+    for (const Candidate& c : problem.candidates())
+      if (c.finer == finer) take(c);
   const Fit flexible = fit(system, values, active);
   const std::vector<double> residual = system.raw_residual(flexible.values);
   findings.factor = problem.noise_factor(residual).value_or(1.0);

@@ -243,6 +243,40 @@ std::string odd_sentence(const Problem& problem, const Explanation& e) {
   return text;
 }
 
+// Names that others know better.
+std::string contradicted_sentence(const Explanation& e) {
+  std::string text;
+  for (const Explanation::Contradicted& c : e.contradicted)
+    text += " " + c.mechanism + " is not named: " + c.by + " contradicts it (" + c.quantity + ": " +
+            (c.unit == "1"
+                 ? share_in_words(c.after) + " instead of " + share_in_words(c.before)
+                 : score_in_words(c.before, c.unit) + " without it, " + score_in_words(c.after, c.unit) + " with it") +
+            ").";
+  return text;
+}
+
+// "The same answer came out in 14 of 20 draws of 6 of the 8 board views; otherwise lens.radial 4 times, nothing twice."
+std::string stability_sentence(const Problem& problem, const Explanation& e) {
+  if (!e.stability || e.stability->draws == 0) return "";
+  const Stability& s = *e.stability;
+  const std::size_t same = s.same(e.verdict, e.named);
+  std::string text = " The same answer came out in " + std::to_string(same) + " of " + std::to_string(s.draws) +
+                     " draws of " + std::to_string(s.groups) + " of the " +
+                     std::to_string(problem.observations().groups()) + " " + problem.group_noun() + "s";
+  std::vector<std::size_t> own = e.named;
+  std::sort(own.begin(), own.end());
+  std::string others;
+  for (const Stability::Answer& a : s.answers) {
+    if (a.named == own && (!own.empty() || a.verdict == e.verdict)) continue;
+    const std::string what = !a.named.empty()                ? listed(problem, a.named, 0, " with ")
+                             : a.verdict == Verdict::unknown ? std::string("nothing in the library")
+                                                             : std::string("nothing left out");
+    others += (others.empty() ? "; otherwise " : ", ") + what + " " + std::to_string(a.times) +
+              (a.times == 1 ? " time" : " times");
+  }
+  return text + others + ".";
+}
+
 std::string measurement(const Problem& problem, const Explanation& e) {
   for (const std::vector<std::size_t>& set : e.not_told_apart)
     for (std::size_t k = 1; k < set.size(); ++k) {
@@ -280,7 +314,8 @@ void write_sentence(const Problem& problem, Explanation& e) {
   }
   e.sentence =
       limits_sentence(problem, e) + (e.named.empty() ? plain_sentence(problem, e) : named_sentence(problem, e));
-  e.sentence += minor_sentence(problem, e) + unused_sentence(problem) + odd_sentence(problem, e);
+  e.sentence += minor_sentence(problem, e) + unused_sentence(problem) + odd_sentence(problem, e) +
+                contradicted_sentence(e) + stability_sentence(problem, e);
   if (const std::string remarks = problem.remarks(e); !remarks.empty()) e.sentence += " " + remarks;
   if (!e.shortened.empty()) e.sentence += " " + e.shortened;
   e.next_measurement = measurement(problem, e);

@@ -78,6 +78,37 @@ const std::vector<Field<ExplainedNoise>>& explained_noise_fields() {
   return table;
 }
 
+const std::vector<Field<ContradictedName>>& contradicted_name_fields() {
+  using T = ContradictedName;
+  static const std::vector<Field<T>> table{
+      field("mechanism", &T::mechanism, "", "its id").always("").needed(),
+      field("by", &T::by, "", "whose recordings speak against it").always(""),
+      field("quantity", &T::quantity, "", "of theirs, which a true name makes smaller or leaves alone").always(""),
+      number_field("before", &T::before, "", "without the mechanism, root mean square"),
+      number_field("after", &T::after, "", "with it"),
+      field("unit", &T::unit, "", "of both").always("")};
+  return table;
+}
+
+const std::vector<Field<AnswerOfParts>>& answer_of_parts_fields() {
+  using T = AnswerOfParts;
+  static const std::vector<Field<T>> table{
+      field("verdict", &T::verdict, "", "as for the whole").one_of({"null", "named", "ambiguous", "unknown"}),
+      field("named", &T::named, "", "mechanisms that were named together").always(Value::array()),
+      field("times", &T::times, "", "in so many draws").range(0, infinite)};
+  return table;
+}
+
+const std::vector<Field<AnswerStability>>& answer_stability_fields() {
+  using T = AnswerStability;
+  static const std::vector<Field<T>> table{
+      field("draws", &T::draws, "", "parts that were explained").range(0, infinite),
+      field("groups", &T::groups, "", "recordings in each").range(0, infinite),
+      field("same", &T::same, "", "draws whose answer is that of the whole").range(0, infinite),
+      field("answers", &T::answers, "", "what came out, the most frequent first").always(Value::array())};
+  return table;
+}
+
 const std::vector<Field<NegativeControls>>& negative_controls_fields() {
   using T = NegativeControls;
   static const std::vector<Field<T>> table{
@@ -216,6 +247,8 @@ const std::vector<Field<ExplanationEntry>>& explanation_fields() {
             "lists of ids of which each could stand for the first, or of whole sets, each an explanation")
           .always(Value::array()),
       outside_field(),
+      field("contradicted", &T::contradicted, "", "names that other recordings of the document speak against"),
+      field("stability", &T::stability, "", "what parts of the recordings say: explain --resample"),
       field("located", &T::located, "", "where the mismatch is; null: there is none").or_null(),
       field("held_out", &T::held_out, "", "errors on recordings that the fit never saw"),
       field("fitted", &T::fitted, "", "the same score on those that it saw"),
@@ -236,6 +269,9 @@ const std::vector<Field<ExplanationEntry>>& explanation_fields() {
 GONIO_RECORD(HeldOutScore, held_out_score_fields);
 GONIO_RECORD(NullTest, null_test_fields);
 GONIO_RECORD(ExplainedNoise, explained_noise_fields);
+GONIO_RECORD(ContradictedName, contradicted_name_fields);
+GONIO_RECORD(AnswerOfParts, answer_of_parts_fields);
+GONIO_RECORD(AnswerStability, answer_stability_fields);
 GONIO_RECORD(NegativeControls, negative_controls_fields);
 GONIO_RECORD(ScoredHypothesis, scored_hypothesis_fields);
 GONIO_RECORD(WeighedAnswer, weighed_answer_fields);

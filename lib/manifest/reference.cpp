@@ -230,6 +230,10 @@ void add_explanations(List& all) {
   all.push_back(part(e + "held_out", "The proof.", held_out_score_fields()));
   all.push_back(part(e + "fitted", "Also of outside.", before_after_fields()));
   all.push_back(part(e + "null_test", "Is there a mismatch?", null_test_fields()));
+  all.push_back(
+      part(e + "contradicted", "Names that do not stand before what others recorded.", contradicted_name_fields()));
+  all.push_back(part(e + "stability", "The same question of parts of the recordings.", answer_stability_fields()));
+  all.push_back(part(e + "stability/answers", "One answer, and how often.", answer_of_parts_fields()));
   all.push_back(part(e + "noise", "Against what was stated.", explained_noise_fields()));
   all.push_back(part(e + "negative_controls", "Mechanisms without physics.", negative_controls_fields()));
   all.push_back(part(e + "scoreboard", "One for each hypothesis.", scored_hypothesis_fields()));

@@ -81,7 +81,8 @@ TEST(CornerModel, DerivativesAreThoseOfDifferences) {
            {"blue_linear", -1e-3}, {"blue_cubic", 3e-3},  {"bias_x_px", 0.4},    {"bias_y_px", -0.3},
            {"focal_per_K", 1e-4},  {"x_px_per_K", 0.1},   {"y_px_per_K", -0.2},  {"focal_per_s", 1e-6},
            {"x_px_per_s", 1e-3},   {"y_px_per_s", -2e-3}, {"index", 1.31},       {"distance_m", 0.05},
-           {"tilt_x_rad", 0.06},   {"tilt_y_rad", -0.09}, {"relative", 0.02}})
+           {"tilt_x_rad", 0.06},   {"tilt_y_rad", -0.09}, {"relative", 0.02},    {"z11_m", 2e-4},
+           {"z40_m", -1e-4},       {"x21_m", 3e-5},       {"y03_m", -4e-5}})
     m.values[column(name)] = value;
   for (const CornerPlace& place : places()) {
     Vec2 at, up, down;

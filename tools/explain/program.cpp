@@ -26,6 +26,7 @@ gonio::explain::ExplainRequest request_of(cli::Invocation& call) {
   request.options.seed = call.seed;
   request.options.budget_s = request.recordings.budget_s = call.given("budget") ? call.number("budget") : 0;
   for (const std::string& path : call.texts("repeat")) request.recordings.repeats.emplace_back(path);
+  request.resample = static_cast<std::size_t>(call.integer("resample"));
   request.out = call.out;
   if (call.given("html"))
     request.page = call.text("html");
@@ -140,6 +141,14 @@ std::vector<cli::Option> engine_options() {
        .lower = 0,
        .upper = 1000,
        .aliases = {"dummies"}},
+      {.name = "resample",
+       .type = Type::integer,
+       .help = "Explain so many draws of three quarters of the recordings as well, and say how often the answer came "
+               "out; it takes as many times longer.",
+       .metavar = "N",
+       .preset = "0",
+       .lower = 0,
+       .upper = 1000},
       {.name = "repeat",
        .type = Type::input_file,
        .help = "A further take of the same recordings, from which noise is measured; may be repeated.",

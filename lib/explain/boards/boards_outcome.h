@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "explain/boards/boards_problem.h"
+#include "explain/domain.h"
 #include "inference/explanation.h"
 
 namespace gonio::explain {
@@ -50,6 +51,15 @@ Vec2 by_millimetre(const BoardsInput& input, const BoardsInput::View& view, cons
 
 // Where a board's columns or rows stand beside where they should, by as much in all views: words, or nothing.
 std::string uneven_print(const BoardsInput& input, const Explanation& explanation);
+
+// The shapes of boards that board.shape is named on, in millimetres: words, or nothing.
+std::string shapes_in_words(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
+                            const Explanation& explanation);
+
+// Do the poses predict the motions that a rolling shutter has been given?
+std::optional<Testimony> motion_objection(const Problem& problem, const BoardsInput& input,
+                                          const std::vector<BoardRole>& roles, const Explanation& explanation,
+                                          std::size_t candidate);
 
 // How far off the base model puts the board, and rivals that could stand in the place of what is named, with their
 // numbers, where that is 2 % or more of its distance; words, or nothing.

@@ -7,6 +7,11 @@
 #include "base/error.h"
 #include "explain/boards/boards_outcome.h"
 
+namespace gonio::mechanism {
+const Mechanism& board_shape();
+const Mechanism& board_warp();
+}  // namespace gonio::mechanism
+
 namespace gonio::explain {
 namespace {
 
@@ -22,6 +27,10 @@ constexpr std::array<const char*, 6> pose_names = {"rotation_x_rad",  "rotation_
 bool is_lens(std::size_t column) {
   return column >= BoardColumn::distortion && column < BoardColumn::rotation;
 }
+// A board whose base model has the sag has these two terms of its shape already.
+bool is_sag(std::size_t column) {
+  return column == camera::corner_column("z20_m") || column == camera::corner_column("z02_m");
+}
 bool is_motion(std::size_t column) {
   return column >= CornerColumn::motion && column < CornerColumn::scale;
 }
@@ -32,6 +41,7 @@ double size_of(std::size_t column) {
   if (column < CornerColumn::scale) return 1e-4;  // warp and motion, m
   if (column < CornerColumn::bias) return 1e-3;   // scale, pupil, colour
   if (column < CornerColumn::by_temperature) return 0.1;
+  if (column >= CornerColumn::shape) return 1e-4;
   if (column >= CornerColumn::port) return 0.01;  // index, m, rad, a share
   const bool by_time = column >= CornerColumn::by_time;
   const bool focal = column == CornerColumn::by_temperature || column == CornerColumn::by_time;
@@ -163,6 +173,9 @@ class Declaration {
     }
     for (const std::string& rate : rates) {
       Candidate candidate{&m, {}, {}, rates.size() > 1 ? m.id : ""};
+      // A sag, or any smooth shape of which it is a part.
+      if (m.id == mechanism::board_warp().id || m.id == mechanism::board_shape().id)
+        candidate.family = "the board's shape";
       const bool of_board = m.target == mechanism::Target::board;
       for (std::size_t t = 0; t < (of_board ? input_.boards.size() : input_.cameras.size()); ++t)
         add_target(m, rate, of_board, t, candidate);
@@ -187,7 +200,7 @@ class Declaration {
                     "mechanism " + m.id + " has no term " + p.name + " in tables of corners");
       const BoardRole role = role_of(of_board, target, *column);
       if (rate_of(p) != rate || !can_be_shown(role)) continue;
-      candidate.finer = *column == BoardColumn::distortion + LensTerm::fisheye;
+      candidate.finer = *column == BoardColumn::distortion + LensTerm::fisheye || *column >= CornerColumn::shape;
       if (is_motion(*column)) {
         motions.emplace_back(&p, *column);
         continue;
@@ -232,6 +245,7 @@ class Declaration {
     if (role.board != none && column < CornerColumn::motion) return !input_.boards[role.board].warped;
     if (column == CornerColumn::scale + 1) return false;  // only the ratio of the two shows
     if (column >= CornerColumn::colour && column < CornerColumn::bias) return has_colour(role.camera, column);
+    if (column >= CornerColumn::shape) return !is_sag(column) || !input_.boards[role.board].warped;
     if (column >= CornerColumn::focal) return input_.cameras[role.camera].held;
     if (column >= CornerColumn::port) return true;
     if (column >= CornerColumn::by_time) return varies(&BoardsInput::View::later_s);

@@ -136,8 +136,14 @@ class BoardsProblem : public Problem {
   }
 
   std::string remarks(const Explanation& e) const override {
-    const std::string cost = rivals_cost(*this, input_, roles_, e), print = uneven_print(input_, e);
-    return cost + (cost.empty() || print.empty() ? "" : " ") + print;
+    std::string text;
+    for (const std::string& said :
+         {shapes_in_words(*this, input_, roles_, e), rivals_cost(*this, input_, roles_, e), uneven_print(input_, e)})
+      text += (text.empty() || said.empty() ? "" : " ") + said;
+    return text;
+  }
+  std::optional<Testimony> objection(const Explanation& e, std::size_t candidate) const {
+    return motion_objection(*this, input_, roles_, e, candidate);
   }
   void apply(const Explanation& e, manifest::Document& document) const override {
     upgrade_boards(*this, input_, roles_, e, document);
@@ -180,6 +186,11 @@ class BoardsProblem : public Problem {
 };
 
 }  // namespace
+
+std::optional<Testimony> boards_objection(const Problem& problem, const Explanation& e, std::size_t candidate) {
+  const auto* boards = dynamic_cast<const BoardsProblem*>(&problem);
+  return boards == nullptr ? std::nullopt : boards->objection(e, candidate);
+}
 
 std::unique_ptr<Problem> boards_problem(BoardsInput input) {
   return std::make_unique<BoardsProblem>(std::move(input));

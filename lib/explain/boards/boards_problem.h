@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "camera/corner_model.h"
+#include "explain/domain.h"
 #include "explain/engine.h"
 
 namespace gonio::explain {
@@ -72,5 +73,8 @@ BoardsInput boards_input(const manifest::Document& document);
 void settle_views(BoardsInput& input);
 
 std::unique_ptr<Problem> boards_problem(BoardsInput input);
+// Of such a problem: what its fit says against a candidate that it has named (Domain::objects).
+std::optional<Testimony> boards_objection(const Problem& problem, const Explanation& explanation,
+                                          std::size_t candidate);
 
 }  // namespace gonio::explain

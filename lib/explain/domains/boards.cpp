@@ -11,6 +11,7 @@ const Domain& boards() {
       .name = "boards",
       .sentence = "tables of board corners with their cameras and boards (calib-charuco)",
       .order = 1,
+      .objects = boards_objection,
       .applies = has_boards,
       .problems =
           [](const manifest::Document& document, const ProblemOptions&) {

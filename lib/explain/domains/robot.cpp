@@ -3,6 +3,7 @@
 
 #include "explain/domain.h"
 #include "explain/robot/robot_problem.h"
+#include "explain/robot/robot_witness.h"
 #include "manifest/document.h"
 
 namespace gonio::explain::domains {
@@ -14,6 +15,8 @@ const Domain& robot() {
       .order = 3,
       .leaves = "lens.",
       .leaves_to = "boards",
+      .witness_of = "boards",
+      .testify = hand_eye_testimony,
       .applies = has_hand_eye,
       .problems =
           [](const manifest::Document& document, const ProblemOptions&) {
@@ -32,6 +35,7 @@ const Domain& robot() {
       .untouched =
           {{"board.corner-bias",
             "a constant shift of all corners is the camera's mounting, by which they are held; boards shows it"},
+           {"board.shape", "left to boards, which has the corners themselves: poses average over it"},
            {"lens.",
             "poses from corners say of the lens what these terms of it say; all others are left to boards, which has "
             "the corners themselves"},

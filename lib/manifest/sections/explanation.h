@@ -162,6 +162,21 @@ struct NextMeasurement {
   std::vector<PlannedMeasurement> plan;
 };
 
+struct ContradictedName {
+  std::string mechanism, by, quantity;
+  double before = not_known, after = not_known;
+  std::string unit;
+};
+struct AnswerOfParts {
+  std::string verdict;
+  std::vector<std::string> named;
+  std::int64_t times = 0;
+};
+struct AnswerStability {
+  std::int64_t draws = 0, groups = 0, same = 0;
+  std::vector<AnswerOfParts> answers;
+};
+
 struct ExplanationEntry {
   std::string domain, verdict;
   std::optional<double> probability;  // of the verdict
@@ -169,6 +184,8 @@ struct ExplanationEntry {
   std::vector<NamedMechanism> named;
   std::vector<NotToldApart> not_told_apart;
   std::optional<OutsideLibrary> outside;
+  std::vector<ContradictedName> contradicted;
+  std::optional<AnswerStability> stability;
   std::optional<LocatedMismatch> located;
   HeldOutScore held_out;
   BeforeAfter fitted;

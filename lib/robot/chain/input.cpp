@@ -7,12 +7,14 @@
 
 #include "base/error.h"
 #include "camera/board.h"
+#include "camera/corner_model.h"
 #include "camera/corner_table.h"
 #include "manifest/document.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/laboratory.h"
+#include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/mounting.h"
 #include "manifest/sections/plan.h"
 #include "manifest/sections/robot.h"
@@ -111,6 +113,20 @@ void read_corners(const manifest::Document& document, ChainInput& input) {
   }
 }
 
+// Terms of the manifest that move corners, and that a pose solved from corners here would not know: the poses as they
+// stand were fitted with them.
+bool corners_moved_elsewhere(const manifest::Document& document, const ChainInput& input) {
+  return std::ranges::any_of(document.mechanisms, [&](const auto& entry) {
+    const auto& on = entry.second.on;
+    const auto names = [&](const std::string& name) { return on.empty() || std::ranges::find(on, name) != on.end(); };
+    return (names(input.camera) || names(input.board)) &&
+           std::ranges::any_of(entry.second.parameters, [](const auto& parameter) {
+             const auto column = camera::corner_column(parameter.first);
+             return column && *column >= camera::CornerColumn::pupil;
+           });
+  });
+}
+
 ChainInput::View view_of(const manifest::Document& document, const manifest::ImageEntry& image,
                          const ChainInput& input) {
   ChainInput::View view;
@@ -189,7 +205,7 @@ ChainInput input_of(const manifest::Document& document, const std::string& name,
   find_passage(input);  // by all poses: the arm went through those that are left out, too
   std::erase_if(input.views,
                 [left_out = strays(document, m)](const ChainInput::View& v) { return is_among(v.image, left_out); });
-  read_corners(document, input);
+  if (!corners_moved_elsewhere(document, input)) read_corners(document, input);
   even_out(document, input);
   return input;
 }

@@ -3,9 +3,9 @@
 // the full runs.
 #include <gtest/gtest.h>
 
+#include "explain/boards/residual_cases.h"
 #include "explain/engine.h"
 #include "inference/explanation.h"
-#include "explain/boards/residual_cases.h"
 
 namespace gonio::prove {
 namespace {
