@@ -12,14 +12,15 @@ namespace {
 
 constexpr double most_over_noise = 1.5;  // residuals over the stated noise that are called noise
 
+// " It shows where the half angle is below 25 degrees."
 std::string located_in(const Problem& problem, const Explanation& e) {
   if (e.conditions.empty()) return "";
   const LocatedCondition& c = e.conditions[0];
-  if (!tells_where(c)) return " (" + nowhere_in_words(problem, c) + ")";
-  if (c.period > 0) return ", seen as " + place_in_words(problem, c);
-  const std::string range = range_in_words(c);
-  if (range.empty()) return ", seen over the whole range of the " + condition_in_words(c.name);
-  return ", seen where the " + condition_in_words(c.name) + " is " + range;
+  if (!tells_where(c)) return " N" + nowhere_in_words(problem, c).substr(1) + ".";
+  const std::string shows = e.named.size() == 1 ? " It shows " : " They show ", range = range_in_words(c);
+  if (c.period > 0) return shows + "as " + place_in_words(problem, c) + ".";
+  if (range.empty()) return shows + "over the whole range of the " + condition_in_words(c.name) + ".";
+  return shows + "where the " + condition_in_words(c.name) + " is " + range + ".";
 }
 
 std::string law_sentence(const Problem& problem, const Outside& o) {
@@ -70,16 +71,15 @@ std::string likeliest_sentence(const Problem& problem, const Explanation& e) {
   return "";
 }
 
+// The physics in its own words, where it shows, and what it is worth.
 std::string named_sentence(const Problem& problem, const Explanation& e) {
-  std::string text = "The recordings show ";
-  for (std::size_t k = 0; k < e.named.size(); ++k) {
-    text += (k == 0 ? "" : k + 1 == e.named.size() ? " and " : ", ") + mechanism_in_words(problem, e.named[k]);
-    if (const std::string own = parameters_in_words(problem, e, e.named[k]); !own.empty()) text += " (" + own + ")";
-  }
-  text += located_in(problem, e) + ": with " + (e.named.size() == 1 ? "it" : "them") + " the " + problem.score_name() +
-          " on " + (e.test_groups.empty() ? "left-out " : "unseen ") + problem.group_noun() + "s falls from " +
-          score_in_words(e.held_out_before, problem.unit()) + " to " +
-          score_in_words(e.held_out_after, problem.unit()) + ".";
+  std::string text = e.verdict == Verdict::ambiguous ? "Likeliest: " : "";
+  for (std::size_t k = 0; k < e.named.size(); ++k)
+    text += (k == 0 ? "" : " ") + physics_in_words(problem, e, e.named[k]);
+  text += located_in(problem, e) + " With " + (e.named.size() == 1 ? "it, " : "them, ") + problem.group_noun() +
+          "s that the fit " + (e.test_groups.empty() ? "left out" : "never saw") + " are predicted to " +
+          score_in_words(e.held_out_after, problem.unit()) + " instead of " +
+          score_in_words(e.held_out_before, problem.unit()) + " (" + problem.score_name() + ").";
   text += sure_sentence(problem, e);
   for (const std::vector<std::size_t>& set : e.not_told_apart)
     text += " In the place of " + problem.candidates()[set[0]].id() + " it could be " +

@@ -46,6 +46,7 @@ std::string plain_number(double value, int digits) {
 Shown shown_in(const std::string& unit, double size) {
   size = std::abs(size);
   if (unit == "rad") return {180 / std::numbers::pi, "degrees"};
+  if (unit == "m" && size > 0 && size < 99.5e-9) return {1e9, "nm"};
   if (unit == "m" && size > 0 && size < 0.0995) return size < 99.5e-6 ? Shown{1e6, "µm"} : Shown{1e3, "mm"};
   if (unit == "s" && size > 0 && size < 0.0995) return {1e3, "ms"};
   if (unit.empty() || unit == "1") return {1, ""};
@@ -143,7 +144,37 @@ std::vector<std::string> minor_mechanisms(const Problem& problem, const Explanat
   return ids;
 }
 
-std::string parameters_in_words(const Problem& problem, const Explanation& e, std::size_t candidate) {
+namespace {
+
+// What the mechanism says that its parameter means, up to the first aside; its short name where that is long.
+std::string meaning_of(const mechanism::Mechanism& m, const std::string& name) {
+  constexpr std::size_t longest = 48;
+  for (const mechanism::Parameter& p : m.parameters)
+    if (name.ends_with(p.name)) {
+      const std::string words = p.meaning.substr(0, p.meaning.find_first_of(";:,("));
+      if (!words.empty() && words.size() <= longest)
+        return words.ends_with(' ') ? words.substr(0, words.size() - 1) : words;
+    }
+  return short_name(name);
+}
+
+// A clear dielectric's reflectance at normal incidence is known better by its refractive index.
+std::string index_in_words(const std::string& name, const Estimate& x) {
+  if (short_name(name) != "f0" || !(x.value > 0) || x.value > 0.2) return "";
+  const double root = std::sqrt(x.value), index = (1 + root) / (1 - root);
+  return ", a refractive index of " + estimate_in_words(index, x.sigma / (root * (1 - root) * (1 - root)), "1");
+}
+
+}  // namespace
+
+std::string physics_in_words(const Problem& problem, const Explanation& e, std::size_t candidate) {
+  const std::string& sentence = problem.candidates()[candidate].mechanism->sentence;
+  const std::string own = parameters_in_words(problem, e, candidate, Called::by_meaning);
+  return sentence.substr(0, sentence.find_last_not_of('.') + 1) + " (" + mechanism_in_words(problem, candidate) +
+         (own.empty() ? "" : ": ") + own + ").";
+}
+
+std::string parameters_in_words(const Problem& problem, const Explanation& e, std::size_t candidate, Called called) {
   const std::vector<std::size_t>& own = problem.candidates()[candidate].parameters;
   const auto of_all = [&](std::size_t p) { return problem.parameters()[p].groups.size() != 1; };
   if (static_cast<std::size_t>(std::ranges::count_if(own, of_all)) > numbers_of_a_list) return "";
@@ -164,7 +195,11 @@ std::string parameters_in_words(const Problem& problem, const Explanation& e, st
   std::string text;
   for (const Estimate* x : clear) {
     const Parameter& p = problem.parameters()[x->parameter];
-    text += (text.empty() ? "" : ", ") + short_name(p.name) + " " + estimate_in_words(x->value, x->sigma, p.unit);
+    const bool meant = called == Called::by_meaning;
+    const std::string name =
+        meant ? meaning_of(*problem.candidates()[candidate].mechanism, p.name) : short_name(p.name);
+    text += (text.empty() ? "" : ", ") + name + " " + estimate_in_words(x->value, x->sigma, p.unit);
+    if (meant) text += index_in_words(p.name, *x);
   }
   return text;
 }

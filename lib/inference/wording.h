@@ -34,9 +34,15 @@ bool tells_where(const LocatedCondition& located);
 // "no condition carries it: the most telling, the hue, holds 4 % of the excess"
 std::string nowhere_in_words(const Problem& problem, const LocatedCondition& located);
 std::string mechanism_in_words(const Problem& problem, std::size_t candidate);  // "surface.interface on bunny"
+// The mechanism's sentence, with its id, its targets and its clearest numbers by what they mean: "A clear interface
+// lies over the matte base ... (surface.interface on bunny: reflectance at normal incidence 0.043 ± 0.002, ...)."
+std::string physics_in_words(const Problem& problem, const Explanation& explanation, std::size_t candidate);
 // Ids of mechanisms that are there, but matter too little; each once, and none that is named.
 std::vector<std::string> minor_mechanisms(const Problem& problem, const Explanation& explanation);
-// "f0 0.043 ± 0.002, alpha 0.10 ± 0.01": of one named candidate, the two clearest.
-std::string parameters_in_words(const Problem& problem, const Explanation& explanation, std::size_t candidate);
+// "f0 0.043 ± 0.002, alpha 0.10 ± 0.01": of one named candidate, the two clearest. By their names, or by what the
+// mechanism declares that they mean.
+enum class Called { by_name, by_meaning };
+std::string parameters_in_words(const Problem& problem, const Explanation& explanation, std::size_t candidate,
+                                Called called = Called::by_name);
 
 }  // namespace gonio::inference

@@ -145,7 +145,7 @@ class Boards final : public World {
         .only_for("warm-up");
     add({"any radial", "lens.radial", lens, radius, 0.05, 0.2}).of_either_sign().of_parts(3).only_for("a rival");
     add({"periodic error of the columns", "", {"sensor"}, {"camera.image-x"}, 0.15, 0.6});
-    add({"dog-ear", "", {"board"}, board, 1e-3, 5e-3}).of_either_sign();
+    add({"dog-ear", "board.shape", {"board"}, board, 1e-3, 5e-3}).of_either_sign();
     return k;
   }
   void design(Random& random, const std::string& variant) override {

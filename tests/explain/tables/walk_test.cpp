@@ -96,6 +96,10 @@ World refraction() {
   return rows_of({{"theta_i", "rad"}, {"wavelength_m", "m"}, {"theta_t", "rad"}}, 300, "",
                  R"("model": "volume", "observed": ["theta_t"], "parameters": {"eta": 1.5})", usual);
 }
+World ellipsometer() {
+  return rows_of({{"theta_i", "rad"}, {"wavelength_m", "m"}, {"substrate_n", "1"}, {"psi", "rad"}, {"delta", "rad"}},
+                 300, "", R"("model": "ellipsometer", "observed": ["psi", "delta"])", usual);
+}
 World surface() {
   return rows_of({{"theta_i", "rad"},
                   {"phi_i", "rad"},
@@ -137,12 +141,14 @@ const std::set<std::string> no_shadows = {"light.visibility", "scene.ambient-vis
                                           "surface.exitance-angle", "light.identity"};
 INSTANTIATE_TEST_SUITE_P(
     Models, Candidates,
-    testing::Values(Walk{"sensor", sensor, {"surface.incidence-angle", "scene.ambient-visibility", "light.visibility"}},
-                    Walk{"light", light, no_shadows}, Walk{"parallel", parallel_light, no_shadows},
-                    Walk{"volume", volume, {"image.exposure"}}, Walk{"refraction", refraction, {"image.exposure"}},
-                    Walk{"surface", surface, {"surface.spatial-frequency", "surface.lay-azimuth"}},
-                    // Centres of markers have no edges and throw no shadows; a volume's walls are not there.
-                    Walk{"markers", markers, {"image.edge-distance", "light.shadow-edge-distance", "volume.size"}}),
+    testing::Values(
+        Walk{"sensor", sensor, {"surface.incidence-angle", "scene.ambient-visibility", "light.visibility"}},
+        Walk{"light", light, no_shadows}, Walk{"parallel", parallel_light, no_shadows},
+        Walk{"volume", volume, {"image.exposure"}}, Walk{"refraction", refraction, {"image.exposure"}},
+        Walk{"ellipsometer", ellipsometer, {"surface.wavelength", "surface.difference-angle", "surface.half-angle"}},
+        Walk{"surface", surface, {"surface.spatial-frequency", "surface.lay-azimuth"}},
+        // Centres of markers have no edges and throw no shadows; a volume's walls are not there.
+        Walk{"markers", markers, {"image.edge-distance", "light.shadow-edge-distance", "volume.size"}}),
     [](const auto& i) { return std::string(i.param.model); });
 
 // A column that is named after the observed one is its noise: with it the table states it, and it is no condition.
