@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "explain/tables/read_table.h"
 #include "explain/tables/unit.h"
+#include "inference/wording.h"
 #include "manifest/document.h"
 #include "manifest/sections/table.h"
 
@@ -19,9 +20,15 @@ struct Grouping {
   std::vector<std::string> names;
 };
 
+// "40 degrees", "0.02": of a column, to the digits in which groups differ.
+std::string number_name(const RawTable& raw, std::size_t column, double value) {
+  constexpr int digits = 7;
+  return raw.units[column].text() == "rad" ? inference::quantity(value, "rad", digits) : inference::printed(value, digits);
+}
+
 std::string value_name(const RawTable& raw, std::size_t column, double value) {
   if (!raw.labels[column].empty()) return raw.labels[column][static_cast<std::size_t>(value)];
-  return raw.columns[column] + " " + shortest_text(value);
+  return raw.columns[column] + " " + number_name(raw, column, value);
 }
 
 Grouping by_column(const RawTable& raw, std::size_t column) {
@@ -51,8 +58,8 @@ Grouping by_stretches(const RawTable& raw, std::size_t column) {
     const std::size_t until = std::max(start + 1, (g + 1) * order.size() / wanted);
     while (k < order.size() && (k < until || x[order[k]] == x[order[k - 1]])) grouping.of_row[order[k++]] = g;
     const double from = x[order[start]], to = x[order[k - 1]];
-    grouping.names.push_back(raw.columns[column] + " " + shortest_text(from) +
-                             (to > from ? " to " + shortest_text(to) : ""));
+    grouping.names.push_back(raw.columns[column] + " " + number_name(raw, column, from) +
+                             (to > from ? " to " + number_name(raw, column, to) : ""));
   }
   return grouping;
 }
