@@ -1,6 +1,8 @@
 // Motions of a rolling shutter that follow from where the board stands are none (explain/boards/boards_motion.cpp).
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/random.h"
 #include "explain/boards/board_world.h"
 #include "explain/boards/boards_problem.h"
@@ -41,6 +43,15 @@ TEST(BoardMotion, ThatGoesWithTheBoardsTiltIsContradicted) {
       return 3e-4 * pose.rotate({0, 0, 1}).x + 2e-5 * drawn;
     })) << views;
   }
+}
+
+// A print that is stretched along one axis: every view is stretched along the board's, wherever that points.
+TEST(BoardMotion, ThatGoesWithTheBoardsRollIsContradicted) {
+  Shutter shutter(8, 8);
+  EXPECT_TRUE(shutter.contradicted(1, [](const camera::BoardPose& pose, double drawn) {
+    const Vec3 along = pose.rotate({1, 0, 0});
+    return 3e-4 * std::sin(2 * std::atan2(along.y, along.x)) + 1e-5 * drawn;
+  }));
 }
 
 // A hand's motions: of two hundred sets of fourteen views at most four are contradicted.
