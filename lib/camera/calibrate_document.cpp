@@ -10,6 +10,7 @@
 #include "camera/calibrate_document_session.h"
 #include "camera/detection_failure.h"
 #include "camera/model_choice.h"
+#include "camera/moved_corners.h"
 #include "camera/quality/quality.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
@@ -17,7 +18,6 @@
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
-#include "mechanism/mechanism.h"
 
 namespace gonio::camera {
 namespace {
@@ -81,18 +81,11 @@ void check_models(const Session& session, const CalibrationRequest& request, con
 
 // A term that moves corners and that this fit does not have would end in the lens, or in the board's poses.
 void refuse_mechanisms(const manifest::Document& document) {
-  for (const auto& [id, use] : document.mechanisms) {
-    const mechanism::Mechanism* m = mechanism::find_mechanism(id);
-    if (m == nullptr || std::ranges::find(m->domains, "boards") == m->domains.end()) continue;
-    for (const mechanism::Parameter& p : m->parameters) {
-      const auto given = use.parameters.find(p.name);
-      if (given == use.parameters.end()) continue;
-      if (std::ranges::all_of(given->second.value, [&](double v) { return v == p.neutral; })) continue;
+  for (const auto& [id, use] : document.mechanisms)
+    if (moves_corners(id, use))
       throw Error(Exit::data, manifest::place(document, "/mechanisms/" + id),
                   "moves the corners of boards and is no part of this fit",
                   "explain(1) fits corners with it; or take it out of the manifest");
-    }
-  }
 }
 
 void tell_views(const Session& session, const Calibration& calibration, const manifest::Document& document) {

@@ -68,11 +68,17 @@ Explanation explain_without(const Problem& problem, const Options& options, cons
     for (const std::size_t c : e.named)
       if (const std::string& id = problem.candidates()[c].id(); refused.contains(id)) wrong.insert(id);
     if (wrong.empty()) return e;
-    if (now.hypotheses.empty())
-      for (const auto& c : problem.candidates()) now.hypotheses.push_back(c.id());
-    std::erase_if(now.hypotheses, [&wrong](const std::string& id) { return wrong.contains(id); });
-    if (now.hypotheses.empty()) return e;  // the user asked for nothing else
+    std::optional<Options> rest = asked_without(problem, now, wrong);
+    if (!rest) return e;  // the user asked for nothing else
+    now = std::move(*rest);
   }
+}
+
+std::optional<Options> asked_without(const Problem& problem, Options options, const std::set<std::string>& refused) {
+  if (options.hypotheses.empty())
+    for (const auto& c : problem.candidates()) options.hypotheses.push_back(c.id());
+  std::erase_if(options.hypotheses, [&refused](const std::string& id) { return refused.contains(id); });
+  return options.hypotheses.empty() ? std::nullopt : std::optional(std::move(options));
 }
 
 std::vector<std::filesystem::path> files_of(const manifest::Document& document) {

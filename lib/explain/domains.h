@@ -1,5 +1,6 @@
 // The domains that a manifest offers to explain. Each of its tables, scenes, sets becomes one problem.
 #pragma once
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -33,6 +34,9 @@ std::set<std::string> refused_before(const Domain& domain, std::span<const Answe
 // What they could explain still counts as a mismatch. `left_out`: groups that count as not recorded.
 Explanation explain_without(const Problem& problem, const Options& options, const std::set<std::string>& refused,
                             const std::vector<std::size_t>& left_out = {});
+
+// Options that ask for all that `options` does but `refused`; nothing where that would be none.
+std::optional<Options> asked_without(const Problem& problem, Options options, const std::set<std::string>& refused);
 
 // Files of the manifest that these problems read: pictures, masks, meshes, tables, calibrations of robots.
 std::vector<std::filesystem::path> files_of(const manifest::Document& document);

@@ -54,10 +54,10 @@ bool is_unmended(const std::deque<Told>& told, const std::string& domain) {
 }
 
 // The same question of parts of the recordings: how often does the answer come out?
-void ask_parts(const Problem& problem, const ExplainRequest& request, std::set<std::string> refused, Explanation& e) {
-  for (const Explanation::Contradicted& c : e.contradicted) refused.insert(c.mechanism);
+void ask_parts(const Domain& domain, const Problem& problem, const ExplainRequest& request,
+               const std::set<std::string>& refused, const manifest::Document& document, Explanation& e) {
   e.stability = inference::stability(problem, request.resample, request.options.seed, [&](const auto& left_out) {
-    return explain_without(problem, request.options, refused, left_out);
+    return explain_before_witnesses(domain, problem, request.options, refused, document, left_out);
   });
   inference::write_sentence(problem, e);
 }
@@ -86,9 +86,9 @@ Exit explain_document(manifest::Document& document, const ExplainRequest& reques
     for (const Told& t : told) before.push_back({t.problem.get(), &t.explanation});
     Told& t = told.emplace_back(std::move(asked));
     const Problem& problem = *t.problem;
-    Explanation& e = t.explanation =
-        explain_before_witnesses(domain, problem, request.options, refused_before(domain, before), document);
-    if (request.resample > 0) ask_parts(problem, request, refused_before(domain, before), e);
+    const std::set<std::string> refused = refused_before(domain, before);
+    Explanation& e = t.explanation = explain_before_witnesses(domain, problem, request.options, refused, document);
+    if (request.resample > 0) ask_parts(domain, problem, request, refused, document, e);
     t.illustration = problem.illustrate(e, request.out, document);
     if (e.significant && !request.out.empty())
       t.illustration.observations = write_evidence(problem, e, evidence_name(told), request.out, document);

@@ -60,7 +60,8 @@ std::optional<Objection> objection(const Domain& domain, const std::vector<const
 }  // namespace
 
 Explanation explain_before_witnesses(const Domain& domain, const Problem& problem, const Options& options,
-                                     std::set<std::string> refused, const manifest::Document& document) {
+                                     const std::set<std::string>& refused, const manifest::Document& document,
+                                     const std::vector<std::size_t>& left_out) {
   const std::vector<const Domain*> witnesses = witnesses_of(domain, document);
   std::vector<Explanation::Contradicted> contradicted;
   const auto told = [&](Explanation e) {
@@ -68,31 +69,33 @@ Explanation explain_before_witnesses(const Domain& domain, const Problem& proble
     if (!contradicted.empty()) inference::write_sentence(problem, e);
     return e;
   };
-  for (;;) {
-    Explanation e = explain_without(problem, options, refused);
+  const auto id_of = [&](std::size_t candidate) { return problem.candidates()[candidate].id(); };
+  const auto note = [&](std::size_t candidate, const Testimony& t) {
+    contradicted.push_back({id_of(candidate), t.by, t.quantity, t.unit, t.before, t.after});
+  };
+  for (Options now = options;;) {
+    Explanation e = explain_without(problem, now, refused, left_out);
     const std::optional<Objection> against = objection(domain, witnesses, problem, e, document);
     if (!against) return told(std::move(e));
-    const auto take_back = [&](std::size_t candidate) {
-      const std::string& id = problem.candidates()[candidate].id();
-      refused.insert(id);
-      const Testimony& t = against->testimony;
-      contradicted.push_back({id, t.by, t.quantity, t.unit, t.before, t.after});
-    };
-    if (against->candidate) {
-      take_back(*against->candidate);
-      continue;
-    }
+    std::vector<std::size_t> blamed = e.named;
+    if (against->candidate) blamed = {*against->candidate};
     // The last that was added is the likeliest to be the one.
-    const std::vector<std::size_t> named = e.named;
-    const std::set<std::string> before = refused;
-    const std::vector<Explanation::Contradicted> known = contradicted;
-    for (std::size_t k = named.size(); k-- > 0 && named.size() > 1;) {
-      take_back(named[k]);
-      Explanation without = explain_without(problem, options, refused);
-      if (!objection(domain, witnesses, problem, without, document)) return told(std::move(without));
-      refused = before, contradicted = known;
+    for (std::size_t k = blamed.size(); k-- > 0 && blamed.size() > 1;) {
+      const std::optional<Options> rest = asked_without(problem, now, {id_of(blamed[k])});
+      if (!rest) continue;
+      Explanation without = explain_without(problem, *rest, refused, left_out);
+      if (objection(domain, witnesses, problem, without, document)) continue;
+      note(blamed[k], against->testimony);
+      return told(std::move(without));
     }
-    for (const std::size_t candidate : named) take_back(candidate);
+    std::set<std::string> taken_back;
+    for (const std::size_t candidate : blamed) {
+      note(candidate, against->testimony);
+      taken_back.insert(id_of(candidate));
+    }
+    std::optional<Options> rest = asked_without(problem, now, taken_back);
+    if (!rest) return told(std::move(e));
+    now = std::move(*rest);
   }
 }
 

@@ -209,8 +209,11 @@ struct Explanation {
 };
 
 struct Picture {
-  std::string title, png;  // bytes of a PNG, or
-  std::string svg;         // an inline drawing
+  std::string title{}, png{};  // bytes of a PNG, or
+  std::string svg{};           // an inline drawing
+  // A second picture of the same size: both lie under one movable divider, the first left of it, this one right.
+  std::string over_title{}, over_png{};
+  std::string caption{};
 };
 struct Box {  // part of a picture, px; (x, y) its top-left pixel
   std::string group;
@@ -218,6 +221,7 @@ struct Box {  // part of a picture, px; (x, y) its top-left pixel
 };
 struct Illustration {
   std::vector<Picture> pictures;
+  std::size_t seen_at_once = 2;    // of them, one below the other; the rest is folded
   std::vector<std::string> masks;  // file ids entered in the document: where the mismatch is
   std::vector<Box> boxes;          // the same as boxes
   std::string observations{};      // file id of the table of evidence (evidence.h); empty: none is written

@@ -77,14 +77,19 @@ double unseen_p(const HeldOut& before, const HeldOut& after) {
 
 }  // namespace
 
-double typical_size(const Candidate& candidate, const Parameter& parameter) {
+const mechanism::Parameter* declared(const Candidate& candidate, const Parameter& parameter) {
   const std::string& full = parameter.name;
   for (const mechanism::Parameter& p : candidate.mechanism->parameters) {
     if (!full.ends_with(p.name)) continue;
     const char before = full.size() == p.name.size() ? '.' : full[full.size() - p.name.size() - 1];
-    if (before == '.' || before == '/') return p.typical;
+    if (before == '.' || before == '/') return &p;
   }
-  return 0;
+  return nullptr;
+}
+
+double typical_size(const Candidate& candidate, const Parameter& parameter) {
+  const mechanism::Parameter* own = declared(candidate, parameter);
+  return own == nullptr ? 0 : own->typical;
 }
 
 std::string at_a_limit(const Problem& problem, const Fit& fit, const std::vector<std::size_t>& candidates) {

@@ -80,6 +80,8 @@ class Race {
   std::vector<std::size_t> allowed_, free_;
 };
 
+// What the candidate's mechanism declares for a parameter of the problem; null: it is none of its own.
+const mechanism::Parameter* declared(const Candidate& candidate, const Parameter& parameter);
 // The usual size of a deviation that the candidate's mechanism declares for a parameter of the problem; 0: none.
 double typical_size(const Candidate& candidate, const Parameter& parameter);
 // The name of the first number of these candidates that a fit left at a limit of what is plausible; empty: there is

@@ -73,27 +73,53 @@ void parameters(report::Page& page, const Problem& problem, const Explanation& e
   page.table(table);
 }
 
-// The answers that were held against each other, and what speaks for and against each.
+// The answers that were held against each other, and, folded, what speaks for and against each.
 void weighed_answers(report::Page& page, const Problem& problem, const Explanation& e) {
   using Kind = Explanation::Weighed::Kind;
   constexpr std::size_t most = 8;
   constexpr double least = 0.001;
   if (!e.significant || e.weighed.empty()) return;
-  report::TableText table{
-      "Probabilities from the statistics beside them; how often they hold is measured by scripts/prove.",
-      {{"answer", "", false}, {"probability", ""}, {"for and against", "", false}},
-      {}};
+  report::TableText answers{"", {{"what it may be", "", false}, {"how sure", ""}}, {}},
+      statistics{"Probabilities come from these statistics; how often they hold is measured by scripts/prove.",
+                 {{"what it may be", "", false}, {"for and against", "", false}},
+                 {}};
+  std::vector<std::pair<std::string, double>> seen;
   for (const Explanation::Weighed& w : e.weighed) {
-    if (table.rows.size() == most || (w.probability < least && !table.rows.empty())) break;
+    if (statistics.rows.size() == most || (w.probability < least && !seen.empty())) break;
     std::string answer, why;
     for (const std::size_t c : w.candidates)
       answer += (answer.empty() ? "" : " with ") + mechanism_in_words(problem, c);
     if (w.kind == Kind::nothing) answer = "nothing that matters";
     if (w.kind == Kind::outside) answer = "none of these: outside the library";
     for (const auto& [name, value] : w.statistics) why += (why.empty() ? "" : ", ") + name + " " + printed(value, 2);
-    table.rows.push_back({answer, probability_in_words(w.probability), why});
+    const auto told = std::ranges::find(seen, answer, &std::pair<std::string, double>::first);
+    if (told == seen.end())
+      seen.emplace_back(answer, w.probability);
+    else
+      told->second += w.probability;  // another form of it
+    statistics.rows.push_back({answer, why});
   }
-  page.table(table);
+  for (const auto& [answer, probability] : seen) answers.rows.push_back({answer, probability_in_words(probability)});
+  page.table(answers);
+  page.open_details("What speaks for and against each");
+  page.table(statistics);
+  page.close_details();
+}
+
+// What the registry says of the named physics: the manual's entry, which needs no network.
+void manual_entries(report::Page& page, const Problem& problem, const Explanation& e) {
+  for (const std::size_t c : e.named) {
+    const mechanism::Mechanism& m = *problem.candidates()[c].mechanism;
+    page.open_details("The manual on " + m.id);
+    page.paragraph(m.sentence + " Met in practice: " + m.typical + ".");
+    page.paragraph(m.equation);
+    std::vector<std::string> items;
+    for (const mechanism::Confusion& x : m.mistaken_for)
+      items.push_back("Mistaken for " + x.with + "; to tell them apart: " + x.told_apart + ".");
+    page.list(items);
+    page.note(m.source + ". All entries: man 7 gonio-mechanisms.");
+    page.close_details();
+  }
 }
 
 }  // namespace
@@ -113,10 +139,13 @@ void tell_sure(report::Page& page, const ReportPart& part) {
   std::vector<std::string> sets;
   for (const std::vector<std::size_t>& set : e.not_told_apart)
     sets.push_back("Not told apart: " + words(set, ", ") + ".");
-  for (const std::vector<std::size_t>& set : e.instead)
-    sets.push_back("In the place of all that is named: " + words(set, " with ") + ".");
+  for (const std::vector<std::size_t>& set : e.instead) {
+    const std::string told = "In the place of all that is named: " + words(set, " with ") + ".";
+    if (std::ranges::find(sets, told) == sets.end()) sets.push_back(told);
+  }
   if (!sets.empty()) page.list(sets);
   weighed_answers(page, problem, e);
+  manual_entries(page, problem, e);
   if (!e.converged) page.note("The final fit did not converge: take the numbers with care.");
 }
 

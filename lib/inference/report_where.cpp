@@ -9,19 +9,31 @@ namespace gonio::inference {
 namespace {
 
 using report::Series;
-constexpr std::size_t most_columns = 24, shown_at_once = 2;
+constexpr std::size_t most_columns = 24;
+constexpr int large_px = 720, small_px = 400;
 
-report::Figure figure_of(const Picture& p) {
-  return {.png = p.png, .svg = p.svg, .title = p.title};
-}
-
+// One column of pictures that are large enough to see; the rest, folded, beside each other.
 void pictures(report::Page& page, const Illustration& illustration) {
-  std::vector<report::Figure> first, rest;
-  for (const Picture& p : illustration.pictures) (first.size() < shown_at_once ? first : rest).push_back(figure_of(p));
-  if (!first.empty()) page.figures(first, 512);
-  if (rest.empty()) return;
-  page.open_details("More pictures (" + std::to_string(rest.size()) + ")");
-  page.figures(rest, 400);
+  const auto figure = [](const Picture& p) {
+    return report::Figure{.png = p.png, .svg = p.svg, .title = p.title, .caption = p.caption};
+  };
+  const auto show = [&](const Picture& p, int width_px) {
+    if (p.over_png.empty())
+      page.figures({figure(p)}, width_px);
+    else
+      page.slider(figure(p), {.png = p.over_png, .title = p.over_title}, p.caption);
+  };
+  const std::vector<Picture>& all = illustration.pictures;
+  const std::size_t first = std::min(illustration.seen_at_once, all.size());
+  for (std::size_t k = 0; k < first; ++k) show(all[k], large_px);
+  if (all.size() == first) return;
+  page.open_details("More pictures (" + std::to_string(all.size() - first) + ")");
+  std::vector<report::Figure> beside;
+  for (std::size_t k = first; k < all.size(); ++k)
+    if (all[k].over_png.empty()) beside.push_back(figure(all[k]));
+  page.figures(beside, small_px);
+  for (std::size_t k = first; k < all.size(); ++k)
+    if (!all[k].over_png.empty()) show(all[k], large_px);
   page.close_details();
 }
 
@@ -123,7 +135,9 @@ void tell_where(report::Page& page, const ReportPart& part) {
       items.push_back(b.group + ": " + std::to_string(b.width) + " x " + std::to_string(b.height) +
                       " pixels from column " + std::to_string(b.x) + ", row " + std::to_string(b.y));
     }
+    page.open_details("The boxes, in pixels");
     page.list(items);
+    page.close_details();
   }
   shares(page, *part.problem, e);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <set>
 
 #include "inference/compensation.h"
 
@@ -39,12 +40,12 @@ std::string listed(const Problem& problem, const std::vector<std::size_t>& candi
   return text;
 }
 
-// "94 % sure."; of several that could be, each one's own share.
+// "94 % sure."; of several that could be, each one's own share. Forms of one mechanism are one answer.
 std::string sure_sentence(const Problem& problem, const Explanation& e) {
   if (e.weighed.empty()) return "";
   std::string text = " How sure: " + probability_in_words(e.probability) + " that it is ";
   if (e.verdict == Verdict::named) return text + (e.named.size() == 1 ? "this." : "these.");
-  std::string each;
+  std::vector<std::pair<std::string, double>> answers;
   for (const Explanation::Weighed& w : e.weighed) {
     if (w.kind != Explanation::Weighed::Kind::set || w.probability < 0.01) continue;
     const bool first = w.candidates == e.named;
@@ -52,10 +53,17 @@ std::string sure_sentence(const Problem& problem, const Explanation& e) {
     const bool alone =
         e.named.size() == 1 && w.candidates.size() == 1 && !e.not_told_apart.empty() &&
         std::find(e.not_told_apart[0].begin(), e.not_told_apart[0].end(), w.candidates[0]) != e.not_told_apart[0].end();
-    if (first || other || alone)
-      each += (each.empty() ? "" : ", ") + listed(problem, w.candidates, 0, " with ") + " " +
-              probability_in_words(w.probability);
+    if (!first && !other && !alone) continue;
+    const std::string words = listed(problem, w.candidates, 0, " with ");
+    const auto told = std::ranges::find(answers, words, &std::pair<std::string, double>::first);
+    if (told == answers.end())
+      answers.emplace_back(words, w.probability);
+    else
+      told->second += w.probability;
   }
+  std::string each;
+  for (const auto& [words, probability] : answers)
+    each += (each.empty() ? "" : ", ") + words + " " + probability_in_words(probability);
   return text + "among what is listed (" + each + ").";
 }
 
@@ -84,9 +92,12 @@ std::string named_sentence(const Problem& problem, const Explanation& e) {
   for (const std::vector<std::size_t>& set : e.not_told_apart)
     text += " In the place of " + problem.candidates()[set[0]].id() + " it could be " +
             listed(problem, set, 1, " or ") + ": these recordings cannot tell them apart.";
-  for (const std::vector<std::size_t>& set : e.instead)
-    text += " Instead of " + listed(problem, e.named, 0, " and ") + " it could be " +
-            listed(problem, set, 0, " with ") + ".";
+  std::set<std::string> told;
+  for (const std::vector<std::size_t>& set : e.instead) {
+    const std::string other = listed(problem, set, 0, " with ");
+    if (told.insert(other).second && other != listed(problem, e.named, 0, " with "))
+      text += " Instead of " + listed(problem, e.named, 0, " and ") + " it could be " + other + ".";
+  }
   if (e.outside)
     text += " Structure over the " + condition_in_words(e.outside->condition) +
             " remains that nothing in the library repairs." + law_sentence(problem, *e.outside);
@@ -243,15 +254,20 @@ std::string odd_sentence(const Problem& problem, const Explanation& e) {
   return text;
 }
 
-// Names that others know better.
-std::string contradicted_sentence(const Explanation& e) {
+// Names that others know better; one stands nevertheless where nothing else was asked for.
+std::string contradicted_sentence(const Problem& problem, const Explanation& e) {
   std::string text;
-  for (const Explanation::Contradicted& c : e.contradicted)
-    text += " " + c.mechanism + " is not named: " + c.by + " contradicts it (" + c.quantity + ": " +
+  for (const Explanation::Contradicted& c : e.contradicted) {
+    const bool stands = std::ranges::any_of(
+        e.named, [&](std::size_t candidate) { return problem.candidates()[candidate].id() == c.mechanism; });
+    text += (stands ? " But " + c.by + " contradicts " + c.mechanism
+                    : " " + c.mechanism + " is not named: " + c.by + " contradicts it") +
+            " (" + c.quantity + ": " +
             (c.unit == "1"
                  ? share_in_words(c.after) + " instead of " + share_in_words(c.before)
                  : score_in_words(c.before, c.unit) + " without it, " + score_in_words(c.after, c.unit) + " with it") +
             ").";
+  }
   return text;
 }
 
@@ -315,7 +331,7 @@ void write_sentence(const Problem& problem, Explanation& e) {
   e.sentence =
       limits_sentence(problem, e) + (e.named.empty() ? plain_sentence(problem, e) : named_sentence(problem, e));
   e.sentence += minor_sentence(problem, e) + unused_sentence(problem) + odd_sentence(problem, e) +
-                contradicted_sentence(e) + stability_sentence(problem, e);
+                contradicted_sentence(problem, e) + stability_sentence(problem, e);
   if (const std::string remarks = problem.remarks(e); !remarks.empty()) e.sentence += " " + remarks;
   if (!e.shortened.empty()) e.sentence += " " + e.shortened;
   e.next_measurement = measurement(problem, e);

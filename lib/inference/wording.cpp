@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "inference/race.h"
 #include "report/number_text.h"
 
 namespace gonio::inference {
@@ -147,15 +148,12 @@ std::vector<std::string> minor_mechanisms(const Problem& problem, const Explanat
 namespace {
 
 // What the mechanism says that its parameter means, up to the first aside; its short name where that is long.
-std::string meaning_of(const mechanism::Mechanism& m, const std::string& name) {
+std::string meaning_of(const Candidate& candidate, const Parameter& parameter) {
   constexpr std::size_t longest = 48;
-  for (const mechanism::Parameter& p : m.parameters)
-    if (name.ends_with(p.name)) {
-      const std::string words = p.meaning.substr(0, p.meaning.find_first_of(";:,("));
-      if (!words.empty() && words.size() <= longest)
-        return words.ends_with(' ') ? words.substr(0, words.size() - 1) : words;
-    }
-  return short_name(name);
+  const mechanism::Parameter* own = declared(candidate, parameter);
+  std::string words = own == nullptr ? "" : own->meaning.substr(0, own->meaning.find_first_of(";:,("));
+  if (words.ends_with(' ')) words.pop_back();
+  return words.empty() || words.size() > longest ? short_name(parameter.name) : words;
 }
 
 // A clear dielectric's reflectance at normal incidence is known better by its refractive index.
@@ -196,8 +194,7 @@ std::string parameters_in_words(const Problem& problem, const Explanation& e, st
   for (const Estimate* x : clear) {
     const Parameter& p = problem.parameters()[x->parameter];
     const bool meant = called == Called::by_meaning;
-    const std::string name =
-        meant ? meaning_of(*problem.candidates()[candidate].mechanism, p.name) : short_name(p.name);
+    const std::string name = meant ? meaning_of(problem.candidates()[candidate], p) : short_name(p.name);
     text += (text.empty() ? "" : ", ") + name + " " + estimate_in_words(x->value, x->sigma, p.unit);
     if (meant) text += index_in_words(p.name, *x);
   }

@@ -15,13 +15,14 @@ Field<PlannedMeasurement> setup_field() {
       Value::object({{"type", "object"},
                      {"properties", Value::object({{"image", or_number(Codec<std::string>::schema())},
                                                    {"light", or_number(defined("names"))},
+                                                   {"light_towards", or_number(Codec<Vec3>::schema())},
                                                    {"images", or_number(Codec<std::vector<PlannedView>>::schema())}})},
                      {"patternProperties", Value::object({{"^x-", Value::object()}})},
                      {"additionalProperties", Codec<double>::schema()}});
   return custom<PlannedMeasurement>(
       "setup", "",
-      "image, light, exposure_s, exposure_scale: that image again with these; images: views to take; of a table: its "
-      "columns and their values",
+      "image, light, exposure_s, exposure_scale: that image again with these; light_towards: with a lamp in that "
+      "direction, world; images: views to take; of a table: its columns and their values",
       std::move(schema),
       [](PlannedMeasurement& p, const Value& v, const std::string& place) {
         expect_object(v, place);
@@ -32,6 +33,8 @@ Field<PlannedMeasurement> setup_field() {
             Codec<std::string>::read(member, at);
           else if (key == "light")
             read_names(member, at);
+          else if (key == "light_towards")
+            Codec<Vec3>::read(member, at);
           else if (key == "images")
             Codec<std::vector<PlannedView>>::read(member, at);
           else

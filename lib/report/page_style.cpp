@@ -1,16 +1,16 @@
 // Style: one column of text 46 rem wide, figures up to 70 rem; numbers in tabular figures; one accent; no decoration
 // that carries no meaning. Series colours are those of Okabe & Ito (2008), darkened on white and lightened on black to
-// a contrast of 3:1. Script: moves the dividers of the pairs; without it each divider stands in the middle and
-// everything else works.
+// a contrast of 3:1; good is their blue and bad their vermilion, which colour-blind readers tell apart. Script: moves
+// the dividers of the pairs; without it each divider stands in the middle and everything else works.
 #include "report/page_style.h"
 
 namespace gonio::report {
 
 const std::string_view page_style = R"css(
 :root{color-scheme:light dark;--paper:#fdfdfc;--ink:#1c1d1f;--soft:#62666d;--line:#e2e2de;--fill:#f4f4f1;--accent:#1f5fa8;
---good:#1a7146;--bad:#b3291f;--s0:#0067a5;--s1:#c55a00;--s2:#00805e;--s3:#a3457e;--s4:#8a6d00;--s5:#4a4f57}
+--good:#0067a5;--bad:#b34700;--s0:#0067a5;--s1:#c55a00;--s2:#00805e;--s3:#a3457e;--s4:#8a6d00;--s5:#4a4f57}
 @media (prefers-color-scheme:dark){:root{--paper:#16181b;--ink:#e7e7e4;--soft:#9da2aa;--line:#32363c;--fill:#1f2226;
---accent:#7db4f0;--good:#5cc48f;--bad:#f08a7e;--s0:#63b3ec;--s1:#f0a052;--s2:#3fc7a0;--s3:#e095c3;--s4:#dbc04d;--s5:#b9bec6}}
+--accent:#7db4f0;--good:#63b3ec;--bad:#f0a052;--s0:#63b3ec;--s1:#f0a052;--s2:#3fc7a0;--s3:#e095c3;--s4:#dbc04d;--s5:#b9bec6}}
 *{box-sizing:border-box}
 html{scroll-behavior:smooth;-webkit-text-size-adjust:100%}
 body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,-apple-system,"Segoe UI",Roboto,"Noto Sans",
@@ -125,8 +125,8 @@ footer{margin-top:2.5rem;padding-top:1rem;padding-bottom:2.5rem;border-top:1px s
 @media (max-width:40rem){dl.scores{grid-template-columns:1fr;gap:.1rem}dl.scores dd{margin-bottom:.5rem}main,header,footer{padding-left:1rem;padding-right:1rem}nav div{padding-left:1rem;padding-right:1rem}
 header{padding-top:1.75rem}}
 @media (prefers-reduced-motion:reduce){html{scroll-behavior:auto}}
-@media print{:root{color-scheme:light;--paper:#fff;--ink:#000;--soft:#444;--line:#ccc;--fill:#f4f4f4;--accent:#000;--good:#1a7146;
---bad:#b3291f;--s0:#0067a5;--s1:#c55a00;--s2:#00805e;--s3:#a3457e;--s4:#8a6d00;--s5:#4a4f57}
+@media print{:root{color-scheme:light;--paper:#fff;--ink:#000;--soft:#444;--line:#ccc;--fill:#f4f4f4;--accent:#000;--good:#0067a5;
+--bad:#b34700;--s0:#0067a5;--s1:#c55a00;--s2:#00805e;--s3:#a3457e;--s4:#8a6d00;--s5:#4a4f57}
 body{font-size:10.5pt}nav{display:none}figure,table,dl.numbers div{break-inside:avoid}h2,h3{break-after:avoid}header{padding-top:0}
 .heat td{print-color-adjust:exact;-webkit-print-color-adjust:exact}}
 )css";

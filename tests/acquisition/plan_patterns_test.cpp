@@ -205,15 +205,19 @@ TEST(AskedSteps, TakeUpWhatExplainProposes) {
           plan(R"({"images": [{"camera": "cam", "board": "charuco", "camera_from_board":
                    {"rotation": [1, 0, 0, 0], "translation_m": [0, 0, 0.25]}}]})") +
           "," + plan(R"({"image": "a", "exposure_scale": 4})") + "," + plan(R"({"image": "a", "light": []})") + "," +
-          plan(R"({"distance_m": 2})") + "]}}",
+          plan(R"({"image": "a", "light_towards": [0, 3, 4]})") + "," + plan(R"({"distance_m": 2})") + "]}}",
       "explanations"));
-  const AskedSteps asked = next_steps(document, scene_with_lamps(1));
-  ASSERT_EQ(asked.steps.size(), 3u);
+  const PatternScene scene = scene_with_lamps(1);
+  const AskedSteps asked = next_steps(document, scene, {.lamp_m = 2});
+  ASSERT_EQ(asked.steps.size(), 4u);
   // The board lies at (0.1, 0, 1.5): the camera is to stand 0.25 m before it.
   EXPECT_LT(norm(asked.steps[0].world_from_camera->translation_m - Vec3{0.1, 0, 1.25}), 1e-12);
   EXPECT_DOUBLE_EQ(asked.steps[1].exposures_s.at(0), 0.08);
   EXPECT_EQ(asked.steps[2].purpose, "dark");
   EXPECT_TRUE(asked.steps[2].lamps.empty());
+  ASSERT_EQ(asked.steps[3].light_m.size(), 3u);  // two metres away in the direction that was asked
+  EXPECT_NEAR(asked.steps[3].light_m[1] - scene.target_m.y, 1.2, 1e-12);
+  EXPECT_NEAR(asked.steps[3].light_m[2] - scene.target_m.z, 1.6, 1e-12);
   ASSERT_EQ(asked.left.size(), 1u);
 }
 

@@ -1,6 +1,7 @@
-// Recorded stacks: prove-stacks memorial|flea3|cat FOLDER. Film scans of one scene taken as linear, whose tone curve is
-// held against OpenCV's CalibrateDebevec on the same files; a raw sensor, which is linear; a glazed cat under twelve
-// lamps whose directions the mirror ball beside it shows.
+// Recorded stacks: prove-stacks memorial|flea3|cat FOLDER, or prove-stacks manifest memorial|cat FOLDER > in.json,
+// which writes what explain is asked (and the mask of memorial, here). Film scans of one scene taken as linear, whose
+// tone curve is held against OpenCV's CalibrateDebevec on the same files; a raw sensor, which is linear; a glazed cat
+// under twelve lamps whose directions the mirror ball beside it shows.
 //
 // A single run of CalibrateDebevec (300 random samples, lambda 50) differs from the mean of ten by 5 to 15 % at its
 // worst code; the mean, of logarithms, is what stands for it here.
@@ -97,24 +98,32 @@ std::array<std::array<double, 256>, 3> debevec(const std::vector<cv::Mat>& pictu
   return mean;
 }
 
-int memorial(const fs::path& folder) {
-  const tests::ScratchFolder scratch;
+// The scans with their exposures; `scratch`: where the mask goes.
+Value memorial_recording(const fs::path& folder, const fs::path& scratch) {
   write_frame(scratch / "mask.png", 512, 768, border);
   Value files = Value::object({{"mask", Value::object({{"path", "mask.png"}})}}), images = Value::array();
-  std::vector<cv::Mat> pictures;
-  std::vector<float> times;
   std::ifstream list(folder / "list.txt");
   std::string file;
   for (double seconds = 0; list >> file >> seconds;) {
     files[file] = Value::object({{"path", (folder / file).string()}});
     images.push_back(Value::object(
         {{"id", file}, {"file", file}, {"exposure_s", seconds}, {"response", "linear"}, {"mask", "mask"}}));
+  }
+  return Value::object({{"gonio", 1}, {"files", files}, {"images", images}});
+}
+
+int memorial(const fs::path& folder) {
+  const tests::ScratchFolder scratch;
+  std::vector<cv::Mat> pictures;
+  std::vector<float> times;
+  std::ifstream list(folder / "list.txt");
+  std::string file;
+  for (double seconds = 0; list >> file >> seconds;) {
     const cv::Mat whole = cv::imread((folder / file).string());
     pictures.push_back(whole(cv::Rect(border, border, whole.cols - 2 * border, whole.rows - 2 * border)).clone());
     times.push_back(static_cast<float>(seconds));
   }
-  const manifest::Document document =
-      parsed(Value::object({{"gonio", 1}, {"files", files}, {"images", images}}), scratch.path());
+  const manifest::Document document = parsed(memorial_recording(folder, scratch.path()), scratch.path());
   const Found f = explained(std::move(exposures_problems(document).at(0)));
   claim("memorial: sensor.non-linearity alone is named", f.named == "sensor.non-linearity", "=", 1,
         f.named == "sensor.non-linearity");
@@ -206,7 +215,7 @@ Vec3 towards_by_mirror(const fs::path& folder, std::size_t i) {
   return normal * (2 * dot(normal, view)) - view;
 }
 
-int cat(const fs::path& folder) {
+Value cat_recording(const fs::path& folder) {
   Value files = Value::object({{"mask", Value::object({{"path", (folder / "cat/cat.mask.png").string()}})}});
   Value lights = Value::object(), images = Value::array();
   for (std::size_t i = 0; i < 12; ++i) {
@@ -220,8 +229,11 @@ int cat(const fs::path& folder) {
     images.push_back(
         Value::object({{"id", id}, {"file", id}, {"light", lamp}, {"response", "linear"}, {"mask", "mask"}}));
   }
-  const manifest::Document document =
-      parsed(Value::object({{"gonio", 1}, {"files", files}, {"lights", lights}, {"images", images}}), folder);
+  return Value::object({{"gonio", 1}, {"files", files}, {"lights", lights}, {"images", images}});
+}
+
+int cat(const fs::path& folder) {
+  const manifest::Document document = parsed(cat_recording(folder), folder);
   const Found f = explained(std::move(photometric_problems(document).at(0)));
   const bool gloss = f.named.find("surface.interface") != std::string::npos;
   claim("cat: gloss is named", gloss, "=", 1, gloss);
@@ -237,8 +249,16 @@ int cat(const fs::path& folder) {
 
 int main(int argc, char** argv) {
   namespace fs = std::filesystem;
-  const std::string what = argc == 3 ? argv[1] : "";
+  const bool written = argc == 4 && std::string(argv[1]) == "manifest";
+  const std::string what = written ? argv[2] : argc == 3 ? argv[1] : "";
   try {
+    if (written && (what == "memorial" || what == "cat")) {
+      const fs::path folder = fs::absolute(argv[3]);
+      std::cout << gonio::manifest::print_json(
+          what == "cat" ? gonio::explain::stacks::cat_recording(folder)
+                        : gonio::explain::stacks::memorial_recording(folder, fs::current_path()));
+      return 0;
+    }
     if (what == "memorial") return gonio::explain::stacks::memorial(fs::absolute(argv[2]));
     if (what == "flea3") return gonio::explain::stacks::flea3(fs::absolute(argv[2]));
     if (what == "cat") return gonio::explain::stacks::cat(fs::absolute(argv[2]));
@@ -246,6 +266,6 @@ int main(int argc, char** argv) {
     std::cerr << "prove-stacks: " << e.what() << "\n";
     return 65;
   }
-  std::cerr << "prove-stacks memorial|flea3|cat FOLDER\n";
+  std::cerr << "prove-stacks memorial|flea3|cat FOLDER\nprove-stacks manifest memorial|cat FOLDER\n";
   return 64;
 }

@@ -58,7 +58,7 @@ std::optional<Testimony> motion_objection(const Problem& problem, const BoardsIn
         role.column >= CornerColumn::scale)
       return std::nullopt;
     motions[role.view][role.column - CornerColumn::motion] = e.values[p];
-    moves[role.view] = true;
+    if (e.values[p] != 0) moves[role.view] = true;  // views that are left out keep zeros
   }
   const auto n = static_cast<std::size_t>(std::ranges::count(moves, true));
   if (n < fewest_views) return std::nullopt;

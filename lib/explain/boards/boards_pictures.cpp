@@ -53,10 +53,10 @@ Illustration illustrate_boards(const BoardsInput& input, const Observations& o, 
     char title[160];
     const std::string name = input.cameras.size() > 1 ? " of " + input.cameras[c].name : "";
     std::snprintf(title, sizeof title, "Residuals%s under the base model, %.0f times enlarged", name.c_str(), scale);
-    result.pictures.push_back({title, "", vectors(input, c, o, e.residual_before, scale, "#b3261e")});
+    result.pictures.push_back({title, "", vectors(input, c, o, e.residual_before, scale, "#b34700")});
     if (e.named.empty()) continue;
     std::snprintf(title, sizeof title, "The same with the named physics, %.0f times enlarged", scale);
-    result.pictures.push_back({title, "", vectors(input, c, o, e.residual_after, scale, "#1b6e3c")});
+    result.pictures.push_back({title, "", vectors(input, c, o, e.residual_after, scale, "#0067a5")});
   }
   return result;
 }

@@ -11,7 +11,8 @@ const Domain& tables() {
   static const Domain domain{
       .name = "tables",
       .sentence =
-          "tables whose model predicts them (sensor, light, volume, surface, tracks, markers, temperature, expression)",
+          "tables whose model predicts them (sensor, light, volume, surface, tracks, markers, temperature, "
+          "ellipsometer, tracker, expression)",
       .order = 4,
       .applies = explain::tables::has_tables,
       .problems = explain::tables::table_problems,
@@ -44,7 +45,9 @@ const Domain& tables() {
           {"surface.spatial-variation", "samples of a reflectance are those of one place"},
           {"surface.subsurface", "samples of a reflectance do not say where the light went in"},
           {"geometry.", "rows know of no body but the plane or the sample that they were measured on"},
-          {"robot.", "joint angles with poses are the domain robot; tables of the model temperature have what warms"},
+          {"robot.",
+           "joint angles with poses are the domain robot; the model tracker has places alone, and temperature what "
+           "warms"},
           {"tracks.", "a table of tracks holds points against a known shape: their scale is that shape's"},
           {"ct.", "a table has lengths measured in a volume, which ct.scale alone changes in proportion"}}};
   return domain;

@@ -2,9 +2,10 @@
 // pictures are simulated coarser than the sampled pixels (16 sub-samples, 64 paths), which the noise accounts for.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <iterator>
 
 #include "base/atomic_file.h"
+#include "base/text.h"
 #include "explain/images/images_problem.h"
 #include "explain/images/pictures.h"
 #include "inference/explanation.h"
@@ -61,18 +62,55 @@ double rms_of(const WholeImage& image) {
   return std::sqrt(sum / std::max(1.0, n));
 }
 
-void add_pictures(const std::string& id, const WholeImage& image, const std::vector<Box>& boxes, bool named,
-                  Illustration& result) {
-  char scale[96];
-  const double full = 0.1 * rms_of(image);
-  std::snprintf(scale, sizeof scale, "red brighter, blue darker; full colour at %.3g, a tenth of the picture's rms",
-                full);
-  io::Image before = residual_picture(image, false, full);
-  outline(boxes, image, before);
-  result.pictures.push_back({id + ": recording minus base model: " + scale, io::encode_png(before), ""});
-  if (named)
-    result.pictures.push_back(
-        {id + ": recording minus upgraded model: " + scale, io::encode_png(residual_picture(image, true, full)), ""});
+// The brightest that is to be seen well: one value in two hundred is clipped.
+double white_of(const WholeImage& image) {
+  std::vector<double> values = image.observed;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.995 * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, at);
+  return *at > 0 ? *at : 1;
+}
+
+// The photograph with the region outlined, the simulation without and with the named physics, the difference without
+// and with it, and where it acts. All of one tone.
+std::vector<Picture> pictures_of(const std::string& id, const WholeImage& image, const std::vector<Box>& boxes,
+                                 bool named) {
+  const double white = white_of(image), full = 0.1 * rms_of(image);
+  const std::string tone = format("A value of %.3g is shown as white, sRGB curve.", white);
+  const std::string scale = format(
+      "Red: the recording is brighter; blue: darker. Full colour at %.3g, a tenth of the picture's rms; grey pixels do "
+      "not count.",
+      full);
+  const auto encoded = [](const io::Image& picture) { return io::encode_png(picture); };
+  io::Image recording = shown(image.observed, image, white);
+  const std::string plain = encoded(recording), believed = encoded(shown(image.before, image, white)),
+                    difference = encoded(residual_picture(image, false, full));
+  outline(boxes, image, recording);
+  std::vector<Picture> all;
+  if (named) {
+    all.push_back({.title = id,
+                   .png = encoded(recording),
+                   .caption = boxes.empty() ? tone : "Outlined: where the mismatch is largest. " + tone});
+    all.push_back({.title = "simulation as believed",
+                   .png = believed,
+                   .over_title = "with what was named",
+                   .over_png = encoded(shown(image.after, image, white)),
+                   .caption = id + ", simulated: drag, or use the arrow keys. " + tone});
+    all.push_back({.title = "difference as believed",
+                   .png = difference,
+                   .over_title = "with what was named",
+                   .over_png = encoded(residual_picture(image, true, full)),
+                   .caption = id + ", recording less simulation. " + scale});
+    return all;
+  }
+  all.push_back({.title = "recording",
+                 .png = plain,
+                 .over_title = "simulation as believed",
+                 .over_png = believed,
+                 .caption = id + ": drag, or use the arrow keys. " + tone});
+  io::Image outlined = residual_picture(image, false, full);
+  outline(boxes, image, outlined);
+  all.push_back({.title = id + ", recording less simulation", .png = encoded(outlined), .caption = scale});
+  return all;
 }
 
 }  // namespace
@@ -103,27 +141,32 @@ Illustration ImagesProblem::illustrate(const Explanation& explanation, const std
   std::vector<std::string> worst;  // names of the groups that hold most of the excess
   for (std::size_t k = 0; k < std::min(most_pictures, explanation.groups.size()); ++k)
     worst.push_back(explanation.groups[k].name);
+  std::vector<std::vector<Picture>> pictures(worst.size());
+  const bool named = !explanation.named.empty();
+  result.seen_at_once = named ? 3 : 2;
   for (std::size_t g = 0; g < recordings_.images.size(); ++g) {
     const Recording& image = recordings_.images[g];
     const WholeImage whole = whole_image(image, model, g, strides[image.view], before, after);
-    const bool named = !explanation.named.empty(), shown = std::ranges::find(worst, image.id) != worst.end();
+    const auto rank = static_cast<std::size_t>(std::ranges::find(worst, image.id) - worst.begin());
+    const bool is_shown = rank < worst.size();
     std::vector<Box> boxes;
     if (explanation.verdict != Verdict::null)
       boxes = boxes_of(mismatch_mask(whole, mask_limit, explanation.smallest_effect), whole, least_box, most_boxes);
     for (Box& box : boxes) box.group = image.id;
-    if (shown) add_pictures(image.id, whole, boxes, named, result);
+    if (is_shown) pictures[rank] = pictures_of(image.id, whole, boxes, named);
     if (explanation.verdict == Verdict::null) continue;
     result.boxes.insert(result.boxes.end(), boxes.begin(), boxes.end());
     const std::vector<double> acts = effect(whole, named);
-    if (shown)
-      result.pictures.push_back({image.id + (named ? ": where it acts, pink at three noise widths"
-                                                   : ": where the mismatch is, pink at three noise widths"),
-                                 io::encode_png(effect_picture(acts, whole)), ""});
+    if (is_shown)
+      pictures[rank].push_back({.title = image.id + (named ? ": where it acts" : ": where the mismatch is"),
+                                .png = io::encode_png(effect_picture(acts, whole)),
+                                .caption = "Half coloured at three noise widths."});
     if (out.empty()) continue;
     const std::filesystem::path path = out / ("effect-" + image.id + ".exr");
     io::write_picture(path, spread(acts, whole, image.picture.width, image.picture.height));
     result.masks.push_back(manifest::add_file(document, path, "effect-" + image.id));
   }
+  for (std::vector<Picture>& of_image : pictures) std::ranges::move(of_image, std::back_inserter(result.pictures));
   return result;
 }
 

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <queue>
 
+#include "io/picture.h"
+#include "report/colour_map.h"
+
 namespace gonio::explain::images {
 namespace {
 
@@ -116,7 +119,7 @@ std::vector<Box> boxes_of(const std::vector<std::uint8_t>& mask, const WholeImag
 
 namespace {
 
-constexpr int shown_px = 480;
+constexpr int shown_px = 720;
 
 io::Image enlarged(const io::Image& small) {
   const int factor = std::max(1, shown_px / std::max(1, small.width));
@@ -141,17 +144,21 @@ io::Image effect_picture(const std::vector<double>& effect, const WholeImage& im
   return enlarged(picture);
 }
 
+io::Image shown(const std::vector<double>& values, const WholeImage& image, double white) {
+  io::Image picture(image.width, image.height, {"R", "G", "B"});
+  for (std::size_t k = 0; k < values.size(); ++k)
+    picture.data[k] = io::srgb_from_linear(static_cast<float>(std::clamp(values[k] / white, 0.0, 1.0)));
+  return enlarged(picture);
+}
+
 io::Image residual_picture(const WholeImage& image, bool after, double scale) {
+  constexpr report::Colour not_counted{0.62f, 0.62f, 0.62f};
   io::Image picture(image.width, image.height, {"R", "G", "B"});
   for (std::size_t i = 0; i < image.counts.size(); ++i) {
     double mean = 0;
-    if (image.counts[i])
-      for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) mean += residual(image, c, after) / 3;
-    const double strength = std::clamp(mean / scale, -1.0, 1.0);
-    const auto fade = static_cast<float>(1 - std::abs(strength));
-    picture.data[3 * i] = strength >= 0 ? 1 : fade;
-    picture.data[3 * i + 1] = fade;
-    picture.data[3 * i + 2] = strength <= 0 ? 1 : fade;
+    for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) mean += residual(image, c, after) / 3;
+    std::ranges::copy(image.counts[i] ? report::signed_colour(mean / scale) : not_counted,
+                      picture.data.begin() + static_cast<std::ptrdiff_t>(3 * i));
   }
   return enlarged(picture);
 }

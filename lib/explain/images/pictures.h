@@ -34,11 +34,14 @@ std::vector<Box> boxes_of(const std::vector<std::uint8_t>& mask, const WholeImag
 
 // One value a pixel of the full picture.
 io::Image spread(const std::vector<double>& values, const WholeImage& image, int width, int height);
-// White to dark red; enlarged by a whole factor to about 480 pixels width, like the other pictures.
+// White to dark red; enlarged by a whole factor to about 720 pixels width, like the other pictures.
 io::Image effect_picture(const std::vector<double>& effect, const WholeImage& image);
 
+// What a camera shows of it: `values` (three a pixel) by the sRGB curve, `white` as white, clipped above.
+io::Image shown(const std::vector<double>& values, const WholeImage& image, double white);
+
 // Signed residual, red where the recording is brighter and blue where it is darker than the simulation; full colour at
-// `scale`.
+// `scale`, pixels that do not count grey.
 io::Image residual_picture(const WholeImage& image, bool after, double scale);
 
 // Outlines of boxes on one of these pictures: two pixels of yellow between black ones.

@@ -30,6 +30,9 @@ Eigen::VectorXd prior_precision(const RobotParameters& parameters);
 std::vector<double> start_values(const RobotWork& work);
 // Change from the measured to the chain's pose of a view.
 PoseChange pose_difference(const RobotWork& work, std::size_t view, const ChainState& state);
+// Of a view that is none of the work's, whose measured pose under the base model is `reference`.
+PoseChange pose_difference(const RobotWork& work, const ChainInput::View& view, const camera::BoardPose& reference,
+                           const ChainState& state);
 // Its derivatives: by the chain's parameters (columns of others are zero), and of the measured pose (measured_slopes)
 // under `state`.
 Eigen::MatrixXd chain_slopes(const RobotWork& work, std::size_t view, std::vector<double> values,

@@ -4,9 +4,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "base/error.h"
 #include "explain/robot/robot_findings.h"
+#include "explain/robot/robot_proposals.h"
 #include "manifest/document.h"
 
 namespace gonio::explain {
@@ -60,6 +62,19 @@ class HandEyeProblem final : public RobotProblem {
   std::string group_noun() const override { return "pose"; }
   Importance importance() const override { return Importance::share_of_residual; }
   bool sets_outliers_aside() const override { return false; }  // those are left out before: settle()
+
+  std::vector<Proposal> proposals() const override {
+    std::vector<Proposal> told;
+    for (const RobotProposal& p : proposed()) told.push_back(p.told);
+    return told;
+  }
+  // Its noise is that of a recorded view.
+  ProposedRows propose(std::span<const double> values, std::size_t proposal) const override {
+    const RobotProposal& p = proposed()[proposal];
+    const PoseChange whitened = whitener_[p.like] * pose_difference(work_, p.view, p.reference,
+                                                                    state_of(work_.input, work_.parameters, values));
+    return {{whitened.begin(), whitened.end()}, std::vector<double>(6, 1.0), {}};
+  }
 
   RobotFindings findings(const Explanation& e) const override { return findings_of(work_, whitener_, e); }
   std::string remarks(const Explanation& e) const override { return findings(e).sentence; }
@@ -129,8 +144,15 @@ class HandEyeProblem final : public RobotProblem {
     }
   }
 
+  const std::vector<RobotProposal>& proposed() const {
+    std::call_once(proposed_once_, [this] { proposals_ = robot_proposals(work_); });
+    return proposals_;
+  }
+
   RobotWork work_;
   std::vector<PoseMatrix> whitener_;
+  mutable std::once_flag proposed_once_;
+  mutable std::vector<RobotProposal> proposals_;  // of the aligned mountings
 };
 
 }  // namespace

@@ -108,22 +108,26 @@ std::vector<double> start_values(const RobotWork& work) {
 namespace {
 
 // The measured pose under a state's camera and board.
-camera::BoardPose measured_under(const RobotWork& work, std::size_t view, const ChainState& state) {
-  const ChainInput::View& v = work.input.views[view];
+camera::BoardPose measured_under(const RobotWork& work, const ChainInput::View& v, const camera::BoardPose& reference,
+                                 const ChainState& state) {
   const camera::Intrinsics& base = work.input.intrinsics;
   const bool same = state.intrinsics.fx_px == base.fx_px && state.intrinsics.fy_px == base.fy_px &&
                     state.intrinsics.cx_px == base.cx_px && state.intrinsics.cy_px == base.cy_px &&
                     state.intrinsics.distortion == base.distortion && state.warp.sag_x_m == work.input.warp.sag_x_m &&
                     state.warp.sag_y_m == work.input.warp.sag_y_m && state.scale == std::array<double, 2>{};
-  if (same || v.corners.empty()) return work.reference[view];
-  return measured_pose(v, work.input, state, work.reference[view], pose_iterations).camera_from_board;
+  if (same || v.corners.empty()) return reference;
+  return measured_pose(v, work.input, state, reference, pose_iterations).camera_from_board;
 }
 
 }  // namespace
 
+PoseChange pose_difference(const RobotWork& work, const ChainInput::View& view, const camera::BoardPose& reference,
+                           const ChainState& state) {
+  return vector_of(change_between(measured_under(work, view, reference, state), chain_pose(work.input, view, state)));
+}
+
 PoseChange pose_difference(const RobotWork& work, std::size_t view, const ChainState& state) {
-  return vector_of(
-      change_between(measured_under(work, view, state), chain_pose(work.input, work.input.views[view], state)));
+  return pose_difference(work, work.input.views[view], work.reference[view], state);
 }
 
 // Central differences with steps of 1e-4 of the typical size.
@@ -152,7 +156,8 @@ Eigen::MatrixXd chain_slopes(const RobotWork& work, std::size_t view, std::vecto
 Eigen::MatrixXd pose_slopes(const RobotWork& work, std::size_t view, const ChainState& state) {
   const ChainInput::View& v = work.input.views[view];
   if (v.corners.empty()) return Eigen::MatrixXd::Zero(6, static_cast<Eigen::Index>(slope_scale + 2));
-  const std::vector<double> slopes = measured_slopes(v, work.input, state, measured_under(work, view, state));
+  const std::vector<double> slopes =
+      measured_slopes(v, work.input, state, measured_under(work, v, work.reference[view], state));
   return Eigen::Map<const Eigen::MatrixXd>(slopes.data(), 6, static_cast<Eigen::Index>(slopes.size() / 6));
 }
 

@@ -29,6 +29,9 @@ class ExposuresProblem final : public Problem {
   Importance importance() const override { return Importance::share_of_signal; }
   // From pairs of sites of nearly the same brightness in one picture: what bends the response is the same for both.
   std::optional<double> noise_factor(std::span<const double> residual) const override;
+  // Another exposure, beyond the longest and the shortest and in the widest gap, and the longest without any light.
+  std::vector<Proposal> proposals() const override;
+  ProposedRows propose(std::span<const double> values, std::size_t proposal) const override;
   std::string remarks(const Explanation& explanation) const override;
   void apply(const Explanation& explanation, manifest::Document& document) const override;
   Illustration illustrate(const Explanation& explanation, const std::filesystem::path& out,
@@ -43,6 +46,12 @@ class ExposuresProblem final : public Problem {
     const ExposureBinding* binding = nullptr;
     std::size_t first = 0, count = 0;  // its numbers in parameters_
   };
+  struct Proposed {
+    std::size_t like = 0;  // the image beside which it would stand
+    double exposure_s = 0;
+    bool dark = false;
+  };
+  std::vector<Proposed> proposed() const;
   void add_radiances();
   void add_rows();
   void add_conditions();

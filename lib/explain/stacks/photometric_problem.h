@@ -34,6 +34,9 @@ class PhotometricProblem final : public Problem {
   bool sets_outliers_aside() const override { return true; }
   // From sites and the pixels beside them.
   std::optional<double> noise_factor(std::span<const double> residual) const override;
+  // Lamps in directions that the stack lacks, and no lamp at all.
+  std::vector<Proposal> proposals() const override;
+  ProposedRows propose(std::span<const double> values, std::size_t proposal) const override;
   std::string remarks(const Explanation& explanation) const override;
   void apply(const Explanation& explanation, manifest::Document& document) const override;
   Illustration illustrate(const Explanation& explanation, const std::filesystem::path& out,
@@ -52,6 +55,11 @@ class PhotometricProblem final : public Problem {
     std::size_t first = 0, count = 0;  // its numbers in parameters_
     std::span<const double> of(std::span<const double> values) const { return values.subspan(first, count); }
   };
+  struct Proposed {
+    std::string where;  // "25 degrees from the camera's axis, to the right"
+    Vec3 towards;       // unit; zero: no lamp
+  };
+  std::vector<Proposed> proposed() const;
   void keep_shown_sites(const std::string& place);
   void start_strengths();
   void add_patches();

@@ -17,7 +17,7 @@ constexpr std::size_t most_pictures = 3, most_boxes = 4, least_box = 12;
 constexpr float beyond = 3;  // standard deviations
 
 const char* colour_of(const Stack& stack, int channel) {
-  static const char* const colours[] = {"#b3261e", "#1b6e3c", "#1f4e9e"};
+  static const char* const colours[] = {"#c55a00", "#00805e", "#0067a5"};
   return stack.channels.size() == 1 ? "#444" : colours[channel];
 }
 

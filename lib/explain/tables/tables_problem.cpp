@@ -11,7 +11,6 @@
 #include "explain/tables/unit.h"
 #include "manifest/document.h"
 #include "manifest/fields.h"
-#include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/table.h"
 
 namespace gonio::explain::tables {
@@ -69,53 +68,6 @@ void TablesProblem::assemble(const manifest::Document&) {
   terms_ = std::make_unique<TermStack>(table_, model_->name, done, parameters_.size());
   parameters_.insert(parameters_.end(), terms_->parameters().begin(), terms_->parameters().end());
   candidates_.insert(candidates_.end(), terms_->candidates().begin(), terms_->candidates().end());
-}
-
-// Which number of a parameter's list is candidate parameter k's: the place of its target among those that the manifest
-// names. Candidates with the numbers of several targets hold them target by target.
-std::optional<std::size_t> TablesProblem::number_of(const Candidate& candidate, std::size_t k,
-                                                    const manifest::MechanismUse& use) const {
-  if (!of_single_targets(candidate)) {
-    if (candidate.on.size() != 1 || use.on.size() < 2) return 0;
-    return static_cast<std::size_t>(std::ranges::find(use.on, candidate.on[0]) - use.on.begin());
-  }
-  const std::size_t own = k / candidate.mechanism->parameters.size();
-  if (use.on.empty()) return own;
-  const std::string& target = candidate.on[own];
-  const auto found = std::find(use.on.begin(), use.on.end(), target);
-  if (found == use.on.end()) return {};
-  return static_cast<std::size_t>(found - use.on.begin());
-}
-
-bool TablesProblem::of_single_targets(const Candidate& candidate) {
-  return candidate.on.size() > 1 &&
-         candidate.parameters.size() == candidate.on.size() * candidate.mechanism->parameters.size();
-}
-
-// What the manifest switches on already holds at its values; parameters that it sets free join the base model.
-void TablesProblem::switch_on(const manifest::Document& document) {
-  std::erase_if(candidates_, [&](const Candidate& candidate) {
-    const auto found = document.mechanisms.find(candidate.id());
-    if (found == document.mechanisms.end() || !bound_->is_of_manifest(candidate)) return false;
-    const manifest::MechanismUse& use = found->second;
-    const auto elsewhere = [&](const std::string& name) {
-      return std::find(use.on.begin(), use.on.end(), name) == use.on.end();
-    };
-    if (!use.on.empty() && !candidate.on.empty() && std::all_of(candidate.on.begin(), candidate.on.end(), elsewhere))
-      return false;
-    for (std::size_t k = 0; k < candidate.parameters.size(); ++k) {
-      const std::size_t place = candidate.parameters[k];
-      Parameter& p = parameters_[place];
-      const auto given = use.parameters.find(p.name.substr(p.name.find_last_of("./") + 1));
-      if (given == use.parameters.end() || !given->second.given()) continue;
-      const std::optional<std::size_t> number = number_of(candidate, k, use);
-      if (!number || *number >= given->second.value.size()) continue;
-      p.start = p.neutral = given->second.value[*number];
-      if (given->second.sigma) p.prior_sigma = given->second.sigma;
-      if (given->second.free) base_.push_back(place);
-    }
-    return true;
-  });
 }
 
 void TablesProblem::observe(const manifest::Document& document, const ProblemOptions& options) {

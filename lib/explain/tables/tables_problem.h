@@ -48,6 +48,8 @@ class TablesProblem final : public Problem {
 
  private:
   void assemble(const manifest::Document& document);
+  bool is_switched_on(const Candidate& candidate, const manifest::Document& document) const;
+  bool holds(const Candidate& candidate, const manifest::MechanismUse& use) const;
   void switch_on(const manifest::Document& document);
   std::optional<std::size_t> number_of(const Candidate& candidate, std::size_t k,
                                        const manifest::MechanismUse& use) const;

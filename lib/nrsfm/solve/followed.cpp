@@ -32,21 +32,18 @@ bool is_candidate(const ShapeReconstruction& r) {
   return !r.file.empty() && r.frame != "camera";
 }
 
-// Places in `reconstructions`, one for each sequence that has any.
-std::vector<std::size_t> best_of_each(const Document& document) {
-  std::map<std::string, std::size_t> best;
+// Places in `reconstructions` by sequence, those that reproject best first.
+std::map<std::string, std::vector<std::size_t>> candidates(const Document& document) {
+  std::map<std::string, std::vector<std::size_t>> all;
   const auto rms = [&](std::size_t i) {
     return document.reconstructions[i].reprojection_rms.value_or(std::numeric_limits<double>::infinity());
   };
   for (std::size_t i = 0; i < document.reconstructions.size(); ++i) {
     const ShapeReconstruction& r = document.reconstructions[i];
-    if (!is_candidate(r) || !document.sequences.contains(r.sequence)) continue;
-    const auto [known, first] = best.try_emplace(r.sequence, i);
-    if (!first && rms(i) < rms(known->second)) known->second = i;
+    if (is_candidate(r) && document.sequences.contains(r.sequence)) all[r.sequence].push_back(i);
   }
-  std::vector<std::size_t> places;
-  for (const auto& [sequence, place] : best) places.push_back(place);
-  return places;
+  for (auto& [sequence, places] : all) std::ranges::stable_sort(places, {}, rms);
+  return all;
 }
 
 std::filesystem::path file_of(const Document& document, std::size_t i) {
@@ -189,15 +186,38 @@ Followed follow(const Solved& solved, double false_alarm) {
   return Followed(parts_of(solved, false_alarm));
 }
 
+namespace {
+
+// The best of them that leaves something to ask: one with as many shapes as the tracks can carry fits everything.
+Followed follow_best(const Document& document, const std::vector<std::size_t>& places, double false_alarm) {
+  std::optional<Error> why;
+  for (const std::size_t i : places) {
+    try {
+      Followed followed = follow(solved_of(document, i), false_alarm);
+      followed.reconstruction = document.reconstructions[i].id;
+      return followed;
+    } catch (const Error& e) {
+      if (e.code() != Exit::data) throw;
+      if (!why) why = e;
+    }
+  }
+  if (places.size() == 1) throw *why;
+  throw Error(
+      Exit::data, why->place(),
+      why->problem() + "; none of its " + std::to_string(places.size()) + " reconstructions leaves anything to ask",
+      "solve it with --solver rigid or --solver csf as well");
+}
+
+}  // namespace
+
 bool has_followed(const Document& document) {
-  return !best_of_each(document).empty();
+  return !candidates(document).empty();
 }
 
 std::vector<std::filesystem::path> followed_files(const Document& document) {
   std::vector<std::filesystem::path> files;
-  for (const std::size_t i : best_of_each(document)) {
-    files.push_back(file_of(document, i));
-    const std::string& sequence = document.reconstructions[i].sequence;
+  for (const auto& [sequence, places] : candidates(document)) {
+    for (const std::size_t i : places) files.push_back(file_of(document, i));
     files.push_back(
         manifest::resolve(document, document.sequences.at(sequence).file, "/sequences/" + sequence + "/file"));
   }
@@ -206,10 +226,9 @@ std::vector<std::filesystem::path> followed_files(const Document& document) {
 
 std::vector<Followed> followed_tracks(const Document& document, double false_alarm) {
   std::vector<Followed> all;
-  for (const std::size_t i : best_of_each(document)) {
-    all.push_back(follow(solved_of(document, i), false_alarm));
-    all.back().sequence = document.reconstructions[i].sequence;
-    all.back().reconstruction = document.reconstructions[i].id;
+  for (const auto& [sequence, places] : candidates(document)) {
+    all.push_back(follow_best(document, places, false_alarm));
+    all.back().sequence = sequence;
     all.back().inverse_focal = known_perspective(document, all.back().sequence);
   }
   return all;

@@ -105,8 +105,9 @@ class Followed {
 
 // Reconstructions in one frame of reference for the whole sequence, whose camera is (scaled) orthographic.
 bool has_followed(const manifest::Document& document);
-// One for each sequence, from its reconstruction with the smallest reprojection error. `false_alarm`: probability that
-// a sequence without outliers has one named.
+// One for each sequence, from its reconstruction with the smallest reprojection error among those that have few enough
+// shapes for something to be asked of the tracks. `false_alarm`: probability that a sequence without outliers has one
+// named. Error(data) where none of them does.
 std::vector<Followed> followed_tracks(const manifest::Document& document, double false_alarm);
 std::vector<std::filesystem::path> followed_files(const manifest::Document& document);
 

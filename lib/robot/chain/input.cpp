@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "camera/board.h"
-#include "camera/corner_model.h"
 #include "camera/corner_table.h"
+#include "camera/moved_corners.h"
 #include "manifest/document.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
@@ -19,7 +19,12 @@
 #include "manifest/sections/plan.h"
 #include "manifest/sections/robot.h"
 #include "manifest/sections/table.h"
+#include "mechanism/mechanism.h"
 #include "robot/ur_calibration.h"
+
+namespace gonio::mechanism {
+const Mechanism& board_scale();
+}
 
 namespace gonio::robot {
 namespace {
@@ -113,17 +118,16 @@ void read_corners(const manifest::Document& document, ChainInput& input) {
   }
 }
 
-// Terms of the manifest that move corners, and that a pose solved from corners here would not know: the poses as they
-// stand were fitted with them.
+// Terms of the manifest that move this set's corners, and that a pose solved from corners here would not know: the
+// poses as they stand were fitted with them. The scale of the board is the chain's own.
 bool corners_moved_elsewhere(const manifest::Document& document, const ChainInput& input) {
   return std::ranges::any_of(document.mechanisms, [&](const auto& entry) {
-    const auto& on = entry.second.on;
-    const auto names = [&](const std::string& name) { return on.empty() || std::ranges::find(on, name) != on.end(); };
-    return (names(input.camera) || names(input.board)) &&
-           std::ranges::any_of(entry.second.parameters, [](const auto& parameter) {
-             const auto column = camera::corner_column(parameter.first);
-             return column && *column >= camera::CornerColumn::pupil;
-           });
+    const auto& [id, use] = entry;
+    const auto names = [&, &on = use.on](const std::string& name) {
+      return on.empty() || std::ranges::find(on, name) != on.end();
+    };
+    return id != mechanism::board_scale().id && (names(input.camera) || names(input.board)) &&
+           camera::moves_corners(id, use);
   });
 }
 

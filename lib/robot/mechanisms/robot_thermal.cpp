@@ -15,7 +15,7 @@ const Mechanism& robot_thermal() {
       .source = "Heisel, Richter & Wurst, CIRP Annals 46(1), 1997 (thermal behaviour of industrial robots)",
       .stage = "pose",
       .target = Target::scene,
-      .domains = {"robot"},
+      .domains = {"robot", "tables"},
       .parameters = {{.name = "growth_per_K",
                       .unit = "1/K",
                       .lower = -2e-4,

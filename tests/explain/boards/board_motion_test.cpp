@@ -70,6 +70,7 @@ TEST(BoardMotion, OfFewViewsIsNotAsked) {
 
 TEST(BoardMotion, OtherCandidatesAreNotAsked) {
   Shutter shutter(10, 7);
+  shutter.contradicted(1, [](const camera::BoardPose&, double drawn) { return 1e-4 * drawn; });  // all views move
   for (std::size_t c = 0; c < shutter.problem->candidates().size(); ++c)
     EXPECT_EQ(boards_objection(*shutter.problem, shutter.e, c).has_value(), c == shutter.candidate) << c;
 }

@@ -45,6 +45,20 @@ TEST_F(TracksPipe, ScalesThatAreNamedAreFreedByTheNextCall) {
   EXPECT_LT(error_of("second.json"), 0.5 * error_of("first.json"));
 }
 
+// A solver with as many shapes as there are frames reprojects best, and leaves nothing to ask.
+TEST_F(TracksPipe, OfSeveralSolversOneIsTakenThatLeavesSomethingToAsk) {
+  testing::Film f;
+  f.zoom = 0.2, f.shapes = 1;
+  write(testing::film(f));
+  const Ended e =
+      shell("nrsfm-solve --solver spfm --solver rigid --out answers film.mat | tee all.json | explain >why.json");
+  ASSERT_EQ(e.status, 0) << e.err;
+  EXPECT_THAT(gonio::read_file(folder_ / "why.json"), ::testing::HasSubstr("tracks.scale"));
+  const Ended alone = shell("nrsfm-solve --solver spfm --solver subspaces --out others film.mat | explain >why.json");
+  EXPECT_EQ(alone.status, 65);
+  EXPECT_THAT(alone.err, ::testing::HasSubstr("--solver rigid"));
+}
+
 TEST_F(TracksPipe, SlipsThatAreNamedAreLeftOutByTheNextCall) {
   testing::Film f;
   f.shapes = 1;

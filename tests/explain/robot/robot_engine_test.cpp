@@ -169,6 +169,34 @@ TEST(ExplainRobotEngine, TheNoiseIsTheOneThatHandeyeStates) {
   }
 }
 
+// Views that acquire can be asked for, of which some would show a joint's zero that is off.
+TEST(ExplainRobotEngine, PosesAreProposedThatTheArmReaches) {
+  CellTruth truth;
+  truth.joint_offset_rad = {0, 0, 1e-3, 0, 0, 0};
+  const auto problem = robot_problem(robot_inputs(robot_cell(truth, 20, 3)).at(0));
+  const std::vector<Proposal> proposals = problem->proposals();
+  ASSERT_GT(proposals.size(), 3u);
+  const Explanation e = explain(*problem, {});
+  ASSERT_FALSE(e.named.empty()) << e.sentence;
+  std::vector<double> without = e.values;
+  for (const std::size_t p : problem->candidates()[e.named[0]].parameters)
+    without[p] = problem->parameters()[p].neutral;
+  double most = 0;
+  for (std::size_t k = 0; k < proposals.size(); ++k) {
+    const manifest::Value* images = proposals[k].setup.find("images");
+    ASSERT_NE(images, nullptr);
+    ASSERT_EQ(images->as_array().size(), 1u);
+    EXPECT_NE(images->as_array()[0].find("camera_from_board"), nullptr);
+    const ProposedRows with = problem->propose(e.values, k), lacking = problem->propose(without, k);
+    ASSERT_EQ(with.prediction.size(), 6u);
+    double squares = 0;
+    for (std::size_t i = 0; i < 6; ++i)
+      squares += std::pow((with.prediction[i] - lacking.prediction[i]) / with.sigma[i], 2);
+    most = std::max(most, std::sqrt(squares));
+  }
+  EXPECT_GT(most, 1);
+}
+
 TEST(ExplainRobotEngine, ManifestsWithMountingsOfferTheDomain) {
   const auto problems = problems_of(robot_cell({}, 12, 9));
   ASSERT_EQ(problems.size(), 2u);

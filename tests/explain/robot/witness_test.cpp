@@ -1,11 +1,16 @@
 // The arm as a witness of what corners are said to show (explain/robot/robot_witness.h).
+#include "explain/witness.h"
+
 #include <gtest/gtest.h>
 
 #include "base/random.h"
 #include "explain/robot/robot_witness.h"
 #include "explain/robot/robot_world.h"
+#include "inference/nonlinear_toy.h"
 #include "manifest/document.h"
 #include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
+#include "robot/chain/input.h"
 
 namespace gonio::explain::tests {
 namespace {
@@ -45,6 +50,49 @@ TEST(Witness, IsSeldomWrong) {
     wrong += contradicted(shaken(cell, 3e-4, 2 * seed + 1), shaken(cell, 3e-4, 2 * seed + 2));
   }
   EXPECT_LE(wrong, 2u);
+}
+
+// A domain whose own fit speaks against whatever it has named.
+std::optional<Testimony> always(const Problem&, const Explanation&, std::size_t) {
+  Testimony t{"somebody", "something", "m", 1, 2, 0};
+  t.refuted = true;
+  return t;
+}
+
+TEST(Witness, WhatIsContradictedIsNotNamedAndIsAskedNoMoreThanOnce) {
+  const NonlinearToy bent(library(), {{1.5}}, {{}, 0.1, 0}, 3, {8, 40, 2});
+  const Domain domain{.name = "toy", .sentence = "", .objects = always};
+  const Explanation e = explain_before_witnesses(domain, bent, {}, {}, {});
+  EXPECT_TRUE(e.named.empty()) << e.sentence;
+  ASSERT_FALSE(e.contradicted.empty());
+  EXPECT_NE(e.sentence.find("is not named: somebody contradicts it"), std::string::npos) << e.sentence;
+}
+
+// Where nothing else was asked for, the name stands, and the contradiction beside it.
+TEST(Witness, ALoneHypothesisStandsWithItsContradiction) {
+  const NonlinearToy bent(library(), {{1.5}}, {{}, 0.1, 0}, 3, {8, 40, 2});
+  const Domain domain{.name = "toy", .sentence = "", .objects = always};
+  Options options;
+  options.hypotheses = {bent.candidates()[0].id()};
+  const Explanation e = explain_before_witnesses(domain, bent, options, {}, {});
+  ASSERT_EQ(e.named, std::vector<std::size_t>{0}) << e.sentence;
+  EXPECT_NE(e.sentence.find("But somebody contradicts"), std::string::npos) << e.sentence;
+}
+
+// Poses that were fitted with terms that the chain does not know are taken as they stand; others are solved from their
+// corners.
+TEST(Witness, CornersThatOtherTermsMoveAreLeftToTheirPoses) {
+  manifest::Document cell = robot_cell({}, 20, 5);
+  for (manifest::ImageEntry& image : cell.images) image.camera_from_board->sigma = {{1e-4}, {1e-4}};
+  const auto has_corners = [&](const std::string& id, const std::string& parameter, double value) {
+    manifest::Document document = cell;
+    document.mechanisms[id].parameters[parameter].value = {value};
+    return !robot::robot_inputs(document).at(0).views.at(0).corners.empty();
+  };
+  EXPECT_FALSE(has_corners("lens.non-central", "pupil_m", 0.004));
+  EXPECT_TRUE(has_corners("lens.non-central", "pupil_m", 0));
+  EXPECT_TRUE(has_corners("board.scale", "scale_x", 0.002));
+  EXPECT_TRUE(has_corners("sensor.exposure", "relative", 0.1));
 }
 
 }  // namespace

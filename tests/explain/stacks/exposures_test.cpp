@@ -11,6 +11,7 @@
 #include "explain/stacks/stack_world.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/sections/image.h"
 
 namespace gonio::explain::stacks {
 namespace {
@@ -166,6 +167,38 @@ TEST(Exposures, VeilingGlareCannotBeSeen) {
     if (r.problem->candidates()[i.candidate].id() == "optics.veiling-glare") {
       EXPECT_FALSE(i.visible) << i.surviving_share;
     }
+}
+
+// What is proposed is what a camera would record: the world's own picture at that exposure, which the stack lacks.
+TEST(Exposures, AProposedPictureIsWhatWouldBeRecorded) {
+  const tests::ScratchFolder folder;
+  ExposureWorld world;
+  world.exposures_s.push_back(2 * world.exposures_s.back());
+  const manifest::Document whole = record(world, folder.path());
+  manifest::Document six = whole;
+  six.images.pop_back();
+  const Outcome r = run(six);
+  const auto& problem = dynamic_cast<const ExposuresProblem&>(*r.problem);
+  const std::vector<Proposal> proposals = problem.proposals();
+  ASSERT_EQ(proposals.size(), 3u);  // no gap is wide
+  EXPECT_NE(proposals[0].sentence.find("again at 0.256 s"), std::string::npos) << proposals[0].sentence;
+  EXPECT_DOUBLE_EQ(proposals[0].setup.find("exposure_s")->as_number(), world.exposures_s.back());
+  const std::vector<std::vector<std::size_t>> stacks = stacks_of(whole, Kind::exposures);
+  const Stack recorded = read_stack(whole, stacks.at(0), Kind::exposures);
+  const ProposedRows rows = problem.propose(r.explanation.values, 0);
+  double squares = 0, n = 0;
+  for (std::size_t s = 0; s < problem.sites().size(); ++s) {
+    if (rows.sigma[s] > 1) continue;  // clipped
+    const Site& site = problem.sites()[s];
+    const double z =
+        (recorded.images.back().picture.at(site.x, site.y, site.channel) - rows.prediction[s]) / rows.sigma[s];
+    squares += z * z, n += 1;
+  }
+  ASSERT_GT(n, 40);
+  EXPECT_GT(std::sqrt(squares / n), 0.5);
+  EXPECT_LT(std::sqrt(squares / n), 1.5);
+  const ProposedRows dark = problem.propose(r.explanation.values, 2);
+  for (const double v : dark.prediction) EXPECT_NEAR(v, 0, 1e-9);
 }
 
 TEST(Exposures, EveryDeclaredConditionOfACandidateIsThere) {

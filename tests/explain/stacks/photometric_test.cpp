@@ -7,6 +7,7 @@
 #include "explain/engine.h"
 #include "explain/stacks/photometric_problem.h"
 #include "explain/stacks/stack_world.h"
+#include "manifest/codec.h"
 #include "manifest/document.h"
 
 namespace gonio::explain::stacks {
@@ -51,6 +52,38 @@ Outcome run(const LightWorld& world) {
 TEST(Photometric, NothingIsNamedOfAMatteBall) {
   const Outcome o = run({});
   EXPECT_EQ(o.explanation.verdict, Verdict::null) << o.told();
+}
+
+// Lamps are proposed where none stood, and what they would show of a gloss is seen in some and not in the dark.
+TEST(Photometric, LampsAreProposedWhereNoneStood) {
+  LightWorld world;
+  world.f0 = 0.05;
+  const Outcome o = run(world);
+  const std::vector<Proposal> proposals = o.problem->proposals();
+  ASSERT_GT(proposals.size(), 3u);
+  const auto& problem = dynamic_cast<const PhotometricProblem&>(*o.problem);
+  const std::vector<PatchLight> lamps = problem.lights(o.explanation.base_values, world.size / 2, world.size / 2);
+  std::vector<double> matte = o.explanation.values;
+  for (const std::size_t p : o.problem->candidates()[o.explanation.named.at(0)].parameters)
+    matte[p] = o.problem->parameters()[p].neutral;
+  std::size_t telling = 0;
+  for (std::size_t k = 0; k < proposals.size(); ++k) {
+    const ProposedRows glossy = problem.propose(o.explanation.values, k), plain = problem.propose(matte, k);
+    double z = 0;
+    for (std::size_t i = 0; i < glossy.prediction.size(); ++i)
+      z = std::max(z, std::abs(glossy.prediction[i] - plain.prediction[i]) / glossy.sigma[i]);
+    telling += z > 3;
+    const manifest::Value* towards = proposals[k].setup.find("light_towards");
+    if (towards == nullptr) {
+      EXPECT_EQ(z, 0) << proposals[k].sentence;
+      continue;
+    }
+    const Vec3 direction = manifest::Codec<Vec3>::read(*towards, "");
+    EXPECT_NEAR(norm(direction), 1, 1e-12);
+    for (const PatchLight& lamp : lamps)
+      EXPECT_LT(dot(lamp.towards, direction), std::cos(0.2)) << proposals[k].sentence;
+  }
+  EXPECT_GT(telling, 0u);
 }
 
 TEST(Photometric, GlossIsNamedWithItsNumbers) {

@@ -104,6 +104,15 @@ TEST(Ellipsometer, FilmsAreNamedAndTheirIntervalsHold) {
   EXPECT_GE(covered, 20u) << "of " << asked;  // fewer than that one time in eighty, at 95 %
 }
 
+TEST(Ellipsometer, AFilmInTheManifestIsNoMoreLeftOut) {
+  const World w = coated(5, 1.3e-7, 1.46);  // in none of the first ranges of thickness
+  const TablesProblem problem = w.problem();
+  const Explanation e = explain(problem, {}), again = asked_again(w, problem, e);
+  ASSERT_EQ(named(problem, e), "surface.thin-film") << e.sentence;
+  EXPECT_TRUE(again.named.empty()) << again.sentence;
+  EXPECT_NEAR(again.held_out_before, e.held_out_after, 0.1 * e.held_out_after);
+}
+
 TEST(Ellipsometer, OtherColumnsAreRefusedInOneLine) {
   World w = coated(1, 0, 1.5);
   w.rest = R"("model": "ellipsometer", "observed": ["substrate_n"])";

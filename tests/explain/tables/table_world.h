@@ -66,6 +66,13 @@ inline std::string named(const Problem& problem, const Explanation& e) {
   return text;
 }
 
+// The answer put into the manifest and asked again: nothing is left of what was named, and it acts once.
+inline Explanation asked_again(const World& world, const TablesProblem& problem, const Explanation& e) {
+  manifest::Document document = world.document();
+  problem.apply(e, document);
+  return explain(TablesProblem(document, "t", {}, false), {});
+}
+
 inline const Estimate* estimate_of(const Problem& problem, const Explanation& e, const std::string& parameter) {
   for (const Estimate& x : e.estimates)
     if (problem.parameters()[x.parameter].name == parameter) return &x;

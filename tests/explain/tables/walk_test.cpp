@@ -100,6 +100,18 @@ World ellipsometer() {
   return rows_of({{"theta_i", "rad"}, {"wavelength_m", "m"}, {"substrate_n", "1"}, {"psi", "rad"}, {"delta", "rad"}},
                  300, "", R"("model": "ellipsometer", "observed": ["psi", "delta"])", usual);
 }
+World tracker() {
+  World w = rows_of({{"nominal_x_m", "m"},
+                     {"nominal_y_m", "m"},
+                     {"nominal_z_m", "m"},
+                     {"height_m", "m"},
+                     {"time_s", "s"},
+                     {"temperature_K", "K"}},
+                    300, "", R"("model": "tracker", "observed": ["x_m", "y_m", "z_m"])", usual);
+  for (const char* name : {"x_m", "y_m", "z_m"}) w.columns.emplace_back(name, "m");
+  for (std::vector<double>& row : w.rows) row.insert(row.end(), {row[1], -row[0], row[2]});
+  return w;
+}
 World surface() {
   return rows_of({{"theta_i", "rad"},
                   {"phi_i", "rad"},
@@ -146,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(
         Walk{"light", light, no_shadows}, Walk{"parallel", parallel_light, no_shadows},
         Walk{"volume", volume, {"image.exposure"}}, Walk{"refraction", refraction, {"image.exposure"}},
         Walk{"ellipsometer", ellipsometer, {"surface.wavelength", "surface.difference-angle", "surface.half-angle"}},
-        Walk{"surface", surface, {"surface.spatial-frequency", "surface.lay-azimuth"}},
+        Walk{"tracker", tracker, {}}, Walk{"surface", surface, {"surface.spatial-frequency", "surface.lay-azimuth"}},
         // Centres of markers have no edges and throw no shadows; a volume's walls are not there.
         Walk{"markers", markers, {"image.edge-distance", "light.shadow-edge-distance", "volume.size"}}),
     [](const auto& i) { return std::string(i.param.model); });

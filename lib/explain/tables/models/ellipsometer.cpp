@@ -47,8 +47,8 @@ class Ellipsometer final : public BoundModel {
     tilt.parameter.size = 1e-3;
     if (tilt.free) base_.push_back(0);
     parameters_.push_back(std::move(tilt.parameter));
-    declare_index(table);
-    declare_films(table);
+    declare_index();
+    declare_films();
     for (const char* column : {"theta_i", "wavelength_m"})
       if (std::optional<Condition> c = condition_of(table, column)) conditions_.push_back(std::move(*c));
   }
@@ -103,14 +103,14 @@ class Ellipsometer final : public BoundModel {
     is_delta_.push_back(delta);
   }
 
-  void declare_index(const Table&) {
+  void declare_index() {
     const mechanism::Mechanism& m = mechanism::volume_index();
     const mechanism::Parameter& p = m.parameters.at(0);
     candidates_.push_back({&m, {}, {parameters_.size()}, {}});
     parameters_.push_back({m.id + "." + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, 0.01, {}, {}});
   }
 
-  void declare_films(const Table&) {
+  void declare_films() {
     const mechanism::Mechanism& m = mechanism::surface_thin_film();
     const mechanism::Parameter &d = m.parameters.at(0), &eta = m.parameters.at(1);
     for (double lower = 0; lower < thickest_m - 1e-9; lower += range_m) {

@@ -18,7 +18,7 @@ enum class Shown { both, incidence, exitance };
 
 template <Shown shown>
 void at_least_zero(const Table&, double, std::span<TermParameter> p) {
-  for (TermParameter& number : p) number.lower = 0;
+  for (TermParameter& number : p) number.lower = 0, number.upper = 1;
   if (shown == Shown::both) return;
   TermParameter& other = p[shown == Shown::incidence ? 1 : 0];
   other.start = 0;

@@ -2,6 +2,7 @@
 // where an effect acts.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -93,7 +94,7 @@ void expect_mask(const EffectOutcome& outcome, std::size_t g, const io::Image& m
   EXPECT_GT(highest - lowest, 0.5);
 }
 
-// Boxes are drawn on the pictures before, none on those after.
+// Boxes are drawn on the photographs, and on nothing else.
 TEST(Pictures, ShowWhereTheEffectActs) {
   EffectWorld world;
   world.views = 2;
@@ -116,21 +117,31 @@ TEST(Pictures, ShowWhereTheEffectActs) {
   }
   ASSERT_FALSE(shown.boxes.empty());
   ASSERT_FALSE(shown.pictures.empty());
-  const auto yellow_in = [&](const explain::Picture& picture) {
-    std::ofstream(out / "shown.png", std::ios::binary) << picture.png;
+  const auto yellow_in = [&](const std::string& png) {
+    std::ofstream(out / "shown.png", std::ios::binary) << png;
     const io::Image drawn = io::read_picture(out / "shown.png");
     std::size_t yellow = 0;
     for (std::size_t i = 0; i + 2 < drawn.data.size(); i += 3)
       yellow += drawn.data[i] > 0.99f && drawn.data[i + 1] > 0.99f && drawn.data[i + 2] < 0.01f;
     return yellow;
   };
-  std::size_t before = 0, after = 0;
+  // The worst photograph comes first, then what was simulated and what differs, each without and with the answer.
+  ASSERT_GE(shown.pictures.size(), 3u);
+  EXPECT_EQ(shown.seen_at_once, 3u);
+  EXPECT_EQ(shown.pictures[0].title, outcome.explanation.groups[0].name);
+  EXPECT_TRUE(shown.pictures[0].over_png.empty());
+  std::size_t outlined = 0, others = 0, pairs = 0;
   for (const explain::Picture& picture : shown.pictures) {
-    if (picture.title.find("base model") != std::string::npos) before += yellow_in(picture);
-    if (picture.title.find("upgraded model") != std::string::npos) after += yellow_in(picture);
+    const bool photograph = std::ranges::count(images, picture.title, &explain::images::Recording::id) > 0;
+    (photograph ? outlined : others) += yellow_in(picture.png);
+    if (picture.over_png.empty()) continue;
+    ++pairs;
+    EXPECT_NE(picture.png, picture.over_png);
+    others += yellow_in(picture.over_png);
   }
-  EXPECT_GT(before, 100u);
-  EXPECT_EQ(after, 0u);
+  EXPECT_GT(outlined, 100u);
+  EXPECT_EQ(others, 0u);
+  EXPECT_GE(pairs, 2u);
 }
 
 }  // namespace
