@@ -47,9 +47,7 @@ const Domain& robot() {
             "hand-eye sets state no temperature of the camera; corners with a column of it are boards"},
            {"robot.axis-scale", "needs places that a tracker measured, a table of the model tracker"},
            {"robot.squareness", "needs places that a tracker measured, a table of the model tracker"},
-           {"robot.compliance",
-            "nothing says how high the arm stands and where its weight is: places that a tracker measured, a table of "
-            "the model tracker"},
+           {"robot.compliance", "needs places that a tracker measured, a table of the model tracker"},
            {"robot.friction-heating", "needs temperatures of the joints, a table of the model temperature"},
            {"robot.joule-heating", "needs temperatures of the joints, a table of the model temperature"},
            {"robot.warm-up", "needs temperatures of the joints, a table of the model temperature"},

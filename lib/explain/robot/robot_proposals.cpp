@@ -5,43 +5,21 @@
 #include <cmath>
 #include <limits>
 
-#include "base/text.h"
 #include "manifest/codec.h"
+#include "robot/handeye/viewpoint.h"
 #include "robot/inverse/inverse_kinematics.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain {
 namespace {
 
-constexpr double degree = pi / 180;
-struct Setting {
-  double tilt_deg, azimuth_deg, spin_deg, far;  // about the board's middle; times the usual distance
-};
-constexpr Setting settings[] = {{0, 0, 0, 1},     {0, 0, 90, 1},    {0, 0, 180, 1},   {0, 0, 0, 1.3},  {0, 0, 0, 0.75},
-                                {35, 0, 0, 1},    {35, 90, 0, 1},   {35, 180, 0, 1},  {35, 270, 0, 1}, {35, 0, 90, 1},
-                                {35, 180, 90, 1}, {50, 90, 0, 1.2}, {50, 270, 0, 1.2}};
+using robot::handeye::Viewpoint;
 
-const char* side_of(double azimuth_deg) {
-  return azimuth_deg == 0 ? "its right" : azimuth_deg == 90 ? "below" : azimuth_deg == 180 ? "its left" : "above";
-}
-
-std::string words_of(const Setting& s, double distance_m) {
-  std::string text = s.tilt_deg == 0 ? format("the board squarely from %.2f m", s.far * distance_m)
-                                     : format("the board from %s, tilted by %.0f degrees, at %.2f m",
-                                              side_of(s.azimuth_deg), s.tilt_deg, s.far * distance_m);
-  if (s.spin_deg != 0) text += format(", the camera turned by %.0f degrees about its axis", s.spin_deg);
-  return text;
-}
-
-// From the right means that the board turns about its y axis; spin turns what the camera sees.
-camera::BoardPose pose_of(const Setting& s, double distance_m, Vec3 middle_m) {
-  const double a = s.azimuth_deg * degree, t = s.tilt_deg * degree;
-  camera::BoardPose pose;
-  pose.rotation = quaternion_of_rotation_vector({0, 0, -s.spin_deg * degree}) *
-                  quaternion_of_rotation_vector({-std::sin(a) * t, std::cos(a) * t, 0});
-  pose.translation_m = Vec3{0, 0, s.far * distance_m} - pose.rotate(middle_m);
-  return pose;
-}
+// Distances are times the usual one.
+constexpr Viewpoint settings[] = {{0, 0, 0, 1},     {0, 0, 90, 1},  {0, 0, 180, 1},   {0, 0, 0, 1.3},
+                                  {0, 0, 0, 0.75},  {35, 0, 0, 1},  {35, 90, 0, 1},   {35, 180, 0, 1},
+                                  {35, 270, 0, 1},  {35, 0, 90, 1}, {35, 180, 90, 1}, {50, 90, 0, 1.2},
+                                  {50, 270, 0, 1.2}};
 
 double turned(const std::vector<double>& a, const robot::Joints& b) {
   double sum = 0;
@@ -82,10 +60,11 @@ std::vector<RobotProposal> robot_proposals(const RobotWork& work) {
   std::optional<robot::InverseKinematics> arm;
   if (arm_known) arm.emplace(input.links);
   const double distance = stats::median(distances);
-  for (const Setting& s : settings) {
+  for (Viewpoint from : settings) {
+    from.distance_m *= distance;
     RobotProposal p;
     p.like = like;
-    p.reference = pose_of(s, distance, middle);
+    p.reference = pose_of(from, middle);
     p.view = input.views[like];
     p.view.image = "proposed";
     p.view.camera_from_board = p.reference;
@@ -101,7 +80,7 @@ std::vector<RobotProposal> robot_proposals(const RobotWork& work) {
     manifest::Pose<frame::Camera, frame::Board> written;
     written.rotation = p.reference.rotation;
     written.translation_m = p.reference.translation_m;
-    p.told.sentence = words_of(s, distance);
+    p.told.sentence = in_words(from);
     p.told.setup = manifest::Value::object(
         {{"images", manifest::Value(manifest::Value::Array{manifest::Value::object(
                         {{"camera", input.camera},

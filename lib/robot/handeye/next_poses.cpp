@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "linear/solve.h"
 #include "robot/handeye/pose_adjustment.h"
+#include "robot/handeye/viewpoint.h"
 #include "stats/intervals.h"
 
 namespace gonio::robot::handeye {
@@ -17,13 +17,6 @@ struct Candidate {
   std::string words;
   Matrix12 information;
 };
-
-// The pose that looks squarely at the board's middle from the usual distance, turned about the middle.
-camera::BoardPose looking(const Setup& setup, double distance_m, Vec3 turn) {
-  camera::BoardPose pose{quaternion_of_rotation_vector(turn), {0, 0, distance_m}};
-  pose.translation_m = pose.translation_m - pose.rotate(setup.middle_m());
-  return pose;
-}
 
 // Corners of a typical view as that pose would show them; none where one falls out of the picture.
 View imagined(const Setup& setup, const View& like, const camera::BoardPose& pose, const Solution& solution) {
@@ -45,24 +38,6 @@ View imagined(const Setup& setup, const View& like, const camera::BoardPose& pos
   return view;
 }
 
-std::string words_of(Kind kind, double tilt_deg, double azimuth_deg, double spin_deg, double distance_m) {
-  char text[200];
-  const char* mover = kind == Kind::eye_in_hand ? "turn the camera" : "turn the board";
-  char spin[100] = "";
-  if (spin_deg != 0) std::snprintf(spin, sizeof spin, ", %s by %.0f degrees about the optical axis", mover, spin_deg);
-  if (tilt_deg == 0) {
-    std::snprintf(text, sizeof text, "face the board squarely from %.2f m%s", distance_m, spin);
-  } else {
-    const char* side = azimuth_deg == 0     ? "its right"
-                       : azimuth_deg == 90  ? "below"
-                       : azimuth_deg == 180 ? "its left"
-                                            : "above";
-    std::snprintf(text, sizeof text, "view the board from %s, tilted by %.0f degrees, at %.2f m%s", side, tilt_deg,
-                  distance_m, spin);
-  }
-  return text;
-}
-
 std::vector<Candidate> candidates(const Setup& setup, const View& like, double distance_m, const Refined& refined) {
   std::vector<Candidate> list;
   const double s2 = refined.noise.corner * refined.noise.corner;
@@ -71,17 +46,13 @@ std::vector<Candidate> candidates(const Setup& setup, const View& like, double d
       for (const double azimuth : {0.0, 90.0, 180.0, 270.0})
         for (const double spin : {0.0, 90.0, 180.0, -90.0}) {
           if (tilt == 0 && azimuth > 0) continue;
-          const double a = azimuth * pi / 180, t = tilt * pi / 180;
-          // From the right means that the board turns about its y axis; spin turns what the camera sees.
-          const Quaternion tilted = quaternion_of_rotation_vector({-std::sin(a) * t, std::cos(a) * t, 0});
-          const Quaternion spun = quaternion_of_rotation_vector({0, 0, -spin * pi / 180});
-          const Vec3 turn = rotation_vector_of(spun * tilted);
-          const View view = imagined(setup, like, looking(setup, far * distance_m, turn), refined.solution);
+          const Viewpoint from{tilt, azimuth, spin, far * distance_m};
+          const View view = imagined(setup, like, pose_of(from, setup.middle_m()), refined.solution);
           if (view.corners.empty()) continue;
           const CornerInformation c = corner_information(setup, view, view.camera_from_board, 1);
           const ObservedPose o{view.base_from_tool, view.camera_from_board,
                                s2 * linear::solve_ldlt(c.information, Matrix6::Identity()), true, setup.middle_m()};
-          list.push_back({words_of(setup.kind, tilt, azimuth, spin, far * distance_m),
+          list.push_back({in_words(from, setup.kind == Kind::eye_in_hand ? "turn the camera" : "turn the board"),
                           information(setup.kind, {o}, refined.solution, refined.noise)});
         }
   return list;
