@@ -10,10 +10,10 @@
 #include <iostream>
 #include <string>
 
-#include "../inference/nonlinear_toy.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "explain/engine.h"
+#include "inference/nonlinear_toy.h"
 #include "io/picture.h"
 #include "manifest/document.h"
 #include "render/looking_at.h"
