@@ -55,7 +55,10 @@ bool is_unmended(const std::deque<Told>& told, const std::string& domain) {
 
 // The same question of parts of the recordings: how often does the answer come out?
 void ask_parts(const Domain& domain, const Problem& problem, const ExplainRequest& request,
-               const std::set<std::string>& refused, const manifest::Document& document, Explanation& e) {
+               std::set<std::string> refused, const manifest::Document& document, Explanation& e) {
+  for (const Explanation::Contradicted& c : e.contradicted)
+    if (std::ranges::none_of(e.named, [&](std::size_t n) { return problem.candidates()[n].id() == c.mechanism; }))
+      refused.insert(c.mechanism);
   e.stability = inference::stability(problem, request.resample, request.options.seed, [&](const auto& left_out) {
     return explain_before_witnesses(domain, problem, request.options, refused, document, left_out);
   });

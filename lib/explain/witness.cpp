@@ -62,7 +62,9 @@ std::optional<Objection> objection(const Domain& domain, const std::vector<const
 Explanation explain_before_witnesses(const Domain& domain, const Problem& problem, const Options& options,
                                      const std::set<std::string>& refused, const manifest::Document& document,
                                      const std::vector<std::size_t>& left_out) {
-  const std::vector<const Domain*> witnesses = witnesses_of(domain, document);
+  // Poses of views that take no part would be no testimony.
+  const std::vector<const Domain*> witnesses =
+      left_out.empty() ? witnesses_of(domain, document) : std::vector<const Domain*>{};
   std::vector<Explanation::Contradicted> contradicted;
   const auto told = [&](Explanation e) {
     e.contradicted = contradicted;

@@ -15,7 +15,8 @@ namespace gonio::explain {
 // (Domain::testify) or the domain itself (Domain::objects) contradicts. Of several names the one is taken back without
 // which there is no contradiction, and all of them where there is no such one; what was taken back stands in
 // Explanation::contradicted. Where nothing else was asked for, the name stands with the contradiction beside it.
-// `document` is what the problem was made of; `left_out` as for explain_without().
+// `document` is what the problem was made of; `left_out` as for explain_without(): of a part of the recordings only the
+// domain itself objects, and what witnesses know of the whole is the caller's to refuse.
 Explanation explain_before_witnesses(const Domain& domain, const Problem& problem, const Options& options,
                                      const std::set<std::string>& refused, const manifest::Document& document,
                                      const std::vector<std::size_t>& left_out = {});

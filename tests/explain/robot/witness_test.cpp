@@ -10,6 +10,7 @@
 #include "manifest/document.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/table.h"
 #include "robot/chain/input.h"
 
 namespace gonio::explain::tests {
@@ -77,6 +78,17 @@ TEST(Witness, ALoneHypothesisStandsWithItsContradiction) {
   const Explanation e = explain_before_witnesses(domain, bent, options, {}, {});
   ASSERT_EQ(e.named, std::vector<std::size_t>{0}) << e.sentence;
   EXPECT_NE(e.sentence.find("But somebody contradicts"), std::string::npos) << e.sentence;
+}
+
+// Views that take no part have poses that no witness can use: of parts of the recordings none is asked.
+TEST(Witness, OfAPartOfTheRecordingsNoOtherIsAsked) {
+  const NonlinearToy bent(library(), {{1.5}}, {{}, 0.1, 0}, 3, {8, 40, 2});
+  manifest::Document document = robot_cell({}, 20, 5);
+  for (manifest::ImageEntry& image : document.images) image.camera_from_board->sigma.reset();
+  document.tables.clear();
+  const Domain domain{.name = "boards", .sentence = ""};  // the robot is its witness
+  const Explanation e = explain_before_witnesses(domain, bent, {}, {}, document, {0});
+  EXPECT_FALSE(e.named.empty()) << e.sentence;
 }
 
 // Poses that were fitted with terms that the chain does not know are taken as they stand; others are solved from their
