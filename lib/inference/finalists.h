@@ -49,6 +49,7 @@ class Finalists {
   double in_library() const;          // the probability that it is any of the sets
   // That these are among what was left out, in any form and whatever else is.
   double inclusion(const Finalist& some) const;
+  bool holds(const Finalist& whole, const Finalist& part) const;  // whatever the forms
   double nothing() const { return nothing_; }
   double outside() const { return outside_; }
   // Nothing, outside, then those of list() that no rule refuses; `places`: theirs in list().

@@ -193,6 +193,38 @@ void add_equals(const Problem& problem, const std::vector<Finalist>& list, std::
   }
 }
 
+// Of many sets that differ in what else there is, what all of them hold is sure: that is the answer, alone where
+// nothing else is likelier than something, else beside the likeliest of the sets that hold more.
+Answer sure_part(const Finalists& finalists, const Finalist& top, const std::vector<std::size_t>& places,
+                 const std::vector<double>& p) {
+  const std::vector<Finalist>& list = finalists.list();
+  const std::size_t own = member_of(places, list, top);
+  Answer found{Answer::Kind::sets, {own}, finalists.inclusion(top)};
+  if (p[own] >= likelier_than_not * found.probability) return found;
+  std::vector<std::size_t> larger;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Finalist& f = list[places[k]];
+    if (matters(f) && f.model.candidates.size() > top.model.candidates.size() && finalists.holds(f, top))
+      larger.push_back(k + 2);
+  }
+  std::ranges::stable_sort(larger, [&](std::size_t a, std::size_t b) { return p[a] > p[b]; });
+  std::vector<const Finalist*> told;
+  found.probability = p[own];
+  for (const std::size_t k : larger) {
+    const Finalist& f = list[places[k - 2]];
+    const bool again =
+        std::ranges::any_of(told, [&](const Finalist* t) { return finalists.holds(*t, f) && finalists.holds(f, *t); });
+    if (again) {  // another form
+      found.probability += p[k];
+    } else if (told.size() + 1 < most_listed) {
+      told.push_back(&f);
+      found.sets.push_back(k);
+      found.probability += p[k];
+    }
+  }
+  return found;
+}
+
 // What is likeliest as a whole need not be the likeliest single set.
 void put_first(const std::vector<Finalist>& list, std::size_t top, std::vector<std::size_t>& listed,
                double& probability) {
@@ -243,10 +275,8 @@ void judge(const Problem& problem, const Selection& s, const Options& options, E
   std::vector<double> p = probabilities(members, problem.simulator());
   if (top != nullptr) p = by_physics(problem, list, *top, places, std::move(p));
   Answer found = answer(members, p, options.sure);
-  // Of many sets that differ in what else there is, what all of them hold is sure: that is the answer.
-  if (const double part = top != nullptr ? finalists.inclusion(*top) : 0;
-      found.probability < options.sure && part >= options.sure)
-    found = {Answer::Kind::sets, {member_of(places, list, *top)}, part};
+  if (top != nullptr && found.probability < options.sure && finalists.inclusion(*top) >= options.sure)
+    found = sure_part(finalists, *top, places, p);
   if (!e.significant) found = {Answer::Kind::nothing, {}, finalists.nothing()};
   // The groups that no choice has seen speak last.
   const bool no_better = found.kind == Answer::Kind::sets && !(e.held_out_after < e.held_out_before);

@@ -77,11 +77,14 @@ const Finalist* Finalists::likeliest() const {
   return best == nullptr ? nullptr : &plainest_form(*best);
 }
 
+bool Finalists::holds(const Finalist& whole, const Finalist& part) const {
+  return std::ranges::includes(physics_of(whole), physics_of(part));
+}
+
 double Finalists::inclusion(const Finalist& some) const {
-  const std::set<std::string> wanted = physics_of(some);
   double sum = 0;
   for (const Finalist& f : list_)
-    if (matters(f) && std::ranges::includes(physics_of(f), wanted)) sum += f.probability;
+    if (matters(f) && holds(f, some)) sum += f.probability;
   return sum;
 }
 

@@ -19,7 +19,9 @@ std::string verdict_in_words(const Problem& problem, const Explanation& e) {
       return e.significant
                  ? "Verdict: nothing that matters. A mismatch beyond noise is there, but too small for a name."
                  : "Verdict: nothing is left out, as far as these recordings can show.";
-    case Verdict::named: return "Verdict: named. " + sure + " sure that it is this and nothing else.";
+    case Verdict::named:
+      return "Verdict: named. " + sure + " sure that it is this" +
+             (e.not_told_apart.empty() ? "" : ", or what says the same,") + " and nothing else.";
     case Verdict::ambiguous:
       return "Verdict: ambiguous. " + sure + " sure that it is one of those listed below" +
              (e.probability < e.sure ? ", less than was asked for." : ".");

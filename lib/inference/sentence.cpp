@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <set>
 
 #include "inference/compensation.h"
@@ -40,30 +42,60 @@ std::string listed(const Problem& problem, const std::vector<std::size_t>& candi
   return text;
 }
 
-// "94 % sure."; of several that could be, each one's own share. Forms of one mechanism are one answer.
+std::set<std::string> ids_of(const Problem& problem, const std::vector<std::size_t>& candidates) {
+  std::set<std::string> ids;
+  for (const std::size_t c : candidates) ids.insert(problem.candidates()[c].id());
+  return ids;
+}
+
+// Do all that could be instead hold what is named, and more?
+bool only_part(const Problem& problem, const Explanation& e) {
+  const std::set<std::string> named = ids_of(problem, e.named);
+  return e.verdict == Verdict::ambiguous && e.not_told_apart.empty() && !e.instead.empty() &&
+         std::ranges::all_of(e.instead, [&](const std::vector<std::size_t>& set) {
+           return std::ranges::includes(ids_of(problem, set), named);
+         });
+}
+
+// Every listed answer's own share, the likeliest first. Forms of one mechanism are one answer.
+std::vector<std::pair<std::string, double>> shares_of_listed(const Problem& problem, const Explanation& e) {
+  std::set<std::set<std::string>> listed_sets{ids_of(problem, e.named)};
+  for (const std::vector<std::size_t>& set : e.instead) listed_sets.insert(ids_of(problem, set));
+  if (e.named.size() == 1 && !e.not_told_apart.empty())
+    for (const std::size_t c : e.not_told_apart[0]) listed_sets.insert(ids_of(problem, {c}));
+  std::map<std::set<std::string>, std::pair<std::string, double>> shares;
+  for (const Explanation::Weighed& w : e.weighed) {
+    const std::set<std::string> ids = ids_of(problem, w.candidates);
+    if (w.kind != Explanation::Weighed::Kind::set || !listed_sets.contains(ids)) continue;
+    auto& [words, probability] = shares[ids];
+    if (words.empty()) words = listed(problem, w.candidates, 0, " with ");
+    probability += w.probability;
+  }
+  std::vector<std::pair<std::string, double>> result;
+  for (const auto& [ids, share] : shares)
+    if (share.second >= 0.01) result.push_back(share);
+  std::ranges::stable_sort(result, std::greater<>(), &std::pair<std::string, double>::second);
+  return result;
+}
+
+// "94 % sure."; of several that could be, each one's own share.
 std::string sure_sentence(const Problem& problem, const Explanation& e) {
   if (e.weighed.empty()) return "";
-  std::string text = " How sure: " + probability_in_words(e.probability) + " that it is ";
-  if (e.verdict == Verdict::named) return text + (e.named.size() == 1 ? "this." : "these.");
-  std::vector<std::pair<std::string, double>> answers;
-  for (const Explanation::Weighed& w : e.weighed) {
-    if (w.kind != Explanation::Weighed::Kind::set || w.probability < 0.01) continue;
-    const bool first = w.candidates == e.named;
-    const bool other = std::find(e.instead.begin(), e.instead.end(), w.candidates) != e.instead.end();
-    const bool alone =
-        e.named.size() == 1 && w.candidates.size() == 1 && !e.not_told_apart.empty() &&
-        std::find(e.not_told_apart[0].begin(), e.not_told_apart[0].end(), w.candidates[0]) != e.not_told_apart[0].end();
-    if (!first && !other && !alone) continue;
-    const std::string words = listed(problem, w.candidates, 0, " with ");
-    const auto told = std::ranges::find(answers, words, &std::pair<std::string, double>::first);
-    if (told == answers.end())
-      answers.emplace_back(words, w.probability);
-    else
-      told->second += w.probability;
-  }
+  const std::string it = e.named.size() == 1 ? "it is" : "they are", these = e.named.size() == 1 ? "this" : "these";
   std::string each;
-  for (const auto& [words, probability] : answers)
+  for (const auto& [words, probability] : shares_of_listed(problem, e))
     each += (each.empty() ? "" : ", ") + words + " " + probability_in_words(probability);
+  if (only_part(problem, e)) {
+    const std::set<std::string> named = ids_of(problem, e.named);
+    double part = 0;
+    for (const Explanation::Weighed& w : e.weighed)
+      if (w.kind == Explanation::Weighed::Kind::set && std::ranges::includes(ids_of(problem, w.candidates), named))
+        part += w.probability;
+    return " How sure: " + probability_in_words(part) + " that " + it +
+           " among what was left out, and most likely not alone (" + each + ").";
+  }
+  const std::string text = " How sure: " + probability_in_words(e.probability) + " that it is ";
+  if (e.verdict == Verdict::named) return text + these + (e.not_told_apart.empty() ? "." : ", or what says the same.");
   return text + "among what is listed (" + each + ").";
 }
 
@@ -95,6 +127,7 @@ std::string named_sentence(const Problem& problem, const Explanation& e) {
   std::set<std::string> told;
   for (const std::vector<std::size_t>& set : e.instead) {
     const std::string other = listed(problem, set, 0, " with ");
+    if (only_part(problem, e)) break;  // they have been told with their shares
     if (told.insert(other).second && other != listed(problem, e.named, 0, " with "))
       text += " Instead of " + listed(problem, e.named, 0, " and ") + " it could be " + other + ".";
   }

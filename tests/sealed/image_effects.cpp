@@ -55,8 +55,11 @@ std::vector<EffectKind> image_effects(const double* white) {
        {"scene.indirect-irradiance", "light.visibility"},
        1,
        1.0001})
-      .means({"strength"})
-      .only_for("direct light only");
+      .as_drawn()  // it is there or not
+      .only_for("direct light only")
+      .values = [](const Numbers&) {
+    return std::vector<TrueValue>{{"transport.indirect", "strength", 1}};
+  };
   add({"uneven columns", "", sensor, {"camera.image-x"}, 0.02, 0.08});
   add({"wire", "", {"light", "geometry"}, {}, 0.002, 0.006});
   return k;

@@ -198,7 +198,12 @@ bool is_right(const Judged& j) {
 
 bool falsely_certain(const Judged& j) {
   if (j.answer.verdict != "named") return false;
-  if (!has_all(j.truth.mechanisms, j.answer.named)) return true;
+  // What a mechanism of the library imitates for the most part, by the maker's own count, is rightly called by its
+  // name.
+  if (j.truth.kind == Kind::outside && j.truth.apart == Apart::unclear) return false;
+  // Forms that say the same are named with the one that stands for them.
+  const bool stood_for = j.truth.mechanisms.size() == 1 && has_all(j.answer.reported, j.truth.mechanisms);
+  if (!stood_for && !has_all(j.truth.mechanisms, j.answer.named)) return true;
   return j.truth.kind == Kind::pair && matter(j) && all_clear(j) && !has_all(j.answer.named, j.truth.mechanisms);
 }
 

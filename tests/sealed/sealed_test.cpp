@@ -222,6 +222,15 @@ TEST(Judge, CertaintyIsFalseWhereItIsAloneAndWrong) {
   pair.truth.values.back().value = 0.2;  // too weak to be asked for
   EXPECT_FALSE(falsely_certain(pair));
   EXPECT_TRUE(is_right(answered(Kind::null, "", {})));
+  Judged form = answered(Kind::alike, "lens.fisheye", {"lens.radial"});
+  EXPECT_TRUE(falsely_certain(form));
+  form.answer.reported.push_back("lens.fisheye");  // "in the place of lens.radial it could be lens.fisheye"
+  EXPECT_FALSE(falsely_certain(form));
+  Judged imitated = answered(Kind::outside, "", {"sensor.non-linearity"});
+  imitated.truth.apart = Apart::yes;
+  EXPECT_TRUE(falsely_certain(imitated));
+  imitated.truth.apart = Apart::unclear;  // most of it is what a non-linearity does
+  EXPECT_FALSE(falsely_certain(imitated));
 }
 
 TEST(Judge, CasesThatWereNotBegunAreCountedAndNotAsked) {

@@ -132,28 +132,50 @@ Rgb by_lamp(const Scene& s, const Hit& h, const Lamp& lamp, Vec3 wo, double u, d
   return lamp.intensity * sent_back(s, h, wi, wo, lamp.light) * (cosine / arrives);
 }
 
-Rgb direct(const Scene& s, const Hit& h, Vec3 wo, int samples, Random& random) {
-  Rgb sum;
-  for (const Lamp& lamp : s.lamps) {
-    Rgb own;
-    const int count = lamp.radius > 0 ? samples : 1;
-    const double shift_u = random.uniform(), shift_v = random.uniform();
-    for (int k = 0; k < count; ++k) {  // a lattice, shifted at random (Cranley & Patterson 1976)
-      const double u = std::fmod((k + shift_u) / count, 1.0), v = std::fmod(k * 0.6180339887498949 + shift_v, 1.0);
-      own += by_lamp(s, h, lamp, wo, u, v);
-    }
-    sum += own / count;
+// Where the samples of a pixel lie: Richtmyer's sequence, frac(k sqrt(prime)), turned by a shift of the pixel's own.
+// The same whichever effects act, so that pictures with and without one differ by it and by no noise.
+class Places {
+ public:
+  Places(std::uint64_t seed, std::uint64_t pixel) {
+    Random random(seed, pixel);
+    for (double& s : shift_) s = random.uniform();
   }
+  std::array<double, 2> of(int sample, std::size_t pair) const {
+    return {coordinate(sample, 2 * pair), coordinate(sample, 2 * pair + 1)};
+  }
+  enum : std::size_t { in_pixel, in_pupil, on_lamp, bounces };  // pairs; each bounce takes two: way, point on the lamps
+
+ private:
+  double coordinate(int sample, std::size_t d) const {
+    static const std::array<double, 30> steps = [] {
+      static constexpr std::array<int, 30> primes{2,  3,  5,  7,  11, 13, 17, 19, 23, 29, 31,  37,  41,  43,  47,
+                                                  53, 59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107, 109, 113};
+      std::array<double, 30> s{};
+      for (std::size_t k = 0; k < s.size(); ++k) s[k] = std::sqrt(primes[k]);
+      return s;
+    }();
+    const double x = shift_[d] + sample * steps[d];
+    return x - static_cast<double>(static_cast<std::int64_t>(x));
+  }
+  std::array<double, 30> shift_{};
+};
+constexpr int most_bounces = 6;
+
+// By one point of every lamp.
+Rgb direct(const Scene& s, const Hit& h, Vec3 wo, std::array<double, 2> place) {
+  Rgb sum;
+  for (const Lamp& lamp : s.lamps) sum += by_lamp(s, h, lamp, wo, place[0], place[1]);
   return sum;
 }
 
 // Light by way of other surfaces and from the surroundings: cosine-distributed directions off the matte base.
-Rgb indirect(const Scene& s, Hit h, Vec3 wo, const Effort& effort, Random& random) {
+Rgb indirect(const Scene& s, Hit h, Vec3 wo, const Places& places, int sample) {
   Rgb weight{1, 1, 1}, sum;
-  for (int bounce = 0; bounce < effort.bounces; ++bounce) {
-    const double u = random.uniform(), v = 2 * pi * random.uniform();
+  for (std::size_t bounce = 0; bounce < most_bounces; ++bounce) {
+    const auto [u, v] = places.of(sample, Places::bounces + 2 * bounce);
     const auto [a, b] = across(h.normal);
-    const Vec3 wi = h.normal * std::sqrt(1 - u) + a * (std::sqrt(u) * std::cos(v)) + b * (std::sqrt(u) * std::sin(v));
+    const Vec3 wi = h.normal * std::sqrt(1 - u) + a * (std::sqrt(u) * std::cos(2 * pi * v)) +
+                    b * (std::sqrt(u) * std::sin(2 * pi * v));
     if (dot(h.normal, wi) < 1e-4 || dot(h.normal, wo) < 1e-4) break;
     weight *= sent_back(s, h, wi, wo) * pi;
     const std::optional<Hit> next = nearest(s, h.point + h.normal * near_m, wi);
@@ -164,7 +186,7 @@ Rgb indirect(const Scene& s, Hit h, Vec3 wo, const Effort& effort, Random& rando
     if (!s.indirect) break;
     h = *next;
     wo = -wi;
-    sum += weight * direct(s, h, wo, 1, random);
+    sum += weight * direct(s, h, wo, places.of(sample, Places::bounces + 2 * bounce + 1));
   }
   return sum;
 }
@@ -178,34 +200,31 @@ Eye eye_at(Vec3 position, Vec3 target, double focal_px, int size) {
   return e;
 }
 
-Seen look(const Scene& s, const Eye& eye, int x, int y, const Effort& effort, std::uint64_t seed) {
-  Random random(seed, static_cast<std::uint64_t>(y * eye.width + x));
+Seen look(const Scene& s, const Eye& eye, int x, int y, int samples, std::uint64_t seed) {
+  const Places places(seed, static_cast<std::uint64_t>(y * eye.width + x));
   Seen seen{{}, std::vector<Rgb>(s.matters.size())};
-  const int count = effort.grid * effort.grid;
   const bool scattered = s.indirect || max_component(s.ambient) > 0;
-  for (int k = 0; k < count; ++k) {
-    const double u = x - 0.5 + (k % effort.grid + random.uniform()) / effort.grid,
-                 v = y - 0.5 + (k / effort.grid + random.uniform()) / effort.grid;
-    Vec3 d = eye.right * ((u - 0.5 * (eye.width - 1)) / eye.focal_px) +
-             eye.down * ((v - 0.5 * (eye.height - 1)) / eye.focal_px) + eye.forward;
+  for (int k = 0; k < samples; ++k) {
+    const auto [u, v] = places.of(k, Places::in_pixel);
+    Vec3 d = eye.right * ((x - 0.5 + u - 0.5 * (eye.width - 1)) / eye.focal_px) +
+             eye.down * ((y - 0.5 + v - 0.5 * (eye.height - 1)) / eye.focal_px) + eye.forward;
     Vec3 from = eye.position;
     if (eye.pupil_m > 0) {
-      const double r = eye.pupil_m * std::sqrt(random.uniform()), a = 2 * pi * random.uniform();
+      const auto [out, around] = places.of(k, Places::in_pupil);
+      const double r = eye.pupil_m * std::sqrt(out), a = 2 * pi * around;
       const Vec3 offset = eye.right * (r * std::cos(a)) + eye.down * (r * std::sin(a));
       d = d * eye.focus_m - offset, from += offset;
     }
     d = normalized(d);
     const std::optional<Hit> h = nearest(s, from, d);
-    Rgb radiance;
     if (!h) {
-      radiance = s.ambient;
-    } else {
-      radiance = direct(s, *h, -d, std::max(1, effort.lamp_samples / count), random);
-      for (int p = 0; scattered && p < effort.paths / count; ++p)
-        radiance += indirect(s, *h, -d, effort, random) / (effort.paths / count);
-      seen.of_matter[h->matter] += radiance / count;
+      seen.radiance += s.ambient / samples;
+      continue;
     }
-    seen.radiance += radiance / count;
+    Rgb radiance = direct(s, *h, -d, places.of(k, Places::on_lamp));
+    if (scattered) radiance += indirect(s, *h, -d, places, k);
+    seen.of_matter[h->matter] += radiance / samples;
+    seen.radiance += radiance / samples;
   }
   return seen;
 }
