@@ -63,7 +63,8 @@ struct Curve {
 };
 struct LocatedCondition {
   std::string name, unit, stage;
-  double share = 0;             // of the excess over noise that a smooth curve over this condition explains
+  double share = 0;      // of the excess over noise that a smooth curve over this condition explains
+  double of_effect = 0;  // of what the named mechanisms do, beyond one level, the share that steps over it describe
   double lower = 0, upper = 0;  // range that holds most of it
   double effect = 0;            // rms of the curve over that range, in `curve.value_unit`
   double period = 0;            // of a wave with a phase of its own in each group; 0: one smooth curve

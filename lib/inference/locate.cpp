@@ -7,6 +7,7 @@
 
 #include "inference/scaling.h"
 #include "inference/signature.h"
+#include "inference/wording.h"
 #include "linear/blocks.h"
 #include "stats/intervals.h"
 
@@ -14,7 +15,7 @@ namespace gonio::inference {
 namespace {
 
 constexpr double least_survivor = 1e-4;  // of a direction's squared length, after projection
-constexpr std::size_t bins_of_a_curve = 12;
+constexpr std::size_t bins_of_a_curve = 12, steps_of_an_effect = 48;
 constexpr double tied_share = 0.8;   // of the first condition's share: not told apart by it
 constexpr double same_share = 0.98;  // one condition in another's clothes (an angle and its half)
 
@@ -88,6 +89,36 @@ std::vector<double> power_of_effect(const Curve& without, std::size_t bins) {
     power[k] = effect * effect;
   }
   return power;
+}
+
+// Share of what the named mechanisms do, beyond one level, that steps over the condition describe: a gloss is wholly a
+// matter of the half angle even where it lies on few of the rows, and little of the excess is there.
+double described(const System& system, const Condition& condition, const std::vector<double>& without,
+                 const std::vector<double>& with) {
+  struct Sums {
+    double product = 0, square = 0;
+    double explains() const { return square > 0 ? product * product / square : 0; }
+  };
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < without.size(); ++i)
+    if (system.weight(i) > 0 && std::isfinite(condition.values[i])) rows.push_back(i);
+  std::ranges::stable_sort(rows, {}, [&](std::size_t i) { return condition.values[i]; });
+  Sums level;
+  double total = 0, steps = 0;
+  for (std::size_t b = 0; b < steps_of_an_effect; ++b) {
+    Sums step;
+    for (std::size_t k = b * rows.size() / steps_of_an_effect; k < (b + 1) * rows.size() / steps_of_an_effect; ++k) {
+      const std::size_t i = rows[k];
+      const double d = condition.direction.empty() ? 1 : condition.direction[i];
+      const double w = system.weight(i) * system.weight(i), effect = without[i] - with[i];
+      step.product += d * w * effect, step.square += d * d * w;
+      total += w * effect * effect;
+    }
+    level.product += step.product, level.square += step.square;
+    steps += step.explains();
+  }
+  const double beyond = total - level.explains();
+  return beyond > 1e-12 * total ? std::clamp((steps - level.explains()) / beyond, 0.0, 1.0) : 0;
 }
 
 }  // namespace
@@ -174,6 +205,20 @@ std::size_t declared_place(const Problem& problem, const std::vector<std::size_t
   return place;
 }
 
+// Where no condition holds much of the excess, that of the named mechanisms' own which describes best what they do.
+void put_described_first(const Problem& problem, Explanation& e) {
+  if (e.conditions[0].share >= telling_share) return;
+  const auto declared = [&](const LocatedCondition& c) {
+    return std::ranges::any_of(e.named, [&](std::size_t named) {
+      const std::vector<std::string>& own = problem.candidates()[named].mechanism->conditions;
+      return std::ranges::find(own, c.name) != own.end();
+    });
+  };
+  const auto rank = [&](const LocatedCondition& c) { return declared(c) ? c.of_effect : 0.0; };
+  const auto best = std::ranges::max_element(e.conditions, {}, rank);
+  if (rank(*best) >= telling_share_of_effect) std::rotate(e.conditions.begin(), best, best + 1);
+}
+
 }  // namespace
 
 void place_conditions(const System& system, Explanation& e) {
@@ -197,6 +242,7 @@ void place_conditions(const System& system, Explanation& e) {
       find_range(located.curve, power_of(located.curve), located);
       continue;
     }
+    located.of_effect = described(system, conditions[place], without, e.residual_after);
     const Curve effect = residual_curve(system, place, without, e.residual_after, bins_of_a_curve);
     find_range(located.curve, power_of_effect(effect, located.curve.centre.size()), located);
   }
@@ -208,6 +254,7 @@ void place_conditions(const System& system, Explanation& e) {
   std::stable_sort(e.conditions.begin(), end, [&](const LocatedCondition& a, const LocatedCondition& b) {
     return declared_place(system.problem(), order, a.name) < declared_place(system.problem(), order, b.name);
   });
+  put_described_first(system.problem(), e);
 }
 
 }  // namespace gonio::inference

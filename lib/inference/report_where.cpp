@@ -62,7 +62,7 @@ std::string effect_in_words(const LocatedCondition& c) {
   return unit.empty() || unit == "1" ? share_in_words(c.effect) : quantity(c.effect, unit);
 }
 
-// "half angle below 18 degrees: 64 % of the excess, 0.8 px".
+// "half angle below 18 degrees: 64 % of the excess, 0.8 px rms there; 90 % of what the named physics does".
 std::string ranked(const Problem& problem, const LocatedCondition& c) {
   if (c.period > 0)
     return place_in_words(problem, c) + " (" + c.name + "): " + share_in_words(c.share) + " of the excess";
@@ -70,7 +70,8 @@ std::string ranked(const Problem& problem, const LocatedCondition& c) {
   if (range.empty()) range = "over its whole range";
   const std::string effect = effect_in_words(c);
   return condition_in_words(c.name) + " (" + c.name + ") " + range + ": " + share_in_words(c.share) + " of the excess" +
-         (effect.empty() ? "" : ", " + effect + " rms there");
+         (effect.empty() ? "" : ", " + effect + " rms there") +
+         (c.of_effect < 0.01 ? "" : "; " + share_in_words(c.of_effect) + " of what the named physics does");
 }
 
 // Values, scaled to the unit that people use.

@@ -114,7 +114,7 @@ std::string place_in_words(const Problem& problem, const LocatedCondition& c) {
 }
 
 bool tells_where(const LocatedCondition& c) {
-  return c.share >= telling_share;
+  return c.share >= telling_share || c.of_effect >= telling_share_of_effect;
 }
 
 std::string nowhere_in_words(const Problem& problem, const LocatedCondition& c) {

@@ -28,8 +28,9 @@ std::string condition_in_words(const std::string& name);  // "surface.half-angle
 std::string range_in_words(const LocatedCondition& located);
 // "the half angle"; "bands along the image y, 17 px from one to the next, begun anew in every image".
 std::string place_in_words(const Problem& problem, const LocatedCondition& located);
-// Below this share of the excess a condition does not say where the mismatch is, and that is then said.
-inline constexpr double telling_share = 0.2;
+// Below these shares of the excess, and of what the named physics does, a condition does not say where the mismatch is,
+// and that is then said.
+inline constexpr double telling_share = 0.2, telling_share_of_effect = 0.5;
 bool tells_where(const LocatedCondition& located);
 // "no condition carries it: the most telling, the hue, holds 4 % of the excess"
 std::string nowhere_in_words(const Problem& problem, const LocatedCondition& located);

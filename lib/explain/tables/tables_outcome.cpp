@@ -91,16 +91,19 @@ void TablesProblem::apply(const Explanation& e, manifest::Document& document) co
 namespace {
 
 constexpr std::size_t most_dots = 1200;
+constexpr double hardly = 0.25;  // of the largest direction of a row
 
-// At most `most_dots` rows, evenly taken.
+// At most `most_dots` rows, evenly taken. Rows that the condition hardly moves say nothing of it, and are left out.
 report::Series dots(const Condition& condition, const std::vector<double>& residual, const std::string& name) {
   report::Series series;
   series.name = name;
   series.kind = report::Series::Kind::points;
   const std::size_t step = 1 + residual.size() / most_dots;
+  double largest = 0;
+  for (const double d : condition.direction) largest = std::max(largest, std::abs(d));
   for (std::size_t i = 0; i < residual.size(); i += step) {
     const double direction = condition.direction.empty() ? 1 : condition.direction[i];
-    if (!std::isfinite(condition.values[i]) || direction == 0) continue;
+    if (!std::isfinite(condition.values[i]) || std::abs(direction) < hardly * largest || direction == 0) continue;
     series.x.push_back(condition.values[i]);
     series.y.push_back(residual[i] / direction);
   }

@@ -1,12 +1,15 @@
-// surface.spatial-variation: one stain on each surface that a single object bears. Its search starts where the rough
-// residual is most alike in all images: over sights as middles and a few widths, the mean residual inside less that
-// outside, image by image, in standard errors over the images.
+// surface.spatial-variation: one stain on each surface that a single object bears. Its search starts where a stain
+// takes most from the rough residual: over sights as middles and some widths, the fall of the squares when one depth is
+// fitted to all images, each with a level of its own; then again about the best of them. Residuals beyond a few of
+// their own widths (edges of shadows, gloss) count as that much.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "relighting/image_model.h"
 #include "relighting/rough.h"
 #include "relighting/uses.h"
+#include "stats/intervals.h"
 #include "surface/stain.h"
 
 namespace gonio::mechanism {
@@ -16,12 +19,15 @@ const Mechanism& surface_spatial_variation();
 namespace gonio::relighting::terms {
 namespace {
 
-constexpr std::size_t most_middles = 150;
-constexpr std::array<double, 3> widths = {0.08, 0.16, 0.3};  // of the object's extent
+constexpr std::size_t most_middles = 150, most_refined = 60, most_seen = 10000;
+constexpr std::array<double, 5> widths = {0.015, 0.03, 0.06, 0.12, 0.24};  // of the object's extent
+constexpr std::array<double, 3> finer_widths = {0.7, 1, 1.4};              // of the best of them
+constexpr double most_widths = 3;                                          // of a residual, robustly taken
+constexpr double of_normal = 1.4826;                                       // standard deviation over median deviation
 
 struct Spot {
   Vec3 middle_m;
-  double width_m = 0, depth = 0, score = 0;
+  double width_m = 0, depth = 0, gain = 0;
 };
 struct Seen {
   std::size_t image;
@@ -29,24 +35,64 @@ struct Seen {
   double relative;
 };
 
-// Residual inside less outside, as a t over the images that see both.
-Spot judged(const std::vector<Seen>& seen, std::size_t images, Vec3 middle, double width) {
-  std::vector<double> in(images), n_in(images), out(images), n_out(images);
-  for (const Seen& s : seen) {
-    const Vec3 d = s.position_m - middle;
-    const bool inside = dot(d, d) < width * width;
-    (inside ? in : out)[s.image] += s.relative;
-    (inside ? n_in : n_out)[s.image] += 1;
-  }
-  double sum = 0, square = 0, n = 0;
+// Evenly, to as many as a start needs.
+void thin(std::vector<Seen>& seen) {
+  const std::size_t step = 1 + seen.size() / most_seen;
+  for (std::size_t k = 0; k * step < seen.size(); ++k) seen[k] = seen[k * step];
+  seen.resize((seen.size() + step - 1) / step);
+}
+
+// No residual further from its image's median than `most_widths`.
+void clip(std::vector<Seen>& seen, std::size_t images) {
   for (std::size_t i = 0; i < images; ++i) {
-    if (n_in[i] < 3 || n_out[i] < 3) continue;
-    const double change = in[i] / n_in[i] - out[i] / n_out[i];
-    sum += change, square += change * change, n += 1;
+    std::vector<double> own;
+    for (const Seen& s : seen)
+      if (s.image == i) own.push_back(s.relative);
+    if (own.empty()) continue;
+    const double middle = stats::median(own);
+    for (double& r : own) r = std::abs(r - middle);
+    const double reach = most_widths * of_normal * stats::median(own);
+    for (Seen& s : seen)
+      if (s.image == i) s.relative = std::clamp(s.relative - middle, -reach, reach);
   }
-  if (n < 2) return {};
-  const double mean = sum / n, variance = std::max(square / n - mean * mean, 1e-6) / (n - 1);
-  return {middle, width, mean, std::abs(mean) / std::sqrt(variance + 1e-4)};
+}
+
+// By least squares: depth = sum g r / sum g^2, g the stain's shape less its mean in the image; the fall is the
+// numerator squared over the denominator.
+Spot judged(const std::vector<Seen>& seen, std::size_t images, Vec3 middle, double width) {
+  std::vector<double> shape(seen.size()), level(images), residual(images), count(images);
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    const Vec3 d = seen[k].position_m - middle;
+    shape[k] = std::exp(-0.5 * dot(d, d) / (width * width));
+    level[seen[k].image] += shape[k], residual[seen[k].image] += seen[k].relative, count[seen[k].image] += 1;
+  }
+  double product = 0, square = 0;
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    const std::size_t i = seen[k].image;
+    const double g = shape[k] - level[i] / count[i];
+    product += g * (seen[k].relative - residual[i] / count[i]), square += g * g;
+  }
+  if (!(square > 3)) return {};  // some few sights alone
+  return {middle, width, product / square, product * product / square};
+}
+
+Spot best_spot(const std::vector<Seen>& seen, std::size_t images, double extent) {
+  Spot best;
+  const auto look = [&](Vec3 middle, double width) {
+    if (const Spot spot = judged(seen, images, middle, width); spot.gain > best.gain) best = spot;
+  };
+  const std::size_t stride = std::max<std::size_t>(1, seen.size() / most_middles);
+  for (std::size_t i = 0; i < seen.size(); i += stride)
+    for (const double share : widths) look(seen[i].position_m, share * extent);
+  if (!(best.gain > 0)) return best;
+  const Spot rough = best;
+  std::vector<std::size_t> near;
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (norm(seen[i].position_m - rough.middle_m) < 1.5 * rough.width_m) near.push_back(i);
+  const std::size_t step = std::max<std::size_t>(1, near.size() / most_refined);
+  for (std::size_t k = 0; k < near.size(); k += step)
+    for (const double factor : finer_widths) look(seen[near[k]].position_m, factor * rough.width_m);
+  return best;
 }
 
 std::vector<Use> candidates(const Setting& s) {
@@ -71,17 +117,13 @@ std::vector<Use> candidates(const Setting& s) {
       upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
     }
     if (seen.size() < 50) continue;
+    thin(seen);
     const double extent = norm(upper - lower);
-    Spot best;
-    const std::size_t stride = std::max<std::size_t>(1, seen.size() / most_middles);
-    for (std::size_t i = 0; i < seen.size(); i += stride)
-      for (const double share : widths) {
-        const Spot spot = judged(seen, s.recordings.images.size(), seen[i].position_m, share * extent);
-        if (spot.score > best.score) best = spot;
-      }
-    if (!(best.score > 0)) continue;
+    clip(seen, s.recordings.images.size());
+    const Spot best = best_spot(seen, s.recordings.images.size(), extent);
+    if (!(best.gain > 0)) continue;
     Use use = target_use(mechanism::surface_spatial_variation(), {s.layout.surfaces[k]}, {k}, false);
-    const double start[5] = {best.middle_m.x, best.middle_m.y, best.middle_m.z, 0.7 * best.width_m,
+    const double start[5] = {best.middle_m.x, best.middle_m.y, best.middle_m.z, best.width_m,
                              std::clamp(best.depth, -0.5, 0.5)};
     for (std::size_t i = 0; i < 5; ++i) use.numbers[i].start = start[i];
     for (std::size_t i = 0; i < 3; ++i) {
@@ -90,7 +132,7 @@ std::vector<Use> candidates(const Setting& s) {
       use.numbers[i].upper = use.numbers[i].start + extent;
     }
     use.numbers[3].neutral = use.numbers[3].start;
-    use.numbers[3].lower = 0.02 * extent;
+    use.numbers[3].lower = 0.005 * extent;
     use.numbers[3].upper = extent;
     uses.push_back(use);
   }
