@@ -52,5 +52,19 @@ TEST(Translucent, ABallLikeALampShadeIsNamed) {
   EXPECT_NEAR(outcome.fitted("translucent"), 0.4, 0.06);
 }
 
+// Of a few pixels' width on a table of which a third of a metre is seen.
+TEST(Stain, SmallOnATableIsFound) {
+  EffectWorld world;
+  world.truth = R"("surface.spatial-variation":{"on":["table"],"x_m":0.03,"y_m":0.14,"z_m":0,"width_m":0.02,)"
+                R"("depth":-0.4})";
+  const EffectOutcome outcome(
+      world, {"surface.spatial-variation", "surface.coat", "optics.bloom", "light.lobe", "light.second-source"});
+  ASSERT_THAT(outcome.named(), ElementsAre("surface.spatial-variation")) << outcome.told();
+  EXPECT_NEAR(outcome.fitted("x_m"), 0.03, 0.002);
+  EXPECT_NEAR(outcome.fitted("y_m"), 0.14, 0.002);
+  EXPECT_NEAR(outcome.fitted("width_m"), 0.02, 0.002);
+  EXPECT_NEAR(outcome.fitted("depth"), -0.4, 0.03);
+}
+
 }  // namespace
 }  // namespace gonio::tests
