@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <string_view>
 
 #include "camera/board_terms.h"
 #include "camera/intrinsics.h"
@@ -15,13 +16,15 @@ namespace gonio::camera {
 // camera's axes through the board's origin, R <- exp([w]x) R, and shifts it, t <- t + dt: the convention of
 // manifest::PoseSigma.
 struct BoardColumn {
-  static constexpr std::size_t intrinsics = 0;                            // fx fy cx cy, px
+  static constexpr std::size_t intrinsics = 0;                            // as pinhole_names
   static constexpr std::size_t distortion = 4;                            // as distortion_names
   static constexpr std::size_t rotation = distortion + distortion_terms;  // x y z, rad
   static constexpr std::size_t translation = rotation + 3;                // x y z, m
   static constexpr std::size_t warp = translation + 3;                    // sag_x_m sag_y_m
   static constexpr std::size_t count = warp + 2;
 };
+
+inline constexpr std::array<std::string_view, 4> pinhole_names = {"fx_px", "fy_px", "cx_px", "cy_px"};
 
 using BoardPose = Rigid<frame::Camera, frame::Board>;
 

@@ -19,7 +19,6 @@ using Values = std::array<double, C::count>;
 constexpr int most_iterations = 50;
 constexpr double settled_px = 1e-10;
 
-constexpr std::array<std::string_view, 4> pinhole_names = {"fx_px", "fy_px", "cx_px", "cy_px"};
 constexpr std::array<std::string_view, C::shape - BoardColumn::warp> further_names = {
     "sag_x_m",     "sag_y_m",     "motion_x_m", "motion_y_m", "scale_x",    "scale_y",     "pupil_m",    "red_linear",
     "red_cubic",   "blue_linear", "blue_cubic", "bias_x_px",  "bias_y_px",  "focal_per_K", "x_px_per_K", "y_px_per_K",

@@ -111,9 +111,23 @@ std::string likeliest_sentence(const Problem& problem, const Explanation& e) {
   return "";
 }
 
+// Of several that it could be the first is the plainest, and mostly the likeliest.
+std::string opening(const Problem& problem, const Explanation& e) {
+  if (e.verdict != Verdict::ambiguous || only_part(problem, e)) return "";
+  std::map<std::set<std::string>, double> shares;
+  for (const Explanation::Weighed& w : e.weighed)
+    if (w.kind == Explanation::Weighed::Kind::set) shares[ids_of(problem, w.candidates)] += w.probability;
+  double most = 0;
+  for (const std::vector<std::size_t>& set : e.instead) most = std::max(most, shares[ids_of(problem, set)]);
+  for (const std::vector<std::size_t>& set : e.not_told_apart)
+    if (e.named.size() == 1)
+      for (const std::size_t c : set) most = std::max(most, shares[ids_of(problem, {c})]);
+  return shares[ids_of(problem, e.named)] >= most ? "Likeliest: " : "The plainest of what it may be: ";
+}
+
 // The physics in its own words, where it shows, and what it is worth.
 std::string named_sentence(const Problem& problem, const Explanation& e) {
-  std::string text = e.verdict == Verdict::ambiguous ? "Likeliest: " : "";
+  std::string text = opening(problem, e);
   for (std::size_t k = 0; k < e.named.size(); ++k)
     text += (k == 0 ? "" : " ") + physics_in_words(problem, e, e.named[k]);
   text += located_in(problem, e) + " With " + (e.named.size() == 1 ? "it, " : "them, ") + problem.group_noun() +

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "camera/board.h"
+#include "camera/board_projection.h"
 #include "camera/corner_table.h"
 #include "explain/boards/boards_problem.h"
 #include "manifest/document.h"
@@ -33,8 +34,7 @@ void read_sigma(const manifest::Camera& section, BoardsInput::Camera& camera) {
                                                                                           : otherwise;
   };
   const camera::Intrinsics& k = camera.intrinsics;
-  const std::array<const char*, 4> names = {"fx_px", "fy_px", "cx_px", "cy_px"};
-  for (std::size_t i = 0; i < 4; ++i) camera.sigma[i] = stated(names[i], exact * k.fx_px);
+  for (std::size_t i = 0; i < 4; ++i) camera.sigma[i] = stated(std::string(camera::pinhole_names[i]), exact * k.fx_px);
   for (const std::size_t t : camera.terms)
     camera.sigma[4 + t] = stated(std::string(camera::distortion_names[t]), exact);
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "camera/board_projection.h"
 #include "explain/boards/boards_outcome.h"
 
 namespace gonio::mechanism {
@@ -20,7 +21,6 @@ using camera::CornerColumn;
 using camera::LensTerm;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t none = static_cast<std::size_t>(-1);
-constexpr std::array<const char*, 4> intrinsic_names = {"fx_px", "fy_px", "cx_px", "cy_px"};
 constexpr std::array<const char*, 6> pose_names = {"rotation_x_rad",  "rotation_y_rad",  "rotation_z_rad",
                                                    "translation_x_m", "translation_y_m", "translation_z_m"};
 
@@ -94,7 +94,7 @@ class Declaration {
     // that determine it are moved by a thousandth of their own uncertainty.
     const double half_px = 0.5 * std::hypot(own.width_px, own.height_px);
     for (std::size_t i = 0; i < 4; ++i) {
-      const std::string name = prefix + intrinsic_names[i];
+      const std::string name = prefix + std::string(camera::pinhole_names[i]);
       if (own.held)
         declare_held(name, "px", start[i], own.sigma[i], 1, {c, none, none, i});
       else

@@ -13,7 +13,6 @@ using Part = RobotRole::Part;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::array<const char*, 6> pose_names = {"rotation_x_rad",  "rotation_y_rad",  "rotation_z_rad",
                                                    "translation_x_m", "translation_y_m", "translation_z_m"};
-constexpr std::array<const char*, 4> pinhole_names = {"fx_px", "fy_px", "cx_px", "cy_px"};
 
 std::array<double, 4> pinhole(const camera::Intrinsics& k) {
   return {k.fx_px, k.fy_px, k.cx_px, k.cy_px};
@@ -42,7 +41,7 @@ class Declaration {
     for (std::size_t i = 0; i < 4; ++i) {
       const std::optional<double>& sigma = input_.pinhole_sigma_px[i];
       if (!sigma || !(*sigma > 0)) continue;
-      result_.base.push_back(add({"cameras/" + input_.camera + "/" + pinhole_names[i],
+      result_.base.push_back(add({"cameras/" + input_.camera + "/" + std::string(camera::pinhole_names[i]),
                                   "px",
                                   start[i],
                                   start[i],

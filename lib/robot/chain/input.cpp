@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "camera/board.h"
+#include "camera/board_projection.h"
 #include "camera/corner_table.h"
 #include "camera/moved_corners.h"
 #include "manifest/document.h"
@@ -81,11 +82,9 @@ void read_camera(const manifest::Document& document, ChainInput& input) {
   input.intrinsics = camera::intrinsics_of(found->second, place);
   for (const auto& [term, value] : found->second.distortion)
     input.terms.push_back(camera::distortion_index(term, place));
-  std::size_t i = 0;
-  for (const char* name : {"fx_px", "fy_px", "cx_px", "cy_px"}) {
-    const auto sigma = found->second.sigma.find(name);
+  for (std::size_t i = 0; i < camera::pinhole_names.size(); ++i) {
+    const auto sigma = found->second.sigma.find(std::string(camera::pinhole_names[i]));
     if (sigma != found->second.sigma.end() && !sigma->second.empty()) input.pinhole_sigma_px[i] = sigma->second[0];
-    ++i;
   }
 }
 

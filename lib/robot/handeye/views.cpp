@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "camera/corner_model.h"
 #include "optim/damped.h"
 #include "optim/descent.h"
 #include "robot/handeye/corner_information.h"
@@ -18,22 +19,15 @@ constexpr double huber_sigmas = 3;
 constexpr int most_steps = 50, most_rounds = 30;
 constexpr double same_noise = 1e-9;  // relative: from one round to the next
 
-std::size_t column_of(const std::string& name) {
-  constexpr std::array<std::string_view, 4> pinhole = {"fx_px", "fy_px", "cx_px", "cy_px"};
-  const auto at = std::ranges::find(pinhole, name);
-  if (at != pinhole.end()) return BoardColumn::intrinsics + static_cast<std::size_t>(at - pinhole.begin());
-  const auto term = std::ranges::find(camera::distortion_names, name);
-  if (term == camera::distortion_names.end()) return BoardColumn::count;
-  return BoardColumn::distortion + static_cast<std::size_t>(term - camera::distortion_names.begin());
-}
-
 }  // namespace
 
 CornerInformation corner_information(const Setup& setup, const View& view, const camera::BoardPose& pose,
                                      double factor) {
   CornerInformation sum;
+  constexpr std::size_t none = BoardColumn::count;
   std::vector<std::size_t> lens_columns;
-  for (const std::string& name : setup.lens_order) lens_columns.push_back(column_of(name));
+  for (const std::string& name : setup.lens_order)
+    lens_columns.push_back(std::min(camera::corner_column(name).value_or(none), none));
   sum.lens = Eigen::MatrixXd::Zero(6, static_cast<Eigen::Index>(lens_columns.size()));
   std::array<std::array<double, BoardColumn::count>, 2> jacobian{};
   for (const SeenCorner& corner : view.corners) {
@@ -56,7 +50,7 @@ CornerInformation corner_information(const Setup& setup, const View& view, const
       sum.information.noalias() += weight * g * g.transpose();
       sum.gradient.noalias() += weight * (row == 0 ? r.x : r.y) * g;
       for (std::size_t k = 0; k < lens_columns.size(); ++k) {
-        if (lens_columns[k] == BoardColumn::count) continue;
+        if (lens_columns[k] == none) continue;
         sum.lens.col(static_cast<Eigen::Index>(k)) += weight * j[lens_columns[k]] * g;
       }
     }

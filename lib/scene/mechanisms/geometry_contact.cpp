@@ -21,7 +21,8 @@ const Mechanism& geometry_contact() {
                       .start = 0.0005,
                       .typical = 5e-4,
                       .meaning = "by which the object lies deeper"}},
-      .conditions = {"image.edge-distance", "light.shadow-edge-distance", "marker.height"},
+      .conditions = {"image.edge-distance", "camera.edge-shift-x", "camera.edge-shift-y", "light.shadow-edge-distance",
+                     "marker.height"},
       .mistaken_for = {{.with = "geometry.pose", .told_apart = "lift the object and lay it on a hard support"}},
   };
   return declaration;

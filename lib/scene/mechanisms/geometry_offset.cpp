@@ -23,7 +23,8 @@ const Mechanism& geometry_offset() {
                       .start = 0.0002,
                       .typical = 3e-4,
                       .meaning = "along the outward normals"}},
-      .conditions = {"image.edge-distance", "surface.exitance-angle"},
+      .conditions = {"image.edge-distance", "camera.edge-shift-x", "camera.edge-shift-y", "camera.edge-shift-radial",
+                     "surface.exitance-angle"},
       .mistaken_for = {{.with = "geometry.scale", .told_apart = "caliper at a thin and at a thick part"},
                        {.with = "volume.index", .told_apart = "caliper"}},
   };

@@ -61,7 +61,8 @@ const Mechanism& geometry_pose() {
                       .start = 0.002,
                       .typical = 0.01,
                       .meaning = "rotation vector about the middle of the object's box, its world z"}},
-      .conditions = {"image.edge-distance", "surface.exitance-angle", "light.shadow-edge-distance", "marker.height"},
+      .conditions = {"image.edge-distance", "camera.edge-shift-x", "camera.edge-shift-y", "surface.exitance-angle",
+                     "light.shadow-edge-distance", "marker.height"},
       .mistaken_for = {{.with = "geometry.scale", .told_apart = "a second view"},
                        {.with = "light.direction", .told_apart = "a second object that did not move"}},
   };

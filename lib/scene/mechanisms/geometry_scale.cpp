@@ -21,7 +21,8 @@ const Mechanism& geometry_scale() {
                       .start = 0.005,
                       .typical = 0.03,
                       .meaning = "relative growth in all directions, about the origin of the object's frame"}},
-      .conditions = {"image.edge-distance", "surface.exitance-angle"},
+      .conditions = {"image.edge-distance", "camera.edge-shift-x", "camera.edge-shift-y", "camera.edge-shift-radial",
+                     "surface.exitance-angle"},
       .mistaken_for = {{.with = "geometry.pose", .told_apart = "caliper, or a second view"},
                        {.with = "focal length", .told_apart = "a second range"}},
   };
