@@ -4,7 +4,8 @@ namespace gonio::sealed {
 std::vector<EffectKind> image_effects(const double* white) {
   const std::vector<std::string> edge{"light.shadow-edge-distance", "light.visibility", "image.edge-distance"},
       angles{"surface.half-angle", "surface.exitance-angle", "surface.incidence-angle", "surface.phase-angle"},
-      outline{"image.edge-distance", "image.gradient"}, bright{"image.radiance"};
+      outline{"image.edge-distance", "image.gradient"}, bright{"image.radiance"},
+      unlit{"scene.indirect-irradiance", "light.visibility"};
   const std::vector<std::string> optics{"optics"}, sensor{"sensor"}, light{"light"}, surface{"surface"},
       geometry{"geometry", "pose"};
   std::vector<EffectKind> k;
@@ -49,12 +50,7 @@ std::vector<EffectKind> image_effects(const double* white) {
   add({"wide pupil", "optics.defocus", optics, {"image.edge-distance", "scene.depth"}, 0.004, 0.012});
   add({"moved ball", "geometry.pose", geometry, outline, 0.001, 0.005});
   add({"shrunk ball", "geometry.scale", geometry, outline, 0.01, 0.05});
-  add({"light between surfaces",
-       "transport.indirect",
-       {"transport"},
-       {"scene.indirect-irradiance", "light.visibility"},
-       1,
-       1.0001})
+  add({"light between surfaces", "transport.indirect", {"transport"}, unlit, 1, 1.0001})
       .as_drawn()  // it is there or not
       .only_for("direct light only")
       .values = [](const Numbers&) {
