@@ -160,7 +160,10 @@ INSTANTIATE_TEST_SUITE_P(
         Walk{"ellipsometer", ellipsometer, {"surface.wavelength", "surface.difference-angle", "surface.half-angle"}},
         Walk{"tracker", tracker, {}}, Walk{"surface", surface, {"surface.spatial-frequency", "surface.lay-azimuth"}},
         // Centres of markers have no edges and throw no shadows; a volume's walls are not there.
-        Walk{"markers", markers, {"image.edge-distance", "light.shadow-edge-distance", "volume.size"}}),
+        Walk{"markers",
+             markers,
+             {"image.edge-distance", "camera.edge-shift-x", "camera.edge-shift-y", "camera.edge-shift-radial",
+              "light.shadow-edge-distance", "volume.size"}}),
     [](const auto& i) { return std::string(i.param.model); });
 
 // A column that is named after the observed one is its noise: with it the table states it, and it is no condition.
