@@ -195,8 +195,8 @@ void add_equals(const Problem& problem, const std::vector<Finalist>& list, std::
 
 // Of many sets that differ in what else there is, what all of them hold is sure: that is the answer, alone where
 // nothing else is likelier than something, else beside the likeliest of the sets that hold more.
-Answer sure_part(const Finalists& finalists, const Finalist& top, const std::vector<std::size_t>& places,
-                 const std::vector<double>& p) {
+Answer part_in_common(const Finalists& finalists, const Finalist& top, const std::vector<std::size_t>& places,
+                      const std::vector<double>& p) {
   const std::vector<Finalist>& list = finalists.list();
   const std::size_t own = member_of(places, list, top);
   Answer found{Answer::Kind::sets, {own}, finalists.inclusion(top)};
@@ -276,7 +276,7 @@ void judge(const Problem& problem, const Selection& s, const Options& options, E
   if (top != nullptr) p = by_physics(problem, list, *top, places, std::move(p));
   Answer found = answer(members, p, options.sure);
   if (top != nullptr && found.probability < options.sure && finalists.inclusion(*top) >= options.sure)
-    found = sure_part(finalists, *top, places, p);
+    found = part_in_common(finalists, *top, places, p);
   if (!e.significant) found = {Answer::Kind::nothing, {}, finalists.nothing()};
   // The groups that no choice has seen speak last.
   const bool no_better = found.kind == Answer::Kind::sets && !(e.held_out_after < e.held_out_before);

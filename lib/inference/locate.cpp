@@ -208,11 +208,10 @@ std::size_t declared_place(const Problem& problem, const std::vector<std::size_t
 // Where no condition holds much of the excess, that of the named mechanisms' own which describes best what they do.
 void put_described_first(const Problem& problem, Explanation& e) {
   if (e.conditions[0].share >= telling_share) return;
+  std::size_t declarations = 0;
+  for (const std::size_t c : e.named) declarations += problem.candidates()[c].mechanism->conditions.size();
   const auto declared = [&](const LocatedCondition& c) {
-    return std::ranges::any_of(e.named, [&](std::size_t named) {
-      const std::vector<std::string>& own = problem.candidates()[named].mechanism->conditions;
-      return std::ranges::find(own, c.name) != own.end();
-    });
+    return declared_place(problem, e.named, c.name) < declarations;
   };
   const auto rank = [&](const LocatedCondition& c) { return declared(c) ? c.of_effect : 0.0; };
   const auto best = std::ranges::max_element(e.conditions, {}, rank);

@@ -57,24 +57,32 @@ bool only_part(const Problem& problem, const Explanation& e) {
          });
 }
 
-// Every listed answer's own share, the likeliest first. Forms of one mechanism are one answer.
-std::vector<std::pair<std::string, double>> shares_of_listed(const Problem& problem, const Explanation& e) {
-  std::set<std::set<std::string>> listed_sets{ids_of(problem, e.named)};
-  for (const std::vector<std::size_t>& set : e.instead) listed_sets.insert(ids_of(problem, set));
-  if (e.named.size() == 1 && !e.not_told_apart.empty())
-    for (const std::size_t c : e.not_told_apart[0]) listed_sets.insert(ids_of(problem, {c}));
-  std::map<std::set<std::string>, std::pair<std::string, double>> shares;
+// Of every set of mechanisms that was weighed, whatever the forms: its words and its probability.
+struct Share {
+  std::string words;
+  double probability = 0;
+};
+std::map<std::set<std::string>, Share> shares_of(const Problem& problem, const Explanation& e) {
+  std::map<std::set<std::string>, Share> shares;
   for (const Explanation::Weighed& w : e.weighed) {
-    const std::set<std::string> ids = ids_of(problem, w.candidates);
-    if (w.kind != Explanation::Weighed::Kind::set || !listed_sets.contains(ids)) continue;
-    auto& [words, probability] = shares[ids];
-    if (words.empty()) words = listed(problem, w.candidates, 0, " with ");
-    probability += w.probability;
+    if (w.kind != Explanation::Weighed::Kind::set) continue;
+    Share& share = shares[ids_of(problem, w.candidates)];
+    if (share.words.empty()) share.words = listed(problem, w.candidates, 0, " with ");
+    share.probability += w.probability;
   }
-  std::vector<std::pair<std::string, double>> result;
-  for (const auto& [ids, share] : shares)
-    if (share.second >= 0.01) result.push_back(share);
-  std::ranges::stable_sort(result, std::greater<>(), &std::pair<std::string, double>::second);
+  return shares;
+}
+
+// Those of what is named and of what it could be instead, the likeliest first.
+std::vector<Share> shares_of_listed(const Problem& problem, const Explanation& e) {
+  std::set<std::set<std::string>> sets{ids_of(problem, e.named)};
+  for (const std::vector<std::size_t>& set : e.instead) sets.insert(ids_of(problem, set));
+  if (e.named.size() == 1 && !e.not_told_apart.empty())
+    for (const std::size_t c : e.not_told_apart[0]) sets.insert(ids_of(problem, {c}));
+  std::vector<Share> result;
+  for (const auto& [ids, share] : shares_of(problem, e))
+    if (sets.contains(ids)) result.push_back(share);
+  std::ranges::stable_sort(result, std::greater<>(), &Share::probability);
   return result;
 }
 
@@ -83,14 +91,14 @@ std::string sure_sentence(const Problem& problem, const Explanation& e) {
   if (e.weighed.empty()) return "";
   const std::string it = e.named.size() == 1 ? "it is" : "they are", these = e.named.size() == 1 ? "this" : "these";
   std::string each;
-  for (const auto& [words, probability] : shares_of_listed(problem, e))
-    each += (each.empty() ? "" : ", ") + words + " " + probability_in_words(probability);
+  for (const Share& share : shares_of_listed(problem, e))
+    if (share.probability >= 0.01)
+      each += (each.empty() ? "" : ", ") + share.words + " " + probability_in_words(share.probability);
   if (only_part(problem, e)) {
     const std::set<std::string> named = ids_of(problem, e.named);
     double part = 0;
-    for (const Explanation::Weighed& w : e.weighed)
-      if (w.kind == Explanation::Weighed::Kind::set && std::ranges::includes(ids_of(problem, w.candidates), named))
-        part += w.probability;
+    for (const auto& [ids, share] : shares_of(problem, e))
+      if (std::ranges::includes(ids, named)) part += share.probability;
     return " How sure: " + probability_in_words(part) + " that " + it +
            " among what was left out, and most likely not alone (" + each + ").";
   }
@@ -114,15 +122,9 @@ std::string likeliest_sentence(const Problem& problem, const Explanation& e) {
 // Of several that it could be the first is the plainest, and mostly the likeliest.
 std::string opening(const Problem& problem, const Explanation& e) {
   if (e.verdict != Verdict::ambiguous || only_part(problem, e)) return "";
-  std::map<std::set<std::string>, double> shares;
-  for (const Explanation::Weighed& w : e.weighed)
-    if (w.kind == Explanation::Weighed::Kind::set) shares[ids_of(problem, w.candidates)] += w.probability;
-  double most = 0;
-  for (const std::vector<std::size_t>& set : e.instead) most = std::max(most, shares[ids_of(problem, set)]);
-  for (const std::vector<std::size_t>& set : e.not_told_apart)
-    if (e.named.size() == 1)
-      for (const std::size_t c : set) most = std::max(most, shares[ids_of(problem, {c})]);
-  return shares[ids_of(problem, e.named)] >= most ? "Likeliest: " : "The plainest of what it may be: ";
+  const std::vector<Share> shares = shares_of_listed(problem, e);
+  const double named = shares_of(problem, e)[ids_of(problem, e.named)].probability;
+  return shares.empty() || named >= shares[0].probability ? "Likeliest: " : "The plainest of what it may be: ";
 }
 
 // The physics in its own words, where it shows, and what it is worth.

@@ -9,6 +9,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "base/parallel.h"
 #include "stats/intervals.h"
@@ -24,7 +26,6 @@ constexpr double least_share = 0.05;                // of the picture's mean: da
 constexpr double most_uneven = 1.6;                 // of the usual residual's square: one even place in twenty is lost
 constexpr double most_sigmas = 3.5;                 // of a deviation that counts
 constexpr std::size_t looked_at = 20000;            // pixels of a picture that say what is usual
-constexpr double median_of_chi_square = 0.4549;
 
 std::size_t at(const io::Image& picture, int x, int y, int c) {
   return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x)) +
@@ -122,27 +123,28 @@ void add_picture(const Recording& image, int width, int height, Sums& sums) {
 }
 
 double spread_of(const Sums& sums) {
-  std::vector<double> squares;
+  std::vector<double> known;
   for (std::size_t i = 0; i < sums.weight.size(); ++i)
-    if (sums.known(i)) squares.push_back(sums.deviation(i) * sums.deviation(i));
-  return squares.empty() ? 0 : std::sqrt(stats::median(squares) / median_of_chi_square);
+    if (sums.known(i)) known.push_back(sums.deviation(i));
+  return known.empty() ? 0 : stats::robust_sigma(known);
 }
 
-// k s^2 of one camera: mean product of what two of its views show at a pixel; 0 where they have nothing in common.
+// k s^2 of one camera: mean product of what two of its views show at a pixel, over all pairs of them; 0 where they have
+// nothing in common. The products of a pixel add up to half of the square of its sum less its sum of squares.
 double in_common(const std::vector<const Sums*>& views) {
   std::vector<double> most;
   for (const Sums* view : views) most.push_back(most_sigmas * spread_of(*view));
-  double sum = 0, count = 0;
-  for (std::size_t v = 0; v < views.size(); ++v)
-    for (std::size_t w = 0; w < v; ++w)
-      for (std::size_t i = 0; i < views[v]->weight.size(); ++i) {
-        if (!views[v]->known(i) || !views[w]->known(i)) continue;
-        const double a = views[v]->deviation(i), b = views[w]->deviation(i);
-        if (std::abs(a) > most[v] || std::abs(b) > most[w]) continue;
-        sum += a * b;
-        ++count;
-      }
-  return count > 0 ? std::max(0.0, sum / count) : 0;
+  double products = 0, pairs = 0;
+  for (std::size_t i = 0; i < views[0]->weight.size(); ++i) {
+    double sum = 0, squares = 0, count = 0;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      if (!views[v]->known(i)) continue;
+      const double d = views[v]->deviation(i);
+      if (std::abs(d) <= most[v]) sum += d, squares += d * d, count += 1;
+    }
+    products += 0.5 * (sum * sum - squares), pairs += 0.5 * count * (count - 1);
+  }
+  return pairs > 0 ? std::max(0.0, products / pairs) : 0;
 }
 
 // f, by halving its logarithm's range.
@@ -197,15 +199,20 @@ FixedPattern fixed_pattern(const Recordings& recordings) {
       if (image.view == own.size() - 1) add_picture(image, width, height, own.back());
   }
   FixedPattern result;
+  std::map<std::string, double> of_camera;
   for (std::size_t v = 0; v < views; ++v) {
-    Sums others(own[v].weight.size());
-    std::vector<const Sums*> of_camera;
-    for (std::size_t w = 0; w < views; ++w) {
-      if (recordings.views[w].camera != recordings.views[v].camera) continue;
-      of_camera.push_back(&own[w]);
-      if (learns(v, w, views)) others.add(own[w]);
+    const auto same = [&](std::size_t w) { return recordings.views[w].camera == recordings.views[v].camera; };
+    const auto [pattern, is_new] = of_camera.try_emplace(recordings.views[v].camera);
+    if (is_new) {
+      std::vector<const Sums*> seen;
+      for (std::size_t w = v; w < views; ++w)
+        if (same(w)) seen.push_back(&own[w]);
+      pattern->second = in_common(seen);
     }
-    result.views.push_back(held_against(others, in_common(of_camera)));
+    Sums others(own[v].weight.size());
+    for (std::size_t w = 0; w < views; ++w)
+      if (same(w) && learns(v, w, views)) others.add(own[w]);
+    result.views.push_back(held_against(others, pattern->second));
   }
   return result;
 }

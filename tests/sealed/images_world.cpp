@@ -33,7 +33,7 @@ class Images final : public World {
     if (clean_.empty()) clean_ = pictures({}, rough, &of_matter_);
     return clean_;
   }
-  Numbers exposed(const Numbers&, const Sizes& sizes) const override { return pictures(sizes, exact, nullptr); }
+  Numbers exposed(const Sizes& sizes, Numbers) const override { return pictures(sizes, exact, nullptr); }
   std::vector<Numbers> base_columns() const override;  // albedos, then the lamps' common intensity, per band
   Numbers sigma(const Numbers& clean) const override {
     Numbers s(clean.size());

@@ -279,7 +279,8 @@ Case make_case(const Spec& spec) {
   made.id = case_id(spec);
   made.spec = spec;
   fill_truth(spec, s, sizes, made.truth);
-  const Numbers full = world->exposed(s.base, sizes);
+  const Numbers simulated = sizes.empty() ? s.clean : world->simulate(s.base, sizes);
+  const Numbers full = world->exposed(sizes, simulated);
   Numbers observed = world->noisy(full, random);
   Numbers stated = world->sigma(s.clean);
   const Numbers reference = world->reference(s.clean, s.sigma);
@@ -294,7 +295,7 @@ Case make_case(const Spec& spec) {
   const Numbers norm = world->norm(observed);
   made.truth.floor = std::sqrt(errors / std::accumulate(norm.begin(), norm.end(), 0.0));
   made.truth.floor_known = world->knows_floor();
-  const Numbers surviving = s.surviving(sizes);
+  const Numbers surviving = s.free.surviving(minus(simulated, s.clean));
   made.truth.strength = length(surviving);
   made.truth.share = sizes.size() > 1 ? weakest_share(s, sizes, observed) : share_of(s, surviving, observed);
   world->locate(surviving, observed, made);

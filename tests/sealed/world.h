@@ -42,9 +42,9 @@ class World {
   virtual Numbers base() const = 0;        // true values of what the base model leaves free
   virtual Numbers base_steps() const = 0;  // for differences
   virtual Numbers simulate(const Numbers& base, const Sizes& sizes) const = 0;  // noise-free, all rows
-  // The same as it is recorded: where simulating is integrating at random places, so well that no more than the
-  // recording's noise is left of it under the truth. simulate() may be rough; its errors cancel in differences.
-  virtual Numbers exposed(const Numbers& base, const Sizes& sizes) const { return simulate(base, sizes); }
+  // What simulate() said, as exact as a recording must be: where simulating is integrating at random places, it may be
+  // rough, for its errors cancel in differences.
+  virtual Numbers exposed(const Sizes&, Numbers simulated) const { return simulated; }
   virtual Numbers sigma(const Numbers& clean) const = 0;  // the true noise
   virtual Numbers noisy(const Numbers& clean, Random& random) const = 0;
   // The score is sqrt(sum ((y - f) / reference)^2 / sum norm).

@@ -22,8 +22,7 @@ namespace {
 constexpr std::size_t most_middles = 150, most_refined = 60, most_seen = 10000;
 constexpr std::array<double, 5> widths = {0.015, 0.03, 0.06, 0.12, 0.24};  // of the object's extent
 constexpr std::array<double, 3> finer_widths = {0.7, 1, 1.4};              // of the best of them
-constexpr double most_widths = 3;                                          // of a residual, robustly taken
-constexpr double of_normal = 1.4826;                                       // standard deviation over median deviation
+constexpr double most_sigmas = 3;                                          // of a residual, robustly taken
 
 struct Spot {
   Vec3 middle_m;
@@ -42,16 +41,14 @@ void thin(std::vector<Seen>& seen) {
   seen.resize((seen.size() + step - 1) / step);
 }
 
-// No residual further from its image's median than `most_widths`.
+// No residual further from its image's median than `most_sigmas`.
 void clip(std::vector<Seen>& seen, std::size_t images) {
   for (std::size_t i = 0; i < images; ++i) {
     std::vector<double> own;
     for (const Seen& s : seen)
       if (s.image == i) own.push_back(s.relative);
     if (own.empty()) continue;
-    const double middle = stats::median(own);
-    for (double& r : own) r = std::abs(r - middle);
-    const double reach = most_widths * of_normal * stats::median(own);
+    const double middle = stats::median(own), reach = most_sigmas * stats::robust_sigma(own);
     for (Seen& s : seen)
       if (s.image == i) s.relative = std::clamp(s.relative - middle, -reach, reach);
   }
