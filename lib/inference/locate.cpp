@@ -15,7 +15,7 @@ namespace gonio::inference {
 namespace {
 
 constexpr double least_survivor = 1e-4;  // of a direction's squared length, after projection
-constexpr std::size_t bins_of_a_curve = 12, steps_of_an_effect = 48;
+constexpr std::size_t bins_of_a_curve = 12, steps_of_an_effect = 48, least_rows_of_a_step = 8;
 constexpr double tied_share = 0.8;   // of the first condition's share: not told apart by it
 constexpr double same_share = 0.98;  // one condition in another's clothes (an angle and its half)
 
@@ -91,6 +91,17 @@ std::vector<double> power_of_effect(const Curve& without, std::size_t bins) {
   return power;
 }
 
+// Edges of steps over `rows` sorted rows: of equal counts, the outermost halved again and again towards either end,
+// where what is narrow lies (a highlight, the edge of a shadow).
+std::vector<std::size_t> edges_of_steps(std::size_t rows) {
+  std::vector<std::size_t> edges;
+  for (std::size_t b = 0; b <= steps_of_an_effect; ++b) edges.push_back(b * rows / steps_of_an_effect);
+  for (std::size_t n = rows / steps_of_an_effect / 2; n >= least_rows_of_a_step; n /= 2)
+    edges.insert(edges.end(), {n, rows - n});
+  std::ranges::sort(edges);
+  return edges;
+}
+
 // Share of what the named mechanisms do, beyond one level, that steps over the condition describe: a gloss is wholly a
 // matter of the half angle even where it lies on few of the rows, and little of the excess is there.
 double described(const System& system, const Condition& condition, const std::vector<double>& without,
@@ -105,9 +116,10 @@ double described(const System& system, const Condition& condition, const std::ve
   std::ranges::stable_sort(rows, {}, [&](std::size_t i) { return condition.values[i]; });
   Sums level;
   double total = 0, steps = 0;
-  for (std::size_t b = 0; b < steps_of_an_effect; ++b) {
+  const std::vector<std::size_t> edges = edges_of_steps(rows.size());
+  for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
     Sums step;
-    for (std::size_t k = b * rows.size() / steps_of_an_effect; k < (b + 1) * rows.size() / steps_of_an_effect; ++k) {
+    for (std::size_t k = edges[b]; k < edges[b + 1]; ++k) {
       const std::size_t i = rows[k];
       const double d = condition.direction.empty() ? 1 : condition.direction[i];
       const double w = system.weight(i) * system.weight(i), effect = without[i] - with[i];
