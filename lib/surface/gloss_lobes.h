@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 
+#include "surface/retro_lobe.h"
 #include "surface/slopes.h"
 
 namespace gonio::surface {
@@ -68,14 +69,6 @@ class GlossLobes {
   Vec3 wo_;
 };
 
-// Light sent back to where it came from: facets that see the direction opposite to the mirrored one,
-//   lobe(wi, wo') with wo' = (-wo_x, -wo_y, wo_z)
-// as corner cubes, beads and crossed fibres do. The half vector of wi and wo' keeps its height when the two change
-// places, so that the lobe is reciprocal.
-inline Vec3 sent_back(Vec3 wo) {
-  return {-wo.x, -wo.y, wo.z};
-}
-
 // Parameters of two lobes, direction and retro-reflection, as models declare them.
 inline std::vector<manifest::ParameterInfo> gloss_parameters(double least_alpha) {
   return {{.name = "second_share",
@@ -113,7 +106,13 @@ inline std::vector<manifest::ParameterInfo> gloss_parameters(double least_alpha)
            .preset = 0.3,
            .lower = 0.05,
            .upper = 1,
-           .meaning = "width of the lobe that is sent back, as a GGX roughness"}};
+           .meaning = "width of the lobe that is sent back, as a GGX roughness"},
+          {.name = "retro_falloff",
+           .unit = "1",
+           .preset = 0,
+           .lower = 0,
+           .upper = max_retro_falloff,
+           .meaning = "power of the cosine by which the return falls"}};
 }
 
 }  // namespace gonio::surface

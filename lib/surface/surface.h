@@ -41,9 +41,11 @@ struct Prepared {
   virtual ~Prepared() = default;
 };
 
+inline constexpr std::size_t most_parameters = 18;  // of a model
+
 // Parameter values at one point, in the order of info().parameters; scalars are spread over all three components.
 struct Values {
-  std::array<Rgb, 16> v{};
+  std::array<Rgb, most_parameters> v{};
   // Index beyond the interface over the index on wo's side, per band. The path tracer sets it at every vertex from the
   // media that meet there; only models that transmit() read it.
   Rgb eta{1, 1, 1};

@@ -14,10 +14,10 @@
 #include "render/mechanisms/sensor_black_offset.h"
 #include "scene/mechanisms/optics_vignetting.h"
 #include "surface/fresnel.h"
-#include "surface/gloss_lobes.h"
 #include "surface/interface_albedo.h"
 #include "surface/microfacet.h"
 #include "surface/oren_nayar.h"
+#include "surface/retro_lobe.h"
 #include "surface/sheen.h"
 
 namespace gonio::explain::stacks {
@@ -58,10 +58,7 @@ double PatchModel::others(double colour, Vec3 wo, Vec3 wi) const {
   if (metal > 0) sum += metal * colour * surface::Ggx(metal_alpha).lobe(wo, wi, surface::half_vector(wo, wi));
   if (sheen > 0) sum += sheen * surface::velvet(wo, wi, sheen_width);
   if (sheen_forward > 0) sum += sheen_forward * surface::forward_sheen(wo, wi);
-  if (retro > 0) {
-    const Vec3 from = surface::sent_back(wo);
-    sum += retro * surface::Ggx(retro_alpha).lobe(from, wi, surface::half_vector(from, wi));
-  }
+  if (retro > 0) sum += retro * surface::RetroLobe(retro_alpha, retro_falloff).lobe(wo, wi);
   return sum;
 }
 

@@ -3,11 +3,11 @@
 // directly. Gloss has the lamp's own colour, whatever the tint.
 //   u = w [ rest (tint |b| shape(wo, wi) passes + pi F D G2 / (4 cos_i cos_o)) + pi others ] cos_i + pi L_a w tint |b|
 //   v = response(u) falloff + offset,  cos_i = max(0, n.l)
-//   others = metal tint |b| D_m G2_m / (4 cos_i cos_o) + sheen velvet + sheen_forward forward + retro lobe(wi, back),
+//   others = metal tint |b| D_m G2_m / (4 cos_i cos_o) + sheen velvet + sheen_forward forward + retro lobe_back,
 //   rest = 1 - metal - sheen - sheen_forward - retro
 // w is what a white matte plate reads that faces the lamp: irradiance / pi times gain and exposure. shape is Oren &
 // Nayar's (surface/oren_nayar.h), the lobe and `passes` those of an interface over a matte base
-// (surface/models/coated_diffuse.cpp), what shares the area those of surface/sheen.h and surface/gloss_lobes.h; a
+// (surface/models/coated_diffuse.cpp), what shares the area those of surface/sheen.h and surface/retro_lobe.h; a
 // metal's Fresnel factor is its colour at all angles. Where the scale of the readings is not absolute, f0 and the
 // shares of sheen and retro-reflection are over it.
 //
@@ -41,7 +41,8 @@ struct Patch {
 
 struct PatchModel {
   double sigma_rad = 0, f0 = 0, alpha = 0.2, ambient = 0;
-  double metal = 0, metal_alpha = 0.3, sheen = 0, sheen_width = 0.5, sheen_forward = 0, retro = 0, retro_alpha = 0.3;
+  double metal = 0, metal_alpha = 0.3, sheen = 0, sheen_width = 0.5, sheen_forward = 0, retro = 0, retro_alpha = 0.3,
+         retro_falloff = 0;
   double falloff = 0, offset = 0;
   render::Response response{};
   Vec3 eye{0, 0, -1};

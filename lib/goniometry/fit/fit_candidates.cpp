@@ -1,6 +1,6 @@
 // See fit_candidates.h. Variants free or hold what a model's parameters offer:
 //   second_share, second_alpha                a second population of facets
-//   retro, retro_alpha                        light sent back to the lamp, counted as a lobe
+//   retro, retro_alpha, retro_falloff         light sent back to the lamp, counted as a lobe
 //   anisotropy_0, anisotropy_45; anisotropy, azimuth_rad     a direction; where both are offered, the first, which has
 //                                             no jump where the sample has none
 //   sigma_rad                                 a rough matte base, by Oren & Nayar's qualitative law (matte_form 0)

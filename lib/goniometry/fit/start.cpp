@@ -64,6 +64,7 @@ double start_of(const std::string& name, const manifest::ParameterInfo& info, co
   if (name == "second_share") return 0.3;
   if (name == "retro") return 0.05;
   if (name == "retro_alpha") return 0.3;
+  if (name == "retro_falloff") return 1;
   if (name.starts_with("alpha")) return alpha;
   if (name == "anisotropy") return 0.4;
   if (name == "anisotropy_0") return 0.3 * std::cos(2 * turn);

@@ -19,7 +19,7 @@ const Model& metal();
 
 namespace {
 
-constexpr std::size_t glossy_parameters = 11;
+constexpr std::size_t glossy_parameters = 12;
 constexpr double least_metal_alpha = 0.02;
 enum : std::size_t {
   albedo_index = 0,

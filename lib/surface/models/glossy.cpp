@@ -1,11 +1,11 @@
 // Matte base under a clear interface whose gloss needs more than one lobe: `coated-diffuse` with a second population of
 // facets (tails, haze), a direction (brushed, woven) and light that is sent back to the lamp (fabric, beads, dust).
-//   f = (1 - retro) (F lobes + f_base (1 - E(wi)) (1 - E(wo)) / (1 - E_mean)) + retro lobe(wi, mirrored wo)
-// Lobes: surface/gloss_lobes.h. E is the mixture of the two populations' reflectances (surface/interface_albedo.h),
-// at the roughness that each direction sees where the surface has a direction, an approximation: energy closes to 0.02
-// there. Reciprocal; a mixture of parts none of which returns more than it receives. At second_share = 0,
-// anisotropy = 0 and retro = 0 it is `coated-diffuse`. The base and what is sent back have lost their polarization.
-// albedo() is exact for sigma_rad = 0 up to the tables' error.
+//   f = (1 - retro) (F lobes + f_base (1 - E(wi)) (1 - E(wo)) / (1 - E_mean)) + retro lobe_back
+// Lobes: surface/gloss_lobes.h, surface/retro_lobe.h. E is the mixture of the two populations' reflectances
+// (surface/interface_albedo.h), at the roughness that each direction sees where the surface has a direction, an
+// approximation: energy closes to 0.02 there. Reciprocal; a mixture of parts none of which returns more than it
+// receives. At second_share = 0, anisotropy = 0 and retro = 0 it is `coated-diffuse`. The base and what is sent back
+// have lost their polarization. albedo() is exact for sigma_rad = 0 up to the tables' error.
 #include "surface/facet_slopes.h"
 #include "surface/fresnel.h"
 #include "surface/gloss_lobes.h"
@@ -30,6 +30,7 @@ enum : std::size_t {
   a45_index,
   retro_index,
   retro_alpha_index,
+  retro_falloff_index,
   form_index
 };
 
@@ -61,7 +62,7 @@ struct Here {
   GlossLobes lobes;
   double eta, reflected, passes_out;
   double retro, gloss_share, retro_share;  // shares: of samples, by reflected power
-  Ggx back;
+  RetroLobe back;
   Vec3 wo;
   Rgb albedo;
   Matte rough;
@@ -73,16 +74,15 @@ struct Here {
         reflected(interface.f0 > 0 ? interface.reflects(to_eye) : 0),
         passes_out((1 - reflected) / (1 - (interface.f0 > 0 ? interface.reflects_mean() : 0))),
         retro(v.scalar(retro_index)),
-        back(v.scalar(retro_alpha_index)),
+        back(v.scalar(retro_alpha_index), v.scalar(retro_falloff_index)),
         wo(to_eye),
         albedo(v.rgb(albedo_index)),
         rough(v.scalar(sigma_index), v.scalar(form_index)) {
     const double below = (1 - reflected) * mean(albedo), above = reflected + below;
-    const double sent = retro > 0 ? retro * returns(v.scalar(retro_alpha_index)) : 0, all = (1 - retro) * above + sent;
+    const double sent = retro > 0 ? retro * back.narrow_power(wo) : 0, all = (1 - retro) * above + sent;
     retro_share = all > 0 ? sent / all : 0;
     gloss_share = all > 0 ? (1 - retro) * reflected / all : 0;
   }
-  double returns(double alpha) const { return 1 - InterfaceLoss::mirror(Slopes::ggx, {alpha, 0, 0}).towards(wo); }
   double gloss(Vec3 wi) const {
     if (!(interface.f0 > 0)) return 0;
     return fresnel_dielectric(half_cosine(wo, wi), eta) * lobes.lobe(wi, half_vector(wo, wi));
@@ -91,30 +91,22 @@ struct Here {
     const Rgb matte = rough.brdf(albedo, wo, wi);
     return interface.f0 > 0 ? matte * (passes_out * (1 - interface.reflects(wi))) : matte;
   }
-  double sent(Vec3 wi) const {
-    const Vec3 from = sent_back(wo);
-    return retro > 0 ? back.lobe(from, wi, half_vector(from, wi)) : 0;
-  }
   Rgb evaluate(Vec3 wi) const {
     const double g = gloss(wi);
     const Rgb coated = Rgb{g, g, g} + base(wi);
     if (!(retro > 0)) return coated;
-    const double r = retro * sent(wi);
+    const double r = retro * back.lobe(wo, wi);
     return coated * (1 - retro) + Rgb{r, r, r};
   }
   double pdf(Vec3 wi) const {
     double density = std::max(0.0, 1 - gloss_share - retro_share) * cosine_density(wi);
     if (gloss_share > 0) density += gloss_share * lobes.pdf(wi);
-    const Vec3 from = sent_back(wo);
-    if (retro_share > 0) density += retro_share * back.pdf(from, half_vector(from, wi));
+    if (retro_share > 0) density += retro_share * back.pdf(wo, wi);
     return density;
   }
   Vec3 direction(Vec2 u, double u_lobe) const {
     if (u_lobe < gloss_share) return lobes.direction(u, u_lobe / gloss_share);
-    if (u_lobe - gloss_share < retro_share) {
-      const Vec3 from = sent_back(wo);
-      return mirrored(from, back.visible_normal(from, u));
-    }
+    if (u_lobe - gloss_share < retro_share) return back.direction(wo, u);
     return cosine_direction(u);
   }
 };
@@ -173,7 +165,7 @@ class Glossy final : public Model {
     if (wo.z <= 0) return {};
     const Here here(values, wo);
     const Rgb base = here.rough.reflectance(here.albedo, wo.z) * (1 - here.reflected);
-    const double sent = here.retro > 0 ? here.retro * here.returns(values.scalar(retro_alpha_index)) : 0;
+    const double sent = here.retro > 0 ? here.retro * here.back.power(wo) : 0;
     return (Rgb{here.reflected, here.reflected, here.reflected} + base) * (1 - here.retro) + Rgb{sent, sent, sent};
   }
 
@@ -182,7 +174,7 @@ class Glossy final : public Model {
  private:
   static Matte matte_of(const Values& values) { return {values.scalar(sigma_index), values.scalar(form_index)}; }
   // f = rest + albedo base, by the numbers after the albedo.
-  static constexpr std::size_t unknowns = retro_alpha_index;
+  static constexpr std::size_t unknowns = retro_falloff_index;
   using T = Dual<unknowns>;
   struct Linear {
     T rest, base;
@@ -199,11 +191,11 @@ class Glossy final : public Model {
       return 1 - both([&](const auto& facets) { return dielectric_albedo(w.z, facets.roughness_towards(w), f0); });
     };
     const T mean = both([&](const auto& facets) { return dielectric_albedo_mean(facets.roughness_from_above(), f0); });
-    const Vec3 h = half_vector(wo, wi), from = sent_back(wo);
+    const Vec3 h = half_vector(wo, wi);
     const T gloss = fresnel_dielectric(half_cosine(wo, wi), eta_of_f0(f0)) *
                     both([&](const auto& facets) { return facets.reflection(wo, wi, h); });
     const T base = OrenNayarOf<T>(number(sigma_index)).shape(wo, wi) / pi * passes(wo) * passes(wi) / (1 - mean);
-    const T sent = GgxOf<T>(number(retro_alpha_index)).lobe(from, wi, half_vector(from, wi));
+    const T sent = RetroLobeOf<T>(number(retro_alpha_index), number(retro_falloff_index)).lobe(wo, wi);
     return {(1 - retro) * gloss + retro * sent, (1 - retro) * base};
   }
   static std::vector<manifest::ParameterInfo> parameters() {

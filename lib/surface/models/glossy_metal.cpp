@@ -1,10 +1,10 @@
 // `metal` whose gloss needs more than one lobe: a second population of facets, a direction that fits can find, and
 // light that is sent back to the lamp.
-//   f = (1 - retro) ((1 - s) metal(alpha) + s metal(alpha_2)) + retro lobe(wi, mirrored wo)
+//   f = (1 - retro) ((1 - s) metal(alpha) + s metal(alpha_2)) + retro lobe_back
 // metal(alpha) is the lobe of surface/metal_lobe.h with Schlick's Fresnel factor and what meets several facets; the
-// rest is that of surface/gloss_lobes.h. anisotropy and azimuth_rad are those of `metal`; anisotropy_0 and
-// anisotropy_45 add to them as astigmatisms add. Roughness below 0.001 is taken as that: there are no deltas. albedo()
-// is as exact as that of `metal`. Reciprocal, and energy as there.
+// rest is that of surface/gloss_lobes.h and surface/retro_lobe.h. anisotropy and azimuth_rad are those of `metal`;
+// anisotropy_0 and anisotropy_45 add to them as astigmatisms add. Roughness below 0.001 is taken as that: there are no
+// deltas. albedo() is as exact as that of `metal`. Reciprocal, and energy as there.
 #include "surface/fresnel.h"
 #include "surface/gloss_lobes.h"
 #include "surface/metal_lobe.h"
@@ -26,7 +26,8 @@ enum : std::size_t {
   a0_index,
   a45_index,
   retro_index,
-  retro_alpha_index
+  retro_alpha_index,
+  retro_falloff_index
 };
 
 // The lobe's roughness with both statements of its direction, `metal`'s and the astigmatism.
@@ -41,23 +42,21 @@ Roughness roughness_of(const Values& v, double alpha) {
 struct Here {
   Rgb f0;
   double share, retro, second_share, retro_share;  // the latter two: of samples
-  Ggx back;
+  RetroLobe back;
   Vec3 wo;
   MetalLobe<Slopes::ggx> first, second;
-  double sent_power;
 
   Here(const Values& v, Vec3 to_eye)
       : f0(v.rgb(f0_index)),
         share(v.scalar(share_index)),
         retro(v.scalar(retro_index)),
         second_share(share),
-        back(v.scalar(retro_alpha_index)),
+        back(v.scalar(retro_alpha_index), v.scalar(retro_falloff_index)),
         wo(to_eye),
         first(roughness_of(v, v.scalar(alpha_index)), false, fresnel_mean(f0), wo),
-        second(roughness_of(v, v.scalar(second_index)), false, fresnel_mean(f0), wo),
-        sent_power(retro > 0 ? 1 - InterfaceLoss::mirror(Slopes::ggx, {v.scalar(retro_alpha_index), 0, 0}).towards(wo)
-                             : 0) {
-    const double metal = (1 - retro) * mean(fresnel_schlick(wo.z, f0)), sent = retro * sent_power;
+        second(roughness_of(v, v.scalar(second_index)), false, fresnel_mean(f0), wo) {
+    const double metal = (1 - retro) * mean(fresnel_schlick(wo.z, f0)),
+                 sent = retro > 0 ? retro * back.narrow_power(wo) : 0;
     retro_share = metal + sent > 0 ? sent / (metal + sent) : 0;
   }
   static Rgb fresnel_mean(Rgb f0) { return f0 + (Rgb{1, 1, 1} - f0) / 21; }
@@ -68,10 +67,7 @@ struct Here {
     const Rgb narrow = first.evaluate(fresnel(), wi);
     return share > 0 ? narrow * (1 - share) + second.evaluate(fresnel(), wi) * share : narrow;
   }
-  double sent(Vec3 wi) const {
-    const Vec3 from = sent_back(wo);
-    return retro > 0 ? retro * back.lobe(from, wi, half_vector(from, wi)) : 0;
-  }
+  double sent(Vec3 wi) const { return retro > 0 ? retro * back.lobe(wo, wi) : 0; }
   Rgb evaluate(Vec3 wi) const {
     const double r = sent(wi);
     return metal(wi) * (1 - retro) + Rgb{r, r, r};
@@ -79,8 +75,7 @@ struct Here {
   double pdf(Vec3 wi) const {
     double density = (1 - retro_share) * (1 - second_share) * first.pdf(wi);
     if (second_share > 0) density += (1 - retro_share) * second_share * second.pdf(wi);
-    const Vec3 from = sent_back(wo);
-    if (retro_share > 0) density += retro_share * back.pdf(from, half_vector(from, wi));
+    if (retro_share > 0) density += retro_share * back.pdf(wo, wi);
     return density;
   }
 };
@@ -104,11 +99,11 @@ class GlossyMetal final : public Model {
     std::fill_n(slopes.begin(), unknowns, Rgb{});
     if (wo.z <= 0 || wi.z <= 0) return {};
     const auto number = [&](std::size_t i) { return T::unknown(values.scalar(i), i); };
-    const Vec3 h = half_vector(wo, wi), from = sent_back(wo);
+    const Vec3 h = half_vector(wo, wi);
     const MetalLobeSlopes<Slopes::ggx, unknowns> first(directed_of(values, number(alpha_index)), wo, wi, h),
         second(directed_of(values, number(second_index)), wo, wi, h);
     const T share = number(share_index), retro = number(retro_index),
-            sent = GgxOf<T>(number(retro_alpha_index)).lobe(from, wi, half_vector(from, wi));
+            sent = RetroLobeOf<T>(number(retro_alpha_index), number(retro_falloff_index)).lobe(wo, wi);
     const double rise = schlick_rise(half_cosine(wo, wi));
     Rgb value;
     for (int c = 0; c < 3; ++c) {
@@ -123,8 +118,7 @@ class GlossyMetal final : public Model {
     const Here here(values, wo);
     Vec3 wi;
     if (u_lobe < here.retro_share) {
-      const Vec3 from = sent_back(wo);
-      wi = mirrored(from, here.back.visible_normal(from, u));
+      wi = here.back.direction(wo, u);
     } else {
       const double rest = (u_lobe - here.retro_share) / (1 - here.retro_share);
       const bool wide = rest < here.second_share;
@@ -143,7 +137,7 @@ class GlossyMetal final : public Model {
     const Here here(values, wo);
     Rgb metal = here.first.albedo(here.fresnel());
     if (here.share > 0) metal = metal * (1 - here.share) + here.second.albedo(here.fresnel()) * here.share;
-    const double sent = here.retro * here.sent_power;
+    const double sent = here.retro > 0 ? here.retro * here.back.power(wo) : 0;
     return metal * (1 - here.retro) + Rgb{sent, sent, sent};
   }
   optics::MuellerRgb mueller(const Values& values, Vec3 wo, Vec3 wi) const override {
@@ -161,7 +155,7 @@ class GlossyMetal final : public Model {
   }
 
  private:
-  static constexpr std::size_t unknowns = retro_alpha_index + 1;
+  static constexpr std::size_t unknowns = retro_falloff_index + 1;
   using T = Dual<unknowns>;
   // roughness_of() above.
   static DirectedRoughness<unknowns> directed_of(const Values& v, const T& alpha) {

@@ -11,12 +11,14 @@ namespace {
 void enter_retro_reflection(StackEntry& entry) {
   entry.add("retro", 0.05);
   entry.add("retro_alpha", 0.1);
+  entry.add("retro_falloff", 0.5);
   entry.propose_all();
 }
 
 void set_retro_reflection(std::span<const double> p, const Stack&, PatchModel& model) {
   model.retro = p[0];
   model.retro_alpha = p[1];
+  model.retro_falloff = p[2];
 }
 
 }  // namespace

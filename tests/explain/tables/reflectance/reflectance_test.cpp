@@ -70,6 +70,14 @@ TEST(Reflectance, LightSentBack) {
   expect_named(paint_world({}, truth, 5), {{"surface.retro-reflection", "retro", 0.08}});
 }
 
+// As sheeting of road signs does: a third of it at 40 degrees (EN 12899-1, between its classes).
+TEST(Reflectance, LightSentBackLessFromTheSide) {
+  const auto truth =
+      registered("glossy", {{"albedo", 0.3}, {"retro", 0.1}, {"retro_alpha", 0.3}, {"retro_falloff", 4}});
+  expect_named(paint_world({}, truth, 5),
+               {{"surface.retro-reflection", "retro", 0.1}, {"surface.retro-reflection", "retro_falloff", 4}});
+}
+
 // Airy's sum over the gloss of a coated surface, at five wavelengths.
 TEST(Reflectance, AThinFilm) {
   Paint paint{.base = coated};
