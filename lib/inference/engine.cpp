@@ -104,6 +104,13 @@ void locate_groups(const System& system, Explanation& e) {
                    [](const LocatedGroup& a, const LocatedGroup& b) { return a.share > b.share; });
 }
 
+// A bound that the domain itself begins at (no noise of rows), or that its prior reaches (half a code of rounding), is
+// no limit of what is plausible.
+bool is_far_from_start(const Parameter& p, double value) {
+  const double away = std::abs(value - p.start);
+  return away > 0 && !(p.prior_sigma && away <= 3 * *p.prior_sigma);
+}
+
 void final_fit(const System& system, const Race& race, const Selection& selection, Explanation& e) {
   Model base = selection.base, model = selection.model;
   if (!e.test_groups.empty()) {  // what was set aside joins
@@ -118,7 +125,9 @@ void final_fit(const System& system, const Race& race, const Selection& selectio
   // there.
   const auto inside = [](const Fit& f, std::size_t p) { return std::ranges::find(f.inner, p) != f.inner.end(); };
   for (const std::size_t p : base.fit.active)
-    if (!inside(base.fit, p) && (model.candidates.empty() || !inside(model.fit, p))) e.at_limits.push_back(p);
+    if (!inside(base.fit, p) && (model.candidates.empty() || !inside(model.fit, p)) &&
+        is_far_from_start(system.problem().parameters()[p], base.fit.values[p]))
+      e.at_limits.push_back(p);
   e.fitted_before = in_sample_score(system, e.residual_before);
   e.fitted_after = in_sample_score(system, e.residual_after);
   // What is reported by numbers is fitted to the exact simulation, where there is one.

@@ -130,6 +130,7 @@ struct PlannedMeasurement {
   manifest::Value setup;               // Proposal::setup
   std::vector<std::size_t> separates;  // two candidates
   double z = 0;                        // by how many standard errors it would part them
+  std::optional<Sketch> sketch{};      // Proposal::sketch
 };
 
 // What comes out where only a part of the groups had been recorded (stability.h).

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "inference/fit.h"
 #include "linear/blocks.h"
@@ -126,11 +127,30 @@ std::vector<double> exchanged(const System& system, const Explanation& e, std::s
   return fit(system, std::move(start), active).values;
 }
 
+// What a measurement sets: an exposure, a lamp.
+std::vector<std::string> kind_of(const PlannedMeasurement& planned) {
+  std::vector<std::string> keys;
+  if (planned.setup.is_object())
+    for (const auto& [key, value] : planned.setup.as_object()) keys.push_back(key);
+  return keys;
+}
+
+// The most telling: first the best of each kind, since who cannot set one thing may set another, then what is left.
 void keep_best(std::vector<PlannedMeasurement> found, double least, std::size_t most, Explanation& e) {
+  std::erase_if(found, [&](const PlannedMeasurement& p) { return !(p.z >= least); });
   std::stable_sort(found.begin(), found.end(),
                    [](const PlannedMeasurement& a, const PlannedMeasurement& b) { return a.z > b.z; });
-  for (std::size_t k = 0; k < std::min(most, found.size()); ++k)
-    if (found[k].z >= least) e.plan.push_back(std::move(found[k]));
+  std::vector<std::vector<std::string>> kinds;
+  std::vector<PlannedMeasurement> kept, others;
+  for (PlannedMeasurement& p : found) {
+    const std::vector<std::string> kind = kind_of(p);
+    const bool first = std::ranges::find(kinds, kind) == kinds.end();
+    if (first) kinds.push_back(kind);
+    (first ? kept : others).push_back(std::move(p));
+  }
+  std::ranges::move(others, std::back_inserter(kept));
+  if (kept.size() > most) kept.resize(most);
+  std::ranges::move(kept, std::back_inserter(e.plan));
 }
 
 }  // namespace
@@ -149,7 +169,8 @@ void make_plan(const System& system, Explanation& e) {
   const auto compared = [&](const std::vector<double>& other, const std::vector<std::size_t>& separates) {
     std::vector<PlannedMeasurement> list;
     for (std::size_t k = 0; k < proposals.size(); ++k)
-      list.push_back({proposals[k].sentence, proposals[k].setup, separates, prospects[k].z(other)});
+      list.push_back(
+          {proposals[k].sentence, proposals[k].setup, separates, prospects[k].z(other), proposals[k].sketch});
     return list;
   };
   for (const std::vector<std::size_t>& set : e.not_told_apart)

@@ -75,6 +75,17 @@ double unseen_p(const HeldOut& before, const HeldOut& after) {
   return std::min(1.0, 2 * std::min(by_size, stats::signed_rank_upper(falls)));
 }
 
+// The chance that unseen groups are so much the better for nothing: by their mean over its standard error, and by their
+// signed ranks, where a few that gain much leave the mean too wide to say what all of them agree about. The smaller of
+// two p-values counts twice.
+double groups_p(const HeldOut& before, const HeldOut& after, const Hypothesis& h) {
+  std::vector<double> falls;
+  for (std::size_t k = 0; k < before.whitened.size(); ++k) falls.push_back(before.whitened[k] - after.whitened[k]);
+  const double freedom = static_cast<double>(falls.size()) - 1,
+               by_size = h.gain_sigma > 0 ? stats::student_upper(h.gain / h.gain_sigma, freedom) : 1;
+  return std::min(1.0, 2 * std::min(by_size, stats::signed_rank_upper(falls, 1)));
+}
+
 }  // namespace
 
 const mechanism::Parameter* declared(const Candidate& candidate, const Parameter& parameter) {
@@ -340,9 +351,8 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
   const std::string limit = at_a_limit(system_.problem(), after.fit, added);
   // Numbers of single groups soak up any misfit, so that their being away from neutral proves nothing: held-out groups
   // alone speak.
-  const double freedom = static_cast<double>(system_.groups.size()) - 1;
   const bool by_chance = grouped && !(about_few && blocks_z > least_block_z) &&
-                         !(h.gain_sigma > 0 && stats::student_upper(h.gain / h.gain_sigma, freedom) <= options_.level);
+                         groups_p(before.held_out, after.held_out, h) > options_.level;
   if (!(h.gain > h.gain_sigma))
     h.refused = "does not lower the held-out score beyond its standard error";
   else if (by_chance)

@@ -84,6 +84,19 @@ std::size_t parameter_index(const surface::Model& model, const std::string& name
   throw Error(Exit::internal, "surface " + model.info().id, "has no parameter \"" + name + "\"");
 }
 
+LightSource moved(const LightSource& given, const LightState& state, Vec3 centre_m) {
+  LightSource now = given;
+  if (given.directional) {
+    now.direction = light::turned(given.direction, state.tilt_x_rad, state.tilt_y_rad);
+    now.centre_m = centre_m;
+    now.nearness_per_m = state.nearness_per_m;
+  } else {
+    now.position_m =
+        light::turned_about(given.position_m, state.tilt_x_rad, state.tilt_y_rad, centre_m) + state.shift_m;
+  }
+  return now;
+}
+
 SceneLayout read_scene(const manifest::Document& document, const Recordings& recordings,
                        const std::vector<std::string>& surfaces, Vec3 centre_m) {
   SceneLayout layout;

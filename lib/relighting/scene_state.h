@@ -26,6 +26,9 @@ struct LightState {
   double nearness_per_m = 0;  // directional lights: one over the distance from the scene's centre
   std::vector<double> lobe;   // amounts of light.lobe; empty: it shines all round
 };
+// `given` where `state` has it: turned about the scene's centre, shifted, near after all.
+LightSource moved(const LightSource& given, const LightState& state, Vec3 centre_m);
+
 struct SceneState {
   std::vector<SurfaceState> surfaces;
   std::vector<LightState> lights;  // in the order of Recordings::lights

@@ -136,19 +136,12 @@ std::vector<Shader::Lamp> Shader::lamps(const SceneState& state) const {
   std::vector<Lamp> all;
   for (const std::size_t l : image_.lights) {
     const LightState& light = state.lights[l];
-    const LightSource& given = layout_.lights[l];
     const bool moves = light.tilt_x_rad != 0 || light.tilt_y_rad != 0 || !(light.shift_m == Vec3{}) ||
                        light.nearness_per_m != 0 || !light.lobe.empty();
-    Lamp lamp{l, RadiusWeights(light.radius_m), given, moves, light.lobe, {}};
-    if (given.directional) {
-      lamp.source.direction = light::turned(given.direction, light.tilt_x_rad, light.tilt_y_rad);
-      lamp.source.centre_m = layout_.centre_m;
-      lamp.source.nearness_per_m = light.nearness_per_m;
-    } else {
-      lamp.source.position_m =
-          light::turned_about(given.position_m, light.tilt_x_rad, light.tilt_y_rad, layout_.centre_m) + light.shift_m;
-      if (!light.lobe.empty()) lamp.axis = lobe_axis(lamp.source.position_m, layout_.centre_m, light.lobe);
-    }
+    Lamp lamp{l, RadiusWeights(light.radius_m), moved(layout_.lights[l], light, layout_.centre_m), moves, light.lobe,
+              {}};
+    if (!lamp.source.directional && !light.lobe.empty())
+      lamp.axis = lobe_axis(lamp.source.position_m, layout_.centre_m, light.lobe);
     all.push_back(lamp);
   }
   return all;

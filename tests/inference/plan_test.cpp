@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "base/text.h"
 #include "explain/engine.h"
 #include "inference/evidence.h"
 #include "inference/wording.h"
@@ -74,10 +75,42 @@ class TwinProblem : public Problem {
     return {};
   }
 
- private:
+ protected:
   static double at(std::span<const double> v, double x, double t) { return v[0] * x + (v[1] + v[2] * t) * x * x; }
+
+ private:
   mechanism::Mechanism mechanisms_[2];
 };
+
+// Four waits, and a turn that tells less.
+class ManyWays : public TwinProblem {
+ public:
+  using TwinProblem::TwinProblem;
+  std::vector<Proposal> proposals() const override {
+    std::vector<Proposal> all;
+    for (const double t : waits) all.push_back({format("wait %.1f", t), manifest::Value::object({{"time_s", t}})});
+    all.back() = {"turn", manifest::Value::object({{"turn_deg", 5.0}})};
+    return all;
+  }
+  ProposedRows propose(std::span<const double> values, std::size_t proposal) const override {
+    ProposedRows rows;
+    for (int i = 0; i < 21; ++i) rows.prediction.push_back(at(values, -1 + 0.1 * i, waits[proposal]));
+    rows.sigma.assign(21, noise);
+    rows.nuisance = {std::vector<double>(21, 1.0)};
+    return rows;
+  }
+
+ private:
+  static constexpr double waits[] = {2.0, 1.9, 1.8, 1.7, 1.4};
+};
+
+TEST(Plan, HoldsTheBestOfEachKind) {
+  const ManyWays problem(1);
+  const Explanation e = explain(problem, {.draws = 499});
+  std::vector<std::string> sentences;
+  for (const PlannedMeasurement& p : e.plan) sentences.push_back(p.sentence);
+  EXPECT_EQ(sentences, (std::vector<std::string>{"wait 2.0", "wait 1.9", "turn"}));
+}
 
 TEST(Plan, TheMeasurementThatPartsTwinsComesFirst) {
   const TwinProblem problem(1);

@@ -69,6 +69,24 @@ TEST(Sentence, NoNullSaysThatTheMisfitExceedsItsNoise) {
       }
 }
 
+// The slope is 0.7, and must not fall below one.
+class HeldSlope : public ToyProblem {
+ public:
+  explicit HeldSlope(double start, std::optional<double> prior_sigma = {})
+      : ToyProblem(three_effects(), {{}, {}, 0.1, 0.02}, 6) {
+    parameters_[0].lower = 1;
+    parameters_[0].start = start;
+    parameters_[0].prior_sigma = prior_sigma;
+  }
+};
+
+// A bound that the problem itself begins at, or that its prior reaches, is no limit of what is plausible.
+TEST(Sentence, LimitsOfThePlausibleComeFirst) {
+  EXPECT_THAT(explained(HeldSlope(1.5)).sentence, testing::StartsWith("The base model fits only at the limit"));
+  EXPECT_THAT(explained(HeldSlope(1)).sentence, Not(HasSubstr("at the limit")));
+  EXPECT_THAT(explained(HeldSlope(1.5, 0.4)).sentence, Not(HasSubstr("at the limit")));
+}
+
 // Files in the wrong places are said before anything else.
 TEST(Sentence, MisplacedFilesComeFirst) {
   const ToyProblem problem(three_effects(), {{}, {}, 0.1, 0.02}, 5);

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "report/colour_map.h"
+#include "report/floor_plan.h"
 #include "report/number_text.h"
 
 namespace gonio::report {
@@ -63,6 +65,28 @@ TEST(Plot, DrawsNoNumberThatIsNone) {
   }
   plot.series.clear();
   EXPECT_THAT(svg(plot), Not(HasSubstr("nan")));
+}
+
+// The camera stands 0.7 m before the scene; 0.14 m across and 0.7 m deep at one scale, which the bar tells.
+TEST(FloorPlan, IsToScale) {
+  const FloorPlan plan{
+      "lamp & scene", {"camera"}, {"the scene", 0.1, 0.7}, {"lamp today", -0.04, 0.6}, {"then", 0, 0.5}};
+  const std::string drawn = svg(plan);
+  EXPECT_THAT(drawn, HasSubstr("aria-label=\"lamp &amp; scene\""));
+  for (const char* name : {">camera<", ">the scene<", ">lamp today<", ">then<", ">0.2 m<"})
+    EXPECT_THAT(drawn, HasSubstr(name));
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0, bar = 0;
+  const std::size_t moved = drawn.find("<path class=\"line c1\""), scale = drawn.find("v6h");
+  ASSERT_EQ(std::sscanf(drawn.c_str() + drawn.find(" d=\"M", moved), " d=\"M%lf %lfL%lf %lf", &x0, &y0, &x1, &y1), 4);
+  ASSERT_EQ(std::sscanf(drawn.c_str() + scale, "v6h%lf", &bar), 1);
+  EXPECT_NEAR((x1 - x0) / 0.04, bar / 0.2, 4);
+  EXPECT_NEAR((y1 - y0) / 0.1, bar / 0.2, 4);  // nearer is lower
+}
+
+TEST(FloorPlan, ShowsThingsThatStandOnOneSpot) {
+  const std::string drawn = svg(FloorPlan{"p", {"camera"}, {"c"}, {"a"}, {"b"}});
+  EXPECT_THAT(drawn, Not(HasSubstr("nan")));
+  EXPECT_THAT(drawn, Not(HasSubstr("inf")));
 }
 
 TEST(ColourMap, MeetsItsEnds) {

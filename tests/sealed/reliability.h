@@ -22,6 +22,8 @@ struct Reliability {
   std::vector<ReliabilityBin> bins;  // ascending, those that hold something
   int asked = 0;
   double error = 0;  // expected calibration error
+  // What it is where every statement is true, by chance alone: the mean, and what one in twenty such columns exceeds.
+  double error_by_chance = 0, error_by_chance_95 = 0;
 };
 // `bins` of equal width over 0 .. 1.
 Reliability reliability_of(const std::vector<Stated>& stated, int bins = 10);

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <numbers>
 
 #include "base/atomic_file.h"
 #include "data.h"
@@ -118,6 +120,18 @@ TEST(Reliability, IsTheMeanDistanceBetweenWhatIsStatedAndWhatHappens) {
   EXPECT_EQ(r.bins[1].asked, 11);  // certainty belongs to the uppermost bin
   EXPECT_NEAR(r.error, (11 * std::abs(10.0 / 11 - 10.5 / 11) + 10 * 0.25) / 21, 1e-12);
   EXPECT_NE(report::svg(reliability_plot(r)).find("<svg"), std::string::npos);
+}
+
+// True statements have an error by chance: sum_b n_b E|share - mean| / n, with E|.| = sqrt(2 p (1 - p) / (pi n_b)) of a
+// bin of many. Here 400 at 0.75 and 400 at 0.95.
+TEST(Reliability, SaysWhatChanceAloneDoes) {
+  std::vector<Stated> stated;
+  for (int k = 0; k < 800; ++k) stated.push_back({k % 2 == 0 ? 0.75 : 0.95, k % 2 != 0 || k % 8 != 0});
+  const Reliability r = reliability_of(stated);
+  const auto share = [](double p) { return std::sqrt(2 * p * (1 - p) / (std::numbers::pi * 400)); };
+  EXPECT_NEAR(r.error_by_chance, (share(0.75) + share(0.95)) / 2, 0.0008);
+  EXPECT_GT(r.error_by_chance_95, r.error_by_chance);
+  EXPECT_LT(r.error_by_chance_95, 2.5 * r.error_by_chance);
 }
 
 TEST(WildDraw, SeedsGiveWhatTheProofPromises) {

@@ -8,6 +8,7 @@
 
 #include "geom/vector.h"
 #include "linear/solve.h"
+#include "optim/least_squares.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain::heights {
@@ -72,17 +73,20 @@ double SpectrumModel::curve(const std::vector<double>& log_density, double log_f
   return (1 - t) * log_density[k] + t * log_density[k + 1];
 }
 
+double SpectrumModel::roughness_at(const SpectrumState& s, std::size_t i) const {
+  const bool stretched = s.a0 != 0 || s.a45 != 0;
+  return curve(s.log_density, stretched ? log_f_[i] - (s.a0 * cos_2[i] + s.a45 * sin_2[i]) : log_f_[i]);
+}
+
 void SpectrumModel::predict(const SpectrumState& s, double level, std::span<double> log_power) const {
   const double nx = static_cast<double>(spectra_.n) * spectra_.step_x_m,
                ny = static_cast<double>(spectra_.n) * spectra_.step_y_m;
-  const bool stretched = s.a0 != 0 || s.a45 != 0;
   const double gain = spectra_.line_gain(), points = static_cast<double>(spectra_.n);
   const double gx = std::cos(s.grating.azimuth_rad) / s.grating.period_m * nx,
                gy = std::sin(s.grating.azimuth_rad) / s.grating.period_m * ny;  // in bins
   for (std::size_t i = 0; i < spectra_.ordinates.size(); ++i) {
     const Ordinate& o = spectra_.ordinates[i];
-    const double log_f = stretched ? log_f_[i] - (s.a0 * cos_2[i] + s.a45 * sin_2[i]) : log_f_[i];
-    const double log_density = curve(s.log_density, log_f) + level;
+    const double log_density = roughness_at(s, i) + level;
     double more = 0;
     if (s.grating.amplitude_m > 0)
       for (int k = 1; k <= static_cast<int>(harmonics); ++k) {
@@ -122,9 +126,37 @@ std::vector<double> SpectrumModel::start(const std::vector<Tile>& tiles) const {
   return {solution.data(), solution.data() + solution.size()};
 }
 
-// Amplitudes by least squares of the power over the curve about the frequency and its multiples.
+SpectrumState SpectrumModel::without_lines(const std::vector<double>& mean) const {
+  struct Smooth final : optim::Model {
+    const SpectrumModel& model;
+    const std::vector<double>& mean;
+    double weight;
+    Smooth(const SpectrumModel& m, const std::vector<double>& of, double w) : model(m), mean(of), weight(w) {}
+    static SpectrumState state_of(const Eigen::VectorXd& x) {
+      SpectrumState s;
+      s.log_density.assign(x.data(), x.data() + knot_count);
+      s.a0 = x[knot_count], s.a45 = x[knot_count + 1];
+      return s;
+    }
+    bool residuals(const Eigen::VectorXd& x, Eigen::VectorXd& r) const override {
+      const SpectrumState s = state_of(x);
+      r.resize(static_cast<Eigen::Index>(mean.size()));
+      for (std::size_t i = 0; i < mean.size(); ++i)
+        r[static_cast<Eigen::Index>(i)] = weight * (mean[i] - model.roughness_at(s, i));
+      return r.allFinite();
+    }
+  };
+  const std::vector<double> knots = start(spectra_.searched);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(knot_count + 2);
+  x.head(knot_count) = Eigen::Map<const Eigen::VectorXd>(knots.data(), knot_count);
+  const Smooth smooth(*this, mean, std::sqrt(static_cast<double>(spectra_.searched.size())) / log_sigma);
+  return Smooth::state_of(
+      optim::fit(smooth, x, {.lower = {}, .upper = {}, .priors = {}, .loss = optim::Loss::cauchy}).x);
+}
+
+// Amplitudes by least squares of the power over the roughness about the frequency and its multiples.
 Grating SpectrumModel::grating_at(double fx, double fy, const std::vector<double>& mean,
-                                  const std::vector<double>& base) const {
+                                  const SpectrumState& beneath) const {
   Grating g;
   g.period_m = 1 / std::hypot(fx, fy);
   g.azimuth_rad = std::atan2(fy, fx);
@@ -137,15 +169,16 @@ Grating SpectrumModel::grating_at(double fx, double fy, const std::vector<double
                    y = spectra_.ordinates[i].ky - times * fy * length_y;
       if (std::abs(x) > 1.5 || std::abs(y) > 1.5) continue;
       const double w = std::pow(hann_response(x) * hann_response(y), 2);
-      power[k] += w * (std::exp(mean[i]) - std::exp(curve(base, log_f_[i])));
+      power[k] += w * (std::exp(mean[i]) - std::exp(roughness_at(beneath, i)));
       weight[k] += w * w;
     }
   for (std::size_t k = 0; k < harmonics; ++k) power[k] = weight[k] > 0 ? std::max(0.0, power[k] / weight[k]) : 0;
   g.amplitude_m = std::sqrt(power[0] / spectra_.line_gain());
-  const double log_f = 0.5 * std::log(fx * fx + fy * fy);
+  const double log_f = 0.5 * std::log(fx * fx + fy * fy) -
+                       (beneath.a0 * std::cos(2 * g.azimuth_rad) + beneath.a45 * std::sin(2 * g.azimuth_rad));
   for (std::size_t k = 1; k < harmonics; ++k) {
-    const double beneath = std::exp(curve(base, log_f + std::log(static_cast<double>(k + 1))));
-    g.harmonic[k - 1] = power[k] > stands_out * beneath && power[0] > 0 ? std::min(4.0, power[k] / power[0]) : 0;
+    const double rough = std::exp(curve(beneath.log_density, log_f + std::log(static_cast<double>(k + 1))));
+    g.harmonic[k - 1] = power[k] > stands_out * rough && power[0] > 0 ? std::min(4.0, power[k] / power[0]) : 0;
   }
   return g;
 }
@@ -160,12 +193,11 @@ double SpectrumModel::misfit(const SpectrumState& state, const std::vector<doubl
 
 Grating SpectrumModel::search() const {
   const std::vector<double> mean = mean_log(spectra_.searched, log_f_.size());
-  SpectrumState state;
-  state.log_density = start(spectra_.searched);
+  SpectrumState state = without_lines(mean);
   std::vector<std::size_t> strongest(mean.size()), outstanding;
   for (std::size_t i = 0; i < mean.size(); ++i) strongest[i] = i;
   outstanding = strongest;
-  const auto excess = [&](std::size_t i) { return mean[i] - curve(state.log_density, log_f_[i]); };
+  const auto excess = [&](std::size_t i) { return mean[i] - roughness_at(state, i); };
   std::sort(strongest.begin(), strongest.end(), [&](std::size_t a, std::size_t b) { return mean[a] > mean[b]; });
   std::sort(outstanding.begin(), outstanding.end(),
             [&](std::size_t a, std::size_t b) { return excess(a) > excess(b); });
@@ -183,7 +215,7 @@ Grating SpectrumModel::search() const {
       const double power = std::exp(mean[i]);
       sum += power, fx += power * o.fx, fy += power * o.fy;
     }
-    state.grating = grating_at(fx / sum, fy / sum, mean, state.log_density);
+    state.grating = grating_at(fx / sum, fy / sum, mean, state);
     if (!(state.grating.amplitude_m > 0)) continue;
     const double found = misfit(state, mean);
     if (found < least) least = found, best = state.grating;
@@ -199,8 +231,7 @@ Grating SpectrumModel::longest(const Grating& found, SpectrumState state, const 
                variance = log_sigma * log_sigma / static_cast<double>(spectra_.searched.size());
   for (const double times : {3.0, 2.0}) {
     const double f = 1 / (times * found.period_m);
-    const Grating longer =
-        grating_at(f * std::cos(found.azimuth_rad), f * std::sin(found.azimuth_rad), mean, state.log_density);
+    const Grating longer = grating_at(f * std::cos(found.azimuth_rad), f * std::sin(found.azimuth_rad), mean, state);
     if (!(longer.amplitude_m > found.amplitude_m)) continue;
     state.grating = longer;
     state.grating.harmonic = {};

@@ -39,13 +39,16 @@ class SpectrumModel {
   // Least squares of the knots to the mean of some tiles, without the ordinates that stand out of it: where a fit
   // begins.
   std::vector<double> start(const std::vector<Tile>& tiles) const;
-  // The line, with its harmonics, that explains most in the tiles that are set apart, or the one of two or three times
-  // its period: the strongest ordinates and those that stand out most are tried.
+  // The line, with its harmonics, that explains most in the tiles that are set apart beside their roughness and its
+  // lay, or the one of two or three times its period: the strongest ordinates and those that stand out most are tried.
   Grating search() const;
 
  private:
   double curve(const std::vector<double>& log_density, double log_f) const;
-  Grating grating_at(double fx, double fy, const std::vector<double>& mean, const std::vector<double>& base) const;
+  double roughness_at(const SpectrumState& state, std::size_t ordinate) const;  // ln of it, without the grating
+  // Knots and lay of what is no line: lines fill few ordinates, and count for little (Cauchy's loss).
+  SpectrumState without_lines(const std::vector<double>& mean) const;
+  Grating grating_at(double fx, double fy, const std::vector<double>& mean, const SpectrumState& beneath) const;
   Grating longest(const Grating& found, SpectrumState state, const std::vector<double>& mean) const;
   double misfit(const SpectrumState& state, const std::vector<double>& mean) const;
   const TileSpectra& spectra_;

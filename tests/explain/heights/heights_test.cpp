@@ -131,6 +131,20 @@ TEST(Heights, ALayIsFoundWithItsDirection) {
   EXPECT_NEAR(a45->value, 0, 3.5 * a45->sigma + 0.01);
 }
 
+// A line stands out of a roughness with a lay, along which all is rough.
+TEST(Heights, AGratingIsFoundBesideALay) {
+  io::HeightMap map = isotropic_map(3);
+  map.step_x_m *= 1.7;
+  add_grating(map, 6.1e-6, 1.45, 1e-7);
+  const Answer a = explained(std::move(map));
+  ASSERT_THAT(a.named, testing::UnorderedElementsAre("surface.anisotropy", "surface.micro-ridges")) << a.e.sentence;
+  const Estimate *p = a.estimate("surface.micro-ridges.ridge_period_m"),
+                 *a0 = a.estimate("surface.anisotropy.anisotropy_0");
+  EXPECT_NEAR(p->value, 6.1e-6, 3.5 * p->sigma);
+  EXPECT_NEAR(a0->value, -0.5 * std::log(1.7), 3.5 * a0->sigma + 0.01);
+  EXPECT_THAT(a.e.sentence, testing::Not(testing::HasSubstr("row_variance")));  // none is no limit of the plausible
+}
+
 // Ten isotropic maps; names at 1 % each: two or more in 0.4 % of such tests.
 TEST(Heights, NothingIsNamedOnIsotropicMaps) {
   int names = 0;

@@ -6,8 +6,11 @@
 #include <cmath>
 #include <fstream>
 
+#include "base/text.h"
 #include "effect_world.h"
+#include "geom/angle.h"
 #include "io/picture.h"
+#include "manifest/codec.h"
 #include "manifest/document.h"
 
 namespace gonio::tests {
@@ -29,7 +32,7 @@ TEST(Proposals, FollowTheExposureAndTheLamps) {
   const ScratchFolder folder;
   const ImagesProblem problem(world.record(folder), {.pixels = 1200});
   const std::vector<explain::Proposal> proposals = problem.proposals();
-  ASSERT_EQ(proposals.size(), 9u);
+  ASSERT_EQ(proposals.size(), 13u);  // three pictures, and two lamps either way
   std::vector<double> values = neutral_values(problem);
   constexpr double offset = 0.01;
   for (const explain::Candidate& c : problem.candidates())
@@ -48,6 +51,39 @@ TEST(Proposals, FollowTheExposureAndTheLamps) {
     EXPECT_NEAR(dark.sigma[i], world.noise, 0.01 * world.noise);
   }
   EXPECT_EQ(proposals[2].setup.find("light")->as_array().size(), 0u) << proposals[2].sentence;
+}
+
+// A lamp that is turned about the scene shows what a scene with the lamp there shows: within the shadows' table.
+TEST(Proposals, TurnTheLamp) {
+  EffectWorld world;
+  world.views = 2;
+  world.spp = 16;
+  const ScratchFolder here, there;
+  const ImagesProblem problem(world.record(here), {.pixels = 1200});
+  const explain::Proposal turned = problem.proposals()[9];
+  EXPECT_EQ(turned.sentence, "image 00 again with lamp-0 12 degrees further right");
+  const auto place = manifest::Codec<Vec3>::read(*turned.setup.find("light_position_m"), "setup");
+  world.lights = {format(R"({"model":"point","position_m":[%.17g,%.17g,%.17g],"watt_per_sr":[0.6,0.6,0.6]})", place.x,
+                         place.y, place.z),
+                  R"({"model":"point","position_m":[-0.35,-0.1,0.45],"watt_per_sr":[0.6,0.6,0.6]})"};
+  const ImagesProblem moved(world.record(there), {.pixels = 1200});
+  const explain::ProposedRows rows = problem.propose(neutral_values(problem), 9);
+  std::vector<double> direct(moved.observations().first[1]), today(direct.size());
+  ASSERT_EQ(rows.prediction.size(), direct.size());
+  moved.predict(neutral_values(moved), 0, direct);
+  problem.predict(neutral_values(problem), 0, today);
+  double error = 0, change = 0;
+  for (std::size_t i = 0; i < direct.size(); ++i) {
+    error += std::pow(rows.prediction[i] - direct[i], 2);
+    change += std::pow(today[i] - direct[i], 2);
+  }
+  EXPECT_LT(std::sqrt(error / change), 0.1);
+  const explain::Sketch& sketch = *turned.sketch;
+  EXPECT_LT(sketch.from.right_m, sketch.to.right_m);
+  const auto apart = [](const auto& a, const auto& b) {
+    return std::hypot(a.right_m - b.right_m, a.away_m - b.away_m);
+  };
+  EXPECT_NEAR(apart(sketch.from, sketch.to), 2 * std::sin(6 * degree) * apart(sketch.from, sketch.centre), 1e-9);
 }
 
 // The manifest states half of the noise that is there; a further take of all pictures tells.
