@@ -12,4 +12,8 @@ namespace gonio::inference {
 // not named is less likely.
 void judge(const Problem& problem, const Selection& selection, const Options& options, Explanation& e);
 
+// Of mismatches that matter and that no set repairs, the share that the library does not have; the rest it has, and a
+// simulation that errs, or the search, did not show it.
+double share_outside(Simulator simulator);
+
 }  // namespace gonio::inference

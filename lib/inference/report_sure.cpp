@@ -27,9 +27,8 @@ std::string verdict_in_words(const Problem& problem, const Explanation& e) {
       return "Verdict: ambiguous. " + sure + " sure that it is one of those listed below" +
              (e.probability < e.sure ? ", less than was asked for." : ".");
     case Verdict::unknown:
-      return "Verdict: unknown, " + sure +
-             " sure. Something matters here, and nothing in the library repairs it on unseen " + problem.group_noun() +
-             "s.";
+      return "Verdict: unknown. Something matters here, and nothing in the library repairs it on unseen " +
+             problem.group_noun() + "s; " + sure + " sure that the library does not have it.";
   }
   return "";
 }
@@ -93,7 +92,7 @@ void weighed_answers(report::Page& page, const Problem& problem, const Explanati
     for (const std::size_t c : w.candidates)
       answer += (answer.empty() ? "" : " with ") + mechanism_in_words(problem, c);
     if (w.kind == Kind::nothing) answer = "nothing that matters";
-    if (w.kind == Kind::outside) answer = "none of these: outside the library";
+    if (w.kind == Kind::outside) answer = "none of these";
     for (const auto& [name, value] : w.statistics) why += (why.empty() ? "" : ", ") + name + " " + printed(value, 2);
     const auto told = std::ranges::find(seen, answer, &std::pair<std::string, double>::first);
     if (told == seen.end())

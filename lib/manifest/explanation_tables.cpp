@@ -138,7 +138,7 @@ const std::vector<Field<ScoredHypothesis>>& scored_hypothesis_fields() {
 const std::vector<Field<WeighedAnswer>>& weighed_answer_fields() {
   using T = WeighedAnswer;
   static const std::vector<Field<T>> table{
-      field("answer", &T::answer, "", "mechanisms together, nothing left out, or something outside the library")
+      field("answer", &T::answer, "", "mechanisms together, nothing left out, or none of these (outside)")
           .one_of({"mechanisms", "nothing", "outside"})
           .needed(),
       field("mechanisms", &T::mechanisms, "", "their ids"),
@@ -242,7 +242,8 @@ const std::vector<Field<ExplanationEntry>>& explanation_fields() {
           "unknown: there is a mismatch and none does")
           .one_of({"null", "named", "ambiguous", "unknown"})
           .needed(),
-      field("probability", &T::probability, "", "that the verdict is right: that it is this, or one of those listed")
+      field("probability", &T::probability, "",
+            "that the verdict is right: that it is this, or one of those listed, or that the library lacks it")
           .range(0, 1),
       field("misplaced", &T::misplaced, "", "files that are not the recordings they are taken for"),
       field("named", &T::named, "", "mechanisms, the most important first").always(Value::array()),

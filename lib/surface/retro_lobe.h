@@ -28,7 +28,7 @@ class RetroLobeOf {
   T lobe(Vec3 wo, Vec3 wi) const {
     using std::exp;
     const Vec3 from = sent_back(wo);
-    return facets_.lobe(from, wi, half_vector(from, wi)) * exp(0.5 * std::log(wi.z * wo.z) * falloff_);
+    return facets_.lobe(from, wi, half_vector(from, wi)) * exp(0.5 * (std::log(wi.z) + std::log(wo.z)) * falloff_);
   }
 
  protected:

@@ -205,11 +205,13 @@ TEST(AskedSteps, TakeUpWhatExplainProposes) {
           plan(R"({"images": [{"camera": "cam", "board": "charuco", "camera_from_board":
                    {"rotation": [1, 0, 0, 0], "translation_m": [0, 0, 0.25]}}]})") +
           "," + plan(R"({"image": "a", "exposure_scale": 4})") + "," + plan(R"({"image": "a", "light": []})") + "," +
-          plan(R"({"image": "a", "light_towards": [0, 3, 4]})") + "," + plan(R"({"distance_m": 2})") + "]}}",
+          plan(R"({"image": "a", "light_towards": [0, 3, 4]})") + "," + plan(R"({"distance_m": 2})") + "," +
+          plan(R"({"image": "a", "light": ["l"], "light_towards": [0, 0, 1], "light_position_m": [0.1, 0.2, 0.7]})") +
+          "]}}",
       "explanations"));
   const PatternScene scene = scene_with_lamps(1);
   const AskedSteps asked = next_steps(document, scene, {.lamp_m = 2});
-  ASSERT_EQ(asked.steps.size(), 4u);
+  ASSERT_EQ(asked.steps.size(), 5u);
   // The board lies at (0.1, 0, 1.5): the camera is to stand 0.25 m before it.
   EXPECT_LT(norm(asked.steps[0].world_from_camera->translation_m - Vec3{0.1, 0, 1.25}), 1e-12);
   EXPECT_DOUBLE_EQ(asked.steps[1].exposures_s.at(0), 0.08);
@@ -218,6 +220,7 @@ TEST(AskedSteps, TakeUpWhatExplainProposes) {
   ASSERT_EQ(asked.steps[3].light_m.size(), 3u);  // two metres away in the direction that was asked
   EXPECT_NEAR(asked.steps[3].light_m[1] - scene.target_m.y, 1.2, 1e-12);
   EXPECT_NEAR(asked.steps[3].light_m[2] - scene.target_m.z, 1.6, 1e-12);
+  EXPECT_EQ(asked.steps[4].light_m, (std::vector<double>{0.1, 0.2, 0.7}));  // a place goes before a direction
   ASSERT_EQ(asked.left.size(), 1u);
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "inference/judgement.h"
 #include "inference/toy_problem.h"
 #include "stats/distributions.h"
 
@@ -96,6 +97,28 @@ TEST(Engine, WhatTheLibraryLacksIsUnknownAndLocated) {
   }
   EXPECT_GE(unknown, 0.95 * runs);
   EXPECT_GE(located, 0.95 * runs);
+}
+
+class Erring : public ToyProblem {
+ public:
+  using ToyProblem::ToyProblem;
+  inference::Simulator simulator() const override { return inference::Simulator::errs; }
+};
+
+// What no set repairs is outside the library where simulators are exact; where they err, some of it the library has.
+TEST(Engine, UnknownIsNoProofThatTheLibraryLacksIt) {
+  const ToyProblem::Truth truth{{}, [](double, double z) { return 0.2 * std::cos(5 * z); }, 0.1, 0.02};
+  const ToyProblem exact(three_effects(), truth, 700);
+  const Erring errs(three_effects(), truth, 700);
+  const auto none_of_these = [](const Explanation& e) {
+    return std::ranges::find(e.weighed, Explanation::Weighed::Kind::outside, &Explanation::Weighed::kind)->probability;
+  };
+  const Explanation sure = explain(exact, quick(0)), less = explain(errs, quick(0));
+  ASSERT_EQ(sure.verdict, Verdict::unknown);
+  ASSERT_EQ(less.verdict, Verdict::unknown);
+  EXPECT_NEAR(sure.probability, none_of_these(sure), 1e-12);
+  EXPECT_NEAR(less.probability, inference::share_outside(inference::Simulator::errs) * none_of_these(less), 1e-12);
+  EXPECT_LT(less.probability, sure.probability);
 }
 
 TEST(Engine, SignificantIsNotImportant) {

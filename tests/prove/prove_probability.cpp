@@ -7,8 +7,10 @@
 // NNN/out.json and NNN.json). Development seeds only for `fit`.
 //
 // A member of the comparison is right where its mechanisms are those that were left out, each once; "nothing" where
-// nothing was, or nothing that matters; "outside" where none of the others is. Weights have sane signs and are pulled
-// towards those in the table, each by a Gaussian prior of its own width, so that a hundred cases cannot bend them far.
+// nothing was, or nothing that matters; "outside" where none of the others is: what the search has missed is as good as
+// outside for the weights. For the figures "outside" is right where something outside acts, as the proofs' judge has
+// it. Weights have sane signs and are pulled towards those in the table, each by a Gaussian prior of its own width, so
+// that a hundred cases cannot bend them far.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +20,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "inference/judgement.h"
 #include "inference/probability.h"
 #include "manifest/value.h"
 
@@ -40,7 +43,7 @@ struct Case {
   std::vector<Member> members;
   std::vector<char> right;
   std::vector<double> stated;
-  bool significant = false;
+  bool significant = false, outside = false;  // outside: something acts that the library has not
 };
 
 const Value::Array& list_in(const Value& v, const char* key) {
@@ -82,6 +85,7 @@ bool matches(std::vector<std::string> ids, const Rights& rights) {
 // `required`: effects that matter; `allowed`: these and others that are there.
 Case case_of(const Value& entry, const Rights& required, const Rights& allowed, bool outside) {
   Case c;
+  c.outside = outside;
   if (const Value* null_test = entry.find("null_test"))
     c.significant = null_test->find("significant") != nullptr && null_test->find("significant")->as_bool();
   for (const Value& w : list_in(entry, "weighed")) {
@@ -249,14 +253,12 @@ struct Figures {
 void ask(const Case& c, const std::vector<double>& p, Figures& f) {
   inference::Answer a = inference::answer(c.members, p, sure);
   if (!c.significant) a = {inference::Answer::Kind::nothing, {}, inference::rest_of(c.members, p).nothing};
-  bool held = false, nothing = false, outside = false;
-  for (std::size_t k = 0; k < p.size(); ++k) {
-    const bool right = c.right[k] != 0;
-    nothing = nothing || (right && c.members[k].kind == Member::Kind::nothing);
-    outside = outside || (right && c.members[k].kind == Member::Kind::outside);
-  }
+  if (a.kind == inference::Answer::Kind::outside) a.probability *= inference::share_outside(simulator_of(c));
+  bool held = false, nothing = false;
+  for (std::size_t k = 0; k < p.size(); ++k)
+    nothing = nothing || (c.right[k] != 0 && c.members[k].kind == Member::Kind::nothing);
   held = (nothing && a.kind == inference::Answer::Kind::nothing) ||
-         (outside && a.kind == inference::Answer::Kind::outside);
+         (c.outside && a.kind == inference::Answer::Kind::outside);
   for (const std::size_t k : a.sets) held = held || c.right[k] != 0;
   f.stated.push_back(a.probability);
   f.held.push_back(held);
@@ -265,8 +267,8 @@ void ask(const Case& c, const std::vector<double>& p, Figures& f) {
   f.alone += a.sets.size() == 1;
   f.alone_wrong += a.sets.size() == 1 && !held;
   f.quiet += nothing, f.quiet_named += nothing && !a.sets.empty();
-  f.foreign += outside, f.foreign_named += outside && !a.sets.empty();
-  if (nothing || outside) return;
+  f.foreign += c.outside, f.foreign_named += c.outside && !a.sets.empty();
+  if (nothing || c.outside) return;
   ++f.library;
   f.listed += !a.sets.empty();
   f.listed_right += !a.sets.empty() && held;

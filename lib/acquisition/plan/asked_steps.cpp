@@ -91,7 +91,10 @@ struct Asking {
       step.lamps = lamps_of(document, *light);
       if (step.lamps.empty()) step.purpose = "dark";
     }
-    if (const Value* towards = setup.find("light_towards")) {
+    if (const Value* place = setup.find("light_position_m")) {
+      const Vec3 at = manifest::Codec<Vec3>::read(*place, "next_measurement");
+      step.light_m = {at.x, at.y, at.z};
+    } else if (const Value* towards = setup.find("light_towards")) {
       const Vec3 direction = manifest::Codec<Vec3>::read(*towards, "next_measurement");
       if (!(norm(direction) > 0)) return "light_towards is no direction";
       const Vec3 at = scene.target_m + normalized(direction) * distances.lamp_m;
