@@ -49,14 +49,11 @@ class RetroLobe : public RetroLobeOf<double> {
     const Vec3 from = sent_back(wo);
     return mirrored(from, facets_.visible_normal(from, u));
   }
-  // Share of the light that is sent back, as it were if the lobe were narrow: for choosing between lobes.
-  double narrow_power(Vec3 wo) const {
-    const double all = 1 - InterfaceLoss::mirror(Slopes::ggx, {alpha_, 0, 0}).towards(wo);
-    return falloff_ > 0 ? all * std::pow(wo.z, falloff_) : all;
-  }
-  // The same, within 0.005: the mean over visible normals where there is a fall-off.
+  // Share of the light that would be sent back without the fall-off: for choosing between lobes.
+  double power_at_most(Vec3 wo) const { return 1 - InterfaceLoss::mirror(Slopes::ggx, {alpha_, 0, 0}).towards(wo); }
+  // Share that is sent back, within 0.005: the mean over visible normals where there is a fall-off.
   double power(Vec3 wo) const {
-    if (!(falloff_ > 0)) return narrow_power(wo);
+    if (!(falloff_ > 0)) return power_at_most(wo);
     constexpr int n = 12;
     const Vec3 from = sent_back(wo);
     double sum = 0;

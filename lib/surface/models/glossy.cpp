@@ -79,7 +79,7 @@ struct Here {
         albedo(v.rgb(albedo_index)),
         rough(v.scalar(sigma_index), v.scalar(form_index)) {
     const double below = (1 - reflected) * mean(albedo), above = reflected + below;
-    const double sent = retro > 0 ? retro * back.narrow_power(wo) : 0, all = (1 - retro) * above + sent;
+    const double sent = retro > 0 ? retro * back.power_at_most(wo) : 0, all = (1 - retro) * above + sent;
     retro_share = all > 0 ? sent / all : 0;
     gloss_share = all > 0 ? (1 - retro) * reflected / all : 0;
   }

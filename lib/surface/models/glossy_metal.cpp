@@ -56,7 +56,7 @@ struct Here {
         first(roughness_of(v, v.scalar(alpha_index)), false, fresnel_mean(f0), wo),
         second(roughness_of(v, v.scalar(second_index)), false, fresnel_mean(f0), wo) {
     const double metal = (1 - retro) * mean(fresnel_schlick(wo.z, f0)),
-                 sent = retro > 0 ? retro * back.narrow_power(wo) : 0;
+                 sent = retro > 0 ? retro * back.power_at_most(wo) : 0;
     retro_share = metal + sent > 0 ? sent / (metal + sent) : 0;
   }
   static Rgb fresnel_mean(Rgb f0) { return f0 + (Rgb{1, 1, 1} - f0) / 21; }
