@@ -127,10 +127,10 @@ struct Misplaced {
 
 struct PlannedMeasurement {
   std::string sentence;
-  manifest::Value setup;               // Proposal::setup
-  std::vector<std::size_t> separates;  // two candidates
-  double z = 0;                        // by how many standard errors it would part them
-  std::optional<Sketch> sketch{};      // Proposal::sketch
+  manifest::Value setup;                          // Proposal::setup
+  std::vector<std::size_t> separates;             // two candidates
+  double z = 0;                                   // by how many standard errors it would part them
+  std::optional<report::FloorPlan> floor_plan{};  // Proposal::floor_plan
 };
 
 // What comes out where only a part of the groups had been recorded (stability.h).

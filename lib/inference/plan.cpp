@@ -170,7 +170,7 @@ void make_plan(const System& system, Explanation& e) {
     std::vector<PlannedMeasurement> list;
     for (std::size_t k = 0; k < proposals.size(); ++k)
       list.push_back(
-          {proposals[k].sentence, proposals[k].setup, separates, prospects[k].z(other), proposals[k].sketch});
+          {proposals[k].sentence, proposals[k].setup, separates, prospects[k].z(other), proposals[k].floor_plan});
     return list;
   };
   for (const std::vector<std::size_t>& set : e.not_told_apart)

@@ -22,6 +22,7 @@
 #include "manifest/sections/forward.h"
 #include "manifest/value.h"
 #include "mechanism/mechanism.h"
+#include "report/floor_plan.h"
 
 namespace gonio::inference {
 
@@ -95,18 +96,10 @@ struct Calibration {
 enum class Importance { share_of_signal, share_of_residual };
 
 // A measurement that could be taken next: one more group under conditions that the user can set.
-// For a drawing on the page: where things stand, seen from above with the camera below, and what is moved.
-struct Sketch {
-  struct Thing {
-    std::string name;
-    double right_m = 0, away_m = 0;
-  };
-  Thing camera, centre, from, to;
-};
 struct Proposal {
   std::string sentence;   // "the third image again at 0.1 s"
   manifest::Value setup;  // what to set, in the manifest's words: {"exposure_s": 0.1}, {"light_towards": [...]}
-  std::optional<Sketch> sketch{};
+  std::optional<report::FloorPlan> floor_plan{};  // where something is moved
 };
 struct ProposedRows {
   std::vector<double> prediction, sigma;      // of the rows that it would give

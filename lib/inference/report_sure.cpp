@@ -151,20 +151,6 @@ void tell_sure(report::Page& page, const ReportPart& part) {
   if (!e.converged) page.note("The final fit did not converge: take the numbers with care.");
 }
 
-namespace {
-
-report::Figure drawing_of(const PlannedMeasurement& planned) {
-  const Sketch& sketch = *planned.sketch;
-  const auto place = [](const Sketch::Thing& t) { return report::FloorPlan::Place{t.name, t.right_m, t.away_m}; };
-  const std::string title = "Where: " + planned.sentence;
-  return {.svg = report::svg(report::FloorPlan{title, place(sketch.camera), place(sketch.centre), place(sketch.from),
-                                               place(sketch.to)}),
-          .title = title,
-          .caption = "Seen from above, as one stands behind the camera. The ring is where it stands today."};
-}
-
-}  // namespace
-
 void tell_next(report::Page& page, const ReportPart& part) {
   const Problem& problem = *part.problem;
   const Explanation& e = *part.explanation;
@@ -183,8 +169,12 @@ void tell_next(report::Page& page, const ReportPart& part) {
     table.rows.push_back({p.sentence, ids, plain_number(p.z)});
   }
   page.table(table);
-  const auto drawn = std::ranges::find_if(e.plan, [](const PlannedMeasurement& p) { return p.sketch.has_value(); });
-  if (drawn != e.plan.end()) page.figures({drawing_of(*drawn)}, 560);
+  const auto drawn = std::ranges::find_if(e.plan, [](const PlannedMeasurement& p) { return p.floor_plan.has_value(); });
+  if (drawn == e.plan.end()) return;
+  page.figures({{.svg = report::svg(*drawn->floor_plan),
+                 .title = "Where: " + drawn->sentence,
+                 .caption = "Seen from above, as one stands behind the camera. The ring is where it stands today."}},
+               560);
 }
 
 }  // namespace gonio::inference

@@ -73,9 +73,11 @@ double SpectrumModel::curve(const std::vector<double>& log_density, double log_f
   return (1 - t) * log_density[k] + t * log_density[k + 1];
 }
 
+double SpectrumModel::roughness_at(const SpectrumState& s, double log_f, double cosine_2, double sine_2) const {
+  return curve(s.log_density, log_f - (s.a0 * cosine_2 + s.a45 * sine_2));
+}
 double SpectrumModel::roughness_at(const SpectrumState& s, std::size_t i) const {
-  const bool stretched = s.a0 != 0 || s.a45 != 0;
-  return curve(s.log_density, stretched ? log_f_[i] - (s.a0 * cos_2[i] + s.a45 * sin_2[i]) : log_f_[i]);
+  return roughness_at(s, log_f_[i], cos_2[i], sin_2[i]);
 }
 
 void SpectrumModel::predict(const SpectrumState& s, double level, std::span<double> log_power) const {
@@ -174,10 +176,10 @@ Grating SpectrumModel::grating_at(double fx, double fy, const std::vector<double
     }
   for (std::size_t k = 0; k < harmonics; ++k) power[k] = weight[k] > 0 ? std::max(0.0, power[k] / weight[k]) : 0;
   g.amplitude_m = std::sqrt(power[0] / spectra_.line_gain());
-  const double log_f = 0.5 * std::log(fx * fx + fy * fy) -
-                       (beneath.a0 * std::cos(2 * g.azimuth_rad) + beneath.a45 * std::sin(2 * g.azimuth_rad));
   for (std::size_t k = 1; k < harmonics; ++k) {
-    const double rough = std::exp(curve(beneath.log_density, log_f + std::log(static_cast<double>(k + 1))));
+    const double times = static_cast<double>(k + 1),
+                 rough = std::exp(roughness_at(beneath, std::log(times / g.period_m), std::cos(2 * g.azimuth_rad),
+                                               std::sin(2 * g.azimuth_rad)));
     g.harmonic[k - 1] = power[k] > stands_out * rough && power[0] > 0 ? std::min(4.0, power[k] / power[0]) : 0;
   }
   return g;

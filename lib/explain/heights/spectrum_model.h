@@ -45,7 +45,9 @@ class SpectrumModel {
 
  private:
   double curve(const std::vector<double>& log_density, double log_f) const;
-  double roughness_at(const SpectrumState& state, std::size_t ordinate) const;  // ln of it, without the grating
+  // ln S without the grating, at ln |f| and the double angle of its direction.
+  double roughness_at(const SpectrumState& state, double log_f, double cos_2, double sin_2) const;
+  double roughness_at(const SpectrumState& state, std::size_t ordinate) const;
   // Knots and lay of what is no line: lines fill few ordinates, and count for little (Cauchy's loss).
   SpectrumState without_lines(const std::vector<double>& mean) const;
   Grating grating_at(double fx, double fy, const std::vector<double>& mean, const SpectrumState& beneath) const;

@@ -62,14 +62,19 @@ LightState turned(const LightSource& given, LightState now, Vec3 centre_m, const
 }
 
 // A directional lamp is drawn at the camera's distance.
-Sketch sketch_of(const View& view, const std::string& lamp, bool directional, Vec3 from, Vec3 to, Vec3 centre_m) {
+report::FloorPlan floor_plan_of(const View& view, const std::string& lamp, bool directional, Vec3 from, Vec3 to,
+                                Vec3 centre_m) {
   const auto camera_from_world = inverse(view.world_from_camera);
   const double distance = directional ? norm(camera_from_world * centre_m) : 1;
   const auto place = [&](const std::string& name, Vec3 arm) {
     const Vec3 there = camera_from_world * (centre_m + arm * distance);
-    return Sketch::Thing{name, there.x, there.z};
+    return report::FloorPlan::Place{name, there.x, there.z};
   };
-  return {{view.camera}, place("the scene", {}), place(lamp + " today", from), place(lamp + " then", to)};
+  return {.title = lamp + " elsewhere, seen from above",
+          .camera = {view.camera},
+          .centre = place("the scene", {}),
+          .from = place(lamp + " today", from),
+          .to = place(lamp + " then", to)};
 }
 
 // As one who stands behind the camera says it.
@@ -99,7 +104,7 @@ std::vector<Proposal> ImagesProblem::proposals() const {
       if (const Vec3 there = layout_.centre_m + to; !lamp.directional)
         setup["light_position_m"] = manifest::Value::Array{there.x, there.y, there.z};
       all.push_back({again + "with " + name + format(" %.0f degrees ", turn_deg) + side_of(view, from, to), setup,
-                     sketch_of(view, name, lamp.directional, from, to, layout_.centre_m)});
+                     floor_plan_of(view, name, lamp.directional, from, to, layout_.centre_m)});
     } else if (change.dark) {
       setup["light"] = manifest::Value::array();
       all.push_back({again + "with the lamps off", setup});

@@ -78,12 +78,12 @@ TEST(Proposals, TurnTheLamp) {
     change += std::pow(today[i] - direct[i], 2);
   }
   EXPECT_LT(std::sqrt(error / change), 0.1);
-  const explain::Sketch& sketch = *turned.sketch;
-  EXPECT_LT(sketch.from.right_m, sketch.to.right_m);
+  const report::FloorPlan& plan = *turned.floor_plan;
+  EXPECT_LT(plan.from.right_m, plan.to.right_m);
   const auto apart = [](const auto& a, const auto& b) {
     return std::hypot(a.right_m - b.right_m, a.away_m - b.away_m);
   };
-  EXPECT_NEAR(apart(sketch.from, sketch.to), 2 * std::sin(6 * degree) * apart(sketch.from, sketch.centre), 1e-9);
+  EXPECT_NEAR(apart(plan.from, plan.to), 2 * std::sin(6 * degree) * apart(plan.from, plan.centre), 1e-9);
 }
 
 // The manifest states half of the noise that is there; a further take of all pictures tells.
