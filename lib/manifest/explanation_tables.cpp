@@ -1,44 +1,64 @@
 // Field tables of "explanations": the entry, its scores and hypotheses, and what to measure next.
 #include "manifest/explanation_tables.h"
 
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "manifest/finite_makers.h"
 
 namespace gonio::manifest {
 namespace {
 
+// Members of a setup that are no numbers, or need not be (a table may have such a column): what schema and reader hold
+// of each.
+struct SetupMember {
+  std::string_view name;
+  bool or_number;
+  Value schema;
+  void (*read)(const Value& member, const std::string& place);
+};
+
+const std::vector<SetupMember>& setup_members() {
+  static const auto vector = [](const Value& v, const std::string& at) { Codec<Vec3>::read(v, at); };
+  static const std::vector<SetupMember> all{
+      {"image", true, Codec<std::string>::schema(),
+       [](const Value& v, const std::string& at) { Codec<std::string>::read(v, at); }},
+      {"images", true, Codec<std::vector<PlannedView>>::schema(),
+       [](const Value& v, const std::string& at) { Codec<std::vector<PlannedView>>::read(v, at); }},
+      {"light", true, defined("names"), [](const Value& v, const std::string& at) { read_names(v, at); }},
+      {"light_position_m", false, Codec<Vec3>::schema(), vector},
+      {"light_towards", false, Codec<Vec3>::schema(), vector},
+  };
+  return all;
+}
+
 // In the manifest's words, or a table's columns and their numbers.
 Field<PlannedMeasurement> setup_field() {
-  const auto or_number = [](Value schema) {
-    return Value::object({{"oneOf", Value(Value::Array{std::move(schema), Codec<double>::schema()})}});
-  };
-  Value schema =
-      Value::object({{"type", "object"},
-                     {"properties", Value::object({{"image", or_number(Codec<std::string>::schema())},
-                                                   {"light", or_number(defined("names"))},
-                                                   {"light_towards", or_number(Codec<Vec3>::schema())},
-                                                   {"images", or_number(Codec<std::vector<PlannedView>>::schema())}})},
-                     {"patternProperties", Value::object({{"^x-", Value::object()}})},
-                     {"additionalProperties", Codec<double>::schema()}});
+  Value words = Value::object();
+  for (const SetupMember& m : setup_members())
+    words[std::string(m.name)] =
+        m.or_number ? Value::object({{"oneOf", Value(Value::Array{m.schema, Codec<double>::schema()})}}) : m.schema;
+  Value schema = Value::object({{"type", "object"},
+                                {"properties", std::move(words)},
+                                {"patternProperties", Value::object({{"^x-", Value::object()}})},
+                                {"additionalProperties", Codec<double>::schema()}});
   return custom<PlannedMeasurement>(
       "setup", "",
-      "image, light, exposure_s, exposure_scale: that image again with these; light_towards: with a lamp in that "
-      "direction, world; images: views to take; of a table: its columns and their values",
+      "image, light, exposure_s, exposure_scale: that image again with these; light_towards, light_position_m: with a "
+      "lamp in that direction, at that place, world; images: views to take; of a table: its columns and their values",
       std::move(schema),
       [](PlannedMeasurement& p, const Value& v, const std::string& place) {
         expect_object(v, place);
         for (const auto& [key, member] : v.as_object()) {
+          if (key.starts_with("x-")) continue;
           const std::string at = place + "/" + key;
-          if (member.is_number() || key.starts_with("x-")) continue;
-          if (key == "image")
-            Codec<std::string>::read(member, at);
-          else if (key == "light")
-            read_names(member, at);
-          else if (key == "light_towards")
-            Codec<Vec3>::read(member, at);
-          else if (key == "images")
-            Codec<std::vector<PlannedView>>::read(member, at);
+          const auto known = std::ranges::find(setup_members(), key, &SetupMember::name);
+          if (known == setup_members().end() || (known->or_number && member.is_number()))
+            Codec<double>::read(member, at);
           else
-            wrong_type(member, "a number", at);
+            known->read(member, at);
         }
         p.setup = v;
       },

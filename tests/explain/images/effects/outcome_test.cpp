@@ -12,6 +12,7 @@
 #include "io/picture.h"
 #include "manifest/codec.h"
 #include "manifest/document.h"
+#include "manifest/explanation_tables.h"
 
 namespace gonio::tests {
 namespace {
@@ -51,6 +52,10 @@ TEST(Proposals, FollowTheExposureAndTheLamps) {
     EXPECT_NEAR(dark.sigma[i], world.noise, 0.01 * world.noise);
   }
   EXPECT_EQ(proposals[2].setup.find("light")->as_array().size(), 0u) << proposals[2].sentence;
+  for (const explain::Proposal& each : proposals)  // a document that holds them can be read again
+    EXPECT_NO_THROW(manifest::Codec<manifest::PlannedMeasurement>::read(
+        manifest::Value::object({{"sentence", each.sentence}, {"setup", each.setup}}), "plan"))
+        << each.sentence;
 }
 
 // A lamp that is turned about the scene shows what a scene with the lamp there shows: within the shadows' table.
