@@ -51,17 +51,18 @@ class RetroLobe : public RetroLobeOf<double> {
   }
   // Share of the light that would be sent back without the fall-off: for choosing between lobes.
   double power_at_most(Vec3 wo) const { return 1 - InterfaceLoss::mirror(Slopes::ggx, {alpha_, 0, 0}).towards(wo); }
-  // Share that is sent back, within 0.005: the mean over visible normals where there is a fall-off.
+  // Share that is sent back, within 0.012: the mean over visible normals where there is a fall-off, on one side of the
+  // plane of incidence.
   double power(Vec3 wo) const {
     if (!(falloff_ > 0)) return power_at_most(wo);
-    constexpr int n = 12;
+    constexpr int rings = 12, turns = 4;
     const Vec3 from = sent_back(wo);
     double sum = 0;
-    for (int k = 0; k < n * n; ++k) {
-      const Vec3 wi = direction(wo, {(k / n + 0.5) / n, (k % n + 0.5) / n});
+    for (int k = 0; k < rings * turns; ++k) {
+      const Vec3 wi = direction(wo, {(k / turns + 0.5) / rings, (k % turns + 0.5) / (2 * turns) - 0.25});
       if (wi.z > 0) sum += facets_.weight(from, wi) * std::pow(wi.z * wo.z, 0.5 * falloff_);
     }
-    return sum / (n * n);
+    return sum / (rings * turns);
   }
 
  private:

@@ -1,6 +1,7 @@
 // Metals and the facets beneath them: printed formulas, limits, and what the tables of loss are worth.
 #include <gtest/gtest.h>
 
+#include "base/text.h"
 #include "cases.h"
 #include "chi_square.h"
 #include "surface/fresnel.h"
@@ -68,6 +69,25 @@ TEST(SmoothMetal, IsTheLimitOfRoughOnes) {
       }
       EXPECT_GT(near, 0.98 * count) << id << zenith;  // GGX: one facet in 400 is steeper than 20 alpha
     }
+}
+
+// The narrowest lobes with the strongest direction, seen at a grazing angle: ridges of 1e-5 rad, slanted to the bins.
+TEST(RoughMetal, SamplerDrawsFromItsDensityWhereTheLobeIsARidge) {
+  std::vector<Sampler> family;
+  for (const char* id : conductors)
+    for (const double azimuth : {0.3, 1.0}) {
+      const surface::Model& model = *surface::find(id);
+      const auto values = conductor(gold_eta, gold_k, 1e-3, 1, azimuth);
+      const Vec3 wo = at_zenith(86);
+      family.push_back({id + format(" turned by %g rad", azimuth),
+                        [&model, values, wo](Random& random) -> std::optional<Vec3> {
+                          const Vec2 u{random.uniform(), random.uniform()};
+                          const auto s = model.sample(values, wo, u, random.uniform());
+                          return s.pdf > 0 ? std::optional(s.wi) : std::nullopt;
+                        },
+                        [&model, values, wo](Vec3 wi) { return model.pdf(values, wo, wi); }});
+    }
+  expect_samplers_match(family, 1e-3, 2026);
 }
 
 template <Slopes kind>
