@@ -12,7 +12,7 @@ const Domain& tables() {
       .name = "tables",
       .sentence =
           "tables whose model predicts them (sensor, light, volume, surface, tracks, markers, temperature, "
-          "ellipsometer, tracker, expression)",
+          "ellipsometer, tracker, arm, expression)",
       .order = 4,
       .applies = explain::tables::has_tables,
       .problems = explain::tables::table_problems,
@@ -46,8 +46,9 @@ const Domain& tables() {
           {"surface.subsurface", "samples of a reflectance do not say where the light went in"},
           {"geometry.", "rows know of no body but the plane or the sample that they were measured on"},
           {"robot.",
-           "joint angles with poses are the domain robot; the model tracker has places alone, and temperature what "
-           "warms"},
+           "joint angles with poses of boards are the domain robot; the models tracker and arm have places, in no "
+           "order, "
+           "and temperature what warms"},
           {"tracks.", "a table of tracks holds points against a known shape: their scale is that shape's"},
           {"ct.", "a table has lengths measured in a volume, which ct.scale alone changes in proportion"}}};
   return domain;

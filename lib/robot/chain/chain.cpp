@@ -55,19 +55,24 @@ Rigid<frame::Base, frame::Tool> corrected_pose(const ChainInput& input, const Ch
                                                const ChainState& state) {
   if (input.links.empty() || view.joints_rad.empty() || is_nominal(state)) return view.base_from_tool;
   const auto nominal = flange(input.links, view.joints_rad);
-  std::vector<Link> links = input.links;
-  std::vector<double> joints = view.joints_rad;
-  const std::vector<double> levers = weight_levers(links, joints);
-  for (std::size_t i = 0; i < links.size() && i < 6; ++i) {
-    links[i].a_m += state.a_m[i];
-    links[i].d_m += state.d_m[i];
-    joints[i] += state.joint_rad[i] + 0.5 * view.approach[i] * state.backlash_rad[i];
-  }
-  for (std::size_t k = 0; k < 2 && k + 1 < joints.size(); ++k) joints[k + 1] += state.sag_rad_per_m[k] * levers[k + 1];
-  return flange(links, joints) * (inverse(nominal) * view.base_from_tool);
+  return corrected_flange(input.links, view.joints_rad, view.approach, state) *
+         (inverse(nominal) * view.base_from_tool);
 }
 
 }  // namespace
+
+Rigid<frame::Base, frame::Tool> corrected_flange(std::vector<Link> links, std::vector<double> joints_rad,
+                                                 std::span<const double> approach, const ChainState& state) {
+  const std::vector<double> levers = weight_levers(links, joints_rad);
+  for (std::size_t i = 0; i < links.size() && i < 6; ++i) {
+    links[i].a_m += state.a_m[i];
+    links[i].d_m += state.d_m[i];
+    joints_rad[i] += state.joint_rad[i] + (approach.empty() ? 0 : 0.5 * approach[i] * state.backlash_rad[i]);
+  }
+  for (std::size_t k = 0; k < 2 && k + 1 < joints_rad.size(); ++k)
+    joints_rad[k + 1] += state.sag_rad_per_m[k] * levers[k + 1];
+  return flange(links, joints_rad);
+}
 
 Change change_between(const camera::BoardPose& from, const camera::BoardPose& to) {
   const Vec3 turn = rotation_vector_of(to.rotation * conjugate(from.rotation));

@@ -7,6 +7,7 @@
 // growth of the links: with all a_i and d_i times a factor, the flange's position is times this factor.
 #pragma once
 #include <array>
+#include <span>
 #include <vector>
 
 #include "robot/chain/input.h"
@@ -30,6 +31,11 @@ struct ChainState {
 
 // change such that `moved(from, change)` is `to`.
 Change change_between(const camera::BoardPose& from, const camera::BoardPose& to);
+
+// The flange by the state's kinematics. `approach`: for each joint 1 where it last turned forwards, -1 where backwards;
+// empty: no backlash.
+Rigid<frame::Base, frame::Tool> corrected_flange(std::vector<Link> links, std::vector<double> joints_rad,
+                                                 std::span<const double> approach, const ChainState& state);
 
 // The tool pose as the controller said, corrected by the state's kinematics, base_from_tool = flange(state)
 // flange(nominal)^-1 given.

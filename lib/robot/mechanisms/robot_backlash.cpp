@@ -1,5 +1,5 @@
 // robot.backlash: joints that stand elsewhere when they are approached from the other side. Equation:
-// explain/robot/robot_chain.h.
+// robot/chain/chain.h.
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {

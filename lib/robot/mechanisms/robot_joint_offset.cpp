@@ -12,7 +12,7 @@ const Mechanism& robot_joint_offset() {
       .source = "Mooring, Roth & Driels 1991; Hollerbach & Wampler 1996",
       .stage = "pose",
       .target = Target::scene,
-      .domains = {"robot"},
+      .domains = {"robot", "tables"},
       .parameters = {{.name = "joint_1_rad",
                       .unit = "rad",
                       .lower = -0.03,

@@ -13,7 +13,7 @@ const Mechanism& robot_link_length() {
       .source = "Mooring, Roth & Driels 1991; Hollerbach & Wampler 1996",
       .stage = "pose",
       .target = Target::scene,
-      .domains = {"robot"},
+      .domains = {"robot", "tables"},
       .parameters = {{.name = "a_1_m",
                       .unit = "m",
                       .lower = -0.005,

@@ -14,7 +14,7 @@ const Mechanism& robot_sag() {
       .source = "Dumas, Caro, Garnier & Furet 2011 (joint compliance); Khalil & Dombre 2002, chapter 11",
       .stage = "pose",
       .target = Target::scene,
-      .domains = {"robot"},
+      .domains = {"robot", "tables"},
       .parameters = {{.name = "joint_2_rad_per_m",
                       .unit = "rad/m",
                       .lower = -0.01,

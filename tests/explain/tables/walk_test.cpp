@@ -12,6 +12,7 @@
 #include "explain/tables/quick_table.h"
 #include "manifest/sections/table.h"
 #include "marker_world.h"
+#include "robot/kinematics.h"
 #include "table_world.h"
 
 namespace gonio::explain::tables::tests {
@@ -112,6 +113,21 @@ World tracker() {
   for (std::vector<double>& row : w.rows) row.insert(row.end(), {row[1], -row[0], row[2]});
   return w;
 }
+World arm() {
+  World w;
+  w.sections = R"("robots": {"a": {"model": "ur5"}},)";
+  w.rest = R"("model": "arm", "observed": ["x_m", "y_m", "z_m"])";
+  for (int j = 1; j <= 6; ++j) w.columns.emplace_back(format("joint_%d_rad", j), "rad");
+  for (const char* name : {"x_m", "y_m", "z_m"}) w.columns.emplace_back(name, "m");
+  Random random(3, 7);
+  for (int r = 0; r < 100; ++r) {
+    std::vector<double>& row = w.rows.emplace_back();
+    for (int j = 0; j < 6; ++j) row.push_back(random.uniform(-2, 2));
+    const Vec3 at = robot::flange(robot::known_arm("ur5", "test").links, row) * Vec3{0.1, 0, 0};
+    row.insert(row.end(), {at.x, at.y, at.z});
+  }
+  return w;
+}
 World surface() {
   return rows_of({{"theta_i", "rad"},
                   {"phi_i", "rad"},
@@ -158,7 +174,8 @@ INSTANTIATE_TEST_SUITE_P(
         Walk{"light", light, no_shadows}, Walk{"parallel", parallel_light, no_shadows},
         Walk{"volume", volume, {"image.exposure"}}, Walk{"refraction", refraction, {"image.exposure"}},
         Walk{"ellipsometer", ellipsometer, {"surface.wavelength", "surface.difference-angle", "surface.half-angle"}},
-        Walk{"tracker", tracker, {}}, Walk{"surface", surface, {"surface.spatial-frequency", "surface.lay-azimuth"}},
+        Walk{"tracker", tracker, {}}, Walk{"arm", arm, {}},
+        Walk{"surface", surface, {"surface.spatial-frequency", "surface.lay-azimuth"}},
         // Centres of markers have no edges and throw no shadows; a volume's walls are not there.
         Walk{"markers",
              markers,

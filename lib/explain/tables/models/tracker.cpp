@@ -6,18 +6,16 @@
 //   robot.compliance   what carries the arm yields: the floor and, where its height varies from row to row, the column
 //   robot.thermal      the machine grows with time, or with its temperature
 //
-// Frames: nominal in the machine's base, z up; observed in the tracker's. Metres, radians. Placements are numbers about
-// what the table alone gives (Kabsch): a rotation vector about the rows' middle, applied on the left, and a shift.
+// Frames: nominal in the machine's base, z up; observed in the tracker's (explain/tables/placement.h). Metres, radians.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 
 #include "base/error.h"
-#include "camera/quality/alignment.h"
 #include "explain/tables/model_parameters.h"
+#include "explain/tables/placement.h"
 #include "explain/tables/table_model.h"
-#include "explain/tables/unit.h"
 #include "geom/rigid.h"
 #include "manifest/document.h"
 #include "manifest/sections/table.h"
@@ -37,7 +35,7 @@ constexpr std::size_t none = Table::none, fewest_points = 4;
 class Tracker final : public BoundModel {
  public:
   Tracker(const manifest::Document& document, const std::string& name, const Table& table) : name_(name) {
-    check_observed(table);
+    check_places_observed(table, "tracker");
     read_points(table);
     declare_foot(document.tables.at(name));
     declare_placements(table);
@@ -74,22 +72,6 @@ class Tracker final : public BoundModel {
     double warmer_K = 0, later_s = 0;
     std::size_t placement = 0;
   };
-  struct Placement {
-    std::string name;
-    Rigid<frame::World, frame::Base> start;
-    Vec3 middle_m;          // of its rows, in the tracker's frame
-    std::size_t first = 0;  // of its parameters
-  };
-
-  static void check_observed(const Table& table) {
-    std::string stems;
-    for (const std::size_t c : table.observed) stems += stem_of(table.columns[c]);
-    if (stems == "xyz" && std::ranges::all_of(table.observed, [&](std::size_t c) { return table.units[c] == "m"; }))
-      return;
-    throw Error(Exit::data, table.place + "/observed", "does not name a measured place",
-                "model tracker predicts three columns: --observed x_m --observed y_m --observed z_m");
-  }
-
   void read_points(const Table& table) {
     rows_.resize(table.rows());
     const std::vector<double>&x = table.needed("nominal_x_m", "m"), &y = table.needed("nominal_y_m", "m"),
@@ -103,9 +85,8 @@ class Tracker final : public BoundModel {
       row.nominal_m = {x[r], y[r], z[r]};
       row.load_m = {load_x ? (*load_x)[r] : x[r], load_y ? (*load_y)[r] : y[r], 0};
       row.height_m = height ? (*height)[r] : 0;
-      observed_.push_back(
-          {table.values[table.observed[0]][r], table.values[table.observed[1]][r], table.values[table.observed[2]][r]});
     }
+    observed_ = observed_places(table);
     rises_ = table.varies("height_m");
   }
 
@@ -150,20 +131,10 @@ class Tracker final : public BoundModel {
       throw Error(Exit::data, table.place,
                   "has " + std::to_string(from.size()) + " rows of the placement \"" + placement.name + "\"",
                   "a placement is six numbers: measure at least " + std::to_string(fewest_points) + " points of each");
-    const auto motion = camera::aligned(from, to);
-    placement.start = {motion.rotation, motion.translation_m};
-    placement.middle_m = std::accumulate(to.begin(), to.end(), Vec3{}) / static_cast<double>(to.size());
+    start_from(placement, from, to);
     if (groups.size() == table.group.size()) groups.clear();
-    placement.first = parameters_.size();
-    for (const char* number : {"turn_x_rad", "turn_y_rad", "turn_z_rad", "shift_x_m", "shift_y_m", "shift_z_m"}) {
-      Parameter p;
-      p.name = "tables/" + name_ + "/" + (placements_.size() > 1 ? placement.name + "/" : "") + number;
-      p.unit = std::string(number).ends_with("_m") ? "m" : "rad";
-      p.size = 1e-3;
-      p.groups = groups;
-      base_.push_back(parameters_.size());
-      parameters_.push_back(std::move(p));
-    }
+    declare_placement(placement, "tables/" + name_ + "/" + (placements_.size() > 1 ? placement.name + "/" : ""), groups,
+                      parameters_, base_);
   }
 
   // The place of the first of its numbers.
@@ -246,11 +217,7 @@ class Tracker final : public BoundModel {
     p *= 1 + values[growth_] * row.warmer_K + values[growth_ + 1] * row.later_s;
     const double* y = &values[yielding_];
     p += equation::robot_compliance(p, foot, row.load_m, row.height_m, {y[0], y[1], y[2], y[3]});
-    const Placement& placement = placements_[row.placement];
-    const double* moved = &values[placement.first];
-    const Quaternion turn = quaternion_of_rotation_vector({moved[0], moved[1], moved[2]});
-    return matrix_of(turn) * (placement.start * p - placement.middle_m) + placement.middle_m +
-           Vec3{moved[3], moved[4], moved[5]};
+    return placements_[row.placement].seen(values, p);
   }
 
   std::string name_;
