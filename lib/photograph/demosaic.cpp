@@ -1,0 +1,118 @@
+// See demosaic.h.
+#include "photograph/demosaic.h"
+
+#include <array>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace gonio::photograph {
+namespace {
+
+struct Tap {
+  int dx, dy;
+  double weight;
+};
+using Taps = std::vector<Tap>;
+
+// Malvar, He & Cutler's four filters, in eighths. `level`: the wanted colour's nearest samples lie in the row.
+Taps green_at_colour() {
+  return {{0, 0, 4}, {1, 0, 2}, {-1, 0, 2}, {0, 1, 2}, {0, -1, 2}, {2, 0, -1}, {-2, 0, -1}, {0, 2, -1}, {0, -2, -1}};
+}
+Taps colour_at_green(bool level) {
+  Taps taps{{0, 0, 5},    {1, 0, 4},  {-1, 0, 4},  {1, 1, -1},  {1, -1, -1}, {-1, 1, -1},
+            {-1, -1, -1}, {2, 0, -1}, {-2, 0, -1}, {0, 2, 0.5}, {0, -2, 0.5}};
+  if (!level)
+    for (Tap& t : taps) std::swap(t.dx, t.dy);
+  return taps;
+}
+Taps colour_at_other() {
+  return {{0, 0, 6},    {1, 1, 2},     {1, -1, 2},   {-1, 1, 2},   {-1, -1, 2},
+          {2, 0, -1.5}, {-2, 0, -1.5}, {0, 2, -1.5}, {0, -2, -1.5}};
+}
+
+struct Mean {
+  double value = 0, variance = 0;
+  bool found = false;
+};
+
+class Demosaic {
+ public:
+  Demosaic(const MosaicSamples& samples, const Mosaic& mosaic) : s_(samples), mosaic_(mosaic) {}
+
+  // Of the samples of one colour within a step: weights 4, 2 and 1 as they are near, which is bilinear.
+  Mean nearest(int x, int y, int colour) const {
+    constexpr std::array<std::array<int, 3>, 3> weights{{{1, 2, 1}, {2, 4, 2}, {1, 2, 1}}};
+    const bool own = mosaic_.colour(x, y) == colour && s_.trusted[at(x, y)] != 0;
+    double sum = 0, squares = 0, all = 0;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (own && (dx != 0 || dy != 0)) continue;
+        const int u = x + dx, v = y + dy;
+        if (!inside(u, v) || mosaic_.colour(u, v) != colour || s_.trusted[at(u, v)] == 0) continue;
+        const double w = weights[static_cast<std::size_t>(dy + 1)][static_cast<std::size_t>(dx + 1)];
+        sum += w * s_.value[at(u, v)], squares += w * w * s_.variance[at(u, v)], all += w;
+      }
+    if (!(all > 0)) return {};
+    return {sum / all, squares / (all * all), true};
+  }
+
+  Mean filtered(int x, int y, const Taps& taps) const {
+    Mean m{0, 0, true};
+    for (const Tap& t : taps) {
+      const int u = x + t.dx, v = y + t.dy;
+      if (!inside(u, v) || s_.trusted[at(u, v)] == 0) return {};
+      m.value += t.weight / 8 * s_.value[at(u, v)];
+      m.variance += t.weight * t.weight / 64 * s_.variance[at(u, v)];
+    }
+    return m;
+  }
+
+  Mean of(int x, int y, int colour, Demosaicing how) const {
+    const int own = mosaic_.colour(x, y);
+    if (how == Demosaicing::gradient && own != colour) {
+      static const Taps green = green_at_colour(), level = colour_at_green(true), upright = colour_at_green(false),
+                        other = colour_at_other();
+      const Mean m = filtered(x, y, colour == 1 ? green : own != 1 ? other : in_row(x, y, colour) ? level : upright);
+      if (m.found) return m;
+    }
+    return nearest(x, y, colour);
+  }
+
+ private:
+  bool in_row(int x, int y, int colour) const { return mosaic_.colour(x + 1, y) == colour; }
+  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < s_.width && y < s_.height; }
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(s_.width) + static_cast<std::size_t>(x);
+  }
+  const MosaicSamples& s_;
+  const Mosaic& mosaic_;
+};
+
+}  // namespace
+
+Demosaiced demosaic(const MosaicSamples& samples, const Mosaic& mosaic, Demosaicing how) {
+  const std::vector<std::string> names =
+      mosaic.mono() ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+  Demosaiced result{io::Image(samples.width, samples.height, names), io::Image(samples.width, samples.height, names),
+                    std::vector<std::uint8_t>(samples.trusted.begin(), samples.trusted.end())};
+  if (mosaic.mono()) {
+    result.colour.data.assign(samples.value.begin(), samples.value.end());
+    result.variance.data.assign(samples.variance.begin(), samples.variance.end());
+    return result;
+  }
+  const Demosaic work(samples, mosaic);
+  parallel_for(0, static_cast<std::size_t>(samples.height), [&](std::size_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < samples.width; ++x)
+      for (int c = 0; c < 3; ++c) {
+        const Mean m = work.of(x, y, c, how);
+        result.colour.at(x, y, c) = static_cast<float>(m.value);
+        result.variance.at(x, y, c) = static_cast<float>(m.variance);
+        if (!m.found) result.trusted[row * static_cast<std::size_t>(samples.width) + static_cast<std::size_t>(x)] = 0;
+      }
+  });
+  return result;
+}
+
+}  // namespace gonio::photograph

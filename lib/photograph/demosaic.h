@@ -1,0 +1,33 @@
+// Three colours at every sample of a Bayer mosaic, with their variance. Both ways are linear in the samples, so that
+// the variance of each colour is the sum of weight^2 times variance; that neighbouring pixels share noise is not
+// stated.
+//   bilinear   the mean of the nearest samples of a colour
+//   gradient   bilinear, corrected by the Laplacian of the colour that was measured there: Malvar, He & Cutler 2004,
+//              "High-quality linear interpolation for demosaicing of Bayer-patterned color images", gains 1/2, 5/8, 3/4
+// Samples that cannot be trusted are left out of the means; where a corrected one would need them the plain mean
+// stands. Borders: the samples that are there.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "io/image.h"
+#include "photograph/mosaic.h"
+
+namespace gonio::photograph {
+
+enum class Demosaicing { bilinear, gradient };
+
+struct MosaicSamples {
+  int width = 0, height = 0;
+  std::span<const float> value, variance;
+  std::span<const std::uint8_t> trusted;
+};
+
+struct Demosaiced {
+  io::Image colour, variance;         // R, G, B; of Mono: Y
+  std::vector<std::uint8_t> trusted;  // its own sample, and one of each colour beside it
+};
+Demosaiced demosaic(const MosaicSamples& samples, const Mosaic& mosaic, Demosaicing how);
+
+}  // namespace gonio::photograph

@@ -1,0 +1,22 @@
+// Which colour a sensor's sample has, by the name that cameras give the grid of filters (GenICam PFNC): "Mono",
+// "BayerRG" (upper left corner red, beside it green), "BayerGR", "BayerGB", "BayerBG".
+#pragma once
+#include <array>
+#include <string>
+
+namespace gonio::photograph {
+
+class Mosaic {
+ public:
+  // Error(data) at `place` for other names.
+  static Mosaic named(const std::string& name, const std::string& place);
+  bool mono() const { return mono_; }
+  int period_px() const { return mono_ ? 1 : 2; }
+  int colour(int x, int y) const { return corner_[static_cast<std::size_t>((y & 1) * 2 + (x & 1))]; }  // 0 R, 1 G, 2 B
+
+ private:
+  bool mono_ = false;
+  std::array<int, 4> corner_{};  // row by row
+};
+
+}  // namespace gonio::photograph
