@@ -11,6 +11,7 @@
 #include "manifest/document.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
+#include "render/mechanisms/sensor_saturation.h"
 
 namespace gonio::render {
 namespace {
@@ -144,6 +145,20 @@ TEST(SensorChain, NoiseBehindAMosaicAndBeforeOffsetAndSaturation) {
   sensor.switch_on(*mechanism::find_mechanism("sensor.saturation"), {0.5});
   const io::Image clipped = recorded(flat, sensor, "raw", 3);
   for (const float v : clipped.data) ASSERT_LE(v, 0.5f);
+}
+
+// Against the mean of many readings that were noisy first and cut off then.
+TEST(SaturationOfNoise, IsTheMeanOfWhatWasCutOff) {
+  constexpr double full = 0.5, sigma = 0.02;
+  Random random(3, 1);
+  for (const double v : {0.3, 0.46, 0.49, 0.5, 0.52, 0.7}) {
+    double sum = 0;
+    constexpr int count = 200000;
+    for (int i = 0; i < count; ++i) sum += std::min(v + sigma * random.normal(), full);
+    EXPECT_NEAR(equation::sensor_saturation_of_noise(v, full, sigma), sum / count, 4 * sigma / std::sqrt(count)) << v;
+  }
+  EXPECT_EQ(equation::sensor_saturation_of_noise(0.7, 0, sigma), 0.7);
+  EXPECT_EQ(equation::sensor_saturation_of_noise(0.7, full, 0), full);
 }
 
 }  // namespace

@@ -145,5 +145,14 @@ TEST(ClippedResampling, IsNamedAndNotSaturation) {
   EXPECT_NEAR(outcome.fitted("width_px"), 2, 0.3);
 }
 
+// Where noise is there before the cut, readings about full scale are on average 0.4 of its width less than that.
+TEST(Saturation, CutsOffNoise) {
+  EffectWorld world;
+  world.noise = 0.01, world.full_scale = 0.3;
+  const EffectOutcome outcome(world, {"sensor.saturation", "sensor.non-linearity", "optics.veiling-glare"});
+  ASSERT_THAT(outcome.named(), ElementsAre("sensor.saturation")) << outcome.told();
+  EXPECT_NEAR(outcome.fitted("full_scale"), 0.3, 1e-3);
+}
+
 }  // namespace
 }  // namespace gonio::tests

@@ -88,7 +88,10 @@ manifest::Document EffectWorld::record(const ScratchFolder& folder) const {
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     if (change) change(i, i / per_view, pictures[i]);
     Random random(noise_seed, i);
-    for (float& value : pictures[i].data) value += static_cast<float>(noise * random.normal());
+    for (float& value : pictures[i].data) {
+      value += static_cast<float>(noise * random.normal());
+      if (full_scale > 0) value = std::min(value, static_cast<float>(full_scale));
+    }
     io::write_picture(folder / (ids[i] + ".exr"), pictures[i]);
   }
   return believed_all;

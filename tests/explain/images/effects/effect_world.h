@@ -16,6 +16,7 @@ namespace gonio::tests {
 struct EffectWorld {
   int size_px = 48, views = 3, lamps = 2, spp = 100;
   double noise = 0.002;
+  double full_scale = 0;  // cuts readings off behind their noise; 0: not
   std::uint64_t seed = 7, noise_seed = 7;
   // JSON of the entries; empty: the usual ones.
   std::string ball = R"({"model":"diffuse","albedo":{"value":[0.5,0.4,0.3],"free":true}})";
