@@ -102,6 +102,26 @@ void take_samples(const libraw_data_t& raw, CameraRaw& picture, const std::strin
   picture.bits = std::max(8, static_cast<int>(std::bit_width(std::min(largest, 65535U))));
 }
 
+// What the camera says of black, full scale and colours. LibRaw states black as a number for all, plus one for each
+// colour, plus a grid.
+void take_colour(libraw_data_t* raw, CameraRaw& picture) {
+  const libraw_colordata_t& said = raw->color;
+  for (const unsigned at : {0U, 1U, 2U, 3U}) {
+    const unsigned row = at / 2, column = at % 2;
+    const int colour =
+        raw->idata.filters == 0 ? 0 : raw_library().colour(raw, static_cast<int>(row), static_cast<int>(column));
+    double black = said.black;
+    if (colour >= 0 && colour < 4) black += said.cblack[colour];
+    if (const unsigned rows = said.cblack[4], columns = said.cblack[5];
+        rows > 0 && columns > 0 && rows * columns <= LIBRAW_CBLACK_SIZE - 6)
+      black += said.cblack[6 + row % rows * columns + column % columns];
+    picture.black[at] = black;
+  }
+  picture.white = said.maximum;
+  if (said.cam_mul[0] > 0 && said.cam_mul[1] > 0 && said.cam_mul[2] > 0)
+    for (const std::size_t c : {0, 1, 2}) picture.neutral[c] = static_cast<double>(said.cam_mul[1]) / said.cam_mul[c];
+}
+
 }  // namespace
 
 bool is_camera_raw(const std::filesystem::path& path) {
@@ -128,6 +148,7 @@ CameraRaw decode_camera_raw(const std::string& bytes, const std::string& place) 
   picture.mosaic = mosaic_at_corner(raw.get());
   take_samples(*raw, picture, place);
   if (picture.mosaic.empty()) throw no_raw(place, "has no Bayer grid of filters", "a camera with one, or with none");
+  take_colour(raw.get(), picture);
   if (raw->other.shutter > 0) picture.exposure_s = raw->other.shutter;
   if (raw->other.iso_speed > 0) picture.iso = raw->other.iso_speed;
   picture.camera = std::string(raw->idata.make) + " " + raw->idata.model;

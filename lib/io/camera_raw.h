@@ -1,6 +1,7 @@
 // Raw files of cameras that people hold in their hands (CR2, NEF, ARW, RAF, DNG, ... ), through LibRaw: the sensor's
 // own numbers and what the camera wrote about them. Nothing is demosaiced, scaled, or taken off.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -15,6 +16,9 @@ struct CameraRaw {
   std::string mosaic;                  // "Mono", "BayerRG", "BayerGR", "BayerGB", "BayerBG": its upper left corner
   std::vector<std::uint16_t> samples;  // row by row, as the sensor lies: not turned with the camera
   std::string camera;                  // maker and model
+  std::array<double, 4> black{};       // code without light, of the 2 x 2 samples at the upper left corner, row by row
+  double white = 0;                    // code at which the sensor is full; 0: not known
+  std::array<double, 3> neutral{};     // what a grey is to the camera in the light of the shot, green 1; 0: not known
   std::optional<double> exposure_s, iso;
 };
 

@@ -18,12 +18,10 @@ namespace {
 constexpr double clear_of_full = 4;  // standard deviations: nearer to full scale what was read is a selection
 constexpr double moved_beyond = 5;   // standard normal: of a neighbourhood's chi-square
 
-enum class Sample : std::uint8_t { read, full, unusable };
-
 // One exposure's samples, sorted.
 struct Sorted {
   std::vector<float> codes;
-  std::vector<Sample> kinds;
+  std::vector<SampleKind> kinds;
 };
 
 // What one sample says of the rate: derivative of the log likelihood and information.
@@ -72,28 +70,9 @@ class Merge {
     if (plane.codes.size() != pixels_ || (!plane.unusable.empty() && plane.unusable.size() != pixels_))
       throw Error(Exit::data, "exposure " + std::to_string(k + 1), "is of another size than the first",
                   "merge exposures of one view by one camera");
-    Sorted s{std::move(plane.codes), std::vector<Sample>(pixels_, Sample::read)};
-    for (std::size_t i = 0; i < pixels_; ++i) {
-      if (!plane.unusable.empty() && plane.unusable[i] != 0) s.kinds[i] = Sample::unusable;
-      if (s.codes[i] >= r_.full_scale) s.kinds[i] = Sample::full;
-      if (!std::isfinite(s.codes[i])) s.kinds[i] = Sample::unusable;
-    }
-    if (r_.blooming_px > 0) spill(s);
+    Sorted s{{}, kinds_of(plane, r_.width, r_.height, r_.full_scale, r_.blooming_px)};
+    s.codes = std::move(plane.codes);
     return s;
-  }
-  void spill(Sorted& s) const {
-    std::vector<std::size_t> full;
-    for (std::size_t i = 0; i < pixels_; ++i)
-      if (s.kinds[i] == Sample::full) full.push_back(i);
-    for (const std::size_t i : full) {
-      const int x = static_cast<int>(i % static_cast<std::size_t>(r_.width)),
-                y = static_cast<int>(i / static_cast<std::size_t>(r_.width));
-      for (int v = std::max(0, y - r_.blooming_px); v <= std::min(r_.height - 1, y + r_.blooming_px); ++v)
-        for (int u = std::max(0, x - r_.blooming_px); u <= std::min(r_.width - 1, x + r_.blooming_px); ++u) {
-          Sample& kind = s.kinds[at(u, v)];
-          if (kind == Sample::read) kind = Sample::unusable;
-        }
-    }
   }
   double lasts(std::size_t place) const { return merged_.exposures_s[order_[place]]; }
   std::size_t at(int x, int y) const {
@@ -115,12 +94,13 @@ class Merge {
   void refine() {
     constexpr std::size_t most = 60000;
     const std::size_t stride = std::max<std::size_t>(1, pixels_ / most) | 1;  // odd: all colours of a mosaic
-    ExposureSamples samples{r_.exposures_s, {}, r_.noise, r_.full_scale};
+    ExposureSamples samples{r_.exposures_s, {}, r_.noise, r_.full_scale, r_.floor};
     samples.codes.resize(r_.exposures_s.size());
     for (const std::size_t k : order_) {
       const Sorted s = read(k);
       for (std::size_t i = 0; i < pixels_; i += stride)
-        samples.codes[k].push_back(s.kinds[i] == Sample::read ? s.codes[i] : std::numeric_limits<float>::quiet_NaN());
+        samples.codes[k].push_back(s.kinds[i] == SampleKind::read ? s.codes[i]
+                                                                  : std::numeric_limits<float>::quiet_NaN());
     }
     const RefinedExposures refined = refine_exposures(samples);
     merged_.exposures_s = refined.exposures_s, merged_.exposures_sigma = refined.sigma_s;
@@ -134,9 +114,9 @@ class Merge {
     std::vector<float> time(pixels_), bound(pixels_, std::numeric_limits<float>::infinity());
     pass([&](std::size_t place, const Sorted& s, std::size_t i) {
       const double t = lasts(place);
-      if (s.kinds[i] == Sample::full) {
+      if (s.kinds[i] == SampleKind::full) {
         bound[i] = std::min(bound[i], static_cast<float>(r_.full_scale / t));
-      } else if (s.kinds[i] == Sample::read) {
+      } else if (s.kinds[i] == SampleKind::read) {
         merged_.rate[i] += s.codes[i], time[i] += static_cast<float>(t);
         if (merged_.trust[i] == Trust::no_sample) merged_.first[i] = static_cast<std::uint8_t>(place);
         merged_.last[i] = static_cast<std::uint8_t>(place);
@@ -153,7 +133,7 @@ class Merge {
     }
   }
 
-  Word said_by(Sample kind, double code, double t, double rate) const {
+  Word said_by(SampleKind kind, double code, double t, double rate) const {
     const double variance = r_.noise.variance(rate * t), sigma = std::sqrt(variance),
                  a = (rate * t - r_.full_scale) / sigma;
     Word word;
@@ -162,7 +142,7 @@ class Merge {
                  above = near ? stats::normal_cdf(a) : 0;
     const double hazard = above > 0 ? phi / above : 0;
     word.information = t * t / variance * std::max(0.0, below + a * phi + phi * hazard);
-    word.score = kind == Sample::read ? t * (code - rate * t) / variance : t / sigma * (near ? hazard : 0);
+    word.score = kind == SampleKind::read ? t * (code - rate * t) / variance : t / sigma * (near ? hazard : 0);
     return word;
   }
 
@@ -170,7 +150,7 @@ class Merge {
   void step(bool last) {
     std::vector<double> score(pixels_), information(pixels_);
     pass([&](std::size_t place, const Sorted& s, std::size_t i) {
-      if (merged_.trust[i] != Trust::good || s.kinds[i] == Sample::unusable) return;
+      if (merged_.trust[i] != Trust::good || s.kinds[i] == SampleKind::unusable) return;
       const Word word = said_by(s.kinds[i], s.codes[i], lasts(place), merged_.rate[i]);
       score[i] += word.score, information[i] += word.information;
     });
@@ -185,7 +165,7 @@ class Merge {
   void compare() {
     chi_square_.assign(pixels_, 0), freedom_.assign(pixels_, 0);
     pass([&](std::size_t place, const Sorted& s, std::size_t i) {
-      if (merged_.trust[i] != Trust::good || s.kinds[i] != Sample::read) return;
+      if (merged_.trust[i] != Trust::good || s.kinds[i] != SampleKind::read) return;
       const double expected = merged_.rate[i] * lasts(place), variance = r_.noise.variance(expected);
       if (expected + clear_of_full * std::sqrt(variance) > r_.full_scale) return;
       const double off = s.codes[i] - expected;
@@ -248,7 +228,7 @@ class Merge {
     for (std::size_t place = 0; place < order_.size(); ++place) {
       const Sorted s = read(order_[place]);
       for (const std::size_t i : moved)
-        if (s.kinds[i] == Sample::read)
+        if (s.kinds[i] == SampleKind::read)
           worth[place] += std::max(0.0f, s.codes[i]) / std::sqrt(r_.noise.variance(s.codes[i]));
     }
     const auto best = std::ranges::max_element(worth) - worth.begin();
@@ -262,7 +242,7 @@ class Merge {
       const Sorted s = read(order_[place]);
       const double t = lasts(place);
       std::erase_if(left, [&](std::size_t i) {
-        if (s.kinds[i] != Sample::read) return false;
+        if (s.kinds[i] != SampleKind::read) return false;
         merged_.rate[i] = static_cast<float>(s.codes[i] / t);
         merged_.variance[i] = static_cast<float>(r_.noise.variance(s.codes[i]) / (t * t));
         merged_.first[i] = merged_.last[i] = static_cast<std::uint8_t>(place);
@@ -280,6 +260,28 @@ class Merge {
 };
 
 }  // namespace
+
+std::vector<SampleKind> kinds_of(const RawPlane& plane, int width, int height, double full_scale, int blooming_px) {
+  std::vector<SampleKind> kinds(plane.codes.size(), SampleKind::read);
+  std::vector<std::size_t> full;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (plane.codes[i] >= full_scale)
+      kinds[i] = SampleKind::full, full.push_back(i);
+    else if ((!plane.unusable.empty() && plane.unusable[i] != 0) ||
+             !(plane.codes[i] > -std::numeric_limits<float>::infinity()))
+      kinds[i] = SampleKind::unusable;
+  }
+  const auto columns = static_cast<std::size_t>(width);
+  for (const std::size_t i : full) {
+    const int x = static_cast<int>(i % columns), y = static_cast<int>(i / columns);
+    for (int v = std::max(0, y - blooming_px); v <= std::min(height - 1, y + blooming_px); ++v)
+      for (int u = std::max(0, x - blooming_px); u <= std::min(width - 1, x + blooming_px); ++u) {
+        SampleKind& kind = kinds[static_cast<std::size_t>(v) * columns + static_cast<std::size_t>(u)];
+        if (kind == SampleKind::read) kind = SampleKind::unusable;
+      }
+  }
+  return kinds;
+}
 
 MergedPlane merge_exposures(const MergeRequest& request) {
   return Merge(request).run();

@@ -18,6 +18,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "photograph/sensor_noise.h"
@@ -35,11 +36,17 @@ struct MergeRequest {
   std::vector<double> exposures_s;
   std::function<RawPlane(std::size_t exposure)> read;  // called some times for each
   SensorNoise noise;
-  double full_scale = 0;  // codes beyond black: from here on a sample is saturated
-  int blooming_px = 1;    // samples so near to a saturated one are not used
-  int period_px = 2;      // to the next sample of the same colour: 1 without a mosaic, 2 Bayer, 4 of polarization
+  double full_scale = 0;                                    // codes beyond black: from here on a sample is saturated
+  double floor = -std::numeric_limits<double>::infinity();  // the lowest code, black taken off
+  int blooming_px = 1;                                      // samples so near to a saturated one are not used
+  int period_px = 2;  // to the next sample of the same colour: 1 without a mosaic, 2 Bayer, 4 of polarization
   bool refine_exposures = true;
 };
+
+// What a sample says: a reading, that it is full, or nothing (defects, and what lies within `blooming_px` of full
+// ones).
+enum class SampleKind : std::uint8_t { read, full, unusable };
+std::vector<SampleKind> kinds_of(const RawPlane& plane, int width, int height, double full_scale, int blooming_px);
 
 enum class Trust : std::uint8_t { good, too_bright, no_sample, moved };
 

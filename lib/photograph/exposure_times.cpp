@@ -12,14 +12,42 @@ namespace gonio::photograph {
 namespace {
 
 constexpr int rounds = 5;
-constexpr double clear_of_full = 4;         // standard deviations
+constexpr double clear_of_ends = 4;         // standard deviations
+constexpr double least_of_full = 0.1;       // readings that times are from
 constexpr double least_p = 1e-4;            // of a pixel's chi-square: below it something moved
 constexpr double least_share = 1e-6;        // of the best exposure's information
 constexpr std::size_t fewest_pixels = 100;  // to say anything
 
+}  // namespace
+
+double rate_of(const ExposureSamples& s, const std::vector<double>& t, std::size_t pixel,
+               std::vector<std::size_t>& used) {
+  double light = 0, time = 0;
+  for (std::size_t k = 0; k < t.size(); ++k)
+    if (!std::isnan(s.codes[k][pixel])) light += s.codes[k][pixel], time += t[k];
+  double rate = time > 0 ? light / time : 0;
+  for (int pass = 0; pass < 3; ++pass) {
+    double sum = 0, information = 0;
+    used.clear();
+    for (std::size_t k = 0; k < t.size(); ++k) {
+      const double expected = rate * t[k], variance = s.noise.variance(expected),
+                   margin = clear_of_ends * std::max(0.5, std::sqrt(variance));  // half a code: codes are whole
+      if (std::isnan(s.codes[k][pixel]) || expected + margin > s.full_scale || expected - margin < s.floor) continue;
+      sum += t[k] * s.codes[k][pixel] / variance, information += t[k] * t[k] / variance;
+      used.push_back(k);
+    }
+    if (information > 0) rate = sum / information;
+  }
+  return rate;
+}
+
+namespace {
+
 class Refinement {
  public:
-  explicit Refinement(const ExposureSamples& s) : s_(s), count_(s.exposures_s.size()), t_(s.exposures_s) {}
+  explicit Refinement(const ExposureSamples& s) : s_(s), count_(s.exposures_s.size()), t_(s.exposures_s) {
+    if (std::isfinite(s.full_scale)) s_.floor = std::max(s_.floor, least_of_full * s.full_scale);
+  }
 
   RefinedExposures run() {
     RefinedExposures result{s_.exposures_s, std::vector<double>(count_, 0.0)};
@@ -42,26 +70,6 @@ class Refinement {
  private:
   static Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
-  // The rate that one pixel's usable samples say, and which they are.
-  double rate_of(std::size_t pixel, std::vector<std::size_t>& used) const {
-    double light = 0, time = 0;
-    for (std::size_t k = 0; k < count_; ++k)
-      if (!std::isnan(s_.codes[k][pixel])) light += s_.codes[k][pixel], time += t_[k];
-    double rate = time > 0 ? light / time : 0;
-    for (int pass = 0; pass < 3; ++pass) {
-      double sum = 0, information = 0;
-      used.clear();
-      for (std::size_t k = 0; k < count_; ++k) {
-        const double expected = rate * t_[k], variance = s_.noise.variance(expected);
-        if (std::isnan(s_.codes[k][pixel]) || expected + clear_of_full * std::sqrt(variance) > s_.full_scale) continue;
-        sum += t_[k] * s_.codes[k][pixel] / variance, information += t_[k] * t_[k] / variance;
-        used.push_back(k);
-      }
-      if (information > 0) rate = sum / information;
-    }
-    return rate;
-  }
-
   // Normal equations for d, each pixel's rate eliminated.
   void gather(bool leave_moved_out) {
     normal_ = Eigen::MatrixXd::Zero(index(count_), index(count_));
@@ -69,7 +77,7 @@ class Refinement {
     chi_square_ = freedom_ = 0, pixels_ = 0;
     std::vector<std::size_t> used;
     for (std::size_t p = 0; p < s_.codes[0].size(); ++p) {
-      const double rate = rate_of(p, used);
+      const double rate = rate_of(s_, t_, p, used);
       if (used.size() < 2 || !(rate > 0)) continue;
       double chi_square = 0, information = 0, sum = 0;
       for (const std::size_t k : used) {
@@ -115,7 +123,7 @@ class Refinement {
     for (std::size_t i = 0; i < told_.size(); ++i) t_[told_[i]] *= 1 + std::clamp(step[index(i)], -0.3, 0.3);
   }
 
-  const ExposureSamples& s_;
+  ExposureSamples s_;
   std::size_t count_;
   std::vector<double> t_;
   Eigen::MatrixXd normal_;
@@ -130,6 +138,61 @@ class Refinement {
 
 RefinedExposures refine_exposures(const ExposureSamples& samples) {
   return Refinement(samples).run();
+}
+
+namespace {
+
+// Least squares of squared residuals over V = x / gain + read^2, weighted by 1 / (2 V^2), what Gaussian noise has.
+struct Transfer {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  std::size_t pixels = 0;
+};
+
+Transfer photon_transfer(const ExposureSamples& s) {
+  Transfer sums;
+  std::vector<std::size_t> used;
+  for (std::size_t p = 0; p < s.codes[0].size(); ++p) {
+    const double rate = rate_of(s, s.exposures_s, p, used);
+    if (used.size() < 2) continue;
+    double chi_square = 0, information = 0;
+    for (const std::size_t k : used) {
+      const double t = s.exposures_s[k], variance = s.noise.variance(rate * t);
+      information += t * t / variance, chi_square += std::pow(s.codes[k][p] - rate * t, 2) / variance;
+    }
+    if (stats::chi2_upper(chi_square, static_cast<double>(used.size()) - 1) < least_p) continue;
+    ++sums.pixels;
+    for (const std::size_t k : used) {
+      const double t = s.exposures_s[k], expected = std::max(0.0, rate * t), variance = s.noise.variance(expected),
+                   left = 1 - t * t / variance / information;
+      if (left < 0.02) continue;
+      const double square = std::pow(s.codes[k][p] - rate * t, 2) / left;
+      const Eigen::Vector2d by(expected, 1);
+      const double weight = left / (2 * variance * variance);
+      sums.normal += weight * by * by.transpose(), sums.right += weight * square * by;
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+std::optional<StackNoise> noise_of_stack(ExposureSamples samples) {
+  // Not below what no sensor has: noise without width weighs without limit.
+  const double least_read = 0.05 * samples.noise.read, most_gain = 1e4 * samples.noise.gain;
+  Eigen::Matrix2d covariance;
+  for (int round = 0; round < 12; ++round) {
+    const Transfer sums = photon_transfer(samples);
+    if (sums.pixels < fewest_pixels) return {};
+    const Eigen::Matrix2d& n = sums.normal;
+    covariance << n(1, 1), -n(0, 1), -n(0, 1), n(0, 0);
+    covariance /= n(0, 0) * n(1, 1) - n(0, 1) * n(0, 1);
+    const Eigen::Vector2d found = covariance * sums.right;
+    samples.noise.gain = 1 / std::max(found[0], 1 / most_gain);
+    samples.noise.read = std::sqrt(std::max(found[1], least_read * least_read));
+  }
+  const SensorNoise& n = samples.noise;
+  return StackNoise{n, n.gain * n.gain * std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)) / (2 * n.read)};
 }
 
 }  // namespace gonio::photograph

@@ -1,5 +1,6 @@
 // Which colour a sensor's sample has, by the name that cameras give the grid of filters (GenICam PFNC): "Mono",
-// "BayerRG" (upper left corner red, beside it green), "BayerGR", "BayerGB", "BayerBG".
+// "BayerRG" (upper left corner red, beside it green), "BayerGR", "BayerGB", "BayerBG"; or by its corner, row by row, as
+// the manifest's cameras state it: "RGGB", "GRBG", "GBRG", "BGGR".
 #pragma once
 #include <array>
 #include <string>
@@ -11,6 +12,7 @@ class Mosaic {
   // Error(data) at `place` for other names.
   static Mosaic named(const std::string& name, const std::string& place);
   bool mono() const { return mono_; }
+  bool operator==(const Mosaic&) const = default;
   int period_px() const { return mono_ ? 1 : 2; }
   int colour(int x, int y) const { return corner_[static_cast<std::size_t>((y & 1) * 2 + (x & 1))]; }  // 0 R, 1 G, 2 B
 

@@ -95,6 +95,10 @@ TEST(CameraRaw, AChartsPatchesAreAsAPeerReadThem) {
   ASSERT_EQ(raw.width, 1734);
   ASSERT_EQ(raw.height, 1156);
   EXPECT_EQ(raw.bits, 14);
+  for (const double black : raw.black) EXPECT_EQ(black, 2056);
+  EXPECT_EQ(raw.white, 15000);
+  EXPECT_EQ(raw.neutral[1], 1);
+  EXPECT_NEAR(raw.neutral[0], 1000.0 / 2477, 0.2);
   const auto median = [&](int x, int y, int right, int down) {
     std::vector<std::uint16_t> codes;
     for (int v = y - 12; v <= y + 12; ++v)

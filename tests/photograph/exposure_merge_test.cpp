@@ -8,8 +8,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "base/random.h"
-#include "stats/distributions.h"
+#include "photograph/exposure_times.h"
 
 namespace gonio::photograph {
 namespace {
@@ -122,6 +121,26 @@ TEST(ExposureMerge, FindsAShutterThatIsOff) {
     }
   }
   EXPECT_GE(covered, asked * 88 / 100) << asked;
+}
+
+// From a start that is wrong by two and by three.
+TEST(ExposureMerge, TheStackTellsItsOwnNoise) {
+  std::size_t covered = 0;
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    const Stack s = stack(60 + seed, 200, 100, {}, 10, 1e6);
+    const SensorNoise truth = s.request.noise;
+    ExposureSamples samples{s.stated_s, s.codes, {2 * truth.gain, 3 * truth.read}, s.request.full_scale};
+    for (auto& codes : samples.codes)
+      for (float& v : codes)
+        if (v >= samples.full_scale) v = std::nanf("");
+    const auto found = noise_of_stack(samples);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->noise.gain / truth.gain, 1, 0.02);
+    EXPECT_NEAR(found->noise.read / truth.read, 1, 0.02);
+    covered += std::abs(found->noise.gain - truth.gain) < 1.96 * found->gain_sigma;
+    covered += std::abs(found->noise.read - truth.read) < 1.96 * found->read_sigma;
+  }
+  EXPECT_GE(covered, 12u) << "of 16";  // fewer than that one time in a hundred, at 95 %
 }
 
 TEST(ExposureMerge, MarksWhatMoved) {

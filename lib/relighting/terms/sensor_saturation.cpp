@@ -60,8 +60,9 @@ void record(const Use& use, const Frame& frame, std::span<double> values) {
   const Cut& cut = static_cast<const Cut&>(*use.prepared);
   for (double& v : values) {
     if (cut.light) v = equation::sensor_saturation(v, full_scale);
-    if (cut.noise)
-      v = equation::sensor_saturation_of_noise(v, full_scale, noise_sigma(frame.image, std::min(v, full_scale)));
+    if (!cut.noise) continue;
+    const double sigma = noise_sigma(frame.image, equation::sensor_saturation(v, full_scale));
+    v = equation::sensor_saturation_of_noise(v, full_scale, sigma);
   }
 }
 

@@ -1,0 +1,33 @@
+// Raw frames through develop_view(): pictures and masks on disk, images in the manifest.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "manifest/sections/forward.h"
+#include "photograph/raw_view.h"
+
+namespace gonio::photograph {
+
+struct RawRequest {
+  std::vector<RawView> views;
+  std::vector<std::vector<std::size_t>> images;  // of each view, places in document.images; empty: views are new images
+  std::vector<std::size_t> spent;                // further places that go: dark frames
+  RawRecipe recipe;
+  std::string camera;  // of new images; empty: not known
+  std::function<std::filesystem::path(const std::string& name)> output_path;
+  std::function<void(const std::filesystem::path&)> note_input;
+};
+
+// Views of the manifest's images with a file, by camera: images of one `group` are exposures of one view, others stand
+// alone. Images that are `dark` become `dark_frames`. Fills `views`, `images` and, by the camera's mosaic, the
+// recipe's.
+void views_of_images(const manifest::Document& document, const std::string& camera, RawRequest& request,
+                     std::vector<std::filesystem::path>& dark_frames);
+
+// Writes VIEW.exr and VIEW-mask.png for every view, and puts one image for each into the manifest, in the place of
+// those that it is made of: linear, in codes per second, with variance. What each view's exposures said is logged.
+void develop_raw(manifest::Document& document, const RawRequest& request);
+
+}  // namespace gonio::photograph

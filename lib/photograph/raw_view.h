@@ -1,0 +1,46 @@
+// Exposures of one view as one picture of radiance, in codes per second: black and dark frames, flat field, defects,
+// merge, mosaic. In this order, and each step said in `steps`.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "photograph/demosaic.h"
+#include "photograph/exposure_merge.h"
+#include "photograph/raw_correction.h"
+#include "photograph/raw_frame.h"
+
+namespace gonio::photograph {
+
+struct RawView {
+  std::string name;
+  std::vector<std::filesystem::path> frames;
+  std::vector<std::optional<double>> exposures_s;  // as stated for each frame; nothing: by the file
+};
+
+struct RawRecipe {
+  RawStated stated;
+  std::optional<DarkField> dark;
+  std::optional<FlatField> flat;
+  std::optional<SensorNoise> noise;  // left out: from the exposures themselves
+  Demosaicing demosaicing = Demosaicing::gradient;
+  bool refine_exposures = true;
+  int blooming_px = 1;
+};
+
+struct DevelopedView {
+  io::Image picture;                  // R, G, B (or Y), variance.R, ..., exposure.shortest and exposure.longest, s
+  std::vector<std::uint8_t> trusted;  // one entry per pixel
+  MergedPlane merged;                 // without its planes: exposures, chi-square
+  SensorNoise noise;
+  bool noise_from_exposures = false;
+  double share_too_bright = 0, share_moved = 0, share_unusable = 0;  // of all samples
+  std::vector<std::string> steps;                                    // "black", "dark frames", ...
+};
+
+// Error(data) for frames of different sizes or mosaics, an exposure that nobody states where there are several, and
+// noise that is neither stated nor told by overlapping exposures.
+DevelopedView develop_view(const RawView& view, const RawRecipe& recipe);
+
+}  // namespace gonio::photograph
