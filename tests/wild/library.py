@@ -74,6 +74,8 @@ def values(effect, lamps, scale):
         return of("surface.interface", exact=False, f0=f0, **alone)
     if name == "scale":
         return of("geometry.scale", growth=e["growth"])
+    if name == "fog":  # its light is scattered any number of times
+        return of("volume.fog", exact=False, sigma_t_per_m=e["per_m"])
     if name == "stain":
         return of("surface.spatial-variation", depth=-e["depth"])
     return []

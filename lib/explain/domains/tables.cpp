@@ -40,6 +40,7 @@ const Domain& tables() {
           {"sensor.prnu", "a row names no pixel"},
           {"sensor.exposure", "a reading states its own exposure: sensor.shutter is what all of them have in common"},
           {"transport.", "rows know of no other bodies"},
+          {"volume.fog", "a row knows no way through the air; what lies on the way is volume.absorption"},
           {"surface.coat", "samples of a reflectance are those of one place: surface.interface"},
           {"surface.translucent", "samples of a reflectance are those of one side"},
           {"surface.spatial-variation", "samples of a reflectance are those of one place"},
