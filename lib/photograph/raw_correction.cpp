@@ -29,10 +29,7 @@ Middle middle_of(const std::vector<float>& values) {
   std::vector<double> some;
   const std::size_t stride = 1 + values.size() / most_for_median;
   for (std::size_t i = 0; i < values.size(); i += stride) some.push_back(values[i]);
-  Middle m{stats::median(some), 0};
-  for (double& v : some) v = std::abs(v - m.at);
-  m.sigma = 1.4826 * stats::median(some);
-  return m;
+  return {stats::median(some), stats::robust_sigma(some)};
 }
 
 void mark(const std::vector<float>& values, std::vector<std::uint8_t>& hot) {
