@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "camera/quality/alignment.h"
 #include "explain/tables/unit.h"
 
@@ -50,6 +51,22 @@ std::vector<Vec3> observed_places(const Table& table) {
   std::vector<Vec3> places;
   for (std::size_t r = 0; r < table.rows(); ++r) places.push_back({at(0, r), at(1, r), at(2, r)});
   return places;
+}
+
+RowsByName rows_by_name(const Table& table, const std::string& column) {
+  RowsByName rows;
+  const std::size_t place = table.place_of(column);
+  std::vector<double> seen;
+  for (std::size_t r = 0; r < table.rows(); ++r) {
+    const double value = place == Table::none ? 1 : table.values[place][r];
+    const auto at = static_cast<std::size_t>(std::ranges::find(seen, value) - seen.begin());
+    rows.of_row.push_back(at);
+    if (at < seen.size()) continue;
+    seen.push_back(value);
+    const bool named = place != Table::none && !table.labels[place].empty();
+    rows.names.push_back(named ? table.labels[place][static_cast<std::size_t>(value)] : format("%g", value));
+  }
+  return rows;
 }
 
 }  // namespace gonio::explain::tables

@@ -34,4 +34,12 @@ void check_places_observed(const Table& table, const std::string& model);
 // What the rows observe.
 std::vector<Vec3> observed_places(const Table& table);
 
+// Rows by the value of a column of names or numbers, in the order in which they appear; without such a column they are
+// all one.
+struct RowsByName {
+  std::vector<std::string> names;
+  std::vector<std::size_t> of_row;  // place in `names`
+};
+RowsByName rows_by_name(const Table& table, const std::string& column);
+
 }  // namespace gonio::explain::tables

@@ -154,18 +154,9 @@ class ArmInTable final : public BoundModel {
   }
 
   void read_points(const Table& table) {
-    const std::size_t column = table.place_of("point");
-    std::vector<double> seen;
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-      const double value = column == none ? 0 : table.values[column][r];
-      auto found = std::ranges::find(seen, value);
-      if (found == seen.end()) {
-        seen.push_back(value), found = seen.end() - 1;
-        const bool named = column != none && !table.labels[column].empty();
-        points_.push_back(named ? table.labels[column][static_cast<std::size_t>(value)] : format("%g", value));
-      }
-      rows_[r].point = static_cast<std::size_t>(found - seen.begin());
-    }
+    RowsByName by_point = rows_by_name(table, "point");
+    points_ = std::move(by_point.names);
+    for (std::size_t r = 0; r < rows_.size(); ++r) rows_[r].point = by_point.of_row[r];
   }
 
   Rigid<frame::Base, frame::Tool> nominal(const Row& row) const { return robot::flange(arm_.links, row.joints_rad); }

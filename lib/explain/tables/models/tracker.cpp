@@ -30,7 +30,7 @@ namespace gonio::explain::tables {
 namespace {
 
 using Values = std::span<const double>;
-constexpr std::size_t none = Table::none, fewest_points = 4;
+constexpr std::size_t fewest_points = 4;
 
 class Tracker final : public BoundModel {
  public:
@@ -100,21 +100,9 @@ class Tracker final : public BoundModel {
   }
 
   void declare_placements(const Table& table) {
-    const std::size_t column = table.place_of("placement");
-    std::vector<double> seen;
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-      const double value = column == none ? 0 : table.values[column][r];
-      auto found = std::ranges::find(seen, value);
-      if (found == seen.end()) {
-        seen.push_back(value), found = seen.end() - 1;
-        const bool named = column != none && !table.labels[column].empty();
-        placements_.push_back(
-            {named ? table.labels[column][static_cast<std::size_t>(value)] : std::to_string(placements_.size() + 1),
-             {},
-             {}});
-      }
-      rows_[r].placement = static_cast<std::size_t>(found - seen.begin());
-    }
+    const RowsByName by_placement = rows_by_name(table, "placement");
+    for (const std::string& name : by_placement.names) placements_.push_back({name, {}, {}});
+    for (std::size_t r = 0; r < rows_.size(); ++r) rows_[r].placement = by_placement.of_row[r];
     for (std::size_t k = 0; k < placements_.size(); ++k) start(placements_[k], k, table);
   }
 
