@@ -8,9 +8,6 @@ namespace gonio::camera {
 
 inline constexpr const char* polarizers = "polarizers";
 
-// "RGGB", "GRBG", "GBRG" or "BGGR".
-bool is_bayer(const std::string& mosaic);
-
 // Pixels from one to the next behind the same filter: 1 without a mosaic, else 2. Error(data) at `place` for patterns
 // other than the above.
 int filter_pitch(const std::string& mosaic, const std::string& place);

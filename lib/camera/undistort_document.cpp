@@ -16,6 +16,7 @@
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "photograph/mask.h"
+#include "photograph/mosaic.h"
 #include "photograph/response.h"
 #include "photograph/saturation.h"
 
@@ -68,7 +69,7 @@ int pitch_of(const io::Image& raw, const manifest::Camera& camera, const Work& w
   const int pitch = filter_pitch(camera.mosaic, work.place + "/mosaic");
   if (pitch == 1 || raw.channel("R") < 0 || raw.channel("G") < 0 || raw.channel("B") < 0 || in_triplicate(raw))
     return pitch;
-  if (is_bayer(camera.mosaic) || raw.channel("s1.R") >= 0) return 1;
+  if (photograph::is_bayer(camera.mosaic) || raw.channel("s1.R") >= 0) return 1;
   throw Error(Exit::data, work.path.string(),
               "has three colours of a camera with polarizers: filtered light or not, it does not say",
               "give one channel Y for the mosaic, or a camera without \"mosaic\" for light before the polarizers");

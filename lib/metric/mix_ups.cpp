@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "metric/blocks.h"
+#include "photograph/noise_variance.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
 
@@ -55,9 +56,8 @@ std::vector<Sample> samples_of(const PictureOfSet& file, double floor, const Pic
     if (!file.counts[pixel]) continue;
     for (std::size_t c = 0; c < file.channels; ++c) {
       const double v = std::max(0.0, double{file.recording[pixel * file.channels + c]});
-      const double shot = file.noise.gain > 0 ? v / file.noise.gain : 0;
       samples.push_back({std::log(v + floor), shown.predicted[k * file.channels + c],
-                         std::min(1.0, (shot + file.noise.read * file.noise.read) / ((v + floor) * (v + floor))),
+                         std::min(1.0, photograph::noise_variance(file.noise, v) / ((v + floor) * (v + floor))),
                          shown.label.empty() ? 0 : shown.label[k],
                          static_cast<std::uint32_t>(blocks.of_pixel(pixel, file.width))});
     }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "photograph/noise_variance.h"
 
 namespace gonio::metric {
 namespace {
@@ -103,7 +104,7 @@ Channels channels_named(const std::string& name) {
 double Overlay::variance(std::size_t i, double scale) const {
   double total = 0;
   if (noise)
-    total = std::max(scale * rendering[i], 0.0) / noise->gain + noise->read * noise->read;
+    total = photograph::noise_variance(*noise, scale * rendering[i]);
   else if (!photograph_variance.empty())
     total = photograph_variance[i];
   else
@@ -120,8 +121,7 @@ Overlay lay_over(std::string name, LinearPicture photograph, LinearPicture rende
   if (channels == Channels::luminance && photograph.colour.channels.size() == 3 && noise) {
     // Shot noise of a weighted sum depends on each channel, which the sum no longer shows: keep its variance beside it.
     photograph.variance = photograph.colour;
-    for (float& v : photograph.variance.data)
-      v = static_cast<float>(std::max(double{v}, 0.0) / noise->gain + noise->read * noise->read);
+    for (float& v : photograph.variance.data) v = static_cast<float>(photograph::noise_variance(*noise, v));
     noise.reset();
   }
   reduce(photograph, channels);

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "geom/angle.h"
 #include "photograph/exposure_times.h"
+#include "photograph/noise_variance.h"
 #include "stats/distributions.h"
 
 namespace gonio::photograph {
@@ -134,7 +135,7 @@ class Merge {
   }
 
   Word said_by(SampleKind kind, double code, double t, double rate) const {
-    const double variance = r_.noise.variance(rate * t), sigma = std::sqrt(variance),
+    const double variance = noise_variance(r_.noise, rate * t), sigma = std::sqrt(variance),
                  a = (rate * t - r_.full_scale) / sigma;
     Word word;
     const bool near = a > -8;
@@ -166,7 +167,7 @@ class Merge {
     chi_square_.assign(pixels_, 0), freedom_.assign(pixels_, 0);
     pass([&](std::size_t place, const Sorted& s, std::size_t i) {
       if (merged_.trust[i] != Trust::good || s.kinds[i] != SampleKind::read) return;
-      const double expected = merged_.rate[i] * lasts(place), variance = r_.noise.variance(expected);
+      const double expected = merged_.rate[i] * lasts(place), variance = noise_variance(r_.noise, expected);
       if (expected + clear_of_full * std::sqrt(variance) > r_.full_scale) return;
       const double off = s.codes[i] - expected;
       chi_square_[i] += static_cast<float>(off * off / variance), ++freedom_[i];
@@ -229,7 +230,7 @@ class Merge {
       const Sorted s = read(order_[place]);
       for (const std::size_t i : moved)
         if (s.kinds[i] == SampleKind::read)
-          worth[place] += std::max(0.0f, s.codes[i]) / std::sqrt(r_.noise.variance(s.codes[i]));
+          worth[place] += std::max(0.0f, s.codes[i]) / std::sqrt(noise_variance(r_.noise, s.codes[i]));
     }
     const auto best = std::ranges::max_element(worth) - worth.begin();
     std::vector<std::size_t> places(order_.size());
@@ -244,7 +245,7 @@ class Merge {
       std::erase_if(left, [&](std::size_t i) {
         if (s.kinds[i] != SampleKind::read) return false;
         merged_.rate[i] = static_cast<float>(s.codes[i] / t);
-        merged_.variance[i] = static_cast<float>(r_.noise.variance(s.codes[i]) / (t * t));
+        merged_.variance[i] = static_cast<float>(noise_variance(r_.noise, s.codes[i]) / (t * t));
         merged_.first[i] = merged_.last[i] = static_cast<std::uint8_t>(place);
         return true;
       });

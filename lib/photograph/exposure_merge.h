@@ -21,7 +21,7 @@
 #include <limits>
 #include <vector>
 
-#include "photograph/sensor_noise.h"
+#include "manifest/noise.h"
 
 namespace gonio::photograph {
 
@@ -35,7 +35,7 @@ struct MergeRequest {
   int width = 0, height = 0;
   std::vector<double> exposures_s;
   std::function<RawPlane(std::size_t exposure)> read;  // called some times for each
-  SensorNoise noise;
+  manifest::Noise noise;
   double full_scale = 0;                                    // codes beyond black: from here on a sample is saturated
   double floor = -std::numeric_limits<double>::infinity();  // the lowest code, black taken off
   int blooming_px = 1;                                      // samples so near to a saturated one are not used

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "linear/solve.h"
+#include "photograph/noise_variance.h"
 #include "stats/distributions.h"
 
 namespace gonio::photograph {
@@ -30,7 +31,7 @@ double rate_of(const ExposureSamples& s, const std::vector<double>& t, std::size
     double sum = 0, information = 0;
     used.clear();
     for (std::size_t k = 0; k < t.size(); ++k) {
-      const double expected = rate * t[k], variance = s.noise.variance(expected),
+      const double expected = rate * t[k], variance = noise_variance(s.noise, expected),
                    margin = clear_of_ends * std::max(0.5, std::sqrt(variance));  // half a code: codes are whole
       if (std::isnan(s.codes[k][pixel]) || expected + margin > s.full_scale || expected - margin < s.floor) continue;
       sum += t[k] * s.codes[k][pixel] / variance, information += t[k] * t[k] / variance;
@@ -81,19 +82,21 @@ class Refinement {
       if (used.size() < 2 || !(rate > 0)) continue;
       double chi_square = 0, information = 0, sum = 0;
       for (const std::size_t k : used) {
-        const double expected = rate * t_[k], variance = s_.noise.variance(expected), off = s_.codes[k][p] - expected;
+        const double expected = rate * t_[k], variance = noise_variance(s_.noise, expected),
+                     off = s_.codes[k][p] - expected;
         chi_square += off * off / variance, information += t_[k] * t_[k] / variance, sum += t_[k] * off / variance;
       }
       const double freedom = static_cast<double>(used.size()) - 1;
       if (leave_moved_out && stats::chi2_upper(chi_square, freedom) < least_p) continue;
       chi_square_ += chi_square, freedom_ += freedom, ++pixels_;
       for (const std::size_t k : used) {
-        const double expected = rate * t_[k], weight = 1 / s_.noise.variance(expected),
+        const double expected = rate * t_[k], weight = 1 / noise_variance(s_.noise, expected),
                      shared = weight * expected * t_[k];
         normal_(index(k), index(k)) += weight * expected * expected;
         right_[index(k)] += weight * expected * (s_.codes[k][p] - expected) - shared * sum / information;
         for (const std::size_t j : used)
-          normal_(index(k), index(j)) -= shared * rate * t_[j] * t_[j] / s_.noise.variance(rate * t_[j]) / information;
+          normal_(index(k), index(j)) -=
+              shared * rate * t_[j] * t_[j] / noise_variance(s_.noise, rate * t_[j]) / information;
       }
     }
     choose();
@@ -157,14 +160,14 @@ Transfer photon_transfer(const ExposureSamples& s) {
     if (used.size() < 2) continue;
     double chi_square = 0, information = 0;
     for (const std::size_t k : used) {
-      const double t = s.exposures_s[k], variance = s.noise.variance(rate * t);
+      const double t = s.exposures_s[k], variance = noise_variance(s.noise, rate * t);
       information += t * t / variance, chi_square += std::pow(s.codes[k][p] - rate * t, 2) / variance;
     }
     if (stats::chi2_upper(chi_square, static_cast<double>(used.size()) - 1) < least_p) continue;
     ++sums.pixels;
     for (const std::size_t k : used) {
-      const double t = s.exposures_s[k], expected = std::max(0.0, rate * t), variance = s.noise.variance(expected),
-                   left = 1 - t * t / variance / information;
+      const double t = s.exposures_s[k], expected = std::max(0.0, rate * t),
+                   variance = noise_variance(s.noise, expected), left = 1 - t * t / variance / information;
       if (left < 0.02) continue;
       const double square = std::pow(s.codes[k][p] - rate * t, 2) / left;
       const Eigen::Vector2d by(expected, 1);
@@ -191,7 +194,7 @@ std::optional<StackNoise> noise_of_stack(ExposureSamples samples) {
     samples.noise.gain = 1 / std::max(found[0], 1 / most_gain);
     samples.noise.read = std::sqrt(std::max(found[1], least_read * least_read));
   }
-  const SensorNoise& n = samples.noise;
+  const manifest::Noise& n = samples.noise;
   return StackNoise{n, n.gain * n.gain * std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)) / (2 * n.read)};
 }
 

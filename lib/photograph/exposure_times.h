@@ -11,14 +11,14 @@
 #include <optional>
 #include <vector>
 
-#include "photograph/sensor_noise.h"
+#include "manifest/noise.h"
 
 namespace gonio::photograph {
 
 struct ExposureSamples {
   std::vector<double> exposures_s;        // as stated
   std::vector<std::vector<float>> codes;  // [exposure][pixel], black taken off; not a number where it cannot be used
-  SensorNoise noise;
+  manifest::Noise noise;
   double full_scale = 0;
   double floor = -std::numeric_limits<double>::infinity();  // the lowest code: readings near it are a selection, too
 };
@@ -38,7 +38,7 @@ RefinedExposures refine_exposures(const ExposureSamples& samples);
 // over what the fit of each pixel's rate leaves of them, against the expected code (photon transfer, without a second
 // frame of any exposure). `samples.noise` is where it starts. Nothing where fewer than two exposures overlap.
 struct StackNoise {
-  SensorNoise noise;
+  manifest::Noise noise;
   double gain_sigma = 0, read_sigma = 0;
 };
 std::optional<StackNoise> noise_of_stack(ExposureSamples samples);

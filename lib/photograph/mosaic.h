@@ -7,6 +7,8 @@
 
 namespace gonio::photograph {
 
+bool is_bayer(const std::string& corner);  // "RGGB", "GRBG", "GBRG" or "BGGR"
+
 class Mosaic {
  public:
   // Error(data) at `place` for other names.

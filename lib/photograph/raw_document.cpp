@@ -23,13 +23,13 @@ std::string words_of(const RawView& view, const DevelopedView& d) {
     double most = 0;
     std::size_t off = 0;
     for (std::size_t k = 0; k < view.frames.size(); ++k) {
-      if (!view.exposures_s[k] || d.merged.exposures_sigma[k] == 0) continue;
-      const double change = d.merged.exposures_s[k] / *view.exposures_s[k] - 1;
+      if (d.merged.exposures_sigma[k] == 0) continue;
+      const double change = d.merged.exposures_s[k] / d.stated_s[k] - 1;
       if (std::abs(change) > std::abs(most)) most = change, off = k;
     }
     if (most != 0)
-      text += format("; the shutter farthest from its time: %g s, %+.2f(%.0f) %%", *view.exposures_s[off], 100 * most,
-                     1e4 * d.merged.exposures_sigma[off] / *view.exposures_s[off]);
+      text += format("; the shutter farthest from its time: %g s, %+.2f(%.0f) %%", d.stated_s[off], 100 * most,
+                     1e4 * d.merged.exposures_sigma[off] / d.stated_s[off]);
     text += format("; chi-square per degree of freedom %.3f", d.merged.chi_square_per_freedom);
   }
   if (d.noise_from_exposures)

@@ -35,6 +35,7 @@ class Development {
     // Dark frames' own noise is in every reading.
     if (recipe_.dark && recipe_.dark->frames > 0)
       request.noise.read *= std::sqrt(1 + 1 / static_cast<double>(recipe_.dark->frames));
+    out.stated_s = exposures_s_;
     out.merged = merge_exposures(request);
     flatten(out.merged);
     paint(out);
@@ -95,7 +96,7 @@ class Development {
     return p;
   }
 
-  SensorNoise noise(bool& from_exposures) const {
+  manifest::Noise noise(bool& from_exposures) const {
     if (recipe_.noise) return *recipe_.noise;
     const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_),
                       stride = std::max<std::size_t>(1, pixels / most_samples) | 1;

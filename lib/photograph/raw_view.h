@@ -23,7 +23,7 @@ struct RawRecipe {
   RawStated stated;
   std::optional<DarkField> dark;
   std::optional<FlatField> flat;
-  std::optional<SensorNoise> noise;  // left out: from the exposures themselves
+  std::optional<manifest::Noise> noise;  // left out: from the exposures themselves
   Demosaicing demosaicing = Demosaicing::gradient;
   bool refine_exposures = true;
   int blooming_px = 1;
@@ -32,8 +32,9 @@ struct RawRecipe {
 struct DevelopedView {
   io::Image picture;                  // R, G, B (or Y), variance.R, ..., exposure.shortest and exposure.longest, s
   std::vector<std::uint8_t> trusted;  // one entry per pixel
+  std::vector<double> stated_s;       // exposures as they were stated, here or by the files
   MergedPlane merged;                 // without its planes: exposures, chi-square
-  SensorNoise noise;
+  manifest::Noise noise;
   bool noise_from_exposures = false;
   double share_too_bright = 0, share_moved = 0, share_unusable = 0;  // of all samples
   std::vector<std::string> steps;                                    // "black", "dark frames", ...

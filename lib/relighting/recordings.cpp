@@ -18,6 +18,7 @@
 #include "manifest/sections/object.h"
 #include "photograph/linear_picture.h"
 #include "photograph/mask.h"
+#include "photograph/noise_variance.h"
 #include "scene/mechanisms.h"
 #include "stats/intervals.h"
 
@@ -161,8 +162,7 @@ io::Image read_take(const manifest::Document& document, const Recording& image, 
 }
 
 double noise_sigma(const Recording& image, double value) {
-  const double shot = image.noise.gain > 0 ? std::max(value, 0.0) / image.noise.gain : 0;
-  return std::sqrt(shot + image.noise.read * image.noise.read);
+  return std::sqrt(photograph::noise_variance(image.noise, value));
 }
 
 }  // namespace gonio::relighting

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "camera/mosaic.h"
 #include "geom/vector.h"
+#include "photograph/mosaic.h"
 
 namespace gonio::render {
 namespace {
@@ -27,15 +27,14 @@ std::array<int, 3> colours_of(const io::Image& picture) {
 }  // namespace
 
 io::Image bayer_mosaic(const io::Image& picture, const std::string& mosaic) {
-  if (!camera::is_bayer(mosaic))
+  if (!photograph::is_bayer(mosaic))
     throw Error(Exit::data, "mosaic", "\"" + mosaic + "\" is no colour filter array", "RGGB, GRBG, GBRG or BGGR");
+  const auto filters = photograph::Mosaic::named(mosaic, "mosaic");
   const auto from = colours_of(picture);
   io::Image result(picture.width, picture.height, {"Y"});
   for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x) {
-      const char filter = mosaic[static_cast<std::size_t>(2 * (y % 2) + x % 2)];
-      result.at(x, y, 0) = picture.at(x, y, from[std::string("RGB").find(filter)]);
-    }
+    for (int x = 0; x < picture.width; ++x)
+      result.at(x, y, 0) = picture.at(x, y, from[static_cast<std::size_t>(filters.colour(x, y))]);
   return result;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "photograph/exposure_times.h"
+#include "photograph/noise_variance.h"
 
 namespace gonio::photograph {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 // A 12-bit sensor: shot noise, read noise, whole codes, nothing beyond full scale.
 struct Sensor {
   double gain = 4.5, read = 2.2, black = 64, full = 4095;
-  SensorNoise noise() const { return {gain, std::sqrt(read * read + 1 / 12.0)}; }
+  manifest::Noise noise() const { return {gain, std::sqrt(read * read + 1 / 12.0)}; }
   float operator()(double rate, double t, std::mt19937_64& random) const {
     const double electrons = rate * t * gain;
     const double caught = electrons < 1e6
@@ -88,7 +89,7 @@ TEST(ExposureMerge, HasNoBiasAndAHonestVarianceOverSixDecades) {
 // drops what saturated is wrong.
 TEST(ExposureMerge, IsRightWhereSamplesAreAboutToSaturate) {
   const Sensor sensor;
-  const double full = sensor.full - sensor.black, spread = std::sqrt(sensor.noise().variance(full)) / full;
+  const double full = sensor.full - sensor.black, spread = std::sqrt(noise_variance(sensor.noise(), full)) / full;
   for (const double at : {-1.5, -0.5, 0.0, 0.5, 1.5}) {
     const double rate = full / 0.256 * (1 + at * spread);
     Stack s = stack(7, 300, 100, {}, rate, rate * (1 + 1e-9));
@@ -128,7 +129,7 @@ TEST(ExposureMerge, TheStackTellsItsOwnNoise) {
   std::size_t covered = 0;
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     const Stack s = stack(60 + seed, 200, 100, {}, 10, 1e6);
-    const SensorNoise truth = s.request.noise;
+    const manifest::Noise truth = s.request.noise;
     ExposureSamples samples{s.stated_s, s.codes, {2 * truth.gain, 3 * truth.read}, s.request.full_scale};
     for (auto& codes : samples.codes)
       for (float& v : codes)

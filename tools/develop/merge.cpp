@@ -61,7 +61,7 @@ RawRequest request_of(cli::Invocation& call) {
   for (const auto& path : flat) call.note_input(path);
   if (!flat.empty()) request.recipe.flat = photograph::flat_field(flat, request.recipe.stated, request.recipe.dark);
   if (call.given("noise-gain"))
-    request.recipe.noise = photograph::SensorNoise{call.number("noise-gain"), call.number("read-noise")};
+    request.recipe.noise = manifest::Noise{call.number("noise-gain"), call.number("read-noise")};
   request.recipe.demosaicing =
       call.text("demosaic") == "bilinear" ? photograph::Demosaicing::bilinear : photograph::Demosaicing::gradient;
   request.recipe.refine_exposures = !call.flag("keep-exposures");

@@ -15,6 +15,7 @@
 #include "manifest/sections/pattern.h"
 #include "photograph/linear_picture.h"
 #include "photograph/mask.h"
+#include "photograph/noise_variance.h"
 #include "photograph/saturation.h"
 #include "render/mechanisms/sensor_saturation.h"
 #include "scene/mechanisms.h"
@@ -324,10 +325,7 @@ GreyView read_view(const manifest::Document& document, const InputView& view, co
       const float v = colour.data[i * channels + c], w = channels == 3 ? weights[c] : 1.0f;
       grey.value[i] += w * v;
       if (has_variance) grey.variance[i] += w * w * picture.variance.data[i * channels + c];
-      if (entry.noise)
-        grey.variance[i] +=
-            w * w *
-            static_cast<float>(std::max(0.0, double{v}) / entry.noise->gain + entry.noise->read * entry.noise->read);
+      if (entry.noise) grey.variance[i] += w * w * static_cast<float>(photograph::noise_variance(*entry.noise, v));
       if (photograph::at_full_scale(v, view.full_scale)) grey.saturated[i] = 1;
     }
   if (const auto mask_file = manifest::mask_path(document, view.image); !mask_file.empty())

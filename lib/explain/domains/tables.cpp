@@ -47,8 +47,7 @@ const Domain& tables() {
           {"surface.subsurface", "samples of a reflectance do not say where the light went in"},
           {"geometry.", "rows know of no body but the plane or the sample that they were measured on"},
           {"robot.",
-           "joint angles with poses of boards are the domain robot; the models tracker and arm have places, in no "
-           "order, "
+           "joint angles with poses of boards are the domain robot; the models tracker and arm have places alone, "
            "and temperature what warms"},
           {"tracks.", "a table of tracks holds points against a known shape: their scale is that shape's"},
           {"ct.", "a table has lengths measured in a volume, which ct.scale alone changes in proportion"}}};

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "photograph/noise_variance.h"
 
 namespace gonio::explain::stacks {
 namespace {
@@ -165,10 +166,7 @@ ReadingNoise::ReadingNoise(const Stack& stack) : stack_(stack) {
 double ReadingNoise::sigma(std::size_t image, double reading) const {
   const double rounding = stack_.quantum * stack_.quantum / 12;
   const StackImage& own = stack_.images[image];
-  if (own.noise_stated) {
-    const double shot = own.noise.gain > 0 ? std::max(0.0, reading) / own.noise.gain : 0;
-    return std::sqrt(shot + own.noise.read * own.noise.read + rounding + 1e-18);
-  }
+  if (own.noise_stated) return std::sqrt(photograph::noise_variance(own.noise, reading) + rounding + 1e-18);
   const auto above = std::upper_bound(level_.begin(), level_.end(), reading);
   double sigma = above == level_.begin() ? sigma_.front() : above == level_.end() ? sigma_.back() : 0;
   if (sigma == 0 && above != level_.begin() && above != level_.end()) {

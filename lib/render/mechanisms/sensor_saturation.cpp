@@ -8,7 +8,7 @@ const Mechanism& sensor_saturation() {
       .id = "sensor.saturation",
       .sentence = "The sensor reads no more than its full scale, whatever light arrives.",
       .typical = "whatever passes full scale",
-      .equation = "v = min(v, full_scale); full_scale 0: no limit",
+      .equation = "v = min(v, full_scale), in the mean over the noise that was there before; full_scale 0: no limit",
       .source = "EMVA Standard 1288, release 4.0, saturation capacity",
       .stage = "sensor",
       .target = Target::camera,

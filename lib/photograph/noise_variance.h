@@ -1,0 +1,12 @@
+// The variance that a stated noise gives a linear value (EMVA 1288: shot noise and read noise).
+#pragma once
+#include "manifest/noise.h"
+
+namespace gonio::photograph {
+
+// v / gain + read^2; gain 0: no shot noise. Values below zero have none either.
+inline double noise_variance(const manifest::Noise& noise, double value) {
+  return (noise.gain > 0 && value > 0 ? value / noise.gain : 0) + noise.read * noise.read;
+}
+
+}  // namespace gonio::photograph
