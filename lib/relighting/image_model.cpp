@@ -155,9 +155,25 @@ void ImageModel::shade_terms(const SceneState& edited, std::size_t image, std::s
 }
 
 void ImageModel::add_terms(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
-                           std::span<double> radiance) const {
+                           std::span<double> radiance, Additions* noted) const {
   run_hooks(edited, image, picked, [&](const Use& use, const Frame& frame) {
-    if (use.term->add) use.term->add(use, frame, radiance);
+    if (!use.term->add) return;
+    Addition* note = noted && !use.term->anew ? &(*noted)[use.place] : nullptr;
+    if (note) note->before.assign(radiance.begin(), radiance.end());
+    use.term->add(use, frame, radiance);
+    if (note) note->after.assign(radiance.begin(), radiance.end());
+  });
+}
+
+void ImageModel::add_terms_again(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
+                                 const Additions& noted, std::span<double> radiance) const {
+  run_hooks(edited, image, picked, [&](const Use& use, const Frame& frame) {
+    if (!use.term->add) return;
+    const auto note = noted.find(use.place);
+    if (note == noted.end()) return use.term->add(use, frame, radiance);
+    const auto& [before, after] = note->second;
+    for (std::size_t i = 0; i < radiance.size(); ++i)
+      radiance[i] = before[i] > 0 ? radiance[i] * (after[i] / before[i]) : radiance[i] + (after[i] - before[i]);
   });
 }
 

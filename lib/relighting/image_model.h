@@ -10,6 +10,7 @@
 // surfaces is that of diffuse ones with the same albedo at 45 degrees. Terms (relighting/term.h) edit the state
 // before, and change what comes out after.
 #pragma once
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -51,8 +52,17 @@ class ImageModel {
                                        std::span<const std::uint32_t> picked) const;
   void compose(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
                const Shading& shading, std::span<double> radiance) const;
+  // Radiance before and after terms that are not added anew (Term::anew), by the place of the use.
+  struct Addition {
+    std::vector<double> before, after;
+  };
+  using Additions = std::map<std::size_t, Addition>;
   void add_terms(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
-                 std::span<double> radiance) const;
+                 std::span<double> radiance, Additions* noted = nullptr) const;
+  // The same near the state in which additions were noted: these go along with what they are added to instead of being
+  // simulated anew.
+  void add_terms_again(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
+                       const Additions& noted, std::span<double> radiance) const;
   void record_terms(const SceneState& edited, std::size_t image, std::span<const std::uint32_t> picked,
                     std::span<double> values) const;
   // The base model's prediction from another cache of the same pixels, as if nothing but geometry differed.

@@ -118,6 +118,7 @@ struct Term {
   void (*shade)(const Use&, const Frame&, Shading&) = nullptr;
   void (*add)(const Use&, const Frame&, std::span<double> radiance) = nullptr;
   void (*record)(const Use&, const Frame&, std::span<double> values) = nullptr;
+  bool anew = false;                               // add: cheap, done anew wherever what it is added to changes
   bool pointwise = false;                          // record: of a value it asks no other one
   bool gradual = false;                            // Candidate::gradual
   std::optional<std::size_t> share_of_readings{};  // Candidate's: which of a set's numbers

@@ -43,9 +43,11 @@ Derivatives::Derivatives(const ImageModel& model, SceneState centre, std::size_t
   shaded_ = model_.shaded(now, image_, picked_);
   model_.compose(now, image_, picked_, shaded_->whole(), composed_);
   added_ = composed_;
-  model_.add_terms(now, image_, picked_, added_);
+  model_.add_terms(now, image_, picked_, added_, &additions_);
   for (const Use& use : model_.uses())
     if (use.term->record && !use.neutral(now)) recorded_ = true, pointwise_ = pointwise_ && use.term->pointwise;
+  if (std::ranges::any_of(model_.uses(), [&](const Use& use) { return use.term->anew && !use.neutral(now); }))
+    find_passing(now);
   if (recorded_ && pointwise_) find_gains(now);
 }
 
@@ -58,9 +60,7 @@ void Derivatives::at(const SceneState& raw, const Touched& touched, std::span<do
     model_.add_terms(now, image_, picked_, out);
   } else {
     composed(now, touched, out);
-    // What terms add goes along with what it is added to: their own scenes are not simulated anew for every number.
-    for (std::size_t i = 0; i < out.size(); ++i)
-      if (composed_[i] > 0) out[i] *= added_[i] / composed_[i];
+    model_.add_terms_again(now, image_, picked_, additions_, out);
   }
   if (touched.reach == Reach::record || !pointwise_) return model_.record_terms(now, image_, picked_, out);
   if (recorded_)
@@ -71,8 +71,10 @@ void Derivatives::slopes(const Use& use, std::span<const std::size_t> numbers, s
   const SceneState now = model_.edited(centre_, image_);
   const Recording& image = model_.recordings().images[image_];
   use.term->slopes(use, {image_, image, model_.cache(image.view), picked_, now, model_}, numbers, columns);
-  if (!recorded_) return;
   const std::size_t rows = composed_.size();
+  if (!passing_.empty())
+    for (std::size_t i = 0; i < columns.size(); ++i) columns[i] *= passing_[i % rows];
+  if (!recorded_) return;
   if (pointwise_) {
     for (std::size_t i = 0; i < columns.size(); ++i) columns[i] *= gain_[i % rows];
     return;
@@ -89,19 +91,32 @@ void Derivatives::slopes(const Use& use, std::span<const std::size_t> numbers, s
   }
 }
 
-// Where what records asks of a value no other one: what it makes of small changes.
-void Derivatives::find_gains(const SceneState& now) {
+// What a small change of each value becomes where `made` makes values of values, each of its own alone.
+template <class Made>
+std::vector<double> gains_of(const std::vector<double>& values, const Made& made) {
   constexpr double small = 1e-4;
   double largest = 0;
-  for (const double v : added_) largest = std::max(largest, std::abs(v));
+  for (const double v : values) largest = std::max(largest, std::abs(v));
   const double step = small * largest;
-  values_ = added_;
-  std::vector<double> above = added_, below = added_;
+  std::vector<double> above = values, below = values;
   for (double& v : above) v += step;
   for (double& v : below) v -= step;
-  for (std::vector<double>* v : {&values_, &above, &below}) model_.record_terms(now, image_, picked_, *v);
-  gain_.resize(added_.size());
-  for (std::size_t i = 0; i < gain_.size(); ++i) gain_[i] = step > 0 ? (above[i] - below[i]) / (2 * step) : 0;
+  made(above), made(below);
+  for (std::size_t i = 0; i < above.size(); ++i) above[i] = step > 0 ? (above[i] - below[i]) / (2 * step) : 0;
+  return above;
+}
+
+// What terms that are added anew leave of radiance that others add.
+void Derivatives::find_passing(const SceneState& now) {
+  ImageModel::Additions none = additions_;
+  for (auto& [place, noted] : none) noted = {composed_, composed_};
+  passing_ = gains_of(composed_, [&](std::span<double> v) { model_.add_terms_again(now, image_, picked_, none, v); });
+}
+
+void Derivatives::find_gains(const SceneState& now) {
+  values_ = added_;
+  model_.record_terms(now, image_, picked_, values_);
+  gain_ = gains_of(added_, [&](std::span<double> v) { model_.record_terms(now, image_, picked_, v); });
 }
 
 void Derivatives::composed(const SceneState& now, const Touched& touched, std::span<double> out) const {

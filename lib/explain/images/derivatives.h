@@ -31,6 +31,7 @@ class Derivatives {
   void slopes(const Use& use, std::span<const std::size_t> numbers, std::span<double> columns) const;
 
  private:
+  void find_passing(const SceneState& now);
   void find_gains(const SceneState& now);
   void composed(const SceneState& now, const Touched& touched, std::span<double> out) const;
 
@@ -40,8 +41,10 @@ class Derivatives {
   std::span<const std::uint32_t> picked_;
   std::shared_ptr<const Shaded> shaded_;
   std::vector<double> composed_, added_;
+  ImageModel::Additions additions_;
   bool recorded_ = false, pointwise_ = true;  // by terms that are not neutral; by such as ask a value alone
   std::vector<double> values_, gain_;         // as recorded, where pointwise
+  std::vector<double> passing_;               // of what terms add, by those added anew; empty: all of it
 };
 
 }  // namespace gonio::explain::images

@@ -72,9 +72,10 @@ const Term& volume_fog() {
   static const Term term{
       .mechanism = mechanism::volume_fog,
       .reach = Reach::add,
-      .order = 45,
+      .order = 55,  // after all that adds to what surfaces send, which it dims too
       .candidates = candidates,
       .add = add,
+      .anew = true,
   };
   return term;
 }
