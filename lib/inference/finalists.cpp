@@ -11,6 +11,7 @@ namespace {
 
 constexpr double worth_a_look = 0.02;  // probability, before what it leaves is known
 constexpr double last_digit = 0.0025;  // of what can be repaired: a difference that could be anyone's
+constexpr double surely_helps = 2;     // standard errors, of what is said to matter beside something else
 constexpr double a_square = 0.5;       // noise widths squared, over all rows: no test parts what differs by less
 
 bool same_set(std::vector<std::size_t> a, std::vector<std::size_t> b) {
@@ -23,6 +24,9 @@ bool same_set(std::vector<std::size_t> a, std::vector<std::size_t> b) {
 // the set without that one is weighed in their place.
 bool is_answer(const Finalist& f) {
   return f.refused.empty() && (matters(f) || f.model.candidates.size() == 1);
+}
+bool is_too_small(const Finalist& f) {
+  return f.refused.empty() && !matters(f) && f.model.candidates.size() == 1;
 }
 bool holds_more(const Finalist& more, const Finalist& f) {
   const std::vector<std::size_t>&all = more.model.candidates, &own = f.model.candidates;
@@ -216,27 +220,51 @@ double Finalists::finer_ones(const Finalist& f) const {
   return count;
 }
 
+bool Finalists::adds_what_matters(const Finalist& part, const Finalist& more) const {
+  return errors_of_help(part.model.held_out, more.model.held_out) > surely_helps &&
+         race_.effect(part.model, more.model) >= options_.smallest_effect;
+}
+
+bool Finalists::matters_beside_small(const Finalist& f) const {
+  for (const Finalist& more : list_) {
+    if (!more.refused.empty() || !holds_more(more, f)) continue;
+    for (const Finalist& small : list_)
+      if (is_too_small(small) && holds_more(more, small) && !holds_more(f, small) && adds_what_matters(small, more))
+        return true;
+  }
+  return false;
+}
+
 void Finalists::compare() {
-  const Finalist* best = nullptr;
-  for (const Finalist& f : list_)
-    if (is_answer(f) && (best == nullptr || f.gained > best->gained)) best = &f;
+  const Finalist *best = nullptr, *best_that_matters = nullptr;
+  for (const Finalist& f : list_) {
+    if (!is_answer(f)) continue;
+    if (best == nullptr || f.gained > best->gained) best = &f;
+    if (matters(f) && (best_that_matters == nullptr || f.gained > best_that_matters->gained)) best_that_matters = &f;
+  }
   if (best == nullptr) return;
-  double most = best->gained + (best->looked_into ? best->left.any : 0);
   const HeldOut& linear = before_.evidence->folds->own();
-  const double floor = std::hypot(last_digit * most, rows_ > 0 ? a_square / rows_ : 0);
   for (Finalist& f : list_) {
     Statistics& s = f.statistics;
-    s.behind = &f == best ? 0 : std::max(0.0, errors_between(f.model.held_out, best->model.held_out, floor));
+    // What is too small to matter, however much it gains, is no rival of what matters beside it.
+    const bool beside = is_too_small(*best) && is_answer(f) && matters(f) && matters_beside_small(f);
+    const Finalist* rival = beside ? best_that_matters : best;
+    const double most = rival->gained + (rival->looked_into ? rival->left.any : 0);
+    const double floor = std::hypot(last_digit * most, rows_ > 0 ? a_square / rows_ : 0);
+    s.behind = &f == rival ? 0 : std::max(0.0, errors_between(f.model.held_out, rival->model.held_out, floor));
     // What a further mechanism adds that matters counts whole, however much the first has done.
-    for (const Finalist& more : list_)
-      if (more.refused.empty() && more.looked_into && !(more.statistics.times < 0) && holds_more(more, f))
+    for (const Finalist& more : list_) {
+      if (!more.refused.empty() || !holds_more(more, f)) continue;
+      const bool whole = more.looked_into && !(more.statistics.times < 0);
+      if (whole || (&f == best && is_too_small(f) && adds_what_matters(f, more)))
         s.behind = std::max(s.behind, errors_between(f.model.held_out, more.model.held_out, 0));
+    }
     set_shares(f, most, s);
     if (f.with_minor && list_[*f.with_minor].looked_into && list_[*f.with_minor].refused.empty()) {
-      Statistics beside;
-      set_shares(list_[*f.with_minor], most, beside);
+      Statistics both;
+      set_shares(list_[*f.with_minor], most, both);
       for (const auto share : {&Statistics::missed, &Statistics::own, &Statistics::clean, &Statistics::any})
-        s.*share = std::min(s.*share, beside.*share);
+        s.*share = std::min(s.*share, both.*share);
     }
     s.finer = finer_ones(f);
     s.curve = 0;

@@ -64,6 +64,8 @@ class Finalists {
   void look_into(std::size_t place);
   void look_at_minor(std::size_t place);       // what stands beside it, and is too small to matter
   double finer_ones(const Finalist& f) const;  // Statistics::finer
+  bool adds_what_matters(const Finalist& part, const Finalist& more) const;
+  bool matters_beside_small(const Finalist& f) const;  // beside a mechanism that is there and too small to matter
   void refuse(Finalist& f) const;
   std::vector<Model> weaken(Finalist& f) const;  // weakest part and its effect, by leaving each out
   void compare();                                // what depends on the others

@@ -162,7 +162,8 @@ void ForwardStep::run_singles() {
     const double reach = singles[fitted_].reach;
     if (fitted_ >= effort_.least && !(allowance * reach > best && reach > 0)) break;
     runners_.push_back(fitted(singles[fitted_], singles.size()));
-    best = std::max(best, runners_.back().hypothesis.gain);
+    // What is too small to matter is no answer, however much it gains where readings are precise.
+    if (!too_small(runners_.back().hypothesis)) best = std::max(best, runners_.back().hypothesis.gain);
   }
   sort_runners(runners_);
 }

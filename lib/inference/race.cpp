@@ -365,7 +365,7 @@ Hypothesis Race::judged(const Model& before, const Model& after, const std::vect
   else if (!limit.empty())
     h.refused = limit + " ends at the limit of what is plausible";
   else if (h.effect < options_.smallest_effect)
-    h.refused = "smaller than what matters";
+    h.refused = smaller_than_what_matters;
   return h;
 }
 

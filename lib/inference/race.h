@@ -82,6 +82,11 @@ class Race {
 
 // What the candidate's mechanism declares for a parameter of the problem; null: it is none of its own.
 const mechanism::Parameter* declared(const Candidate& candidate, const Parameter& parameter);
+// Hypothesis::refused of what is there and would be named if it mattered.
+inline constexpr char smaller_than_what_matters[] = "smaller than what matters";
+inline bool too_small(const Hypothesis& h) {
+  return h.refused == smaller_than_what_matters;
+}
 // The usual size of a deviation that the candidate's mechanism declares for a parameter of the problem; 0: none.
 double typical_size(const Candidate& candidate, const Parameter& parameter);
 // The name of the first number of these candidates that a fit left at a limit of what is plausible; empty: there is

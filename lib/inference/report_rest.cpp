@@ -116,7 +116,8 @@ void minor_effects(report::Page& page, const Explanation& e) {
     items.push_back(h.name + ": effect " + share_in_words(h.effect) + ", below " + share_in_words(e.smallest_effect));
   }
   if (items.empty()) return;
-  page.open_details("There, but too small to matter (" + std::to_string(items.size()) + ")");
+  page.open_details("Too small to matter (" + std::to_string(items.size()) + ")");
+  page.paragraph("Each was tried alone on what is left; several may look like the same small rest.");
   page.list(items);
   page.close_details();
 }

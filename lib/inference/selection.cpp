@@ -38,7 +38,7 @@ void eliminate(const Race& race, const Options& options, Model& model) {
 
 // Significant beside all the looks of its round, better on unseen groups, and too small to matter.
 bool is_minor(const Hypothesis& h) {
-  return h.refused == "smaller than what matters" && h.gain > 2 * h.gain_sigma;
+  return too_small(h) && h.gain > 2 * h.gain_sigma;
 }
 
 // A round with what it starts from; runners of the same round share it.

@@ -229,10 +229,15 @@ std::string limits_sentence(const Problem& problem, const Explanation& e) {
          ": look at units, files and the geometry first. ";
 }
 
+// Each of them was tried alone: several take up the same rest, so that none of them is said to be there.
 std::string minor_sentence(const Problem& problem, const Explanation& e) {
+  const std::vector<std::string> ids = minor_mechanisms(problem, e);
+  if (ids.empty()) return "";
   std::string names;
-  for (const std::string& id : minor_mechanisms(problem, e)) names += (names.empty() ? "" : ", ") + id;
-  return names.empty() ? "" : " Also there, but smaller than what matters: " + names + ".";
+  for (std::size_t k = 0; k < ids.size(); ++k) names += (k == 0 ? "" : k + 1 == ids.size() ? " or " : ", ") + ids[k];
+  if (e.verdict == Verdict::null) return " What is there looks like " + names + ".";
+  return " What else is left is smaller than what matters (" + printed(100 * e.smallest_effect) + " %) and looks like " +
+         names + ".";
 }
 
 // Groups of which no observation counts took no part.

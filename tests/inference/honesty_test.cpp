@@ -129,6 +129,7 @@ TEST(Honesty, MinorEffectsAreListed) {
   bool listed = false;
   for (const std::size_t k : e.minor) listed |= e.scoreboard[k].name == "toy.square";
   EXPECT_TRUE(listed);
+  EXPECT_NE(e.sentence.find("What is there looks like toy.square."), std::string::npos) << e.sentence;
 }
 
 // A fine ripple that no curve of six knots follows and no mechanism makes: unknown, along z.
