@@ -18,6 +18,7 @@
 #include "manifest/sections/acceptance.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
+#include "manifest/sections/colour_correction.h"
 #include "manifest/sections/comparison.h"
 #include "manifest/sections/contrast.h"
 #include "manifest/sections/evaluation.h"
@@ -64,6 +65,7 @@ void for_each_section(D& d, const Visit& visit) {
   visit("rigs", d.rigs);
   visit("robots", d.robots);
   visit("images", d.images);
+  visit("colour", d.colour);
   visit("meshes", d.meshes);
   visit("surfaces", d.surfaces);
   visit("lights", d.lights);

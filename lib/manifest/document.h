@@ -37,6 +37,7 @@ struct Document {
   std::map<std::string, Rig> rigs;
   std::map<std::string, Robot> robots;
   std::vector<ImageEntry> images;
+  std::map<std::string, ColourCorrection> colour;
   std::map<std::string, Mesh> meshes;
   std::map<std::string, Surface> surfaces;
   std::map<std::string, Light> lights;

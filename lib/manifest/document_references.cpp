@@ -10,6 +10,7 @@
 #include "manifest/image_list.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
+#include "manifest/sections/colour_correction.h"
 #include "manifest/sections/file.h"
 #include "manifest/sections/flat_patch.h"
 #include "manifest/sections/ground_noise.h"
@@ -147,6 +148,23 @@ void needs_numbers(std::size_t count, std::size_t wanted, const std::string& at,
     throw Error(Exit::data, at, "has " + std::to_string(count) + " numbers, needs " + std::to_string(wanted), remedy);
 }
 
+void check_colour(const Document& d) {
+  for (const auto& [name, colour] : d.colour) {
+    const std::string at = place(d, "/colour/" + name);
+    must_exist(d.cameras, "cameras", colour.camera, at + "/camera");
+    needs_numbers(colour.white.size(), 3, at + "/white", "give R, G, B");
+    needs_numbers(colour.offset.size(), 3, at + "/offset", "give R, G, B");
+    needs_numbers(colour.gradient.size(), 2, at + "/gradient", "give the change along width and height");
+    needs_numbers(colour.corners_px.size(), 8, at + "/corners_px", "give x, y of four corners");
+    if (colour.matrix.size() != 3)
+      throw Error(Exit::data, at + "/matrix", "has " + std::to_string(colour.matrix.size()) + " rows, needs 3",
+                  "give one row for each colour that comes out");
+    for (std::size_t i = 1; i < 3; ++i)
+      needs_numbers(colour.matrix[i].size(), colour.matrix[0].size(), at + "/matrix/" + std::to_string(i),
+                    "rows have one column for each term");
+  }
+}
+
 void check_volumes(const Document& d) {
   for (const auto& [name, volume] : d.volumes) {
     const std::string at = place(d, "/volumes/" + name);
@@ -279,6 +297,7 @@ void check_references(const Document& d) {
   check_images(d);
   check_goniometry(d);
   check_reliefs(d);
+  check_colour(d);
   check_volumes(d);
   check_laboratory(d);
   check_plans(d);

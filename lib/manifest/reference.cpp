@@ -87,6 +87,11 @@ void add_scene(List& all) {
   all.push_back(part("robots: dh", "Rows of a Denavit-Hartenberg table.", dh_row_fields()));
   all.push_back(listed("images", "Recordings, or pictures to be simulated.", image_fields()));
   all.push_back(part("images: boards", "Boards in an image that shows several.", seen_board_fields()));
+  all.push_back(keyed("colour",
+                      "Written by color-calib. How a camera's linear numbers become colours; develop applies it.",
+                      colour_correction_fields()));
+  all.push_back(part("colour: patches", "Patches of the chart.", colour_patch_fields()));
+  all.push_back(part("colour: alternatives", "Models that were tried.", colour_alternative_fields()));
   all.push_back(keyed("meshes", "Exactly one of file, sphere, plane.", mesh_fields()));
   all.push_back(keyed("surfaces", "A model, its parameters under their own names (gonio-surfaces(7) has both), and:",
                       surface_fields()));

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "optics/colorimetry.h"
 #include "optics/standard_observer.h"
 
 namespace gonio::optics {
@@ -13,16 +14,9 @@ namespace {
 
 constexpr double step_m = 5e-9;
 
-const Mat3& rgb_from_xyz() {
-  // Inverse of the matrix at the head of the header.
-  static const Mat3 inverse = [] {
-    const Vec3 a{0.49, 0.31, 0.20}, b{0.17697, 0.81240, 0.01063}, c{0, 0.01, 0.99};  // rows
-    const Vec3 bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);                 // columns of the inverse
-    const double scale = 0.17697 / dot(a, bc);
-    return Mat3{{bc.x * scale, ca.x * scale, ab.x * scale, bc.y * scale, ca.y * scale, ab.y * scale, bc.z * scale,
-                 ca.z * scale, ab.z * scale}};
-  }();
-  return inverse;
+// Inverse of the matrix at the head of the header.
+Rgb rgb_from_xyz(Vec3 xyz) {
+  return cie_rgb_from_xyz() * xyz * 0.17697;
 }
 
 struct Table {
@@ -30,7 +24,7 @@ struct Table {
   Rgb integral;  // over metres; trapezoidal: exact for what is linear in between
   Table() {
     for (std::size_t i = 0; i < observer_rows; ++i) {
-      value[i] = rgb_from_xyz() * standard_observer[i];
+      value[i] = rgb_from_xyz(standard_observer[i]);
       integral += value[i] * (i == 0 || i + 1 == observer_rows ? step_m / 2 : step_m);
     }
   }
