@@ -65,6 +65,8 @@ TEST_F(SchemaTest, AndProgramsRefuseTheSame) {
                            R"({"gonio":1,"reliefs":{"r":{"file":"f","width":0}}})",
                            R"({"gonio":1,"reliefs":{"r":{"width":4}}})",
                            R"({"gonio":1,"ground_noises":{"g":{"white_m":-1}}})",
+                           R"({"gonio":1,"colour":{"c":{"model":"cubic","matrix":[],"white":[1,1,1],"to":"srgb"}}})",
+                           R"({"gonio":1,"colour":{"c":{"model":"linear","white":[1,1,1],"to":"srgb"}}})",
                            R"({"gonio":1,"sequences":{"s":{"frames":60}}})",
                            R"({"gonio":1,"reconstructions":[{"id":"a"}]})",
                            R"({"gonio":1,"evaluations":[{"id":"a","flips":[{"frame":1,"kind":"odd"}]}]})",

@@ -1,8 +1,9 @@
-// develop: raw frames as radiance (merge.h), and photographs as a camera without lens errors would have taken them
-// (undistort.h).
+// develop: raw frames as radiance (merge.h), photographs as a camera without lens errors would have taken them
+// (undistort.h), and a camera's numbers as colours (colour.h).
 #include "cli/program.h"
 
 #include "base/error.h"
+#include "tools/develop/colour.h"
 #include "tools/develop/merge.h"
 #include "tools/develop/undistort.h"
 
@@ -14,15 +15,18 @@ using cli::Type;
 void check(cli::Invocation& call) {
   if (call.flag("merge")) return check_merge(call);
   if (call.flag("undistort")) return check_undistort(call);
-  throw Error(Exit::usage, "develop", "has nothing to do", "say what: --merge or --undistort");
+  if (call.given("colour")) return check_colour(call);
+  throw Error(Exit::usage, "develop", "has nothing to do", "say what: --merge, --undistort or --colour");
 }
 
 Exit run(cli::Invocation& call) {
-  return call.flag("merge") ? merge(call) : undistort(call);
+  return call.flag("merge") ? merge(call) : call.flag("undistort") ? undistort(call) : colour(call);
 }
 
 std::vector<cli::Option> options() {
   std::vector<cli::Option> all = merge_options(), more = undistort_options();
+  all.insert(all.end(), more.begin(), more.end());
+  more = colour_options();
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -32,10 +36,11 @@ std::vector<cli::Option> options() {
 const cli::Program& gonio_program() {
   static const cli::Program program{
       .name = "develop",
-      .sentence = "make radiance out of raw frames, and take the lens distortion out of photographs",
+      .sentence = "make radiance out of raw frames, colours out of radiance, and take the lens distortion out of photographs",
       .synopsis = {"--merge --out DIR [OPTION]... PHOTOGRAPH...", "--merge --out DIR [OPTION]... [recordings.json]",
                    "--undistort --out DIR [OPTION]... [recordings.json]",
-                   "--undistort --out DIR [OPTION]... -i camera.json PHOTOGRAPH..."},
+                   "--undistort --out DIR [OPTION]... -i camera.json PHOTOGRAPH...",
+                   "--colour NAME --out DIR [recordings.json]", "--colour NAME --out DIR -i colour.json PHOTOGRAPH..."},
       .options = options(),
       .operands =
           {{.name = "PHOTOGRAPH",
@@ -44,13 +49,13 @@ const cli::Program& gonio_program() {
                     "NEF, ARW, ...), PNG, TIFF or EXR of one channel; else all images with a file.",
             .repeat = true}},
       .takes_out = true,
-      .sections_read = {"files", "cameras", "images"},
+      .sections_read = {"files", "cameras", "images", "colour"},
       .sections_written = {"files", "cameras", "images"},
       .files = {{"VIEW.exr",
                  "radiance in codes per second, its variance (variance.*), and the exposures that each sample is from "
                  "(exposure.shortest, exposure.longest)"},
                 {"VIEW-mask.png", "white where the sample and one of each colour beside it can be trusted"},
-                {"ID.exr, ID.png", "the picture of the pinhole camera"},
+                {"ID.exr, ID.png", "the picture of the pinhole camera; with --colour the picture in colours"},
                 {"ID-mask.png",
                  "white where every sample of the kernel lies in the picture, is finite, not saturated and "
                  "counted by the image's own mask"}},
@@ -62,7 +67,7 @@ const cli::Program& gonio_program() {
            "Keys, Cubic convolution interpolation for digital image processing, IEEE Trans. ASSP 29(6), 1981.",
            "Mitchell & Netravali, Reconstruction filters in computer graphics, SIGGRAPH 1988.",
            "Duchon, Lanczos filtering in one and two dimensions, J. Applied Meteorology 18(8), 1979."},
-      .see_also = {"calib-charuco(1)", "camera-export(1)", "gonio-conventions(7)", "gonio-manifest(5)"},
+      .see_also = {"calib-charuco(1)", "color-calib(1)", "camera-export(1)", "gonio-conventions(7)", "gonio-manifest(5)"},
       .check = check,
       .run = run};
   return program;

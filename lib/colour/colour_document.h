@@ -1,0 +1,56 @@
+// Corrections of colour in the manifest: found on a photograph of a chart, applied to others.
+#pragma once
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "colour/calibration.h"
+#include "colour/chart.h"
+#include "manifest/sections/forward.h"
+#include "manifest/value.h"
+
+namespace gonio::colour {
+
+struct ChartPhotograph {
+  std::filesystem::path picture, mask;  // mask: white where pixels count; empty: all do
+  manifest::Value response;             // of codes; null: not known
+  std::optional<double> saturation;     // stored value from which on a pixel is clipped
+  std::string place;                    // for messages
+  std::string image, camera;            // id and name in the manifest; may be empty
+};
+
+struct ChartRequest {
+  ChartPhotograph photograph;
+  Chart chart;
+  std::optional<std::array<Vec2, 4>> corners;  // of pose_from_corners(); left out: the chart is searched for
+  CalibrationRequest calibration;
+  std::string name;               // in the manifest's "colour"
+  std::filesystem::path preview;  // empty: none is drawn
+};
+
+// The photograph of this image of the manifest, by its id; empty: the only one with a file.
+ChartPhotograph photograph_of_image(const manifest::Document& document, const std::string& id);
+
+// Finds and reads the chart, calibrates, logs what was found, draws the preview and enters document.colour[name].
+Calibration calibrate_document(manifest::Document& document, const ChartRequest& request);
+
+// What is logged of a calibration, line by line.
+std::vector<std::string> words_of(const Chart& chart, const Calibration& calibration);
+
+struct ColourRequest {
+  std::string name;                 // in the manifest's "colour"
+  std::vector<std::size_t> images;  // places in document.images
+  std::function<std::filesystem::path(const std::string& name)> output_path;
+  std::function<void(const std::filesystem::path&)> note_input;
+};
+// Writes ID.exr, the corrected picture with all its other channels, for every image, and points the image to it; noise
+// that was stated for the pixels before is taken back. Error(data) for pictures that are not OpenEXR with R, G, B, and
+// for images of another camera than the correction's.
+void colour_document(manifest::Document& document, const ColourRequest& request);
+// The same without pixels: whether the correction and all files are there.
+void check_colours(const manifest::Document& document, const ColourRequest& request);
+
+}  // namespace gonio::colour
