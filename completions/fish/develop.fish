@@ -21,6 +21,7 @@ complete -c develop -l max-angle -x -d 'Largest angle from the optical axis that
 complete -c develop -l overshoot -x -a 'keep limit' -d 'Keep what the kernel makes of edges, or limit each value to those of its footprint.'
 complete -c develop -l saturation -x -d 'Stored values from here on are saturated; 8 and 16-bit codes over full scale. Default: the highest code, and none in OpenEXR.'
 complete -c develop -l format -x -a 'same exr png8 png16' -d 'What to write; same: OpenEXR from OpenEXR, else PNG with as many bits.'
+complete -c develop -l colour -x -d 'Apply this correction of the manifest, as color-calib found it, to OpenEXR pictures.'
 complete -c develop -l input -s i -r -d 'Manifest to read; - is standard input.'
 complete -c develop -l output -s o -r -d 'Where the manifest goes instead of standard output; written whole or not at all.'
 complete -c develop -l out -r -d 'Folder for the files that are written; made where it is missing.'

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "colour/correction_fit.h"
+#include "stats/intervals.h"
 
 namespace gonio::colour {
 namespace {
@@ -45,9 +46,7 @@ class Calibrating {
     }
     if (attempts.empty())
       throw Error(Exit::data, place_, "shows too few patches for any model", "show more of the chart's patches");
-    const auto least =
-        std::ranges::min_element(attempts, {}, [this](const Attempt& a) { return spread(a.held_out).mean; });
-    fill(result, *least);
+    fill(result, simplest(attempts));
     return result;
   }
 
@@ -107,6 +106,23 @@ class Calibrating {
       result.held_out.push_back(difference(result.folds[i], folds_[i], counts_[i]));
     }
     return result;
+  }
+
+  // Of the fewest terms among those that predict no worse than the best: by less than the standard error of the
+  // difference, patch by patch (Breiman et al. 1984 for the rule).
+  const Attempt& simplest(const std::vector<Attempt>& attempts) const {
+    const auto least =
+        std::ranges::min_element(attempts, {}, [this](const Attempt& a) { return spread(a.held_out).mean; });
+    const Attempt* best = &*least;
+    for (const Attempt& attempt : attempts) {
+      std::vector<double> behind(attempt.held_out.size());
+      for (std::size_t i = 0; i < behind.size(); ++i) behind[i] = attempt.held_out[i] - least->held_out[i];
+      const bool alike = !(stats::mean(behind) > stats::standard_error(behind));
+      const auto terms = [](const Attempt& a) { return terms_of(a.whole[0].model()).size(); };
+      const auto rank = [&](const Attempt& a) { return std::pair{terms(a), spread(a.held_out).mean}; };
+      if (alike && rank(attempt) < rank(*best)) best = &attempt;
+    }
+    return *best;
   }
 
   Spread spread(const std::vector<double>& differences) const {

@@ -19,7 +19,9 @@ namespace gonio::colour {
 enum class Take { automatic, never, always };  // automatic: where chance does so in less than one of a thousand cases
 
 struct CalibrationRequest {
-  std::optional<Model> model;  // left out: of those that keep exposure, the one with the least held-out difference
+  // Left out: of those that keep exposure, the simplest whose held-out differences are, within their standard error, as
+  // small as the least.
+  std::optional<Model> model;
   Target target = Target::cie_rgb;
   bool refine = true;
   Take offset = Take::automatic, gradient = Take::automatic;

@@ -35,7 +35,7 @@ Photograph random_photograph(std::uint64_t seed) {
   p.gradient = {change * std::cos(towards), change * std::sin(towards)};
   p.shot = p.exposure * std::pow(10, random.uniform(-4.5, -2.7)), p.read = 0.004 * p.exposure;
   p.blur_px = random.uniform(0.3, 1.5);
-  if (random.uniform() < 0.5) p.camera = p.camera * Mat3{{1.6, 0, 0, 0, 1, 0, 0, 0, 0.5}};
+  if (random.uniform() < 0.5) p.camera = Mat3{{1.6, 0, 0, 0, 1, 0, 0, 0, 0.5}} * p.camera;
   return p;
 }
 

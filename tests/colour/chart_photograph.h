@@ -31,8 +31,7 @@ namespace simulated {
 inline constexpr double frame = 0.06, frame_reflectance = 0.035;  // about the patches, of the chart's width; dark
 
 struct Blob {  // a thing of the room: a turned rectangle of one colour
-  Vec2 centre, half;
-  double turn;
+  Vec2 centre, half, along;
   Rgb colour;
 };
 
@@ -41,9 +40,10 @@ inline std::vector<Blob> room(Random& random, int width, int height) {
   for (int i = 0; i < 40; ++i) {
     const double size = std::max(width, height) * (0.02 + 0.2 * std::pow(random.uniform(), 2));
     const double light = std::pow(10.0, random.uniform(-1.7, 0.3));
+    const double turn = random.uniform(0, 2 * pi);
     blobs.push_back({{random.uniform(0, width), random.uniform(0, height)},
                      {size, size * random.uniform(0.2, 1)},
-                     random.uniform(0, 2 * pi),
+                     {std::cos(turn), std::sin(turn)},
                      Rgb{random.uniform(0.3, 1), random.uniform(0.3, 1), random.uniform(0.3, 1)} * light});
   }
   return blobs;
@@ -52,7 +52,7 @@ inline std::vector<Blob> room(Random& random, int width, int height) {
 inline Rgb room_at(const std::vector<Blob>& blobs, double x, double y) {
   Rgb colour{0.2, 0.2, 0.2};
   for (const Blob& b : blobs) {
-    const double c = std::cos(b.turn), s = std::sin(b.turn), dx = x - b.centre.x, dy = y - b.centre.y;
+    const double c = b.along.x, s = b.along.y, dx = x - b.centre.x, dy = y - b.centre.y;
     if (std::abs(c * dx + s * dy) < b.half.x && std::abs(c * dy - s * dx) < b.half.y) colour = b.colour;
   }
   return colour;

@@ -138,7 +138,9 @@ TEST(Illuminants, AreThoseOfTheCie) {
     const auto rows = numbers(tests::data("colour/colorchecker-reference") / ("illuminant_" + name + ".csv"));
     ASSERT_GT(rows.size(), 60u);
     for (const auto& row : rows)
-      if (row[0] >= 380 && row[0] <= 780) EXPECT_NEAR(own(row[0] * 1e-9) / own(560e-9), row[1] / 100, 3e-3) << row[0];
+      if (row[0] >= 380 && row[0] <= 780) {
+        EXPECT_NEAR(own(row[0] * 1e-9) / own(560e-9), row[1] / 100, 3e-3) << row[0];
+      }
   }
   const auto perfect = [](double) { return 1.0; };
   EXPECT_LT(norm(xyz_of(perfect, illuminant("D50", "test")) - white_d50), 1e-3);

@@ -140,8 +140,8 @@ std::vector<cli::Option> model_options() {
   return {
       {.name = "model",
        .type = Type::choice,
-       .help = "Terms of the correction; auto: of those that keep exposure, the one that predicts patches best that "
-               "it was not fitted to.",
+       .help = "Terms of the correction; auto: of those that keep exposure, the simplest that predicts patches that it "
+               "was not fitted to as well as the best does.",
        .preset = "auto",
        .choices = models()},
       {.name = "to",

@@ -17,7 +17,8 @@ void check(cli::Invocation& call) {
   if (call.given("PHOTOGRAPH") && call.given("image"))
     throw Error(Exit::usage, "--image", "is for manifests, and a photograph is named", "leave one of them out");
   if (!call.given("PHOTOGRAPH") && call.given("mask"))
-    throw Error(Exit::usage, "--mask", "is for a photograph on the command line", "images of a manifest have their own");
+    throw Error(Exit::usage, "--mask", "is for a photograph on the command line",
+                "images of a manifest have their own");
   if (call.given("preview") && !call.text("preview").ends_with(".png"))
     throw Error(Exit::usage, "--preview", "is no PNG: " + call.text("preview"), "end the name in .png");
   request_of(call);

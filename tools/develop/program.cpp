@@ -36,7 +36,8 @@ std::vector<cli::Option> options() {
 const cli::Program& gonio_program() {
   static const cli::Program program{
       .name = "develop",
-      .sentence = "make radiance out of raw frames, colours out of radiance, and take the lens distortion out of photographs",
+      .sentence =
+          "make radiance out of raw frames, colours out of radiance, and take the lens distortion out of photographs",
       .synopsis = {"--merge --out DIR [OPTION]... PHOTOGRAPH...", "--merge --out DIR [OPTION]... [recordings.json]",
                    "--undistort --out DIR [OPTION]... [recordings.json]",
                    "--undistort --out DIR [OPTION]... -i camera.json PHOTOGRAPH...",
@@ -67,7 +68,8 @@ const cli::Program& gonio_program() {
            "Keys, Cubic convolution interpolation for digital image processing, IEEE Trans. ASSP 29(6), 1981.",
            "Mitchell & Netravali, Reconstruction filters in computer graphics, SIGGRAPH 1988.",
            "Duchon, Lanczos filtering in one and two dimensions, J. Applied Meteorology 18(8), 1979."},
-      .see_also = {"calib-charuco(1)", "color-calib(1)", "camera-export(1)", "gonio-conventions(7)", "gonio-manifest(5)"},
+      .see_also = {"calib-charuco(1)", "color-calib(1)", "camera-export(1)", "gonio-conventions(7)",
+                   "gonio-manifest(5)"},
       .check = check,
       .run = run};
   return program;
