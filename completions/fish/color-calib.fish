@@ -7,7 +7,7 @@ complete -c color-calib -l image -x -d 'Id of the manifests image that shows the
 complete -c color-calib -l response -x -a 'linear srgb' -d 'How the codes of an 8 or 16-bit photograph become linear.'
 complete -c color-calib -l saturation -x -d 'Stored values from here on are clipped. Default: the highest code, and none in OpenEXR.'
 complete -c color-calib -l mask -r -d 'Picture that is white where the photographs pixels can be trusted.'
-complete -c color-calib -l model -x -a 'auto linear white-preserving homography root-polynomial-2 root-polynomial-3 root-polynomial-4 polynomial-2 polynomial-3 polynomial-4' -d 'Terms of the correction; auto: of those that keep exposure, the one that predicts patches best that it was not fitted to.'
+complete -c color-calib -l model -x -a 'auto linear white-preserving homography root-polynomial-2 root-polynomial-3 root-polynomial-4 polynomial-2 polynomial-3 polynomial-4' -d 'Terms of the correction; auto: of those that keep exposure, the simplest that predicts patches that it was not fitted to as well as the best does.'
 complete -c color-calib -l to -x -a 'cie-rgb srgb xyz-d50' -d 'Colours that come out.'
 complete -c color-calib -l least-squares -d 'Stop after least squares: no BFGS on the mean CIEDE2000.'
 complete -c color-calib -l offset -x -a 'auto keep remove' -d 'Glare, or black that was left, on the chart: take it off where the greys show it, never, or always.'

@@ -1,4 +1,5 @@
-// color-calib as people run it: a photograph of a chart in, a correction out; and develop, which applies it.
+// color-calib as people run it: a photograph of a chart in, a correction out; and develop, which applies it. The programs
+// are those of GONIO_BIN.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
