@@ -25,17 +25,17 @@ const Chart& chart() {
   return classic;
 }
 
-Photograph random_photograph(std::uint64_t seed) {
+ChartSpecimen random_photograph(std::uint64_t seed) {
   Random random(seed, 3);
-  Photograph p;
+  ChartSpecimen p;
   p.pose = random_pose(chart(), width, height, seed);
-  p.seed = seed, p.clutter = true;
+  p.seed = seed, p.room = cluttered_room(seed, width, height);
   p.exposure = std::pow(10, random.uniform(-2, 2));
   const double change = random.uniform(0, 0.6), towards = random.uniform(0, 2 * pi);
   p.gradient = {change * std::cos(towards), change * std::sin(towards)};
   p.shot = p.exposure * std::pow(10, random.uniform(-4.5, -2.7)), p.read = 0.004 * p.exposure;
   p.blur_px = random.uniform(0.3, 1.5);
-  if (random.uniform() < 0.5) p.camera = Mat3{{1.6, 0, 0, 0, 1, 0, 0, 0, 0.5}} * p.camera;
+  if (random.uniform() < 0.5) p.camera_from_xyz = Mat3{{1.6, 0, 0, 0, 1, 0, 0, 0, 0.5}} * p.camera_from_xyz;
   return p;
 }
 
@@ -63,7 +63,7 @@ std::string refusal(const io::Image& picture, const Chart& wanted) {
 TEST(Detection, FindsChartsInAnyPose) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    const Photograph p = random_photograph(seed);
+    const ChartSpecimen p = random_photograph(seed);
     try {
       const FoundChart chart_found = find_chart(photograph_of(chart(), p, width, height), chart(), "photo");
       EXPECT_LT(error_of(chart_found.pose, p.pose), 0.15) << seed;
@@ -75,16 +75,17 @@ TEST(Detection, FindsChartsInAnyPose) {
 }
 
 TEST(Detection, SeesNoneWhereThereIsNone) {
-  Photograph p;
+  ChartSpecimen p;
   p.pose = pose_from_corners({Vec2{-900, -900}, {-600, -900}, {-600, -700}, {-900, -700}}, "test");
-  p.clutter = true;
-  for (p.seed = 1; p.seed <= 8; ++p.seed)
-    EXPECT_THAT(refusal(photograph_of(chart(), p, width, height), chart()), HasSubstr("photo: shows no ")) << p.seed;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    p.room = cluttered_room(seed, width, height);
+    EXPECT_THAT(refusal(photograph_of(chart(), p, width, height), chart()), HasSubstr("photo: shows no ")) << seed;
+  }
 }
 
 // The same grid with other colours, and the mirror image, are no ColorChecker.
 TEST(Detection, KnowsOtherChartsAndMirrors) {
-  Photograph p = random_photograph(3);
+  ChartSpecimen p = random_photograph(3);
   p.blur_px = 0.5, p.gradient = {};
   Chart other = chart();
   Random random(4);
@@ -114,7 +115,7 @@ TEST(Detection, TakesOtherGrids) {
       grid.patches.push_back(patch);
     }
   grid.height_over_width = 4.8 / 8.8;
-  Photograph p;
+  ChartSpecimen p;
   p.pose = pose_from_corners({Vec2{520, 90}, {560, 390}, {330, 410}, {300, 70}}, "test");
   p.blur_px = 0.7, p.read = 0.004;
   const FoundChart found = find_chart(photograph_of(grid, p, width, height), grid, "photo");
@@ -137,7 +138,7 @@ TEST(Pose, GoesFromCornersAndBack) {
 // are neighbours is shared, as behind a mosaic; dust covers some pixels.
 TEST(Readings, HaveHonestCovariance) {
   double squares = 0, count = 0;
-  Photograph p;
+  ChartSpecimen p;
   p.pose = pose_from_corners({Vec2{60, 50}, {600, 70}, {580, 410}, {50, 390}}, "test");
   const io::Image clean = photograph_of(chart(), p, width, height);
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {
@@ -151,7 +152,7 @@ TEST(Readings, HaveHonestCovariance) {
     const auto readings = read_patches(picture, {}, p.pose, chart(), "photo");
     for (std::size_t k = 0; k < 24; ++k)
       for (int c = 0; c < 3; ++c)
-        squares += std::pow(readings[k].rgb[c] - seen(p, chart().patches[k])[c], 2) / readings[k].covariance(c, c),
+        squares += std::pow(readings[k].rgb[c] - read_of(p, chart().patches[k])[c], 2) / readings[k].covariance(c, c),
             ++count;
   }
   // Student's t of 13 degrees of freedom: variance 13 / 11; known to 4 %.
@@ -159,7 +160,7 @@ TEST(Readings, HaveHonestCovariance) {
 }
 
 TEST(Readings, NamePatchesThatCannotBeUsed) {
-  Photograph p;
+  ChartSpecimen p;
   p.pose = pose_from_corners({Vec2{60, 50}, {600, 70}, {580, 410}, {50, 390}}, "test");
   io::Image picture = photograph_of(chart(), p, width, height);
   std::vector<PixelState> states(picture.pixels(), PixelState::good);

@@ -1,5 +1,4 @@
-// Photographs of charts, simulated for tests: any pose, uneven light, offset, a lens's blur, noise, a cluttered room.
-// The camera's matrix is any 3 x 3; what it should see is known exactly.
+// Rooms that charts are photographed in, and poses, for tests.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -8,27 +7,9 @@
 #include <vector>
 
 #include "base/random.h"
-#include "colour/chart.h"
-#include "colour/chart_pose.h"
-#include "io/image.h"
+#include "colour/chart_specimen.h"
 
 namespace gonio::colour {
-
-struct Photograph {
-  ChartPose pose;
-  Mat3 camera{{0.55, 0.4, 0.05, 0.15, 0.9, -0.05, 0.02, 0.1, 0.7}};  // camera's R, G, B from XYZ under D50
-  double exposure = 1;
-  Vec2 gradient{};            // of the light over the chart's width and height
-  Rgb offset{};               // of the camera's numbers over exposure
-  double shot = 0, read = 0;  // variance of v: shot v + read^2
-  double blur_px = 0;         // sigma
-  bool clutter = false;
-  std::uint64_t seed = 1;
-};
-
-namespace simulated {
-
-inline constexpr double frame = 0.06, frame_reflectance = 0.035;  // about the patches, of the chart's width; dark
 
 struct Blob {  // a thing of the room: a turned rectangle of one colour
   Vec2 centre, half, along;
@@ -58,63 +39,10 @@ inline Rgb room_at(const std::vector<Blob>& blobs, double x, double y) {
   return colour;
 }
 
-inline void blur(io::Image& image, double sigma) {
-  const int reach = static_cast<int>(std::ceil(3 * sigma));
-  std::vector<double> weight;
-  double sum = 0;
-  for (int k = -reach; k <= reach; ++k) weight.push_back(std::exp(-k * k / (2 * sigma * sigma))), sum += weight.back();
-  for (const bool along : {true, false}) {
-    const io::Image before = image;
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x)
-        for (int c = 0; c < 3; ++c) {
-          double v = 0;
-          for (int k = -reach; k <= reach; ++k)
-            v += weight[static_cast<std::size_t>(k + reach)] *
-                 before.at(std::clamp(x + (along ? k : 0), 0, image.width - 1),
-                           std::clamp(y + (along ? 0 : k), 0, image.height - 1), c);
-          image.at(x, y, c) = static_cast<float>(v / sum);
-        }
-  }
-}
-
-}  // namespace simulated
-
-// What even light without noise or offset gives of a patch.
-inline Rgb seen(const Photograph& photograph, const Patch& patch) {
-  return photograph.camera * patch.xyz * photograph.exposure;
-}
-
-inline io::Image photograph_of(const Chart& chart, const Photograph& p, int width, int height) {
-  using namespace simulated;
-  Random random(p.seed);
-  const auto blobs = p.clutter ? room(random, width, height) : std::vector<Blob>{};
-  const Mat3 chart_from_image = optics::inverse(p.pose.image_from_chart);
-  const Rgb dark = p.camera * (optics::white_d50 * frame_reflectance);
-  const auto light_at = [&](double x, double y) {
-    const Vec3 h = chart_from_image * Vec3{x, y, 1};
-    const Vec2 at{h.x / h.z, h.y / h.z};
-    const double down = frame / chart.height_over_width;
-    if (!(h.z > 0) || at.x < -frame || at.x > 1 + frame || at.y < -down || at.y > 1 + down) return room_at(blobs, x, y);
-    const double light = 1 + dot(p.gradient, at - Vec2{0.5, 0.5});
-    for (const Patch& patch : chart.patches)
-      if (std::abs(at.x - patch.centre.x) < patch.size.x / 2 && std::abs(at.y - patch.centre.y) < patch.size.y / 2)
-        return p.camera * patch.xyz * light;
-    return dark * light;
-  };
-  io::Image image(width, height, {"R", "G", "B"});
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      Rgb sum;
-      for (const double dy : {-0.25, 0.25})
-        for (const double dx : {-0.25, 0.25}) sum += light_at(x + dx, y + dy) * 0.25;
-      for (int c = 0; c < 3; ++c) image.at(x, y, c) = static_cast<float>((sum[c] + p.offset[c]) * p.exposure);
-    }
-  if (p.blur_px > 0) blur(image, p.blur_px);
-  if (p.shot > 0 || p.read > 0)
-    for (float& v : image.data)
-      v += static_cast<float>(std::sqrt(std::max(0.0, p.shot * v + p.read * p.read)) * random.normal());
-  return image;
+// Forty things of any size and colour, in front of and behind each other.
+inline std::function<Rgb(double, double)> cluttered_room(std::uint64_t seed, int width, int height) {
+  Random random(seed);
+  return [blobs = room(random, width, height)](double x, double y) { return room_at(blobs, x, y); };
 }
 
 // A pose as a hand gives one: turned any way, tilted by up to 45 degrees, from a sixth of the picture to most of it.

@@ -7,7 +7,11 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "colour/chart_specimen.h"
+#include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
+#include "manifest/sections/image.h"
 #include "optics/spectrum.h"
 
 namespace gonio::tools::color_calib {
@@ -167,6 +171,10 @@ std::vector<cli::Option> model_options() {
       {.name = "preview",
        .type = Type::output_file,
        .help = "PNG to draw: before and after, patches as halves, read and reference."},
+      {.name = "specimen",
+       .type = Type::flag,
+       .help = "Write a simulated photograph of the chart to try the program on, chart.exr below --out.",
+       .conflicts = {"corners", "image", "response", "saturation", "mask", "preview", "accept"}},
       {.name = "accept",
        .type = Type::number,
        .help = "Largest mean held-out CIEDE2000; above it the exit status is 2.",
@@ -179,6 +187,15 @@ std::vector<cli::Option> options() {
   std::vector<cli::Option> all = chart_options(), more = model_options();
   all.insert(all.end(), more.begin(), more.end());
   return all;
+}
+
+void write_specimen(cli::Invocation& call) {
+  const colour::Chart chart = chart_of(call);
+  const auto path = call.output_path("chart.exr");
+  io::write_picture(
+      path, photograph_of(chart, example_specimen(chart, call.seed), colour::example_width, colour::example_height));
+  manifest::enter_image(call.document, {.id = "chart"});
+  call.document.images.back().file = manifest::add_file(call.document, path, "chart");
 }
 
 colour::ChartRequest request_of(cli::Invocation& call) {

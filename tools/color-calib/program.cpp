@@ -11,6 +11,10 @@ namespace {
 using cli::Type;
 
 void check(cli::Invocation& call) {
+  if (call.flag("specimen")) {
+    if (call.out.empty()) throw Error(Exit::usage, "--specimen", "has no folder to write to", "give --out DIR");
+    return;
+  }
   if (!call.given("PHOTOGRAPH") && !call.has_document)
     throw Error(Exit::no_input, "color-calib", "has no photograph of a chart",
                 "name it, or pipe in a manifest whose images have files");
@@ -25,6 +29,10 @@ void check(cli::Invocation& call) {
 }
 
 Exit run(cli::Invocation& call) {
+  if (call.flag("specimen")) {
+    write_specimen(call);
+    return Exit::done;
+  }
   const colour::ChartRequest request = request_of(call);
   call.note_input(request.photograph.picture);
   if (!request.photograph.mask.empty()) call.note_input(request.photograph.mask);
@@ -39,14 +47,18 @@ const cli::Program& gonio_program() {
   static const cli::Program program{
       .name = "color-calib",
       .sentence = "find how a camera's numbers become colours, from a photograph of a chart",
-      .synopsis = {"[OPTION]... PHOTOGRAPH", "[OPTION]... [-i FILE | manifest.json]"},
+      .synopsis = {"[OPTION]... PHOTOGRAPH", "[OPTION]... [-i FILE | manifest.json]", "--specimen --out DIR"},
       .options = options(),
       .operands = {{.name = "PHOTOGRAPH",
                     .type = Type::input_file,
                     .help = "Picture of the chart, linear: OpenEXR as develop writes it, or PNG, JPEG, TIFF with "
                             "--response; else the manifest's image."}},
+      .standalone = {"specimen"},
+      .takes_out = true,
+      .takes_seed = true,
       .sections_read = {"files", "images", "cameras"},
       .sections_written = {"colour"},
+      .files = {{"chart.exr", "--specimen: the photograph"}},
       .exits = {{Exit::quality, "the mean held-out CIEDE2000 is above --accept; the correction is written"}},
       .references =
           {"Finlayson, Mackiewicz & Hurlbert, Color correction using root-polynomial regression, IEEE Trans. Image "

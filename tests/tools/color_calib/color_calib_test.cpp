@@ -1,5 +1,5 @@
-// color-calib as people run it: a photograph of a chart in, a correction out; and develop, which applies it. The programs
-// are those of GONIO_BIN.
+// color-calib as people run it: a photograph of a chart in, a correction out; and develop, which applies it. The
+// programs are those of GONIO_BIN.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,8 @@ class ColorCalib : public testing::Test {
  protected:
   ColorCalib() {
     photograph_.pose = colour::pose_from_corners({Vec2{90, 60}, {400, 40}, {420, 270}, {70, 250}}, "test");
-    photograph_.exposure = 40, photograph_.read = 0.1, photograph_.blur_px = 0.6, photograph_.clutter = true;
+    photograph_.exposure = 40, photograph_.read = 0.1, photograph_.blur_px = 0.6,
+    photograph_.room = colour::cluttered_room(1, width, height);
     picture_ = colour::photograph_of(chart_, photograph_, width, height);
     io::write_picture(folder_ / "chart.exr", picture_);
   }
@@ -44,7 +45,7 @@ class ColorCalib : public testing::Test {
   }
   ScratchFolder folder_;
   colour::Chart chart_ = colour::colorchecker_classic("after-2014", "test");
-  colour::Photograph photograph_;
+  colour::ChartSpecimen photograph_;
   io::Image picture_;
 };
 

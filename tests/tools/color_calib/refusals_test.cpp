@@ -6,7 +6,7 @@
 #include <set>
 
 #include "base/atomic_file.h"
-#include "colour/chart_photograph.h"
+#include "colour/chart_specimen.h"
 #include "data.h"
 #include "io/picture.h"
 #include "process.h"
@@ -44,7 +44,7 @@ class ColorCalibRefuses : public testing::Test {
   void write(const std::string& name, const io::Image& image) const { io::write_picture(folder_ / name, image); }
   ScratchFolder folder_;
   colour::Chart chart_ = colour::colorchecker_classic("after-2014", "test");
-  colour::Photograph photograph_;
+  colour::ChartSpecimen photograph_;
   io::Image picture_;
 };
 
