@@ -1,7 +1,8 @@
 # fish completion of color-calib; printed by scripts/regenerate
 complete -c color-calib -l chart -x -d 'The chart: colorchecker-24, or the file (.json) of another one.'
 complete -c color-calib -l edition -x -a 'after-2014 before-2014' -d 'Of colorchecker-24s reference values: charts made since November 2014, or before.'
-complete -c color-calib -l light -x -d 'Light on a chart whose file has reflectances: A, E, D50, D55, D65, D75, or a spectrum (.csv).'
+complete -c color-calib -l light -x -d 'Light of the photograph, for charts whose file has reflectances and for --sensor: A, E, D50, D55, D65, D75, or a spectrum (.csv).'
+complete -c color-calib -l sensor -r -d 'Sensitivities of the camera, a table (.csv) of wavelength in nm, R, G, B: says what no correction can mend under --light.'
 complete -c color-calib -l corners -x -d 'Where the chart lies instead of searching for it: "x,y x,y x,y x,y", px, of the outer corners of its corner patches, from the first patch clockwise as the chart is read.'
 complete -c color-calib -l image -x -d 'Id of the manifests image that shows the chart; needed where several have a file.'
 complete -c color-calib -l response -x -a 'linear srgb' -d 'How the codes of an 8 or 16-bit photograph become linear.'

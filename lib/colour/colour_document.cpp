@@ -74,6 +74,7 @@ void fill(manifest::ColourCorrection& section, const ChartRequest& request, cons
   section.fitted_most_de00 = found.fitted.most;
   section.held_out_de00 = found.held_out.mean, section.held_out_sd_de00 = found.held_out.deviation;
   section.held_out_most_de00 = found.held_out.most;
+  section.metamerism_de00 = request.metamerism_de00;
   section.exposure_de00 = found.exposure_de00, section.noise_gain = found.noise_gain;
   const Rgb w = found.white;
   const auto over_white = [&](Rgb v) { return std::vector<double>{v.x / w.x, v.y / w.y, v.z / w.z}; };
@@ -155,6 +156,9 @@ Calibration calibrate_document(manifest::Document& document, const ChartRequest&
   if (!left_out.empty()) log(LogLevel::warning, photograph.place + ": left out: " + left_out);
   const Calibration calibration = calibrate(request.chart, readings, request.calibration, photograph.place);
   for (const std::string& line : words_of(request.chart, calibration)) log(LogLevel::info, line);
+  if (request.metamerism_de00)
+    log(LogLevel::info, format("no correction can mend %.2f dE00 of what other materials than a chart's inks may have",
+                               *request.metamerism_de00));
   if (!request.preview.empty())
     io::write_picture(request.preview, before_and_after(picture.colour, request.chart, pose, calibration));
   manifest::ColourCorrection section;

@@ -27,8 +27,9 @@ struct ChartRequest {
   Chart chart;
   std::optional<std::array<Vec2, 4>> corners;  // of pose_from_corners(); left out: the chart is searched for
   CalibrationRequest calibration;
-  std::string name;               // in the manifest's "colour"
-  std::filesystem::path preview;  // empty: none is drawn
+  std::string name;                         // in the manifest's "colour"
+  std::filesystem::path preview;            // empty: none is drawn
+  std::optional<double> metamerism_de00{};  // of the sensor, where it is known: metamerism.h
 };
 
 // The photograph of this image of the manifest, by its id; empty: the only one with a file.

@@ -40,24 +40,6 @@ struct Row {
   double weight = 1;
 };
 
-// G of d^2 = s' G s for small steps s in L*a*b*, by differences; its root R, G = R' R.
-Eigen::Matrix3d difference_root(Lab at) {
-  constexpr double step = 0.1;
-  const auto moved = [&](int i, int j) {
-    std::array<double, 3> s{at.x, at.y, at.z};
-    s[static_cast<std::size_t>(i)] += step;
-    if (j != i) s[static_cast<std::size_t>(j)] += step;
-    const double d = optics::ciede2000(at, {s[0], s[1], s[2]});
-    return d * d / (step * step);
-  };
-  Eigen::Matrix3d g;
-  for (int i = 0; i < 3; ++i) g(i, i) = moved(i, i);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < i; ++j) g(i, j) = g(j, i) = (moved(i, j) - g(i, i) - g(j, j)) / 2;
-  const linear::SymmetricEigen<Eigen::Matrix3d> eigen(g);
-  return eigen.eigenvalues().cwiseMax(1e-6).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
-}
-
 class Fitting {
  public:
   Fitting(std::span<const Sample> samples, const FitRequest& request)
@@ -90,7 +72,7 @@ class Fitting {
     row.lab = sample.lab;
     const optics::Xyz xyz = optics::xyz_from_lab(sample.lab, optics::white_d50);
     row.wanted = as_eigen(from_xyz_d50(request_.target) * xyz);
-    row.whiten = difference_root(sample.lab) * as_eigen(optics::lab_slopes(xyz, optics::white_d50)) * xyz_from_target_;
+    row.whiten = as_eigen(difference_root(sample.lab) * optics::lab_slopes(xyz, optics::white_d50)) * xyz_from_target_;
     // Noise over white is noise of the colour, as far as a matrix that keeps grey goes.
     const Eigen::Vector3d over(1 / w.x, 1 / w.y, 1 / w.z);
     const Eigen::Matrix3d noise = over.asDiagonal() * as_eigen(sample.covariance) * over.asDiagonal();
@@ -251,6 +233,24 @@ class Fitting {
 };
 
 }  // namespace
+
+Mat3 difference_root(optics::Lab at) {
+  constexpr double step = 0.1;
+  const auto moved = [&](int i, int j) {
+    std::array<double, 3> s{at.x, at.y, at.z};
+    s[static_cast<std::size_t>(i)] += step;
+    if (j != i) s[static_cast<std::size_t>(j)] += step;
+    const double d = optics::ciede2000(at, {s[0], s[1], s[2]});
+    return d * d / (step * step);
+  };
+  Eigen::Matrix3d g;
+  for (int i = 0; i < 3; ++i) g(i, i) = moved(i, i);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < i; ++j) g(i, j) = g(j, i) = (moved(i, j) - g(i, i) - g(j, j)) / 2;
+  const linear::SymmetricEigen<Eigen::Matrix3d> eigen(g);
+  return linear::mat3_of(eigen.eigenvalues().cwiseMax(1e-6).cwiseSqrt().asDiagonal() *
+                         eigen.eigenvectors().transpose());
+}
 
 std::size_t patches_needed(Model model) {
   return free_terms(model) + 1;

@@ -33,6 +33,8 @@ struct FitRequest {
   bool refine = true;  // BFGS after least squares
 };
 
+// CIEDE2000 about a colour as a metric: R with d = |R s| for small steps s in L*a*b*, found by differences.
+Mat3 difference_root(optics::Lab at);
 // Patches that a model needs: one more than it has free terms, so that one can be left out.
 std::size_t patches_needed(Model model);
 // Error(data) at `place` for fewer patches than the model has free terms, or patches that do not determine it.

@@ -60,6 +60,9 @@ const std::vector<Field<ColourCorrection>>& colour_correction_fields() {
       field("noise_gain", &ColourCorrection::noise_gain, "",
             "root mean square noise that comes out over equal noise that goes in, both over white")
           .range(0, infinite),
+      field("metamerism_de00", &ColourCorrection::metamerism_de00, "",
+            "root mean square over smooth reflectances that no correction can mend, of a sensor that is known")
+          .range(0, infinite),
       field("offset", &ColourCorrection::offset, "",
             "R, G, B over white that was taken off the chart's patches: glare, or black that was left"),
       field("gradient", &ColourCorrection::gradient, "",

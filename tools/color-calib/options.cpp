@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "colour/chart_specimen.h"
+#include "colour/metamerism.h"
 #include "io/picture.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
@@ -71,7 +72,7 @@ std::function<double(double)> light_of(cli::Invocation& call) {
 colour::Chart chart_of(cli::Invocation& call) {
   const std::string& name = call.text("chart");
   if (name == classic) {
-    if (call.text("light") != "D50")
+    if (call.text("light") != "D50" && !call.given("sensor"))
       throw Error(Exit::usage, "--light",
                   "is for charts whose file has reflectances, and " + name + " has L*a*b* of D50",
                   "leave it out, or name a chart's file");
@@ -115,9 +116,14 @@ std::vector<cli::Option> chart_options() {
            .choices = colour::colorchecker_editions()},
           {.name = "light",
            .type = Type::text,
-           .help = "Light on a chart whose file has reflectances: A, E, D50, D55, D65, D75, or a spectrum (.csv).",
+           .help = "Light of the photograph, for charts whose file has reflectances and for --sensor: A, E, D50, D55, "
+                   "D65, D75, or a spectrum (.csv).",
            .metavar = "NAME|FILE",
            .preset = "D50"},
+          {.name = "sensor",
+           .type = Type::input_file,
+           .help = "Sensitivities of the camera, a table (.csv) of wavelength in nm, R, G, B: says what no correction "
+                   "can mend under --light."},
           {.name = "corners",
            .type = Type::text,
            .help = "Where the chart lies instead of searching for it: \"x,y x,y x,y x,y\", px, of the outer corners of "
@@ -210,6 +216,11 @@ colour::ChartRequest request_of(cli::Invocation& call) {
   request.name = call.given("name")                  ? call.text("name")
                  : request.photograph.camera.empty() ? "camera"
                                                      : request.photograph.camera;
+  if (call.given("sensor")) {
+    call.note_input(call.text("sensor"));
+    request.metamerism_de00 =
+        colour::metamerism_de00(colour::read_sensitivities(call.text("sensor")), light_of(call), call.text("sensor"));
+  }
   if (call.given("preview")) request.preview = call.text("preview");
   return request;
 }

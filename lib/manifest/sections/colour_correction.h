@@ -30,6 +30,7 @@ struct ColourCorrection {                         // "colour"
   std::optional<double> held_out_de00{}, held_out_sd_de00{}, held_out_most_de00{};
   std::optional<double> exposure_de00{};    // by which colours move where the exposure does, 0.1 to 10 times
   std::optional<double> noise_gain{};       // of noise over white
+  std::optional<double> metamerism_de00{};  // what no correction can mend, colour/metamerism.h
   std::vector<double> offset{};             // R, G, B over white: what was taken off the patches, glare or black
   std::vector<double> gradient{};           // of the light along the chart's rows and columns, over its width, height
   Sigmas sigma{};                           // of offset and gradient

@@ -134,6 +134,17 @@ TEST_F(ColorCalib, EndsWithTwoWhereItIsNotGoodEnough) {
   EXPECT_THAT(ended.out, HasSubstr("\"colour\""));
 }
 
+TEST_F(ColorCalib, SaysWhatNoCorrectionCanMend) {
+  write_file(folder_ / "sensor.csv",
+             "nm,R,G,B\n400,0,0,0.5\n450,0,0.1,1\n500,0,0.6,0.3\n550,0.1,1,0\n600,1,0.3,0\n"
+             "650,0.6,0,0\n700,0.1,0,0\n");
+  const auto day = section(calib({"chart.exr", "--sensor", "sensor.csv"})),
+             lamp = section(calib({"chart.exr", "--sensor", "sensor.csv", "--light", "A"}));
+  EXPECT_GT(*day.metamerism_de00, 0.3);
+  EXPECT_GT(std::abs(*lamp.metamerism_de00 - *day.metamerism_de00), 1e-3);
+  EXPECT_EQ(calib({"chart.exr", "--sensor", "chart.exr"}).status, 65);
+}
+
 TEST_F(ColorCalib, TakesAnotherChart) {
   std::string patches;
   for (const colour::Patch& p : chart_.patches)
