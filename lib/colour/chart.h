@@ -38,8 +38,8 @@ Chart colorchecker_classic(const std::string& edition, const std::string& place)
 std::vector<std::string> colorchecker_editions();
 
 // A chart's description in JSON:
-//   {"name": "Digital SG", "edition": "2013", "grid": [14, 10], "patch_share": 0.8, "aspect": 0.7,
-//    "patches": [{"name": "A1", "lab": [96.6, -0.5, 1.2]}, ...]}
+//   {"name": "my SG", "edition": "of 2019", "grid": [14, 10], "patch_share": 0.8, "aspect": 0.7,
+//    "patches": [{"name": "A1", "lab": [96.5, -0.9, 0.6]}, ...]}
 // grid        columns and rows; patches stand row by row, `patch_share` of the distance between centres wide
 // aspect      height over width of the area of the patches; left out: square patches
 // patches     each with one of "lab", "xyz" (perfect diffuser: Y = 1), "reflectance"; without a grid each with "centre"

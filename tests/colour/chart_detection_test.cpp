@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "base/error.h"
@@ -59,19 +60,31 @@ std::string refusal(const io::Image& picture, const Chart& wanted) {
   return "found";
 }
 
-// Of 500 such photographs (seeds 1000 to 1499, 960 x 640) the figure stands in the report; here every run sees sixty.
-TEST(Detection, FindsChartsInAnyPose) {
+// Photographs of these seeds in which the chart was found; one that is found anywhere else fails the test.
+int found_of(std::uint64_t first, std::uint64_t last) {
   int found = 0;
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+  for (std::uint64_t seed = first; seed <= last; ++seed) {
     const ChartSpecimen p = random_photograph(seed);
     try {
       const FoundChart chart_found = find_chart(photograph_of(chart(), p, width, height), chart(), "photo");
-      EXPECT_LT(error_of(chart_found.pose, p.pose), 0.15) << seed;
+      EXPECT_LT(error_of(chart_found.pose, p.pose), 0.2) << seed;
       ++found;
-    } catch (const Error&) {
+    } catch (const Error& error) {
+      std::printf("%d: %s\n", static_cast<int>(seed), error.what());
     }
   }
-  EXPECT_GE(found, 57);
+  return found;
+}
+
+TEST(Detection, FindsChartsInAnyPose) {
+  EXPECT_GE(found_of(1, 60), 57);
+}
+
+// A minute or two: test_colour --gtest_also_run_disabled_tests --gtest_filter='*Hundred*'.
+TEST(Detection, DISABLED_FindsFiveHundredCharts) {
+  const int found = found_of(1000, 1499);
+  std::printf("found %d of 500\n", found);
+  EXPECT_GE(found, 475);
 }
 
 TEST(Detection, SeesNoneWhereThereIsNone) {
