@@ -6,13 +6,14 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "colour/correction_fit.h"
 #include "stats/intervals.h"
 
 namespace gonio::colour {
 namespace {
 
-constexpr double rare = 1e-3;
+constexpr double rare = 1e-3, least_evenness = 0.2;
 
 bool taken(Take take, double chance) {
   return take == Take::always || (take == Take::automatic && chance < rare);
@@ -57,13 +58,24 @@ class Calibrating {
   };
 
   void choose_light() {
-    const LightRequest both{request_.offset != Take::never, request_.gradient != Take::never};
-    found_ = chart_light(chart_, readings_, white_, both, place_);
-    chosen_ = {taken(request_.offset, found_.offset_chance), taken(request_.gradient, found_.gradient_chance)};
-    light_ = chart_light(chart_, readings_, white_, chosen_, place_);
+    LightRequest request{request_.offset != Take::never, request_.gradient != Take::never, false};
+    found_ = chart_light(chart_, readings_, white_, request);
+    if (request.gradient) {
+      request.curve = true;
+      const ChartLight curved = chart_light(chart_, readings_, white_, request);
+      if (curved.curve_chance < rare) found_ = curved, chosen_.curve = true;
+    }
+    chosen_.offset = taken(request_.offset, found_.offset_chance);
+    chosen_.gradient = chosen_.curve || taken(request_.gradient, found_.gradient_chance);
+    light_ = chart_light(chart_, readings_, white_, chosen_);
+    if (!(light_.evenness() > least_evenness))
+      throw Error(Exit::data, place_,
+                  format("light falls to %.0f %% of its most within the chart, limit %.0f %%",
+                         100 * std::max(0.0, light_.evenness()), 100 * least_evenness),
+                  "light it evenly");
     white_ = white_of(chart_, evened(light_), place_);
     for (std::size_t i = 0; i < counts_.size(); ++i)
-      folds_.push_back(chart_light(chart_, readings_, white_, chosen_, place_, counts_[i]));
+      folds_.push_back(chart_light(chart_, readings_, white_, chosen_, counts_[i]));
   }
 
   std::vector<PatchReading> evened(const ChartLight& light) const {
@@ -179,7 +191,7 @@ class Calibrating {
   const std::string& place_;
   std::vector<std::size_t> counts_;  // patches
   Rgb white_;
-  LightRequest chosen_;
+  LightRequest chosen_{false, false, false};
   ChartLight found_, light_;
   std::vector<ChartLight> folds_;
 };

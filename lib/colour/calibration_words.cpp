@@ -43,6 +43,11 @@ std::vector<std::string> words_of(const Chart& chart, const Calibration& c) {
                            100 * c.found.gradient.x, 1e3 * c.found.gradient_sigma.x, 100 * c.found.gradient.y,
                            1e3 * c.found.gradient_sigma.y) +
                     light(c.found.gradient_chance, c.taken.gradient_sigma.x > 0));
+  if (c.taken.curve_sigma.x > 0)
+    lines.push_back(format("light curves, as that of a near lamp: second order %.2f(%.0f), %.2f(%.0f), %.2f(%.0f)",
+                           c.found.curve.x, 100 * c.found.curve_sigma.x, c.found.curve.y, 100 * c.found.curve_sigma.y,
+                           c.found.curve.z, 100 * c.found.curve_sigma.z) +
+                    light(c.found.curve_chance, true));
   if (c.tried.size() > 1)
     for (const Tried& tried : c.tried)
       lines.push_back(tried.refused.empty() ? format("%-18s fitted %.2f, held out %.2f dE00",

@@ -52,7 +52,8 @@ double misfit(const Chart& chart, const std::vector<PatchReading>& readings, boo
   if (readings.empty()) return HUGE_VAL;
   try {
     const Rgb white = white_of(chart, readings, {});
-    const ChartLight light = with_light ? chart_light(chart, readings, white, {false, true}, {}) : ChartLight{};
+    const ChartLight light = with_light ? chart_light(chart, readings, white, {false, true, false}) : ChartLight{};
+    if (!(light.evenness() > 0.05)) return HUGE_VAL;  // light that no lamp gives
     std::vector<Sample> all;
     for (std::size_t p = 0; p < readings.size(); ++p)
       all.push_back(
@@ -62,7 +63,7 @@ double misfit(const Chart& chart, const std::vector<PatchReading>& readings, boo
     for (const Sample& sample : all) sum += optics::ciede2000(sample.lab, correction.lab(sample.rgb));
     return sum / static_cast<double>(all.size());
   } catch (const Error&) {
-    return HUGE_VAL;  // no colours at all, or light that no lamp gives
+    return HUGE_VAL;  // no colours at all
   }
 }
 

@@ -86,6 +86,10 @@ void fill(manifest::ColourCorrection& section, const ChartRequest& request, cons
     section.gradient = {found.taken.gradient.x, found.taken.gradient.y};
     section.sigma["gradient"] = {found.taken.gradient_sigma.x, found.taken.gradient_sigma.y};
   }
+  if (found.taken.curve_sigma.x > 0) {
+    section.curve = list(found.taken.curve);
+    section.sigma["curve"] = list(found.taken.curve_sigma);
+  }
   section.chart = request.chart.name, section.edition = request.chart.edition, section.light = request.chart.light;
   section.image = request.photograph.image, section.camera = request.photograph.camera;
   for (const Vec2 corner : corners_of(pose)) section.corners_px.insert(section.corners_px.end(), {corner.x, corner.y});

@@ -67,6 +67,7 @@ const std::vector<Field<ColourCorrection>>& colour_correction_fields() {
             "R, G, B over white that was taken off the chart's patches: glare, or black that was left"),
       field("gradient", &ColourCorrection::gradient, "",
             "of the light that was divided out: relative change along the chart's width and its height"),
+      field("curve", &ColourCorrection::curve, "", "the same to second order: width^2, width height, height^2"),
       sigma_field(&ColourCorrection::sigma),
       field("chart", &ColourCorrection::chart, "", "that was photographed"),
       field("edition", &ColourCorrection::edition, "", "of its reference values"),

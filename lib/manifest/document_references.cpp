@@ -155,6 +155,7 @@ void check_colour(const Document& d) {
     needs_numbers(colour.white.size(), 3, at + "/white", "give R, G, B");
     needs_numbers(colour.offset.size(), 3, at + "/offset", "give R, G, B");
     needs_numbers(colour.gradient.size(), 2, at + "/gradient", "give the change along width and height");
+    needs_numbers(colour.curve.size(), 3, at + "/curve", "give width^2, width height, height^2");
     needs_numbers(colour.corners_px.size(), 8, at + "/corners_px", "give x, y of four corners");
     if (colour.matrix.size() != 3)
       throw Error(Exit::data, at + "/matrix", "has " + std::to_string(colour.matrix.size()) + " rows, needs 3",

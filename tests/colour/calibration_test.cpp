@@ -144,10 +144,11 @@ TEST(Light, IsToldFromRealSensorsColours) {
             seen[p] * (1 + dot(gradient, chart.patches[p].centre - Vec2{0.5, 0.5})) * (1 + 0.005 * random.normal()) +
                 offset,
             1e-3 * white.y));
-      const ChartLight light = chart_light(chart, readings, white, {true, true}, "test");
+      const ChartLight light = chart_light(chart, readings, white, {true, true});
       if (!uneven) {
         EXPECT_GT(light.gradient_chance, 1e-3);
         EXPECT_GT(light.offset_chance, 1e-3);
+        EXPECT_GT(chart_light(chart, readings, white, {true, true, true}).curve_chance, 1e-3);
         continue;
       }
       squares += std::pow((light.gradient.x - gradient.x) / light.gradient_sigma.x, 2) +
@@ -178,6 +179,25 @@ TEST(Light, UnevenLightIsDividedOut) {
     readings[p].rgb = readings[p].rgb * std::max(0.05, 1 - 1.7 * chart.patches[p].centre.x);
   request.gradient = Take::automatic;
   EXPECT_THROW(calibrate(chart, readings, request, "test"), Error);
+}
+
+// A lamp one and a half widths above the middle of the chart's left edge: the fourth power of the cosine.
+TEST(Light, OfANearLampCurves) {
+  const Chart chart = colorchecker_classic("after-2014", "test");
+  Random random(21);
+  std::vector<PatchReading> readings;
+  for (const Patch& p : chart.patches) {
+    const Vec2 off{p.centre.x, (p.centre.y - 0.5) * chart.height_over_width};
+    const double light = std::pow(1 + dot(off, off) / 2.25, -2);
+    readings.push_back(reading(camera * p.xyz * light * (1 + 0.003 * random.normal()), 1e-4));
+  }
+  const CalibrationRequest request{Model::linear, Target::cie_rgb, true, Take::automatic, Take::automatic};
+  const Calibration found = calibrate(chart, readings, request, "test");
+  EXPECT_LT(found.found.curve_chance, 1e-3);
+  EXPECT_LT(found.held_out.mean, 1.0);
+  EXPECT_GT(calibrate(chart, readings, {Model::linear, Target::cie_rgb, true, Take::never, Take::never}, "test")
+                .held_out.mean,
+            2 * found.held_out.mean);
 }
 
 TEST(Patches, ThatAreLeftOutDoNotCount) {

@@ -33,6 +33,7 @@ struct ColourCorrection {                         // "colour"
   std::optional<double> metamerism_de00{};  // what no correction can mend, colour/metamerism.h
   std::vector<double> offset{};             // R, G, B over white: what was taken off the patches, glare or black
   std::vector<double> gradient{};           // of the light along the chart's rows and columns, over its width, height
+  std::vector<double> curve{};              // of the same to second order: width^2, width height, height^2
   Sigmas sigma{};                           // of offset and gradient
   std::string chart{}, edition{}, light{};  // of the reference values
   std::string image{}, camera{};            // that it was found in, and whose it is
