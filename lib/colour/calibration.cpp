@@ -53,7 +53,8 @@ class Calibrating {
 
  private:
   struct Attempt {
-    std::vector<Correction> whole, folds;  // one; one for each patch that counts
+    Correction whole;
+    std::vector<Correction> folds;         // one for each patch that counts
     std::vector<double> fitted, held_out;  // of patches that count
   };
 
@@ -110,11 +111,11 @@ class Calibrating {
 
   Attempt attempt(Model model) const {
     Attempt result;
-    result.whole.push_back(fit(model, light_, {}));
-    result.folds.assign(counts_.size(), result.whole[0]);
+    result.whole = fit(model, light_, {});
+    result.folds.assign(counts_.size(), result.whole);
     parallel_for(0, counts_.size(), [&](std::size_t i) { result.folds[i] = fit(model, folds_[i], counts_[i]); });
     for (std::size_t i = 0; i < counts_.size(); ++i) {
-      result.fitted.push_back(difference(result.whole[0], light_, counts_[i]));
+      result.fitted.push_back(difference(result.whole, light_, counts_[i]));
       result.held_out.push_back(difference(result.folds[i], folds_[i], counts_[i]));
     }
     return result;
@@ -130,7 +131,7 @@ class Calibrating {
       std::vector<double> behind(attempt.held_out.size());
       for (std::size_t i = 0; i < behind.size(); ++i) behind[i] = attempt.held_out[i] - least->held_out[i];
       const bool alike = !(stats::mean(behind) > stats::standard_error(behind));
-      const auto terms = [](const Attempt& a) { return terms_of(a.whole[0].model()).size(); };
+      const auto terms = [](const Attempt& a) { return terms_of(a.whole.model()).size(); };
       const auto rank = [&](const Attempt& a) { return std::pair{terms(a), spread(a.held_out).mean}; };
       if (alike && rank(attempt) < rank(*best)) best = &attempt;
     }
@@ -181,8 +182,8 @@ class Calibrating {
       patch.fitted = best.fitted[i], patch.held_out = best.held_out[i];
       pixels.push_back(patch.evened);
     }
-    result.exposure_de00 = exposure_change(best.whole[0], pixels);
-    result.noise_gain = noise_gain(best.whole[0], pixels);
+    result.exposure_de00 = exposure_change(best.whole, pixels);
+    result.noise_gain = noise_gain(best.whole, pixels);
   }
 
   const Chart& chart_;

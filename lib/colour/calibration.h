@@ -48,7 +48,7 @@ struct Calibration {
   ChartLight found;  // offset and gradient as they were found
   ChartLight taken;  // and as they were taken off: zero where chance would do
   std::vector<Tried> tried;
-  std::vector<Correction> correction;           // one: the best
+  Correction correction;
   std::vector<std::vector<double>> covariance;  // of its matrix, row by row
   std::vector<PatchOutcome> patches;
   Spread fitted, held_out;

@@ -53,7 +53,7 @@ std::vector<std::string> words_of(const Chart& chart, const Calibration& c) {
       lines.push_back(tried.refused.empty() ? format("%-18s fitted %.2f, held out %.2f dE00",
                                                      name_of(tried.model).c_str(), tried.fitted, tried.held_out)
                                             : name_of(tried.model) + ": " + tried.refused);
-  const Correction& best = c.correction[0];
+  const Correction& best = c.correction;
   lines.push_back(format("%s: fitted %.2f +- %.2f dE00 (most %.1f, %s), held out %.2f +- %.2f (most %.1f, %s)",
                          name_of(best.model()).c_str(), c.fitted.mean, c.fitted.deviation, c.fitted.most,
                          chart.patches[c.fitted.worst].name.c_str(), c.held_out.mean, c.held_out.deviation,

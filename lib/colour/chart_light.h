@@ -18,14 +18,13 @@
 
 namespace gonio::colour {
 
+// What was fitted, each with one standard deviation; the others are zero. Chances are of even light without offset to
+// look like that (F test).
 struct ChartLight {
-  Rgb offset{};        // codes of the picture
-  Vec2 gradient{};     // relative change along the chart's width and its height
-  Rgb offset_sigma{};  // one standard deviation each
-  Vec2 gradient_sigma{};
-  Vec3 curve{}, curve_sigma{};
-  double offset_chance = 1, gradient_chance = 1,
-         curve_chance = 1;  // that even light without offset would look like that (F test)
+  Rgb offset{}, offset_sigma{};       // in the picture's unit
+  Vec2 gradient{}, gradient_sigma{};  // relative change along the chart's width and its height
+  Vec3 curve{}, curve_sigma{};        // second order: width^2, width height, height^2
+  double offset_chance = 1, gradient_chance = 1, curve_chance = 1;
 
   Rgb evened(Rgb read, Vec2 place) const;   // what even light without offset would have given
   double relative_light(Vec2 place) const;  // 1 in the middle of the chart
@@ -33,7 +32,7 @@ struct ChartLight {
 };
 
 struct LightRequest {
-  bool offset = true, gradient = true, curve = false;  // which are fitted; the others are zero
+  bool offset = true, gradient = true, curve = false;
 };
 
 // `white`: what a perfect white reads, about. Readings that are left out do not count, nor does `without`. Where the

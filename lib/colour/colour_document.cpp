@@ -66,7 +66,7 @@ ChartPose pose_in(const io::Image& picture, const ChartRequest& request) {
 
 void fill(manifest::ColourCorrection& section, const ChartRequest& request, const ChartPose& pose,
           const std::vector<PatchReading>& readings, const Calibration& found) {
-  const Correction& correction = found.correction[0];
+  const Correction& correction = found.correction;
   section.model = name_of(correction.model()), section.matrix = correction.matrix();
   section.white = list(correction.white()), section.to = name_of(correction.target());
   section.covariance = found.covariance;

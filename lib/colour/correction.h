@@ -61,6 +61,7 @@ Mat3 from_xyz_d50(Target target);
 
 class Correction {
  public:
+  Correction() = default;  // changes nothing
   // Error(data) at `place` for another number of rows or columns than the model's, or numbers that are not finite.
   Correction(Model model, std::vector<std::vector<double>> matrix, Rgb white, Target target, const std::string& place);
   Model model() const { return model_; }
@@ -72,10 +73,10 @@ class Correction {
   optics::Lab lab(Rgb pixel) const;  // about D50's white
 
  private:
-  Model model_;
-  std::vector<std::vector<double>> matrix_;
-  Rgb white_;
-  Target target_;
+  Model model_ = Model::linear;
+  std::vector<std::vector<double>> matrix_{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  Rgb white_{1, 1, 1};
+  Target target_ = Target::xyz_d50;
 };
 
 Correction correction_of(const manifest::ColourCorrection& section, const std::string& place);

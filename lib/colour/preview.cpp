@@ -18,7 +18,7 @@ class Drawing {
         calibration_(calibration),
         chart_from_image_(optics::inverse(pose.image_from_chart)),
         srgb_(from_xyz_d50(Target::srgb)),
-        srgb_from_target_(srgb_ * optics::inverse(from_xyz_d50(calibration.correction[0].target()))) {}
+        srgb_from_target_(srgb_ * optics::inverse(from_xyz_d50(calibration.correction.target()))) {}
 
   Rgb pixel(Rgb read, double x, double y, bool corrected) const {
     const Vec3 h = chart_from_image_ * Vec3{x, y, 1};
@@ -36,7 +36,7 @@ class Drawing {
  private:
   Rgb shown(Rgb read, bool corrected) const {
     const Rgb w = calibration_.white;
-    return corrected ? srgb_from_target_ * calibration_.correction[0](read)
+    return corrected ? srgb_from_target_ * calibration_.correction(read)
                      : Rgb{read.x / w.x, read.y / w.y, read.z / w.z};
   }
   const Chart& chart_;

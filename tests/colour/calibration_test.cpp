@@ -238,7 +238,7 @@ TEST(Coefficients, HaveHonestIntervals) {
           const int r = static_cast<int>(i), c = static_cast<int>(j);
           const double wanted = truth(r, c) * found.white[c] / white[c];
           const double z =
-              (found.correction[0].matrix()[i][j] - wanted) / std::sqrt(found.covariance[3 * i + j][3 * i + j]);
+              (found.correction.matrix()[i][j] - wanted) / std::sqrt(found.covariance[3 * i + j][3 * i + j]);
           covered += std::abs(z) < 1.96, squares += z * z, ++count;
         }
     }
