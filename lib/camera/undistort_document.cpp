@@ -27,14 +27,6 @@ std::string pointer_of(std::size_t index) {
   return "/images/" + std::to_string(index);
 }
 
-std::string camera_name(const manifest::Document& document, std::size_t index) {
-  const std::string& given = document.images[index].camera;
-  if (!given.empty()) return given;
-  if (document.cameras.size() == 1) return document.cameras.begin()->first;
-  throw Error(Exit::data, manifest::place(document, pointer_of(index) + "/camera"), "missing",
-              "say which of the cameras took the image");
-}
-
 struct Work {
   std::string camera, place;
   std::filesystem::path path;
@@ -43,7 +35,7 @@ struct Work {
 Work work_of(const manifest::Document& document, std::size_t index) {
   const manifest::ImageEntry& image = document.images[index];
   Work work;
-  work.camera = camera_name(document, index);
+  work.camera = camera_of_picture(document, index);
   work.place = manifest::place(document, "/cameras/" + work.camera);
   if (!document.cameras.contains(work.camera)) throw Error(Exit::data, work.place, "missing", "calibrate it first");
   if (image.file.empty())
@@ -200,6 +192,14 @@ void undistort_image(manifest::Document& document, std::size_t index, const Undi
 }
 
 }  // namespace
+
+std::string camera_of_picture(const manifest::Document& document, std::size_t index) {
+  const std::string& given = document.images[index].camera;
+  if (!given.empty()) return given;
+  if (document.cameras.size() == 1) return document.cameras.begin()->first;
+  throw Error(Exit::data, manifest::place(document, pointer_of(index) + "/camera"), "missing",
+              "say which of the cameras took the image");
+}
 
 std::vector<std::size_t> enter_photographs(const std::vector<std::string>& paths, const std::string& camera,
                                            const manifest::Value& response, manifest::Document& document) {

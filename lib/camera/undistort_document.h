@@ -24,6 +24,8 @@ struct UndistortRequest {
   std::function<void(const std::filesystem::path&)> note_input;
 };
 
+// The camera of an image: as it says, else the only one. Error(data) where neither is there.
+std::string camera_of_picture(const manifest::Document& document, std::size_t index);
 // Photographs by `camera` become images of the manifest; `response` null: not known. Their places in document.images.
 std::vector<std::size_t> enter_photographs(const std::vector<std::string>& paths, const std::string& camera,
                                            const manifest::Value& response, manifest::Document& document);

@@ -159,8 +159,9 @@ bool misfit(const Sight& s, const Vector3d& point, double radius, Misfit& out) {
   return true;
 }
 
-std::optional<Meeting> meet(std::span<const Sight* const> sights, std::optional<double> radius) {
-  const auto start = nearest_point(sights);
+std::optional<Meeting> meet(std::span<const Sight* const> sights, std::optional<double> radius,
+                            std::optional<Vector3d> start) {
+  if (!start) start = nearest_point(sights);
   if (!start) return {};
   Meeting m;
   m.centre = *start;

@@ -55,7 +55,9 @@ struct Meeting {
   double chi_square = 0;
   int degrees = 0;
 };
-// Nothing where the rays do not meet before the cameras, or are too near to parallel for their uncertainty.
-std::optional<Meeting> meet(std::span<const Sight* const> sights, std::optional<double> radius);
+// Nothing where the rays do not meet before the cameras, or are too near to parallel for their uncertainty. The search
+// begins at `start`, by default at the point nearest to all rays; one sight alone of a known radius needs it.
+std::optional<Meeting> meet(std::span<const Sight* const> sights, std::optional<double> radius,
+                            std::optional<Eigen::Vector3d> start = {});
 
 }  // namespace gonio::reassembly

@@ -1,0 +1,60 @@
+// Lamps among the surroundings: small bright regions of what balls show, as lights with a place or a direction.
+//
+// A region is a connected set of pixels above `ratio` times the mean radiance, no larger than `largest_rad`, that
+// bring `least_share` of all light or more. Its
+// middle, weighted by radiance and solid angle, is one ray: from a point of the ball into a direction. Its irradiance
+// is the sum of radiance above its border's, times solid angle; its half angle that of an even disc of the same second
+// moment. Rays of different balls or views that meet in one place are one lamp: direction u and inverse distance q from
+// the balls' middle o, by least squares of
+//   direction_i - (u - q (p_i - o)) / |u - q (p_i - o)|
+// in two tangents each, whitened; q = 0 is infinitely far. A lamp has a place where q exceeds `least_z` of its standard
+// deviations, else a direction. Covariances are those of the balls' places (each moved by its standard deviations, the
+// region found again) and of the middle among its own pixels. World frame.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "probe/unwrap.h"
+
+namespace gonio::probe {
+
+struct LightWish {
+  double ratio = 10;
+  double largest_rad = 20 * pi / 180;  // half angle
+  double least_share = 0.01;           // of the irradiance of all directions together, summed without cosines
+  double least_z = 5;
+};
+
+struct Highlight {  // one region of one view
+  std::size_t view = 0;
+  std::vector<std::size_t> pixels{};
+  Vec3 point_m{}, direction{};  // the ray
+  Mat3 covariance{{}};          // of the direction: tangential
+  Rgb irradiance{}, irradiance_sigma{}, background{};
+  double half_angle_rad = 0;
+  bool clipped = false;
+};
+std::vector<Highlight> highlights(const std::vector<BallView>& views, const std::vector<Facing>& faces,
+                                  std::size_t view, const LightWish& wish);
+
+struct FoundLight {
+  std::vector<std::size_t> seen{};  // places in the list of highlights
+  Vec3 direction{};                 // unit, from the balls' middle
+  Mat3 direction_covariance{{}};
+  std::optional<Vec3> position_m{};
+  Mat3 position_covariance_m2{{}};
+  double distance_m = 0;  // from the balls' middle; infinite without a place
+  Rgb irradiance{}, irradiance_sigma{};
+  double half_angle_rad = 0;
+  bool clipped = false;
+  double chi_square = 0;
+  int degrees = 0;
+};
+// Highlights that belong together, as lamps, brightest first. `middle_m`: of the balls.
+std::vector<FoundLight> lights_of(const std::vector<Highlight>& all, Vec3 middle_m, const LightWish& wish);
+
+// The highlights' pixels take the level of their borders.
+void take_out(const std::vector<Highlight>& all, std::vector<Facing>& faces);
+
+}  // namespace gonio::probe

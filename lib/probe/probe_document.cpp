@@ -1,0 +1,241 @@
+// See probe_document.h.
+#include "probe/probe_document.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/progress.h"
+#include "base/text.h"
+#include "camera/undistort_document.h"
+#include "io/picture.h"
+#include "manifest/document.h"
+#include "manifest/image_list.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "probe/probe_views.h"
+
+namespace gonio::probe {
+namespace {
+
+std::vector<double> list(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+std::vector<double> deviations(const Mat3& covariance) {
+  return {std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)), std::sqrt(covariance(2, 2))};
+}
+// Of a direction: root of the mean of its two tangential variances, rad.
+double sigma_of(const Mat3& covariance) {
+  return std::sqrt((covariance(0, 0) + covariance(1, 1) + covariance(2, 2)) / 2);
+}
+
+manifest::Light entry_of(const FoundLight& light) {
+  manifest::Light entry;
+  if (!light.position_m) {
+    entry.model = "directional";
+    entry.parameters["towards"] = list(light.direction);
+    entry.parameters["watt_per_m2"] = list(light.irradiance);
+    entry.sigma["towards"] = deviations(light.direction_covariance);
+    entry.sigma["watt_per_m2"] = list(light.irradiance_sigma);
+    return entry;
+  }
+  const double square = light.distance_m * light.distance_m;
+  entry.model = "point";
+  entry.parameters["position_m"] = list(*light.position_m);
+  entry.parameters["watt_per_sr"] = list(light.irradiance * square);
+  const double radius_m = light.distance_m * std::sin(light.half_angle_rad);
+  if (radius_m > 0) entry.parameters["radius_m"] = radius_m;
+  entry.sigma["position_m"] = deviations(light.position_covariance_m2);
+  entry.sigma["watt_per_sr"] = list(light.irradiance_sigma * square);
+  return entry;
+}
+
+std::string line(std::initializer_list<double> numbers) {
+  std::string text;
+  for (const double v : numbers) text += "," + (std::isfinite(v) ? shortest_text(v) : std::string());
+  return text;
+}
+
+constexpr const char* light_header =
+    "light,images,towards_x,towards_y,towards_z,sigma_rad,distance_m,x_m,y_m,z_m,sigma_x_m,sigma_y_m,sigma_z_m,"
+    "irradiance_r,irradiance_g,irradiance_b,sigma_r,sigma_g,sigma_b,half_angle_rad,saturated,chi_square,degrees\n";
+
+std::string row_of(const std::string& name, const FoundLight& l, const std::string& images) {
+  const Vec3 nowhere{NAN, NAN, NAN}, at = l.position_m.value_or(nowhere);
+  const Mat3 unknown{{NAN, 0, 0, 0, NAN, 0, 0, 0, NAN}};
+  const std::vector<double> s = deviations(l.position_m ? l.position_covariance_m2 : unknown);
+  return name + "," + images +
+         line({l.direction.x,
+               l.direction.y,
+               l.direction.z,
+               sigma_of(l.direction_covariance),
+               l.distance_m,
+               at.x,
+               at.y,
+               at.z,
+               s[0],
+               s[1],
+               s[2],
+               l.irradiance.x,
+               l.irradiance.y,
+               l.irradiance.z,
+               l.irradiance_sigma.x,
+               l.irradiance_sigma.y,
+               l.irradiance_sigma.z,
+               l.half_angle_rad,
+               l.clipped ? 1.0 : 0.0,
+               l.chi_square,
+               static_cast<double>(l.degrees)}) +
+         "\n";
+}
+
+std::string balls_csv(const manifest::Document& document, const BallViews& all) {
+  std::string csv =
+      "ball,image,x_m,y_m,z_m,sigma_x_m,sigma_y_m,sigma_z_m,radius_m,outline_x_px,outline_y_px,outline_radius_px,"
+      "cover,rms_px,chi_square,degrees\n";
+  for (std::size_t v = 0; v < all.views.size(); ++v) {
+    const FoundBall& b = all.balls[all.ball_of_view[v]];
+    const std::vector<double> s = deviations(b.covariance_m2);
+    const reassembly::Outline& outline = all.outline_of_view[v];
+    const Vec3 c = b.ball.centre_m;
+    csv += std::to_string(all.ball_of_view[v] + 1) + "," + document.images[all.image_of_view[v]].id +
+           line({c.x, c.y, c.z, s[0], s[1], s[2], b.ball.radius_m, outline.centre_px.x, outline.centre_px.y,
+                 outline.radius_px, outline.cover, outline.rms_px, b.chi_square, static_cast<double>(b.degrees)}) +
+           "\n";
+  }
+  return csv;
+}
+
+void say(const std::string& name, const FoundLight& l) {
+  std::string text = name + ": towards " + format("%.4f %.4f %.4f", l.direction.x, l.direction.y, l.direction.z) +
+                     format(" +- %.3g deg", sigma_of(l.direction_covariance) * 180 / pi);
+  if (l.position_m) text += format(", %.4g m away", l.distance_m);
+  log(LogLevel::info, text + format(", half angle %.3g deg", l.half_angle_rad * 180 / pi));
+  if (l.clipped)
+    log(LogLevel::warning, name + ": saturated; its intensity is a lower bound (develop --merge joins exposures)");
+}
+
+std::string images_of(const manifest::Document& document, const BallViews& all, const std::vector<Highlight>& spots,
+                      const FoundLight& light) {
+  std::string text;
+  for (const std::size_t k : light.seen)
+    text += (text.empty() ? "" : " ") + document.images[all.image_of_view[spots[k].view]].id;
+  return text;
+}
+
+// Lights of these views, entered; their highlights leave the faces. Returns their names.
+std::vector<std::string> enter_lights(manifest::Document& document, const ProbeRequest& request, const BallViews& all,
+                                      std::vector<Facing>& faces, const std::string& stem, std::string& csv) {
+  std::vector<Highlight> spots;
+  for (std::size_t v = 0; v < all.views.size(); ++v) {
+    auto here = highlights(all.views, faces, v, *request.lights);
+    spots.insert(spots.end(), here.begin(), here.end());
+  }
+  take_out(spots, faces);
+  std::vector<std::string> names;
+  for (const FoundLight& light : lights_of(spots, all.middle_m, *request.lights)) {
+    names.push_back(stem + "-" + std::to_string(names.size() + 1));
+    document.lights[names.back()] = entry_of(light);
+    csv += row_of(names.back(), light, images_of(document, all, spots, light));
+    say(names.back(), light);
+  }
+  return names;
+}
+
+std::vector<Facing> faces_of(const BallViews& all, const ProbeRequest& request, const std::string& place) {
+  std::vector<Facing> faces;
+  for (const BallView& view : all.views) {
+    faces.push_back(facing(view, request.unwrap));
+    if (std::ranges::none_of(faces.back().used, [](std::uint8_t u) { return u != 0; }))
+      throw Error(Exit::data, place, "leaves no pixel of the ball",
+                  "check the masks, and that the ball is larger than some pixels");
+  }
+  return faces;
+}
+
+void probe_each(manifest::Document& document, const ProbeRequest& request) {
+  const auto lights_path = request.output_path(request.name + "-lights.csv"),
+             balls_path = request.output_path(request.name + "-balls.csv");
+  std::string lights = light_header, balls;
+  Progress progress("light-probe", request.images.size());
+  for (const std::size_t index : request.images) {
+    const std::string id = document.images[index].id;
+    const BallViews all = ball_views({load_view(document, index, request)}, request, id);
+    std::vector<Facing> faces = faces_of(all, request, id);
+    const auto names = enter_lights(document, request, all, faces, request.name + "-" + id, lights);
+    if (names.empty())
+      log(LogLevel::warning, id + ": shows no light above " + shortest_text(request.lights->ratio) + " times the mean");
+    document.images[index].light = names;
+    const std::string rows = balls_csv(document, all);
+    balls += balls.empty() ? rows : rows.substr(rows.find('\n') + 1);
+    progress.advance();
+  }
+  write_file(lights_path, lights), write_file(balls_path, balls);
+  manifest::add_file(document, lights_path, request.name + "-lights");
+  manifest::add_file(document, balls_path, request.name + "-balls");
+}
+
+void probe_all(manifest::Document& document, const ProbeRequest& request) {
+  const auto out = [&](const char* ending) { return request.output_path(request.name + ending); };
+  const auto picture_path = out(".exr"), weight_path = out("-weight.exr"), balls_path = out("-balls.csv");
+  const auto lights_path = request.lights ? out("-lights.csv") : std::filesystem::path();
+  std::vector<LoadedView> loaded;
+  for (const std::size_t index : request.images) loaded.push_back(load_view(document, index, request));
+  const std::string place = document.name;
+  const BallViews all = ball_views(loaded, request, place);
+  loaded.clear();
+  std::vector<Facing> faces = faces_of(all, request, place);
+  std::string lights = light_header;
+  if (request.lights) enter_lights(document, request, all, faces, request.name, lights);
+  const Unwrapped map = unwrapped(all.views, faces, request.unwrap);
+  io::write_picture(picture_path, map.radiance);
+  io::write_picture(weight_path, map.weight);
+  write_file(balls_path, balls_csv(document, all));
+  manifest::Light entry;
+  entry.model = "lat-long";
+  entry.file = manifest::add_file(document, picture_path, request.name);
+  document.lights[request.name] = entry;
+  manifest::add_file(document, weight_path, request.name + "-weight");
+  manifest::add_file(document, balls_path, request.name + "-balls");
+  if (request.lights) {
+    write_file(lights_path, lights);
+    manifest::add_file(document, lights_path, request.name + "-lights");
+  }
+  log(LogLevel::info, format("%zu views of %zu balls; %.3g sr of 12.6 are seen by none", all.views.size(),
+                             all.balls.size(), map.blind_sr));
+}
+
+}  // namespace
+
+void check_probe(const manifest::Document& document, const ProbeRequest& request) {
+  if (request.images.empty())
+    throw Error(Exit::data, manifest::place(document, "/images"), "has no image with a file",
+                "name photographs of the ball");
+  for (const std::size_t index : request.images) {
+    manifest::picture_path(document, index), manifest::mask_path(document, index);
+    if (request.parallel) continue;
+    const std::string name = camera::camera_of_picture(document, index),
+                      place = manifest::place(document, "/cameras/" + name);
+    if (!document.cameras.contains(name)) throw Error(Exit::data, place, "missing", "calibrate it first");
+    if (camera::CameraModel(document.cameras.at(name), place).orthographic())
+      throw Error(Exit::data, place, "has no perspective", "say --orthographic");
+  }
+  if (request.images.size() > 1 && !request.each && !request.parallel)
+    for (const std::size_t index : request.images)
+      if (!document.images[index].world_from_camera)
+        throw Error(Exit::data, manifest::place(document, "/images/" + std::to_string(index) + "/world_from_camera"),
+                    "missing, and there are " + std::to_string(request.images.size()) + " views to be put together",
+                    "give every view its pose, or use --each");
+}
+
+void probe_document(manifest::Document& document, const ProbeRequest& request) {
+  check_probe(document, request);
+  if (request.each)
+    probe_each(document, request);
+  else
+    probe_all(document, request);
+}
+
+}  // namespace gonio::probe

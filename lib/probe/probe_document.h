@@ -1,0 +1,41 @@
+// The manifest's photographs of mirror balls, as surroundings and lights in the manifest.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "manifest/sections/forward.h"
+#include "probe/ball_outline.h"
+#include "probe/bright_lights.h"
+#include "probe/unwrap.h"
+
+namespace gonio::probe {
+
+struct ProbeRequest {
+  std::vector<std::size_t> images{};  // places in document.images
+  // Without perspective: no camera is asked for. The world's axes are then x along the view, y to the left, z up, its
+  // origin behind the middle of the picture, and a ball whose radius is not known has one of a metre.
+  bool parallel = false;
+  double radius_m = 0;
+  std::size_t balls = 1;
+  std::optional<Circle> circle{};
+  std::filesystem::path silhouette{};
+  UnwrapWish unwrap{};
+  std::optional<LightWish> lights{};  // left out: all stays in the picture
+  bool each = false;                  // every photograph has lights of its own, and there is no picture of all
+  std::string name = "probe";
+  std::function<std::filesystem::path(const std::string& name)> output_path{};
+  std::function<void(const std::filesystem::path&)> note_input{};
+};
+
+// Cameras, pictures and masks are there and fit together; no pixel is looked at. Error(data | no_input).
+void check_probe(const manifest::Document& document, const ProbeRequest& request);
+
+// Writes NAME.exr, the surroundings, and NAME-weight.exr, NAME-balls.csv, NAME-lights.csv; enters the light NAME
+// (model lat-long) and what `lights` finds, NAME-1, NAME-2, ... With `each`: lights alone, NAME-IMAGE-1, ..., which
+// become those of the image. What was found is logged.
+void probe_document(manifest::Document& document, const ProbeRequest& request);
+
+}  // namespace gonio::probe
