@@ -2,7 +2,7 @@
 complete -c light-probe -l radius -x -d 'Radius of the balls.'
 complete -c light-probe -l balls -x -d 'Balls in each photograph.'
 complete -c light-probe -l circle -x -d 'Where the ball is: centre and radius in pixels, within a tenth of the radius; the outline is found near it.'
-complete -c light-probe -l silhouette -r -d 'A picture that is white where the ball is: its outline is that of the ball.'
+complete -c light-probe -l silhouette -r -d 'A picture that is white where the balls are: its outlines are theirs. One for all photographs, or one for each in their order.'
 complete -c light-probe -l orthographic -d 'Photographs without a camera: take them as seen from infinitely far, along the worlds +x, z up.'
 complete -c light-probe -l metal -x -d 'What the ball is made of, to divide its reflectance out: chromium, nickel, iron, silver, aluminium, none (reflects all), or a file of refractiveindex.info.'
 complete -c light-probe -l steepest -x -d 'Largest angle of incidence that is used; what only the rim shows counts as not seen.'

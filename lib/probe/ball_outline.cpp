@@ -71,6 +71,18 @@ void check_circle(const io::Image& picture, const OutlineWish& wish, const std::
                 "the whole ball must be in the picture");
 }
 
+io::GreyImage linear(const io::Image& picture) {
+  io::GreyImage grey = io::grey_of(picture);
+  if (grey.values.empty()) grey.values.assign(grey.bytes.begin(), grey.bytes.end());
+  return grey;
+}
+
+// Two values alone: somebody decided for each pixel. Others have grey levels where the outline runs through them.
+bool is_drawn(const io::Image& silhouette) {
+  const auto [least, most] = std::ranges::minmax(silhouette.data);
+  return std::ranges::all_of(silhouette.data, [&](float v) { return v == least || v == most; });
+}
+
 // Without a start: circles that the detector of matt balls sees, each taken to the edges that a mirror has.
 std::vector<Outline> found_alone(const io::Image& picture, const camera::CameraModel& camera, const OutlineWish& wish,
                                  const std::vector<unsigned char>& counts, std::string& why) {
@@ -78,20 +90,23 @@ std::vector<Outline> found_alone(const io::Image& picture, const camera::CameraM
   detect.smallest_px = 10;
   detect.largest_px = std::max(0.6 * std::min(picture.width, picture.height), 2 * detect.smallest_px);
   detect.least_cover = 0.25;
-  const io::GreyImage grey = wish.silhouette ? io::grey_of(*wish.silhouette) : compressed(picture, counts);
+  const io::GreyImage grey = wish.silhouette ? linear(*wish.silhouette) : compressed(picture, counts);
   reassembly::Detected detected = detect_spheres(grey, camera, detect, counts);
   std::ranges::stable_sort(detected.found, std::greater{}, [](const Outline& o) { return o.cover * o.radius_px; });
   double largest = 0;
   for (const reassembly::Refused& r : detected.refused)
     if (r.radius_px > largest)
       largest = r.radius_px, why = format("; what is at %.0f, %.0f ", r.centre_px.x, r.centre_px.y) + r.why;
-  if (wish.silhouette) return detected.found;
   std::vector<Outline> found;
+  const Doubt doubt = !wish.silhouette ? squeeze : is_drawn(*wish.silhouette) ? drawn : Doubt{};
   constexpr std::size_t most_tried = 4;  // beyond the balls that are asked for
   detected.found.resize(std::min(detected.found.size(), wish.balls + most_tried));
   for (const Outline& o : detected.found)
-    if (const auto outline = mirror_outline(grey, camera, {o.axis, o.half_angle_rad, 0.1}, counts))
-      if (outline->cover >= least_cover_alone) found.push_back(*outline);
+    if (auto outline = mirror_outline(grey, camera, {o.axis, o.half_angle_rad, 0.1}, counts))
+      if (outline->cover >= least_cover_alone) {
+        add_doubt(*outline, doubt);
+        found.push_back(*outline);
+      }
   return found;
 }
 
@@ -109,8 +124,9 @@ std::vector<Outline> ball_outlines(const io::Image& picture, const camera::Camer
   if (wish.near && !wish.silhouette) {
     const Vec3 axis = camera.ray(wish.near->centre_px).direction,
                rim = camera.ray(wish.near->centre_px + Vec2{wish.near->radius_px, 0}).direction;
-    const auto outline = mirror_outline(compressed(picture, counts), camera,
-                                        {axis, std::atan2(norm(cross(axis, rim)), dot(axis, rim)), 0.1}, counts);
+    auto outline = mirror_outline(compressed(picture, counts), camera,
+                                  {axis, std::atan2(norm(cross(axis, rim)), dot(axis, rim)), 0.1}, counts);
+    if (outline) add_doubt(*outline, squeeze);
     if (outline && outline->cover >= least_cover) found.push_back(*outline);
     if (outline && outline->cover < least_cover)
       why = format("; near the circle edges show %.2f of one (limit %g)", outline->cover, least_cover);

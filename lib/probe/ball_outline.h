@@ -4,7 +4,8 @@
 // about it (reassembly/detect.h). What a mirror shows beside its outline is as bright as what lies behind it, or
 // brighter, or darker, and changes along it; that is why edges of both signs count, and why the picture's range is
 // compressed before, v / (v + median), so that an edge between dark things is one. A silhouette, white where the ball
-// is, may stand in the place of the picture; a circle, drawn by hand, says where to look.
+// is, may stand in the place of the picture; a circle, drawn by hand, says where to look. A silhouette of two values
+// was decided pixel by pixel: it is in doubt (mirror_outline.h).
 //
 // The centre follows from the axis, the half angle and the known radius, of several views at once with the covariance
 // that each of them has (reassembly/ball_place.h). A picture without a camera is taken as seen from very far: then

@@ -19,7 +19,12 @@ Rgb light_at(const Facing& face, std::size_t pixel) {
 // What the pixels of a ball say: ray and solid angle of each.
 class BallPixels {
  public:
-  BallPixels(const BallView& view, const MirrorBall& mirror) : view_(view), mirror_(mirror) {}
+  BallPixels(const BallView& view, const MirrorBall& mirror) : view_(view), mirror_(mirror) {
+    // The outline of a ball that was moved or swollen is larger in proportion to the sine of its half angle.
+    const MirrorBall there = view.mirror();
+    radius_px_ = view.radius_px * mirror.ball().radius_m / there.ball().radius_m;
+    if (!view.camera.orthographic()) radius_px_ *= there.eye_distance_m() / mirror.eye_distance_m();
+  }
   std::optional<MirrorBall::Reflection> ray(std::size_t pixel) const {
     const auto w = static_cast<std::size_t>(view_.picture.width);
     const camera::Ray ray = view_.camera.ray({static_cast<double>(pixel % w), static_cast<double>(pixel / w)});
@@ -27,12 +32,13 @@ class BallPixels {
   }
   double solid_angle(const MirrorBall::Reflection& r) const {
     const Vec2 spread = mirror_.spread_rad(r.offset);
-    return spread.x * spread.y / (view_.radius_px * view_.radius_px);
+    return spread.x * spread.y / (radius_px_ * radius_px_);
   }
 
  private:
   const BallView& view_;
   const MirrorBall& mirror_;
+  double radius_px_ = 0;
 };
 
 // Connected pixels (eight neighbours) of `bright`.
@@ -113,6 +119,30 @@ void add_outer(Mat3& sum, Vec3 v, double factor = 1) {
     for (int j = 0; j < 3; ++j) sum(i, j) += factor * v[i] * v[j];
 }
 
+// What the picture's own noise does to a region's middle and to its irradiance.
+void add_noise(Highlight& h, const BallView& view, const Facing& face, const MirrorBall& mirror) {
+  if (view.variance.data.empty()) return;
+  const BallPixels pixels(view, mirror);
+  const double all = mean(h.irradiance);
+  const std::size_t channels = view.picture.channels.size();
+  for (const std::size_t pixel : h.pixels) {
+    const auto r = pixels.ray(pixel);
+    const float green = view.picture.data[pixel * channels + channels / 2];
+    if (!r || !(green > 0)) continue;
+    const double over = mean(light_at(face, pixel)) / double{green}, sr = pixels.solid_angle(*r);
+    const double variance = double{view.variance.data[pixel * channels + channels / 2]} * over * over * sr * sr;
+    add_outer(h.covariance, r->direction - h.direction * dot(r->direction, h.direction), variance / (all * all));
+    h.irradiance_sigma += Rgb{1, 1, 1} * variance;
+  }
+}
+
+Vec2 focus_of(const Highlight& h, const BallView& view) {
+  const Vec3 normal = (h.point_m - view.ball.centre_m) / view.ball.radius_m;
+  const double cosine = std::max(dot(normal, h.direction) / norm(normal), 1e-3), r = view.ball.radius_m;
+  const double nearness = view.camera.orthographic() ? 0 : 1 / norm(view.world_from_camera.translation_m - h.point_m);
+  return {1 / (nearness + 2 / (r * cosine)), 1 / (nearness + 2 * cosine / r)};
+}
+
 }  // namespace
 
 std::vector<Highlight> highlights(const std::vector<BallView>& views, const std::vector<Facing>& faces, std::size_t v,
@@ -142,10 +172,16 @@ std::vector<Highlight> highlights(const std::vector<BallView>& views, const std:
     if (!(mean(m.irradiance) > wish.least_share * light) || m.sr > 2 * pi * (1 - std::cos(wish.largest_rad))) continue;
     h.point_m = m.point_m, h.direction = m.direction, h.irradiance = m.irradiance;
     h.half_angle_rad = m.half_angle_rad;
+    h.focus_m = focus_of(h, view);
     if (!view.clipped.empty())
       h.clipped = std::ranges::any_of(h.pixels, [&](std::size_t p) { return view.clipped[p] != 0; });
+    // Pixels are means, which keep a middle but for the bend of the mirror: measured, a quarter of what counting pixels
+    // gives. Saturated ones are counted.
+    const double within = h.clipped ? 1 : 0.25;
     const Basis across(h.direction);
-    for (const Vec3 t : {across.t, across.b}) add_outer(h.covariance, t, m.pixel_sr / (12 * m.effective));
+    for (const Vec3 t : {across.t, across.b})
+      add_outer(h.covariance, t, within * within * m.pixel_sr / (12 * m.effective));
+    add_noise(h, view, face, mirror);
     for (const Ball& variant : view.variants) {
       const Moments moved = moments_of(h, view, view.mirror(variant), face);
       if (!(mean(moved.irradiance) > 0)) continue;

@@ -8,8 +8,11 @@
 // the balls' middle o, by least squares of
 //   direction_i - (u - q (p_i - o)) / |u - q (p_i - o)|
 // in two tangents each, whitened; q = 0 is infinitely far. A lamp has a place where q exceeds `least_z` of its standard
-// deviations, else a direction. Covariances are those of the balls' places (each moved by its standard deviations, the
-// region found again) and of the middle among its own pixels. World frame.
+// deviations, else a direction. Neighbouring rays leave a convex mirror as if they came from f behind it, 1 / f = 1 / s
+// + 2 / (R cos i) in the plane of incidence and 1 / s + 2 cos i / R across it, s the eye's distance: what a lamp at the
+// distance d sends is its radiance times its solid angle times (d + f)(d + f'). Covariances are those of the balls'
+// places (each moved by its standard deviations, the region found again), of the pixels' noise where the picture states
+// it, and of the middle among its own pixels. World frame.
 #pragma once
 #include <optional>
 #include <string>
@@ -30,6 +33,7 @@ struct Highlight {  // one region of one view
   std::size_t view = 0;
   std::vector<std::size_t> pixels{};
   Vec3 point_m{}, direction{};  // the ray
+  Vec2 focus_m{};               // behind the point, where its neighbours seem to come from: tangential, sagittal
   Mat3 covariance{{}};          // of the direction: tangential
   Rgb irradiance{}, irradiance_sigma{}, background{};
   double half_angle_rad = 0;

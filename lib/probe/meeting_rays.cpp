@@ -94,8 +94,11 @@ void take_means(FoundLight& light, const std::vector<Highlight>& all) {
   double half_angle = 0;
   for (const std::size_t k : light.seen) {
     const Highlight& h = all[k];
-    double nearer = 1;  // the square of the lamp's distance from the ball's point over that from the middle
-    if (light.position_m) nearer = std::pow(norm(*light.position_m - h.point_m) / light.distance_m, 2);
+    double nearer = 1;  // irradiance at the middle over what the ball's own directions say
+    if (light.position_m) {
+      const double d = norm(*light.position_m - h.point_m);
+      nearer = (d + h.focus_m.x) * (d + h.focus_m.y) / (light.distance_m * light.distance_m);
+    }
     each.push_back(h.irradiance * nearer);
     light.irradiance += each.back() / n;
     light.irradiance_sigma += h.irradiance_sigma * h.irradiance_sigma / (n * n);

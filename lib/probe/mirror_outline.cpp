@@ -52,6 +52,8 @@ std::optional<double> grey_at(const io::GreyImage& grey, const std::vector<unsig
 }
 
 constexpr double step_px = 0.5;
+// Bilinear profiles and the parabola through three of their slopes: what edges of known place are off by, as a whole.
+constexpr Doubt interpolation{0.01, 0.003};
 
 // Derivative of a Gaussian of one pixel, at steps of half a pixel.
 std::vector<double> gradient_of(const std::vector<std::optional<double>>& profile) {
@@ -199,7 +201,7 @@ std::optional<Refined> refined(const std::vector<Edge>& edges, Cone cone, std::s
       for (std::size_t b = 0; b < 3; ++b) change[a] += inverse[3 * a + b] * downhill[b];
     cone = moved(cone, change);
   }
-  // Sandwich over sectors; the curvature of the redescending weight is that of the score's second derivative.
+  // Sandwich over sectors; the curvature is that of the score, of edges near the outline.
   constexpr std::size_t sectors = 36;
   std::array<std::array<double, 3>, sectors> pulls{};
   Normal curvature{}, meat{};
@@ -212,7 +214,7 @@ std::optional<Refined> refined(const std::vector<Edge>& edges, Cone cone, std::s
     const auto j = slopes_of(e, frame);
     for (std::size_t a = 0; a < 3; ++a) {
       pulls[e.turn * sectors / turns][a] += w * r * j[a];
-      for (std::size_t b = 0; b < 3; ++b) curvature[3 * a + b] += w * (1 - q) * j[a] * j[b];
+      for (std::size_t b = 0; b < 3; ++b) curvature[3 * a + b] += w * std::max(0.0, 1 - q) * j[a] * j[b];
     }
     if (std::abs(r) < 1 && e.strength > 0.4) covered[e.turn] = true, squares += r * r, ++count;
   }
@@ -227,6 +229,12 @@ std::optional<Refined> refined(const std::vector<Edge>& edges, Cone cone, std::s
 }
 
 }  // namespace
+
+void add_doubt(Outline& o, Doubt doubt) {
+  const double rad_per_px = o.half_angle_rad / o.radius_px;
+  for (int k = 0; k < 3; ++k)
+    o.covariance_rad2(k, k) += std::pow(rad_per_px * (k == 2 ? doubt.radius_px : doubt.centre_px), 2);
+}
 
 std::optional<Outline> mirror_outline(const io::GreyImage& grey, const camera::CameraModel& camera,
                                       const OutlineSearch& start, const std::vector<unsigned char>& counts) {
@@ -254,9 +262,9 @@ std::optional<Outline> mirror_outline(const io::GreyImage& grey, const camera::C
     if (!p) return {};
     sum += norm(*p - *middle) / 8;
   }
-  const double radius_rad = squeeze_px * cone.half_angle / sum;
-  for (int k = 0; k < 3; ++k) fit->covariance(k, k) += std::pow(k == 2 ? radius_rad : radius_rad / 4, 2);
-  return Outline{cone.axis, cone.half_angle, fit->covariance, *middle, sum, fit->cover, fit->rms_px, 0};
+  Outline outline{cone.axis, cone.half_angle, fit->covariance, *middle, sum, fit->cover, fit->rms_px, 0};
+  add_doubt(outline, interpolation);
+  return outline;
 }
 
 }  // namespace gonio::probe

@@ -8,10 +8,11 @@
 //   sum over edges of s exp(-r^2 / (2 w^2)),   r the edge's distance from the outline, px,
 // first on a grid over the search range, then by reweighted least squares with w falling from 2 to 0.7 px (a
 // redescending M-estimator: Holland & Welsch, Communications in Statistics A 6, 1977). The covariance is that of
-// estimates with weights (sandwich), summed over sectors within which neighbours share their errors, and on top of it
-// what no scatter shows: half a pixel within the outline a ball of some hundred pixels still shows what lies within ten
-// degrees of straight behind it, so that the step seems to lie up to 0.7 px inwards. `squeeze_px` of radius and a
-// quarter of it of each coordinate are one standard deviation of that.
+// estimates with weights (sandwich), summed over sectors within which neighbours share their errors.
+//
+// What no scatter shows: where the surroundings behind the ball go on in their reflection, the edge that one finds lies
+// within the outline, by 0.4 to 1.1 px of radius and up to 1.4 px to a side in simulated rooms: `squeeze`. Silhouettes
+// have no such step; those that were decided pixel by pixel are in doubt by `drawn`.
 #pragma once
 #include <optional>
 
@@ -21,7 +22,11 @@
 
 namespace gonio::probe {
 
-inline constexpr double squeeze_px = 0.5;
+struct Doubt {  // one standard deviation that all of an outline shares
+  double radius_px = 0, centre_px = 0;
+};
+inline constexpr Doubt squeeze{0.8, 0.6}, drawn{0.5, 0.2};
+void add_doubt(reassembly::Outline& outline, Doubt doubt);
 
 struct OutlineSearch {
   Vec3 axis;  // unit, camera frame: the start

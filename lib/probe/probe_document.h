@@ -21,7 +21,7 @@ struct ProbeRequest {
   double radius_m = 0;
   std::size_t balls = 1;
   std::optional<Circle> circle{};
-  std::filesystem::path silhouette{};
+  std::vector<std::filesystem::path> silhouettes{};  // none, one for all images, or one for each
   UnwrapWish unwrap{};
   std::optional<LightWish> lights{};  // left out: all stays in the picture
   bool each = false;                  // every photograph has lights of its own, and there is no picture of all

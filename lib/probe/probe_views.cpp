@@ -27,18 +27,20 @@ void add_sigmas(std::vector<double>& all, const std::vector<double>& stated) {
 
 OutlineWish wish_of(const LoadedView& view, const ProbeRequest& request) {
   OutlineWish wish{request.balls, request.circle, {}, view.counts};
-  if (request.silhouette.empty()) return wish;
-  request.note_input(request.silhouette);
-  wish.silhouette = io::read_picture(request.silhouette);
+  if (request.silhouettes.empty()) return wish;
+  const auto at = static_cast<std::size_t>(std::ranges::find(request.images, view.image) - request.images.begin());
+  const std::filesystem::path& path = request.silhouettes[request.silhouettes.size() == 1 ? 0 : at];
+  request.note_input(path);
+  wish.silhouette = io::read_picture(path);
   const io::Image& s = *wish.silhouette;
   if (s.width != view.picture.width || s.height != view.picture.height)
     throw Error(
-        Exit::data, request.silhouette.string(),
+        Exit::data, path.string(),
         format("is %d x %d pixels, its photograph %d x %d", s.width, s.height, view.picture.width, view.picture.height),
         "draw it over the photograph");
   const auto [least, most] = std::ranges::minmax(s.data);
   if (!(most > least))
-    throw Error(Exit::data, request.silhouette.string(), "is the same everywhere",
+    throw Error(Exit::data, path.string(), "is the same everywhere",
                 "make it white where the ball is, and black elsewhere");
   wish.counts.clear();
   return wish;
@@ -82,6 +84,7 @@ void check_light(const LoadedView& loaded, const BallView& view, const std::stri
 
 BallView picture_view(const LoadedView& loaded) {
   BallView view{.picture = loaded.picture,
+                .variance = loaded.variance,
                 .counts = loaded.counts,
                 .clipped = loaded.clipped,
                 .camera = loaded.camera ? *loaded.camera : far_camera(loaded.picture.width, loaded.picture.height)};
@@ -125,7 +128,8 @@ LoadedView load_view(const manifest::Document& document, std::size_t index, cons
   auto read = photograph::read_linear(path, image.response, path.string(), image.saturation);
   LoadedView view;
   view.image = index;
-  view.picture = std::move(read.colour), view.clipped = std::move(read.clipped);
+  view.picture = std::move(read.colour), view.variance = std::move(read.variance),
+  view.clipped = std::move(read.clipped);
   if (!mask.empty()) {
     request.note_input(mask);
     view.counts = photograph::read_mask_of(view.picture, mask, mask.string());

@@ -10,6 +10,7 @@ namespace gonio::probe {
 struct LoadedView {
   std::size_t image = 0;  // place in document.images
   io::Image picture;      // R, G, B or Y
+  io::Image variance;     // of the same channels, where the file has it
   std::vector<std::uint8_t> counts, clipped;
   std::optional<camera::CameraModel> camera;  // nothing: without perspective
   OutlineView outlines;                       // of parallel views: as far_camera() sees them

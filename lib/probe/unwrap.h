@@ -24,6 +24,7 @@ namespace gonio::probe {
 
 struct BallView {                       // one ball in one picture
   io::Image picture;                    // linear, R, G, B or Y
+  io::Image variance{};                 // of the same channels; empty: not known
   std::vector<std::uint8_t> counts{};   // one entry per pixel: may be used; empty: all
   std::vector<std::uint8_t> clipped{};  // one entry per pixel: was brighter than it says; empty: none
   camera::CameraModel camera;           // orthographic: a picture without perspective

@@ -10,6 +10,7 @@
 #include "io/codes.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
+#include "manifest/sections/image.h"
 #include "probe/metals.h"
 #include "probe/probe_document.h"
 
@@ -35,6 +36,27 @@ probe::Circle circle_of(const std::string& text) {
   return {{v[0], v[1]}, v[2]};
 }
 
+std::string only_camera(const cli::Invocation& call) {
+  const auto cameras = names_in(call.document, "cameras");
+  if (cameras.size() == 1) return cameras.front();
+  throw Error(Exit::data, call.document.name + "#/cameras",
+              "has " + std::to_string(cameras.size()) + " cameras, and photographs on the command line are by one",
+              "list the photographs as images of the manifest");
+}
+
+std::vector<std::size_t> without_camera(const std::vector<std::string>& paths, const manifest::Value& response,
+                                        manifest::Document& document) {
+  std::vector<std::size_t> entered;
+  for (const std::string& path : paths) {
+    manifest::ImageEntry image;
+    image.id = image.file = add_file(document, path, std::filesystem::path(path).stem().string());
+    image.response = response;
+    entered.push_back(document.images.size());
+    document.images.push_back(std::move(image));
+  }
+  return entered;
+}
+
 // The photographs on the command line become images of the manifest; without any, all of its images are looked at.
 std::vector<std::size_t> chosen_images(cli::Invocation& call) {
   std::vector<std::size_t> images;
@@ -42,22 +64,14 @@ std::vector<std::size_t> chosen_images(cli::Invocation& call) {
     if (!call.has_document && !call.flag("orthographic"))
       throw Error(Exit::no_input, "light-probe", "has no manifest with a calibrated camera",
                   "name it with -i camera.json, or say --orthographic");
-    std::string camera;
-    if (!call.flag("orthographic")) {
-      const auto cameras = names_in(call.document, "cameras");
-      if (cameras.size() != 1)
-        throw Error(
-            Exit::data, call.document.name + "#/cameras",
-            "has " + std::to_string(cameras.size()) + " cameras, and photographs on the command line are by one",
-            "list the photographs as images of the manifest");
-      camera = cameras.front();
-    }
     const manifest::Value response =
         call.given("response") ? manifest::Value(call.text("response")) : manifest::Value();
     for (const std::string& path : call.texts("PICTURE"))
       if (io::code_bits(path) != 0 && response.is_null())
         throw Error(Exit::data, path, "is an 8 or 16-bit picture whose response is not stated", "--response says it");
-    images = camera::enter_photographs(call.texts("PICTURE"), camera, response, call.document);
+    images = call.flag("orthographic")
+                 ? without_camera(call.texts("PICTURE"), response, call.document)
+                 : camera::enter_photographs(call.texts("PICTURE"), only_camera(call), response, call.document);
     call.document.allow_outside = true;  // what the user names may lie anywhere
   } else {
     images = camera::images_with_pictures(call.document, {});
@@ -80,7 +94,8 @@ ProbeRequest request_of(cli::Invocation& call) {
   if (call.given("radius")) request.radius_m = call.number("radius");
   request.balls = static_cast<std::size_t>(call.integer("balls"));
   if (call.given("circle")) request.circle = circle_of(call.text("circle"));
-  if (call.given("silhouette")) request.silhouette = call.text("silhouette");
+  if (call.given("silhouette"))
+    for (const std::string& path : call.texts("silhouette")) request.silhouettes.emplace_back(path);
   request.unwrap.columns = static_cast<int>(call.integer("columns"));
   if (call.given("distance")) request.unwrap.distance_m = call.number("distance");
   request.unwrap.steepest_rad = call.number("steepest");
@@ -93,6 +108,11 @@ ProbeRequest request_of(cli::Invocation& call) {
         probe::LightWish{call.number("light-ratio"), call.number("largest-light"), call.number("least-light"), 5};
   request.name = call.text("name");
   request.images = chosen_images(call);
+  if (request.silhouettes.size() > 1 && request.silhouettes.size() != request.images.size())
+    throw Error(Exit::usage, "--silhouette",
+                std::to_string(request.silhouettes.size()) + " of them for " + std::to_string(request.images.size()) +
+                    " photographs",
+                "give one for all, or one for each");
   request.output_path = [&call](const std::string& name) { return call.output_path(name); };
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
   return request;
@@ -119,7 +139,9 @@ std::vector<cli::Option> ball_options() {
        .metavar = "X,Y,RADIUS"},
       {.name = "silhouette",
        .type = Type::input_file,
-       .help = "A picture that is white where the ball is: its outline is that of the ball.",
+       .help = "A picture that is white where the balls are: its outlines are theirs. One for all photographs, or "
+               "one for each in their order.",
+       .repeat = true,
        .conflicts = {"circle"}},
       {.name = "orthographic",
        .type = Type::flag,

@@ -66,18 +66,19 @@ inline void write_metal(const std::filesystem::path& path) {
 struct ProbeWorld {
   std::vector<Vec3> eyes, balls;
   double radius_m = 0.03;
-  int pixels = 400;
+  int pixels = 400, rows = 0;  // rows: 0, as many as columns
   double focal_px = 1100;
   std::string lights = R"({"sky": {"model": "lat-long", "file": "sky"}})";
 };
 inline std::string scene_text(const ProbeWorld& w) {
+  const int rows = w.rows > 0 ? w.rows : w.pixels;
   std::string text = format(
       R"({"gonio": 1, "files": {"sky": {"path": "sky.exr"}}, "cameras": {"c": {"model": "radial-tangential",
   "width_px": %d, "height_px": %d, "fx_px": %g, "fy_px": %g, "cx_px": %g, "cy_px": %g,
   "distortion": {"k1": -0.2, "k2": 0.05, "p1": 0.001, "p2": -0.0005, "k3": 0}}},
   "meshes": {"ball": {"sphere": {"radius_m": %g}}},
   "surfaces": {"metal": {"model": "conductor", "eta": %g, "k": %g, "alpha": 0}}, "lights": )",
-      w.pixels, w.pixels, w.focal_px, w.focal_px, (w.pixels - 1) / 2.0, (w.pixels - 1) / 2.0, w.radius_m, metal_n,
+      w.pixels, rows, w.focal_px, w.focal_px, (w.pixels - 1) / 2.0, (rows - 1) / 2.0, w.radius_m, metal_n,
       metal_k);
   text += w.lights + R"(, "objects": [)";
   Vec3 middle{};

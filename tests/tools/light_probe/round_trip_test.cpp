@@ -20,7 +20,7 @@ class RoundTrip : public testing::Test {
     write_surroundings(folder_ / "sky.exr", 512);
     write_metal(folder_ / "metal.yml");
     write_file(folder_ / "scene.json", scene_text(world_));
-    const Ended ended = run({"render", "scene.json", "--spp", "36", "--aov", "off", "--out", "r"}, folder_.path());
+    const Ended ended = run({"render", "scene.json", "--spp", "20", "--aov", "off", "--out", "r"}, folder_.path());
     ASSERT_EQ(ended.status, 0) << ended.err;
     write_file(folder_ / "in.json", recorded(scene_text(world_), world_.eyes.size()));
   }
