@@ -17,7 +17,7 @@ complete -c render -l with -x -d 'Switch on this mechanism for the pictures alon
 complete -c render -l record -d 'Make virtual recordings: add the noise that the images state, enter the pictures as the images files, and set free parameters with bounds to their middle.'
 complete -c render -l preview -d 'Write a PNG beside every picture, in sRGB, its 99th percentile white.'
 complete -c render -l preview-layers -d 'Write a PNG of each other layer: depth, normals, Stokes vectors.'
-complete -c render -l specimen -x -a 'knot spheres glass board goniometer arc matrix' -d 'Print the manifest of a built-in scene and end; meshes are written into --out.'
+complete -c render -l specimen -x -a 'knot spheres glass board goniometer arc matrix mirror-ball' -d 'Print the manifest of a built-in scene and end; meshes are written into --out.'
 complete -c render -l input -s i -r -d 'Manifest to read; - is standard input.'
 complete -c render -l output -s o -r -d 'Where the manifest goes instead of standard output; written whole or not at all.'
 complete -c render -l out -r -d 'Folder for the files that are written; made where it is missing.'

@@ -23,6 +23,7 @@
 #include "render/specimen_glass.h"
 #include "render/specimen_goniometer.h"
 #include "render/specimen_matrix.h"
+#include "render/specimen_mirror_ball.h"
 
 namespace gonio::render {
 namespace {
@@ -155,19 +156,21 @@ void add_knot(manifest::Document& document, const std::filesystem::path& out) {
 }  // namespace
 
 const std::vector<Specimen>& specimens() {
-  static const std::vector<Specimen> all = {{"knot", "a trefoil knot of a round tube on a table; writes knot.ply"},
-                                            {"spheres", "two spheres on a table"},
-                                            {"glass",
-                                             "a glass bowl on a cloth under a sky; writes bowl.ply, cloth.exr "
-                                             "and sky.exr"},
-                                            {"board", "a calibration board from twelve sides; writes board.png"},
-                                            {"goniometer",
-                                             "a flat sample and a white tile under three lamps on an arc, from 21 "
-                                             "sides"},
-                                            {"arc", "the same in steps of 7.5 degrees, 2783 images"},
-                                            {"matrix",
-                                             "a plate of micro-ridges, a data matrix, before and after a turn by a "
-                                             "quarter, ten images; writes plate.ply"}};
+  static const std::vector<Specimen> all = {
+      {"knot", "a trefoil knot of a round tube on a table; writes knot.ply"},
+      {"spheres", "two spheres on a table"},
+      {"glass",
+       "a glass bowl on a cloth under a sky; writes bowl.ply, cloth.exr "
+       "and sky.exr"},
+      {"board", "a calibration board from twelve sides; writes board.png"},
+      {"goniometer",
+       "a flat sample and a white tile under three lamps on an arc, from 21 "
+       "sides"},
+      {"arc", "the same in steps of 7.5 degrees, 2783 images"},
+      {"matrix",
+       "a plate of micro-ridges, a data matrix, before and after a turn by a "
+       "quarter, ten images; writes plate.ply"},
+      {"mirror-ball", "a chromium ball under a sky, from three sides; writes sky.exr"}};
   return all;
 }
 
@@ -177,6 +180,7 @@ manifest::Document specimen(const std::string& name, const std::filesystem::path
   if (name == "goniometer") return goniometer_specimen({.step_rad = pi / 8});
   if (name == "arc") return goniometer_specimen({});
   if (name == "matrix") return matrix_specimen(out);
+  if (name == "mirror-ball") return mirror_ball_specimen(out);
   manifest::Document document;
   if (name == "knot")
     add_knot(document, out);
@@ -184,7 +188,7 @@ manifest::Document specimen(const std::string& name, const std::filesystem::path
     add_spheres(document, out);
   else
     throw Error(Exit::usage, "--specimen", "there is no specimen \"" + name + "\"",
-                "choose knot, spheres, glass, board, goniometer, arc or matrix");
+                "choose knot, spheres, glass, board, goniometer, arc, matrix or mirror-ball");
   add_table(document);
   add_lamps(document);
   add_images(document);

@@ -67,8 +67,9 @@ io::Image cloth() {
   return picture;
 }
 
-// Radiance, W/(m^2 sr): a grey sky brighter towards the zenith, a dim floor, two windows.
-io::Image sky() {
+}  // namespace
+
+io::Image sky_with_windows() {
   constexpr int width = 256, height = 128;
   io::Image picture(width, height, {"R", "G", "B"});
   for (int y = 0; y < height; ++y)
@@ -84,8 +85,6 @@ io::Image sky() {
     }
   return picture;
 }
-
-}  // namespace
 
 io::TriangleMesh bowl(double radius_m, double thickness_m, int sectors) {
   const std::vector<ProfilePoint> points = profile(radius_m, thickness_m);
@@ -120,7 +119,7 @@ manifest::Document glass_specimen(const std::filesystem::path& out) {
   make_folder(out);
   io::write_ply(out / "bowl.ply", bowl(bowl_radius_m, bowl_wall_m, 192));
   io::write_picture(out / "cloth.exr", cloth());
-  io::write_picture(out / "sky.exr", sky());
+  io::write_picture(out / "sky.exr", sky_with_windows());
   manifest::Document document;
   document.meshes["bowl"].file = manifest::add_file(document, out / "bowl.ply", "bowl");
   document.meshes["cloth"].plane_size_m = {cloth_m, cloth_m};

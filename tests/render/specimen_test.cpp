@@ -23,8 +23,8 @@ TEST(Specimen, EveryOneBuildsAScene) {
     manifest::Document document = specimen(s.name, folder.path());
     document.allow_outside = true;  // the mesh lies in the scratch folder
     const scene::Scene scene = scene::build_scene(document);
-    const std::map<std::string, std::size_t> views = {
-        {"board", 12}, {"glass", 2}, {"goniometer", 63}, {"arc", 2783}, {"matrix", 10}};
+    const std::map<std::string, std::size_t> views = {{"board", 12}, {"glass", 2},   {"goniometer", 63},
+                                                      {"arc", 2783}, {"matrix", 10}, {"mirror-ball", 3}};
     EXPECT_EQ(scene.views.size(), views.contains(s.name) ? views.at(s.name) : 9u);
     for (const scene::View& view : scene.views) {
       Vec3 target_m = scene.centre_m;

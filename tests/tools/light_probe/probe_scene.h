@@ -78,8 +78,7 @@ inline std::string scene_text(const ProbeWorld& w) {
   "distortion": {"k1": -0.2, "k2": 0.05, "p1": 0.001, "p2": -0.0005, "k3": 0}}},
   "meshes": {"ball": {"sphere": {"radius_m": %g}}},
   "surfaces": {"metal": {"model": "conductor", "eta": %g, "k": %g, "alpha": 0}}, "lights": )",
-      w.pixels, rows, w.focal_px, w.focal_px, (w.pixels - 1) / 2.0, (rows - 1) / 2.0, w.radius_m, metal_n,
-      metal_k);
+      w.pixels, rows, w.focal_px, w.focal_px, (w.pixels - 1) / 2.0, (rows - 1) / 2.0, w.radius_m, metal_n, metal_k);
   text += w.lights + R"(, "objects": [)";
   Vec3 middle{};
   for (std::size_t b = 0; b < w.balls.size(); ++b) {

@@ -59,6 +59,30 @@ class RoundTrip : public testing::Test {
     EXPECT_EQ(ended.status, 0) << ended.err;
     return io::read_picture(folder_ / "m/v0.exr");
   }
+  // --lights: each lamp once, in its direction, and all light together as before.
+  void expect_lamps_apart(Rgb whole) const {
+    const Ended ended = unwrap({"--radius", "30mm", "--lights", "--out", "l", "in.json"});
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    const manifest::Document d = manifest::parse_document(ended.out, "out", folder_.path());
+    EXPECT_EQ(d.lights.at("probe").model, "lat-long");
+    Rgb sum = integral(io::read_picture(folder_ / "l/probe.exr"));
+    for (const Vec3& lamp : lamps()) {
+      int here = 0;
+      for (const auto& [name, light] : d.lights) {
+        if (light.model != "directional") continue;
+        const double off = angle_between(light.parameters.at("towards").vector(), lamp);
+        if (off > 0.05) continue;
+        EXPECT_LT(off * 180 / pi, 0.2) << name;
+        const std::vector<double>& sigma = light.sigma.at("towards");
+        EXPECT_LT(off, 4 * std::sqrt(sigma[0] * sigma[0] + sigma[1] * sigma[1] + sigma[2] * sigma[2])) << name;
+        ++here;
+        sum += light.parameters.at("watt_per_m2").rgb();
+      }
+      EXPECT_EQ(here, 1);
+    }
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / whole[c], 1, 5e-3);
+    std::printf("with lights apart: %+.3f %%\n", 100 * (sum.y / whole.y - 1));
+  }
   ProbeWorld world_;
   ScratchFolder folder_;
 };
@@ -95,6 +119,7 @@ TEST_F(RoundTrip, SurroundingsComeBackAndOrthographicOnesDoNot) {
   std::printf("rendered again: %+.4f %%, pixels differ by %.3f %% (rms)\n", 100 * (fresh_sum / old_sum - 1),
               100 * std::sqrt(squares / count));
   EXPECT_NEAR(fresh_sum / old_sum, 1, 5e-3);
+  expect_lamps_apart(after);
 }
 
 }  // namespace
