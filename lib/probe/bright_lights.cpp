@@ -143,6 +143,19 @@ Vec2 focus_of(const Highlight& h, const BallView& view) {
   return {1 / (nearness + 2 / (r * cosine)), 1 / (nearness + 2 * cosine / r)};
 }
 
+// Is the lamp's place on the ball, in the picture, among the pixels that are used?
+bool shows(const BallView& view, const Facing& face, const FoundLight& light) {
+  const Vec3 way = light.position_m ? *light.position_m - view.ball.centre_m : light.direction;
+  const auto shown = view.mirror().shown(normalized(way), light.position_m ? norm(way) : HUGE_VAL);
+  if (!shown) return false;
+  const auto pixel = view.camera.project(inverse(view.world_from_camera) * shown->point_m);
+  if (!pixel) return false;
+  const auto x = std::lround(pixel->x), y = std::lround(pixel->y);
+  if (x < 0 || y < 0 || x >= face.radiance.width || y >= face.radiance.height) return false;
+  return face.used[static_cast<std::size_t>(y) * static_cast<std::size_t>(face.radiance.width) +
+                   static_cast<std::size_t>(x)] != 0;
+}
+
 }  // namespace
 
 std::vector<Highlight> highlights(const std::vector<BallView>& views, const std::vector<Facing>& faces, std::size_t v,
@@ -198,11 +211,26 @@ std::vector<Highlight> highlights(const std::vector<BallView>& views, const std:
   return found;
 }
 
-void take_out(const std::vector<Highlight>& all, std::vector<Facing>& faces) {
-  for (const Highlight& h : all)
-    for (const std::size_t pixel : h.pixels)
-      for (int c = 0; c < 3; ++c)
-        faces[h.view].radiance.data[3 * pixel + static_cast<std::size_t>(c)] = static_cast<float>(h.background[c]);
+std::vector<FoundLight> agreed(const std::vector<FoundLight>& lights, const std::vector<Highlight>& all,
+                               const std::vector<BallView>& views, const std::vector<Facing>& faces) {
+  std::vector<FoundLight> kept;
+  for (const FoundLight& light : lights) {
+    bool by_all = true;
+    for (std::size_t v = 0; v < views.size() && by_all; ++v)
+      by_all = std::ranges::any_of(light.seen, [&](std::size_t k) { return all[k].view == v; }) ||
+               !shows(views[v], faces[v], light);
+    if (by_all) kept.push_back(light);
+  }
+  return kept;
+}
+
+void take_out(const std::vector<FoundLight>& lights, const std::vector<Highlight>& all, std::vector<Facing>& faces) {
+  for (const FoundLight& light : lights)
+    for (const std::size_t k : light.seen)
+      for (const std::size_t pixel : all[k].pixels)
+        for (int c = 0; c < 3; ++c)
+          faces[all[k].view].radiance.data[3 * pixel + static_cast<std::size_t>(c)] =
+              static_cast<float>(all[k].background[c]);
 }
 
 }  // namespace gonio::probe

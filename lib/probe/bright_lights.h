@@ -58,7 +58,12 @@ struct FoundLight {
 // Highlights that belong together, as lamps, brightest first. `middle_m`: of the balls.
 std::vector<FoundLight> lights_of(const std::vector<Highlight>& all, Vec3 middle_m, const LightWish& wish);
 
-// The highlights' pixels take the level of their borders.
-void take_out(const std::vector<Highlight>& all, std::vector<Facing>& faces);
+// Those that every view which shows their place has among its highlights. Others would leave the picture in some views
+// and stay in the rest, and count twice: a window whose bars are seen in one view alone, the reflection of a tripod.
+std::vector<FoundLight> agreed(const std::vector<FoundLight>& lights, const std::vector<Highlight>& all,
+                               const std::vector<BallView>& views, const std::vector<Facing>& faces);
+
+// The pixels of these lights' highlights take the level of their borders.
+void take_out(const std::vector<FoundLight>& lights, const std::vector<Highlight>& all, std::vector<Facing>& faces);
 
 }  // namespace gonio::probe

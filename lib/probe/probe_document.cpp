@@ -133,9 +133,15 @@ std::vector<std::string> enter_lights(manifest::Document& document, const ProbeR
     auto here = highlights(all.views, faces, v, *request.lights);
     spots.insert(spots.end(), here.begin(), here.end());
   }
-  take_out(spots, faces);
+  const std::vector<FoundLight> found = lights_of(spots, all.middle_m, *request.lights),
+                                lights = agreed(found, spots, all.views, faces);
+  take_out(lights, spots, faces);
+  if (lights.size() < found.size())
+    log(LogLevel::info, format("%zu bright regions stay in the picture, because not all views that show them have them "
+                               "as one region",
+                               found.size() - lights.size()));
   std::vector<std::string> names;
-  for (const FoundLight& light : lights_of(spots, all.middle_m, *request.lights)) {
+  for (const FoundLight& light : lights) {
     names.push_back(stem + "-" + std::to_string(names.size() + 1));
     document.lights[names.back()] = entry_of(light);
     csv += row_of(names.back(), light, images_of(document, all, spots, light));

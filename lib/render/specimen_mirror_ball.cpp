@@ -26,7 +26,7 @@ manifest::Document mirror_ball_specimen(const std::filesystem::path& out) {
   manifest::Surface& chromium = document.surfaces["chromium"];  // Johnson & Christy 1974, reduced to red, green, blue
   chromium.model = "conductor";
   chromium.parameters = {
-      {"eta", std::vector<double>{3.16, 3.10, 2.37}}, {"k", std::vector<double>{3.31, 3.32, 3.15}}, {"alpha", 0.0}};
+      {"eta", std::vector<double>{3.219, 3.054, 2.37}}, {"k", std::vector<double>{3.31, 3.314, 3.141}}, {"alpha", 0.0}};
   manifest::Object ball{.id = "ball", .mesh = "ball", .surface = "chromium", .world_from_object = {}};
   ball.world_from_object.emplace();
   document.objects.push_back(ball);

@@ -106,6 +106,13 @@ TEST(Metals, ReflectAsTheirIndexSays) {
       }
     EXPECT_NEAR(metal.reflectance(0).x, 1, 1e-9);
   }
+  // What the specimen "mirror-ball" of render is made of.
+  const Metal chromium = metal_of("chromium", "--metal");
+  const Rgb eta{3.219, 3.054, 2.37}, k{3.31, 3.314, 3.141};
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(chromium.eta[c], eta[c], 0.005);
+    EXPECT_NEAR(chromium.k[c], k[c], 0.005);
+  }
   EXPECT_THROW(metal_of("unobtainium", "--metal"), Error);
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "probe/bright_lights.h"
 #include "probe/fill.h"
 #include "probe/projection.h"
 
@@ -118,6 +119,39 @@ TEST_F(Unwrapping, MaskedPixelsAreNotUsed) {
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size / 2; ++x) EXPECT_EQ(face.used[static_cast<std::size_t>(y * size + x)], 0);
   EXPECT_GT(of({view}).blind_sr, 2);
+}
+
+// A lamp that one view shows and the other denies stays in the picture; one that both show leaves it.
+TEST_F(Unwrapping, ALampThatAViewDeniesIsNone) {
+  const Vec3 lamp = normalized(Vec3{-0.4, 0.6, 0.7});
+  std::vector<BallView> views{view_from(eye_), view_from({0.1, 0.28, 0.05})};
+  const auto shine = [&](BallView& view) {
+    const MirrorBall mirror = view.mirror();
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) {
+        const camera::Ray ray = view.camera.ray({double(x), double(y)});
+        const auto r =
+            mirror.reflect(view.world_from_camera.translation_m, view.world_from_camera.rotate(ray.direction));
+        if (r && angle_between(r->direction, lamp) < 0.08) view.picture.at(x, y, 0) = 300;
+      }
+  };
+  const auto found = [&] {
+    std::vector<Facing> faces;
+    std::vector<Highlight> spots;
+    for (const BallView& v : views) faces.push_back(facing(v, wish_));
+    for (std::size_t v = 0; v < views.size(); ++v)
+      for (const Highlight& h : highlights(views, faces, v, {})) spots.push_back(h);
+    return agreed(lights_of(spots, {}, {}), spots, views, faces);
+  };
+  shine(views[0]);
+  EXPECT_TRUE(found().empty());
+  shine(views[1]);
+  const auto lights = found();
+  ASSERT_EQ(lights.size(), 1u);
+  EXPECT_LT(angle_between(lights[0].direction, lamp), 0.01);
+  EXPECT_NEAR(lights[0].half_angle_rad, 0.08, 0.01);
+  // 300 less the room's 2 or so, over the disc's solid angle.
+  EXPECT_NEAR(lights[0].irradiance.x, 298 * pi * 0.08 * 0.08, 0.1 * 298 * pi * 0.08 * 0.08);
 }
 
 TEST(Fill, WithoutAnythingSeenNothingChanges) {

@@ -1,4 +1,4 @@
-// light-probe --lights and --each: lamps of a photometric stereo set, near lamps of simulated scenes.
+// light-probe --lights and --each, from GONIO_BIN: lamps of a photometric stereo set, near lamps of simulated scenes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

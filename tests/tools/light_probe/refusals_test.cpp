@@ -1,4 +1,4 @@
-// What light-probe refuses, in one line that says where, what and how to mend it, with nothing written.
+// What light-probe, from GONIO_BIN, refuses: in one line that says where, what and how to mend it, nothing written.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// render, light-probe, render: the surroundings of a simulated ball come back, by direction and by energy.
+// render, light-probe, render, from GONIO_BIN: the surroundings of a simulated ball come back, by direction and energy.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
