@@ -13,7 +13,6 @@ namespace {
 
 constexpr double widths = 5;  // as blocks are set aside elsewhere (noise.cpp)
 constexpr std::size_t enough_places = 8;
-constexpr double sigma_per_median = 1.4826;  // of the absolute values of a Gaussian
 
 }  // namespace
 
@@ -35,7 +34,7 @@ std::optional<Outliers> outliers(const System& system, const std::vector<double>
       squares += z * z, norm += o.norm[i];
     }
   if (size.empty()) return std::nullopt;
-  const double limit = widths * std::max(1.0, sigma_per_median * stats::median(size));
+  const double limit = widths * std::max(1.0, stats::sigma_of_median * stats::median(size));
   Outliers found;
   double raw = 0, power = 0;
   std::set<std::uint32_t> blocks;

@@ -18,7 +18,7 @@ Spread spread_of(std::span<const double> deviations_m) {
   Spread spread{{deviations_m.begin(), deviations_m.end()}, 0};
   const double centre = stats::median(spread.distances);
   for (double& d : spread.distances) d = std::abs(d - centre);
-  spread.sigma = 1.4826 * stats::median(spread.distances);
+  spread.sigma = stats::sigma_of_median * stats::median(spread.distances);
   return spread;
 }
 

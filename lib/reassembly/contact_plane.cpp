@@ -37,7 +37,7 @@ std::optional<Vec3> normal_of_plane(const std::vector<Vec3>& points) {
     normal = Vec3{n.x(), n.y(), n.z()};
     std::vector<double> off;
     for (const Vec3& p : points) off.push_back(std::abs(dot(*normal, p - middle)));
-    const double scale = 2.4 * 1.4826 * stats::median(off);
+    const double scale = 2.4 * stats::sigma_of_median * stats::median(off);
     if (!(scale > 0)) return normal;
     for (std::size_t i = 0; i < points.size(); ++i) weight[i] = 1 / (1 + (off[i] / scale) * (off[i] / scale));
   }

@@ -112,7 +112,7 @@ bool CoarseFit::fit() {
     for (const EdgePoint& p : points_)
       if (p.seen) left.push_back(std::abs(residual(p)));
     if (left.size() < 6) return false;
-    spread_ = std::max(1.4826 * stats::median(left), 0.08 * picture().scale);
+    spread_ = std::max(stats::sigma_of_median * stats::median(left), 0.08 * picture().scale);
     std::array<double, 9> h{}, inverse{};
     std::array<double, 3> g{};
     for (const EdgePoint& p : points_) {
@@ -199,7 +199,7 @@ void CoarseFit::judge_roundness(CoarseOutline& out) const {
     left.clear();
     for (const EdgePoint& p : points_)
       if (p.seen) left.push_back(std::abs(residual(p)));
-    const double scale = std::max(1.4826 * stats::median(left), 0.08 * picture().scale);
+    const double scale = std::max(stats::sigma_of_median * stats::median(left), 0.08 * picture().scale);
     limit = 4 * scale;
     variance = scale * scale;
   }
@@ -237,8 +237,8 @@ bool CoarseFit::stands_out(double blur) const {
     last_in = in, last_out = out;
   }
   constexpr double times = 3;
-  return steps.size() > 8 &&
-         stats::median(steps) > times * 1.4826 / std::sqrt(2.0) * std::max(stats::median(differences), 0.2);
+  return steps.size() > 8 && stats::median(steps) > times * stats::sigma_of_median / std::sqrt(2.0) *
+                                                        std::max(stats::median(differences), 0.2);
 }
 
 std::optional<CoarseOutline> CoarseFit::run() {

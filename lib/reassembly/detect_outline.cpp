@@ -48,7 +48,7 @@ bool choose(FineFit& fit, double radius_px) {
   std::vector<double> moves, sigmas;
   for (const FineSector& s : sectors)
     if (s.active && s.move_sigma_px < 1) moves.push_back(std::abs(s.move_px)), sigmas.push_back(s.move_sigma_px);
-  const double scatter = moves.empty() ? 0 : 1.4826 * stats::median(moves);
+  const double scatter = moves.empty() ? 0 : stats::sigma_of_median * stats::median(moves);
   const double expected = sigmas.empty() ? 0 : stats::median(sigmas);
   const double more = std::sqrt(std::max(0.0, scatter * scatter - expected * expected));
   const double farthest = std::max(0.5, 0.02 * radius_px);

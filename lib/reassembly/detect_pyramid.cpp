@@ -29,7 +29,7 @@ double noise_of(const cv::Mat& values) {
       response.clear();
       for (int i = 1; i + 1 < high.rows; ++i)
         for (int j = 1; j + 1 < high.cols; ++j) response.push_back(std::abs(double(high.at<float>(i, j))));
-      sigmas.push_back(1.4826 * stats::median(response) / 6);
+      sigmas.push_back(stats::sigma_of_median * stats::median(response) / 6);
     }
   constexpr double rounding = 0.29;  // of a byte: 1 / sqrt(12)
   return sigmas.empty() ? rounding : std::max(rounding, stats::quantile(sigmas, 0.2));

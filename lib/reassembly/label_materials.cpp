@@ -14,6 +14,7 @@
 #include "base/parallel.h"
 #include "base/union_find.h"
 #include "reassembly/label_evidence.h"
+#include "stats/intervals.h"
 
 namespace gonio::reassembly {
 namespace {
@@ -195,7 +196,8 @@ Cluster describe(const std::vector<Sample>& samples, const std::vector<std::size
   }
   double wide = 0;  // 1.4826 median deviations, of the chromaticities
   for (std::size_t c = 0; c < 2; ++c)
-    wide = std::max(wide, 1.4826 * middle([&](const Sample& s) { return std::abs(s.feature[c] - result.middle[c]); }));
+    wide = std::max(wide, stats::sigma_of_median *
+                              middle([&](const Sample& s) { return std::abs(s.feature[c] - result.middle[c]); }));
   result.spread = std::clamp(wide, 0.03, 0.3);
   const double scale = by_shading ? 0 : std::max({log[0], log[1], log[2]});
   result.albedo = {std::exp(log[0] - scale), std::exp(log[1] - scale), std::exp(log[2] - scale)};

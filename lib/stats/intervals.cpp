@@ -30,7 +30,7 @@ double robust_sigma(std::span<const double> values) {
   const double centre = median(values);
   std::vector<double> deviation(values.size());
   std::transform(values.begin(), values.end(), deviation.begin(), [&](double v) { return std::abs(v - centre); });
-  return 1.482602218505602 * median(deviation);
+  return sigma_of_median * median(deviation);
 }
 
 double mean(std::span<const double> values) {

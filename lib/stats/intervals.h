@@ -8,13 +8,15 @@ struct Interval {
   double lower = 0, upper = 0;
 };
 
-double median(std::span<const double> values);           // NaN of an empty set
+double median(std::span<const double> values);              // NaN of an empty set
 double quantile(std::span<const double> values, double p);  // linear between order statistics
-// 1.4826 times the median absolute deviation: the standard deviation of normal data, whatever a minority does.
+// Standard deviation of normal numbers about zero over the median of their absolute values: 1 / quantile(3/4).
+inline constexpr double sigma_of_median = 1.482602218505602;
+// That times the median absolute deviation: the standard deviation of normal data, whatever a minority does.
 double robust_sigma(std::span<const double> values);
 
 double mean(std::span<const double> values);
-double standard_error(std::span<const double> values);   // of the mean; infinity for fewer than two values
+double standard_error(std::span<const double> values);  // of the mean; infinity for fewer than two values
 
 // Smallest of `looks` independent p-values, corrected: 1 - (1 - p)^looks (Sidak 1967), accurate for tiny p.
 double sidak(double smallest_p, double looks);

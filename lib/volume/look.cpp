@@ -27,7 +27,8 @@ void look_at_edges(const std::vector<PatchPoint>& patches, const Sides& sides, L
   for (const double w : widths) off.push_back(std::abs(w - median));
   look.edge_width_voxels = median;
   // Of a median; patches that share voxels count half.
-  look.sigma_edge_width = 1.2533 * 1.4826 * stats::median(off) / std::sqrt(static_cast<double>(widths.size()) / 2);
+  look.sigma_edge_width =
+      1.2533 * stats::sigma_of_median * stats::median(off) / std::sqrt(static_cast<double>(widths.size()) / 2);
 }
 
 // Of one material: near the rim against far inside.

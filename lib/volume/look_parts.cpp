@@ -171,7 +171,7 @@ double robust_sd(std::span<const double> values) {
   double squares = 0;
   for (const double v : values)
     deviations.push_back(std::abs(v - centre)), squares += deviations.back() * deviations.back();
-  double sd = 1.4826 * stats::median(deviations);
+  double sd = stats::sigma_of_median * stats::median(deviations);
   if (sd == 0) sd = std::sqrt(squares / static_cast<double>(values.size()));
   constexpr double kept_variance = 0.97334;  // of a normal law between -3 and 3 sd
   for (int round = 0; round < 20 && sd > 0; ++round) {

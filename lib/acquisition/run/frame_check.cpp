@@ -57,7 +57,7 @@ FrameFigures figures_of(const RawFrame& frame, double white, bool mosaic) {
   const auto bright = codes.begin() + static_cast<std::ptrdiff_t>(count - 1 - count / 100);
   std::nth_element(codes.begin(), bright, codes.end());
   f.bright_code = *bright;
-  if (!differences.empty()) f.noise = stats::median(differences) * 1.4826 / std::sqrt(2.0);
+  if (!differences.empty()) f.noise = stats::median(differences) * stats::sigma_of_median / std::sqrt(2.0);
   if (pairs > 0 && squares > 0)
     f.focus = std::max(0.0, steps / static_cast<double>(pairs) - 2 * f.noise * f.noise) / (squares / n);
   return f;

@@ -32,7 +32,7 @@ Eigen::MatrixXd terms_of(const CellPattern& pattern, const std::vector<std::size
 double scatter_of(const Eigen::VectorXd& residual, double degrees) {
   const Eigen::VectorXd size = residual.cwiseAbs();
   const auto n = static_cast<std::size_t>(size.size());
-  return 1.4826 * stats::median({size.data(), n}) * std::sqrt(static_cast<double>(n) / degrees);
+  return stats::sigma_of_median * stats::median({size.data(), n}) * std::sqrt(static_cast<double>(n) / degrees);
 }
 
 using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;  // terms x terms

@@ -101,7 +101,8 @@ std::vector<double> deviations(const CellPattern& pattern, const ViewFit& fit, c
     }
     if (size.empty()) continue;
     const double n = static_cast<double>(size.size());
-    const double scatter = std::max(1.4826 * stats::median(size) * std::sqrt(n / std::max(of.degrees, 1.0)), 1e-9);
+    const double scatter =
+        std::max(stats::sigma_of_median * stats::median(size) * std::sqrt(n / std::max(of.degrees, 1.0)), 1e-9);
     for (std::size_t cell = 0; cell < pattern.cells(); ++cell)
       if (pattern.bits[cell] == bit) z[cell] /= scatter;
   }

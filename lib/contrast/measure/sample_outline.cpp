@@ -176,7 +176,7 @@ std::optional<Line> line_through(const std::vector<Vec2>& points, Vec2 from, Vec
       return dot(points[i] - middle, normal) - line(0) - line(1) * dot(points[i] - middle, along);
     };
     for (std::size_t i = 0; i < points.size(); ++i) size[i] = std::abs(residual(i));
-    scatter = std::max(1.4826 * stats::median(size), 1e-3);
+    scatter = std::max(stats::sigma_of_median * stats::median(size), 1e-3);
     for (std::size_t i = 0; i < points.size(); ++i)
       weight[i] = std::pow(std::max(0.0, 1 - std::pow(size[i] / (4.685 * scatter), 2)), 2);
   }

@@ -172,8 +172,8 @@ double reflectance_noise(const ReflectanceRows& rows, const std::vector<double>&
     for (const auto& [incidence, members] : series) neighbour_noise(rows, z, members, off);
   }
   double noise = 0;
-  if (off.size() >= fewest_for_noise) noise = 1.4826 * stats::median(off);
-  if (exchanged.size() >= fewest_for_noise) noise = std::max(noise, 1.4826 * stats::median(exchanged));
+  if (off.size() >= fewest_for_noise) noise = stats::sigma_of_median * stats::median(off);
+  if (exchanged.size() >= fewest_for_noise) noise = std::max(noise, stats::sigma_of_median * stats::median(exchanged));
   return noise > 0 ? std::max(noise, least_noise) : noise_unknown;
 }
 

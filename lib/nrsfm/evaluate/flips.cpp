@@ -86,7 +86,7 @@ std::vector<double> probabilities(const std::vector<Candidate>& frames) {
   const double centre = stats::median(z);
   for (const double v : z)
     if (v >= centre) above.push_back(v - centre);
-  const double sigma = std::max(1.4826 * stats::median(above), 1e-9);
+  const double sigma = std::max(stats::sigma_of_median * stats::median(above), 1e-9);
   for (std::size_t f = 0; f < frames.size(); ++f)
     if (frames[f].known && frames[f].z < 0) p[f] = stats::normal_cdf((frames[f].z - centre) / sigma);
   return p;

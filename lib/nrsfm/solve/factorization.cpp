@@ -11,6 +11,7 @@
 #include "linear/svd.h"
 #include "linear/symmetric_eigen.h"
 #include "nrsfm/solve/solver.h"
+#include "stats/intervals.h"
 
 namespace gonio::nrsfm {
 namespace {
@@ -92,9 +93,7 @@ double noise_of(const Eigen::MatrixXd& w) {
     for (const double x : third.reshaped()) thirds.push_back(std::abs(x));
   }
   if (thirds.empty()) return 0;
-  const auto middle = thirds.begin() + static_cast<std::ptrdiff_t>(thirds.size() / 2);
-  std::nth_element(thirds.begin(), middle, thirds.end());
-  return 1.4826 * *middle / std::sqrt(20);
+  return stats::sigma_of_median * stats::median(thirds) / std::sqrt(20);
 }
 
 Eigen::Index rank_of(const Eigen::MatrixXd& w, double share, Eigen::Index most) {
