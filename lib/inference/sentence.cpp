@@ -236,8 +236,8 @@ std::string minor_sentence(const Problem& problem, const Explanation& e) {
   std::string names;
   for (std::size_t k = 0; k < ids.size(); ++k) names += (k == 0 ? "" : k + 1 == ids.size() ? " or " : ", ") + ids[k];
   if (e.verdict == Verdict::null) return " What is there looks like " + names + ".";
-  return " What else is left is smaller than what matters (" + printed(100 * e.smallest_effect) + " %) and looks like " +
-         names + ".";
+  return " What else is left is smaller than what matters (" + printed(100 * e.smallest_effect) +
+         " %) and looks like " + names + ".";
 }
 
 // Groups of which no observation counts took no part.
