@@ -51,6 +51,21 @@ manifest::ImageEntry entry_of(const manifest::Document& document, const RawReque
   return entry;
 }
 
+// In codes, of images that all say the same of files with the same codes.
+std::optional<manifest::Noise> noise_of_images(const manifest::Document& document, const RawRequest& request) {
+  std::optional<manifest::Noise> noise;
+  for (const auto& view : request.images)
+    for (const std::size_t i : view) {
+      const auto& stated = document.images[i].noise;
+      if (!stated) return std::nullopt;
+      const double full = full_code_of(manifest::picture_path(document, i));
+      const manifest::Noise codes{stated->gain / full, stated->read * full};
+      if (noise && (noise->gain != codes.gain || noise->read != codes.read)) return std::nullopt;
+      noise = codes;
+    }
+  return noise;
+}
+
 }  // namespace
 
 void views_of_images(const manifest::Document& document, const std::string& camera, RawRequest& request,
@@ -78,6 +93,7 @@ void views_of_images(const manifest::Document& document, const std::string& came
     request.views[at].exposures_s.push_back(image.exposure_s);
     request.images[at].push_back(i);
   }
+  request.recipe.noise = noise_of_images(document, request);
 }
 
 void develop_raw(manifest::Document& document, const RawRequest& request) {

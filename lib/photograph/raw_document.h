@@ -21,8 +21,8 @@ struct RawRequest {
 };
 
 // Views of the manifest's images with a file, by camera: images of one `group` are exposures of one view, others stand
-// alone. Images that are `dark` become `dark_frames`. Fills `views`, `images` and, by the camera's mosaic, the
-// recipe's.
+// alone. Images that are `dark` become `dark_frames`. Fills `views`, `images` and, of the recipe, the
+// mosaic by the camera and the noise where all images state the same.
 void views_of_images(const manifest::Document& document, const std::string& camera, RawRequest& request,
                      std::vector<std::filesystem::path>& dark_frames);
 

@@ -61,6 +61,7 @@ RawFrame read_raw_frame(const std::filesystem::path& path, const RawStated& stat
   if (stated.white) c.white = *stated.white;
   if (stated.exposure_s) c.frame.exposure_s = stated.exposure_s;
   RawFrame& frame = c.frame;
+  frame.full_code = full_code_of(path);
   frame.mosaic = Mosaic::named(stated.mosaic.empty() ? c.mosaic : stated.mosaic, path.string());
   const double black = std::ranges::max(c.black);
   if (!(c.white > black))
@@ -73,6 +74,12 @@ RawFrame read_raw_frame(const std::filesystem::path& path, const RawStated& stat
   frame.full_scale = c.white - black - half_a_code;
   frame.floor = c.lowest - std::ranges::min(c.black);
   return std::move(c.frame);
+}
+
+double full_code_of(const std::filesystem::path& path) {
+  if (io::is_camera_raw(path)) return 65535;
+  const int bits = io::code_bits(path);
+  return bits == 0 ? 1 : static_cast<double>((1 << bits) - 1);
 }
 
 }  // namespace gonio::photograph

@@ -26,6 +26,7 @@ struct RawFrame {
   std::vector<float> codes;  // black taken off, row by row
   double floor = 0;          // above black: the lowest code; minus infinity where there is none (EXR)
   double full_scale = 0;     // above black: from here on a sample is saturated
+  double full_code = 1;      // of the file: what a 1 is in its picture (io::read_picture); EXR 1, camera raws 65535
   std::optional<double> exposure_s, iso;
   std::string camera;               // maker and model; empty: not known
   std::array<double, 3> neutral{};  // io::CameraRaw's
@@ -34,5 +35,8 @@ struct RawFrame {
 // Error(no_input | data) as io's readers; Error(data) for pictures of several channels, and for a black that is no less
 // than the full scale.
 RawFrame read_raw_frame(const std::filesystem::path& path, const RawStated& stated);
+
+// RawFrame::full_code, without its samples.
+double full_code_of(const std::filesystem::path& path);
 
 }  // namespace gonio::photograph

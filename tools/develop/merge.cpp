@@ -17,6 +17,8 @@ using photograph::RawRequest;
 const std::vector<std::string> mosaics{"Mono", "RGGB", "GRBG", "GBRG", "BGGR"}, demosaicings{"bilinear", "gradient"};
 const std::vector<std::string> groupings(photograph::grouping_names.begin(), photograph::grouping_names.end());
 
+}  // namespace
+
 std::vector<std::filesystem::path> paths(const cli::Invocation& call, const std::string& option) {
   std::vector<std::filesystem::path> all;
   if (call.given(option))
@@ -31,6 +33,8 @@ photograph::RawStated stated(const cli::Invocation& call) {
   if (call.given("full-scale")) s.white = call.number("full-scale");
   return s;
 }
+
+namespace {
 
 photograph::Grouping grouping(const cli::Invocation& call, const std::vector<std::filesystem::path>& frames) {
   if (call.given("views"))
@@ -91,23 +95,23 @@ std::vector<cli::Option> merge_options() {
        .help =
            "Filters over the samples, row by row from the upper left corner. Default: as the file or the camera says.",
        .choices = mosaics,
-       .needs = {"merge"}},
+       .conflicts = {"undistort", "colour"}},
       {.name = "black",
        .type = Type::number,
        .help = "Code without light. Default: as the file says, else 0.",
        .lower = 0,
-       .needs = {"merge"}},
+       .conflicts = {"undistort", "colour"}},
       {.name = "full-scale",
        .type = Type::number,
        .help = "Code at which the sensor is full. Default: as the file says, else its highest code.",
        .lower = 1e-6,
-       .needs = {"merge"}},
+       .conflicts = {"undistort", "colour"}},
       {.name = "dark",
        .type = Type::input_file,
        .help = "A frame without light, of any exposure; may be given several times. Dark current, what is left of "
                "black, and hot samples are found in them.",
        .repeat = true,
-       .needs = {"merge"}},
+       .conflicts = {"undistort", "colour"}},
       {.name = "flat",
        .type = Type::input_file,
        .help =
@@ -116,7 +120,9 @@ std::vector<cli::Option> merge_options() {
        .needs = {"merge"}},
       {.name = "noise-gain",
        .type = Type::number,
-       .help = "Electrons per code. Default: what the exposures say where they overlap.",
+       .help = "Electrons per code. Default: as all images of the manifest state it, else what the exposures say where "
+               "they "
+               "overlap.",
        .lower = 1e-6,
        .needs = {"merge"}},
       {.name = "read-noise",

@@ -1,8 +1,9 @@
 // develop: raw frames as radiance (merge.h), photographs as a camera without lens errors would have taken them
-// (undistort.h), and a camera's numbers as colours (colour.h).
+// (undistort.h), a camera's numbers as colours (colour.h), and what a sensor adds to the light (characterize.h).
 #include "cli/program.h"
 
 #include "base/error.h"
+#include "tools/develop/characterize.h"
 #include "tools/develop/colour.h"
 #include "tools/develop/merge.h"
 #include "tools/develop/undistort.h"
@@ -16,10 +17,13 @@ void check(cli::Invocation& call) {
   if (call.flag("merge")) return check_merge(call);
   if (call.flag("undistort")) return check_undistort(call);
   if (call.given("colour")) return check_colour(call);
-  throw Error(Exit::usage, "develop", "has nothing to do", "say what: --merge, --undistort or --colour");
+  if (call.flag("characterize")) return check_characterize(call);
+  throw Error(Exit::usage, "develop", "has nothing to do",
+              "say what: --merge, --undistort, --colour or --characterize");
 }
 
 Exit run(cli::Invocation& call) {
+  if (call.flag("characterize")) return characterize(call);
   return call.flag("merge") ? merge(call) : call.flag("undistort") ? undistort(call) : colour(call);
 }
 
@@ -27,6 +31,8 @@ std::vector<cli::Option> options() {
   std::vector<cli::Option> all = merge_options(), more = undistort_options();
   all.insert(all.end(), more.begin(), more.end());
   more = colour_options();
+  all.insert(all.end(), more.begin(), more.end());
+  more = characterize_options();
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -37,11 +43,14 @@ const cli::Program& gonio_program() {
   static const cli::Program program{
       .name = "develop",
       .sentence =
-          "make radiance out of raw frames, colours out of radiance, and take the lens distortion out of photographs",
+          "make radiance out of raw frames, colours out of radiance, take the lens distortion out of photographs, and "
+          "find a sensor's noise",
       .synopsis = {"--merge --out DIR [OPTION]... PHOTOGRAPH...", "--merge --out DIR [OPTION]... [recordings.json]",
                    "--undistort --out DIR [OPTION]... [recordings.json]",
                    "--undistort --out DIR [OPTION]... -i camera.json PHOTOGRAPH...",
-                   "--colour NAME --out DIR [recordings.json]", "--colour NAME --out DIR -i colour.json PHOTOGRAPH..."},
+                   "--colour NAME --out DIR [recordings.json]", "--colour NAME --out DIR -i colour.json PHOTOGRAPH...",
+                   "--characterize --out DIR [OPTION]... --dark FILE --dark FILE... PHOTOGRAPH...",
+                   "--characterize --out DIR [OPTION]... [recordings.json]"},
       .options = options(),
       .operands =
           {{.name = "PHOTOGRAPH",
@@ -56,6 +65,7 @@ const cli::Program& gonio_program() {
                  "radiance in codes per second, its variance (variance.*), and the exposures that each sample is from "
                  "(exposure.shortest, exposure.longest)"},
                 {"VIEW-mask.png", "white where the sample and one of each colour beside it can be trusted"},
+                {"sensor.html, sensor.csv", "the sensor's figures as a report and as a table"},
                 {"ID.exr, ID.png", "the picture of the pinhole camera; with --colour the picture in colours"},
                 {"ID-mask.png",
                  "white where every sample of the kernel lies in the picture, is finite, not saturated and "
