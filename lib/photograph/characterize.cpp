@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 constexpr double transfer_to = 0.7;                     // of saturation (EMVA 1288, 6.6)
 constexpr double linear_from = 0.05, linear_to = 0.95;  // of saturation (EMVA 1288, 6.7)
+constexpr double beyond_noise = 5;                      // standard deviations of the mean that light is told by
 constexpr double steadiest = 0.02;                      // frames of one exposure may differ by this much
 constexpr double rounded_away = 0.24;                   // steps^2 of dark variance: below, rounding hides the noise
 constexpr double noise_is_gone = 0.02;                  // of the largest variance
@@ -120,11 +121,6 @@ class Plane {
                   "two or more of one exposure at least (--dark)");
     if (p_.lit.empty()) throw Error(Exit::data, p_.dark.front().name, "has no lit frames beside it", "name them");
     for (const SeriesLevel& level : p_.lit) {
-      if (level.drift > steadiest)
-        throw Error(Exit::data, level.name,
-                    format("and the other frames of %g s differ in brightness by %.3g %%, more than %g %%",
-                           level.exposure_s, 100 * level.drift, 100 * steadiest),
-                    "a steady lamp, or the exposure's true time");
       if (level.share_full < 0.01 && !(moments(level, none).temporal > 1e-9))
         throw Error(Exit::data, level.name, format("and the other frames of %g s have no noise", level.exposure_s),
                     "frames that are not copies of each other");
@@ -164,11 +160,7 @@ class Plane {
     }
     choice_.dark_line = p_.dark.size() > 1;
     const std::vector<Moments> dark = moments(p_.dark, none), lit = above_dark(dark, none);
-    for (std::size_t k = 0; k < lit.size(); ++k)
-      if (!(lit[k].mean > 0))
-        throw Error(Exit::data, p_.lit[k].name,
-                    format("is darker by %.3g codes than dark frames of that time", -lit[k].mean),
-                    "light, and the same black for all frames");
+    for (std::size_t k = 0; k < lit.size(); ++k) check_light(p_.lit[k], lit[k], dark[0]);
     choose_brightest(lit);
     out_.saturation = choice_.brightest != none      ? lit[choice_.brightest].mean
                       : std::isfinite(p_.full_scale) ? p_.full_scale - dark[0].mean
@@ -187,6 +179,22 @@ class Plane {
                   "two at least, shorter ones");
     choice_.light_line = choice_.line.size() > 2;
     out_.half = lit[choice_.half].mean;
+  }
+
+  static void check_light(const SeriesLevel& level, const Moments& lit, const Moments& dark) {
+    double samples = 0;
+    for (const TileSums& t : level.tiles) samples += t.samples;
+    // lit.temporal is above the dark.
+    const double noise = std::sqrt((std::max(0.0, lit.temporal) + 2 * dark.temporal) / samples);
+    if (!(lit.mean > beyond_noise * noise))
+      throw Error(Exit::data, level.name,
+                  format("is no brighter than dark frames: %.3g codes above them, with noise of %.2g", lit.mean, noise),
+                  "light, and the same black for all frames");
+    if (level.drift > steadiest * lit.mean)
+      throw Error(Exit::data, level.name,
+                  format("and the other frames of %g s differ in brightness by %.3g %%, more than %g %%",
+                         level.exposure_s, 100 * level.drift / lit.mean, 100 * steadiest),
+                  "a steady lamp, or the exposure's true time");
   }
 
   // The last exposure whose variance is the largest but for its own noise: beyond, it falls steeply.
@@ -367,7 +375,7 @@ const SensorFigure* PlaneFigures::find(const std::string& wanted) const {
 
 SensorFigures characterize(const SeriesSums& sums) {
   SensorFigures f;
-  f.width = sums.width, f.height = sums.height;
+  f.width = sums.width, f.height = sums.height, f.full_code = sums.full_code;
   double electrons = 0, read2 = 0;
   for (const SeriesPlane& plane : sums.planes) {
     f.planes.push_back(Plane(plane).run());

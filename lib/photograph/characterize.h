@@ -47,6 +47,7 @@ struct SensorFigures {
   manifest::Noise codes;  // mean over planes: electrons per code, and read noise with rounding in codes
   manifest::Noise unit;   // the same of the numbers of the file's picture, code over full code
   int width = 0, height = 0;
+  double full_code = 1;  // SeriesSums'
 };
 
 // Error(data) where a plane has no dark frames, fewer than two exposures between dark and 70 % of saturation, an

@@ -117,7 +117,7 @@ class Level {
       const double mean = std::accumulate(means.begin(), means.end(), 0.0);
       least = std::min(least, mean), most = std::max(most, mean);
     }
-    level.drift = least > 0 ? most / least - 1 : 0;
+    level.drift = (most - least) / static_cast<double>(level.tiles.size());
     std::vector<double> left = without_trend(m, g_.width, {0, 0, g_.width, g_.height});
     const cv::Mat picture(g_.height, g_.width, CV_64F, left.data());
     level.rows = mean_power(picture), level.columns = mean_power(picture.t());

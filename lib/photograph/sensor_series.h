@@ -45,7 +45,7 @@ struct SeriesLevel {
   std::string name;  // of the first frame's file
   std::array<TileSums, tiles_across * tiles_across> tiles{};
   double share_full = 0, share_lowest = 0;  // of all samples
-  double drift = 0;                         // brightest frame over the darkest, less 1
+  double drift = 0;                         // codes: mean of the brightest frame less that of the darkest
   Spectrum rows{}, columns{};
 };
 

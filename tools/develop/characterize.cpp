@@ -141,10 +141,9 @@ Exit characterize(cli::Invocation& call) {
   for (const auto& frame : frames.frames) call.note_input(frame.name);
   write_file(page, sensor_page(f));
   write_file(csv, sensor_csv(f));
-  const double full = f.unit.gain / f.codes.gain;
   if (!call.has_document) enter_frames(call, series, frames);
   for (const std::size_t i : series.images)
-    if (photograph::full_code_of(manifest::picture_path(call.document, i)) == full)
+    if (photograph::full_code_of(manifest::picture_path(call.document, i)) == f.full_code)
       call.document.images[i].noise = f.unit;
   log(LogLevel::info, words_of(f));
   return Exit::done;
