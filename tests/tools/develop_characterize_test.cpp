@@ -102,6 +102,8 @@ TEST_F(DevelopCharacterize, FramesBecomeFiguresAndTheNoiseOfImages) {
     ASSERT_TRUE(image.noise.has_value()) << image.id;
     EXPECT_NEAR(image.noise->gain, 65535 / gain, 0.03 * 65535 / gain);
     EXPECT_NEAR(image.noise->read, std::hypot(read_e * gain, std::sqrt(1 / 12.0)) / 65535, 0.03 * 2.5 / 65535);
+    EXPECT_NEAR(image.saturation.value(), 4094.5 / 65535, 1e-12);
+    EXPECT_TRUE(image.response.is_array());  // black taken off
     EXPECT_EQ(image.dark == true, image.id.starts_with("dark"));
   }
   // One exposure alone does not tell its own noise: --merge takes what the images state.

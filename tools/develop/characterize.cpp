@@ -74,6 +74,13 @@ void enter_frames(cli::Invocation& call, Series& series, const photograph::Senso
     if (call.given("camera")) image.camera = call.text("camera");
     image.exposure_s = frame.exposure_s;
     if (frame.dark) image.dark = true;
+    const double full = photograph::full_code_of(frame.name);
+    if (full > 1 && series.stated.white) image.saturation = (*series.stated.white - 0.5) / full;
+    if (const double black = series.stated.black.value_or(0) / full; full > 1 && black > 0) {
+      image.response = manifest::Value::array();  // the sensor's own numbers, above what it reads in the dark
+      image.response.push_back(manifest::Value(std::vector<double>{0, -black}));
+      image.response.push_back(manifest::Value(std::vector<double>{1, 1 - black}));
+    }
     series.images.push_back(call.document.images.size());
     call.document.images.push_back(std::move(image));
   }
