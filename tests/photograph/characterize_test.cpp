@@ -157,7 +157,7 @@ TEST(Characterize, IntervalsCover) {
   }
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const std::string name = truth[i].name;
-    EXPECT_GE(covered[i], 0.90 * sensors) << name;
+    EXPECT_GE(covered[i], 0.90 * sensors) << name;  // P(fewer | 0.95) = 0.7 %
     // The place of the full well is known to the exposures' distance alone, which is no random number.
     const bool by_place = name == "full well" || name == "SNR max" || name == "dynamic range";
     if (!by_place) {

@@ -109,8 +109,10 @@ Series series_of(cli::Invocation& call) {
 
 std::string words_of(const photograph::SensorFigures& f) {
   std::string text = format("--noise-gain %.4g --read-noise %.4g in codes", f.codes.gain, f.codes.read);
+  std::set<std::string> said;  // colours mostly leave out the same
   for (const auto& plane : f.planes)
-    for (const std::string& left_out : plane.left_out) text += "; " + plane.name + ": no " + left_out;
+    for (const std::string& left_out : plane.left_out)
+      if (said.insert(left_out).second) text += "; no " + left_out;
   return text;
 }
 

@@ -63,13 +63,18 @@ report::Plot spectrogram(const char* title, const char* unit, const photograph::
     }
     return line;
   };
+  double least = white, most = white;
+  for (const auto* spectrum : {&rows, &columns})
+    for (const double v : *spectrum) least = std::min(least, v), most = std::max(most, v);
+  const bool decades = most > 20 * least;
   return {.title = title,
           .caption = "Root of the mean power; noise without correlation is flat.",
           .x_label = "frequency / (periods per sample)",
           .y_label = std::string("amplitude / ") + unit,
           .series = {series("along rows", rows), series("along columns", columns)},
           .marks = {{report::Mark::Axis::y, white, "temporal noise"}},
-          .log_y = true};
+          .log_y = decades,
+          .zero_y = !decades};
 }
 
 void add_plane(report::Page& page, const PlaneFigures& p) {
