@@ -290,8 +290,8 @@ class Plane {
   };
   void tell(const Numbers& all, const std::vector<Numbers>& parts) {
     const double gap = choice_.brightest != none ? choice_.gap / out_.saturation : 0;  // relative
-    const bool bounded =
-        p_.step > 0 && out_.dark_temporal<rounded_away * p_.step * p_.step, cut = p_.dark.front().share_lowest> cut_off;
+    const bool bounded = p_.step > 0 && out_.dark_temporal < rounded_away * p_.step * p_.step;
+    const bool cut = p_.dark.front().share_lowest > cut_off;
     const std::string no_read = bounded ? format("dark noise of %.3g codes is hidden by rounding",
                                                  std::sqrt(out_.dark_temporal))
                                         : format("%.3g %% of dark samples are cut off at the lowest code: raise black",
