@@ -22,6 +22,7 @@ constexpr double beyond_noise = 5;                      // standard deviations o
 constexpr double steadiest = 0.02;                      // frames of one exposure may differ by this much
 constexpr double rounded_away = 0.24;                   // steps^2 of dark variance: below, rounding hides the noise
 constexpr double noise_is_gone = 0.02;                  // of the largest variance
+constexpr double no_noise = 1e-9;                       // codes^2
 constexpr double cut_off = 0.005;                       // share of dark samples at the lowest code
 
 // Of an exposure, over all tiles or all but one.
@@ -120,11 +121,16 @@ class Plane {
       throw Error(Exit::data, p_.lit.empty() ? "series" : p_.lit.front().name, "has no dark frames beside it",
                   "two or more of one exposure at least (--dark)");
     if (p_.lit.empty()) throw Error(Exit::data, p_.dark.front().name, "has no lit frames beside it", "name them");
-    for (const SeriesLevel& level : p_.lit) {
-      if (level.share_full < 0.01 && !(moments(level, none).temporal > 1e-9))
-        throw Error(Exit::data, level.name, format("and the other frames of %g s have no noise", level.exposure_s),
+    // Full samples have no noise, be it below the full scale; what is darker than noisy ones has.
+    const std::vector<Moments> lit = moments(p_.lit, none);
+    double noisy = 0;
+    for (const Moments& m : lit)
+      if (m.temporal > no_noise) noisy = std::max(noisy, m.mean);
+    for (std::size_t k = 0; k < lit.size(); ++k)
+      if (p_.lit[k].share_full < 0.01 && !(lit[k].temporal > no_noise) && !(noisy > 0 && lit[k].mean > noisy))
+        throw Error(Exit::data, p_.lit[k].name,
+                    format("and the other frames of %g s have no noise", p_.lit[k].exposure_s),
                     "frames that are not copies of each other");
-    }
   }
 
   // Means and variances in time of dark frames at time t.

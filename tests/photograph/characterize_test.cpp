@@ -18,10 +18,11 @@ namespace {
 struct Sensor {
   int side = 64;
   double gain = 0.2, read = 12, dark_per_s = 40, well = 17000, prnu = 0.01, dsnu = 6, black = 120;
-  double falls_off = 0;  // of the lamp, from the middle to the corner
-  double bends = 0;      // of the response, relative at the full well
-  double rate = 1.7e6;   // electrons per second
-  double flickers = 0;   // of the lamp, from frame to frame
+  double falls_off = 0;   // of the lamp, from the middle to the corner
+  double bends = 0;       // of the response, relative at the full well
+  double rate = 1.7e6;    // electrons per second
+  double flickers = 0;    // of the lamp, from frame to frame
+  double ceiling = 4095;  // code
   std::string mosaic = "Mono";
 };
 
@@ -49,7 +50,7 @@ class Made {
         const double mean = lamp * (1 - s_.falls_off * r2) * sensitivity_[i] + s_.dark_per_s * t;
         const double caught = std::min(s_.well, static_cast<double>(std::poisson_distribution<long>(mean)(random_)));
         const double code = s_.black + s_.gain * (caught + offset_[i] + s_.read * normal(random_));
-        f.codes.push_back(static_cast<float>(std::clamp(std::round(code), 0.0, 4095.0) - s_.black));
+        f.codes.push_back(static_cast<float>(std::clamp(std::round(code), 0.0, s_.ceiling) - s_.black));
       }
     return f;
   }
@@ -236,6 +237,15 @@ TEST(Characterize, WhatASeriesDoesNotTellIsLeftOutAndSaid) {
   const PlaneFigures even = Made({.prnu = 0, .dsnu = 0}, 6).figures(few, {0.001}).planes[0];
   EXPECT_EQ(even.find("PRNU")->lower, 0);
   EXPECT_LT(even.find("PRNU")->upper, 0.5);
+}
+
+// Converters that end below the full scale that is stated: full samples all say the same, and are no copies.
+TEST(Characterize, FullSamplesNeedNoNoise) {
+  const Sensor sensor{.side = 128, .ceiling = 3300};
+  const PlaneFigures f = Made(sensor, 5).figures(lit_times(), dark_times).planes[0];
+  ASSERT_NE(f.find("clipping level"), nullptr);
+  EXPECT_NEAR(f.find("clipping level")->value, (sensor.ceiling - sensor.black) / sensor.gain, 0.02 * sensor.well);
+  EXPECT_LT(f.find("full well")->value, f.find("clipping level")->value);
 }
 
 // A pattern of columns with a period of four samples stands out at a quarter of a period per sample.
