@@ -10,7 +10,6 @@
 #include "io/raster.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
-#include "manifest/sections/image.h"
 #include "report/page.h"
 
 namespace gonio::tools::reassemble {

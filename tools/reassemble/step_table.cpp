@@ -8,7 +8,6 @@
 #include "camera/camera_model.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
