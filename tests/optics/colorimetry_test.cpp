@@ -4,12 +4,11 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "base/error.h"
 #include "base/random.h"
 #include "data.h"
+#include "io/csv.h"
 #include "optics/colour.h"
 #include "optics/spectrum.h"
 
@@ -119,14 +118,11 @@ TEST(LinearColours, CieRgbIsThatOfTheNormalisedFunctions) {
 }
 
 std::vector<std::vector<double>> numbers(const std::filesystem::path& path) {
+  const io::Csv csv = io::read_csv(path);
   std::vector<std::vector<double>> rows;
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    std::istringstream cells(line);
+  for (std::size_t k = 0; k < csv.rows.size(); ++k) {
     rows.emplace_back();
-    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(std::stod(cell));
+    for (const std::string& cell : csv.rows[k]) rows.back().push_back(io::csv_number(cell, csv.place(k)));
   }
   return rows;
 }
