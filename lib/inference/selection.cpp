@@ -14,6 +14,9 @@ constexpr double least_share = 0.5;     // of what the first choice repaired, fo
 constexpr double worth_a_turn = 0.02;   // of probability, that another choice brings
 constexpr std::size_t most_idle = 1;    // turns in a row that bring less
 constexpr double near_finalists = 0.3;  // the same, for a place among the finalists as it stands
+// Once something has joined, what is left is worth a round where a tenth of clean remainders would look like it: what
+// joins has a test of its own, counted over all looks, and the null test sees but what is smooth over one condition.
+constexpr double left_level = 0.1;
 
 std::vector<std::size_t> smaller_set(std::vector<std::size_t> set, std::size_t c) {
   std::erase(set, c);
@@ -85,13 +88,16 @@ class Search {
 
   // Effects join while they pay, `most` of them; no set that is among the finalists already, where `anew`.
   void climb(Path& path, std::size_t most, bool anew = false) const {
-    while (path.after->global_p <= options_.level && path.model.candidates.size() < most) {
+    while (is_worth_a_round(path) && path.model.candidates.size() < most) {
       path.levels.push_back(std::make_shared<Level>(race_, effort_, path.model, path.after));
       std::optional<Runner> joined = path.levels.back()->step.next();
       while (anew && joined && finalists_.knows(joined->model.candidates)) joined = path.levels.back()->step.next();
       if (!joined) return;
       join(path, std::move(*joined), most);
     }
+  }
+  bool is_worth_a_round(const Path& path) const {
+    return path.after->global_p <= (path.joined.empty() ? options_.level : std::max(options_.level, left_level));
   }
   void join(Path& path, Runner runner, std::size_t most) const {
     path.model = runner.model;
