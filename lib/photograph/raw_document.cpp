@@ -2,6 +2,7 @@
 #include "photograph/raw_document.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "base/progress.h"
@@ -12,9 +13,14 @@
 #include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
+#include "photograph/response.h"
 
 namespace gonio::photograph {
 namespace {
+
+constexpr double same_gain = 1e-6;  // of it
+constexpr double same_code = 0.01;
+constexpr double straight = 1e-5;  // of full scale
 
 std::string words_of(const RawView& view, const DevelopedView& d) {
   std::string text =
@@ -40,6 +46,60 @@ std::string words_of(const RawView& view, const DevelopedView& d) {
   return text;
 }
 
+// From a scene's radiance to codes per second, where every image of the view says what it is for its own codes.
+std::optional<manifest::Parameter> gain_of_view(const manifest::Document& document,
+                                                const std::vector<std::size_t>& images) {
+  std::optional<manifest::Parameter> gain;
+  for (const std::size_t i : images) {
+    const manifest::ImageEntry& image = document.images[i];
+    if (!image.gain || !image.exposure_s) return std::nullopt;
+    const double per_second =
+        image.gain->scalar() * full_code_of(manifest::picture_path(document, i)) / *image.exposure_s;
+    if (!gain) gain = image.gain, gain->value = {per_second};
+    if (std::abs(per_second - gain->scalar()) > same_gain * gain->scalar()) return std::nullopt;
+  }
+  return gain;
+}
+
+// The code without light and the code at which the sensor is full, as the image says them: a raw frame's response is a
+// straight line of slope 1, above black.
+RawStated stated_by_image(const manifest::Document& document, std::size_t i) {
+  const manifest::ImageEntry& image = document.images[i];
+  const double full = full_code_of(manifest::picture_path(document, i));
+  RawStated stated;
+  if (image.saturation) stated.white = *image.saturation * full + 0.5;
+  if (image.response.is_null() || image.response == manifest::Value("linear")) return stated;
+  const std::string place = manifest::place(document, "/images/" + std::to_string(i) + "/response");
+  const Response response(image.response, place);
+  response.check_invertible(place);
+  const double black = response.code(0);
+  for (const double share : {0.0, 0.25, 0.5, 1.0})
+    if (std::abs(response(static_cast<float>(black + share * (1 - black))) - share * (1 - black)) > straight)
+      throw Error(Exit::data, place, "bends: these are no codes of a raw frame",
+                  "merge frames whose codes rise evenly with light, above black");
+  stated.black = black * full;
+  return stated;
+}
+
+// What all images agree on takes the place of what nobody stated on the command line.
+void take_stated(const manifest::Document& document, std::size_t i, bool first, const RawStated& by_user,
+                 RawStated& stated) {
+  const RawStated own = stated_by_image(document, i);
+  const auto take = [&](std::optional<double> RawStated::*member, const char* what) {
+    if (by_user.*member) return;
+    if (!first && (own.*member).has_value() != (stated.*member).has_value())
+      throw Error(Exit::data, manifest::place(document, "/images/" + std::to_string(i)),
+                  format("and the images before it do not both state %s", what), "state it for all, or for none");
+    if (!first && own.*member && std::abs(*(own.*member) - *(stated.*member)) > same_code)
+      throw Error(Exit::data, manifest::place(document, "/images/" + std::to_string(i)),
+                  format("states %s at code %g, images before it %g", what, *(own.*member), *(stated.*member)),
+                  "develop cameras apart (--camera)");
+    stated.*member = own.*member;
+  };
+  take(&RawStated::black, "black");
+  take(&RawStated::white, "full scale");
+}
+
 manifest::ImageEntry entry_of(const manifest::Document& document, const RawRequest& request, std::size_t view) {
   manifest::ImageEntry entry;
   if (!request.images.empty()) entry = document.images[request.images[view][0]];
@@ -47,6 +107,7 @@ manifest::ImageEntry entry_of(const manifest::Document& document, const RawReque
   if (!request.camera.empty()) entry.camera = request.camera;
   entry.exposure_s.reset(), entry.saturation.reset(), entry.noise.reset();
   entry.response = {};
+  entry.gain = request.images.empty() ? std::nullopt : gain_of_view(document, request.images[view]);
   entry.group.clear();
   return entry;
 }
@@ -70,11 +131,15 @@ std::optional<manifest::Noise> noise_of_images(const manifest::Document& documen
 
 void views_of_images(const manifest::Document& document, const std::string& camera, RawRequest& request,
                      std::vector<std::filesystem::path>& dark_frames) {
+  const RawStated by_user = request.recipe.stated;
   std::vector<std::string> groups;
+  bool first = true;
   for (std::size_t i = 0; i < document.images.size(); ++i) {
     const manifest::ImageEntry& image = document.images[i];
     if (image.file.empty() || (!camera.empty() && image.camera != camera)) continue;
     const auto path = manifest::picture_path(document, i);
+    take_stated(document, i, first, by_user, request.recipe.stated);
+    first = false;
     if (image.dark == true) {
       dark_frames.push_back(path), request.spent.push_back(i);
       continue;

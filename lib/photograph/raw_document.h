@@ -21,13 +21,15 @@ struct RawRequest {
 };
 
 // Views of the manifest's images with a file, by camera: images of one `group` are exposures of one view, others stand
-// alone. Images that are `dark` become `dark_frames`. Fills `views`, `images` and, of the recipe, the
-// mosaic by the camera and the noise where all images state the same.
+// alone. Images that are `dark` become `dark_frames`. Fills `views`, `images` and, of the recipe where it does not say
+// so already, black and full scale by the images' response (a straight line above black) and saturation, the mosaic by
+// the camera, and the noise where all images state the same. Error(data) where a response bends, or images differ.
 void views_of_images(const manifest::Document& document, const std::string& camera, RawRequest& request,
                      std::vector<std::filesystem::path>& dark_frames);
 
 // Writes VIEW.exr and VIEW-mask.png for every view, and puts one image for each into the manifest, in the place of
-// those that it is made of: linear, in codes per second, with variance. What each view's exposures said is logged.
+// those that it is made of: linear, in codes per second, with variance, and with the gain from radiance to these where
+// all its images state theirs. What each view's exposures said is logged.
 void develop_raw(manifest::Document& document, const RawRequest& request);
 
 }  // namespace gonio::photograph

@@ -87,14 +87,11 @@ std::string light_of(const std::string& lamp, const manifest::LaboratoryLamp& en
   return entry.light.empty() ? lamp : entry.light;
 }
 
-// Which of the picture's channels a pixel's filter lets through; below 0: the mean of all. "BayerRG": rows R G, G B.
+// Which of the picture's channels a pixel's filter lets through; below 0: the mean of all.
 int channel_of_filter(const std::string& mosaic, std::size_t row, std::size_t column) {
-  if (!mosaic.starts_with("Bayer")) return -1;
-  const std::string rows = mosaic.substr(5), second = rows == "RG"   ? "GB"
-                                                      : rows == "BG" ? "GR"
-                                                      : rows == "GR" ? "BG"
-                                                                     : "RG";
-  const char filter = (row % 2 == 0 ? rows : second)[column % 2];
+  const std::string corner = bayer_corner(mosaic);
+  if (corner.empty()) return -1;
+  const char filter = corner[row % 2 * 2 + column % 2];
   return filter == 'R' ? 0 : filter == 'G' ? 1 : 2;
 }
 
@@ -124,6 +121,19 @@ std::string content_of(const manifest::Document& scene, manifest::ImageEntry ima
   image.temperature_K.reset();
   decides.images = {image};
   return sha256(manifest::print_document(decides, decides.folder));
+}
+
+// The same light, whatever a sensor makes of it: its picture is rendered once for a bracket of exposures, from the same
+// random paths, as a scene that stands still sends the same light.
+std::string light_content(const manifest::Document& scene, manifest::ImageEntry image) {
+  const std::optional<double> time_s = image.time_s;
+  image.id = "light";
+  image.exposure_s.reset(), image.noise.reset(), image.gain.reset();
+  const bool passes = std::ranges::any_of(scene.mechanisms, [](const auto& used) {
+    const mechanism::Mechanism* m = mechanism::find_mechanism(used.first);
+    return m == nullptr || std::ranges::find(m->inputs, "time_s", &mechanism::Input::name) != m->inputs.end();
+  });
+  return content_of(scene, image) + (passes && time_s ? format(" at %.17g", *time_s) : "");
 }
 
 // What turns a radiance into codes: code = black + full * v, v = gain * radiance through the sensor chain, up to white.
@@ -315,17 +325,25 @@ manifest::Document TrueState::scene_of(const std::string& camera, const Shot& sh
 RawFrame TrueState::expose(const std::string& camera, const Shot& asked, const PixelFormat* format) {
   const Shot shot = told(asked);
   const PixelFormat own = format_of(camera);
-  const manifest::Document scene = scene_of(camera, shot);
+  manifest::Document scene = scene_of(camera, shot);
   render::SessionOptions how;
   how.seed = options.seed;
   how.spp = options.spp;
   how.geometry = false;
   how.transport.stokes = document.cameras.at(camera).mosaic == "polarizers";
   how.checkpoint_s = std::numeric_limits<double>::infinity();  // a frame is rendered in one go
-  const render::Session session(scene, how, [](const std::filesystem::path&) {});
-  const std::string& id = scene.images.front().id;
-  const io::Image picture = session.render(0, id + ".exr").picture;
   const render::Sensor sensor = render::sensor_of(scene, 0);
+  const std::string id = scene.images.front().id;
+  const double gain = scene.images.front().gain->scalar();
+  if (const std::string light = light_content(scene, scene.images.front()); light != rendered_light) {
+    scene.images.front().id = light.substr(0, 16);
+    scene.images.front().gain = manifest::Parameter(1.0);
+    const render::Session session(scene, how, [](const std::filesystem::path&) {});
+    rendered = session.render(0, id + ".exr").picture;
+    rendered_light = light;
+  }
+  io::Image picture = rendered;
+  for (float& v : picture.data) v = static_cast<float>(gain * v);
   const io::Image seen = render::recorded(picture, sensor, id, options.seed);
   const manifest::LaboratoryCamera& entry = document.laboratory.entry.front().cameras.at(camera);
   RawFrame frame;

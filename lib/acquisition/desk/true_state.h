@@ -9,6 +9,7 @@
 #include "acquisition/desk/true_devices.h"
 #include "acquisition/desk/true_laboratory.h"
 #include "acquisition/device/unpack.h"
+#include "io/image.h"
 #include "manifest/document.h"
 #include "robot/chain/role.h"
 
@@ -43,7 +44,9 @@ struct TrueState {
   std::map<std::string, std::unique_ptr<desk::TrueTurntable>> tables;
   std::map<std::string, std::uint64_t> frames;
   std::map<std::string, std::string> shown;  // pictures by screen
-  std::mutex busy;                           // devices are called from several threads
+  std::string rendered_light;                // whose picture at gain 1 `rendered` is
+  io::Image rendered;
+  std::mutex busy;  // devices are called from several threads
 
  private:
   manifest::Document scene_of(const std::string& camera, const Shot& shot) const;

@@ -80,6 +80,14 @@ int PixelFormat::bits_per_pixel() const {
   return bits == 8 ? 8 : 16;
 }
 
+// The rows below have what the rows above lack, green beside green being in no grid.
+std::string bayer_corner(const std::string& mosaic) {
+  if (!mosaic.starts_with("Bayer") || mosaic.size() != 7) return "";
+  const char first = mosaic[5], second = mosaic[6];
+  const char lacking = first == 'R' || second == 'R' ? 'B' : 'R';
+  return {first, second, first == 'G' ? lacking : 'G', first == 'G' ? 'G' : lacking};
+}
+
 std::optional<PixelFormat> parse_pixel_format(std::string_view name) {
   const auto digits = std::min(name.find_first_of("0123456789"), name.size());
   PixelFormat format;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "acquisition/device/unpack.h"
 #include "acquisition/plan/stations.h"
 #include "base/hash.h"
 #include "base/text.h"
@@ -134,6 +135,15 @@ Value response_of(const manifest::LaboratoryCamera& camera, const FrameRecord& r
   table.push_back(Value(std::vector<double>{0, -black}));
   table.push_back(Value(std::vector<double>{1, 1 - black}));
   return table;
+}
+
+// Frames behind a Bayer grid are no pictures: what reads them has to know of the grid.
+void state_mosaic(manifest::Document& d, const manifest::Laboratory& lab, const std::string& name) {
+  const auto device = lab.cameras.find(name);
+  const auto camera = d.cameras.find(name);
+  if (device == lab.cameras.end() || camera == d.cameras.end() || !camera->second.mosaic.empty()) return;
+  if (const auto format = parse_pixel_format(device->second.pixel_format))
+    camera->second.mosaic = bayer_corner(format->mosaic);
 }
 
 // In the unit of the linear values, code / full: shot noise, and read noise with that of rounding (1 / 12 code^2).
@@ -295,6 +305,7 @@ std::int64_t enter_frames(manifest::Document& d, const Laboratory& laboratory, c
       image.group = r.group;
       image.response = "linear";  // a sensor's own numbers
       if (d.cameras.contains(r.camera)) image.camera = r.camera;
+      state_mosaic(d, lab, r.camera);
       for (const std::string& lamp : r.lamps) {
         const std::string light = light_there(d, laboratory, lab, lamp, r);
         if (!light.empty()) image.light.push_back(light);

@@ -141,10 +141,10 @@ TEST(Arm, ARecordedArmIsNotNominal) {
   const Explanation e = explain(problem, {});
   std::set<std::string> told;
   for (const std::size_t c : e.named) told.insert(problem.candidates()[c].id());
-  EXPECT_TRUE(told.contains("robot.sag") || told.contains("robot.joint-offset")) << e.sentence;
-  EXPECT_THAT(e.sentence, testing::HasSubstr("robot.joint-offset"));
+  // Beside the sag, which alone leaves a remainder that the null test finds no structure in (p about 0.02).
+  EXPECT_TRUE(told.contains("robot.joint-offset")) << e.sentence;
   EXPECT_THAT(e.sentence, testing::HasSubstr("axes of joints 4 and 6"));
-  EXPECT_LT(e.held_out_after, 0.6 * e.held_out_before);
+  EXPECT_LT(e.held_out_after, 0.4 * e.held_out_before);
 }
 
 }  // namespace
