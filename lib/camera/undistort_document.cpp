@@ -15,6 +15,7 @@
 #include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
+#include "photograph/developed.h"
 #include "photograph/mask.h"
 #include "photograph/mosaic.h"
 #include "photograph/response.h"
@@ -187,6 +188,8 @@ void undistort_image(manifest::Document& document, std::size_t index, const Undi
   image.file = manifest::add_file(document, picture_path, image.id + "-undistorted");
   image.mask = manifest::add_file(document, mask_path, image.id + "-mask");
   image.noise.reset();
+  image.developed.push_back(
+      {manifest::develop_step::undistort, std::string(kernel_names[static_cast<std::size_t>(request.choice.kernel)])});
   if (bits == 0) image.response = {};
   if (bits != 0 && source_bits == 0) image.response = "linear";
 }
@@ -232,6 +235,8 @@ void check_undistortion(const manifest::Document& document, const UndistortReque
   for (const std::size_t index : request.images) {
     const Work work = work_of(document, index);
     const manifest::ImageEntry& image = document.images[index];
+    photograph::refuse_second(document, index, manifest::develop_step::undistort, "has no lens distortion any more",
+                              "give the photograph that it was made of");
     const manifest::Camera& camera = document.cameras.at(work.camera);
     const int pitch = camera.mosaic.empty() ? 1 : pitch_of(io::read_picture(work.path), camera, work);
     if (pitch_of_camera.try_emplace(work.camera, pitch).first->second != pitch)

@@ -15,6 +15,7 @@
 #include "manifest/image_list.h"
 #include "manifest/sections/colour_correction.h"
 #include "manifest/sections/image.h"
+#include "photograph/developed.h"
 #include "photograph/linear_picture.h"
 #include "photograph/mask.h"
 
@@ -176,6 +177,8 @@ void check_colours(const manifest::Document& document, const ColourRequest& requ
   correction_of(section, manifest::place(document, "/colour/" + request.name));
   for (const std::size_t i : request.images) {
     const std::string place = manifest::place(document, "/images/" + std::to_string(i));
+    photograph::refuse_second(document, i, manifest::develop_step::colour, "is corrected already",
+                              "give the picture that it was made of");
     const std::string& camera = document.images[i].camera;
     if (!section.camera.empty() && !camera.empty() && camera != section.camera)
       throw Error(Exit::data, place,
@@ -201,6 +204,7 @@ void colour_document(manifest::Document& document, const ColourRequest& request)
     io::write_picture(to, picture);
     image.file = manifest::add_file(document, to, image.id + "-" + request.name);
     image.noise.reset(), image.saturation.reset();
+    image.developed.push_back({manifest::develop_step::colour, request.name});
     progress.advance();
   }
 }

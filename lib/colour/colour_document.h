@@ -48,8 +48,8 @@ struct ColourRequest {
   std::function<void(const std::filesystem::path&)> note_input;
 };
 // Writes ID.exr, the corrected picture with all its other channels, for every image, and points the image to it; noise
-// that was stated for the pixels before is taken back. Error(data) for pictures that are not OpenEXR with R, G, B, and
-// for images of another camera than the correction's.
+// that was stated for the pixels before is taken back. Error(data) for pictures that are not OpenEXR with R, G, B, for
+// images of another camera than the correction's, and for those that say that they are corrected.
 void colour_document(manifest::Document& document, const ColourRequest& request);
 // The same without pixels: whether the correction and all files are there.
 void check_colours(const manifest::Document& document, const ColourRequest& request);

@@ -87,6 +87,8 @@ void add_scene(List& all) {
   all.push_back(part("robots: dh", "Rows of a Denavit-Hartenberg table.", dh_row_fields()));
   all.push_back(listed("images", "Recordings, or pictures to be simulated.", image_fields()));
   all.push_back(part("images: boards", "Boards in an image that shows several.", seen_board_fields()));
+  all.push_back(
+      part("images: developed", "Steps from the sensor's numbers to the picture, in order.", developed_step_fields()));
   all.push_back(keyed("colour",
                       "Written by color-calib. How a camera's linear numbers become colours; develop applies it.",
                       colour_correction_fields()));

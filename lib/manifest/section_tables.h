@@ -14,7 +14,8 @@ using gonio::DhRow;
 struct Provenance;  // sections/provenance.h; nobody passes them on
 struct ProvenanceRun;
 struct ProvenanceStep;
-struct MarkerPair;  // sections/placement.h
+struct DevelopedStep;  // sections/developed.h
+struct MarkerPair;     // sections/placement.h
 struct PlacementContact;
 struct MeasuredView;  // sections/plan.h
 struct CheckView;
@@ -34,6 +35,7 @@ GONIO_TABLE(Table, table_fields);
 GONIO_TABLE(Rendering, rendering_fields);
 GONIO_TABLE(Comparison, comparison_fields);
 GONIO_TABLE(SeenBoard, seen_board_fields);
+GONIO_TABLE(DevelopedStep, developed_step_fields);
 GONIO_TABLE(ColourPatch, colour_patch_fields);
 GONIO_TABLE(ColourAlternative, colour_alternative_fields);
 GONIO_TABLE(ColourCorrection, colour_correction_fields);

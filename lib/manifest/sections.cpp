@@ -18,6 +18,10 @@
 namespace gonio::manifest {
 namespace {
 
+std::vector<std::string> words_of(const auto& names) {
+  return {names.begin(), names.end()};
+}
+
 Value shape_schema(const char* key, Value schema) {
   return object_schema(Value::object({{key, std::move(schema)}}), {key});
 }
@@ -113,6 +117,18 @@ const std::vector<Field<SeenBoard>>& seen_board_fields() {
   return table;
 }
 
+const std::vector<Field<DevelopedStep>>& developed_step_fields() {
+  static const std::vector<Field<DevelopedStep>> table{
+      field("step", &DevelopedStep::step, "", "what was done").one_of(words_of(develop_step::all)).needed(),
+      field("by", &DevelopedStep::by, "",
+            "demosaic: bilinear or gradient; colour: name of the correction; undistort: kernel of the interpolation"),
+      field("frames", &DevelopedStep::frames, "", "how many it is made of: dark, flat, or exposures that were merged")
+          .range(1, infinite),
+      field("exposures_s", &DevelopedStep::exposures_s, "s", "merge: exposure times as they were used").positive(),
+      sigma_field(&DevelopedStep::sigma)};
+  return table;
+}
+
 const std::vector<Field<ImageEntry>>& image_fields() {
   static const std::vector<Field<ImageEntry>> table{
       field("id", &ImageEntry::id, "", "name, unique among images").needed(),
@@ -150,7 +166,10 @@ const std::vector<Field<ImageEntry>>& image_fields() {
       field("joints_rad", &ImageEntry::joints_rad, "rad", "joint angles of the robot"),
       field("shapes", &ImageEntry::shapes, "",
             "by object: how far it was through its mesh's shapes, 0 the first, 1 the last; left out: at the first"),
-      field("boards", &ImageEntry::boards, "", "instead of board, where it shows several: one entry each")};
+      field("boards", &ImageEntry::boards, "", "instead of board, where it shows several: one entry each"),
+      field(
+          "developed", &ImageEntry::developed, "",
+          "what was done to the picture on the way from the sensor, in order; left out: nothing, or it is not known")};
   return table;
 }
 
@@ -279,6 +298,7 @@ GONIO_RECORD(Board, board_fields);
 GONIO_RECORD(CameraQuality, camera_quality_fields);
 GONIO_RECORD(Camera, camera_fields);
 GONIO_RECORD(SeenBoard, seen_board_fields);
+GONIO_RECORD(DevelopedStep, developed_step_fields);
 GONIO_RECORD(ImageEntry, image_fields);
 GONIO_RECORD(Mesh, mesh_fields);
 GONIO_RECORD(Object, object_fields);

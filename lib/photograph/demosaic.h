@@ -7,6 +7,7 @@
 // Samples that cannot be trusted are left out of the means; where a corrected one would need them the plain mean
 // stands. Borders: the samples that are there.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,6 +18,7 @@
 namespace gonio::photograph {
 
 enum class Demosaicing { bilinear, gradient };
+inline constexpr std::array demosaicing_names{"bilinear", "gradient"};
 
 struct MosaicSamples {
   int width = 0, height = 0;

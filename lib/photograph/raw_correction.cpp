@@ -106,6 +106,7 @@ FlatField flat_field(const std::vector<std::filesystem::path>& frames, const Raw
   for (std::size_t i = 0; i < sum.size(); ++i) mean[colour(i)] += sum[i], ++count[colour(i)];
   for (std::size_t c = 0; c < 3; ++c) mean[c] /= std::max(1.0, count[c]);
   const auto n = static_cast<double>(frames.size());
+  flat.frames = frames.size();
   flat.factor.resize(sum.size()), flat.variance.resize(sum.size()), flat.dead.assign(sum.size(), 0);
   for (std::size_t i = 0; i < sum.size(); ++i) {
     const double usual = mean[colour(i)];

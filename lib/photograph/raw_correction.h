@@ -24,6 +24,7 @@ DarkField dark_field(const std::vector<std::filesystem::path>& frames, const Raw
 struct FlatField {
   std::vector<float> factor, variance;  // what a sample is multiplied by, and the relative variance of that
   std::vector<std::uint8_t> dead;
+  std::size_t frames = 0;
 };
 // `dark`: taken off before. Saturated samples are refused: Error(data).
 FlatField flat_field(const std::vector<std::filesystem::path>& frames, const RawStated& stated,

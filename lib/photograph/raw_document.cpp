@@ -13,6 +13,7 @@
 #include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
+#include "photograph/developed.h"
 #include "photograph/response.h"
 
 namespace gonio::photograph {
@@ -21,6 +22,24 @@ namespace {
 constexpr double same_gain = 1e-6;  // of it
 constexpr double same_code = 0.01;
 constexpr double straight = 1e-5;  // of full scale
+using Steps = std::vector<manifest::DevelopedStep>;
+
+Steps steps_of(const RawRecipe& recipe, const DevelopedView& d) {
+  namespace step = manifest::develop_step;
+  const auto count = [](std::size_t frames) { return static_cast<std::int64_t>(frames); };
+  Steps steps;
+  steps.push_back({step::black});
+  if (recipe.dark) steps.push_back({step::dark, {}, count(recipe.dark->frames)});
+  if (recipe.dark || recipe.flat) steps.push_back({step::defects});
+  const bool refined = std::ranges::any_of(d.merged.exposures_sigma, [](double sigma) { return sigma > 0; });
+  if (refined) steps.push_back({step::exposure_times});
+  steps.push_back({step::merge, {}, count(d.stated_s.size()), d.merged.exposures_s});
+  if (refined) steps.back().sigma = {{"exposures_s", d.merged.exposures_sigma}};
+  if (recipe.flat) steps.push_back({step::flat, {}, count(recipe.flat->frames)});
+  if (d.picture.channel("Y") < 0)
+    steps.push_back({step::demosaic, demosaicing_names[static_cast<std::size_t>(recipe.demosaicing)]});
+  return steps;
+}
 
 std::string words_of(const RawView& view, const DevelopedView& d) {
   std::string text =
@@ -137,6 +156,7 @@ void views_of_images(const manifest::Document& document, const std::string& came
   for (std::size_t i = 0; i < document.images.size(); ++i) {
     const manifest::ImageEntry& image = document.images[i];
     if (image.file.empty() || (!camera.empty() && image.camera != camera)) continue;
+    refuse_developed(document, i, "leave it out, or give the frames that it was made of");
     const auto path = manifest::picture_path(document, i);
     take_stated(document, i, first, by_user, request.recipe.stated);
     first = false;
@@ -176,6 +196,7 @@ void develop_raw(manifest::Document& document, const RawRequest& request) {
     std::ranges::transform(d.trusted, counts.data.begin(), [](std::uint8_t t) { return t != 0 ? 1.0f : 0.0f; });
     io::write_png(mask, counts, 8);
     manifest::ImageEntry entry = entry_of(document, request, v);
+    entry.developed = steps_of(request.recipe, d);
     entry.file = manifest::add_file(document, picture, view.name);
     entry.mask = manifest::add_file(document, mask, view.name + "-mask");
     developed.push_back(std::move(entry));

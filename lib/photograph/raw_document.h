@@ -21,9 +21,10 @@ struct RawRequest {
 };
 
 // Views of the manifest's images with a file, by camera: images of one `group` are exposures of one view, others stand
-// alone. Images that are `dark` become `dark_frames`. Fills `views`, `images` and, of the recipe where it does not say
-// so already, black and full scale by the images' response (a straight line above black) and saturation, the mosaic by
-// the camera, and the noise where all images state the same. Error(data) where a response bends, or images differ.
+// alone; Error(data) for images that say that they are developed. Images that are `dark` become `dark_frames`. Fills
+// `views`, `images` and, of the recipe where it does not say so already, black and full scale by the images' response
+// (a straight line above black) and saturation, the mosaic by the camera, and the noise where all images state the same.
+// Error(data) where a response bends, or images differ.
 void views_of_images(const manifest::Document& document, const std::string& camera, RawRequest& request,
                      std::vector<std::filesystem::path>& dark_frames);
 

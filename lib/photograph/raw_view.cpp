@@ -39,7 +39,6 @@ class Development {
     out.merged = merge_exposures(request);
     flatten(out.merged);
     paint(out);
-    say_steps(out);
     return out;
   }
 
@@ -164,16 +163,6 @@ class Development {
     }
     out.merged.rate.clear(), out.merged.variance.clear(), out.merged.trust.clear();
     out.merged.first.clear(), out.merged.last.clear();
-  }
-
-  void say_steps(DevelopedView& out) const {
-    out.steps = {"black"};
-    if (recipe_.dark) out.steps.push_back("dark frames");
-    if (recipe_.refine_exposures && exposures_s_.size() > 1) out.steps.push_back("exposure times");
-    out.steps.push_back("merge");
-    if (recipe_.flat) out.steps.push_back("flat field");
-    if (!mosaic_.mono())
-      out.steps.push_back(recipe_.demosaicing == Demosaicing::bilinear ? "demosaic bilinear" : "demosaic gradient");
   }
 
   const RawView& view_;

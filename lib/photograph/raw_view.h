@@ -1,5 +1,5 @@
 // Exposures of one view as one picture of radiance, in codes per second: black and dark frames, flat field, defects,
-// merge, mosaic. In this order, and each step said in `steps`.
+// merge, mosaic. In this order.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -37,7 +37,6 @@ struct DevelopedView {
   manifest::Noise noise;
   bool noise_from_exposures = false;
   double share_too_bright = 0, share_moved = 0, share_unusable = 0;  // of all samples
-  std::vector<std::string> steps;                                    // "black", "dark frames", ...
 };
 
 // Error(data) for frames of different sizes or mosaics, an exposure that nobody states where there are several, and

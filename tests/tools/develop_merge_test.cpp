@@ -145,6 +145,42 @@ TEST_F(DevelopMerge, AManifestSaysWhatBelongsTogether) {
   EXPECT_FALSE(d.images[0].exposure_s.has_value());
 }
 
+// The manifest says what was done, and what must not be done twice is refused.
+TEST_F(DevelopMerge, WhatWasDoneStandsInTheManifest) {
+  write_bracket();
+  write("dark_64ms.dng", frame(0.064, 77, 0, false)), write("flat_1ms.dng", frame(0.001, 78));
+  const auto words_of = [&](const Ended& ended) {
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    std::vector<std::string> words;
+    const manifest::Document made = document(ended);
+    for (const manifest::DevelopedStep& s : made.images.at(0).developed)
+      words.push_back(s.step + (s.by.empty() ? "" : ":" + s.by) + (s.frames ? format("*%d", int(*s.frames)) : ""));
+    return words;
+  };
+  const std::vector<std::string> noise = {"--noise-gain", "4", "--read-noise", "3.01"};
+  const auto with = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), noise.begin(), noise.end());
+    return merge(words);
+  };
+  const Ended all = with({"--dark", "dark_64ms.dng", "--flat", "flat_1ms.dng", "--flat", "wall_1ms.dng", "--demosaic",
+                          "bilinear", "wall_4ms.dng", "wall_16ms.dng", "wall_64ms.dng"});
+  EXPECT_EQ(words_of(all), (std::vector<std::string>{"black", "dark*1", "defects", "exposure-times", "merge*3",
+                                                     "flat*2", "demosaic:bilinear"}));
+  const manifest::DevelopedStep merged = document(all).images[0].developed[4];
+  ASSERT_EQ(merged.exposures_s.size(), 3u);
+  EXPECT_NEAR(merged.exposures_s[0], 0.004, 1e-4);
+  ASSERT_EQ(merged.sigma.at("exposures_s").size(), 3u);
+  EXPECT_EQ(std::ranges::count(merged.sigma.at("exposures_s"), 0.0), 1);  // the unit
+  const Ended plain = with({"--keep-exposures", "--mosaic", "Mono", "wall_16ms.dng"});
+  EXPECT_EQ(words_of(plain), (std::vector<std::string>{"black", "merge*1"}));
+  EXPECT_EQ(document(plain).images[0].developed[1].exposures_s, std::vector<double>{0.016});
+  // A picture of one channel would pass for a frame.
+  write_file(folder_ / "done.json", plain.out);
+  const Ended again = with({"done.json"});
+  EXPECT_EQ(again.status, 65);
+  EXPECT_THAT(again.err, HasSubstr("is no raw frame any more (developed: black, merge)"));
+}
+
 TEST_F(DevelopMerge, BracketsInSequenceEndWhereAnExposureComesAgain) {
   for (int k = 0; k < 4; ++k)
     write(format("IMG_%d.dng", k), frame(k % 2 == 0 ? 0.004 : 0.016, static_cast<std::uint64_t>(k)));

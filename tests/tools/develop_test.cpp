@@ -72,6 +72,24 @@ TEST_F(Develop, WithoutDistortionEveryFormatComesBackExactly) {
   }
 }
 
+TEST_F(Develop, APictureIsUndistortedOnce) {
+  const Ended ended = develop({"-i", "barrel.json", "--out", "d", "--kernel", "mitchell", "linear.exr"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const manifest::Document out = document(ended);
+  ASSERT_EQ(out.images.at(0).developed.size(), 1u);
+  EXPECT_EQ(out.images[0].developed[0].step, "undistort");
+  EXPECT_EQ(out.images[0].developed[0].by, "mitchell");
+  write_file(folder_ / "straight.json", ended.out);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"straight.json", "--out", "e"},
+        {"-i", "straight.json", "--camera", "c", "--out", "e", "d/linear.exr"}}) {
+    const Ended again = develop(words);
+    EXPECT_EQ(again.status, 65);
+    EXPECT_THAT(again.err, HasSubstr("has no lens distortion any more (developed: undistort by mitchell)"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "e/linear.exr"));
+  }
+}
+
 TEST_F(Develop, SixteenBitsStaySixteen) {
   const Ended ended = develop({"-i", "barrel.json", "--response", "linear", "--out", "d", "deep.png"});
   ASSERT_EQ(ended.status, 0) << ended.err;

@@ -14,7 +14,8 @@ namespace {
 using cli::Type;
 using photograph::RawRequest;
 
-const std::vector<std::string> mosaics{"Mono", "RGGB", "GRBG", "GBRG", "BGGR"}, demosaicings{"bilinear", "gradient"};
+const std::vector<std::string> mosaics{"Mono", "RGGB", "GRBG", "GBRG", "BGGR"},
+    demosaicings(photograph::demosaicing_names.begin(), photograph::demosaicing_names.end());
 const std::vector<std::string> groupings(photograph::grouping_names.begin(), photograph::grouping_names.end());
 
 }  // namespace
@@ -66,8 +67,8 @@ RawRequest request_of(cli::Invocation& call) {
   if (!flat.empty()) request.recipe.flat = photograph::flat_field(flat, request.recipe.stated, request.recipe.dark);
   if (call.given("noise-gain"))
     request.recipe.noise = manifest::Noise{call.number("noise-gain"), call.number("read-noise")};
-  request.recipe.demosaicing =
-      call.text("demosaic") == "bilinear" ? photograph::Demosaicing::bilinear : photograph::Demosaicing::gradient;
+  request.recipe.demosaicing = static_cast<photograph::Demosaicing>(
+      std::ranges::find(demosaicings, call.text("demosaic")) - demosaicings.begin());
   request.recipe.refine_exposures = !call.flag("keep-exposures");
   request.recipe.blooming_px = static_cast<int>(call.number("blooming"));
   request.output_path = [&call](const std::string& name) { return call.output_path(name); };

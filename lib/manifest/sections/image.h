@@ -8,6 +8,7 @@
 #include "manifest/noise.h"
 #include "manifest/parameter.h"
 #include "manifest/pose.h"
+#include "manifest/sections/developed.h"
 #include "manifest/value.h"
 
 namespace gonio::manifest {
@@ -40,6 +41,7 @@ struct ImageEntry {  // "images"
   std::vector<double> joints_rad;
   std::map<std::string, double> shapes{};  // objects whose mesh has shapes: how far through them, 0 to 1
   std::vector<SeenBoard> boards{};         // instead of `board`, where it shows several
+  std::vector<DevelopedStep> developed{};  // what was done to the picture, in order
 };
 
 }  // namespace gonio::manifest

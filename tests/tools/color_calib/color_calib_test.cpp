@@ -101,6 +101,18 @@ TEST_F(ColorCalib, DevelopAppliesIt) {
     EXPECT_LT(norm(readings[p].rgb - wanted), 0.03 + 0.02 * norm(wanted)) << chart_.patches[p].name;
   }
   EXPECT_NE(colours.at(5, 5, colours.channel("variance.G")), 4);
+  ASSERT_EQ(document.images[0].developed.size(), 1u);
+  EXPECT_EQ(document.images[0].developed[0].step, "colour");
+  EXPECT_EQ(document.images[0].developed[0].by, "camera");
+  write_file(folder_ / "colours.json", developed.out);
+  for (const char* picture : {"", "d/scene.exr"}) {
+    std::vector<std::string> words = {"develop", "--colour", "camera", "--out", "e", "-i", "colours.json"};
+    if (*picture != 0) words.push_back(picture);
+    const Ended again = run(words, folder_.path());
+    EXPECT_EQ(again.status, 65);
+    EXPECT_THAT(again.err, HasSubstr("is corrected already (developed: colour by camera)"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "e/scene.exr"));
+  }
   const Ended unknown =
       run({"develop", "--colour", "other", "--out", "e", "-i", "colour.json", "scene.exr"}, folder_.path());
   EXPECT_EQ(unknown.status, 65);
