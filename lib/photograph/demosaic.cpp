@@ -1,6 +1,7 @@
 // See demosaic.h.
 #include "photograph/demosaic.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -31,9 +32,15 @@ Taps colour_at_other() {
           {2, 0, -1.5}, {-2, 0, -1.5}, {0, 2, -1.5}, {0, -2, -1.5}};
 }
 
+struct Range {
+  std::uint8_t first = 255, last = 0;
+  void add(Range other) { first = std::min(first, other.first), last = std::max(last, other.last); }
+};
+
 struct Mean {
   double value = 0, variance = 0;
   bool found = false;
+  Range exposures{};
 };
 
 class Demosaic {
@@ -45,6 +52,7 @@ class Demosaic {
     constexpr std::array<std::array<int, 3>, 3> weights{{{1, 2, 1}, {2, 4, 2}, {1, 2, 1}}};
     const bool own = mosaic_.colour(x, y) == colour && s_.trusted[at(x, y)] != 0;
     double sum = 0, squares = 0, all = 0;
+    Range exposures;
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
         if (own && (dx != 0 || dy != 0)) continue;
@@ -52,18 +60,20 @@ class Demosaic {
         if (!inside(u, v) || mosaic_.colour(u, v) != colour || s_.trusted[at(u, v)] == 0) continue;
         const double w = weights[static_cast<std::size_t>(dy + 1)][static_cast<std::size_t>(dx + 1)];
         sum += w * s_.value[at(u, v)], squares += w * w * s_.variance[at(u, v)], all += w;
+        exposures.add(range(at(u, v)));
       }
     if (!(all > 0)) return {};
-    return {sum / all, squares / (all * all), true};
+    return {sum / all, squares / (all * all), true, exposures};
   }
 
   Mean filtered(int x, int y, const Taps& taps) const {
-    Mean m{0, 0, true};
+    Mean m{0, 0, true, {}};
     for (const Tap& t : taps) {
       const int u = x + t.dx, v = y + t.dy;
       if (!inside(u, v) || s_.trusted[at(u, v)] == 0) return {};
       m.value += t.weight / 8 * s_.value[at(u, v)];
       m.variance += t.weight * t.weight / 64 * s_.variance[at(u, v)];
+      m.exposures.add(range(at(u, v)));
     }
     return m;
   }
@@ -82,6 +92,7 @@ class Demosaic {
  private:
   bool in_row(int x, int y, int colour) const { return mosaic_.colour(x + 1, y) == colour; }
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < s_.width && y < s_.height; }
+  Range range(std::size_t i) const { return s_.first.empty() ? Range{} : Range{s_.first[i], s_.last[i]}; }
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(s_.width) + static_cast<std::size_t>(x);
   }
@@ -94,23 +105,32 @@ class Demosaic {
 Demosaiced demosaic(const MosaicSamples& samples, const Mosaic& mosaic, Demosaicing how) {
   const std::vector<std::string> names =
       mosaic.mono() ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+  const std::size_t pixels = samples.value.size(), columns = static_cast<std::size_t>(samples.width);
   Demosaiced result{io::Image(samples.width, samples.height, names), io::Image(samples.width, samples.height, names),
-                    std::vector<std::uint8_t>(samples.trusted.begin(), samples.trusted.end())};
+                    std::vector<std::uint8_t>(samples.trusted.begin(), samples.trusted.end()),
+                    std::vector<std::uint8_t>(pixels, Range{}.first), std::vector<std::uint8_t>(pixels, Range{}.last)};
   if (mosaic.mono()) {
     result.colour.data.assign(samples.value.begin(), samples.value.end());
     result.variance.data.assign(samples.variance.begin(), samples.variance.end());
+    for (std::size_t i = 0; i < pixels && !samples.first.empty(); ++i)
+      if (samples.trusted[i] != 0) result.first[i] = samples.first[i], result.last[i] = samples.last[i];
     return result;
   }
   const Demosaic work(samples, mosaic);
   parallel_for(0, static_cast<std::size_t>(samples.height), [&](std::size_t row) {
     const int y = static_cast<int>(row);
-    for (int x = 0; x < samples.width; ++x)
+    for (int x = 0; x < samples.width; ++x) {
+      const std::size_t i = row * columns + static_cast<std::size_t>(x);
+      Range exposures;
       for (int c = 0; c < 3; ++c) {
         const Mean m = work.of(x, y, c, how);
         result.colour.at(x, y, c) = static_cast<float>(m.value);
         result.variance.at(x, y, c) = static_cast<float>(m.variance);
-        if (!m.found) result.trusted[row * static_cast<std::size_t>(samples.width) + static_cast<std::size_t>(x)] = 0;
+        if (!m.found) result.trusted[i] = 0;
+        exposures.add(m.exposures);
       }
+      result.first[i] = exposures.first, result.last[i] = exposures.last;
+    }
   });
   return result;
 }

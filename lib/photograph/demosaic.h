@@ -24,11 +24,14 @@ struct MosaicSamples {
   int width = 0, height = 0;
   std::span<const float> value, variance;
   std::span<const std::uint8_t> trusted;
+  // The shortest and the longest exposure that each sample is from, by any numbers that grow with it; empty: not known.
+  std::span<const std::uint8_t> first{}, last{};
 };
 
 struct Demosaiced {
-  io::Image colour, variance;         // R, G, B; of Mono: Y
-  std::vector<std::uint8_t> trusted;  // its own sample, and one of each colour beside it
+  io::Image colour, variance;             // R, G, B; of Mono: Y
+  std::vector<std::uint8_t> trusted;      // its own sample, and one of each colour beside it
+  std::vector<std::uint8_t> first, last;  // of all samples that a pixel's values are from; first > last: of none
 };
 Demosaiced demosaic(const MosaicSamples& samples, const Mosaic& mosaic, Demosaicing how);
 

@@ -35,9 +35,7 @@ class Merge {
   explicit Merge(const MergeRequest& request)
       : r_(request), pixels_(static_cast<std::size_t>(request.width) * static_cast<std::size_t>(request.height)) {
     check();
-    order_.resize(r_.exposures_s.size());
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-    std::ranges::stable_sort(order_, {}, [&](std::size_t k) { return r_.exposures_s[k]; });
+    order_ = by_duration(r_.exposures_s);
     merged_.exposures_s = r_.exposures_s;
     merged_.exposures_sigma.assign(r_.exposures_s.size(), 0);
   }
@@ -282,6 +280,13 @@ std::vector<SampleKind> kinds_of(const RawPlane& plane, int width, int height, d
       }
   }
   return kinds;
+}
+
+std::vector<std::size_t> by_duration(const std::vector<double>& exposures_s) {
+  std::vector<std::size_t> order(exposures_s.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return exposures_s[k]; });
+  return order;
 }
 
 MergedPlane merge_exposures(const MergeRequest& request) {

@@ -53,10 +53,13 @@ enum class Trust : std::uint8_t { good, too_bright, no_sample, moved };
 struct MergedPlane {
   std::vector<float> rate, variance;  // L and its variance, per exposure_s of the request (of its second as stated)
   std::vector<Trust> trust;
-  std::vector<std::uint8_t> first, last;             // shortest and longest exposure that was used, by their duration
+  std::vector<std::uint8_t> first, last;  // shortest and longest exposure that was read: places in the stated order
   std::vector<double> exposures_s, exposures_sigma;  // as refined (exposure_times.h)
   double chi_square_per_freedom = 0;                 // of the readings about L, over pixels that can be trusted
 };
+
+// Places of exposures in the order of their durations, which `first` and `last` count by.
+std::vector<std::size_t> by_duration(const std::vector<double>& exposures_s);
 
 // Error(data) for fewer than one exposure, planes of another size, or a noise or full scale that is not positive.
 MergedPlane merge_exposures(const MergeRequest& request);

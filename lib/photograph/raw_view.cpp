@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "photograph/exposure_times.h"
 
@@ -142,25 +143,30 @@ class Development {
     }
     const auto n = static_cast<double>(trusted.size());
     out.share_too_bright = bright / n, out.share_moved = moved / n, out.share_unusable = none / n;
-    Demosaiced d = demosaic({width_, height_, m.rate, m.variance, trusted}, mosaic_, recipe_.demosaicing);
+    Demosaiced d =
+        demosaic({width_, height_, m.rate, m.variance, trusted, m.first, m.last}, mosaic_, recipe_.demosaicing);
     out.trusted = std::move(d.trusted);
     std::vector<std::string> names = d.colour.channels;
     const std::size_t colours = names.size();
     for (std::size_t c = 0; c < colours; ++c) names.push_back("variance." + names[c]);
     names.insert(names.end(), {"exposure.shortest", "exposure.longest"});
-    std::vector<double> ordered = m.exposures_s;
-    std::ranges::sort(ordered);
+    std::vector<float> times;
+    for (const std::size_t k : by_duration(exposures_s_)) times.push_back(static_cast<float>(m.exposures_s[k]));
     out.picture = io::Image(width_, height_, names);
-    for (std::size_t i = 0; i < out.trusted.size(); ++i) {
-      float* pixel = &out.picture.data[i * names.size()];
-      for (std::size_t c = 0; c < colours; ++c) {
-        pixel[c] = d.colour.data[colours * i + c];
-        const float v = d.variance.data[colours * i + c];
-        pixel[colours + c] = std::isfinite(v) ? v : 0;
+    const auto columns = static_cast<std::size_t>(width_);
+    parallel_for(0, static_cast<std::size_t>(height_), [&](std::size_t y) {
+      for (std::size_t i = y * columns; i < (y + 1) * columns; ++i) {
+        float* pixel = &out.picture.data[i * names.size()];
+        for (std::size_t c = 0; c < colours; ++c) {
+          pixel[c] = d.colour.data[colours * i + c];
+          const float v = d.variance.data[colours * i + c];
+          pixel[colours + c] = std::isfinite(v) ? v : 0;
+        }
+        if (d.first[i] > d.last[i]) continue;  // of none
+        pixel[2 * colours] = times[d.first[i]];
+        pixel[2 * colours + 1] = times[d.last[i]];
       }
-      pixel[2 * colours] = static_cast<float>(ordered[m.first[i]]);
-      pixel[2 * colours + 1] = static_cast<float>(ordered[m.last[i]]);
-    }
+    });
     out.merged.rate.clear(), out.merged.variance.clear(), out.merged.trust.clear();
     out.merged.first.clear(), out.merged.last.clear();
   }

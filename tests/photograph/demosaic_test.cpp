@@ -70,6 +70,32 @@ TEST(Demosaic, StatesTheVarianceOfItsNoise) {
   }
 }
 
+// A pixel's values are from the exposures of all samples that entered them: those are the ones whose change changes it.
+TEST(Demosaic, SaysWhichExposuresAPixelIsFrom) {
+  const Mosaic mosaic = Mosaic::named("BayerGB", "test");
+  for (const Demosaicing how : {Demosaicing::bilinear, Demosaicing::gradient}) {
+    Samples s(14, 12);
+    const std::size_t bad = 14 * 3 + 4, changed = 14 * 5 + 6;
+    s.trusted[bad] = 0;
+    std::vector<std::uint8_t> first(s.value.size(), 4), last(s.value.size(), 4);
+    first[changed] = 2, last[changed] = 9, first[bad] = 0, last[bad] = 11;
+    const auto run = [&] { return demosaic({14, 12, s.value, s.variance, s.trusted, first, last}, mosaic, how); };
+    const Demosaiced before = run();
+    s.value[changed] = 1;
+    const Demosaiced after = run();
+    std::size_t reached = 0;
+    for (std::size_t i = 0; i < s.value.size(); ++i) {
+      bool moved = false;
+      for (std::size_t c = 0; c < 3; ++c) moved |= before.colour.data[3 * i + c] != after.colour.data[3 * i + c];
+      EXPECT_EQ(after.first[i], moved ? 2 : 4) << i;
+      EXPECT_EQ(after.last[i], moved ? 9 : 4) << i;
+      reached += moved;
+    }
+    EXPECT_GE(reached, 9u);
+    EXPECT_TRUE(s.demosaiced(mosaic, how).first[0] > s.demosaiced(mosaic, how).last[0]);  // not known
+  }
+}
+
 TEST(Demosaic, LeavesOutWhatCannotBeTrusted) {
   const Mosaic mosaic = Mosaic::named("BayerRG", "test");
   for (const Demosaicing how : {Demosaicing::bilinear, Demosaicing::gradient}) {

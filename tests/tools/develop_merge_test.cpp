@@ -145,6 +145,50 @@ TEST_F(DevelopMerge, AManifestSaysWhatBelongsTogether) {
   EXPECT_FALSE(d.images[0].exposure_s.has_value());
 }
 
+// Each pixel says which exposures it is from: behind filters all that its colours are from, and none where all were
+// full.
+TEST_F(DevelopMerge, EachPixelSaysWhichExposuresItIsFrom) {
+  write_bracket();
+  const std::vector<int> ms{1, 4, 16, 64, 256};
+  for (const bool mono : {true, false}) {
+    std::vector<std::string> words = {"--noise-gain",     "4",        "--read-noise",        "3.01",
+                                      "--keep-exposures", "--mosaic", mono ? "Mono" : "RGGB"};
+    for (const int k : ms) words.push_back(format("wall_%dms.dng", k));
+    ASSERT_EQ(merge(words).status, 0);
+    const io::Image picture = io::read_picture(folder_ / "d/wall.exr");
+    const int shortest = picture.channel("exposure.shortest"), longest = picture.channel("exposure.longest");
+    const auto is_full = [&](const Dng& f, int x, int y) {
+      return f.samples[static_cast<std::size_t>(y * width + x)] >= 4095;
+    };
+    std::vector<Dng> frames;
+    for (const int k : ms) frames.push_back(frame(1e-3 * k, static_cast<std::uint64_t>(k)));
+    for (int y = 2; y < height - 2; ++y)
+      for (int x = 2; x < width - 2; ++x) {
+        ASSERT_FLOAT_EQ(picture.at(x, y, shortest), 0.001f);
+        double longest_own = 0;  // with no full sample beside
+        for (std::size_t k = 0; k < ms.size(); ++k) {
+          bool near = false;
+          for (int v = y - 1; v <= y + 1; ++v)
+            for (int u = x - 1; u <= x + 1; ++u) near |= is_full(frames[k], u, v);
+          if (!near) longest_own = 1e-3 * ms[k];
+        }
+        if (mono)
+          ASSERT_FLOAT_EQ(picture.at(x, y, longest), static_cast<float>(longest_own)) << x << " " << y;
+        else
+          ASSERT_GE(picture.at(x, y, longest), static_cast<float>(longest_own) * (1 - 1e-6f)) << x << " " << y;
+      }
+  }
+  Dng full = frame(0.001, 1);
+  std::ranges::fill(full.samples, std::uint16_t{4095});
+  full.samples[0] = 300;  // no file of one code alone
+  write("full_1ms.dng", full);
+  const Ended ended = merge({"--noise-gain", "4", "full_1ms.dng"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const io::Image picture = io::read_picture(folder_ / "d/full.exr");
+  for (const char* channel : {"exposure.shortest", "exposure.longest"})
+    EXPECT_EQ(picture.at(9, 9, picture.channel(channel)), 0);
+}
+
 // The manifest says what was done, and what must not be done twice is refused.
 TEST_F(DevelopMerge, WhatWasDoneStandsInTheManifest) {
   write_bracket();
