@@ -16,8 +16,11 @@
 namespace gonio::photograph {
 namespace {
 
+constexpr double far_from_full = 8;  // standard deviations: of such light all is full, or nothing
 constexpr double clear_of_full = 4;  // standard deviations: nearer to full scale what was read is a selection
-constexpr double moved_beyond = 5;   // standard normal: of a neighbourhood's chi-square
+constexpr int strip_rows = 16;
+constexpr std::size_t rows_at_once = 16;
+constexpr double moved_beyond = 5;  // standard normal: of a neighbourhood's chi-square
 
 // One exposure's samples, sorted.
 struct Sorted {
@@ -42,9 +45,15 @@ class Merge {
 
   MergedPlane run() {
     if (r_.refine_exposures && order_.size() > 1) refine();
-    start();
-    step(false), step(true);
-    compare();
+    merged_.rate.assign(pixels_, 0), merged_.variance.assign(pixels_, 0);
+    merged_.trust.assign(pixels_, Trust::no_sample);
+    merged_.first.assign(pixels_, 0), merged_.last.assign(pixels_, 0);
+    chi_square_.assign(pixels_, 0), freedom_.assign(pixels_, 0);
+    for_strips([&](const Strip& strip) {
+      start(strip);
+      step(strip, false), step(strip, true);
+      compare(strip);
+    });
     mark_moved();
     return std::move(merged_);
   }
@@ -78,13 +87,56 @@ class Merge {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(r_.width) + static_cast<std::size_t>(x);
   }
 
-  template <class Body>  // body(place in the order, sorted samples, pixel)
-  void pass(const Body& body) const {
+  // Pixels from `first` to `last`, and what all exposures, by their place in the order, read there; where that is
+  // empty, they are read one by one.
+  struct Strip {
+    std::size_t first = 0, last = 0;
+    std::vector<Sorted> loaded{};
+    std::size_t size() const { return last - first; }
+  };
+  int rows_of_strips() const { return std::max(strip_rows, 4 * r_.blooming_px); }
+
+  // Rows of one exposure. Those beside them tell where light spilled.
+  Sorted read_rows(std::size_t k, int first, int last) const {
+    const int above = std::max(0, first - r_.blooming_px), below = std::min(r_.height, last + r_.blooming_px);
+    RawPlane plane;
+    r_.read_rows(k, above, below - above, plane);
+    Sorted s{{}, kinds_of(plane, r_.width, below - above, r_.full_scale, r_.blooming_px)};
+    s.codes = std::move(plane.codes);
+    const auto cut = [&](auto& values) {
+      const auto from = static_cast<std::ptrdiff_t>(at(0, first - above));
+      values.erase(values.begin(), values.begin() + from);
+      values.resize(at(0, last - first));
+    };
+    cut(s.codes), cut(s.kinds);
+    return s;
+  }
+
+  template <class Body>  // body(strip), side by side
+  void for_strips(const Body& body) const {
+    if (!r_.read_rows) return body(Strip{0, pixels_});
+    const int rows = rows_of_strips();
+    parallel_for(0, static_cast<std::size_t>((r_.height + rows - 1) / rows), [&](std::size_t n) {
+      const int first = static_cast<int>(n) * rows, last = std::min(r_.height, first + rows);
+      Strip strip{at(0, first), at(0, last)};
+      for (const std::size_t k : order_) strip.loaded.push_back(read_rows(k, first, last));
+      body(strip);
+    });
+  }
+
+  template <class Body>  // body(place in the order, kind, code, pixel)
+  void pass(const Strip& strip, const Body& body) const {
     constexpr std::size_t chunk = 1 << 14;
     for (std::size_t place = 0; place < order_.size(); ++place) {
+      if (!strip.loaded.empty()) {
+        const Sorted& s = strip.loaded[place];
+        for (std::size_t n = 0; n < strip.size(); ++n) body(place, s.kinds[n], s.codes[n], strip.first + n);
+        continue;
+      }
       const Sorted s = read(order_[place]);
       parallel_for(0, (pixels_ + chunk - 1) / chunk, [&](std::size_t c) {
-        for (std::size_t i = c * chunk; i < std::min(pixels_, (c + 1) * chunk); ++i) body(place, s, i);
+        for (std::size_t i = c * chunk; i < std::min(pixels_, (c + 1) * chunk); ++i)
+          body(place, s.kinds[i], s.codes[i], i);
       });
     }
   }
@@ -94,83 +146,81 @@ class Merge {
     constexpr std::size_t most = 60000;
     const std::size_t stride = std::max<std::size_t>(1, pixels_ / most) | 1;  // odd: all colours of a mosaic
     ExposureSamples samples{r_.exposures_s, {}, r_.noise, r_.full_scale, r_.floor};
-    samples.codes.resize(r_.exposures_s.size());
-    for (const std::size_t k : order_) {
-      const Sorted s = read(k);
-      for (std::size_t i = 0; i < pixels_; i += stride)
-        samples.codes[k].push_back(s.kinds[i] == SampleKind::read ? s.codes[i]
-                                                                  : std::numeric_limits<float>::quiet_NaN());
-    }
+    samples.codes.assign(order_.size(), std::vector<float>((pixels_ + stride - 1) / stride));
+    for_strips([&](const Strip& strip) {
+      pass(strip, [&](std::size_t place, SampleKind kind, float code, std::size_t i) {
+        if (i % stride == 0)
+          samples.codes[order_[place]][i / stride] =
+              kind == SampleKind::read ? code : std::numeric_limits<float>::quiet_NaN();
+      });
+    });
     const RefinedExposures refined = refine_exposures(samples);
     merged_.exposures_s = refined.exposures_s, merged_.exposures_sigma = refined.sigma_s;
   }
 
   // All light over all time: the best where there is shot noise alone.
-  void start() {
-    merged_.rate.assign(pixels_, 0), merged_.variance.assign(pixels_, 0);
-    merged_.trust.assign(pixels_, Trust::no_sample);
-    merged_.first.assign(pixels_, 0), merged_.last.assign(pixels_, 0);
-    std::vector<float> time(pixels_), bound(pixels_, std::numeric_limits<float>::infinity());
-    pass([&](std::size_t place, const Sorted& s, std::size_t i) {
+  void start(const Strip& strip) {
+    std::vector<float> time(strip.size()), bound(strip.size(), std::numeric_limits<float>::infinity());
+    pass(strip, [&](std::size_t place, SampleKind kind, float code, std::size_t i) {
       const double t = lasts(place);
-      if (s.kinds[i] == SampleKind::full) {
-        bound[i] = std::min(bound[i], static_cast<float>(r_.full_scale / t));
-      } else if (s.kinds[i] == SampleKind::read) {
-        merged_.rate[i] += s.codes[i], time[i] += static_cast<float>(t);
+      if (kind == SampleKind::full) {
+        float& least = bound[i - strip.first];
+        least = std::min(least, static_cast<float>(r_.full_scale / t));
+      } else if (kind == SampleKind::read) {
+        merged_.rate[i] += code, time[i - strip.first] += static_cast<float>(t);
         if (merged_.trust[i] == Trust::no_sample) merged_.first[i] = static_cast<std::uint8_t>(place);
         merged_.last[i] = static_cast<std::uint8_t>(place);
         merged_.trust[i] = Trust::good;
       }
     });
-    for (std::size_t i = 0; i < pixels_; ++i) {
-      if (time[i] > 0) {
-        merged_.rate[i] /= time[i];
+    for (std::size_t n = 0, i = strip.first; n < strip.size(); ++n, ++i) {
+      if (time[n] > 0) {
+        merged_.rate[i] /= time[n];
       } else {
         merged_.variance[i] = std::numeric_limits<float>::infinity();
-        if (std::isfinite(bound[i])) merged_.rate[i] = bound[i], merged_.trust[i] = Trust::too_bright;
+        if (std::isfinite(bound[n])) merged_.rate[i] = bound[n], merged_.trust[i] = Trust::too_bright;
       }
     }
   }
 
   Word said_by(SampleKind kind, double code, double t, double rate) const {
-    const double variance = noise_variance(r_.noise, rate * t), sigma = std::sqrt(variance),
-                 a = (rate * t - r_.full_scale) / sigma;
-    Word word;
-    const bool near = a > -8;
-    const double phi = near ? std::exp(-0.5 * a * a) / std::sqrt(2 * pi) : 0, below = near ? stats::normal_cdf(-a) : 1,
-                 above = near ? stats::normal_cdf(a) : 0;
-    const double hazard = above > 0 ? phi / above : 0;
-    word.information = t * t / variance * std::max(0.0, below + a * phi + phi * hazard);
-    word.score = kind == SampleKind::read ? t * (code - rate * t) / variance : t / sigma * (near ? hazard : 0);
-    return word;
+    const double variance = noise_variance(r_.noise, rate * t), left = r_.full_scale - rate * t;
+    // So far from full scale what is not 0 is 1, to fourteen digits.
+    if (left * left >= far_from_full * far_from_full * variance)
+      return {kind == SampleKind::read ? t * (code - rate * t) / variance : 0, left > 0 ? t * t / variance : 0};
+    const double sigma = std::sqrt(variance), a = -left / sigma;
+    const double phi = std::exp(-0.5 * a * a) / std::sqrt(2 * pi), below = stats::normal_cdf(-a),
+                 above = stats::normal_cdf(a), hazard = above > 0 ? phi / above : 0;
+    return {kind == SampleKind::read ? t * (code - rate * t) / variance : t / sigma * hazard,
+            t * t / variance * std::max(0.0, below + a * phi + phi * hazard)};
   }
 
   // One step of scoring; the last one leaves the variance.
-  void step(bool last) {
-    std::vector<double> score(pixels_), information(pixels_);
-    pass([&](std::size_t place, const Sorted& s, std::size_t i) {
-      if (merged_.trust[i] != Trust::good || s.kinds[i] == SampleKind::unusable) return;
-      const Word word = said_by(s.kinds[i], s.codes[i], lasts(place), merged_.rate[i]);
-      score[i] += word.score, information[i] += word.information;
+  void step(const Strip& strip, bool last) {
+    std::vector<double> score(strip.size()), information(strip.size());
+    pass(strip, [&](std::size_t place, SampleKind kind, float code, std::size_t i) {
+      if (merged_.trust[i] != Trust::good || kind == SampleKind::unusable) return;
+      const Word word = said_by(kind, code, lasts(place), merged_.rate[i]);
+      score[i - strip.first] += word.score, information[i - strip.first] += word.information;
     });
-    for (std::size_t i = 0; i < pixels_; ++i) {
-      if (merged_.trust[i] != Trust::good || !(information[i] > 0)) continue;
-      merged_.rate[i] = static_cast<float>(merged_.rate[i] + score[i] / information[i]);
-      if (last) merged_.variance[i] = static_cast<float>(1 / information[i]);
+    for (std::size_t n = 0, i = strip.first; n < strip.size(); ++n, ++i) {
+      if (merged_.trust[i] != Trust::good || !(information[n] > 0)) continue;
+      merged_.rate[i] = static_cast<float>(merged_.rate[i] + score[n] / information[n]);
+      if (last) merged_.variance[i] = static_cast<float>(1 / information[n]);
     }
   }
 
   // Chi-square of what each pixel read about its rate, of samples that are clear of full scale.
-  void compare() {
-    chi_square_.assign(pixels_, 0), freedom_.assign(pixels_, 0);
-    pass([&](std::size_t place, const Sorted& s, std::size_t i) {
-      if (merged_.trust[i] != Trust::good || s.kinds[i] != SampleKind::read) return;
-      const double expected = merged_.rate[i] * lasts(place), variance = noise_variance(r_.noise, expected);
-      if (expected + clear_of_full * std::sqrt(variance) > r_.full_scale) return;
-      const double off = s.codes[i] - expected;
+  void compare(const Strip& strip) {
+    pass(strip, [&](std::size_t place, SampleKind kind, float code, std::size_t i) {
+      if (merged_.trust[i] != Trust::good || kind != SampleKind::read) return;
+      const double expected = merged_.rate[i] * lasts(place), variance = noise_variance(r_.noise, expected),
+                   left = r_.full_scale - expected;
+      if (left < 0 || left * left < clear_of_full * clear_of_full * variance) return;
+      const double off = code - expected;
       chi_square_[i] += static_cast<float>(off * off / variance), ++freedom_[i];
     });
-    for (std::size_t i = 0; i < pixels_; ++i) {
+    for (std::size_t i = strip.first; i < strip.last; ++i) {
       freedom_[i] = freedom_[i] > 1 ? static_cast<std::uint8_t>(freedom_[i] - 1) : 0;
       if (freedom_[i] == 0) chi_square_[i] = 0;
     }
@@ -187,8 +237,9 @@ class Merge {
         chi_square += chi_square_[at(u, v)], freedom += freedom_[at(u, v)];
       }
     if (freedom == 0) return std::numeric_limits<double>::quiet_NaN();
-    const double spread = 2 / (9 * freedom);
-    return (std::cbrt(chi_square / (noise_factor * freedom)) - (1 - spread)) / std::sqrt(spread);
+    const double ratio = chi_square / (noise_factor * freedom), spread = 2 / (9 * freedom);
+    if (ratio <= 1) return 0;  // or a little less: nothing that contradicts
+    return (std::cbrt(ratio) - (1 - spread)) / std::sqrt(spread);
   }
 
   void mark_moved() {
@@ -202,11 +253,18 @@ class Merge {
     const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
     std::nth_element(ratios.begin(), middle, ratios.end());
     const double noise_factor = std::max(1.0, *middle / usual_median());
+    std::vector<std::vector<std::size_t>> found(static_cast<std::size_t>(r_.height));
+    parallel_for(
+        0, found.size(),
+        [&](std::size_t row) {
+          const int y = static_cast<int>(row);
+          for (int x = 0; x < r_.width; ++x)
+            if (merged_.trust[at(x, y)] == Trust::good && contradiction(x, y, noise_factor) > moved_beyond)
+              found[row].push_back(at(x, y));
+        },
+        rows_at_once);
     std::vector<std::size_t> moved;
-    for (int y = 0; y < r_.height; ++y)
-      for (int x = 0; x < r_.width; ++x)
-        if (merged_.trust[at(x, y)] == Trust::good && contradiction(x, y, noise_factor) > moved_beyond)
-          moved.push_back(at(x, y));
+    for (const auto& row : found) moved.insert(moved.end(), row.begin(), row.end());
     for (const std::size_t i : moved) merged_.trust[i] = Trust::moved;
     for (std::size_t i = 0; i < pixels_; ++i)
       if (merged_.trust[i] == Trust::good) chi_square += chi_square_[i], freedom += freedom_[i];
@@ -221,14 +279,39 @@ class Merge {
     return stats::chi2_quantile(0.5, freedom) / freedom;
   }
 
+  // What an exposure read in these pixels, which are in order.
+  Sorted read_at(std::size_t k, const std::vector<std::size_t>& pixels) const {
+    Sorted picked{std::vector<float>(pixels.size()), std::vector<SampleKind>(pixels.size())};
+    const auto pick = [&](const Sorted& from, std::size_t first, std::size_t n) {
+      picked.codes[n] = from.codes[pixels[n] - first], picked.kinds[n] = from.kinds[pixels[n] - first];
+    };
+    if (!r_.read_rows) {
+      const Sorted all = read(k);
+      for (std::size_t n = 0; n < pixels.size(); ++n) pick(all, 0, n);
+      return picked;
+    }
+    const std::size_t strip = at(0, rows_of_strips());
+    std::vector<std::size_t> starts;  // places in `pixels` where another strip begins
+    for (std::size_t n = 0; n < pixels.size(); ++n)
+      if (n == 0 || pixels[n] / strip != pixels[n - 1] / strip) starts.push_back(n);
+    parallel_for(0, starts.size(), [&](std::size_t s) {
+      const std::size_t end = s + 1 < starts.size() ? starts[s + 1] : pixels.size(),
+                        first = pixels[starts[s]] / strip * strip;
+      const int row = static_cast<int>(first / static_cast<std::size_t>(r_.width));
+      const Sorted some = read_rows(k, row, std::min(r_.height, row + rows_of_strips()));
+      for (std::size_t n = starts[s]; n < end; ++n) pick(some, first, n);
+    });
+    return picked;
+  }
+
   // The exposure in which most of them are well exposed; where it is not, the one next to it.
   void take_one_exposure(const std::vector<std::size_t>& moved) {
     std::vector<double> worth(order_.size());
     for (std::size_t place = 0; place < order_.size(); ++place) {
-      const Sorted s = read(order_[place]);
-      for (const std::size_t i : moved)
-        if (s.kinds[i] == SampleKind::read)
-          worth[place] += std::max(0.0f, s.codes[i]) / std::sqrt(noise_variance(r_.noise, s.codes[i]));
+      const Sorted s = read_at(order_[place], moved);
+      for (std::size_t n = 0; n < moved.size(); ++n)
+        if (s.kinds[n] == SampleKind::read)
+          worth[place] += std::max(0.0f, s.codes[n]) / std::sqrt(noise_variance(r_.noise, s.codes[n]));
     }
     const auto best = std::ranges::max_element(worth) - worth.begin();
     std::vector<std::size_t> places(order_.size());
@@ -238,15 +321,20 @@ class Merge {
     std::vector<std::size_t> left = moved;
     for (const std::size_t place : places) {
       if (left.empty()) break;
-      const Sorted s = read(order_[place]);
+      const Sorted s = read_at(order_[place], left);
       const double t = lasts(place);
-      std::erase_if(left, [&](std::size_t i) {
-        if (s.kinds[i] != SampleKind::read) return false;
-        merged_.rate[i] = static_cast<float>(s.codes[i] / t);
-        merged_.variance[i] = static_cast<float>(noise_variance(r_.noise, s.codes[i]) / (t * t));
+      std::vector<std::size_t> still;
+      for (std::size_t n = 0; n < left.size(); ++n) {
+        const std::size_t i = left[n];
+        if (s.kinds[n] != SampleKind::read) {
+          still.push_back(i);
+          continue;
+        }
+        merged_.rate[i] = static_cast<float>(s.codes[n] / t);
+        merged_.variance[i] = static_cast<float>(noise_variance(r_.noise, s.codes[n]) / (t * t));
         merged_.first[i] = merged_.last[i] = static_cast<std::uint8_t>(place);
-        return true;
-      });
+      }
+      left = std::move(still);
     }
   }
 
@@ -259,28 +347,6 @@ class Merge {
 };
 
 }  // namespace
-
-std::vector<SampleKind> kinds_of(const RawPlane& plane, int width, int height, double full_scale, int blooming_px) {
-  std::vector<SampleKind> kinds(plane.codes.size(), SampleKind::read);
-  std::vector<std::size_t> full;
-  for (std::size_t i = 0; i < kinds.size(); ++i) {
-    if (plane.codes[i] >= full_scale)
-      kinds[i] = SampleKind::full, full.push_back(i);
-    else if ((!plane.unusable.empty() && plane.unusable[i] != 0) ||
-             !(plane.codes[i] > -std::numeric_limits<float>::infinity()))
-      kinds[i] = SampleKind::unusable;
-  }
-  const auto columns = static_cast<std::size_t>(width);
-  for (const std::size_t i : full) {
-    const int x = static_cast<int>(i % columns), y = static_cast<int>(i / columns);
-    for (int v = std::max(0, y - blooming_px); v <= std::min(height - 1, y + blooming_px); ++v)
-      for (int u = std::max(0, x - blooming_px); u <= std::min(width - 1, x + blooming_px); ++u) {
-        SampleKind& kind = kinds[static_cast<std::size_t>(v) * columns + static_cast<std::size_t>(u)];
-        if (kind == SampleKind::read) kind = SampleKind::unusable;
-      }
-  }
-  return kinds;
-}
 
 std::vector<std::size_t> by_duration(const std::vector<double>& exposures_s) {
   std::vector<std::size_t> order(exposures_s.size());

@@ -9,8 +9,8 @@
 // weights 1 / V are those of the merged L, not of each reading, which would pull dark pixels down. One standard
 // deviation of L is the inverse root of the information,
 //   I(L) = sum t_k^2 / V (Phi(-a) + a phi(a) + phi(a)^2 / Phi(a)),  a = (L t_k - F) / sqrt V,
-// where a sample far below F has a = -infinity and counts t^2 / V. Three passes over the exposures (start, and two
-// steps of scoring); what is kept is a few planes, however many exposures there are.
+// where a sample far below F has a = -infinity and counts t^2 / V. Four passes over the exposures (start, two steps
+// of scoring, and what is left); what is kept is a few planes, however many exposures there are.
 //
 // A pixel of which two exposures contradict each other by more than noise, together with its neighbours of the same
 // colour, shows something that moved: its value is that of one exposure alone, and it is marked.
@@ -22,19 +22,17 @@
 #include <vector>
 
 #include "manifest/noise.h"
+#include "photograph/sample_kinds.h"
 
 namespace gonio::photograph {
-
-// One exposure's samples, row by row; black taken off. `unusable`: defects, and what light spilled into; else empty.
-struct RawPlane {
-  std::vector<float> codes;
-  std::vector<std::uint8_t> unusable;
-};
 
 struct MergeRequest {
   int width = 0, height = 0;
   std::vector<double> exposures_s;
   std::function<RawPlane(std::size_t exposure)> read;  // called some times for each
+  // The same of some rows alone, for frames that lie in memory: the picture is then made strip by strip, by several
+  // threads. Left out: from whole frames, one at a time. What comes out is the same.
+  std::function<void(std::size_t exposure, int first_row, int rows, RawPlane& into)> read_rows{};
   manifest::Noise noise;
   double full_scale = 0;                                    // codes beyond black: from here on a sample is saturated
   double floor = -std::numeric_limits<double>::infinity();  // the lowest code, black taken off
@@ -42,11 +40,6 @@ struct MergeRequest {
   int period_px = 2;  // to the next sample of the same colour: 1 without a mosaic, 2 Bayer, 4 of polarization
   bool refine_exposures = true;
 };
-
-// What a sample says: a reading, that it is full, or nothing (defects, and what lies within `blooming_px` of full
-// ones).
-enum class SampleKind : std::uint8_t { read, full, unusable };
-std::vector<SampleKind> kinds_of(const RawPlane& plane, int width, int height, double full_scale, int blooming_px);
 
 enum class Trust : std::uint8_t { good, too_bright, no_sample, moved };
 

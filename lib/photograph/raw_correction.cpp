@@ -71,8 +71,7 @@ DarkField dark_field(const std::vector<std::filesystem::path>& frames, const Raw
 }
 
 void take_off(const DarkField& dark, double exposure_s, std::vector<float>& codes) {
-  for (std::size_t i = 0; i < codes.size(); ++i)
-    codes[i] -= dark.offset[i] + dark.rate_per_s[i] * static_cast<float>(exposure_s);
+  for (std::size_t i = 0; i < codes.size(); ++i) codes[i] -= dark.at(i, static_cast<float>(exposure_s));
 }
 
 FlatField flat_field(const std::vector<std::filesystem::path>& frames, const RawStated& stated,

@@ -16,6 +16,7 @@ struct DarkField {
   std::vector<float> offset, rate_per_s;  // codes, codes per second
   std::vector<std::uint8_t> hot;
   std::size_t frames = 0;
+  float at(std::size_t i, float exposure_s) const { return offset[i] + rate_per_s[i] * exposure_s; }  // codes
 };
 // Frames of one duration alone, or of none that is known: all of it is taken for dark current, or for the offset.
 // Error(data) for frames of different sizes.

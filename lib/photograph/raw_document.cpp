@@ -3,17 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text.h"
 #include "io/codes.h"
-#include "io/picture.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
+#include "manifest/section_tables.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "photograph/developed.h"
+#include "photograph/finished_view.h"
 #include "photograph/response.h"
 
 namespace gonio::photograph {
@@ -22,24 +25,6 @@ namespace {
 constexpr double same_gain = 1e-6;  // of it
 constexpr double same_code = 0.01;
 constexpr double straight = 1e-5;  // of full scale
-using Steps = std::vector<manifest::DevelopedStep>;
-
-Steps steps_of(const RawRecipe& recipe, const DevelopedView& d) {
-  namespace step = manifest::develop_step;
-  const auto count = [](std::size_t frames) { return static_cast<std::int64_t>(frames); };
-  Steps steps;
-  steps.push_back({step::black});
-  if (recipe.dark) steps.push_back({step::dark, {}, count(recipe.dark->frames)});
-  if (recipe.dark || recipe.flat) steps.push_back({step::defects});
-  const bool refined = std::ranges::any_of(d.merged.exposures_sigma, [](double sigma) { return sigma > 0; });
-  if (refined) steps.push_back({step::exposure_times});
-  steps.push_back({step::merge, {}, count(d.stated_s.size()), d.merged.exposures_s});
-  if (refined) steps.back().sigma = {{"exposures_s", d.merged.exposures_sigma}};
-  if (recipe.flat) steps.push_back({step::flat, {}, count(recipe.flat->frames)});
-  if (d.picture.channel("Y") < 0)
-    steps.push_back({step::demosaic, demosaicing_names[static_cast<std::size_t>(recipe.demosaicing)]});
-  return steps;
-}
 
 std::string words_of(const RawView& view, const DevelopedView& d) {
   std::string text =
@@ -146,6 +131,17 @@ std::optional<manifest::Noise> noise_of_images(const manifest::Document& documen
   return noise;
 }
 
+// Views of two cameras may be of one group.
+std::string free_name(const std::vector<RawView>& views, const manifest::ImageEntry& image) {
+  const auto taken = [&](const std::string& name) {
+    return std::ranges::find(views, name, &RawView::name) != views.end();
+  };
+  const std::string wanted = image.group.empty() ? image.id : image.group;
+  std::string name = taken(wanted) && !image.camera.empty() ? wanted + "-" + image.camera : wanted;
+  for (int k = 2; taken(name); ++k) name = wanted + "-" + std::to_string(k);
+  return name;
+}
+
 }  // namespace
 
 void views_of_images(const manifest::Document& document, const std::string& camera, RawRequest& request,
@@ -171,7 +167,7 @@ void views_of_images(const manifest::Document& document, const std::string& came
     if (group.empty() || at == groups.size()) {
       at = groups.size();
       groups.push_back(group.empty() ? image.camera + "//" + image.id : group);
-      request.views.push_back({image.group.empty() ? image.id : image.group, {}, {}});
+      request.views.push_back({free_name(request.views, image), {}, {}});
       request.images.emplace_back();
     }
     request.views[at].frames.push_back(path);
@@ -181,28 +177,107 @@ void views_of_images(const manifest::Document& document, const std::string& came
   request.recipe.noise = noise_of_images(document, request);
 }
 
+namespace {
+
+constexpr std::size_t bytes_per_sample = 100;  // of a view while it is made, without its decoded frames
+
+struct Made {
+  ViewFiles files;
+  std::optional<manifest::Value> steps{};  // nothing: not yet
+};
+using Steps = std::vector<manifest::DevelopedStep>;
+
+Steps steps_of(const RawRecipe& recipe, const DevelopedView& d) {
+  namespace step = manifest::develop_step;
+  const auto count = [](std::size_t frames) { return static_cast<std::int64_t>(frames); };
+  Steps steps;
+  steps.push_back({step::black});
+  if (recipe.dark) steps.push_back({step::dark, {}, count(recipe.dark->frames)});
+  if (recipe.dark || recipe.flat) steps.push_back({step::defects});
+  const bool refined = std::ranges::any_of(d.merged.exposures_sigma, [](double sigma) { return sigma > 0; });
+  if (refined) steps.push_back({step::exposure_times});
+  steps.push_back({step::merge, {}, count(d.stated_s.size()), d.merged.exposures_s});
+  if (refined) steps.back().sigma = {{"exposures_s", d.merged.exposures_sigma}};
+  if (recipe.flat) steps.push_back({step::flat, {}, count(recipe.flat->frames)});
+  if (d.picture.channel("Y") < 0)
+    steps.push_back({step::demosaic, demosaicing_names[static_cast<std::size_t>(recipe.demosaicing)]});
+  return steps;
+}
+
+// A view's planes come first; what they leave of the memory is for decoded frames.
+struct Share {
+  std::size_t views = 1, frame_bytes = 0;
+};
+Share share_of(const RawRequest& request) {
+  Share share{1, request.memory_bytes / 2};
+  const std::size_t most = std::min(request.views.size(), static_cast<std::size_t>(threads()));
+  if (most < 2) return share;
+  const std::size_t planes =
+      bytes_per_sample * read_raw_frame(request.views[0].frames.at(0), request.recipe.stated).codes.size();
+  share.views = std::clamp<std::size_t>(request.memory_bytes / std::max<std::size_t>(1, planes), 1, most);
+  const std::size_t each = request.memory_bytes / share.views;
+  share.frame_bytes = each - std::min(each, planes);
+  return share;
+}
+
+void make(const RawView& view, const RawRecipe& recipe, const std::string& identity, bool resume, Made& made) {
+  if (resume) made.steps = finished_view(view, identity, made.files);
+  if (made.steps) {
+    log(LogLevel::info, view.name + ": is there already");
+    return;
+  }
+  const DevelopedView d = develop_view(view, recipe);
+  manifest::Value steps = manifest::Codec<Steps>::write(steps_of(recipe, d));
+  write_view(d, steps, identity, made.files);
+  log(LogLevel::info, words_of(view, d));
+  made.steps = std::move(steps);
+}
+
+void make_all(const RawRequest& request, std::vector<Made>& made) {
+  const Share share = share_of(request);
+  RawRecipe recipe = request.recipe;
+  recipe.frame_memory_bytes = share.frame_bytes;
+  const std::string common = identity_of(recipe);
+  Progress progress("develop", made.size());
+  try {
+    for (std::size_t first = 0; first < made.size(); first += share.views)
+      parallel_for(first, std::min(made.size(), first + share.views), [&](std::size_t v) {
+        const RawView& view = request.views[v];
+        make(view, recipe, identity_of(view, common), request.resume, made[v]);
+        progress.advance();
+      });
+  } catch (const Error& error) {
+    if (error.code() != Exit::try_again) throw;
+    const auto done = std::ranges::count_if(made, [](const Made& m) { return m.steps.has_value(); });
+    throw Error(
+        Exit::try_again, "",
+        format("interrupted by a signal, with %zu of %zu views written", static_cast<std::size_t>(done), made.size()),
+        "--resume makes the rest");
+  }
+}
+
+}  // namespace
+
 void develop_raw(manifest::Document& document, const RawRequest& request) {
-  Progress progress("develop", request.views.size());
+  std::vector<Made> made;  // asked for before the work begins: an existing file is an error at once
+  std::set<std::string> taken;
+  for (const RawView& view : request.views) {
+    std::string stem = file_stem(view.name);
+    for (int k = 2; !taken.insert(stem).second; ++k) stem = file_stem(view.name) + "-" + std::to_string(k);
+    made.push_back({{request.output_path(stem + ".exr"), request.output_path(stem + "-mask.png")}, {}});
+    for (const auto& path : view.frames) request.note_input(path);
+  }
+  make_all(request, made);
   std::vector<manifest::ImageEntry> developed;
   std::vector<bool> replaced(document.images.size());
   for (std::size_t v = 0; v < request.views.size(); ++v) {
-    const RawView& view = request.views[v];
-    DevelopedView d = develop_view(view, request.recipe);
-    log(LogLevel::info, words_of(view, d));
-    for (const auto& path : view.frames) request.note_input(path);
-    const auto picture = request.output_path(view.name + ".exr"), mask = request.output_path(view.name + "-mask.png");
-    io::write_picture(picture, d.picture);
-    io::Image counts(d.picture.width, d.picture.height, {"Y"});
-    std::ranges::transform(d.trusted, counts.data.begin(), [](std::uint8_t t) { return t != 0 ? 1.0f : 0.0f; });
-    io::write_png(mask, counts, 8);
     manifest::ImageEntry entry = entry_of(document, request, v);
-    entry.developed = steps_of(request.recipe, d);
-    entry.file = manifest::add_file(document, picture, view.name);
-    entry.mask = manifest::add_file(document, mask, view.name + "-mask");
+    entry.developed = manifest::Codec<Steps>::read(*made[v].steps, made[v].files.picture.string());
+    entry.file = manifest::add_file(document, made[v].files.picture, entry.id);
+    entry.mask = manifest::add_file(document, made[v].files.mask, entry.id + "-mask");
     developed.push_back(std::move(entry));
     if (!request.images.empty())
       for (const std::size_t i : request.images[v]) replaced[i] = true;
-    progress.advance();
   }
   for (const std::size_t i : request.spent) replaced[i] = true;
   std::vector<manifest::ImageEntry> images;

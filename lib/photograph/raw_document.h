@@ -18,19 +18,24 @@ struct RawRequest {
   std::string camera;  // of new images; empty: not known
   std::function<std::filesystem::path(const std::string& name)> output_path;
   std::function<void(const std::filesystem::path&)> note_input;
+  bool resume = false;  // pictures that an earlier, identical call finished stay as they are
+  // For planes and decoded frames of all views that are made at the same time; of one view, what it needs.
+  std::size_t memory_bytes = std::size_t{4} << 30;
 };
 
 // Views of the manifest's images with a file, by camera: images of one `group` are exposures of one view, others stand
 // alone; Error(data) for images that say that they are developed. Images that are `dark` become `dark_frames`. Fills
 // `views`, `images` and, of the recipe where it does not say so already, black and full scale by the images' response
-// (a straight line above black) and saturation, the mosaic by the camera, and the noise where all images state the same.
-// Error(data) where a response bends, or images differ.
+// (a straight line above black) and saturation, the mosaic by the camera, and the noise where all images state the
+// same. Error(data) where a response bends, or images differ.
 void views_of_images(const manifest::Document& document, const std::string& camera, RawRequest& request,
                      std::vector<std::filesystem::path>& dark_frames);
 
 // Writes VIEW.exr and VIEW-mask.png for every view, and puts one image for each into the manifest, in the place of
 // those that it is made of: linear, in codes per second, with variance, and with the gain from radiance to these where
 // all its images state theirs. What each view's exposures said is logged.
+// Views are made side by side, as many as memory allows. Error(try_again) where a signal ended it: pictures that are
+// there are whole, and a call with `resume` makes the rest; files and manifest are the same as without interruption.
 void develop_raw(manifest::Document& document, const RawRequest& request);
 
 }  // namespace gonio::photograph

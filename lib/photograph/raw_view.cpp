@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "photograph/exposure_times.h"
+#include "photograph/frame_store.h"
 
 namespace gonio::photograph {
 namespace {
@@ -33,6 +34,8 @@ class Development {
                          .blooming_px = recipe_.blooming_px,
                          .period_px = mosaic_.period_px(),
                          .refine_exposures = recipe_.refine_exposures};
+    if (frames_.holds_all())
+      request.read_rows = [this](std::size_t k, int first, int count, RawPlane& into) { rows(k, first, count, into); };
     // Dark frames' own noise is in every reading.
     if (recipe_.dark && recipe_.dark->frames > 0)
       request.noise.read *= std::sqrt(1 + 1 / static_cast<double>(recipe_.dark->frames));
@@ -44,19 +47,19 @@ class Development {
   }
 
  private:
-  RawFrame read(std::size_t k) const {
-    RawStated stated = recipe_.stated;
-    if (view_.exposures_s[k]) stated.exposure_s = view_.exposures_s[k];
-    return read_raw_frame(view_.frames[k], stated);
-  }
-
   // Sizes, mosaic and times of all frames; the least full scale counts.
   void look() {
     if (view_.frames.empty()) throw Error(Exit::data, view_.name, "has no frames", "one at least");
-    full_scale_ = std::numeric_limits<double>::infinity();
+    std::vector<StoredFrame> wanted;
     for (std::size_t k = 0; k < view_.frames.size(); ++k) {
-      const RawFrame frame = read(k);
-      const std::string& place = view_.frames[k].string();
+      wanted.push_back({view_.frames[k], recipe_.stated});
+      if (view_.exposures_s[k]) wanted[k].stated.exposure_s = view_.exposures_s[k];
+    }
+    frames_ = FrameStore(std::move(wanted), recipe_.frame_memory_bytes);
+    full_scale_ = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < frames_.size(); ++k) {
+      const RawFrame& frame = frames_.head(k);
+      const std::string place = frames_.path(k).string();
       if (k == 0) width_ = frame.width, height_ = frame.height, mosaic_ = frame.mosaic;
       if (frame.width != width_ || frame.height != height_)
         throw Error(
@@ -75,25 +78,32 @@ class Development {
     const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     if ((recipe_.dark && recipe_.dark->offset.size() != pixels) ||
         (recipe_.flat && recipe_.flat->factor.size() != pixels))
-      throw Error(Exit::data, view_.frames[0].string(), "is of another size than the dark or flat frames",
+      throw Error(Exit::data, frames_.path(0).string(), "is of another size than the dark or flat frames",
                   "frames of one sensor");
   }
 
+  // Dark current off, and which samples are unusable, of rows whose first sample is the frame's sample `first`. What is
+  // full is full before anything is taken off.
+  void correct(std::size_t k, std::size_t first, RawPlane& p) const {
+    if (!recipe_.dark && !recipe_.flat) return;
+    p.unusable.assign(p.codes.size(), 0);
+    const auto exposure_s = static_cast<float>(exposures_s_[k]);
+    for (std::size_t n = 0, i = first; n < p.codes.size(); ++n, ++i) {
+      if (recipe_.flat) p.unusable[n] |= recipe_.flat->dead[i];
+      if (!recipe_.dark) continue;
+      p.unusable[n] |= recipe_.dark->hot[i];
+      p.codes[n] = p.codes[n] >= full_scale_ ? std::numeric_limits<float>::infinity()
+                                             : p.codes[n] - recipe_.dark->at(i, exposure_s);
+    }
+  }
   RawPlane plane(std::size_t k) const {
-    RawFrame frame = read(k);
-    RawPlane p{std::move(frame.codes), {}};
-    // What is full is full before anything is taken off.
-    std::vector<std::size_t> full;
-    for (std::size_t i = 0; i < p.codes.size(); ++i)
-      if (p.codes[i] >= full_scale_) full.push_back(i);
-    if (recipe_.dark) take_off(*recipe_.dark, exposures_s_[k], p.codes);
-    for (const std::size_t i : full) p.codes[i] = std::numeric_limits<float>::infinity();
-    if (recipe_.dark || recipe_.flat) p.unusable.assign(p.codes.size(), 0);
-    if (recipe_.dark)
-      for (std::size_t i = 0; i < p.unusable.size(); ++i) p.unusable[i] |= recipe_.dark->hot[i];
-    if (recipe_.flat)
-      for (std::size_t i = 0; i < p.unusable.size(); ++i) p.unusable[i] |= recipe_.flat->dead[i];
+    RawPlane p{frames_.codes(k), {}};
+    correct(k, 0, p);
     return p;
+  }
+  void rows(std::size_t k, int first, int count, RawPlane& into) const {
+    frames_.rows(k, first, count, into.codes);
+    correct(k, static_cast<std::size_t>(first) * static_cast<std::size_t>(width_), into);
   }
 
   manifest::Noise noise(bool& from_exposures) const {
@@ -173,6 +183,7 @@ class Development {
 
   const RawView& view_;
   const RawRecipe& recipe_;
+  FrameStore frames_;
   int width_ = 0, height_ = 0;
   Mosaic mosaic_;
   std::vector<double> exposures_s_;

@@ -27,6 +27,7 @@ struct RawRecipe {
   Demosaicing demosaicing = Demosaicing::gradient;
   bool refine_exposures = true;
   int blooming_px = 1;
+  std::size_t frame_memory_bytes = std::size_t{1} << 30;  // for decoded frames; those beyond are decoded several times
 };
 
 struct DevelopedView {

@@ -173,6 +173,34 @@ TEST(ExposureMerge, MarksWhatMoved) {
   EXPECT_LE(mixed, 0.001 * found);
 }
 
+// Against the rule sample by sample.
+TEST(ExposureMerge, LightSpillsIntoNeighboursOfFullSamples) {
+  constexpr int width = 37, height = 23;
+  std::mt19937_64 random(9);
+  for (const double share : {0.001, 0.05, 0.6}) {
+    RawPlane plane{std::vector<float>(width * height), std::vector<std::uint8_t>(width * height)};
+    for (std::size_t i = 0; i < plane.codes.size(); ++i) {
+      plane.codes[i] = std::bernoulli_distribution(share)(random) ? 100.0f : 50.0f;
+      plane.unusable[i] = std::bernoulli_distribution(0.05)(random);
+    }
+    for (const int reach : {0, 1, 3, 40}) {
+      const std::vector<SampleKind> kinds = kinds_of(plane, width, height, 100, reach);
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+          bool near = false;
+          for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v)
+            for (int u = std::max(0, x - reach); u <= std::min(width - 1, x + reach); ++u)
+              near |= plane.codes[static_cast<std::size_t>(v * width + u)] >= 100;
+          const auto i = static_cast<std::size_t>(y * width + x);
+          const SampleKind wanted = plane.codes[i] >= 100            ? SampleKind::full
+                                    : near || plane.unusable[i] != 0 ? SampleKind::unusable
+                                                                     : SampleKind::read;
+          ASSERT_EQ(kinds[i], wanted) << share << " " << reach << " " << x << " " << y;
+        }
+    }
+  }
+}
+
 TEST(ExposureMerge, SaturatedSamplesAndTheirNeighboursAreNotUsed) {
   MergeRequest r{.width = 5,
                  .height = 1,

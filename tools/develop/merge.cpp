@@ -71,6 +71,8 @@ RawRequest request_of(cli::Invocation& call) {
       std::ranges::find(demosaicings, call.text("demosaic")) - demosaicings.begin());
   request.recipe.refine_exposures = !call.flag("keep-exposures");
   request.recipe.blooming_px = static_cast<int>(call.number("blooming"));
+  request.resume = call.resume;
+  request.memory_bytes = static_cast<std::size_t>(1e9 * call.number("memory"));
   request.output_path = [&call](const std::string& name) { return call.output_path(name); };
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
   return request;
@@ -143,6 +145,14 @@ std::vector<cli::Option> merge_options() {
        .type = Type::flag,
        .help = "Take exposure times as they are stated instead of finding them from the frames.",
        .needs = {"merge"}},
+      {.name = "memory",
+       .type = Type::number,
+       .help = "What the views in work may take together, GB: the more, the more views are made side by side, and the "
+               "fewer frames are decoded again. The pictures are the same.",
+       .metavar = "GB",
+       .preset = "4",
+       .lower = 0.001,
+       .upper = 1e6},
       {.name = "blooming",
        .type = Type::integer,
        .help = "Samples so near to a saturated one are not used, px.",

@@ -14,6 +14,9 @@ namespace {
 using cli::Type;
 
 void check(cli::Invocation& call) {
+  if (call.resume && !call.flag("merge"))
+    throw Error(Exit::usage, "--resume", "goes on with a batch of --merge, and with nothing else",
+                "leave it out; --force replaces files");
   if (call.flag("merge")) return check_merge(call);
   if (call.flag("undistort")) return check_undistort(call);
   if (call.given("colour")) return check_colour(call);
@@ -59,17 +62,19 @@ const cli::Program& gonio_program() {
                     "NEF, ARW, ...), PNG, TIFF or EXR of one channel; else all images with a file.",
             .repeat = true}},
       .takes_out = true,
+      .takes_resume = true,
       .sections_read = {"files", "cameras", "images", "colour"},
       .sections_written = {"files", "cameras", "images"},
-      .files = {{"VIEW.exr",
-                 "radiance in codes per second, its variance (variance.*), and the exposures that each sample is from "
-                 "(exposure.shortest, exposure.longest)"},
-                {"VIEW-mask.png", "white where the sample and one of each colour beside it can be trusted"},
-                {"sensor.html, sensor.csv", "the sensor's figures as a report and as a table"},
-                {"ID.exr, ID.png", "the picture of the pinhole camera; with --colour the picture in colours"},
-                {"ID-mask.png",
-                 "white where every sample of the kernel lies in the picture, is finite, not saturated and "
-                 "counted by the image's own mask"}},
+      .files =
+          {{"VIEW.exr",
+            "radiance in codes per second, its variance (variance.*), and the shortest and longest exposure, s, that "
+            "each pixel is from (exposure.shortest, exposure.longest; 0: none); its header says what made it"},
+           {"VIEW-mask.png", "white where the sample and one of each colour beside it can be trusted"},
+           {"sensor.html, sensor.csv", "the sensor's figures as a report and as a table"},
+           {"ID.exr, ID.png", "the picture of the pinhole camera; with --colour the picture in colours"},
+           {"ID-mask.png",
+            "white where every sample of the kernel lies in the picture, is finite, not saturated and "
+            "counted by the image's own mask"}},
       .references =
           {"EMVA Standard 1288, release 4.0, 2021.",
            "Tobin, Estimation of relationships for limited dependent variables, Econometrica 26(1), 1958.",
