@@ -10,12 +10,15 @@
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <mutex>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "io/little_endian.h"
 #include "io/raster_header.h"
 
@@ -150,6 +153,15 @@ auto guarded(const std::string& place, const Read& read) {
   }
 }
 
+// The library's own threads, for pictures whose compression takes long; the bytes do not depend on them.
+int helpers_for(const Image& image) {
+  constexpr std::size_t many = std::size_t{1} << 22;
+  if (image.data.size() < many || threads() < 2) return 0;
+  static std::once_flag once;
+  std::call_once(once, [] { Imf::setGlobalThreadCount(threads()); });
+  return Imf::globalThreadCount();
+}
+
 }  // namespace
 
 Image decode_exr(const std::string& bytes, const std::string& place) {
@@ -183,7 +195,7 @@ std::string encode_exr(const Image& image, const ExrAttributes& attributes) {
   }
   MemoryOutput stream;
   {
-    Imf::OutputFile file(stream, header, 0);
+    Imf::OutputFile file(stream, header, helpers_for(image));
     file.setFrameBuffer(frame);
     file.writePixels(image.height);
   }

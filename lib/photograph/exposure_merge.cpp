@@ -19,6 +19,7 @@ namespace {
 constexpr double far_from_full = 8;  // standard deviations: of such light all is full, or nothing
 constexpr double clear_of_full = 4;  // standard deviations: nearer to full scale what was read is a selection
 constexpr int strip_rows = 16;
+constexpr std::size_t pixels_at_once = 2048;  // that the nearest cache holds with all that is made of them
 constexpr std::size_t rows_at_once = 16;
 constexpr double moved_beyond = 5;  // standard normal: of a neighbourhood's chi-square
 
@@ -36,7 +37,9 @@ struct Word {
 class Merge {
  public:
   explicit Merge(const MergeRequest& request)
-      : r_(request), pixels_(static_cast<std::size_t>(request.width) * static_cast<std::size_t>(request.height)) {
+      : r_(request),
+        variance_of_(request.noise),
+        pixels_(static_cast<std::size_t>(request.width) * static_cast<std::size_t>(request.height)) {
     check();
     order_ = by_duration(r_.exposures_s);
     merged_.exposures_s = r_.exposures_s;
@@ -87,11 +90,11 @@ class Merge {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(r_.width) + static_cast<std::size_t>(x);
   }
 
-  // Pixels from `first` to `last`, and what all exposures, by their place in the order, read there; where that is
-  // empty, they are read one by one.
+  // Pixels from `first` to `last`, and what all exposures, by their place in the order, read from pixel `loaded_first`
+  // on; where that is nothing, they are read one by one.
   struct Strip {
-    std::size_t first = 0, last = 0;
-    std::vector<Sorted> loaded{};
+    std::size_t first = 0, last = 0, loaded_first = 0;
+    const std::vector<Sorted>* loaded = nullptr;
     std::size_t size() const { return last - first; }
   };
   int rows_of_strips() const { return std::max(strip_rows, 4 * r_.blooming_px); }
@@ -118,26 +121,31 @@ class Merge {
     const int rows = rows_of_strips();
     parallel_for(0, static_cast<std::size_t>((r_.height + rows - 1) / rows), [&](std::size_t n) {
       const int first = static_cast<int>(n) * rows, last = std::min(r_.height, first + rows);
-      Strip strip{at(0, first), at(0, last)};
-      for (const std::size_t k : order_) strip.loaded.push_back(read_rows(k, first, last));
-      body(strip);
+      std::vector<Sorted> loaded;
+      for (const std::size_t k : order_) loaded.push_back(read_rows(k, first, last));
+      for (std::size_t i = at(0, first); i < at(0, last); i += pixels_at_once)
+        body(Strip{i, std::min(i + pixels_at_once, at(0, last)), at(0, first), &loaded});
     });
   }
 
-  template <class Body>  // body(place in the order, kind, code, pixel)
-  void pass(const Strip& strip, const Body& body) const {
+  template <class Body>  // body(place in the order, how long it lasts, kind, code, pixel) for every `stride`th pixel
+  void pass(const Strip& strip, const Body& body, std::size_t stride = 1) const {
     constexpr std::size_t chunk = 1 << 14;
+    const auto some = [&](std::size_t place, const Sorted& s, std::size_t first, std::size_t last, std::size_t from) {
+      const SampleKind* kinds = s.kinds.data();
+      const float* codes = s.codes.data();
+      const double t = lasts(place);
+      for (std::size_t i = (first + stride - 1) / stride * stride; i < last; i += stride)
+        body(place, t, kinds[i - from], codes[i - from], i);
+    };
     for (std::size_t place = 0; place < order_.size(); ++place) {
-      if (!strip.loaded.empty()) {
-        const Sorted& s = strip.loaded[place];
-        for (std::size_t n = 0; n < strip.size(); ++n) body(place, s.kinds[n], s.codes[n], strip.first + n);
+      if (strip.loaded != nullptr) {
+        some(place, (*strip.loaded)[place], strip.first, strip.last, strip.loaded_first);
         continue;
       }
       const Sorted s = read(order_[place]);
-      parallel_for(0, (pixels_ + chunk - 1) / chunk, [&](std::size_t c) {
-        for (std::size_t i = c * chunk; i < std::min(pixels_, (c + 1) * chunk); ++i)
-          body(place, s.kinds[i], s.codes[i], i);
-      });
+      parallel_for(0, (pixels_ + chunk - 1) / chunk,
+                   [&](std::size_t c) { some(place, s, c * chunk, std::min(pixels_, (c + 1) * chunk), 0); });
     }
   }
 
@@ -148,11 +156,13 @@ class Merge {
     ExposureSamples samples{r_.exposures_s, {}, r_.noise, r_.full_scale, r_.floor};
     samples.codes.assign(order_.size(), std::vector<float>((pixels_ + stride - 1) / stride));
     for_strips([&](const Strip& strip) {
-      pass(strip, [&](std::size_t place, SampleKind kind, float code, std::size_t i) {
-        if (i % stride == 0)
-          samples.codes[order_[place]][i / stride] =
-              kind == SampleKind::read ? code : std::numeric_limits<float>::quiet_NaN();
-      });
+      pass(
+          strip,
+          [&](std::size_t place, double, SampleKind kind, float code, std::size_t i) {
+            samples.codes[order_[place]][i / stride] =
+                kind == SampleKind::read ? code : std::numeric_limits<float>::quiet_NaN();
+          },
+          stride);
     });
     const RefinedExposures refined = refine_exposures(samples);
     merged_.exposures_s = refined.exposures_s, merged_.exposures_sigma = refined.sigma_s;
@@ -161,16 +171,16 @@ class Merge {
   // All light over all time: the best where there is shot noise alone.
   void start(const Strip& strip) {
     std::vector<float> time(strip.size()), bound(strip.size(), std::numeric_limits<float>::infinity());
-    pass(strip, [&](std::size_t place, SampleKind kind, float code, std::size_t i) {
-      const double t = lasts(place);
+    pass(strip, [f = strip.first, times = time.data(), bounds = bound.data(), rates = merged_.rate.data(),
+                 trusts = merged_.trust.data(), firsts = merged_.first.data(), lasts = merged_.last.data(),
+                 full = r_.full_scale](std::size_t place, double t, SampleKind kind, float code, std::size_t i) {
       if (kind == SampleKind::full) {
-        float& least = bound[i - strip.first];
-        least = std::min(least, static_cast<float>(r_.full_scale / t));
+        bounds[i - f] = std::min(bounds[i - f], static_cast<float>(full / t));
       } else if (kind == SampleKind::read) {
-        merged_.rate[i] += code, time[i - strip.first] += static_cast<float>(t);
-        if (merged_.trust[i] == Trust::no_sample) merged_.first[i] = static_cast<std::uint8_t>(place);
-        merged_.last[i] = static_cast<std::uint8_t>(place);
-        merged_.trust[i] = Trust::good;
+        rates[i] += code, times[i - f] += static_cast<float>(t);
+        if (trusts[i] == Trust::no_sample) firsts[i] = static_cast<std::uint8_t>(place);
+        lasts[i] = static_cast<std::uint8_t>(place);
+        trusts[i] = Trust::good;
       }
     });
     for (std::size_t n = 0, i = strip.first; n < strip.size(); ++n, ++i) {
@@ -184,25 +194,27 @@ class Merge {
   }
 
   Word said_by(SampleKind kind, double code, double t, double rate) const {
-    const double variance = noise_variance(r_.noise, rate * t), left = r_.full_scale - rate * t;
+    const double variance = variance_of_(rate * t), left = r_.full_scale - rate * t, weight = t / variance;
+    const double read = kind == SampleKind::read ? weight * (code - rate * t) : 0;
     // So far from full scale what is not 0 is 1, to fourteen digits.
-    if (left * left >= far_from_full * far_from_full * variance)
-      return {kind == SampleKind::read ? t * (code - rate * t) / variance : 0, left > 0 ? t * t / variance : 0};
+    if (left * left >= far_from_full * far_from_full * variance) return {read, left > 0 ? weight * t : 0};
     const double sigma = std::sqrt(variance), a = -left / sigma;
     const double phi = std::exp(-0.5 * a * a) / std::sqrt(2 * pi), below = stats::normal_cdf(-a),
                  above = stats::normal_cdf(a), hazard = above > 0 ? phi / above : 0;
-    return {kind == SampleKind::read ? t * (code - rate * t) / variance : t / sigma * hazard,
-            t * t / variance * std::max(0.0, below + a * phi + phi * hazard)};
+    return {kind == SampleKind::read ? read : t / sigma * hazard,
+            weight * t * std::max(0.0, below + a * phi + phi * hazard)};
   }
 
   // One step of scoring; the last one leaves the variance.
   void step(const Strip& strip, bool last) {
     std::vector<double> score(strip.size()), information(strip.size());
-    pass(strip, [&](std::size_t place, SampleKind kind, float code, std::size_t i) {
-      if (merged_.trust[i] != Trust::good || kind == SampleKind::unusable) return;
-      const Word word = said_by(kind, code, lasts(place), merged_.rate[i]);
-      score[i - strip.first] += word.score, information[i - strip.first] += word.information;
-    });
+    pass(strip,
+         [this, f = strip.first, scores = score.data(), informations = information.data(), rates = merged_.rate.data(),
+          trusts = merged_.trust.data()](std::size_t, double t, SampleKind kind, float code, std::size_t i) {
+           if (trusts[i] != Trust::good || kind == SampleKind::unusable) return;
+           const Word word = said_by(kind, code, t, rates[i]);
+           scores[i - f] += word.score, informations[i - f] += word.information;
+         });
     for (std::size_t n = 0, i = strip.first; n < strip.size(); ++n, ++i) {
       if (merged_.trust[i] != Trust::good || !(information[n] > 0)) continue;
       merged_.rate[i] = static_cast<float>(merged_.rate[i] + score[n] / information[n]);
@@ -212,13 +224,14 @@ class Merge {
 
   // Chi-square of what each pixel read about its rate, of samples that are clear of full scale.
   void compare(const Strip& strip) {
-    pass(strip, [&](std::size_t place, SampleKind kind, float code, std::size_t i) {
-      if (merged_.trust[i] != Trust::good || kind != SampleKind::read) return;
-      const double expected = merged_.rate[i] * lasts(place), variance = noise_variance(r_.noise, expected),
-                   left = r_.full_scale - expected;
+    pass(strip, [full = r_.full_scale, variance_of = variance_of_, chi = chi_square_.data(), freedom = freedom_.data(),
+                 rates = merged_.rate.data(),
+                 trusts = merged_.trust.data()](std::size_t, double t, SampleKind kind, float code, std::size_t i) {
+      if (trusts[i] != Trust::good || kind != SampleKind::read) return;
+      const double expected = rates[i] * t, variance = variance_of(expected), left = full - expected;
       if (left < 0 || left * left < clear_of_full * clear_of_full * variance) return;
       const double off = code - expected;
-      chi_square_[i] += static_cast<float>(off * off / variance), ++freedom_[i];
+      chi[i] += static_cast<float>(off * off / variance), ++freedom[i];
     });
     for (std::size_t i = strip.first; i < strip.last; ++i) {
       freedom_[i] = freedom_[i] > 1 ? static_cast<std::uint8_t>(freedom_[i] - 1) : 0;
@@ -339,6 +352,7 @@ class Merge {
   }
 
   const MergeRequest& r_;
+  NoiseVariance variance_of_;
   std::size_t pixels_;
   std::vector<std::size_t> order_;  // by duration
   MergedPlane merged_;

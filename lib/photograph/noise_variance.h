@@ -9,4 +9,15 @@ inline double noise_variance(const manifest::Noise& noise, double value) {
   return (noise.gain > 0 && value > 0 ? value / noise.gain : 0) + noise.read * noise.read;
 }
 
+// The same of many values: the gain is divided by once.
+class NoiseVariance {
+ public:
+  explicit NoiseVariance(const manifest::Noise& noise)
+      : least_(noise_variance(noise, 0)), slope_(noise.gain > 0 ? 1 / noise.gain : 0) {}
+  double operator()(double value) const { return (value > 0 ? value * slope_ : 0) + least_; }
+
+ private:
+  double least_, slope_;
+};
+
 }  // namespace gonio::photograph

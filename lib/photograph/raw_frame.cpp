@@ -49,7 +49,9 @@ Codes codes_of_picture(const std::filesystem::path& path) {
     return c;
   }
   c.white = static_cast<double>((1 << bits) - 1);
-  for (float& v : c.frame.codes) v = std::round(v * static_cast<float>(c.white));
+  const auto white = static_cast<float>(c.white);
+  // To the nearest whole number, which none of them is far from.
+  for (float& v : c.frame.codes) v = static_cast<float>(static_cast<int>(v * white + 0.5f));
   return c;
 }
 

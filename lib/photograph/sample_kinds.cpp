@@ -2,6 +2,7 @@
 #include "photograph/sample_kinds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/parallel.h"
@@ -17,17 +18,25 @@ std::vector<SampleKind> kinds_of(const RawPlane& plane, int width, int height, d
   const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height),
              reach = static_cast<std::size_t>(blooming_px);
   std::vector<SampleKind> kinds(plane.codes.size(), SampleKind::read);
+  auto limit = static_cast<float>(full_scale);  // the least float that is not below it
+  if (limit < full_scale) limit = std::nextafter(limit, std::numeric_limits<float>::infinity());
   std::vector<std::uint8_t> full(plane.codes.size()), row_has_full(rows);
   parallel_for(
       0, rows,
       [&](std::size_t y) {
-        for (std::size_t i = y * columns; i < (y + 1) * columns; ++i) {
-          if (plane.codes[i] >= full_scale)
-            kinds[i] = SampleKind::full, full[i] = row_has_full[y] = 1;
-          else if ((!plane.unusable.empty() && plane.unusable[i] != 0) ||
-                   !(plane.codes[i] > -std::numeric_limits<float>::infinity()))
-            kinds[i] = SampleKind::unusable;
+        const float* codes = &plane.codes[y * columns];
+        SampleKind* kind = &kinds[y * columns];
+        std::uint8_t *is_full = &full[y * columns], any = 0;
+        for (std::size_t x = 0; x < columns; ++x) {  // without branches
+          is_full[x] = codes[x] >= limit;
+          const bool number = codes[x] > -std::numeric_limits<float>::infinity();
+          kind[x] = is_full[x] != 0 ? SampleKind::full : number ? SampleKind::read : SampleKind::unusable;
+          any |= is_full[x];
         }
+        row_has_full[y] = any;
+        if (plane.unusable.empty()) return;
+        for (std::size_t x = 0; x < columns; ++x)
+          if (plane.unusable[y * columns + x] != 0 && is_full[x] == 0) kind[x] = SampleKind::unusable;
       },
       rows_of_a_task);
   if (reach == 0) return kinds;
