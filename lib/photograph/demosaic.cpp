@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "photograph/polarizers.h"
 
 namespace gonio::photograph {
 namespace {
@@ -32,15 +33,10 @@ Taps colour_at_other() {
           {2, 0, -1.5}, {-2, 0, -1.5}, {0, 2, -1.5}, {0, -2, -1.5}};
 }
 
-struct Range {
-  std::uint8_t first = 255, last = 0;
-  void add(Range other) { first = std::min(first, other.first), last = std::max(last, other.last); }
-};
-
 struct Mean {
   double value = 0, variance = 0;
   bool found = false;
-  Range exposures{};
+  ExposureRange exposures{};
 };
 
 class Demosaic {
@@ -52,7 +48,7 @@ class Demosaic {
     constexpr std::array<std::array<int, 3>, 3> weights{{{1, 2, 1}, {2, 4, 2}, {1, 2, 1}}};
     const bool own = mosaic_.colour(x, y) == colour && s_.trusted[at(x, y)] != 0;
     double sum = 0, squares = 0, all = 0;
-    Range exposures;
+    ExposureRange exposures;
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
         if (own && (dx != 0 || dy != 0)) continue;
@@ -92,7 +88,7 @@ class Demosaic {
  private:
   bool in_row(int x, int y, int colour) const { return mosaic_.colour(x + 1, y) == colour; }
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < s_.width && y < s_.height; }
-  Range range(std::size_t i) const { return s_.first.empty() ? Range{} : Range{s_.first[i], s_.last[i]}; }
+  ExposureRange range(std::size_t i) const { return range_of(s_, i); }
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(s_.width) + static_cast<std::size_t>(x);
   }
@@ -103,12 +99,14 @@ class Demosaic {
 }  // namespace
 
 Demosaiced demosaic(const MosaicSamples& samples, const Mosaic& mosaic, Demosaicing how) {
+  if (mosaic.polarizers()) return stokes_of_polarizers(samples, how);
   const std::vector<std::string> names =
       mosaic.mono() ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
   const std::size_t pixels = samples.value.size(), columns = static_cast<std::size_t>(samples.width);
   Demosaiced result{io::Image(samples.width, samples.height, names), io::Image(samples.width, samples.height, names),
                     std::vector<std::uint8_t>(samples.trusted.begin(), samples.trusted.end()),
-                    std::vector<std::uint8_t>(pixels, Range{}.first), std::vector<std::uint8_t>(pixels, Range{}.last)};
+                    std::vector<std::uint8_t>(pixels, ExposureRange{}.first),
+                    std::vector<std::uint8_t>(pixels, ExposureRange{}.last)};
   if (mosaic.mono()) {
     result.colour.data.assign(samples.value.begin(), samples.value.end());
     result.variance.data.assign(samples.variance.begin(), samples.variance.end());
@@ -121,7 +119,7 @@ Demosaiced demosaic(const MosaicSamples& samples, const Mosaic& mosaic, Demosaic
     const int y = static_cast<int>(row);
     for (int x = 0; x < samples.width; ++x) {
       const std::size_t i = row * columns + static_cast<std::size_t>(x);
-      Range exposures;
+      ExposureRange exposures;
       for (int c = 0; c < 3; ++c) {
         const Mean m = work.of(x, y, c, how);
         result.colour.at(x, y, c) = static_cast<float>(m.value);

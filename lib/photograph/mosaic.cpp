@@ -23,11 +23,12 @@ bool is_bayer(const std::string& corner) {
 
 Mosaic Mosaic::named(const std::string& name, const std::string& place) {
   Mosaic m;
-  m.mono_ = name == "Mono";
-  if (m.mono_) return m;
+  if (name == "Mono") m.kind_ = Kind::mono;
+  if (name == "polarizers") m.kind_ = Kind::polarizers, m.corner_ = {0, 1, 2, 3};
+  if (m.kind_ != Kind::bayer) return m;
   const auto found = std::ranges::find_if(grids, [&](const Grid& g) { return name == g.name || name == g.corner; });
   if (found == grids.end())
-    throw Error(Exit::data, place, "\"" + name + "\" is no mosaic", "Mono, RGGB, GRBG, GBRG or BGGR");
+    throw Error(Exit::data, place, "\"" + name + "\" is no mosaic", "Mono, RGGB, GRBG, GBRG, BGGR or polarizers");
   for (std::size_t k = 0; k < m.corner_.size(); ++k)
     m.corner_[k] = static_cast<int>(std::string("RGB").find(found->corner[k]));
   return m;

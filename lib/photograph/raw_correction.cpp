@@ -98,12 +98,12 @@ FlatField flat_field(const std::vector<std::filesystem::path>& frames, const Raw
     for (std::size_t i = 0; i < sum.size(); ++i)
       sum[i] += frame.codes[i], squares[i] += static_cast<double>(frame.codes[i]) * frame.codes[i];
   }
-  std::array<double, 3> mean{}, count{};
+  std::array<double, 4> mean{}, count{};  // of each filter
   const auto colour = [&](std::size_t i) {
     return static_cast<std::size_t>(mosaic.colour(static_cast<int>(i % width), static_cast<int>(i / width)));
   };
   for (std::size_t i = 0; i < sum.size(); ++i) mean[colour(i)] += sum[i], ++count[colour(i)];
-  for (std::size_t c = 0; c < 3; ++c) mean[c] /= std::max(1.0, count[c]);
+  for (std::size_t c = 0; c < mean.size(); ++c) mean[c] /= std::max(1.0, count[c]);
   const auto n = static_cast<double>(frames.size());
   flat.frames = frames.size();
   flat.factor.resize(sum.size()), flat.variance.resize(sum.size()), flat.dead.assign(sum.size(), 0);

@@ -116,6 +116,16 @@ manifest::ImageEntry entry_of(const manifest::Document& document, const RawReque
   return entry;
 }
 
+// Light before the polarizers is what a camera without them sees: the like of it, beside the one that has them.
+void take_polarizers_off(manifest::Document& document, manifest::ImageEntry& entry) {
+  const auto found = document.cameras.find(entry.camera);
+  if (found == document.cameras.end() || found->second.mosaic.empty()) return;
+  manifest::Camera bare = found->second;
+  bare.mosaic.clear();
+  entry.camera += "-stokes";
+  document.cameras[entry.camera] = std::move(bare);
+}
+
 // In codes, of images that all say the same of files with the same codes.
 std::optional<manifest::Noise> noise_of_images(const manifest::Document& document, const RawRequest& request) {
   std::optional<manifest::Noise> noise;
@@ -199,7 +209,7 @@ Steps steps_of(const RawRecipe& recipe, const DevelopedView& d) {
   steps.push_back({step::merge, {}, count(d.stated_s.size()), d.merged.exposures_s});
   if (refined) steps.back().sigma = {{"exposures_s", d.merged.exposures_sigma}};
   if (recipe.flat) steps.push_back({step::flat, {}, count(recipe.flat->frames)});
-  if (d.picture.channel("Y") < 0)
+  if (d.picture.channel("Y") < 0 || d.picture.channel("s1.Y") >= 0)
     steps.push_back({step::demosaic, demosaicing_names[static_cast<std::size_t>(recipe.demosaicing)]});
   return steps;
 }
@@ -272,6 +282,7 @@ void develop_raw(manifest::Document& document, const RawRequest& request) {
   std::vector<bool> replaced(document.images.size());
   for (std::size_t v = 0; v < request.views.size(); ++v) {
     manifest::ImageEntry entry = entry_of(document, request, v);
+    if (request.recipe.stated.mosaic == "polarizers") take_polarizers_off(document, entry);
     entry.developed = manifest::Codec<Steps>::read(*made[v].steps, made[v].files.picture.string());
     entry.file = manifest::add_file(document, made[v].files.picture, entry.id);
     entry.mask = manifest::add_file(document, made[v].files.mask, entry.id + "-mask");

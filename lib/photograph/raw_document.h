@@ -33,7 +33,8 @@ void views_of_images(const manifest::Document& document, const std::string& came
 
 // Writes VIEW.exr and VIEW-mask.png for every view, and puts one image for each into the manifest, in the place of
 // those that it is made of: linear, in codes per second, with variance, and with the gain from radiance to these where
-// all its images state theirs. What each view's exposures said is logged.
+// all its images state theirs. Light before polarizers is of a camera of its own, NAME-stokes, which has no mosaic.
+// What each view's exposures said is logged.
 // Views are made side by side, as many as memory allows. Error(try_again) where a signal ended it: pictures that are
 // there are whole, and a call with `resume` makes the rest; files and manifest are the same as without interruption.
 void develop_raw(manifest::Document& document, const RawRequest& request);

@@ -31,8 +31,9 @@ struct RawRecipe {
 };
 
 struct DevelopedView {
-  // R, G, B (or Y), variance.R, ..., and exposure.shortest and exposure.longest: the times, s, as they were used, of
-  // the shortest and the longest exposure in which any sample was read that the pixel's values are from; 0: none was.
+  // R, G, B (or Y; or Y, s1.Y, s2.Y), variance.R, ..., and exposure.shortest and exposure.longest: the times, s, as
+  // they were used, of the shortest and the longest exposure in which any sample was read that the pixel's values are
+  // from; 0: none was.
   io::Image picture;
   std::vector<std::uint8_t> trusted;  // one entry per pixel
   std::vector<double> stated_s;       // exposures as they were stated, here or by the files

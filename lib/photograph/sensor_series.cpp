@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "photograph/polarizers.h"
 #include "photograph/raw_views.h"
 
 namespace gonio::photograph {
@@ -217,7 +218,9 @@ class Summing {
       for (int x = 0; x < period; ++x) {
         grids_.push_back(
             {x, y, period, (frame.width - x + period - 1) / period, (frame.height - y + period - 1) / period});
-        std::string colour = mosaic_.mono() ? "Y" : std::string(1, "RGB"[mosaic_.colour(x, y)]);
+        std::string colour = mosaic_.mono()         ? "Y"
+                             : mosaic_.polarizers() ? std::to_string(polarizer_degrees(x, y)) + " degrees"
+                                                    : std::string(1, "RGB"[mosaic_.colour(x, y)]);
         if (colour == "G") colour += mosaic_.colour(x ^ 1, y) == 0 ? "1" : "2";
         sums_.planes.push_back({colour, {}, {}, 0, std::numeric_limits<double>::infinity()});
       }

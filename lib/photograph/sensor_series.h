@@ -50,7 +50,7 @@ struct SeriesLevel {
 };
 
 struct SeriesPlane {
-  std::string name;                    // "Y", or "R", "G1" (beside red), "G2", "B"
+  std::string name;                    // "Y", "R", "G1" (beside red), "G2", "B"; or "90 degrees", ...
   std::vector<SeriesLevel> lit, dark;  // by exposure
   double step = 0;                     // between codes; 0: numbers that were not rounded
   double full_scale = 0;               // above black

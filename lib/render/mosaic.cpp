@@ -38,15 +38,6 @@ io::Image bayer_mosaic(const io::Image& picture, const std::string& mosaic) {
   return result;
 }
 
-double behind_polarizer(double s0, double s1, double s2, double angle_rad) {
-  return 0.5 * (s0 + s1 * std::cos(2 * angle_rad) + s2 * std::sin(2 * angle_rad));
-}
-
-double polarizer_angle(int x, int y) {
-  constexpr std::array<double, 4> degrees = {90, 45, 135, 0};
-  return degrees[static_cast<std::size_t>(2 * (y % 2) + x % 2)] * pi / 180;
-}
-
 io::Image polarizer_mosaic(const io::Image& picture) {
   const Error missing(Exit::usage, "mosaic", "polarizers need the picture's Stokes planes s1 and s2", "add --stokes");
   const auto s0 = colours_of(picture), s1 = channels_of(picture, "s1.", missing),

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "io/image.h"
+#include "photograph/polarizers.h"
 
 namespace gonio::render {
 
@@ -14,13 +15,8 @@ namespace gonio::render {
 // for pictures without R, G, B.
 io::Image bayer_mosaic(const io::Image& picture, const std::string& mosaic);
 
-// Behind an ideal linear polarizer whose axis stands at `angle_rad` from the x of the Stokes vector's frame towards y:
-// the first component of the polarizer's Mueller matrix times s, (s0 + s1 cos 2a + s2 sin 2a) / 2 (Collett 2005,
-// equation 4-42).
-double behind_polarizer(double s0, double s1, double s2, double angle_rad);
-
-// Axis over a pixel, rad.
-double polarizer_angle(int x, int y);
+// The equations of a polarizer and of the grid are the sensor's (photograph/polarizers.h).
+using photograph::behind_polarizer, photograph::polarizer_angle;
 
 // Channels R, G, B of s0 and s1.R ... s2.B to R, G, B behind the polarizers: what a sensor of each band would record.
 // Error(usage) for pictures without Stokes planes.

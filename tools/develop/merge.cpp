@@ -14,7 +14,7 @@ namespace {
 using cli::Type;
 using photograph::RawRequest;
 
-const std::vector<std::string> mosaics{"Mono", "RGGB", "GRBG", "GBRG", "BGGR"},
+const std::vector<std::string> mosaics{"Mono", "RGGB", "GRBG", "GBRG", "BGGR", "polarizers"},
     demosaicings(photograph::demosaicing_names.begin(), photograph::demosaicing_names.end());
 const std::vector<std::string> groupings(photograph::grouping_names.begin(), photograph::grouping_names.end());
 
@@ -136,9 +136,9 @@ std::vector<cli::Option> merge_options() {
        .needs = {"noise-gain"}},
       {.name = "demosaic",
        .type = Type::choice,
-       .help =
-           "Interpolation behind filters: the nearest samples of a colour, or those corrected by the gradient of the "
-           "colour that was measured.",
+       .help = "Interpolation behind filters: the nearest samples of a colour or polarizer, or those corrected by the "
+               "gradient "
+               "of the one that was measured.",
        .preset = "gradient",
        .choices = demosaicings},
       {.name = "keep-exposures",

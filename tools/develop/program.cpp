@@ -67,9 +67,10 @@ const cli::Program& gonio_program() {
       .sections_written = {"files", "cameras", "images"},
       .files =
           {{"VIEW.exr",
-            "radiance in codes per second, its variance (variance.*), and the shortest and longest exposure, s, that "
-            "each pixel is from (exposure.shortest, exposure.longest; 0: none); its header says what made it"},
-           {"VIEW-mask.png", "white where the sample and one of each colour beside it can be trusted"},
+            "radiance in codes per second (behind polarizers Y, s1.Y, s2.Y), its variance (variance.*), and the "
+            "shortest and longest exposure, s, that each pixel is from (exposure.shortest, exposure.longest; 0: none); "
+            "its header says what made it"},
+           {"VIEW-mask.png", "white where the sample and one of each filter beside it can be trusted"},
            {"sensor.html, sensor.csv", "the sensor's figures as a report and as a table"},
            {"ID.exr, ID.png", "the picture of the pinhole camera; with --colour the picture in colours"},
            {"ID-mask.png",
@@ -80,6 +81,8 @@ const cli::Program& gonio_program() {
            "Tobin, Estimation of relationships for limited dependent variables, Econometrica 26(1), 1958.",
            "Malvar, He & Cutler, High-quality linear interpolation for demosaicing of Bayer-patterned color images, "
            "ICASSP 2004.",
+           "Ratliff, LaCasse & Tyo, Interpolation strategies for reducing IFOV artifacts in microgrid polarimeter "
+           "imagery, Optics Express 17(11), 2009.",
            "Keys, Cubic convolution interpolation for digital image processing, IEEE Trans. ASSP 29(6), 1981.",
            "Mitchell & Netravali, Reconstruction filters in computer graphics, SIGGRAPH 1988.",
            "Duchon, Lanczos filtering in one and two dimensions, J. Applied Meteorology 18(8), 1979."},
