@@ -21,7 +21,7 @@
 #include <limits>
 #include <vector>
 
-#include "manifest/noise.h"
+#include "photograph/noise_variance.h"
 #include "photograph/sample_kinds.h"
 
 namespace gonio::photograph {
@@ -33,7 +33,7 @@ struct MergeRequest {
   // The same of some rows alone, for frames that lie in memory: the picture is then made strip by strip, by several
   // threads. Left out: from whole frames, one at a time. What comes out is the same.
   std::function<void(std::size_t exposure, int first_row, int rows, RawPlane& into)> read_rows{};
-  manifest::Noise noise;
+  NoiseModel noise;
   double full_scale = 0;                                    // codes beyond black: from here on a sample is saturated
   double floor = -std::numeric_limits<double>::infinity();  // the lowest code, black taken off
   int blooming_px = 1;                                      // samples so near to a saturated one are not used

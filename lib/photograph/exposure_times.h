@@ -11,14 +11,14 @@
 #include <optional>
 #include <vector>
 
-#include "manifest/noise.h"
+#include "photograph/noise_variance.h"
 
 namespace gonio::photograph {
 
 struct ExposureSamples {
   std::vector<double> exposures_s;        // as stated
   std::vector<std::vector<float>> codes;  // [exposure][pixel], black taken off; not a number where it cannot be used
-  manifest::Noise noise;
+  NoiseModel noise;
   double full_scale = 0;
   double floor = -std::numeric_limits<double>::infinity();  // the lowest code: readings near it are a selection, too
 };

@@ -36,6 +36,7 @@ std::string identity_of(const RawRecipe& recipe) {
   all["version"] = GONIO_VERSION;
   all["mosaic"] = recipe.stated.mosaic;
   all["black"] = number_or_null(recipe.stated.black), all["white"] = number_or_null(recipe.stated.white);
+  if (recipe.stated.linearity) all["linearity"] = sha256(linearity_csv(recipe.stated.linearity->rows()));
   if (recipe.dark) {
     all["dark"] = hash_of(recipe.dark->offset) + hash_of(recipe.dark->rate_per_s) + hash_of(recipe.dark->hot);
     all["dark frames"] = static_cast<std::int64_t>(recipe.dark->frames);

@@ -202,6 +202,7 @@ Steps steps_of(const RawRecipe& recipe, const DevelopedView& d) {
   const auto count = [](std::size_t frames) { return static_cast<std::int64_t>(frames); };
   Steps steps;
   steps.push_back({step::black});
+  if (recipe.stated.linearity) steps.push_back({step::linearity});
   if (recipe.dark) steps.push_back({step::dark, {}, count(recipe.dark->frames)});
   if (recipe.dark || recipe.flat) steps.push_back({step::defects});
   const bool refined = std::ranges::any_of(d.merged.exposures_sigma, [](double sigma) { return sigma > 0; });

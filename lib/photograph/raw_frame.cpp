@@ -55,6 +55,19 @@ Codes codes_of_picture(const std::filesystem::path& path) {
   return c;
 }
 
+// Right after black: dark current and shading are linear in the light.
+void make_linear(const Linearity& linearity, const std::string& place, RawFrame& frame) {
+  const double last = linearity.last_code();
+  if (last < 0.5 * frame.full_scale)
+    throw Error(Exit::data, linearity.place(),
+                format("ends at code %g, and %s is full at %g above black", last, place.c_str(), frame.full_scale),
+                "a table that reaches to where the sensor is full");
+  // Codes beyond the table are of unknown light: full.
+  frame.full_scale = linearity(std::min(frame.full_scale, last));
+  if (std::isfinite(frame.floor)) frame.floor = linearity(frame.floor);
+  for (float& code : frame.codes) code = static_cast<float>(linearity(code));
+}
+
 }  // namespace
 
 RawFrame read_raw_frame(const std::filesystem::path& path, const RawStated& stated) {
@@ -75,6 +88,7 @@ RawFrame read_raw_frame(const std::filesystem::path& path, const RawStated& stat
           static_cast<float>(c.black[static_cast<std::size_t>((y & 1) * 2 + (x & 1))]);
   frame.full_scale = c.white - black - half_a_code;
   frame.floor = c.lowest - std::ranges::min(c.black);
+  if (stated.linearity) make_linear(*stated.linearity, path.string(), frame);
   return std::move(c.frame);
 }
 

@@ -39,6 +39,9 @@ class Development {
     // Dark frames' own noise is in every reading.
     if (recipe_.dark && recipe_.dark->frames > 0)
       request.noise.read *= std::sqrt(1 + 1 / static_cast<double>(recipe_.dark->frames));
+    // What is stated is of codes as they are read; what exposures say of each other is of linear ones.
+    if (recipe_.stated.linearity && !out.noise_from_exposures)
+      request.noise = recipe_.stated.linearity->noise(request.noise, full_scale_);
     out.stated_s = exposures_s_;
     out.merged = merge_exposures(request);
     flatten(out.merged);
@@ -111,7 +114,8 @@ class Development {
     const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_),
                       stride = std::max<std::size_t>(1, pixels / most_samples) | 1;
     // A start: read noise of a code, and as many electrons as fill a sensor of some 10,000.
-    ExposureSamples samples{exposures_s_, {}, {1e4 / std::min(full_scale_, 1e6), 1}, full_scale_, floor_};
+    const manifest::Noise start{1e4 / std::min(full_scale_, 1e6), 1};
+    ExposureSamples samples{exposures_s_, {}, start, full_scale_, floor_};
     for (std::size_t k = 0; k < exposures_s_.size(); ++k) {
       const RawPlane p = plane(k);
       const auto kinds = kinds_of(p, width_, height_, full_scale_, recipe_.blooming_px);

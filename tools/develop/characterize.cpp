@@ -13,6 +13,7 @@
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "photograph/characterize.h"
+#include "photograph/sensor_linearity.h"
 #include "tools/develop/merge.h"
 #include "tools/develop/sensor_page.h"
 
@@ -116,6 +117,14 @@ std::string words_of(const photograph::SensorFigures& f) {
   return text;
 }
 
+std::string words_of(const photograph::SensorLinearity& l) {
+  if (!l.left_out.empty()) return "no linearity table: " + l.left_out;
+  const std::string most =
+      format("%.2g(%.0g) %% at code %.4g above black", 100 * l.worst, 100 * l.worst_sigma, l.worst_at);
+  return l.significant() ? "not linear by up to " + most + ": linearity.csv for --merge"
+                         : "linear as far as can be told, off by no more than " + most;
+}
+
 }  // namespace
 
 std::vector<cli::Option> characterize_options() {
@@ -146,15 +155,18 @@ Exit characterize(cli::Invocation& call) {
     progress.advance();
     return frame;
   };
-  const photograph::SensorFigures f = photograph::characterize(photograph::sum_series(frames));
+  const photograph::SeriesSums sums = photograph::sum_series(frames);
+  const photograph::SensorFigures f = photograph::characterize(sums);
+  const photograph::SensorLinearity linearity = photograph::sensor_linearity(sums, f);
   for (const auto& frame : frames.frames) call.note_input(frame.name);
   write_file(page, sensor_page(f));
   write_file(csv, sensor_csv(f));
+  if (linearity.significant()) write_file(call.output_path("linearity.csv"), photograph::linearity_csv(linearity.rows));
   if (!call.has_document) enter_frames(call, series, frames);
   for (const std::size_t i : series.images)
     if (photograph::full_code_of(manifest::picture_path(call.document, i)) == f.full_code)
       call.document.images[i].noise = f.unit;
-  log(LogLevel::info, words_of(f));
+  log(LogLevel::info, words_of(f) + "; " + words_of(linearity));
   return Exit::done;
 }
 

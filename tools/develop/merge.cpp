@@ -48,6 +48,11 @@ photograph::Grouping grouping(const cli::Invocation& call, const std::vector<std
 RawRequest request_of(cli::Invocation& call) {
   RawRequest request;
   request.recipe.stated = stated(call);
+  if (call.given("linearity")) {
+    const std::filesystem::path table = call.text("linearity");
+    request.recipe.stated.linearity = std::make_shared<photograph::Linearity>(photograph::read_linearity(table));
+    call.note_input(table);
+  }
   if (call.given("camera")) request.camera = call.text("camera");
   std::vector<std::filesystem::path> dark = paths(call, "dark");
   if (call.given("PHOTOGRAPH")) {
@@ -109,6 +114,12 @@ std::vector<cli::Option> merge_options() {
        .help = "Code at which the sensor is full. Default: as the file says, else its highest code.",
        .lower = 1e-6,
        .conflicts = {"undistort", "colour"}},
+      {.name = "linearity",
+       .type = Type::input_file,
+       .help =
+           "A table (CSV, columns code and linear) from codes above black to linear codes, as --characterize writes "
+           "it. Default: codes are linear.",
+       .needs = {"merge"}},
       {.name = "dark",
        .type = Type::input_file,
        .help = "A frame without light, of any exposure; may be given several times. Dark current, what is left of "

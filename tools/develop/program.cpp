@@ -72,6 +72,7 @@ const cli::Program& gonio_program() {
             "its header says what made it"},
            {"VIEW-mask.png", "white where the sample and one of each filter beside it can be trusted"},
            {"sensor.html, sensor.csv", "the sensor's figures as a report and as a table"},
+           {"linearity.csv", "of a sensor that is not linear: codes above black, linear codes, their uncertainty"},
            {"ID.exr, ID.png", "the picture of the pinhole camera; with --colour the picture in colours"},
            {"ID-mask.png",
             "white where every sample of the kernel lies in the picture, is finite, not saturated and "
