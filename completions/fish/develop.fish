@@ -4,6 +4,7 @@ complete -c develop -l views -x -a 'names sequence one each' -d 'Which frames on
 complete -c develop -l mosaic -x -a 'Mono RGGB GRBG GBRG BGGR polarizers' -d 'Filters over the samples, row by row from the upper left corner. Default: as the file or the camera says.'
 complete -c develop -l black -x -d 'Code without light. Default: as the file says, else 0.'
 complete -c develop -l full-scale -x -d 'Code at which the sensor is full. Default: as the file says, else its highest code.'
+complete -c develop -l linearity -r -d 'A table (CSV, columns code and linear) from codes above black to linear codes, as --characterize writes it. Default: codes are linear.'
 complete -c develop -l dark -r -d 'A frame without light, of any exposure; may be given several times. Dark current, what is left of black, and hot samples are found in them.'
 complete -c develop -l flat -r -d 'A frame of an even light; may be given several times. Shading is divided out, dead samples are left out.'
 complete -c develop -l noise-gain -x -d 'Electrons per code. Default: as all images of the manifest state it, else what the exposures say where they overlap.'
