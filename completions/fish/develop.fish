@@ -25,6 +25,8 @@ complete -c develop -l saturation -x -d 'Stored values from here on are saturate
 complete -c develop -l format -x -a 'same exr png8 png16' -d 'What to write; same: OpenEXR from OpenEXR, else PNG with as many bits.'
 complete -c develop -l colour -x -d 'Apply this correction of the manifest, as color-calib found it, to OpenEXR pictures.'
 complete -c develop -l characterize -d 'Find a sensors gain, noise and fixed pattern (EMVA 1288) in frames of even light at several exposures and in dark frames, two or more of each.'
+complete -c develop -l find-response -d 'Find how codes of a camera that is not linear depend on light, from photographs of 8 or 16 bits of one view at several exposures, and state it as the images response.'
+complete -c develop -l shutter-error -x -d 'How far stated exposure times may be off, relative, one standard deviation. 0: they are exact.'
 complete -c develop -l input -s i -r -d 'Manifest to read; - is standard input.'
 complete -c develop -l output -s o -r -d 'Where the manifest goes instead of standard output; written whole or not at all.'
 complete -c develop -l out -r -d 'Folder for the files that are written; made where it is missing.'

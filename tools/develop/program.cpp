@@ -1,11 +1,13 @@
 // develop: raw frames as radiance (merge.h), photographs as a camera without lens errors would have taken them
-// (undistort.h), a camera's numbers as colours (colour.h), and what a sensor adds to the light (characterize.h).
+// (undistort.h), a camera's numbers as colours (colour.h), what a sensor adds to the light (characterize.h), and how
+// codes of a camera that is not linear depend on it (response.h).
 #include "cli/program.h"
 
 #include "base/error.h"
 #include "tools/develop/characterize.h"
 #include "tools/develop/colour.h"
 #include "tools/develop/merge.h"
+#include "tools/develop/response.h"
 #include "tools/develop/undistort.h"
 
 namespace gonio::tools::develop {
@@ -21,12 +23,14 @@ void check(cli::Invocation& call) {
   if (call.flag("undistort")) return check_undistort(call);
   if (call.given("colour")) return check_colour(call);
   if (call.flag("characterize")) return check_characterize(call);
+  if (call.flag("find-response")) return check_response(call);
   throw Error(Exit::usage, "develop", "has nothing to do",
-              "say what: --merge, --undistort, --colour or --characterize");
+              "say what: --merge, --undistort, --colour, --characterize or --find-response");
 }
 
 Exit run(cli::Invocation& call) {
   if (call.flag("characterize")) return characterize(call);
+  if (call.flag("find-response")) return find_response(call);
   return call.flag("merge") ? merge(call) : call.flag("undistort") ? undistort(call) : colour(call);
 }
 
@@ -36,6 +40,8 @@ std::vector<cli::Option> options() {
   more = colour_options();
   all.insert(all.end(), more.begin(), more.end());
   more = characterize_options();
+  all.insert(all.end(), more.begin(), more.end());
+  more = response_options();
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -47,13 +53,15 @@ const cli::Program& gonio_program() {
       .name = "develop",
       .sentence =
           "make radiance out of raw frames, colours out of radiance, take the lens distortion out of photographs, and "
-          "find a sensor's noise",
+          "find a sensor's noise and a camera's response",
       .synopsis = {"--merge --out DIR [OPTION]... PHOTOGRAPH...", "--merge --out DIR [OPTION]... [recordings.json]",
                    "--undistort --out DIR [OPTION]... [recordings.json]",
                    "--undistort --out DIR [OPTION]... -i camera.json PHOTOGRAPH...",
                    "--colour NAME --out DIR [recordings.json]", "--colour NAME --out DIR -i colour.json PHOTOGRAPH...",
                    "--characterize --out DIR [OPTION]... --dark FILE --dark FILE... PHOTOGRAPH...",
-                   "--characterize --out DIR [OPTION]... [recordings.json]"},
+                   "--characterize --out DIR [OPTION]... [recordings.json]",
+                   "--find-response --out DIR [OPTION]... PHOTOGRAPH...",
+                   "--find-response --out DIR [OPTION]... [recordings.json]"},
       .options = options(),
       .operands =
           {{.name = "PHOTOGRAPH",
@@ -73,12 +81,15 @@ const cli::Program& gonio_program() {
            {"VIEW-mask.png", "white where the sample and one of each filter beside it can be trusted"},
            {"sensor.html, sensor.csv", "the sensor's figures as a report and as a table"},
            {"linearity.csv", "of a sensor that is not linear: codes above black, linear codes, their uncertainty"},
+           {"response.csv, response-times.csv",
+            "the camera's response, and exposure times as exposures and stated times say together"},
            {"ID.exr, ID.png", "the picture of the pinhole camera; with --colour the picture in colours"},
            {"ID-mask.png",
             "white where every sample of the kernel lies in the picture, is finite, not saturated and "
             "counted by the image's own mask"}},
       .references =
           {"EMVA Standard 1288, release 4.0, 2021.",
+           "Debevec & Malik, Recovering high dynamic range radiance maps from photographs, SIGGRAPH 1997.",
            "Tobin, Estimation of relationships for limited dependent variables, Econometrica 26(1), 1958.",
            "Malvar, He & Cutler, High-quality linear interpolation for demosaicing of Bayer-patterned color images, "
            "ICASSP 2004.",
