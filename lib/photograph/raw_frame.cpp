@@ -58,7 +58,7 @@ Codes codes_of_picture(const std::filesystem::path& path) {
 // Right after black: dark current and shading are linear in the light.
 void make_linear(const Linearity& linearity, const std::string& place, RawFrame& frame) {
   const double last = linearity.last_code();
-  if (last < 0.5 * frame.full_scale)
+  if (std::isfinite(frame.full_scale) && last < 0.5 * frame.full_scale)
     throw Error(Exit::data, linearity.place(),
                 format("ends at code %g, and %s is full at %g above black", last, place.c_str(), frame.full_scale),
                 "a table that reaches to where the sensor is full");

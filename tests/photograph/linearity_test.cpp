@@ -11,6 +11,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "data.h"
+#include "io/picture.h"
+#include "photograph/raw_view.h"
 #include "photograph/sensor_linearity.h"
 #include "photograph/sensor_series.h"
 
@@ -88,8 +90,42 @@ SensorLinearity found_in_series(double bend, double flicker, std::uint64_t seed)
   return sensor_linearity(sums, characterize(sums));
 }
 
+// Codes with stated noise, made linear: the mean square of (found - true) / sigma is 1 for dark, middle and bright
+// light, within four standard errors; the slope alone would change it by a factor of 1.5.
+TEST(Linearity, TheMergesVarianceGoesThroughTheSlope) {
+  const tests::ScratchFolder folder;
+  constexpr double bend = 0.2;
+  constexpr int width = 180, height = 100;
+  const manifest::Noise noise{4, 3};
+  std::vector<LinearityRow> rows;
+  for (int k = 0; k <= 60; ++k) rows.push_back({50.0 * k, straight(50.0 * k, bend), 0});
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  const auto light = [](int x) { return 30 + 2900.0 * x / width; };
+  io::Image picture(width, height, {"Y"});
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const double code = bent(light(x), bend);
+      picture.at(x, y, 0) = static_cast<float>(code + std::sqrt(noise_variance(noise, code)) * normal(random));
+    }
+  io::write_picture(folder / "view.exr", picture);
+  RawRecipe recipe;
+  recipe.noise = noise;
+  recipe.stated.linearity = std::make_shared<Linearity>(rows, "test");
+  const DevelopedView view = develop_view({"view", {folder / "view.exr"}, {1.0}}, recipe);
+  EXPECT_EQ(view.steps, (std::vector<std::string>{"black", "linearity", "merge"}));
+  for (int part = 0; part < 3; ++part) {
+    double squares = 0, count = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = part * width / 3; x < (part + 1) * width / 3; ++x, ++count)
+        squares += std::pow(view.picture.at(x, y, 0) - light(x), 2) / view.picture.at(x, y, 1);
+    EXPECT_NEAR(squares / count, 1, 4 * std::sqrt(2 / count)) << part;
+  }
+}
+
 // Of rows over the range that was seen, the share whose interval of 95 % covers the truth; rows of one series go
-// together, so that the share varies over series. Scale is that at the reference.
+// together, so that the share varies over series. Scale is that at the reference. Measured over 60 series: 0.992 with a
+// steady lamp (whose flicker cannot be told from noise and is taken to be as large), 0.941 with one that flickers.
 TEST(SensorLinearity, AKnownCurveIsFoundWithinItsIntervals) {
   for (const double flicker : {0.0, 2e-3}) {
     double covered = 0, rows = 0, worst = 0;
@@ -106,7 +142,7 @@ TEST(SensorLinearity, AKnownCurveIsFoundWithinItsIntervals) {
       }
     }
     EXPECT_GT(covered / rows, 0.88) << flicker;
-    EXPECT_LT(worst, flicker > 0 ? 0.02 : 0.002);
+    EXPECT_LT(worst, flicker > 0 ? 0.005 : 0.0015);
   }
 }
 
