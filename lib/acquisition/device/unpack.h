@@ -31,7 +31,7 @@ struct PixelFormat {
 
 // Nothing for colours, for depths and for names that are not known.
 std::optional<PixelFormat> parse_pixel_format(std::string_view name);
-// The upper left corner of a Bayer grid as the manifest's cameras state it, row by row: "RGGB" of "BayerRG"; else empty.
+// Upper left corner of a Bayer grid as the manifest's cameras state it, row by row: "RGGB" of "BayerRG"; else empty.
 std::string bayer_corner(const std::string& mosaic);
 // "BayerRG12Packed": "BayerRG12"; what is not known stays as it is.
 std::string unpacked_name(const std::string& name);
