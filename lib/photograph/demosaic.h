@@ -1,6 +1,8 @@
 // Three colours at every sample of a Bayer mosaic, with their variance (of polarizers: polarizers.h). Both ways are
-// linear in the samples, so that the variance of each colour is the sum of weight^2 times variance; that neighbouring
-// pixels share noise is not stated.
+// linear in the samples, so that the noise of each colour is the sum of weight^2 times variance; that neighbouring
+// pixels share noise is not stated. Where the other colours bend by more than three times their noise within the reach
+// of a mean, between samples of its own colour stands what nobody read: the square of that bend (the gradient's
+// correction) is added to the variance of what is interpolated there.
 //   bilinear   the mean of the nearest samples of a colour
 //   gradient   bilinear, corrected by the Laplacian of the colour that was measured there: Malvar, He & Cutler 2004,
 //              "High-quality linear interpolation for demosaicing of Bayer-patterned color images", gains 1/2, 5/8, 3/4

@@ -69,9 +69,9 @@ std::optional<manifest::Parameter> gain_of_view(const manifest::Document& docume
 // straight line of slope 1, above black.
 RawStated stated_by_image(const manifest::Document& document, std::size_t i) {
   const manifest::ImageEntry& image = document.images[i];
-  const double full = full_code_of(manifest::picture_path(document, i));
+  const auto full = [&] { return full_code_of(manifest::picture_path(document, i)); };
   RawStated stated;
-  if (image.saturation) stated.white = *image.saturation * full + 0.5;
+  if (image.saturation) stated.white = *image.saturation * full() + 0.5;
   if (image.response.is_null() || image.response == manifest::Value("linear")) return stated;
   const std::string place = manifest::place(document, "/images/" + std::to_string(i) + "/response");
   const Response response(image.response, place);
@@ -81,7 +81,7 @@ RawStated stated_by_image(const manifest::Document& document, std::size_t i) {
     if (std::abs(response(static_cast<float>(black + share * (1 - black))) - share * (1 - black)) > straight)
       throw Error(Exit::data, place, "bends: these are no codes of a raw frame",
                   "merge frames whose codes rise evenly with light, above black");
-  stated.black = black * full;
+  stated.black = black * full();
   return stated;
 }
 

@@ -70,6 +70,40 @@ TEST(Demosaic, StatesTheVarianceOfItsNoise) {
   }
 }
 
+// A slanted edge, ten times as bright on one side: what interpolation misses there is in the variance that is stated,
+// and away from it noise alone is.
+TEST(Demosaic, StatesWhatItMissesAtEdges) {
+  for (const Demosaicing how : {Demosaicing::bilinear, Demosaicing::gradient}) {
+    const Mosaic mosaic = Mosaic::named("BayerRG", "test");
+    Samples s(120, 90);
+    Random random(3);
+    constexpr double sigma = 0.01;
+    const auto side = [](int x, int y) { return x + 0.31 * y - 70; };
+    const auto truth = [&](int x, int y) { return 1 + 9 * std::clamp(side(x, y) + 0.5, 0.0, 1.0); };
+    for (int y = 0; y < 90; ++y)
+      for (int x = 0; x < 120; ++x) {
+        const std::size_t i = static_cast<std::size_t>(120 * y + x);
+        s.value[i] = static_cast<float>(truth(x, y) + sigma * random.normal());
+        s.variance[i] = sigma * sigma;
+      }
+    const Demosaiced d = s.demosaiced(mosaic, how);
+    double near = 0, near_count = 0, far = 0, far_count = 0;
+    for (int y = 3; y < 87; ++y)
+      for (int x = 3; x < 117; ++x)
+        for (int c = 0; c < 3; ++c) {
+          if (mosaic.colour(x, y) == c) continue;
+          const double off = d.colour.at(x, y, c) - truth(x, y), z = off * off / d.variance.at(x, y, c);
+          if (std::abs(side(x, y)) < 1.5)
+            near += z, ++near_count;
+          else if (std::abs(side(x, y)) > 5)
+            far += z, ++far_count;
+        }
+    EXPECT_GT(near / near_count, 0.3) << demosaicing_names[static_cast<std::size_t>(how)];
+    EXPECT_LT(near / near_count, 2) << demosaicing_names[static_cast<std::size_t>(how)];
+    EXPECT_NEAR(far / far_count, 1, 4 * std::sqrt(2 * 4 / far_count));
+  }
+}
+
 // A pixel's values are from the exposures of all samples that entered them: those are the ones whose change changes it.
 TEST(Demosaic, SaysWhichExposuresAPixelIsFrom) {
   const Mosaic mosaic = Mosaic::named("BayerGB", "test");

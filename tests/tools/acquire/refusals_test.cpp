@@ -361,7 +361,7 @@ TEST_F(AcquireRefuses, WhatAnotherHolds) {
 // A disk that fills is no end: what was written before stands, and the run goes on with it.
 TEST_F(AcquireRefuses, ADiskThatFillsEndsARunThatGoesOn) {
   spoil("plan.json", {});
-  const Process::Words words{"acquire", "bad.json", "--go", "--out", "full", "--spp", "1", "--log-level", "error"};
+  const Process::Words words{"acquire", "bad.json", "--go", "--out", "full", "--spp", "16", "--log-level", "error"};
   const Ended full = run(words, folder().path(), {}, [] {
     const rlimit few{900, 900};  // bytes of one file: the journal's
     ::setrlimit(RLIMIT_FSIZE, &few);
