@@ -1,6 +1,7 @@
-// Reading of recordings. Where the manifest states no noise it is measured: the median absolute value of the horizontal
-// second difference (1, -2, 1), whose variance is six times that of a pixel, scaled to a standard deviation by 1 /
-// 0.6745 (Rousseeuw & Croux 1993). Smooth shading cancels in it, and edges are too few to move a median.
+// Reading of recordings. Where the manifest states no noise, and the file no variance, it is measured: the median
+// absolute value of the horizontal second difference (1, -2, 1), whose variance is six times that of a pixel, scaled to
+// a standard deviation by 1 / 0.6745 (Rousseeuw & Croux 1993). Smooth shading cancels in it, and edges are too few to
+// move a median.
 #include "relighting/recordings.h"
 
 #include <algorithm>
@@ -30,6 +31,10 @@ namespace {
   throw Error(Exit::data, manifest::place(document, "/images/" + std::to_string(entry) + key), problem, remedy);
 }
 
+bool is_variance(float v) {
+  return v > 0 && std::isfinite(v);
+}
+
 void read_pixels(const manifest::Document& document, const std::filesystem::path& path, Recording& image) {
   const manifest::ImageEntry& entry = document.images[image.entry];
   const std::string place = manifest::place(document, "/images/" + std::to_string(image.entry) + "/response");
@@ -44,6 +49,15 @@ void read_pixels(const manifest::Document& document, const std::filesystem::path
       const float value = colour.data[i * channels + (channels == 3 ? c : 0)];
       image.picture.data[3 * i + c] = value;
       if (!std::isfinite(value) || read.clipped[i]) image.counts[i] = 0;
+    }
+  const io::Image& variance = read.variance;
+  if (entry.noise || variance.channels.size() != channels || std::ranges::none_of(variance.data, is_variance)) return;
+  image.variance.resize(image.picture.data.size());
+  for (std::size_t i = 0; i < colour.pixels(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float value = variance.data[i * channels + (channels == 3 ? c : 0)];
+      image.variance[3 * i + c] = value;
+      if (!is_variance(value)) image.counts[i] = 0;
     }
 }
 
@@ -65,6 +79,14 @@ void leave_out_masked(const manifest::Document& document, Recording& image) {
   const std::vector<std::uint8_t> counts = photograph::read_mask_of(
       image.picture, path, manifest::place(document, "/images/" + std::to_string(image.entry) + "/mask"));
   for (std::size_t i = 0; i < image.counts.size(); ++i) image.counts[i] = image.counts[i] && counts[i];
+}
+
+// Of the whole picture: where single places are not asked.
+manifest::Noise usual_noise(const Recording& image) {
+  std::vector<double> counted;
+  for (std::size_t i = 0; i < image.variance.size(); ++i)
+    if (image.counts[i / 3]) counted.push_back(image.variance[i]);
+  return {.gain = 0, .read = counted.empty() ? 1e-6 : std::sqrt(stats::median(counted))};
 }
 
 manifest::Noise measured_noise(const Recording& image) {
@@ -140,7 +162,7 @@ Recordings read_recordings(const manifest::Document& document) {
              "give the camera the size of its pictures");
     image.mean = mean_of_finite(image.picture);
     leave_out_masked(document, image);
-    image.noise = entry.noise ? *entry.noise : measured_noise(image);
+    image.noise = entry.noise ? *entry.noise : image.variance.empty() ? measured_noise(image) : usual_noise(image);
     image.gain = entry.gain ? *entry.gain : manifest::Parameter(1.0);
     image.exposure_s = entry.exposure_s;
     image.time_s = entry.time_s;
@@ -163,6 +185,10 @@ io::Image read_take(const manifest::Document& document, const Recording& image, 
 
 double noise_sigma(const Recording& image, double value) {
   return std::sqrt(photograph::noise_variance(image.noise, value));
+}
+
+double noise_sigma(const Recording& image, double value, std::size_t place) {
+  return image.variance.empty() ? noise_sigma(image, value) : std::sqrt(double{image.variance[place]});
 }
 
 }  // namespace gonio::relighting

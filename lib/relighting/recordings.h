@@ -37,6 +37,7 @@ struct Recording {
   Rgb mean;                          // of all finite pixels of the picture
   std::vector<std::uint8_t> counts;  // one per pixel: 1 where the pixel may be used
   manifest::Noise noise;             // variance of a linear value v: v / gain + read^2 (gain 0: no shot noise)
+  std::vector<float> variance;       // of picture.data, where its file states it and the manifest no noise; else empty
   manifest::Parameter gain;          // factor on the simulated radiance
   std::optional<double> exposure_s, time_s, temperature_K;
 };
@@ -59,5 +60,7 @@ io::Image read_take(const manifest::Document& document, const Recording& image, 
 
 // One standard deviation of the noise of `image` where its picture is `value` bright.
 double noise_sigma(const Recording& image, double value);
+// The same at a place in its picture.data, by what the file says of that place.
+double noise_sigma(const Recording& image, double value, std::size_t place);
 
 }  // namespace gonio::relighting

@@ -98,8 +98,11 @@ void measure_noise(std::span<const std::filesystem::path> repeats, const manifes
       add_manifest(path, recordings, pairs);
     else
       add_picture(path, document, recordings, pairs);
-  for (auto& [g, of_image] : pairs)
-    if (of_image.size() >= least_pairs) recordings.images[g].noise = fitted(of_image);
+  for (auto& [g, of_image] : pairs) {
+    if (of_image.size() < least_pairs) continue;
+    recordings.images[g].noise = fitted(of_image);
+    recordings.images[g].variance.clear();  // what repeats show goes before what a file says
+  }
 }
 
 }  // namespace gonio::relighting

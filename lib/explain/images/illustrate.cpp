@@ -41,7 +41,7 @@ WholeImage whole_image(const Recording& image, const ImageModel& model, std::siz
     whole.counts[i] = image.counts[place];
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t r = 3 * i + c;
-      const double noise = noise_sigma(image, whole.after[r]);
+      const double noise = noise_sigma(image, whole.after[r], 3 * place + c);
       whole.observed[r] = image.picture.data[3 * place + c];
       whole.sigma[r] = std::sqrt(whole.sigma[r] + noise * noise);
     }

@@ -214,7 +214,8 @@ void ImagesProblem::fill_rows() {
       for (std::size_t k = 0; k < 3; ++k) {
         const double y = image.picture.at(pixel.x, pixel.y, static_cast<int>(k));
         const double grey = image.grey ? std::sqrt(3.0) : 1,
-                     noise = grey * noise_sigma(image, mean[static_cast<int>(k)]);
+                     noise = grey *
+                             noise_sigma(image, mean[static_cast<int>(k)], 3 * at(image.picture, pixel.x, pixel.y) + k);
         o.value.push_back(y);
         o.sigma.push_back(std::sqrt(noise * noise + scale[k] * scale[k] * own[3 * i + k]));
         o.norm.push_back(y * y);

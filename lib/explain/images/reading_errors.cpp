@@ -168,7 +168,7 @@ std::vector<double> ReadingErrors::errors(const Reading& reading, const PartsOf&
       const float* const v = &image.picture.data[3 * at];
       values.push_back({v[0], v[1], v[2]});
       square += dot(values.back(), values.back());
-      for (int c = 0; c < 3; ++c) noise2 += squared(noise_sigma(image, values.back()[c]));
+      for (std::size_t c = 0; c < 3; ++c) noise2 += squared(noise_sigma(image, v[c], 3 * at + c));
     }
     if (kept.size() < fewest_of_picture || !(square > 0)) return;
     errors[i] = std::sqrt(std::max(0.0, unexplained(values, parts_of(i, kept)) - noise2) / square);
