@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 #include "linear/solve.h"
-#include "stats/distributions.h"
+#include "stats/anova.h"
 
 namespace gonio::photograph {
 namespace {
@@ -178,8 +178,7 @@ class Finding {
     const Eigen::VectorXd h = solution_.head(index(terms())), at = basis(out_.reference);
     const double free = static_cast<double>(flicker_.size() - terms()), count = static_cast<double>(terms());
     const double f = h.dot(linear::Ldlt(covariance_).solve(h)) / count;
-    // Upper tail of the F distribution (Abramowitz & Stegun 1964, 26.6.2).
-    out_.p = stats::beta_regularised(free / (free + count * f), free / 2, count / 2);
+    out_.p = stats::f_upper(f, count, free);
     out_.rows.push_back({0, 0, 0});
     for (std::size_t i = 1; i <= table_pieces; ++i) {
       const double code = most_ * static_cast<double>(i) / table_pieces;

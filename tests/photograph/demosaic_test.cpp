@@ -11,26 +11,14 @@
 #include "base/random.h"
 #include "data.h"
 #include "io/picture.h"
+#include "mosaic_world.h"
 
 namespace gonio::photograph {
 namespace {
 
-constexpr std::array grids{"BayerRG", "BayerGR", "BayerGB", "BayerBG"};
+using tests::Samples;
 
-struct Samples {
-  int width, height;
-  std::vector<float> value, variance;
-  std::vector<std::uint8_t> trusted;
-  Samples(int w, int h)
-      : width(w),
-        height(h),
-        value(static_cast<std::size_t>(w * h)),
-        variance(value.size(), 1),
-        trusted(value.size(), 1) {}
-  Demosaiced demosaiced(const Mosaic& mosaic, Demosaicing how) const {
-    return demosaic({width, height, value, variance, trusted}, mosaic, how);
-  }
-};
+constexpr std::array grids{"BayerRG", "BayerGR", "BayerGB", "BayerBG"};
 
 TEST(Demosaic, BringsBackWhatIsLinear) {
   for (const char* grid : grids)
@@ -153,7 +141,7 @@ TEST(Demosaic, LeavesOutWhatCannotBeTrusted) {
 // 21.58 and 21.44 dB by OpenCV's bilinear and its way along edges, 8 bit, on the same mosaic (SOURCE.md there).
 TEST(Demosaic, ARecordedMosaicIsAsNearToItsTruthAsAPeers) {
   GONIO_NEEDS_DATA("raw/klimt_bayer");
-  const auto folder = tests::data("raw/klimt_bayer");
+  const auto folder = gonio::tests::data("raw/klimt_bayer");
   const io::Image truth = io::read_picture(folder / "Klimt_truth.png");
   // The files' names say the grid of the picture; what lies in them is its transpose.
   for (const auto& [corner, grid] : {std::pair{"RGGB", "BayerRG"}, {"GRBG", "BayerGB"}}) {

@@ -12,6 +12,7 @@
 #include "data.h"
 #include "geom/angle.h"
 #include "io/picture.h"
+#include "mosaic_world.h"
 #include "photograph/raw_view.h"
 
 namespace gonio::photograph {
@@ -23,16 +24,8 @@ struct Light {
   double s0, s1, s2;
 };
 
-struct Samples {
-  int width, height;
-  std::vector<float> value, variance;
-  std::vector<std::uint8_t> trusted;
-  Samples(int w, int h)
-      : width(w),
-        height(h),
-        value(static_cast<std::size_t>(w * h)),
-        variance(value.size(), 1),
-        trusted(value.size(), 1) {}
+struct Samples : tests::Samples {
+  using tests::Samples::Samples;
   template <class Of>
   void show(const Of& light) {
     for (int y = 0; y < height; ++y)
@@ -42,7 +35,7 @@ struct Samples {
             static_cast<float>(behind_polarizer(s.s0, s.s1, s.s2, polarizer_angle(x, y)));
       }
   }
-  Demosaiced stokes(Demosaicing how) const { return demosaic({width, height, value, variance, trusted}, grid, how); }
+  Demosaiced stokes(Demosaicing how) const { return demosaiced(grid, how); }
 };
 
 TEST(Polarizers, BringBackLightThatIsLinearOverThePicture) {
@@ -140,7 +133,7 @@ Degrees degrees_of(const char* name) {
   recipe.noise = manifest::Noise{100, 0.5};
   recipe.demosaicing = Demosaicing::bilinear;
   recipe.blooming_px = 0;
-  const DevelopedView view = develop_view({name, {tests::data("polarization/imx250mzr") / name}, {1.0}}, recipe);
+  const DevelopedView view = develop_view({name, {gonio::tests::data("polarization/imx250mzr") / name}, {1.0}}, recipe);
   std::vector<double> degrees;
   const int y = view.picture.channel("Y"), s1 = view.picture.channel("s1.Y"), s2 = view.picture.channel("s2.Y");
   for (std::size_t i = 0; i < view.picture.pixels(); ++i) {
