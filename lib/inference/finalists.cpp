@@ -202,6 +202,13 @@ void Finalists::look_at_minor(std::size_t place) {
   list_[place].with_minor = best;
 }
 
+bool is_within(const Candidate& part, const Candidate& whole) {
+  if (part.id() != whole.id()) return false;
+  if (part.on == whole.on) return true;
+  const auto is_on = [&](const std::string& target) { return std::ranges::find(whole.on, target) != whole.on.end(); };
+  return !part.on.empty() && part.family == whole.family && std::ranges::all_of(part.on, is_on);
+}
+
 // Of its mechanisms, those that are finer than need be. Where plainer forms of the very same one were refused, its
 // being a finer form says nothing.
 double Finalists::finer_ones(const Finalist& f) const {
@@ -213,7 +220,7 @@ double Finalists::finer_ones(const Finalist& f) const {
   for (const std::size_t c : f.model.candidates) {
     if (!all[c].finer) continue;
     const bool has_forms = std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
-      return !other.finer && other.id() == all[c].id() && other.on == all[c].on;
+      return !other.finer && is_within(other, all[c]);
     });
     count += !has_forms || plainer_stands;
   }

@@ -34,6 +34,9 @@ struct Finalist {
 // Is it what may be named: refused by no rule, none of its mechanisms too small?
 bool matters(const Finalist& f);
 
+// The same mechanism on the same targets, or, of one family, on some of them.
+bool is_within(const Candidate& part, const Candidate& whole);
+
 class Finalists {
  public:
   Finalists(const Race& race, const Options& options, const Model& base, const ResidualStructure& before);
@@ -57,6 +60,7 @@ class Finalists {
 
  private:
   std::set<std::string> physics_of(const Finalist& f) const;  // "sensor.non-linearity/camera", whatever the form
+  bool is_form_of(const Finalist& f, const Finalist& of) const;
   const Finalist& plainest_form(const Finalist& of) const;
   std::map<std::string, double> inclusions() const;  // by physics_of
   // Where no few sets are likelier than not together: what all likely ones hold, if that is a set of its own.

@@ -39,10 +39,10 @@ std::size_t the_other(const Set& a, const Set& b) {
   return *std::find_if(b.begin(), b.end(), [&](std::size_t c) { return !contains(a, c); });
 }
 
-// One mechanism on the same things, in another form: a power law and a spline of one response.
+// One mechanism on the same things, in another form (a power law and a spline of one response), or on some of them.
 bool same_physics(const Problem& problem, std::size_t a, std::size_t b) {
   const Candidate &one = problem.candidates()[a], &other = problem.candidates()[b];
-  return one.id() == other.id() && one.on == other.on;
+  return is_within(one, other) || is_within(other, one);
 }
 
 // Is `f` the likeliest set in another form of one of its mechanisms? Two forms of one thing are no two explanations.

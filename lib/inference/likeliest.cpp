@@ -20,13 +20,22 @@ bool matters(const Finalist& f) {
   return f.refused.empty() && !(f.statistics.times < 0);
 }
 
+// Is each of these mechanisms one of those, or one of those on fewer targets?
+bool Finalists::is_form_of(const Finalist& f, const Finalist& of) const {
+  const std::vector<Candidate>& all = race_.system().problem().candidates();
+  return f.model.candidates.size() == of.model.candidates.size() &&
+         std::ranges::all_of(f.model.candidates, [&](std::size_t part) {
+           return std::ranges::any_of(of.model.candidates,
+                                      [&](std::size_t whole) { return is_within(all[part], all[whole]); });
+         });
+}
+
 // Of forms of one thing the plainest that unseen groups do not clearly call worse: a response is a power law before it
-// is a spline.
+// is a spline, and one picture too bright before two.
 const Finalist& Finalists::plainest_form(const Finalist& of) const {
   const Finalist* plainest = &of;
   for (const Finalist& f : list_) {
-    if (!matters(f) || physics_of(f) != physics_of(of) || f.model.candidates.size() != of.model.candidates.size())
-      continue;
+    if (!matters(f) || !is_form_of(f, of)) continue;
     if (!(f.statistics.numbers < plainest->statistics.numbers)) continue;
     if (errors_between(f.model.held_out, of.model.held_out, 0) < form_errors) plainest = &f;
   }

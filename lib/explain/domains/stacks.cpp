@@ -31,7 +31,6 @@ std::vector<Untouched> stack_reasons() {
       {"optics.ghost", "needs a bright source in the picture; readings of sites are even about them"},
       {"sensor.clipped-resampling", "sites lie where their neighbours are even"},
       {"sensor.crosstalk", "sites lie where their neighbours are even, and the tint of each is free"},
-      {"sensor.exposure", "lamps have free strengths, and exposures their shutter: a factor on one picture is either"},
       {"sensor.prnu", "a pixel's gain is its patch's albedo, which is free"},
       {"sensor.row-pattern",
        "readings of one patch share a row, and lamps their strengths, which are free in every picture"},

@@ -12,6 +12,7 @@ struct ExposureFacts {    // of a stack, for bounds and starts
   double shortest_s = 0;  // exposure
   bool timed = false;     // every picture states its time
   std::span<const double> readings;
+  std::span<const double> standing_out;  // by picture: odd_pictures.h
 };
 
 struct ExposureBinding {

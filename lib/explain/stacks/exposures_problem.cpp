@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "explain/stacks/odd_pictures.h"
 #include "manifest/document.h"
 #include "stats/intervals.h"
 
@@ -47,7 +48,7 @@ std::vector<Taken> taken(const Stack& stack) {
   for (const StackImage& image : stack.images) first = std::min(first, image.time_s.value_or(first));
   std::vector<Taken> all;
   for (const StackImage& image : stack.images)
-    all.push_back({image.exposure_s, image.gain, image.time_s ? *image.time_s - first : 0});
+    all.push_back({image.exposure_s, image.gain, image.time_s ? *image.time_s - first : 0, all.size()});
   return all;
 }
 
@@ -121,7 +122,8 @@ void ExposuresProblem::add_rows() {
 
 // What the manifest's mechanisms already say of the camera belongs to the base model and is not proposed again.
 void ExposuresProblem::add_mechanisms(const manifest::Document& document) {
-  ExposureFacts facts{taken_[0].exposure_s, true, observations_.value};
+  const std::vector<double> odd = standing_out(stack_, sites_);
+  ExposureFacts facts{taken_[0].exposure_s, true, observations_.value, odd};
   for (const StackImage& image : stack_.images) {
     facts.shortest_s = std::min(facts.shortest_s, image.exposure_s);
     facts.timed = facts.timed && image.time_s.has_value();
@@ -152,6 +154,7 @@ void ExposuresProblem::add_conditions() {
       expected_reading.push_back(linear_radiance(stack_, noise_, sites_[s]) * taken_[g].exposure_s * taken_[g].gain);
   std::vector<Condition> all = {{"image.radiance", "1", "sensor", expected_reading, {}, "1"},
                                 {"image.exposure", "s", "sensor", {}, expected_reading, "1"},
+                                {"image.identity", "1", "sensor", {}, expected_reading, "1"},
                                 {"image.mean", "1", "optics", {}, {}, "1"},
                                 {"camera.image-radius", "half width", "optics", {}, expected_reading, "1"},
                                 {"camera.image-y", "px", "sensor", {}, expected_reading, "1"},
@@ -165,6 +168,7 @@ void ExposuresProblem::add_conditions() {
     for (const std::size_t s : rows_[g]) {
       const Site& site = sites_[s];
       const double values[] = {image.exposure_s,
+                               static_cast<double>(g),
                                mean,
                                std::hypot(site.x - cx, site.y - cy) / half,
                                static_cast<double>(site.y),

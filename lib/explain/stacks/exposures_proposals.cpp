@@ -52,6 +52,7 @@ ProposedRows ExposuresProblem::propose(std::span<const double> values, std::size
   const ReadingChain now = chain(values);
   Taken at = taken_[p.like];
   at.exposure_s = p.exposure_s;
+  at.image = Taken::unseen;
   ProposedRows rows;
   for (std::size_t s = 0; s < sites_.size(); ++s) {
     const int channel = sites_[s].channel;

@@ -1,12 +1,13 @@
 // From a scene's radiance to the reading in one picture of a stack of exposures, in the order of
 // render/sensor_chain.h, with the equations of the mechanisms:
-//   u = radiance times the time that the shutter was open, gain and the drifting lamp
-//   v = full scale of (response of (u under a veil, channel by channel) + offset)
+//   u = radiance times the time that the shutter was open (in this picture longer by a share of its own), gain and the
+//   drifting lamp v = full scale of (response of (u under a veil, channel by channel) + offset)
 // Radiance is in readings per second: what a linear sensor would read after one second.
 #pragma once
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "light/mechanisms/light_drift.h"
 #include "render/mechanisms/optics_veiling_glare.h"
@@ -17,13 +18,16 @@
 
 namespace gonio::explain::stacks {
 
-struct Taken {                                   // how a picture was taken
-  double exposure_s = 1, gain = 1, since_s = 0;  // since the first picture of the stack
+struct Taken {                                                         // how a picture was taken
+  double exposure_s = 1, gain = 1, since_s = 0;                        // since the first picture of the stack
+  std::size_t image = unseen;                                          // its place in the stack
+  static constexpr std::size_t unseen = static_cast<std::size_t>(-1);  // of a picture that was not taken
 };
 
 struct ReadingChain {
   std::array<render::Response, 3> response;
   std::array<double, 3> mean_radiance{};
+  std::vector<double> odd;  // by image: by how much its exposure is longer than stated; empty: none is
   double extra_s = 0, drift = 0, drift_s = 600, glare_share = 0, offset = 0, full_scale = 0;
 
   double operator()(double radiance, int channel, const Taken& at) const {
@@ -41,7 +45,8 @@ struct ReadingChain {
  private:
   double effective_s(const Taken& at) const {
     const double open_s = equation::sensor_shutter(at.exposure_s, extra_s, at.exposure_s);
-    return open_s * at.gain * equation::light_drift(drift, drift_s, at.since_s);
+    const double longer = at.image < odd.size() ? odd[at.image] : 0;
+    return open_s * (1 + longer) * at.gain * equation::light_drift(drift, drift_s, at.since_s);
   }
 };
 

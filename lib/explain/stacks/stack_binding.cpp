@@ -1,6 +1,7 @@
 #include "explain/stacks/stack_binding.h"
 
 #include "explain/stacks/stack_manifest.h"
+#include "manifest/document.h"
 
 namespace gonio::explain::stacks {
 namespace {
@@ -41,14 +42,19 @@ void StackEntry::add_base(Parameter parameter) {
   parameters_.push_back(std::move(parameter));
 }
 
-void StackEntry::propose(const std::vector<std::size_t>& numbers, std::vector<std::string> on) {
+void StackEntry::propose(const std::vector<std::size_t>& numbers, std::vector<std::string> on, bool finer) {
   if (is_given(document_, mechanism_.id, target_)) return;
   Candidate candidate;
   candidate.mechanism = &mechanism_;
   for (const std::size_t number : numbers) candidate.parameters.push_back(first + number);
   candidate.family = mechanism_.id;
   candidate.on = std::move(on);
+  candidate.finer = finer;
   candidates_.push_back(std::move(candidate));
+}
+
+bool StackEntry::is_stated() const {
+  return document_.mechanisms.contains(mechanism_.id);
 }
 
 void StackEntry::propose_all(std::vector<std::string> on) {

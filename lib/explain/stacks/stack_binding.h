@@ -30,8 +30,10 @@ class StackEntry {
   void add_base(Parameter parameter);
   // A candidate of these numbers, counted from `first`; nothing where the manifest has switched the mechanism on.
   // Several are alternatives of one family.
-  void propose(const std::vector<std::size_t>& numbers, std::vector<std::string> on = {});
+  void propose(const std::vector<std::size_t>& numbers, std::vector<std::string> on = {}, bool finer = false);
   void propose_all(std::vector<std::string> on = {});
+  // Does the manifest say anything of the mechanism, of whatever target?
+  bool is_stated() const;
   std::size_t count() const { return parameters_.size() - first; }
 
   const Stack& stack;

@@ -12,7 +12,7 @@ const Mechanism& sensor_exposure() {
       .source = "EMVA Standard 1288, release 4.0, section 6 (exposure time as the independent variable)",
       .stage = "sensor",
       .target = Target::scene,
-      .domains = {"images"},
+      .domains = {"images", "stacks"},
       .parameters = {{.name = "relative",
                       .unit = "1",
                       .neutral = 0,

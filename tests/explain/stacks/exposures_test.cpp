@@ -149,6 +149,40 @@ TEST(Exposures, ShutterIsFound) {
   EXPECT_NEAR(r.value("sensor.shutter.extra_s"), world.extra_s, 0.1 * world.extra_s);
 }
 
+// One picture of seven whose shutter was open longer or shorter than was written down, now this one and now that.
+TEST(Exposures, OneWrongShutterTimeIsFoundAndItsIntervalsCover) {
+  constexpr int runs = 6;
+  int covered = 0;
+  for (int k = 0; k < runs; ++k) {
+    const std::size_t odd = static_cast<std::size_t>(k + 1) % 7;
+    ExposureWorld world;
+    world.exposures_s.push_back(0.256);
+    world.longer.assign(7, 0);
+    world.longer[odd] = k % 2 == 0 ? 0.05 : -0.08;
+    world.seed = 60 + k;
+    const Outcome r = run(world, 0.001);  // a short exposure is a small part of all light
+    ASSERT_EQ(r.named, (Names{"sensor.exposure"})) << k << ": " << told(r);
+    ASSERT_EQ(r.explanation.estimates.size(), 1u) << told(r);
+    const Estimate& e = r.explanation.estimates[0];
+    EXPECT_EQ(r.problem->parameters()[e.parameter].name, "e" + std::to_string(odd) + "/relative");
+    EXPECT_NEAR(e.value, world.longer[odd], 0.01);
+    covered += e.lower_95 <= world.longer[odd] && world.longer[odd] <= e.upper_95;
+  }
+  EXPECT_GE(covered, 4);  // of 6 at 95 %: three or fewer with probability 0.002
+}
+
+TEST(Exposures, AWrongShutterTimeIsCarried) {
+  const tests::ScratchFolder folder;
+  ExposureWorld world;
+  world.exposures_s.push_back(0.256);
+  world.longer = {0, 0, 0.06, 0, 0, 0, 0};
+  Outcome first = run(record(world, folder.path()), 0.003);
+  ASSERT_EQ(first.named, (Names{"sensor.exposure"})) << told(first);
+  first.problem->apply(first.explanation, first.document);
+  const Outcome again = run(first.document, 0.003);
+  EXPECT_EQ(again.explanation.verdict, Verdict::null) << told(again);
+}
+
 TEST(Exposures, NothingIsNamedOfALinearSensor) {
   for (int k = 0; k < 5; ++k) {
     ExposureWorld world;

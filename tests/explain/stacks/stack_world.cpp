@@ -47,10 +47,12 @@ manifest::Document record(const ExposureWorld& world, const std::filesystem::pat
   for (std::size_t g = 0; g < world.exposures_s.size(); ++g) {
     std::mt19937_64 random(world.seed * 1000003 + g);
     io::Image picture(world.width, world.height, names);
+    const double open_s =
+        (world.exposures_s[g] + world.extra_s) * (1 + (world.longer.empty() ? 0 : world.longer.at(g)));
     for (int y = 0; y < world.height; ++y)
       for (int x = 0; x < world.width; ++x)
         for (int c = 0; c < world.channels; ++c) {
-          double v = std::exp(scene_log(x, y, c, world)) * scale * (world.exposures_s[g] + world.extra_s);
+          double v = std::exp(scene_log(x, y, c, world)) * scale * open_s;
           if (world.light) v = world.light(v, world.times_s.at(g));
           v = static_cast<double>(std::poisson_distribution<long>(std::min(50.0, v) * world.electrons)(random)) /
               world.electrons;

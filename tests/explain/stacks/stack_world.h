@@ -16,6 +16,7 @@ struct ExposureWorld {
   std::vector<double> times_s{};                   // when each was taken; empty: not said
   std::function<double(double)> response{};        // of light over full scale; empty: linear
   std::function<double(double, double)> light{};   // (light, time) -> light; empty: as it is
+  std::vector<double> longer{};                    // share by which each shutter was open longer; empty: 0
   double electrons = 20000, read = 0.0005;         // at full scale; of full scale
   double offset = 0, full_scale = 0, extra_s = 0;  // of full scale; 0: no limit but that of codes; s
   int bits = 0;                                    // 0: OpenEXR
