@@ -37,6 +37,7 @@ const Domain& boards() {
            {"sensor.", "corners are places; how wrong grey levels move them all alike is board.corner-bias"},
            {"surface.", "corners are places, and keep no brightness"},
            {"volume.", "nothing lies between board and camera that light goes through"},
+           {"scene.", "every view has its own pose: a board may move between them"},
            {"transport.", "corners are places, and keep no brightness"},
            {"geometry.", "every view's pose is free, and the board's own shape is board.warp and board.scale"},
            {"reference.", "corners are places, and keep no brightness"},

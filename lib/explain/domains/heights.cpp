@@ -32,6 +32,7 @@ const Domain& heights() {
            {"light.", "a height map has no light"},
            {"optics.", "how an instrument sees is in its own transfer function, which a height map does not state"},
            {"sensor.", "a height map has heights and no grey levels"},
+           {"scene.", "a height map is one recording"},
            {"transport.", "a height map has no light"},
            {"volume.", "a height map ends at the surface"},
            {"reference.", "a height map is held against no reference"},

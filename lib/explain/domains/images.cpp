@@ -41,6 +41,7 @@ const Domain& images() {
            {"tracks.", "no point is followed: pixels are compared where they are"},
            {"marker.", "markers are tables of the model markers"},
            {"ct.", "no X-rays"},
+           {"scene.", "each picture is held against its own simulation: what stands elsewhere is geometry.pose"},
            {"reference.", "pictures are held against a simulation, and no white tile"},
            {"camera.thermal", "pictures of a scene state no temperature; corners with a column of it are boards"},
            {"camera.flat-port",

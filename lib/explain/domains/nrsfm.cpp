@@ -27,6 +27,7 @@ const Domain& nrsfm() {
           {"sensor.", "tracks are places, and keep no brightness"},
           {"surface.", "tracks are places, and keep no brightness"},
           {"volume.", "tracks are places, and keep no brightness"},
+          {"scene.", "everything moves: that is what is sought"},
           {"transport.", "tracks are places, and keep no brightness"},
           {"reference.", "tracks are places, and keep no brightness"},
           {"geometry.", "shape and motion are what is sought, and free in every frame"},

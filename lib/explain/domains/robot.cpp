@@ -60,6 +60,7 @@ const Domain& robot() {
            {"sensor.", "poses are places, and keep no brightness"},
            {"surface.", "poses are places, and keep no brightness"},
            {"volume.", "poses are places, and keep no brightness"},
+           {"scene.", "the board stands still, and each pose of it is held against the arm"},
            {"transport.", "poses are places, and keep no brightness"},
            {"reference.", "poses are places, and keep no brightness"},
            {"geometry.", "the board stands still and is measured; where it stands and where the camera sits is free"},

@@ -39,6 +39,7 @@ const Domain& tables() {
           {"sensor.crosstalk", "a row has no neighbours in a picture, and its channels are measured apart"},
           {"sensor.prnu", "a row names no pixel"},
           {"sensor.exposure", "a reading states its own exposure: sensor.shutter is what all of them have in common"},
+          {"scene.", "a row has no neighbours in a picture that could move"},
           {"transport.", "rows know of no other bodies"},
           {"volume.fog", "a row knows no way through the air; what lies on the way is volume.absorption"},
           {"surface.coat", "samples of a reflectance are those of one place: surface.interface"},

@@ -25,6 +25,7 @@ const Domain& volumes() {
           {"sensor.",
            "the detector's readings have been reconstructed: its faults show as ct.ring, ct.cupping and ct.streak"},
           {"surface.", "X-rays pass the surface as they find it"},
+          {"scene.", "a scan has no pictures that could be held against each other"},
           {"transport.", "what light does between bodies is ct.scatter for X-rays"},
           {"volume.", "the index of refraction of X-rays is one; what they lose on their way is the volume itself"},
           {"reference.", "the reference is a shape, and no white tile"},

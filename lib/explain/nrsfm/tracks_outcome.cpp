@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "inference/apart.h"
 #include "inference/wording.h"
 #include "manifest/document.h"
 #include "manifest/sections/camera.h"
@@ -342,39 +343,16 @@ void conclude_shapes(const TracksView& v, std::optional<std::size_t> candidate, 
 void conclude_outliers(const TracksView& v, std::size_t candidate, Explanation& e) {
   const Outliers& o = v.followed.outliers;
   const Candidate& c = v.problem.candidates()[candidate];
-  Hypothesis h;
-  h.name = c.id();
-  h.candidates = {candidate};
-  h.held_out = o.held_out_without;
-  h.effect = o.held_out_with > 0 ? 1 - o.held_out_without / o.held_out_with : 0;
-  h.wald_p = o.p;
+  inference::Apart apart{.candidate = candidate, .estimates = {}, .p = o.p};
+  apart.with = o.held_out_with, apart.without = o.held_out_without;
+  apart.effect = o.held_out_with > 0 ? 1 - o.held_out_without / o.held_out_with : 0;
   for (std::size_t k = 0; k < c.parameters.size(); ++k) {
     const Run& run = o.runs[k / 2];
     const double value = run.offset[k % 2], reach = 1.96 * run.sigma;
-    h.parameters.push_back({c.parameters[k], value, run.sigma, value - reach, value + reach, false});
+    apart.estimates.push_back({c.parameters[k], value, run.sigma, value - reach, value + reach, false});
   }
-  const bool important = h.effect >= e.smallest_effect, lacking = lacks_shapes(v, e);
-  if (!important) h.refused = "smaller than what matters";
-  if (lacking) h.refused = "deformation that the model lacks may look the same";
-  e.scoreboard.push_back(h);
-  if (lacking) return;
-  e.global_p = std::min(e.global_p, o.p);
-  e.significant = true;
-  if (!important) {
-    e.minor.push_back(e.scoreboard.size() - 1);
-    return;
-  }
-  e.important = true;
-  e.estimates.insert(e.estimates.end(), h.parameters.begin(), h.parameters.end());
-  if (e.verdict == Verdict::unknown) return;
-  if (e.verdict == Verdict::null) {
-    e.verdict = Verdict::named;
-    e.conditions.clear();
-    e.stage = c.mechanism->stage;
-    e.held_out_before = o.held_out_with;
-    e.held_out_after = o.held_out_without;
-  }
-  e.named.push_back(candidate);
+  if (lacks_shapes(v, e)) apart.refused = "deformation that the model lacks may look the same";
+  inference::join(v.problem, apart, e);
 }
 
 Illustration illustrate_tracks(const TracksView& v, const Explanation& e) {

@@ -3,6 +3,7 @@
 #pragma once
 #include <span>
 
+#include "explain/stacks/moved.h"
 #include "explain/stacks/reading_chain.h"
 #include "explain/stacks/stack_binding.h"
 
@@ -12,6 +13,7 @@ struct ExposureFacts {    // of a stack, for bounds and starts
   double shortest_s = 0;  // exposure
   bool timed = false;     // every picture states its time
   std::span<const double> readings;
+  std::span<const MovedRegion> moved;
   std::span<const double> standing_out;  // by picture: odd_pictures.h
 };
 

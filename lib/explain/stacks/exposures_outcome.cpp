@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "explain/stacks/exposures_problem.h"
+#include "explain/stacks/moved_outcome.h"
 #include "explain/stacks/stack_manifest.h"
 #include "explain/stacks/stack_pictures.h"
 #include "inference/explanation.h"
@@ -10,6 +11,11 @@
 
 namespace gonio::explain::stacks {
 std::string ExposuresProblem::remarks(const Explanation& e) const {
+  const std::string moved = moved_remark(stack_, moved_), bent = response_remark(e);
+  return moved.empty() || bent.empty() ? moved + bent : moved + " " + bent;
+}
+
+std::string ExposuresProblem::response_remark(const Explanation& e) const {
   const auto response =
       std::ranges::find_if(e.named, [&](std::size_t c) { return written(c) == Written::as_response; });
   if (response == e.named.end()) return "";
@@ -46,6 +52,7 @@ void ExposuresProblem::apply(const Explanation& e, manifest::Document& document)
 Illustration ExposuresProblem::illustrate(const Explanation& e, const std::filesystem::path& out,
                                           manifest::Document& document) const {
   Illustration result;
+  add_moved(stack_, moved_, result);
   std::vector<CurveDot> dots;
   const ReadingChain before = chain(e.base_values), after = chain(e.values);
   std::size_t row = 0;

@@ -6,9 +6,14 @@
 #include <limits>
 
 #include "base/error.h"
+#include "explain/stacks/moved_outcome.h"
 #include "explain/stacks/odd_pictures.h"
 #include "manifest/document.h"
 #include "stats/intervals.h"
+
+namespace gonio::mechanism {
+const Mechanism& scene_moved();
+}
 
 namespace gonio::explain::stacks {
 namespace {
@@ -63,6 +68,9 @@ double mean_reading(const StackImage& image) {
 ExposuresProblem::ExposuresProblem(const manifest::Document& document, Stack stack, const SiteOptions& options)
     : stack_(std::move(stack)), noise_(stack_), taken_(taken(stack_)), mean_radiance_(mean_radiance(stack_)) {
   const std::string place = manifest::place(document, "/images/" + std::to_string(stack_.images[0].entry));
+  leave_out_stated(document, stack_);
+  if (!document.mechanisms.contains(mechanism::scene_moved().id)) moved_ = find_moved(stack_, noise_);
+  leave_out(moved_, stack_);
   sites_ = choose_sites(stack_, noise_, options, place);
   add_radiances();
   add_rows();
@@ -123,7 +131,7 @@ void ExposuresProblem::add_rows() {
 // What the manifest's mechanisms already say of the camera belongs to the base model and is not proposed again.
 void ExposuresProblem::add_mechanisms(const manifest::Document& document) {
   const std::vector<double> odd = standing_out(stack_, sites_);
-  ExposureFacts facts{taken_[0].exposure_s, true, observations_.value, odd};
+  ExposureFacts facts{taken_[0].exposure_s, true, observations_.value, moved_.regions, odd};
   for (const StackImage& image : stack_.images) {
     facts.shortest_s = std::min(facts.shortest_s, image.exposure_s);
     facts.timed = facts.timed && image.time_s.has_value();
@@ -255,6 +263,17 @@ std::optional<double> ExposuresProblem::noise_factor(std::span<const double> res
   const double rows = static_cast<double>(row), radiances = static_cast<double>(sites_.size());
   return std::max(
       0.2, stats::median(differences) / 0.6745 / std::sqrt(2.0) * std::sqrt(rows / std::max(1.0, rows - radiances)));
+}
+
+std::vector<std::size_t> ExposuresProblem::tested_apart() const {
+  std::vector<std::size_t> apart;
+  for (std::size_t c = 0; c < candidates_.size(); ++c)
+    if (candidates_[c].id() == mechanism::scene_moved().id) apart.push_back(c);
+  return apart;
+}
+
+void ExposuresProblem::conclude(Explanation& e) const {
+  for (const std::size_t c : tested_apart()) conclude_moved(*this, moved_, c, e);
 }
 
 std::vector<std::unique_ptr<Problem>> exposures_problems(const manifest::Document& document) {

@@ -5,7 +5,7 @@
 //
 // Groups are the pictures, blocks parts of a picture. A picture that is left out is predicted from the radiances that
 // the others show and the response that was fitted to them. Sites are few (a hundred and fifty) because their
-// radiances belong to all pictures.
+// radiances belong to all pictures. Regions of single pictures in which something moved (moved.h) are left out.
 #pragma once
 #include <memory>
 
@@ -32,6 +32,9 @@ class ExposuresProblem final : public Problem {
   // Another exposure, beyond the longest and the shortest and in the widest gap, and the longest without any light.
   std::vector<Proposal> proposals() const override;
   ProposedRows propose(std::span<const double> values, std::size_t proposal) const override;
+  // What moved was found before anything is fitted.
+  std::vector<std::size_t> tested_apart() const override;
+  void conclude(Explanation& explanation) const override;
   std::string remarks(const Explanation& explanation) const override;
   void apply(const Explanation& explanation, manifest::Document& document) const override;
   Illustration illustrate(const Explanation& explanation, const std::filesystem::path& out,
@@ -52,6 +55,7 @@ class ExposuresProblem final : public Problem {
     bool dark = false;
   };
   std::vector<Proposed> proposed() const;
+  std::string response_remark(const Explanation& explanation) const;
   void add_radiances();
   void add_rows();
   void add_conditions();
@@ -61,6 +65,7 @@ class ExposuresProblem final : public Problem {
 
   Stack stack_;
   ReadingNoise noise_;
+  Moved moved_;
   std::vector<Site> sites_;
   std::vector<std::size_t> shown_in_;           // by site: the image that its radiance is stated in
   std::vector<std::vector<std::size_t>> rows_;  // by image: sites, ascending

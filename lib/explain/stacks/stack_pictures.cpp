@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <queue>
 
 #include "base/parallel.h"
+#include "explain/stacks/grid_regions.h"
 #include "io/picture.h"
 #include "manifest/document.h"
 
@@ -86,33 +86,14 @@ double fitted_log_radiance(const ReadingChain& chain, const Site& site, const st
   return at;
 }
 
-// Groups of neighbouring grid points where `counts`, the largest first.
 std::vector<Box> boxes_of(const std::vector<std::uint8_t>& counts, const Effects& effects, const std::string& group) {
-  std::vector<std::uint8_t> seen(counts.size());
-  std::vector<std::pair<std::size_t, Box>> found;
-  const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * effects.width + x); };
-  for (int y = 0; y < effects.height; ++y)
-    for (int x = 0; x < effects.width; ++x) {
-      if (!counts[at(x, y)] || seen[at(x, y)]) continue;
-      std::queue<std::pair<int, int>> open;
-      open.push({x, y});
-      seen[at(x, y)] = 1;
-      int left = x, right = x, top = y, bottom = y;
-      std::size_t size = 0;
-      for (; !open.empty(); open.pop(), ++size) {
-        const auto [u, v] = open.front();
-        left = std::min(left, u), right = std::max(right, u), top = std::min(top, v), bottom = std::max(bottom, v);
-        for (int b = std::max(0, v - 1); b <= std::min(effects.height - 1, v + 1); ++b)
-          for (int a = std::max(0, u - 1); a <= std::min(effects.width - 1, u + 1); ++a)
-            if (counts[at(a, b)] && !seen[at(a, b)]) seen[at(a, b)] = 1, open.push({a, b});
-      }
-      const int s = effects.stride;
-      if (size >= least_box)
-        found.push_back({size, {group, left * s, top * s, (right - left + 1) * s, (bottom - top + 1) * s}});
-    }
-  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  const std::vector<GridRegion> found = grid_regions(counts, effects.width, effects.height, least_box);
   std::vector<Box> boxes;
-  for (std::size_t k = 0; k < std::min(most_boxes, found.size()); ++k) boxes.push_back(found[k].second);
+  for (std::size_t k = 0; k < std::min(most_boxes, found.size()); ++k) {
+    const GridRegion& r = found[k];
+    const int s = effects.stride;
+    boxes.push_back({group, r.left * s, r.top * s, (r.right - r.left + 1) * s, (r.bottom - r.top + 1) * s});
+  }
   return boxes;
 }
 

@@ -52,7 +52,10 @@ manifest::Document record(const ExposureWorld& world, const std::filesystem::pat
     for (int y = 0; y < world.height; ++y)
       for (int x = 0; x < world.width; ++x)
         for (int c = 0; c < world.channels; ++c) {
-          double v = std::exp(scene_log(x, y, c, world)) * scale * open_s;
+          double scene = std::exp(scene_log(x, y, c, world));
+          for (const ExposureWorld::Passer& p : world.passers)
+            if (p.picture == g && std::hypot(x - p.x, y - p.y) < p.radius) scene = p.light;
+          double v = scene * scale * open_s;
           if (world.light) v = world.light(v, world.times_s.at(g));
           v = static_cast<double>(std::poisson_distribution<long>(std::min(50.0, v) * world.electrons)(random)) /
               world.electrons;

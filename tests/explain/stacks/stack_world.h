@@ -13,10 +13,16 @@ namespace gonio::tests {
 struct ExposureWorld {
   int width = 72, height = 60, channels = 1;
   std::vector<double> exposures_s{0.004, 0.008, 0.016, 0.032, 0.064, 0.128};
-  std::vector<double> times_s{};                   // when each was taken; empty: not said
-  std::function<double(double)> response{};        // of light over full scale; empty: linear
-  std::function<double(double, double)> light{};   // (light, time) -> light; empty: as it is
-  std::vector<double> longer{};                    // share by which each shutter was open longer; empty: 0
+  std::vector<double> times_s{};                  // when each was taken; empty: not said
+  std::function<double(double)> response{};       // of light over full scale; empty: linear
+  std::function<double(double, double)> light{};  // (light, time) -> light; empty: as it is
+  std::vector<double> longer{};                   // share by which each shutter was open longer; empty: 0
+  struct Passer {                                 // something opaque of one radiance, in one picture alone
+    std::size_t picture = 0;
+    int x = 0, y = 0, radius = 0;
+    double light = 0;  // over what the scene has there in the middle of its brightness
+  };
+  std::vector<Passer> passers{};
   double electrons = 20000, read = 0.0005;         // at full scale; of full scale
   double offset = 0, full_scale = 0, extra_s = 0;  // of full scale; 0: no limit but that of codes; s
   int bits = 0;                                    // 0: OpenEXR

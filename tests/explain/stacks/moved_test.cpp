@@ -1,0 +1,115 @@
+// What moved between the pictures of a stack: found where it was, and nowhere else, whatever the camera's response.
+#include "explain/stacks/moved.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "data.h"
+#include "explain/engine.h"
+#include "explain/stacks/exposures_problem.h"
+#include "explain/stacks/stack_world.h"
+#include "manifest/document.h"
+
+namespace gonio::explain::stacks {
+namespace {
+
+using tests::ExposureWorld;
+
+Moved find(const ExposureWorld& world) {
+  const tests::ScratchFolder folder;
+  const manifest::Document document = record(world, folder.path());
+  const Stack stack = read_stack(document, stacks_of(document, Kind::exposures).at(0), Kind::exposures);
+  return find_moved(stack, ReadingNoise(stack));
+}
+
+struct Outcome {
+  std::unique_ptr<Problem> problem;
+  Explanation explanation;
+  std::vector<std::string> named;
+};
+Outcome explained(const manifest::Document& document) {
+  Outcome r;
+  r.problem = std::move(exposures_problems(document).at(0));
+  r.explanation = explain(*r.problem, {});
+  for (const std::size_t c : r.explanation.named) r.named.push_back(r.problem->candidates()[c].id());
+  return r;
+}
+
+double film(double light) {
+  const double x = std::pow(std::max(1e-9, light) * 6, 0.9);
+  return x / (x + 1) * (std::pow(6.0, 0.9) + 1) / std::pow(6.0, 0.9);
+}
+
+// 40 stacks in which nothing moved, linear and on film, of floats and of codes, grey and in colour: none is found.
+TEST(Moved, NothingIsFoundWhereNothingMoved) {
+  for (int k = 0; k < 40; ++k) {
+    ExposureWorld world;
+    world.seed = 500 + k;
+    world.channels = k % 5 == 0 ? 3 : 1;
+    world.bits = k % 3 == 0 ? 8 : 0;
+    if (k % 2 == 1) world.response = film;
+    if (k % 4 == 2) world.longer = {0, 0.1, 0, 0, 0, 0};
+    const Moved moved = find(world);
+    EXPECT_TRUE(moved.regions.empty()) << k << ": picture " << moved.regions[0].image << ", p " << moved.p;
+  }
+}
+
+// 20 stacks with a disc of ten pixels' radius somewhere in one picture, of a brightness that the scene has, too: four in
+// five of its pixels are found (where it is as bright as what it hides, nobody could), and few others.
+TEST(Moved, ADiscIsFoundWhereItIs) {
+  int found = 0;
+  double inside = 0, outside = 0;
+  constexpr int runs = 20;
+  for (int k = 0; k < runs; ++k) {
+    ExposureWorld world;
+    world.seed = 700 + k;
+    if (k % 2 == 1) world.response = film, world.bits = 8;
+    const ExposureWorld::Passer passer{static_cast<std::size_t>(1 + k % 4), 15 + 2 * k, 15 + k, 10,
+                                       k % 3 == 0 ? 0.2 : 4.0};
+    world.passers = {passer};
+    const Moved moved = find(world);
+    if (moved.regions.empty()) continue;
+    ASSERT_EQ(moved.regions.size(), 1u) << k;
+    const MovedRegion& r = moved.regions[0];
+    EXPECT_EQ(r.image, passer.picture) << k;
+    ++found;
+    for (int y = 0; y < world.height; ++y)
+      for (int x = 0; x < world.width; ++x) {
+        const double away = std::hypot(x - passer.x, y - passer.y);
+        const bool marked = r.inside[static_cast<std::size_t>(y * world.width + x)] != 0;
+        inside += away < passer.radius && marked;
+        outside += away > passer.radius + 3 && marked;
+      }
+  }
+  EXPECT_GE(found, 17);  // of 20: three are clipped on the film, as is nearly what they hide
+  EXPECT_GT(inside, 0.8 * found * pi * 100);
+  EXPECT_LT(outside, 0.05 * found * pi * 100);
+}
+
+TEST(Moved, ItIsNamedCarriedAndDoesNotHideTheResponse) {
+  const tests::ScratchFolder folder;
+  ExposureWorld world;
+  world.response = [](double v) { return std::pow(v, 0.8); };
+  world.bits = 16;
+  world.passers = {{3, 30, 30, 10, 3}};
+  manifest::Document document = record(world, folder.path());
+  const Outcome first = explained(document);
+  EXPECT_EQ(first.named, (std::vector<std::string>{"sensor.non-linearity", "scene.moved"}))
+      << first.explanation.sentence;
+  first.problem->apply(first.explanation, document);
+  const Outcome again = explained(document);
+  EXPECT_EQ(again.explanation.verdict, Verdict::null) << again.explanation.sentence;
+}
+
+TEST(Moved, AloneItIsNamedWithItsPlace) {
+  const tests::ScratchFolder folder;
+  ExposureWorld world;
+  world.passers = {{4, 50, 20, 9, 4}};
+  const Outcome r = explained(record(world, folder.path()));
+  ASSERT_EQ(r.named, (std::vector<std::string>{"scene.moved"})) << r.explanation.sentence;
+  EXPECT_NE(r.explanation.sentence.find("moved"), std::string::npos) << r.explanation.sentence;
+}
+
+}  // namespace
+}  // namespace gonio::explain::stacks
