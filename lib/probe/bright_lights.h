@@ -35,6 +35,7 @@ struct Highlight {  // one region of one view
   Vec3 point_m{}, direction{};  // the ray
   Vec2 focus_m{};               // behind the point, where its neighbours seem to come from: tangential, sagittal
   Mat3 covariance{{}};          // of the direction: tangential
+  Mat3 own_covariance{{}};      // of the same, were the ball's place known exactly
   Rgb irradiance{}, irradiance_sigma{}, background{};
   double half_angle_rad = 0;
   bool clipped = false;

@@ -2,6 +2,7 @@
 #include "probe/probe_document.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/atomic_file.h"
@@ -15,6 +16,8 @@
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
+#include "manifest/sections/table.h"
+#include "probe/highlight_rows.h"
 #include "probe/probe_views.h"
 
 namespace gonio::probe {
@@ -125,6 +128,48 @@ std::string images_of(const manifest::Document& document, const BallViews& all, 
   return text;
 }
 
+// Where the ball mirrors the middle of the lamp, and how well the picture alone says so; nothing where it is not to be
+// seen.
+std::optional<std::array<Vec2, 2>> seen_at(const Highlight& h, const BallView& view) {
+  const MirrorBall mirror = view.mirror();
+  const auto pixel = [&](Vec3 direction) -> std::optional<Vec2> {
+    const auto shown = mirror.shown(normalized(direction));
+    if (!shown) return {};
+    return view.camera.project(inverse(view.world_from_camera) * shown->point_m);
+  };
+  constexpr double step = 1e-5;
+  const Basis f(h.direction);
+  const auto middle = pixel(h.direction), t = pixel(h.direction + f.t * step), b = pixel(h.direction + f.b * step);
+  if (!middle || !t || !b) return {};
+  const Vec2 by_t = (*t - *middle) * (1 / step), by_b = (*b - *middle) * (1 / step);
+  const double tt = dot(f.t, h.own_covariance * f.t), tb = dot(f.t, h.own_covariance * f.b),
+               bb = dot(f.b, h.own_covariance * f.b);
+  const auto sigma = [&](double a, double c) { return std::sqrt(a * a * tt + 2 * a * c * tb + c * c * bb); };
+  return {{*middle, {sigma(by_t.x, by_b.x), sigma(by_t.y, by_b.y)}}};
+}
+
+// Highlights of lamps that two views or more show, as a table for explain.
+void enter_highlights(manifest::Document& document, const ProbeRequest& request, const BallViews& all,
+                      const std::vector<Highlight>& spots, const std::vector<FoundLight>& lights,
+                      const std::vector<std::string>& names) {
+  std::vector<HighlightRow> rows;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    if (lights[l].seen.size() < 2) continue;
+    for (const std::size_t k : lights[l].seen) {
+      const std::size_t v = spots[k].view, b = all.ball_of_view[v];
+      const auto at = seen_at(spots[k], all.views[v]);
+      if (!at) continue;
+      rows.push_back({document.images[all.image_of_view[v]].id, std::to_string(b + 1), names[l], all.balls[b].ball,
+                      all.balls[b].covariance_m2, (*at)[0], (*at)[1]});
+    }
+  }
+  const std::string group = highlight_group(rows), name = request.name + "-highlights";
+  if (group.empty()) return;
+  const auto path = request.output_path(name + ".csv");
+  write_file(path, highlight_csv(rows));
+  document.tables[name] = highlight_table(manifest::add_file(document, path, name), group);
+}
+
 // Lights of these views, entered; their highlights leave the faces. Returns their names.
 std::vector<std::string> enter_lights(manifest::Document& document, const ProbeRequest& request, const BallViews& all,
                                       std::vector<Facing>& faces, const std::string& stem, std::string& csv) {
@@ -147,6 +192,7 @@ std::vector<std::string> enter_lights(manifest::Document& document, const ProbeR
     csv += row_of(names.back(), light, images_of(document, all, spots, light));
     say(names.back(), light);
   }
+  if (!request.each && !request.parallel) enter_highlights(document, request, all, spots, lights, names);
   return names;
 }
 

@@ -65,7 +65,8 @@ const Domain& robot() {
            {"geometry.", "the board stands still and is measured; where it stands and where the camera sits is free"},
            {"tracks.", "no shape deforms, and corners are named"},
            {"marker.", "poses come from boards; markers of other kinds are tables of the model markers"},
-           {"ct.", "no X-rays"}}};
+           {"ct.", "no X-rays"},
+           {"probe.", "a robot that carries a board carries no mirror ball"}}};
   return domain;
 }
 
