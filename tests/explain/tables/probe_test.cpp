@@ -131,7 +131,7 @@ TEST(Probe, DerivativesReachTheRowsThatAParameterReaches) {
 struct Count {
   int right = 0, wrong = 0, nothing = 0, covered = 0, intervals = 0;
 };
-// Named alone, or as one of those that cannot be told apart; anything else that is named is wrong.
+// `right`: named alone. What else is named is wrong.
 void count(Count& c, const Problem& problem, const Explanation& e, const std::string& id) {
   const std::string text = named(problem, e);
   if (text.empty())
@@ -146,6 +146,7 @@ void say(const char* what, const Count& c) {
               c.covered, c.intervals);
 }
 
+// Over 200 seeds 196 answers are "nothing" (19 of these 20).
 TEST(Probe, NothingIsNamedWhereNothingWasLeftOut) {
   Count c;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -158,6 +159,21 @@ TEST(Probe, NothingIsNamedWhereNothingWasLeftOut) {
   EXPECT_GE(c.nothing, 19);
 }
 
+std::vector<Vec3> ring_of_eyes(int count) {
+  std::vector<Vec3> eyes;
+  for (int v = 0; v < count; ++v) {
+    const double turn = 2 * pi * v / count;
+    eyes.push_back({0.55 * std::cos(turn), 0.55 * std::sin(turn), v % 2 == 0 ? 0.15 : 0.4});
+  }
+  return eyes;
+}
+
+void take_interval(Count& c, const Estimate* e, double truth) {
+  if (e == nullptr) return;
+  ++c.intervals, c.covered += e->lower_95 <= truth && truth <= e->upper_95;
+}
+
+// Intervals of single lamps rest on the few views that show them: with four the engine's cover 86 %.
 TEST(Probe, NearLampsAreNamedWithTheirDistances) {
   Count one, each;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -167,19 +183,21 @@ TEST(Probe, NearLampsAreNamedWithTheirDistances) {
     const TablesProblem problem = probe_world(seed, balls).problem();
     const Explanation e = explain(problem, {});
     count(one, problem, e, "probe.distance");
-    if (const Estimate* q = estimate_of(problem, e, "probe.distance.inverse_distance_per_m"))
-      ++one.intervals, one.covered += q->lower_95 <= 1 / d && 1 / d <= q->upper_95;
-    balls.distances_m = {0.5, 3, 0.9, 1.6};
+    take_interval(one, estimate_of(problem, e, "probe.distance.inverse_distance_per_m"), 1 / d);
+    balls.distances_m = {0.5, 3, 0.9, 1.6}, balls.eyes = ring_of_eyes(8);
     const TablesProblem several = probe_world(seed, balls).problem();
     const Explanation s = explain(several, {});
     count(each, several, s, "probe.distance");
     for (int l = 0; l < balls.lamps; ++l)
-      if (const Estimate* q = estimate_of(several, s, format("probe.distance.%d/inverse_distance_per_m", l + 1))) {
-        const double truth = 1 / balls.distances_m[static_cast<std::size_t>(l) % 4];
-        ++each.intervals, each.covered += q->lower_95 <= truth && truth <= q->upper_95;
-      }
+      take_interval(each, estimate_of(several, s, format("probe.distance.%d/inverse_distance_per_m", l + 1)),
+                    1 / balls.distances_m[static_cast<std::size_t>(l) % 4]);
   }
-  say("one distance", one), say("distances of 0.5 to 3 m", each);
+  say("one distance", one), say("distances of 0.5 to 3 m, eight views", each);
+  EXPECT_GE(one.right, 10);
+  EXPECT_GE(one.covered, 8);
+  EXPECT_GE(each.right, 10);
+  EXPECT_EQ(each.intervals, 80);
+  EXPECT_GE(each.covered, 70);  // fewer once in 1000 at a true coverage of 95 %
 }
 
 TEST(Probe, ABallThatStandsElsewhereIsNamed) {
@@ -187,30 +205,138 @@ TEST(Probe, ABallThatStandsElsewhereIsNamed) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Balls balls;
     Random random(seed, 30);
-    const Vec3 off = normalized(Vec3{random.normal(), random.normal(), random.normal()}) * (3e-4 + 7e-5 * seed);
+    const Vec3 off = normalized(Vec3{random.normal(), random.normal(), random.normal()}) *
+                     (2.3e-4 + 7e-5 * static_cast<double>(seed));
     balls.off = {off};
     const TablesProblem problem = probe_world(seed, balls).problem();
     const Explanation e = explain(problem, {});
     count(c, problem, e, "probe.centre");
     const char* axes[] = {"x", "y", "z"};
     for (int k = 0; k < 3; ++k)
-      if (const Estimate* s = estimate_of(problem, e, format("probe.centre.ball 1/shift_%s_m", axes[k])))
-        ++c.intervals, c.covered += s->lower_95 <= off[k] && off[k] <= s->upper_95;
+      take_interval(c, estimate_of(problem, e, format("probe.centre.ball 1/shift_%s_m", axes[k])), off[k]);
     balls.off = {}, balls.radius_off_m = 3e-4;
     const TablesProblem larger = probe_world(seed, balls).problem();
-    count(r, larger, explain(larger, {}), "probe.centre");
+    const Explanation l = explain(larger, {});
+    count(r, larger, l, "probe.centre");
+    take_interval(r, estimate_of(larger, l, "probe.centre.ball 1/radius_change_m"), 3e-4);
   }
-  say("centre", c), say("radius", r);
+  say("centre off by 0.3 to 0.93 mm", c), say("radius off by 0.3 mm", r);
+  EXPECT_GE(c.right, 9);
+  EXPECT_GE(c.covered, 26);  // of 30
+  EXPECT_GE(r.right, 9);
+  EXPECT_GE(r.covered, 8);
+}
+
+// What a centre was known to be uncertain by is no finding.
+TEST(Probe, AnErrorWithinTheStatedUncertaintyIsNoPhysics) {
+  Count c;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Balls balls;
+    balls.centre_sigma_m = 4e-4, balls.eyes = ring_of_eyes(5);
+    const TablesProblem problem = probe_world(seed + 50, balls).problem();
+    count(c, problem, explain(problem, {}), "-");
+  }
+  say("centre known to 0.4 mm", c);
+  EXPECT_GE(c.nothing, 5);
 }
 
 TEST(Probe, OneViewOfOneBallTellsNothing) {
+  for (const bool near : {false, true}) {
+    Balls balls;
+    balls.eyes = {{-0.6, 0, 0.1}}, balls.lamps = 12, balls.group = "lamp";
+    if (near)
+      balls.distances_m = {0.7};
+    else
+      balls.off = {{5e-4, 3e-4, 0}};
+    const TablesProblem problem = probe_world(5, balls).problem();
+    const Explanation e = explain(problem, {});
+    EXPECT_EQ(named(problem, e), "") << e.sentence;
+    EXPECT_FALSE(isolability_of(problem, e, "probe.distance", 1).visible);
+    EXPECT_FALSE(isolability_of(problem, e, "probe.centre", 3).visible);
+    EXPECT_FALSE(isolability_of(problem, e, "probe.centre", 1).visible);
+  }
+}
+
+// Two balls in one photograph: that one of them stands elsewhere is seen, which of them is not.
+TEST(Probe, OfTwoBallsInOneViewOnlyOneAgainstTheOtherIsSeen) {
   Balls balls;
-  balls.eyes = {{-0.6, 0, 0.1}}, balls.distances_m = {0.7}, balls.lamps = 12, balls.group = "lamp";
-  const TablesProblem problem = probe_world(5, balls).problem();
+  balls.eyes = {{-0.6, 0, 0.3}}, balls.centres = {{0, 0.05, 0}, {0, -0.05, 0}}, balls.off = {{0, 6e-4, 3e-4}, {}};
+  balls.lamps = 16, balls.group = "lamp";
+  const TablesProblem problem = probe_world(4, balls).problem();
   const Explanation e = explain(problem, {});
-  EXPECT_EQ(named(problem, e), "") << e.sentence;
-  EXPECT_FALSE(isolability_of(problem, e, "probe.distance", 1).visible);
-  EXPECT_FALSE(isolability_of(problem, e, "probe.centre", 3).visible);
+  EXPECT_TRUE(e.significant) << e.sentence;
+  bool other = e.named.empty();  // nothing named alone, or with what stands in its place
+  for (const auto& set : e.not_told_apart) other = other || set.size() > 1;
+  EXPECT_TRUE(other) << e.sentence;
+}
+
+// A lamp that the manifest had as a direction is at a place afterwards, and explain finds nothing more.
+TEST(Probe, DirectionsBecomePlacesOfLights) {
+  Balls balls;
+  balls.distances_m = {0.8}, balls.lamps = 6;
+  const std::vector<Vec3> lamps = lamp_directions(balls.lamps, 7);
+  for (int l = 0; l < balls.lamps; ++l) {
+    const Vec3 u = lamps[static_cast<std::size_t>(l)];
+    balls.lights += format(R"(%s"%d": {"model": "directional", "towards": [%g, %g, %g], "watt_per_m2": [2, 3, 4]})",
+                           l == 0 ? R"("lights": {)" : ", ", l + 1, u.x, u.y, u.z);
+  }
+  balls.lights += "},";
+  const World world = probe_world(7, balls);
+  const TablesProblem problem = world.problem();
+  const Explanation e = explain(problem, {});
+  ASSERT_EQ(named(problem, e), "probe.distance") << e.sentence;
+  EXPECT_THAT(problem.remarks(e), HasSubstr("lamps stand at"));
+  manifest::Document document = world.document();
+  problem.apply(e, document);
+  EXPECT_TRUE(document.mechanisms.empty());
+  for (int l = 0; l < balls.lamps; ++l) {
+    const manifest::Light& light = document.lights.at(std::to_string(l + 1));
+    ASSERT_EQ(light.model, "point");
+    const Vec3 truth = lamps[static_cast<std::size_t>(l)] * 0.8,
+               off = light.parameters.at("position_m").vector() - truth;
+    const double d = norm(light.parameters.at("position_m").vector());
+    EXPECT_LT(norm(off), 0.05);
+    for (int k = 0; k < 3; ++k)
+      EXPECT_LT(std::abs(off[k]), 5 * light.sigma.at("position_m")[static_cast<std::size_t>(k)] + 1e-4);
+    EXPECT_NEAR(light.parameters.at("watt_per_sr").rgb().y, 3 * d * d, 1e-9);
+    EXPECT_GT(light.sigma.at("watt_per_sr")[1], 0);
+  }
+  const TablesProblem again(document, "t", {}, false);
+  for (const Candidate& c : again.candidates()) EXPECT_NE(c.id(), "probe.distance");
+  EXPECT_EQ(named(again, explain(again, {})), "");
+}
+
+TEST(Probe, ALensThatIsSaidToBeAPinholeIsNamed) {
+  Balls balls;
+  balls.k1 = -0.3, balls.lamps = 5, balls.eyes = ring_of_eyes(5), balls.centres = {{0, 0.1, 0}, {0, -0.1, 0}};
+  const TablesProblem problem = probe_world(6, balls).problem();
+  const Explanation e = explain(problem, {});
+  EXPECT_THAT(named(problem, e), HasSubstr("lens.radial")) << e.sentence;
+}
+
+void expect_refused(const World& world, const std::string& words) {
+  try {
+    world.problem();
+    FAIL() << "was accepted, not: " << words;
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Exit::data);
+    EXPECT_THAT(e.what(), HasSubstr(words));
+  }
+}
+TEST(Probe, WhatIsWrongWithATableIsSaid) {
+  const auto with = [](std::size_t column, double value, bool all) {
+    World w = probe_world(1);
+    for (std::vector<double>& row : w.rows) {
+      row[column] = value;
+      if (!all) break;
+    }
+    return w;
+  };
+  expect_refused(with(0, 99, false), "in image \"99\", which the manifest does not have");
+  expect_refused(with(4, 0.01, false), "has ball 1 at two places, or of two sizes");
+  expect_refused(with(7, -0.03, true), "has ball 1 with radius_m -0.03");
+  expect_refused(with(8, 1e-3, true), "of no covariance");
+  expect_refused(with(11, 5, false), "beside ball 1");
 }
 
 }  // namespace
