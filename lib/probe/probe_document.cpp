@@ -148,14 +148,29 @@ std::optional<std::array<Vec2, 2>> seen_at(const Highlight& h, const BallView& v
   return {{*middle, {sigma(by_t.x, by_b.x), sigma(by_t.y, by_b.y)}}};
 }
 
-// Highlights of lamps that two views or more show, as a table for explain.
+// Does the region end where pixels are no longer used, at the rim or at a mask? Its middle is then not the lamp's.
+bool cut_off(const Highlight& h, const Facing& face) {
+  const auto width = static_cast<std::ptrdiff_t>(face.radiance.width);
+  return std::ranges::any_of(h.pixels, [&](std::size_t pixel) {
+    for (const std::ptrdiff_t step : {std::ptrdiff_t{-1}, std::ptrdiff_t{1}, -width, width}) {
+      const std::ptrdiff_t next = static_cast<std::ptrdiff_t>(pixel) + step;
+      if (next < 0 || next >= std::ssize(face.used) || face.used[static_cast<std::size_t>(next)] == 0) return true;
+    }
+    return false;
+  });
+}
+
+// Highlights of lamps that two views or more show whole, as a table for explain.
 void enter_highlights(manifest::Document& document, const ProbeRequest& request, const BallViews& all,
-                      const std::vector<Highlight>& spots, const std::vector<FoundLight>& lights,
-                      const std::vector<std::string>& names) {
+                      const std::vector<Facing>& faces, const std::vector<Highlight>& spots,
+                      const std::vector<FoundLight>& lights, const std::vector<std::string>& names) {
   std::vector<HighlightRow> rows;
   for (std::size_t l = 0; l < lights.size(); ++l) {
-    if (lights[l].seen.size() < 2) continue;
-    for (const std::size_t k : lights[l].seen) {
+    std::vector<std::size_t> whole;
+    std::ranges::copy_if(lights[l].seen, std::back_inserter(whole),
+                         [&](std::size_t k) { return !cut_off(spots[k], faces[spots[k].view]); });
+    if (whole.size() < 2) continue;
+    for (const std::size_t k : whole) {
       const std::size_t v = spots[k].view, b = all.ball_of_view[v];
       const auto at = seen_at(spots[k], all.views[v]);
       if (!at) continue;
@@ -192,7 +207,7 @@ std::vector<std::string> enter_lights(manifest::Document& document, const ProbeR
     csv += row_of(names.back(), light, images_of(document, all, spots, light));
     say(names.back(), light);
   }
-  if (!request.each && !request.parallel) enter_highlights(document, request, all, spots, lights, names);
+  if (!request.each && !request.parallel) enter_highlights(document, request, all, faces, spots, lights, names);
   return names;
 }
 

@@ -188,13 +188,12 @@ class Probe final : public BoundModel {
   }
   void bind_distance(const Table& table) {
     const mechanism::Mechanism& m = mechanism::probe_distance();
-    Candidate each{&m, {}, {}, m.id, true};
-    for (std::size_t l = 0; l < scene_.lamps.size(); ++l)
-      if (own_distance_[l] == none) each.on.push_back(scene_.lamps[l].name);
-    if (each.on.empty()) return;
+    const auto far = std::ranges::count(own_distance_, none);
+    if (far == 0) return;
     shared_distance_ = add_declared(m, 0, "", distance_step_per_m, {}, table);
     candidates_.push_back({&m, {}, {shared_distance_}, m.id});
-    if (each.on.size() < 2) return;
+    if (far < 2) return;
+    Candidate each{&m, {}, {}, m.id, true};  // another form of the same, and so on the same targets
     for (std::size_t l = 0; l < scene_.lamps.size(); ++l)
       if (own_distance_[l] == none) {
         extra_distance_[l] = add_declared(m, 0, scene_.lamps[l].name, distance_step_per_m, {.lamp = l}, table);
