@@ -54,11 +54,10 @@ ImageView image_view(const manifest::Document& document, const std::string& id, 
     if (camera == document.cameras.end())
       throw Error(Exit::data, manifest::place(document, at + "/camera"),
                   "is not described, and " + table.place + " has sightings in this image", "describe it in cameras");
-    ImageView view{id,
-                   image.group,
-                   camera::CameraModel(camera->second, manifest::place(document, "/cameras/" + image.camera)),
-                   {},
-                   {}};
+    ImageView view{
+        id,           image.group,
+        image.camera, camera::CameraModel(camera->second, manifest::place(document, "/cameras/" + image.camera)),
+        {},           {}};
     if (image.world_from_camera) {
       view.world_from_camera = *image.world_from_camera;
       if (image.world_from_camera->sigma) view.sigma = six_of(*image.world_from_camera->sigma);

@@ -19,6 +19,7 @@ Names names_in(const Table& table, const std::string& column, const std::vector<
 
 struct ImageView {
   std::string image, sitting;  // sitting: the image's `group`
+  std::string camera_name;
   camera::CameraModel camera;
   Rigid<frame::World, frame::Camera> world_from_camera;
   std::vector<double> sigma;  // rotation about, shift along the world's axes (six); empty: known exactly

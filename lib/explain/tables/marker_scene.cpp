@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "io/ply.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/volume.h"
@@ -92,7 +91,7 @@ std::vector<std::string> ids_of(const List& list) {
 MarkerScene marker_scene(const manifest::Document& document, const Table& table) {
   for (const reassembly::MarkerColumn& column : reassembly::marker_columns())
     if (column.needed || table.place_of(column.name) != Table::none) table.needed(column.name, column.unit);
-  const Names images = names_in(table, "image", ids_of(document.images));
+  const Names images = names_in(table, "image", manifest::names_in(document, "images"));
   const Names pieces = names_in(table, "piece", ids_of(document.objects));
   const Names markers = names_in(table, "marker", ids_of(document.markers));
   MarkerScene scene;

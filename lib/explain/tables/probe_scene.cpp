@@ -10,7 +10,6 @@
 #include "linear/geom_matrices.h"
 #include "linear/solve.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "probe/highlight_rows.h"
 #include "probe/unwrap.h"
@@ -103,31 +102,23 @@ void find_lamps(ProbeScene& scene, const Table& table) {
   }
 }
 
-template <class List>
-std::vector<std::string> ids_of(const List& list) {
-  std::vector<std::string> ids;
-  for (const auto& entry : list) ids.push_back(entry.id);
-  return ids;
-}
-
 }  // namespace
 
 ProbeScene probe_scene(const manifest::Document& document, const std::string&, const Table& table) {
   for (const gonio::probe::HighlightColumn& column : gonio::probe::highlight_columns())
     if (column.needed || table.place_of(column.name) != Table::none) table.needed(column.name, column.unit);
-  std::vector<std::string> lights;
-  for (const auto& [name, light] : document.lights) lights.push_back(name);
-  const Names images = names_in(table, "image", ids_of(document.images)), balls = names_in(table, "ball", {}),
-              lamps = names_in(table, "lamp", lights);
+  const Names images = names_in(table, "image", manifest::names_in(document, "images")),
+              balls = names_in(table, "ball", {}),
+              lamps = names_in(table, "lamp", manifest::names_in(document, "lights"));
   ProbeScene scene;
   scene.place = table.place;
   std::vector<std::size_t> camera_of_view;
   for (const std::string& id : images.all) {
     scene.views.push_back(image_view(document, id, table));
-    const auto image = std::ranges::find(document.images, id, &manifest::ImageEntry::id);
-    const auto known = std::ranges::find(scene.cameras, image->camera, &ProbeCamera::name);
+    const std::string& camera = scene.views.back().camera_name;
+    const auto known = std::ranges::find(scene.cameras, camera, &ProbeCamera::name);
     camera_of_view.push_back(static_cast<std::size_t>(known - scene.cameras.begin()));
-    if (known == scene.cameras.end()) scene.cameras.push_back({image->camera, scene.views.back().camera});
+    if (known == scene.cameras.end()) scene.cameras.push_back({camera, scene.views.back().camera});
   }
   for (std::size_t r = 0; r < table.rows(); ++r) {
     const ProbeRow row{images.of_row[r], camera_of_view[images.of_row[r]], balls.of_row[r], lamps.of_row[r]};
