@@ -49,7 +49,8 @@ struct FoundLight {
   Mat3 direction_covariance{{}};
   std::optional<Vec3> position_m{};
   Mat3 position_covariance_m2{{}};
-  double distance_m = 0;  // from the balls' middle; infinite without a place
+  double distance_m = 0;                                // from the balls' middle; infinite without a place
+  double nearness_per_m = 0, nearness_sigma_per_m = 0;  // one over the distance as it was fitted, whatever it is worth
   Rgb irradiance{}, irradiance_sigma{};
   double half_angle_rad = 0;
   bool clipped = false;

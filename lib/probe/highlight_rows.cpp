@@ -79,4 +79,38 @@ manifest::Table highlight_table(const std::string& file, const std::string& grou
   return table;
 }
 
+std::string reflected_csv(std::span<const HighlightRow> rows, const Metal& metal) {
+  std::string csv = std::string("view,direction,channel,highlight,theta_i,") +
+                    (metal.perfect ? "" : "metal_n,metal_k,") + "value,value_sigma\n";
+  std::set<std::string> views;
+  std::size_t written = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const HighlightRow& r = rows[k];
+    if (r.clipped) continue;
+    views.insert(view_of(r)), ++written;
+    for (int c = 0; c < 3; ++c) {
+      csv += goniometry::quoted(view_of(r)) + "," + goniometry::quoted(r.lamp) + "," + std::to_string(c) + "," +
+             std::to_string(k) + "," + shortest_text(r.theta_i);
+      if (!metal.perfect) csv += "," + shortest_text(metal.eta[c]) + "," + shortest_text(metal.k[c]);
+      csv += "," + shortest_text(r.reflected[c]) + "," + shortest_text(r.reflected_sigma[c]) + "\n";
+    }
+  }
+  return written >= fewest_rows && views.size() >= fewest_groups ? csv : "";
+}
+
+manifest::Table reflected_table(const std::string& file, const Metal& metal) {
+  manifest::Table table;
+  table.file = file;
+  table.model = "probe-radiance";
+  table.columns = {{"view", ""}, {"direction", ""}, {"channel", ""}, {"highlight", ""}, {"theta_i", "rad"}};
+  if (!metal.perfect)
+    for (const char* name : {"metal_n", "metal_k"}) table.columns.emplace_back(name, "1");
+  for (const char* name : {"value", "value_sigma"}) table.columns.emplace_back(name, "1");
+  table.observed = {"value"};
+  table.sigma = {"value_sigma"};
+  table.group = "view";
+  table.block = "highlight";
+  return table;
+}
+
 }  // namespace gonio::probe

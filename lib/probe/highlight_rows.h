@@ -8,6 +8,7 @@
 
 #include "geom/vector.h"
 #include "manifest/sections/table.h"
+#include "probe/metals.h"
 #include "probe/mirror_ball.h"
 
 namespace gonio::probe {
@@ -17,6 +18,10 @@ struct HighlightRow {
   Ball stated;                    // as its outline has it
   Mat3 covariance_m2{{}};         // of the centre; zero: known exactly
   Vec2 seen_px, sigma_px;         // where the ball mirrors the middle of the lamp
+  // The lamp's irradiance at the balls' middle times what the metal reflects of it at this incidence.
+  Rgb reflected{}, reflected_sigma{};
+  double theta_i = 0;
+  bool clipped = false;
 };
 
 struct HighlightColumn {
@@ -34,5 +39,10 @@ std::string highlight_group(std::span<const HighlightRow> rows);
 std::string highlight_csv(std::span<const HighlightRow> rows);  // with its header line
 // The manifest's section for it. `file`: id in the manifest's files; `group`: "view" or "lamp".
 manifest::Table highlight_table(const std::string& file, const std::string& group);
+
+// The same highlights' light as a table of the model "probe-radiance" (models/probe_radiance.cpp), three channels each;
+// saturated ones are left out. Empty where there are too few.
+std::string reflected_csv(std::span<const HighlightRow> rows, const Metal& metal);
+manifest::Table reflected_table(const std::string& file, const Metal& metal);
 
 }  // namespace gonio::probe

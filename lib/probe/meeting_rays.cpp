@@ -78,6 +78,7 @@ std::optional<FoundLight> lamp_of(const std::vector<Highlight>& all, const std::
   light.direction_covariance = linear::mat3_of(Eigen::Matrix3d(by * covariance * by.transpose()));
   light.distance_m = HUGE_VAL;
   const double inverse = fit.x[2] / unit_m, sigma = std::sqrt(covariance(2, 2)) / unit_m;
+  light.nearness_per_m = inverse, light.nearness_sigma_per_m = sigma;
   if (inverse > wish.least_z * sigma) {
     const double d = 1 / inverse;
     light.distance_m = d;

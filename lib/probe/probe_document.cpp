@@ -130,7 +130,11 @@ std::string images_of(const manifest::Document& document, const BallViews& all, 
 
 // Where the ball mirrors the middle of the lamp, and how well the picture alone says so; nothing where it is not to be
 // seen.
-std::optional<std::array<Vec2, 2>> seen_at(const Highlight& h, const BallView& view) {
+struct Seen {
+  Vec2 pixel, sigma;
+  double cosine = 0;
+};
+std::optional<Seen> seen_at(const Highlight& h, const BallView& view) {
   const MirrorBall mirror = view.mirror();
   const auto pixel = [&](Vec3 direction) -> std::optional<Vec2> {
     const auto shown = mirror.shown(normalized(direction));
@@ -145,7 +149,26 @@ std::optional<std::array<Vec2, 2>> seen_at(const Highlight& h, const BallView& v
   const double tt = dot(f.t, h.own_covariance * f.t), tb = dot(f.t, h.own_covariance * f.b),
                bb = dot(f.b, h.own_covariance * f.b);
   const auto sigma = [&](double a, double c) { return std::sqrt(a * a * tt + 2 * a * c * tb + c * c * bb); };
-  return {{*middle, {sigma(by_t.x, by_b.x), sigma(by_t.y, by_b.y)}}};
+  return Seen{*middle, {sigma(by_t.x, by_b.x), sigma(by_t.y, by_b.y)}, mirror.shown(h.direction)->cosine};
+}
+
+HighlightRow highlight_row(const Highlight& h, const FoundLight& light, const Seen& seen, const FoundBall& ball,
+                           const Metal& metal) {
+  HighlightRow row;
+  row.stated = ball.ball, row.covariance_m2 = ball.covariance_m2;
+  row.seen_px = seen.pixel, row.sigma_px = seen.sigma;
+  // From the ball's own directions to the balls' middle: bright_lights.h.
+  const double q = std::max(0.0, light.nearness_per_m);
+  const double nearer = (1 + h.focus_m.x * q) * (1 + h.focus_m.y * q),
+               doubt = (h.focus_m.x + h.focus_m.y) * light.nearness_sigma_per_m;
+  const Rgb reflectance = metal.reflectance(seen.cosine);
+  const auto sigma = [&](double value, double own) { return std::hypot(own, value * doubt); };
+  const Rgb e = h.irradiance, s = h.irradiance_sigma;
+  row.reflected = e * reflectance * nearer;
+  row.reflected_sigma = Rgb{sigma(e.x, s.x), sigma(e.y, s.y), sigma(e.z, s.z)} * reflectance * nearer;
+  row.theta_i = std::acos(std::clamp(seen.cosine, 0.0, 1.0));
+  row.clipped = h.clipped;
+  return row;
 }
 
 // Does the region end where pixels are no longer used, at the rim or at a mask? Its middle is then not the lamp's.
@@ -160,7 +183,7 @@ bool cut_off(const Highlight& h, const Facing& face) {
   });
 }
 
-// Highlights of lamps that two views or more show whole, as a table for explain.
+// Highlights of lamps that two views or more show whole, as tables for explain.
 void enter_highlights(manifest::Document& document, const ProbeRequest& request, const BallViews& all,
                       const std::vector<Facing>& faces, const std::vector<Highlight>& spots,
                       const std::vector<FoundLight>& lights, const std::vector<std::string>& names) {
@@ -174,8 +197,9 @@ void enter_highlights(manifest::Document& document, const ProbeRequest& request,
       const std::size_t v = spots[k].view, b = all.ball_of_view[v];
       const auto at = seen_at(spots[k], all.views[v]);
       if (!at) continue;
-      rows.push_back({document.images[all.image_of_view[v]].id, std::to_string(b + 1), names[l], all.balls[b].ball,
-                      all.balls[b].covariance_m2, (*at)[0], (*at)[1]});
+      rows.push_back(highlight_row(spots[k], lights[l], *at, all.balls[b], request.unwrap.metal));
+      rows.back().image = document.images[all.image_of_view[v]].id;
+      rows.back().ball = std::to_string(b + 1), rows.back().lamp = names[l];
     }
   }
   const std::string group = highlight_group(rows), name = request.name + "-highlights";
@@ -183,6 +207,12 @@ void enter_highlights(manifest::Document& document, const ProbeRequest& request,
   const auto path = request.output_path(name + ".csv");
   write_file(path, highlight_csv(rows));
   document.tables[name] = highlight_table(manifest::add_file(document, path, name), group);
+  const Metal& metal = request.unwrap.metal;
+  const std::string light = reflected_csv(rows, metal), reflected = request.name + "-reflected";
+  if (light.empty()) return;
+  const auto reflected_path = request.output_path(reflected + ".csv");
+  write_file(reflected_path, light);
+  document.tables[reflected] = reflected_table(manifest::add_file(document, reflected_path, reflected), metal);
 }
 
 // Lights of these views, entered; their highlights leave the faces. Returns their names.

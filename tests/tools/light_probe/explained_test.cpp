@@ -46,6 +46,7 @@ class Explained : public testing::Test {
     EXPECT_EQ(read.status, 0) << read.err;
     manifest::Document d = manifest::parse_document(read.out, "read", folder_.path());
     EXPECT_EQ(d.tables.at("probe-highlights").model, "probe");
+    EXPECT_EQ(d.tables.at("probe-reflected").model, "probe-radiance");
     for (auto& [name, light] : d.lights) {
       if (!light.parameters.contains("position_m")) continue;
       const Vec3 u = normalized(light.parameters.at("position_m").vector());
@@ -67,7 +68,8 @@ class Explained : public testing::Test {
 TEST_F(Explained, FarLampsAndABallThatIsWhereItWasFoundLackNothing) {
   const Ended ended = explained(probed(60));
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.err, testing::HasSubstr("no physics is named")) << ended.err;
+  EXPECT_THAT(ended.err, testing::HasSubstr("tables-probe-highlights: No mismatch")) << ended.err;
+  EXPECT_THAT(ended.err, testing::HasSubstr("tables-probe-reflected: No mismatch")) << ended.err;
   EXPECT_THAT(ended.out, testing::Not(testing::HasSubstr("\"mechanisms\"")));
 }
 
