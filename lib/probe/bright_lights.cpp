@@ -195,6 +195,7 @@ std::vector<Highlight> highlights(const std::vector<BallView>& views, const std:
     for (const Vec3 t : {across.t, across.b})
       add_outer(h.covariance, t, within * within * m.pixel_sr / (12 * m.effective));
     add_noise(h, view, face, mirror);
+    h.own_covariance = h.covariance;
     for (const Ball& variant : view.variants) {
       const Moments moved = moments_of(h, view, view.mirror(variant), face);
       if (!(mean(moved.irradiance) > 0)) continue;

@@ -35,6 +35,7 @@ struct Highlight {  // one region of one view
   Vec3 point_m{}, direction{};  // the ray
   Vec2 focus_m{};               // behind the point, where its neighbours seem to come from: tangential, sagittal
   Mat3 covariance{{}};          // of the direction: tangential
+  Mat3 own_covariance{{}};      // of the same, were the ball's place known exactly
   Rgb irradiance{}, irradiance_sigma{}, background{};
   double half_angle_rad = 0;
   bool clipped = false;
@@ -48,7 +49,8 @@ struct FoundLight {
   Mat3 direction_covariance{{}};
   std::optional<Vec3> position_m{};
   Mat3 position_covariance_m2{{}};
-  double distance_m = 0;  // from the balls' middle; infinite without a place
+  double distance_m = 0;                                // from the balls' middle; infinite without a place
+  double nearness_per_m = 0, nearness_sigma_per_m = 0;  // one over the distance as it was fitted, whatever it is worth
   Rgb irradiance{}, irradiance_sigma{};
   double half_angle_rad = 0;
   bool clipped = false;

@@ -6,6 +6,7 @@
 #include "linear/geom_matrices.h"
 #include "optim/least_squares.h"
 #include "probe/bright_lights.h"
+#include "probe/mechanisms/probe_distance.h"
 
 namespace gonio::probe {
 namespace {
@@ -36,7 +37,7 @@ class Lamp final : public optim::Model {  // x: two tangents of the direction, i
     r.resize(static_cast<Eigen::Index>(2 * rays_.size()));
     const Vec3 u = direction(x);
     for (std::size_t i = 0; i < rays_.size(); ++i) {
-      const Vec3 way = u - rays_[i].point_m * (x[2] / unit_m_);
+      const Vec3 way = equation::probe_distance(u, rays_[i].point_m, x[2] / unit_m_);
       if (!(dot(way, u) > 0)) return false;
       const Vec3 miss = normalized(way) - rays_[i].direction;
       for (std::size_t k = 0; k < 2; ++k) r[static_cast<Eigen::Index>(2 * i + k)] = dot(rays_[i].rows[k], miss);
@@ -77,6 +78,7 @@ std::optional<FoundLight> lamp_of(const std::vector<Highlight>& all, const std::
   light.direction_covariance = linear::mat3_of(Eigen::Matrix3d(by * covariance * by.transpose()));
   light.distance_m = HUGE_VAL;
   const double inverse = fit.x[2] / unit_m, sigma = std::sqrt(covariance(2, 2)) / unit_m;
+  light.nearness_per_m = inverse, light.nearness_sigma_per_m = sigma;
   if (inverse > wish.least_z * sigma) {
     const double d = 1 / inverse;
     light.distance_m = d;

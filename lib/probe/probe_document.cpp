@@ -2,6 +2,7 @@
 #include "probe/probe_document.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/atomic_file.h"
@@ -15,6 +16,8 @@
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
+#include "manifest/sections/table.h"
+#include "probe/highlight_rows.h"
 #include "probe/probe_views.h"
 
 namespace gonio::probe {
@@ -125,6 +128,93 @@ std::string images_of(const manifest::Document& document, const BallViews& all, 
   return text;
 }
 
+// Where the ball mirrors the middle of the lamp, and how well the picture alone says so; nothing where it is not to be
+// seen.
+struct Seen {
+  Vec2 pixel, sigma;
+  double cosine = 0;
+};
+std::optional<Seen> seen_at(const Highlight& h, const BallView& view) {
+  const MirrorBall mirror = view.mirror();
+  const auto pixel = [&](Vec3 direction) -> std::optional<Vec2> {
+    const auto shown = mirror.shown(normalized(direction));
+    if (!shown) return {};
+    return view.camera.project(inverse(view.world_from_camera) * shown->point_m);
+  };
+  constexpr double step = 1e-5;
+  const Basis f(h.direction);
+  const auto middle = pixel(h.direction), t = pixel(h.direction + f.t * step), b = pixel(h.direction + f.b * step);
+  if (!middle || !t || !b) return {};
+  const Vec2 by_t = (*t - *middle) * (1 / step), by_b = (*b - *middle) * (1 / step);
+  const double tt = dot(f.t, h.own_covariance * f.t), tb = dot(f.t, h.own_covariance * f.b),
+               bb = dot(f.b, h.own_covariance * f.b);
+  const auto sigma = [&](double a, double c) { return std::sqrt(a * a * tt + 2 * a * c * tb + c * c * bb); };
+  return Seen{*middle, {sigma(by_t.x, by_b.x), sigma(by_t.y, by_b.y)}, mirror.shown(h.direction)->cosine};
+}
+
+HighlightRow highlight_row(const Highlight& h, const FoundLight& light, const Seen& seen, const FoundBall& ball,
+                           const Metal& metal) {
+  HighlightRow row;
+  row.stated = ball.ball, row.covariance_m2 = ball.covariance_m2;
+  row.seen_px = seen.pixel, row.sigma_px = seen.sigma;
+  // From the ball's own directions to the balls' middle: bright_lights.h.
+  const double q = std::max(0.0, light.nearness_per_m);
+  const double nearer = (1 + h.focus_m.x * q) * (1 + h.focus_m.y * q),
+               doubt = (h.focus_m.x + h.focus_m.y) * light.nearness_sigma_per_m;
+  const Rgb reflectance = metal.reflectance(seen.cosine);
+  const auto sigma = [&](double value, double own) { return std::hypot(own, value * doubt); };
+  const Rgb e = h.irradiance, s = h.irradiance_sigma;
+  row.reflected = e * reflectance * nearer;
+  row.reflected_sigma = Rgb{sigma(e.x, s.x), sigma(e.y, s.y), sigma(e.z, s.z)} * reflectance * nearer;
+  row.theta_i = std::acos(std::clamp(seen.cosine, 0.0, 1.0));
+  row.clipped = h.clipped;
+  return row;
+}
+
+// Does the region end where pixels are no longer used, at the rim or at a mask? Its middle is then not the lamp's.
+bool cut_off(const Highlight& h, const Facing& face) {
+  const auto width = static_cast<std::ptrdiff_t>(face.radiance.width);
+  return std::ranges::any_of(h.pixels, [&](std::size_t pixel) {
+    for (const std::ptrdiff_t step : {std::ptrdiff_t{-1}, std::ptrdiff_t{1}, -width, width}) {
+      const std::ptrdiff_t next = static_cast<std::ptrdiff_t>(pixel) + step;
+      if (next < 0 || next >= std::ssize(face.used) || face.used[static_cast<std::size_t>(next)] == 0) return true;
+    }
+    return false;
+  });
+}
+
+// Highlights of lamps that two views or more show whole, as tables for explain.
+void enter_highlights(manifest::Document& document, const ProbeRequest& request, const BallViews& all,
+                      const std::vector<Facing>& faces, const std::vector<Highlight>& spots,
+                      const std::vector<FoundLight>& lights, const std::vector<std::string>& names) {
+  std::vector<HighlightRow> rows;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    std::vector<std::size_t> whole;
+    std::ranges::copy_if(lights[l].seen, std::back_inserter(whole),
+                         [&](std::size_t k) { return !cut_off(spots[k], faces[spots[k].view]); });
+    if (whole.size() < 2) continue;
+    for (const std::size_t k : whole) {
+      const std::size_t v = spots[k].view, b = all.ball_of_view[v];
+      const auto at = seen_at(spots[k], all.views[v]);
+      if (!at) continue;
+      rows.push_back(highlight_row(spots[k], lights[l], *at, all.balls[b], request.unwrap.metal));
+      rows.back().image = document.images[all.image_of_view[v]].id;
+      rows.back().ball = std::to_string(b + 1), rows.back().lamp = names[l];
+    }
+  }
+  const std::string group = highlight_group(rows), name = request.name + "-highlights";
+  if (group.empty()) return;
+  const auto path = request.output_path(name + ".csv");
+  write_file(path, highlight_csv(rows));
+  document.tables[name] = highlight_table(manifest::add_file(document, path, name), group);
+  const Metal& metal = request.unwrap.metal;
+  const std::string light = reflected_csv(rows, metal), reflected = request.name + "-reflected";
+  if (light.empty()) return;
+  const auto reflected_path = request.output_path(reflected + ".csv");
+  write_file(reflected_path, light);
+  document.tables[reflected] = reflected_table(manifest::add_file(document, reflected_path, reflected), metal);
+}
+
 // Lights of these views, entered; their highlights leave the faces. Returns their names.
 std::vector<std::string> enter_lights(manifest::Document& document, const ProbeRequest& request, const BallViews& all,
                                       std::vector<Facing>& faces, const std::string& stem, std::string& csv) {
@@ -147,6 +237,7 @@ std::vector<std::string> enter_lights(manifest::Document& document, const ProbeR
     csv += row_of(names.back(), light, images_of(document, all, spots, light));
     say(names.back(), light);
   }
+  if (!request.each && !request.parallel) enter_highlights(document, request, all, faces, spots, lights, names);
   return names;
 }
 

@@ -33,9 +33,10 @@ struct ProbeRequest {
 // Cameras, pictures and masks are there and fit together; no pixel is looked at. Error(data | no_input).
 void check_probe(const manifest::Document& document, const ProbeRequest& request);
 
-// Writes NAME.exr, the surroundings, and NAME-weight.exr, NAME-balls.csv, NAME-lights.csv; enters the light NAME
-// (model lat-long) and what `lights` finds, NAME-1, NAME-2, ... With `each`: lights alone, NAME-IMAGE-1, ..., which
-// become those of the image. What was found is logged.
+// Writes NAME.exr, the surroundings, and NAME-weight.exr, NAME-balls.csv, NAME-lights.csv and, where views share lamps
+// enough for explain, NAME-highlights.csv and NAME-reflected.csv, tables of the models probe and probe-radiance; enters
+// the light NAME (model lat-long) and what `lights` finds, NAME-1, NAME-2, ... With `each`: lights alone, NAME-IMAGE-1,
+// ..., which become those of the image. What was found is logged.
 void probe_document(manifest::Document& document, const ProbeRequest& request);
 
 }  // namespace gonio::probe

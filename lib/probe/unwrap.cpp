@@ -109,9 +109,14 @@ int samples_for(double texel_rad, double footprint_rad) {
 
 }  // namespace
 
+MirrorBall mirror_before(const camera::CameraModel& camera, const Rigid<frame::World, frame::Camera>& world_from_camera,
+                         const Ball& ball) {
+  if (camera.orthographic()) return MirrorBall::parallel(ball, -world_from_camera.rotate({0, 0, 1}));
+  return {ball, world_from_camera.translation_m};
+}
+
 MirrorBall BallView::mirror(const Ball& there) const {
-  if (camera.orthographic()) return MirrorBall::parallel(there, -world_from_camera.rotate({0, 0, 1}));
-  return {there, world_from_camera.translation_m};
+  return mirror_before(camera, world_from_camera, there);
 }
 
 Facing facing(const BallView& view, const UnwrapWish& wish) {

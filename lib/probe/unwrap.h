@@ -22,6 +22,10 @@
 
 namespace gonio::probe {
 
+// Error(data) where the camera is not outside.
+MirrorBall mirror_before(const camera::CameraModel& camera, const Rigid<frame::World, frame::Camera>& world_from_camera,
+                         const Ball& ball);
+
 struct BallView {                       // one ball in one picture
   io::Image picture;                    // linear, R, G, B or Y
   io::Image variance{};                 // of the same channels; empty: not known

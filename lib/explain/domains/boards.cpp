@@ -44,7 +44,8 @@ const Domain& boards() {
            {"robot.", "no robot is known here: hand-eye sets (robot) have its joints"},
            {"tracks.", "a board is rigid and its corners are named: no track can slip, no shape deforms"},
            {"marker.", "markers of other kinds are tables of the model markers"},
-           {"ct.", "no X-rays"}}};
+           {"ct.", "no X-rays"},
+           {"probe.", "corners of boards show no mirror ball: highlights are tables of the model probe"}}};
   return domain;
 }
 

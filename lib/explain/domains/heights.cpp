@@ -44,7 +44,8 @@ const Domain& heights() {
            {"robot.", "a height map has no robot"},
            {"tracks.", "a height map does not move"},
            {"marker.", "a height map has no markers"},
-           {"ct.", "no X-rays"}}};
+           {"ct.", "no X-rays"},
+           {"probe.", "a map of heights has no mirror ball beside it"}}};
   return domain;
 }
 

@@ -54,7 +54,10 @@ const Domain& images() {
            {"surface.thin-film", "three channels average over its fringes: tables of reflectance in narrow bands"},
            {"volume.",
             "what is seen through glass is left out of the fast model: tables of transmittance, or render and "
-            "compare"}}};
+            "compare"},
+           {"probe.",
+            "what a mirror ball shows is measured before anything is rendered: light-probe(1) leaves tables of the "
+            "models probe and probe-radiance"}}};
   return domain;
 }
 

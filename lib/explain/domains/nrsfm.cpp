@@ -33,7 +33,8 @@ const Domain& nrsfm() {
           {"geometry.", "shape and motion are what is sought, and free in every frame"},
           {"robot.", "no robot is known"},
           {"marker.", "markers are tables of the model markers"},
-          {"ct.", "no X-rays"}}};
+          {"ct.", "no X-rays"},
+          {"probe.", "tracks have no lamps: highlights are tables of the model probe"}}};
   return domain;
 }
 

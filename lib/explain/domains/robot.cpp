@@ -8,6 +8,18 @@
 
 namespace gonio::explain::domains {
 
+namespace {
+
+std::vector<std::filesystem::path> calibrations_of(const manifest::Document& document) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& [name, robot] : document.robots)
+    if (!robot.calibration.empty())
+      files.push_back(manifest::resolve(document, robot.calibration, "/robots/" + name + "/calibration"));
+  return files;
+}
+
+}  // namespace
+
 const Domain& robot() {
   static const Domain domain{
       .name = "robot",
@@ -24,49 +36,43 @@ const Domain& robot() {
             for (ChainInput& input : robot_inputs(document)) problems.push_back(robot_problem(std::move(input)));
             return problems;
           },
-      .files =
-          [](const manifest::Document& document) {
-            std::vector<std::filesystem::path> files;
-            for (const auto& [name, robot] : document.robots)
-              if (!robot.calibration.empty())
-                files.push_back(manifest::resolve(document, robot.calibration, "/robots/" + name + "/calibration"));
-            return files;
-          },
-      .untouched =
-          {{"board.corner-bias",
-            "a constant shift of all corners is the camera's mounting, by which they are held; boards shows it"},
-           {"board.shape", "left to boards, which has the corners themselves: poses average over it"},
-           {"lens.",
-            "poses from corners say of the lens what these terms of it say; all others are left to boards, which has "
-            "the corners themselves"},
-           {"camera.rolling-shutter",
-            "the arm stands still while a picture is taken; robot.time-offset is the delay of what moves"},
-           {"camera.flat-port",
-            "left to boards, which has the corners themselves: poses seen through it are off together"},
-           {"camera.thermal",
-            "hand-eye sets state no temperature of the camera; corners with a column of it are boards"},
-           {"robot.axis-scale", "needs places that a tracker measured, a table of the model tracker"},
-           {"robot.squareness", "needs places that a tracker measured, a table of the model tracker"},
-           {"robot.compliance", "needs places that a tracker measured, a table of the model tracker"},
-           {"robot.friction-heating", "needs temperatures of the joints, a table of the model temperature"},
-           {"robot.joule-heating", "needs temperatures of the joints, a table of the model temperature"},
-           {"robot.warm-up", "needs temperatures of the joints, a table of the model temperature"},
-           {"camera.aspect", "the base model's own: free where the poses come with their corners"},
-           {"camera.focal-length", "the base model's own: free where the poses come with their corners"},
-           {"camera.principal-point", "the base model's own: free where the poses come with their corners"},
-           {"camera.pose", "where the camera sits is the mounting, which is free"},
-           {"light.", "poses are places, and keep no brightness"},
-           {"optics.", "poses are places, and keep no brightness"},
-           {"sensor.", "poses are places, and keep no brightness"},
-           {"surface.", "poses are places, and keep no brightness"},
-           {"volume.", "poses are places, and keep no brightness"},
-           {"scene.", "the board stands still, and each pose of it is held against the arm"},
-           {"transport.", "poses are places, and keep no brightness"},
-           {"reference.", "poses are places, and keep no brightness"},
-           {"geometry.", "the board stands still and is measured; where it stands and where the camera sits is free"},
-           {"tracks.", "no shape deforms, and corners are named"},
-           {"marker.", "poses come from boards; markers of other kinds are tables of the model markers"},
-           {"ct.", "no X-rays"}}};
+      .files = calibrations_of,
+      .untouched = {
+          {"board.corner-bias",
+           "a constant shift of all corners is the camera's mounting, by which they are held; boards shows it"},
+          {"board.shape", "left to boards, which has the corners themselves: poses average over it"},
+          {"lens.",
+           "poses from corners say of the lens what these terms of it say; all others are left to boards, which has "
+           "the corners themselves"},
+          {"camera.rolling-shutter",
+           "the arm stands still while a picture is taken; robot.time-offset is the delay of what moves"},
+          {"camera.flat-port",
+           "left to boards, which has the corners themselves: poses seen through it are off together"},
+          {"camera.thermal",
+           "hand-eye sets state no temperature of the camera; corners with a column of it are boards"},
+          {"robot.axis-scale", "needs places that a tracker measured, a table of the model tracker"},
+          {"robot.squareness", "needs places that a tracker measured, a table of the model tracker"},
+          {"robot.compliance", "needs places that a tracker measured, a table of the model tracker"},
+          {"robot.friction-heating", "needs temperatures of the joints, a table of the model temperature"},
+          {"robot.joule-heating", "needs temperatures of the joints, a table of the model temperature"},
+          {"robot.warm-up", "needs temperatures of the joints, a table of the model temperature"},
+          {"camera.aspect", "the base model's own: free where the poses come with their corners"},
+          {"camera.focal-length", "the base model's own: free where the poses come with their corners"},
+          {"camera.principal-point", "the base model's own: free where the poses come with their corners"},
+          {"camera.pose", "where the camera sits is the mounting, which is free"},
+          {"light.", "poses are places, and keep no brightness"},
+          {"optics.", "poses are places, and keep no brightness"},
+          {"sensor.", "poses are places, and keep no brightness"},
+          {"surface.", "poses are places, and keep no brightness"},
+          {"volume.", "poses are places, and keep no brightness"},
+          {"scene.", "the board stands still, and each pose of it is held against the arm"},
+          {"transport.", "poses are places, and keep no brightness"},
+          {"reference.", "poses are places, and keep no brightness"},
+          {"geometry.", "the board stands still and is measured; where it stands and where the camera sits is free"},
+          {"tracks.", "no shape deforms, and corners are named"},
+          {"marker.", "poses come from boards; markers of other kinds are tables of the model markers"},
+          {"ct.", "no X-rays"},
+          {"probe.", "a robot that carries a board carries no mirror ball"}}};
   return domain;
 }
 

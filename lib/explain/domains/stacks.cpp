@@ -53,7 +53,8 @@ std::vector<Untouched> stack_reasons() {
       {"robot.", "no robot is known"},
       {"tracks.", "nothing moves"},
       {"marker.", "markers are tables of the model markers"},
-      {"ct.", "no X-rays"}};
+      {"ct.", "no X-rays"},
+      {"probe.", "mirror balls beside a stack are read by light-probe(1), which leaves tables of the model probe"}};
 }
 
 }  // namespace

@@ -11,7 +11,8 @@ const Domain& tables() {
   static const Domain domain{
       .name = "tables",
       .sentence =
-          "tables whose model predicts them (sensor, light, volume, surface, tracks, markers, temperature, "
+          "tables whose model predicts them (sensor, light, volume, surface, tracks, markers, probe, probe-radiance, "
+          "temperature, "
           "ellipsometer, tracker, arm, expression)",
       .order = 4,
       .applies = explain::tables::has_tables,

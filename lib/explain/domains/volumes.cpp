@@ -34,7 +34,8 @@ const Domain& volumes() {
           {"board.", "a scanned part is no board of corners"},
           {"robot.", "a tomograph turns its part by no robot"},
           {"tracks.", "nothing moves"},
-          {"marker.", "markers are tables of the model markers"}}};
+          {"marker.", "markers are tables of the model markers"},
+          {"probe.", "X-rays see no mirror"}}};
   return domain;
 }
 

@@ -4,17 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <map>
 #include <memory>
 
 #include "base/error.h"
-#include "base/text.h"
 #include "io/ply.h"
 #include "manifest/document.h"
-#include "manifest/sections/camera.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/volume.h"
@@ -26,67 +21,6 @@ const Mechanism& geometry_pose();
 
 namespace gonio::explain::tables {
 namespace {
-
-// The names in a column, in the order of their first rows. Ids that are numbers throughout have become numbers: they
-// are looked for by value among `known`.
-struct Names {
-  std::vector<std::string> all;
-  std::vector<std::size_t> of_row;
-};
-
-std::string known_as(double value, const std::vector<std::string>& known) {
-  const std::string text = shortest_text(value);
-  for (const std::string& name : known) {
-    char* end = nullptr;
-    if (!name.empty() && std::strtod(name.c_str(), &end) == value && *end == 0) return name;
-  }
-  return text;
-}
-
-Names names_in(const Table& table, const std::string& column, const std::vector<std::string>& known) {
-  const std::vector<double>& values = table.needed(column, "");
-  const std::vector<std::string>& labels = table.labels[table.place_of(column)];
-  Names names;
-  std::map<double, std::size_t> seen;
-  for (const double value : values) {
-    const auto [entry, fresh] = seen.try_emplace(value, names.all.size());
-    if (fresh) names.all.push_back(labels.empty() ? known_as(value, known) : labels[static_cast<std::size_t>(value)]);
-    names.of_row.push_back(entry->second);
-  }
-  return names;
-}
-
-std::vector<double> six_of(const manifest::PoseSigma& sigma) {
-  std::vector<double> six;
-  for (const std::vector<double>* part : {&sigma.rotation_rad, &sigma.translation_m})
-    for (std::size_t k = 0; k < 3; ++k)
-      six.push_back(part->empty() ? 0 : part->size() == 1 ? part->front() : part->at(k));
-  return six;
-}
-
-MarkerView view_of(const manifest::Document& document, const std::string& id, const Table& table) {
-  for (std::size_t i = 0; i < document.images.size(); ++i) {
-    const manifest::ImageEntry& image = document.images[i];
-    if (image.id != id) continue;
-    const std::string at = "/images/" + std::to_string(i);
-    const auto camera = document.cameras.find(image.camera);
-    if (camera == document.cameras.end())
-      throw Error(Exit::data, manifest::place(document, at + "/camera"),
-                  "is not described, and " + table.place + " has sightings in this image", "describe it in cameras");
-    MarkerView view{id,
-                    image.group,
-                    camera::CameraModel(camera->second, manifest::place(document, "/cameras/" + image.camera)),
-                    {},
-                    {}};
-    if (image.world_from_camera) {
-      view.world_from_camera = *image.world_from_camera;
-      if (image.world_from_camera->sigma) view.sigma = six_of(*image.world_from_camera->sigma);
-    }
-    return view;
-  }
-  throw Error(Exit::data, table.place, "has sightings in image \"" + id + "\", which the manifest does not have",
-              "enter it in images, with its camera and world_from_camera");
-}
 
 // Two corners have the same box as the mesh.
 scene::Shape box_of(const manifest::Document& document, const manifest::Object& object) {
@@ -157,11 +91,11 @@ std::vector<std::string> ids_of(const List& list) {
 MarkerScene marker_scene(const manifest::Document& document, const Table& table) {
   for (const reassembly::MarkerColumn& column : reassembly::marker_columns())
     if (column.needed || table.place_of(column.name) != Table::none) table.needed(column.name, column.unit);
-  const Names images = names_in(table, "image", ids_of(document.images));
+  const Names images = names_in(table, "image", manifest::names_in(document, "images"));
   const Names pieces = names_in(table, "piece", ids_of(document.objects));
   const Names markers = names_in(table, "marker", ids_of(document.markers));
   MarkerScene scene;
-  for (const std::string& id : images.all) scene.views.push_back(view_of(document, id, table));
+  for (const std::string& id : images.all) scene.views.push_back(image_view(document, id, table));
   for (const std::string& id : pieces.all) scene.pieces.push_back(piece_of(document, id, table));
   scene.markers = markers.all;
   for (std::size_t r = 0; r < table.rows(); ++r) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "camera/camera_model.h"
+#include "explain/tables/image_views.h"
 #include "explain/tables/table_model.h"
 #include "geom/rigid.h"
 #include "manifest/pose.h"
@@ -14,12 +14,7 @@
 
 namespace gonio::explain::tables {
 
-struct MarkerView {
-  std::string image, sitting;  // sitting: the image's `group`
-  camera::CameraModel camera;
-  Rigid<frame::World, frame::Camera> world_from_camera;
-  std::vector<double> sigma;  // rotation about, shift along the world's axes (six); empty: known exactly
-};
+using MarkerView = ImageView;
 struct MarkerPiece {
   std::string object;
   // Its shape is no more than the box of its mesh: what geometry.pose turns it about. Without a mesh, its origin.

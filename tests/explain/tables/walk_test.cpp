@@ -12,6 +12,7 @@
 #include "explain/tables/quick_table.h"
 #include "manifest/sections/table.h"
 #include "marker_world.h"
+#include "probe_world.h"
 #include "robot/kinematics.h"
 #include "table_world.h"
 
@@ -152,6 +153,17 @@ World markers() {
   return marker_world(1, pieces);
 }
 
+World probe() {
+  Balls balls;
+  return probe_world(1, balls);
+}
+World probe_radiance() {
+  return rows_of({{"view", ""}, {"direction", ""}, {"theta_i", "rad"}, {"time_s", "s"}, {"value", "1"}}, 300, "",
+                 R"("model": "probe-radiance", "observed": ["value"])", [](const std::string& name, double share) {
+                   return name == "view" || name == "direction" ? std::floor(5.999 * share) : usual(name, share);
+                 });
+}
+
 class Candidates : public testing::TestWithParam<Walk> {};
 
 TEST_P(Candidates, AreSeenInConditionsThatTheProblemHas) {
@@ -180,7 +192,9 @@ INSTANTIATE_TEST_SUITE_P(
         Walk{"markers",
              markers,
              {"image.edge-distance", "camera.edge-shift-x", "camera.edge-shift-y", "camera.edge-shift-radial",
-              "light.shadow-edge-distance", "volume.size"}}),
+              "light.shadow-edge-distance", "volume.size"}},
+        Walk{"probe", probe, {"camera.distance", "camera.edge-shift-radial"}},
+        Walk{"probe_radiance", probe_radiance, {"image.exposure", "surface.exitance-angle", "light.identity"}}),
     [](const auto& i) { return std::string(i.param.model); });
 
 // A column that is named after the observed one is its noise: with it the table states it, and it is no condition.

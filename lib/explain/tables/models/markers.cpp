@@ -136,13 +136,8 @@ class Markers final : public BoundModel {
   }
   std::size_t add(Parameter parameter, Reach reach, const Table* table) {
     reach_.push_back(std::move(reach));
-    for (std::size_t g = 0; table != nullptr && g < table->group.size(); ++g)
-      for (std::size_t r = table->first[g]; r < table->first[g + 1]; ++r)
-        if (reaches(reach_.size() - 1, r)) {
-          parameter.groups.push_back(g);
-          break;
-        }
-    if (table != nullptr && parameter.groups.size() == table->group.size()) parameter.groups.clear();
+    const std::size_t own = reach_.size() - 1;
+    if (table != nullptr) parameter.groups = groups_reached(*table, [&](std::size_t r) { return reaches(own, r); });
     parameters_.push_back(std::move(parameter));
     return parameters_.size() - 1;
   }

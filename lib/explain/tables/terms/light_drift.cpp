@@ -13,7 +13,7 @@ const Term& light_drift() {
       .mechanism = mechanism::light_drift,
       .order = term_order::light,
       .columns = {{.name = "time_s", .unit = "s", .meaning = "of the recording, from any moment", .from_least = true}},
-      .models = {"sensor", "light", "volume", "surface", "expression"},
+      .models = {"sensor", "light", "volume", "surface", "expression", "probe-radiance"},
       .adapt = [](const Table& table, double, std::span<TermParameter> p) {
         const std::vector<double>& time = *table.find("time_s");
         const auto [least, most] = std::minmax_element(time.begin(), time.end());

@@ -10,7 +10,7 @@ namespace gonio::explain::tables::terms {
 const Term& sensor_black_offset() {
   static const Term term{.mechanism = mechanism::sensor_black_offset,
                          .order = term_order::black_offset,
-                         .models = {"sensor", "light", "volume", "expression"},
+                         .models = {"sensor", "light", "volume", "expression", "probe-radiance"},
                          .applies = [](const Table&) { return true; },
                          .adapt =
                              [](const Table&, double scale, std::span<TermParameter> p) {
