@@ -19,6 +19,7 @@ constexpr double most_over_noise = 1.5;  // residuals over the stated noise that
 std::string located_in(const Problem& problem, const Explanation& e) {
   if (e.conditions.empty()) return "";
   const LocatedCondition& c = e.conditions[0];
+  if (c.name == "image.identity") return "";  // the mechanisms say which
   if (!tells_where(c)) return " N" + nowhere_in_words(problem, c).substr(1) + ".";
   const std::string shows = e.named.size() == 1 ? " It shows " : " They show ", range = range_in_words(c);
   if (c.period > 0) return shows + "as " + place_in_words(problem, c) + ".";

@@ -183,7 +183,9 @@ std::string parameters_in_words(const Problem& problem, const Explanation& e, st
   for (const Estimate& x : e.estimates) {
     if (std::find(own.begin(), own.end(), x.parameter) == own.end()) continue;
     const Parameter& p = problem.parameters()[x.parameter];
-    if (p.groups.size() == 1 && problem.observations().groups() > 1) continue;  // a number for every group
+    // A number for every group; of one or two groups that the mechanism names, it is what is to be told.
+    const bool few = own.size() <= most_parameters && !problem.candidates()[candidate].on.empty();
+    if (p.groups.size() == 1 && problem.observations().groups() > 1 && !few) continue;
     if (distance(&x) > 2) clear.push_back(&x);
   }
   std::stable_sort(clear.begin(), clear.end(),
