@@ -262,6 +262,7 @@ TEST(Bindings, StacksOfExposuresSayWhatTheEquationSays) {
   stack.full_scale = 1.7;
   for (const explain::stacks::ExposureBinding* binding : explain::stacks::all_exposure_bindings()) {
     const Mechanism& m = binding->mechanism();
+    if (m.act == nullptr) continue;  // what moved is left out
     ++count;
     for (int i = 0; i < draws; ++i) {
       const Numbers at = inputs_of(m, random);
@@ -276,6 +277,7 @@ TEST(Bindings, StacksOfExposuresSayWhatTheEquationSays) {
       binding->set(numbers, stack, chain);
       if (m.id == "sensor.shutter") taken.exposure_s = at[0];
       if (m.id == "light.drift") taken.since_s = at[0];
+      if (m.id == "sensor.exposure") taken.image = 0;
       const double v = random.uniform(0, 5), exposure = taken.exposure_s * taken.gain;
       if (m.id == "optics.veiling-glare") chain.mean_radiance[0] = input(m, at, "mean_of_picture") / exposure;
       expect_same(chain(v / exposure, 0, taken), m.act(v, at, p), m.id);
