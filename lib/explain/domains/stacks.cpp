@@ -30,6 +30,7 @@ std::vector<Untouched> stack_reasons() {
        "end"},
       {"optics.ghost", "needs a bright source in the picture; readings of sites are even about them"},
       {"sensor.clipped-resampling", "sites lie where their neighbours are even"},
+      {"sensor.dark-current", "grows with the exposure as light does: one with the radiances, which are free"},
       {"sensor.crosstalk", "sites lie where their neighbours are even, and the tint of each is free"},
       {"sensor.prnu", "a pixel's gain is its patch's albedo, which is free"},
       {"sensor.row-pattern",

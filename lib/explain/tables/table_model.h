@@ -144,8 +144,8 @@ struct Term {
   std::span<const Term> alternatives{};  // further forms of the same mechanism, each a candidate of its own
 };
 namespace term_order {  // as render/sensor_chain.h has it behind the optics
-constexpr int light = 100, volume = 200, reference = 300, optics = 400, shutter = 500, non_linearity = 600,
-              row_pattern = 700, black_offset = 800, saturation = 900;
+constexpr int light = 100, volume = 200, reference = 300, optics = 400, shutter = 500, dark_current = 550,
+              non_linearity = 600, row_pattern = 700, black_offset = 800, saturation = 900;
 }
 std::span<const Term* const> all_terms();  // sorted by name; defined in a generated source
 std::vector<const Term*> all_forms();      // of all of them, each term's alternatives behind it

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "manifest/sections/mechanism_use.h"
 #include "table_world.h"
 
@@ -51,6 +53,41 @@ TEST_P(Injected, IsNamedWithAnIntervalThatCoversIt) {
   EXPECT_NEAR(found->value, c.value, 0.25 * c.value);
 }
 INSTANTIATE_TEST_SUITE_P(Terms, Injected, testing::Range(0, 4));
+
+double dark(double f, double exposure, double) {
+  return f + 2000 * exposure;
+}
+
+// What grows with the exposure is light like any other to patches of unknown radiance. Of known ones it is told from an
+// offset, and not from light of the room: that takes a lens cap.
+TEST(SensorTable, DarkCurrentIsLightUntilRadiancesAreKnown) {
+  const TablesProblem unknown = sensor_world(11, dark).problem();
+  const Explanation silent = explain(unknown, {});
+  EXPECT_EQ(named(unknown, silent), "");
+  for (const Isolability& i : silent.isolability)
+    if (unknown.candidates()[i.candidate].id() == "sensor.dark-current") {
+      EXPECT_FALSE(i.visible) << i.surviving_share;
+    }
+  for (std::uint64_t seed = 11; seed < 15; ++seed) {
+    World w = sensor_world(seed, dark);
+    w.columns[0] = {"radiance", ""};
+    for (std::vector<double>& row : w.rows) row[0] = 1e3 * std::pow(1.9, row[0]);
+    const TablesProblem problem = w.problem();
+    const Explanation e = explain(problem, {});
+    ASSERT_EQ(e.not_told_apart.size(), 1u) << e.sentence;
+    std::set<std::string> listed;
+    for (const std::size_t c : e.not_told_apart[0]) listed.insert(problem.candidates()[c].id());
+    EXPECT_EQ(listed, (std::set<std::string>{"light.ambient", "sensor.dark-current"})) << e.sentence;
+    Options asked;
+    asked.hypotheses = {"sensor.dark-current", "sensor.black-offset"};  // under a cap there is no light of the room
+    const Explanation capped = explain(problem, asked);
+    EXPECT_EQ(named(problem, capped), "sensor.dark-current") << capped.sentence;
+    const Estimate* found = estimate_of(problem, capped, "sensor.dark-current.rate_per_s");
+    ASSERT_NE(found, nullptr);
+    EXPECT_NEAR(found->value, 2000, 4 * found->sigma);
+    EXPECT_NEAR(found->value, 2000, 200);
+  }
+}
 
 TEST(SensorTable, NonLinearityIsNamedAndStatedAtTheLargestReading) {
   const World w = sensor_world(5, [](double f, double, double) { return f * (1 - 0.1 * f / 1300); });
