@@ -22,7 +22,8 @@ const Mechanism& sensor_dark_current() {
                       .meaning = "reading that gathers in a second without light, in the unit of the readings"}},
       .conditions = {"image.exposure"},
       .mistaken_for = {{.with = "sensor.black-offset", .told_apart = "lens cap, at two exposures: an offset stays"},
-                       {.with = "light.ambient", .told_apart = "lens cap, at the longest exposure: without it the two are one"}},
+                       {.with = "light.ambient",
+                        .told_apart = "lens cap, at the longest exposure: without it the two are one"}},
       .inputs = {{.name = "exposure_s", .unit = "s", .lower = 1e-4, .upper = 10}},
       .act = [](double v, std::span<const double> at, std::span<const double> p) { return v + p[0] * at[0]; },
   };
