@@ -2,13 +2,17 @@
 #include "explain/stacks/moved_outcome.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "base/error.h"
+#include "base/text.h"
 #include "explain/stacks/stack_manifest.h"
 #include "inference/apart.h"
 #include "inference/sentence.h"
 #include "inference/wording.h"
 #include "io/picture.h"
+#include "manifest/document.h"
 #include "stats/intervals.h"
 
 namespace gonio::mechanism {
@@ -56,12 +60,22 @@ std::size_t beside(const Stack& stack, std::size_t image) {
 void leave_out_stated(const manifest::Document& document, Stack& stack) {
   const std::string& id = mechanism::scene_moved().id;
   for (StackImage& image : stack.images) {
-    const auto number = [&](const char* name) {
-      return static_cast<int>(given_value(document, id, name, image.id).value_or(0));
-    };
-    const int left = number("left_px"), top = number("top_px");
-    const int right = std::min(stack.width(), left + number("width_px")),
-              bottom = std::min(stack.height(), top + number("height_px"));
+    if (!is_given(document, id, image.id)) continue;
+    std::array<double, 4> box{};
+    constexpr std::array names = {"left_px", "top_px", "width_px", "height_px"};
+    const std::array<int, 4> most = {stack.width() - 1, stack.height() - 1, stack.width(), stack.height()};
+    for (std::size_t k = 0; k < box.size(); ++k) {
+      const std::optional<double> stated = given_value(document, id, names[k], image.id);
+      const int least = k < 2 ? 0 : 1;
+      if (!stated || !(*stated >= least) || !(*stated <= most[k]))
+        throw Error(Exit::data, manifest::place(document, "/mechanisms/" + id + "/" + names[k]),
+                    stated ? "is " + shortest_text(*stated) + " for image " + image.id : "is missing",
+                    "a box within the picture has " + std::to_string(least) + " to " + std::to_string(most[k]));
+      box[k] = std::round(*stated);
+    }
+    const int left = static_cast<int>(box[0]), top = static_cast<int>(box[1]);
+    const int right = std::min(stack.width(), left + static_cast<int>(box[2])),
+              bottom = std::min(stack.height(), top + static_cast<int>(box[3]));
     for (int y = top; y < bottom; ++y)
       for (int x = left; x < right; ++x)
         for (int c = 0; c < static_cast<int>(stack.channels.size()); ++c)

@@ -7,7 +7,8 @@
 
 namespace gonio::explain::stacks {
 
-// Readings in the boxes that the manifest's own scene.moved states count no longer.
+// Readings in the boxes that the manifest's own scene.moved states count no longer. Error(data) at a number that is
+// missing or lies outside the picture.
 void leave_out_stated(const manifest::Document& document, Stack& stack);
 
 void conclude_moved(const Problem& problem, const Moved& moved, std::size_t candidate, Explanation& e);

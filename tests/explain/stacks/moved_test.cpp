@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
+#include "base/error.h"
 #include "data.h"
 #include "explain/engine.h"
 #include "explain/stacks/exposures_problem.h"
 #include "explain/stacks/stack_world.h"
 #include "manifest/document.h"
+#include "manifest/sections/mechanism_use.h"
 
 namespace gonio::explain::stacks {
 namespace {
@@ -55,8 +58,8 @@ TEST(Moved, NothingIsFoundWhereNothingMoved) {
   }
 }
 
-// 20 stacks with a disc of ten pixels' radius somewhere in one picture, of a brightness that the scene has, too: four in
-// five of its pixels are found (where it is as bright as what it hides, nobody could), and few others.
+// 20 stacks with a disc of ten pixels' radius somewhere in one picture, of a brightness that the scene has, too: four
+// in five of its pixels are found (where it is as bright as what it hides, nobody could), and few others.
 TEST(Moved, ADiscIsFoundWhereItIs) {
   int found = 0;
   double inside = 0, outside = 0;
@@ -109,6 +112,31 @@ TEST(Moved, AloneItIsNamedWithItsPlace) {
   const Outcome r = explained(record(world, folder.path()));
   ASSERT_EQ(r.named, (std::vector<std::string>{"scene.moved"})) << r.explanation.sentence;
   EXPECT_NE(r.explanation.sentence.find("moved"), std::string::npos) << r.explanation.sentence;
+}
+
+TEST(Moved, ABoxOutsideThePictureIsRefused) {
+  const tests::ScratchFolder folder;
+  const manifest::Document whole = record(ExposureWorld{}, folder.path());
+  const auto refused = [&](const std::string& name, std::optional<double> value) {
+    manifest::Document document = whole;
+    manifest::MechanismUse& use = document.mechanisms["scene.moved"];
+    use.on = {"e2"};
+    for (const char* number : {"relative", "left_px", "top_px", "width_px", "height_px"})
+      use.parameters[number] = manifest::Parameter({8});
+    use.parameters.erase(name);
+    if (value) use.parameters[name] = manifest::Parameter({*value});
+    try {
+      exposures_problems(document);
+    } catch (const Error& error) {
+      return std::string(error.what()).find(name) != std::string::npos;
+    }
+    return false;
+  };
+  EXPECT_FALSE(refused("left_px", 8));
+  EXPECT_TRUE(refused("left_px", -10));
+  EXPECT_TRUE(refused("top_px", 5000));
+  EXPECT_TRUE(refused("width_px", 0));
+  EXPECT_TRUE(refused("height_px", std::nullopt));
 }
 
 }  // namespace
