@@ -50,8 +50,9 @@ bool is_told(const Reading& r) {
 Reading reading_at(const Stack& stack, const ReadingNoise& noise, std::size_t g, int x, int y, int c) {
   const StackImage& image = stack.images[g];
   const double v = image.picture.at(x, y, c);
-  if (stack.integer && v >= stack.highest) return {std::log(v), 0, true};
-  if (!image.counts[image.picture.index(x, y, c)] || !(v > clear_of_noise * noise.sigma(g, v))) return {};
+  const std::size_t place = image.picture.index(x, y, c);
+  if (image.at_least[place / stack.channels.size()] && v >= stack.highest) return {std::log(v), 0, true};
+  if (!image.counts[place] || !(v > clear_of_noise * noise.sigma(g, v))) return {};
   double steepest = 0;
   for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
     const int u = x + dx * stack.step, w = y + dy * stack.step;

@@ -98,6 +98,8 @@ void read_image(const Document& document, StackImage& image, Stack& stack) {
   image.counts.resize(image.picture.data.size());
   for (std::size_t i = 0; i < image.counts.size(); ++i)
     image.counts[i] = std::isfinite(image.picture.data[i]) && !read.dark[i];
+  image.at_least = read.clipped;
+  image.at_least.resize(image.counts.size() / image.picture.channels.size());
   drop_neighbours_of_clipped(read.clipped, stack.step, image);
 }
 
@@ -108,6 +110,7 @@ void leave_out_masked(const Document& document, StackImage& image) {
       photograph::read_mask_of(image.picture, path, manifest::place(document, pointer(image.entry, "/mask")));
   const std::size_t channels = image.picture.channels.size();
   for (std::size_t i = 0; i < image.counts.size(); ++i) image.counts[i] = image.counts[i] && counts[i / channels];
+  for (std::size_t i = 0; i < counts.size(); ++i) image.at_least[i] = image.at_least[i] && counts[i];
 }
 
 void check_alike(const Document& document, const StackImage& image, const Stack& stack) {

@@ -22,10 +22,11 @@ namespace gonio::explain::stacks {
 
 struct StackImage {
   std::string id;
-  std::size_t entry = 0;             // place in document.images
-  io::Image picture;                 // Y, or R, G, B
-  std::vector<std::uint8_t> counts;  // one per reading
-  double exposure_s = 1, gain = 1;   // gain: factor on the light, 1 unless the manifest knows better
+  std::size_t entry = 0;               // place in document.images
+  io::Image picture;                   // Y, or R, G, B
+  std::vector<std::uint8_t> counts;    // one per reading
+  std::vector<std::uint8_t> at_least;  // one per pixel: some channel is clipped, and no mask hides it
+  double exposure_s = 1, gain = 1;     // gain: factor on the light, 1 unless the manifest knows better
   std::optional<double> time_s, temperature_K;
   std::optional<Rigid<frame::World, frame::Camera>> world_from_camera;  // where it is stated
   std::string light;  // of a stack of lights: key in the manifest's lights

@@ -114,6 +114,14 @@ TEST(Moved, AloneItIsNamedWithItsPlace) {
   EXPECT_NE(r.explanation.sentence.find("moved"), std::string::npos) << r.explanation.sentence;
 }
 
+// Nothing moved in front of an industrial camera on its tripod; its longest exposures are clipped almost everywhere.
+TEST(Moved, NothingIsFoundInARecordedStack) {
+  GONIO_NEEDS_DATA("cases/crash-exposures.json");
+  const manifest::Document document = manifest::read_document(gonio::tests::data("cases/crash-exposures.json"));
+  const Stack stack = read_stack(document, stacks_of(document, Kind::exposures).at(0), Kind::exposures);
+  EXPECT_TRUE(find_moved(stack, ReadingNoise(stack)).regions.empty());
+}
+
 TEST(Moved, ABoxOutsideThePictureIsRefused) {
   const tests::ScratchFolder folder;
   const manifest::Document whole = record(ExposureWorld{}, folder.path());
