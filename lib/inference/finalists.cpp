@@ -219,9 +219,8 @@ double Finalists::finer_ones(const Finalist& f) const {
   double count = 0;
   for (const std::size_t c : f.model.candidates) {
     if (!all[c].finer) continue;
-    const bool has_forms = std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
-      return !other.finer && is_within(other, all[c]);
-    });
+    const bool has_forms = std::any_of(
+        all.begin(), all.end(), [&](const Candidate& other) { return !other.finer && is_within(other, all[c]); });
     count += !has_forms || plainer_stands;
   }
   return count;
