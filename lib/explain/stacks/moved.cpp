@@ -62,9 +62,9 @@ Reading reading_at(const Stack& stack, const ReadingNoise& noise, std::size_t g,
   return {std::log(v), std::hypot(noise.sigma(g, v), off_place_px * steepest) / v, false, 0.5 * stack.quantum / v};
 }
 
-// Medians of what is left over the other picture's reading, bins of equal counts, each joined with its neighbours: an
-// object that is all there is of its level does not set its own.
-struct Response {
+// What one picture reads over what another does: medians over the other's reading, bins of equal counts, each joined
+// with its neighbours: an object that is all there is of its level does not set its own.
+struct Relation {
   std::vector<double> level, middle, spread, slope;  // slope: of one picture's logarithm over the other's
   double at(const std::vector<double>& of, double l) const {
     if (level.size() < 2) return of.front();
@@ -85,10 +85,10 @@ std::vector<double> joined(const std::vector<double>& of) {
 }
 
 // `left`: the other's reading, and what one picture has beyond it, both logarithms.
-Response response_of(std::vector<std::pair<double, double>> left) {
+Relation relation_of(std::vector<std::pair<double, double>> left) {
   std::ranges::sort(left);
   const std::size_t each = std::max(least_in_bin, left.size() / level_bins);
-  Response r;
+  Relation r;
   for (std::size_t from = 0, to = 0; from < left.size(); from = to) {
     // Equal readings stay together: what a full well or a coarse code hides is the spread of one bin.
     to = left.size() - from < 2 * each ? left.size() : from + each;
@@ -127,18 +127,18 @@ Pair against(const std::vector<Reading>& own, const std::vector<Reading>& other)
   for (std::size_t i = 0; i < own.size(); ++i)
     if (is_told(own[i]) && is_told(other[i])) shown.emplace_back(other[i].log, own[i].log - other[i].log);
   if (shown.size() < least_shown) return pair;
-  const Response response = response_of(std::move(shown));
+  const Relation relation = relation_of(std::move(shown));
   for (std::size_t i = 0; i < own.size(); ++i) {
     if (std::isnan(own[i].log) || !is_told(other[i])) continue;
-    const double l = other[i].log, slope = std::abs(response.at(response.slope, l));
-    if (slope > steepest_told || (own[i].at_least && l > response.level.back())) continue;
-    pair.left[i] = own[i].log - l - response.at(response.middle, l);
+    const double l = other[i].log, slope = std::abs(relation.at(relation.slope, l));
+    if (slope > steepest_told || (own[i].at_least && l > relation.level.back())) continue;
+    pair.left[i] = own[i].log - l - relation.at(relation.middle, l);
     if (own[i].at_least && pair.left[i] < surely_above) pair.left[i] = 0;
     const double rounding = own[i].rounding + slope * other[i].rounding;
     const double beyond = std::max(0.0, std::abs(pair.left[i]) - rounding);
     const double noise = std::hypot(own[i].sigma, slope * other[i].sigma);
     pair.z[i] =
-        std::copysign(beyond, pair.left[i]) / std::max({noise, response.at(response.spread, l) - rounding, 1e-9});
+        std::copysign(beyond, pair.left[i]) / std::max({noise, relation.at(relation.spread, l) - rounding, 1e-9});
   }
   return pair;
 }

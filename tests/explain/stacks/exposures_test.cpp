@@ -7,6 +7,7 @@
 
 #include "data.h"
 #include "explain/engine.h"
+#include "explain/stacks/exposure_outcome.h"
 #include "explain/stacks/exposures_problem.h"
 #include "explain/stacks/stack_world.h"
 #include "io/picture.h"
@@ -15,37 +16,6 @@
 
 namespace gonio::explain::stacks {
 namespace {
-
-using tests::ExposureWorld;
-
-struct Outcome {
-  manifest::Document document;
-  std::unique_ptr<Problem> problem;
-  Explanation explanation;
-  std::vector<std::string> named;
-  double value(const std::string& parameter) const {
-    for (const Estimate& e : explanation.estimates)
-      if (problem->parameters()[e.parameter].name == parameter) return e.value;
-    return std::nan("");
-  }
-};
-
-Outcome run(const manifest::Document& document, double smallest_effect = 0.01) {
-  Outcome r;
-  r.document = document;
-  std::vector<std::unique_ptr<Problem>> problems = exposures_problems(document);
-  r.problem = std::move(problems.at(0));
-  Options options;
-  options.smallest_effect = smallest_effect;
-  r.explanation = explain(*r.problem, options);
-  for (const std::size_t c : r.explanation.named) r.named.push_back(r.problem->candidates()[c].id());
-  return r;
-}
-
-Outcome run(const ExposureWorld& world, double smallest_effect = 0.01) {
-  const tests::ScratchFolder folder;
-  return run(record(world, folder.path()), smallest_effect);
-}
 
 // The sentence and what else ran: for whoever looks at a failure.
 std::string told(const Outcome& o) {
@@ -61,12 +31,6 @@ std::string told(const Outcome& o) {
 }
 
 using Names = std::vector<std::string>;
-
-// A film: toe, straight part, shoulder; 1 at 1.
-double film(double light) {
-  const double x = std::pow(std::max(1e-9, light) * 6, 0.9);
-  return x / (x + 1) * (std::pow(6.0, 0.9) + 1) / std::pow(6.0, 0.9);
-}
 
 TEST(Exposures, ToneCurveIsNamedAndItsInverseLeavesNothing) {
   const tests::ScratchFolder folder;

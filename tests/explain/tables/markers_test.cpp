@@ -142,15 +142,6 @@ TEST(Markers, ANumberThatIsHeldLetsContactBeTold) {
   EXPECT_GT(pose->sigma->translation_m[0], 1e-6);
 }
 
-void expect_refused(const World& world, const std::string& words) {
-  try {
-    world.problem();
-    FAIL() << "was accepted, not: " << words;
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), Exit::data);
-    EXPECT_THAT(e.what(), HasSubstr(words));
-  }
-}
 TEST(Markers, WhatTheManifestDoesNotHaveIsSaid) {
   World world = marker_world(7);
   world.rows[0][0] = 99;

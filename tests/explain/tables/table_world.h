@@ -1,9 +1,12 @@
 // Tables made in memory, with their manifest: what a user would hand in.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/random.h"
 #include "base/text.h"
 #include "explain/engine.h"
@@ -64,6 +67,16 @@ inline std::string named(const Problem& problem, const Explanation& e) {
   std::string text;
   for (const std::size_t c : e.named) text += (text.empty() ? "" : " ") + problem.candidates()[c].id();
   return text;
+}
+
+inline void expect_refused(const World& world, const std::string& words) {
+  try {
+    world.problem();
+    FAIL() << "was accepted, not: " << words;
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Exit::data);
+    EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
+  }
 }
 
 // The answer put into the manifest and asked again: nothing is left of what was named, and it acts once.

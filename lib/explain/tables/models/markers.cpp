@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "explain/tables/marker_scene.h"
 #include "explain/tables/model_parameters.h"
+#include "explain/tables/pixel_rows.h"
 #include "explain/tables/table_model.h"
 #include "manifest/document.h"
 #include "manifest/sections/object.h"
@@ -44,16 +45,10 @@ struct Reach {
   bool behind_glass = false;
 };
 
-class Markers final : public BoundModel {
+class Markers final : public PixelRows {
  public:
   Markers(const manifest::Document& document, const std::string& name, const Table& table)
-      : name_(name), scene_(marker_scene(document, table)) {
-    if (table.observed.size() != 2)
-      throw Error(Exit::data, table.place + "/observed", "names " + std::to_string(table.observed.size()) + " columns",
-                  "model markers predicts two: u_px and v_px");
-    if (table.sigma.empty())
-      throw Error(Exit::data, table.place, "does not say how well the markers were found",
-                  "give columns u_sigma_px and v_sigma_px");
+      : PixelRows(table, "markers", "markers"), name_(name), scene_(marker_scene(document, table)) {
     bind_poses(document.tables.at(name), table);
     bind_known(table);
     bind_tomograph();
@@ -61,40 +56,6 @@ class Markers final : public BoundModel {
     check_sight(table);
     bind_conditions();
   }
-
-  void predict(Values values, std::size_t first, std::size_t last, std::span<double> prediction) const override {
-    for (std::size_t r = first; r < last; ++r) {
-      const Vec2 pixel = pixel_of(values, r);
-      prediction[2 * (r - first)] = pixel.x;
-      prediction[2 * (r - first) + 1] = pixel.y;
-    }
-  }
-  // Central differences, in the rows that a parameter reaches.
-  void jacobian(Values values, std::size_t first, std::size_t last, std::span<const std::size_t> columns,
-                std::span<double> derivatives) const override {
-    std::vector<double> at(values.begin(), values.end());
-    const std::size_t height = 2 * (last - first);
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      const std::size_t k = columns[c];
-      const Parameter& p = parameters_[k];
-      const double step = 1e-4 * p.size, above = std::min(values[k] + step, p.upper),
-                   below = std::max(values[k] - step, p.lower);
-      for (std::size_t r = first; r < last; ++r) {
-        Vec2 slope;
-        if (reaches(k, r)) {
-          at[k] = above;
-          const Vec2 after = pixel_of(at, r);
-          at[k] = below;
-          slope = (after - pixel_of(at, r)) * (1 / (above - below));
-        }
-        derivatives[c * height + 2 * (r - first)] = slope.x;
-        derivatives[c * height + 2 * (r - first) + 1] = slope.y;
-      }
-      at[k] = values[k];
-    }
-  }
-  // Half a square for each of two coordinates: the score is the RMS distance, in pixels.
-  std::vector<double> norm() const override { return std::vector<double>(2 * scene_.rows.size(), 0.5); }
 
   // Fitted poses go back to the objects, with their sigmas.
   void apply(Values values, std::span<const double> sigma, manifest::Document& document) const override {
@@ -127,7 +88,7 @@ class Markers final : public BoundModel {
     std::vector<std::size_t> places;  // one per number of the mechanism; none: neutral
   };
 
-  bool reaches(std::size_t parameter, std::size_t row) const {
+  bool reaches(std::size_t parameter, std::size_t row) const override {
     const Reach& reach = reach_[parameter];
     const Sighting& s = scene_.rows[row];
     return (reach.view == none || reach.view == s.view) && (reach.piece == none || reach.piece == s.piece) &&
@@ -282,7 +243,7 @@ class Markers final : public BoundModel {
     }
     return view.camera.project(inverse(camera) * world_m);
   }
-  Vec2 pixel_of(Values values, std::size_t row) const {
+  Vec2 pixel_of(Values values, std::size_t row) const override {
     const Sighting& s = scene_.rows[row];
     const auto pixel = project(values, s, pose_of(values, s) * centre_of(values, s));
     return pixel.value_or(believed_.empty() ? Vec2{std::nan(""), 0} : believed_[row]);

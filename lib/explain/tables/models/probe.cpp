@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "explain/tables/model_parameters.h"
+#include "explain/tables/pixel_rows.h"
 #include "explain/tables/probe_scene.h"
 #include "inference/wording.h"
 #include "manifest/document.h"
@@ -41,16 +42,10 @@ struct Reach {  // where a parameter acts; none: everywhere
   std::size_t lamp = none, ball = none, camera = none;
 };
 
-class Probe final : public BoundModel {
+class Probe final : public PixelRows {
  public:
   Probe(const manifest::Document& document, const std::string& name, const Table& table)
-      : name_(name), scene_(probe_scene(document, name, table)) {
-    if (table.observed.size() != 2)
-      throw Error(Exit::data, table.place + "/observed", "names " + std::to_string(table.observed.size()) + " columns",
-                  "model probe predicts two: u_px and v_px");
-    if (table.sigma.empty())
-      throw Error(Exit::data, table.place, "does not say how well the highlights were found",
-                  "give columns u_sigma_px and v_sigma_px");
+      : PixelRows(table, "probe", "highlights"), name_(name), scene_(probe_scene(document, name, table)) {
     bind_lamps(document.tables.at(name), table);
     bind_balls(table);
     bind_distance(table);
@@ -59,30 +54,6 @@ class Probe final : public BoundModel {
     believe();
     bind_conditions();
   }
-
-  void predict(Values values, std::size_t first, std::size_t last, std::span<double> prediction) const override {
-    for (std::size_t r = first; r < last; ++r) {
-      const Vec2 pixel = pixel_of(values, r);
-      prediction[2 * (r - first)] = pixel.x;
-      prediction[2 * (r - first) + 1] = pixel.y;
-    }
-  }
-  // Central differences, one-sided at bounds, in the rows that a parameter reaches.
-  void jacobian(Values values, std::size_t first, std::size_t last, std::span<const std::size_t> columns,
-                std::span<double> derivatives) const override {
-    std::vector<double> at(values.begin(), values.end());
-    const std::size_t height = 2 * (last - first);
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      const std::size_t k = columns[c];
-      for (std::size_t r = first; r < last; ++r) {
-        const Vec2 slope = reaches(k, r) ? slope_of(at, k, r) : Vec2{};
-        derivatives[c * height + 2 * (r - first)] = slope.x;
-        derivatives[c * height + 2 * (r - first) + 1] = slope.y;
-      }
-    }
-  }
-  // Half a square for each of two coordinates: the score is the RMS distance, in pixels.
-  std::vector<double> norm() const override { return std::vector<double>(2 * scene_.rows.size(), 0.5); }
 
   std::string remarks(std::span<const std::string> named, Values values, std::span<const double> sigma) const override {
     if (std::ranges::find(named, mechanism::probe_distance().id) == named.end()) return {};
@@ -116,22 +87,11 @@ class Probe final : public BoundModel {
   }
 
  private:
-  bool reaches(std::size_t parameter, std::size_t row) const {
+  bool reaches(std::size_t parameter, std::size_t row) const override {
     const Reach& reach = reach_[parameter];
     const ProbeRow& s = scene_.rows[row];
     return (reach.lamp == none || reach.lamp == s.lamp) && (reach.ball == none || reach.ball == s.ball) &&
            (reach.camera == none || reach.camera == s.camera);
-  }
-  Vec2 slope_of(std::vector<double>& at, std::size_t k, std::size_t row) const {
-    const Parameter& p = parameters_[k];
-    const double centre = at[k], step = 1e-4 * p.size, above = std::min(centre + step, p.upper),
-                 below = std::max(centre - step, p.lower);
-    at[k] = above;
-    const Vec2 after = pixel_of(at, row);
-    at[k] = below;
-    const Vec2 before = pixel_of(at, row);
-    at[k] = centre;
-    return (after - before) * (1 / (above - below));
   }
 
   std::size_t add(Parameter p, Reach reach, const Table& table) {
@@ -277,7 +237,7 @@ class Probe final : public BoundModel {
     if (!pixel) return {};
     return Spot{*pixel, std::acos(std::clamp(shown->cosine, 0.0, 1.0))};
   }
-  Vec2 pixel_of(Values values, std::size_t row) const {
+  Vec2 pixel_of(Values values, std::size_t row) const override {
     const auto spot = spot_of(values, row);
     return spot ? spot->pixel : believed_.empty() ? Vec2{std::nan(""), 0} : believed_[row].pixel;
   }
