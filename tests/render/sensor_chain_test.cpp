@@ -12,6 +12,7 @@
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "render/mechanisms/sensor_saturation.h"
+#include "scene/mechanisms.h"
 
 namespace gonio::render {
 namespace {
@@ -51,7 +52,8 @@ bool concerns_pictures(const Mechanism& m) {
 }
 
 // Walks the registry: what is declared for cameras behind the lens is known, and vanishes where it says so. Defocus
-// and what a camera's section states belong to the rays that are cast; lateral colour moves what they have brought.
+// and what a camera's section states belong to the rays that are cast, and render says what it leaves out; lateral
+// colour moves what the rays have brought.
 TEST(SensorChain, EveryLinkVanishesAtNeutralAndActsOtherwise) {
   const io::Image picture = picture_of(12, 9, 1);
   const io::Image plain = recorded_with(picture, {});
@@ -63,7 +65,8 @@ TEST(SensorChain, EveryLinkVanishesAtNeutralAndActsOtherwise) {
     const bool ours =
         (m->stage == "optics" || m->stage == "sensor") && m->target == Target::camera && concerns_pictures(*m);
     const bool of_rays = m->id == "optics.defocus" || m->id.starts_with("camera.");
-    EXPECT_EQ(in_sensor_chain(*m), (ours && !of_rays) || m->id == "lens.lateral-colour") << m->id;
+    const bool elsewhere = of_rays || scene::beyond_rendering(*m);
+    EXPECT_EQ(in_sensor_chain(*m), (ours && !elsewhere) || m->id == "lens.lateral-colour") << m->id;
     if (!in_sensor_chain(*m)) continue;
     ++count;
     manifest::Parameters neutral, other;
