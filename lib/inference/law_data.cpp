@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/parallel.h"
 #include "linear/qr.h"
@@ -19,6 +20,10 @@ LawData::LawData(const System& system, const std::vector<double>& values, const 
     g.number = system.groups[k];
     g.first = system.observations().first[g.number];
     g.whitened = group_columns(system, own_, {}, {}, g.number, g.places);
+    std::map<std::uint32_t, std::size_t> places;
+    for (std::size_t i = g.first; i < system.observations().first[g.number + 1]; ++i)
+      g.block.push_back(places.try_emplace(system.observations().block[i], places.size()).first->second);
+    g.blocks = places.size();
   });
   for (const std::uint32_t b : system.observations().block) blocks_ = std::max<std::size_t>(blocks_, b + 1);
   for (const std::size_t g : system.groups) rows_ += system.used_rows(g);
@@ -73,6 +78,19 @@ Linearisation LawData::with(const RawColumns& columns, const Mask& mask) const {
   return l;
 }
 
+// Of each column the sum over blocks of the square of its squared length there.
+Eigen::VectorXd LawData::squares_of_blocks(const Eigen::MatrixXd& columns, const Group& group) {
+  Eigen::VectorXd sums(columns.cols());
+  Eigen::VectorXd lengths(static_cast<Eigen::Index>(group.blocks));
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+    lengths.setZero();
+    for (Eigen::Index i = 0; i < columns.rows(); ++i)
+      lengths[static_cast<Eigen::Index>(group.block[static_cast<std::size_t>(i)])] += columns(i, c) * columns(i, c);
+    sums[c] = lengths.squaredNorm();
+  }
+  return sums;
+}
+
 std::vector<Score> LawData::scores(const RawColumns& candidates, const RawColumns& chosen, const Mask& mask) const {
   const Linearisation l = with(chosen, mask);
   const NormalEquations equations(l, all_columns(l));
@@ -81,7 +99,7 @@ std::vector<Score> LawData::scores(const RawColumns& candidates, const RawColumn
   const auto count = static_cast<Eigen::Index>(candidates.size());
   struct Part {
     Eigen::MatrixXd cross;
-    Eigen::VectorXd length, score;
+    Eigen::VectorXd length, score, squares;
   };
   std::vector<Part> parts(groups_.size());
   parallel_for(0, groups_.size(), [&](std::size_t k) {
@@ -97,10 +115,13 @@ std::vector<Score> LawData::scores(const RawColumns& candidates, const RawColumn
     parts[k].cross = Eigen::MatrixXd::Zero(all, count);
     parts[k].cross(places, Eigen::all) = a.transpose() * phi;
     parts[k].length = phi.colwise().squaredNorm().transpose();
+    parts[k].squares = squares_of_blocks(phi, g);
     parts[k].score = phi.transpose() * r;
   });
-  Part sum{Eigen::MatrixXd::Zero(all, count), Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count)};
-  for (const Part& p : parts) sum.cross += p.cross, sum.length += p.length, sum.score += p.score;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(count);
+  Part sum{Eigen::MatrixXd::Zero(all, count), none, none, none};
+  for (const Part& p : parts)
+    sum.cross += p.cross, sum.length += p.length, sum.score += p.score, sum.squares += p.squares;
   const Eigen::MatrixXd solution = equations.solve(sum.cross);
   std::vector<Score> result(candidates.size());
   for (Eigen::Index c = 0; c < count; ++c) {
@@ -109,6 +130,7 @@ std::vector<Score> LawData::scores(const RawColumns& candidates, const RawColumn
     if (!(sum.length[c] > 0) || !(surviving > 0)) continue;
     s.survives = std::sqrt(surviving / sum.length[c]);
     s.fall = sum.score[c] * sum.score[c] / surviving;
+    s.blocks = sum.length[c] * sum.length[c] / sum.squares[c];
   }
   return result;
 }

@@ -14,9 +14,10 @@ namespace gonio::inference {
 
 using RawColumns = std::vector<std::vector<double>>;
 
-// Fall of chi-square that one further column would bring, and the share of its length that survives the projection.
+// Fall of chi-square that one further column would bring, the share of its length that survives the projection, and on
+// how many blocks it lives: the square of its squared length over the sum of the blocks' squares.
 struct Score {
-  double fall = 0, survives = 0;
+  double fall = 0, survives = 0, blocks = 0;
 };
 
 class LawData {
@@ -43,10 +44,13 @@ class LawData {
     std::size_t number = 0, first = 0;
     std::vector<std::size_t> places;  // of its columns, in the linearisation
     Eigen::MatrixXd whitened;         // [columns, residual]
+    std::vector<std::size_t> block;   // of each row, from zero
+    std::size_t blocks = 0;
   };
   // The linearisation with `columns` appended, on the rows of `mask`.
   Linearisation with(const RawColumns& columns, const Mask& mask) const;
   Eigen::MatrixXd whitened(const RawColumns& columns, const Group& group) const;
+  static Eigen::VectorXd squares_of_blocks(const Eigen::MatrixXd& columns, const Group& group);
   std::vector<std::size_t> all_columns(const Linearisation& l) const;
 
   const System& system_;

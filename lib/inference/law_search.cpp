@@ -14,6 +14,7 @@ namespace gonio::inference {
 namespace {
 
 constexpr double least_survivor = 0.02;          // of a term's length, after projection
+constexpr double fewest_blocks = 4;              // on which a term lives: what is large on one is that one's own number
 constexpr std::size_t most_values = 15'000'000;  // of all terms on the rows on which they are ranked
 constexpr std::size_t ranked_on_all = 12;        // the best of those, ranked again on all rows
 constexpr std::size_t columns_at_once = 48;      // bounds the memory
@@ -57,7 +58,8 @@ void rank(const LawData& data, const std::vector<Term>& possible, const std::vec
     const std::vector<Score> scores = data.scores(columns, chosen, mask);
     for (std::size_t k = first; k < last; ++k) {
       const Score& s = scores[k - first];
-      if (s.survives > least_survivor) list.push_back({places[k], s.fall, s.fall - price * possible[places[k]].price});
+      if (s.survives > least_survivor && s.blocks >= fewest_blocks)
+        list.push_back({places[k], s.fall, s.fall - price * possible[places[k]].price});
     }
   }
   std::stable_sort(list.begin(), list.end(), [](const Ranked& a, const Ranked& b) { return a.worth > b.worth; });

@@ -100,13 +100,14 @@ ImageModel::ImageModel(const Recordings& recordings, const SceneLayout& layout, 
       layout_(layout),
       monomials_(monomials),
       views_(std::move(views)),
-      memo_(std::make_unique<ShadingMemo>(recordings.images.size())) {
+      memo_(std::make_unique<ShadingMemo>(recordings.images.size())),
+      scattered_(std::make_unique<ScatteredMemo>()) {
   for (const ViewCache& cache : views_) sums_.push_back(facet_sums(cache));
 }
 
 Shader ImageModel::shader(std::size_t image) const {
   const Recording& recording = recordings_.images[image];
-  return Shader(layout_, recording, views_[recording.view], sums_[recording.view]);
+  return Shader(layout_, recording, views_[recording.view], sums_[recording.view], *scattered_);
 }
 
 void ImageModel::add_uses(std::vector<Use> uses, bool in_play) {
@@ -209,7 +210,7 @@ std::shared_ptr<const Shaded> ImageModel::shaded(const SceneState& now, std::siz
 void ImageModel::predict_from(const ViewCache& cache, std::span<const float> sums, const SceneState& edited,
                               std::size_t image, std::span<const std::uint32_t> picked,
                               std::span<double> radiance) const {
-  const Shading shading = Shader(layout_, recordings_.images[image], cache, sums)(edited, picked);
+  const Shading shading = Shader(layout_, recordings_.images[image], cache, sums, *scattered_)(edited, picked);
   compose_from(cache, edited, image, picked, shading, radiance);
 }
 
@@ -255,7 +256,7 @@ void ImageModel::compose_from(const ViewCache& cache, const SceneState& state, s
 std::vector<Rgb> ImageModel::direct_from(const ViewCache& cache, std::span<const float> sums, const SceneState& state,
                                          std::size_t number, std::span<const std::uint32_t> picked) const {
   const Recording& image = recordings_.images[number];
-  const Shading shading = Shader(layout_, image, cache, sums).direct_alone(state, picked);
+  const Shading shading = Shader(layout_, image, cache, sums, *scattered_).direct_alone(state, picked);
   const std::vector<Rgb> albedos = albedos_of(state);
   std::vector<Rgb> radiance;
   std::size_t slot = 0;
@@ -285,7 +286,7 @@ struct Onward::Impl {
 Onward::Onward(const ImageModel& model, const SceneState& state, std::size_t number) {
   const Recording& image = model.recordings().images[number];
   const ViewCache& cache = model.cache(image.view);
-  const Shader shader(model.layout(), image, cache, {});
+  const Shader shader(model.layout(), image, cache, {}, model.scattered());
   std::vector<std::uint32_t> all(cache.pixels.size());
   std::iota(all.begin(), all.end(), 0u);
   impl_ = std::unique_ptr<const Impl>(

@@ -86,6 +86,7 @@ class ImageModel {
   const render::Monomials& monomials() const { return monomials_; }
   const Recordings& recordings() const { return recordings_; }
   std::size_t views() const { return views_.size(); }
+  ScatteredMemo& scattered() const { return *scattered_; }
 
  private:
   Shader shader(std::size_t image) const;
@@ -102,6 +103,7 @@ class ImageModel {
   std::vector<Use> uses_;
   std::vector<std::size_t> ordered_;  // uses by their terms' order
   std::unique_ptr<ShadingMemo> memo_;
+  std::unique_ptr<ScatteredMemo> scattered_;
 };
 
 // Light by way of other surfaces at one state: what a facet of the view's cache sends to the camera, before exposure

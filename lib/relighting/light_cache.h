@@ -4,9 +4,9 @@
 //
 //   pixel  a sampled pixel of one view; `sky` is the share of it that sees no surface
 //   facet  the part of a pixel that shows one surface
-//   patch  the part of a facet in one of 4 x 4 equal squares of the pixel, or all of it where it is flat: mean
-//   position, normal and direction to the eye (unit
-//          vectors, world frame, metres). Glossy terms are evaluated per patch.
+//   patch  the part of a facet in one of 4 x 4 equal squares of the pixel, of fewer where the normal hardly turns: mean
+//          position, normal and direction to the eye (unit vectors, world frame, metres). Glossy terms are evaluated
+//          per patch.
 //
 // Direct light: per patch and light the mean of V cos(theta) / d^2 over its sub-samples (1/m^2; directional lights: V
 // cos), which times the intensity is the irradiance, for a list of radii of the light: exact for small lights (radius
@@ -83,7 +83,7 @@ struct ViewCache {
 struct CacheOptions {
   int samples = 8;        // sub-samples of a pixel, along each side
   int paths = 512;        // a facet; 0: no light by way of surfaces, whose tables stay empty
-  int patches = 4;        // of a pixel, along each side
+  int patches = 4;        // of a pixel, along each side; fewer where the normal hardly turns
   bool penumbrae = true;  // false: small lights only, at every radius
   bool shadows = false;   // of lamps that stand elsewhere
   // Sub-samples are moved by this far at least and at most, evenly over that ring of the picture: what lies about a

@@ -44,50 +44,6 @@ Vec3 lobe_axis(Vec3 position_m, Vec3 centre_m, std::span<const double> lobe) {
 
 }  // namespace
 
-// The surface without and with a white base.
-struct Extremes {
-  surface::Values black, white;
-  bool has_base = false, proportional = true;
-  Rgb colour;  // the present albedo, where the base does not grow in proportion to it
-  // Where nothing but the albedo has a colour, a band sees the albedo of its own alone: one evaluation with a base that
-  // is black in red and white in green yields both.
-  bool at_once = false;
-  explicit Extremes(const SurfaceState& surface) : black(surface.values), white(surface.values) {
-    has_base = has_parameter(*surface.model, "albedo");
-    if (!has_base) return;
-    const std::size_t albedo = parameter_index(*surface.model, "albedo");
-    black.v[albedo] = {0, 0, 0};
-    white.v[albedo] = {1, 1, 1};
-    proportional = surface.model->proportional_to_albedo(surface.values);
-    if (!proportional) {
-      white = surface.values;
-      colour = surface.values.rgb(albedo);
-      return;
-    }
-    const auto& parameters = surface.model->info().parameters;
-    at_once = std::count_if(parameters.begin(), parameters.end(),
-                            [](const manifest::ParameterInfo& p) { return p.components == 3; }) == 1;
-    if (at_once) white.v[albedo] = {0, 1, 1};
-  }
-  // F: Values -> Rgb, affine in the albedo, else as if it were so about the present one
-  template <class F>
-  Scattered split(const F& f) const {
-    if (at_once) {
-      const Rgb both = f(white);
-      const double gloss = both.x, base = both.y - both.x;
-      return {{base, base, base}, {gloss, gloss, gloss}};
-    }
-    const Rgb gloss = f(black);
-    if (!proportional) {
-      const Rgb all = f(white);
-      const auto of = [&](int c) { return colour[c] > 1e-9 ? (all[c] - gloss[c]) / colour[c] : 0.0; };
-      return {{of(0), of(1), of(2)}, gloss};
-    }
-    const double base = has_base ? mean(f(white) - gloss) : 0;
-    return {{base, base, base}, gloss};
-  }
-};
-
 RadiusWeights::RadiusWeights(double radius_m) {
   if (radius_m <= 0) return;
   const double r = std::min(radius_m, radii_m.back());
@@ -231,55 +187,6 @@ Scattered Shader::direct(const SurfaceState& surface, const Extremes& extremes, 
   return sum;
 }
 
-namespace {
-
-// What a surface sends on towards one direction of light that comes from everywhere.
-Scattered scattered_towards(const SurfaceState& surface, Vec3 wo) {
-  const auto sent = [&](const surface::Values& v) { return surface.model->albedo(v, wo); };
-  if (!has_parameter(*surface.model, "metal")) return Extremes(surface).split(sent);
-  // A metal mirrors what comes from other surfaces; its matte part spreads it.
-  const std::size_t metal = parameter_index(*surface.model, "metal"),
-                    albedo = parameter_index(*surface.model, "albedo");
-  const double share = surface.values.scalar(metal);
-  SurfaceState matte = surface;
-  matte.values.v[metal] = {0, 0, 0};
-  Scattered all = Extremes(matte).split(sent);
-  if (!(share > 0)) return all;
-  all.base = all.base * (1 - share);
-  all.gloss = sent(surface.values) - all.base * surface.values.rgb(albedo);
-  return all;
-}
-
-// The same of a metal that is alike all round its normal, which is a quadrature each time: by the cosine, linear
-// between nodes that lie closer towards the horizon.
-class ScatteredBy {
- public:
-  ScatteredBy(const SurfaceState& surface, std::size_t facets) : surface_(surface) {
-    const auto is_zero = [&](const char* name) {
-      return !has_parameter(*surface.model, name) || surface.values.scalar(parameter_index(*surface.model, name)) == 0;
-    };
-    if (facets < 2 * nodes || is_zero("metal") || !is_zero("anisotropy")) return;
-    for (std::size_t k = 0; k < nodes; ++k) {
-      const double root = std::max(1e-3, static_cast<double>(k) / (nodes - 1)), z = root * root;
-      table_.push_back(scattered_towards(surface, {std::sqrt(1 - z * z), 0, z}));
-    }
-  }
-  Scattered operator()(Vec3 wo) const {
-    if (table_.empty()) return scattered_towards(surface_, wo);
-    const double x = std::sqrt(std::clamp(wo.z, 0.0, 1.0)) * (nodes - 1);
-    const std::size_t k = std::min(static_cast<std::size_t>(x), nodes - 2);
-    const double t = x - static_cast<double>(k);
-    return {table_[k].base * (1 - t) + table_[k + 1].base * t, table_[k].gloss * (1 - t) + table_[k + 1].gloss * t};
-  }
-
- private:
-  static constexpr std::size_t nodes = 24;
-  const SurfaceState& surface_;
-  std::vector<Scattered> table_;
-};
-
-}  // namespace
-
 Scattered Shader::scattered(const SurfaceState& surface, const Facet& facet) const {
   if (surface.lambertian()) return {{1, 1, 1}, {}};
   return scattered_towards(surface, seen_from(facet));
@@ -337,13 +244,15 @@ void Shader::send_on_again(const SceneState& state, std::span<const std::uint32_
                            Shading& shading) const {
   const SurfaceState& its = state.surfaces[surface];
   const bool lambertian = its.lambertian();
-  const ScatteredBy scattered_by(its, picked.size());
+  const std::shared_ptr<const ScatteredBy> by_cosine = scattered_.of(its, picked.size());
   std::size_t slot = 0;
   for (const std::uint32_t p : picked)
     for (std::size_t k = 0; k < cache_.pixels[p].facets; ++k, ++slot) {
       const Facet& facet = cache_.facets[cache_.pixels[p].first_facet + k];
       if (facet.surface != surface) continue;
-      shading.indirect[slot] = lambertian ? Scattered{{1, 1, 1}, {}} : scattered_by(seen_from(facet));
+      shading.indirect[slot] = lambertian  ? Scattered{{1, 1, 1}, {}}
+                               : by_cosine ? (*by_cosine)(seen_from(facet))
+                                           : scattered_towards(its, seen_from(facet));
     }
 }
 

@@ -17,13 +17,11 @@
 
 #include "relighting/light_cache.h"
 #include "relighting/recordings.h"
+#include "relighting/scattered.h"
 #include "relighting/scene_state.h"
 
 namespace gonio::relighting {
 
-struct Scattered {
-  Rgb base, gloss;
-};
 struct Shading {
   std::size_t lights = 0;           // on in this image
   std::vector<Scattered> direct;    // [facet of the picked pixels, in order][light of the image]
@@ -49,12 +47,12 @@ struct RadiusWeights {
 // Weighted sums of a view's `direct` table over each facet's patches: [facet][light][radius].
 std::vector<float> facet_sums(const ViewCache& cache);
 
-struct Extremes;  // a surface with a black base and with a white one
-
 class Shader {
  public:
-  Shader(const SceneLayout& layout, const Recording& image, const ViewCache& cache, std::span<const float> sums)
-      : layout_(layout), image_(image), cache_(cache), sums_(sums) {}
+  // All of them outlive it.
+  Shader(const SceneLayout& layout, const Recording& image, const ViewCache& cache, std::span<const float> sums,
+         ScatteredMemo& scattered)
+      : layout_(layout), image_(image), cache_(cache), sums_(sums), scattered_(scattered) {}
   Shading operator()(const SceneState& state, std::span<const std::uint32_t> picked) const;
   // Without what facets send on of irregular light.
   Shading direct_alone(const SceneState& state, std::span<const std::uint32_t> picked) const;
@@ -82,6 +80,7 @@ class Shader {
   const Recording& image_;
   const ViewCache& cache_;
   std::span<const float> sums_;
+  ScatteredMemo& scattered_;
 };
 
 }  // namespace gonio::relighting

@@ -18,12 +18,13 @@ void append(std::vector<double>& key, const void* address) {
   std::memcpy(&bits, &address, sizeof address);
   key.push_back(bits);
 }
-// By their bits: a NaN equals itself.
-bool same(const std::vector<double>& a, const std::vector<double>& b) {
+}  // namespace
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-void append_surface(std::vector<double>& key, const SurfaceState& surface, bool any_albedo) {
+void append_key(std::vector<double>& key, const SurfaceState& surface, bool any_albedo) {
   append(key, static_cast<const void*>(surface.model));
   append(key, static_cast<const void*>(surface.values.prepared));
   append(key, static_cast<const void*>(surface.values.base));
@@ -35,8 +36,6 @@ void append_surface(std::vector<double>& key, const SurfaceState& surface, bool 
     if (i != albedo) append(key, surface.values.v[i]);
 }
 
-}  // namespace
-
 std::vector<double> shading_key(const SceneState& edited, std::span<const Use> uses) {
   std::vector<double> key;
   bool terms = false;
@@ -46,7 +45,7 @@ std::vector<double> shading_key(const SceneState& edited, std::span<const Use> u
     key.push_back(static_cast<double>(use.place));
     key.insert(key.end(), edited.amounts[use.place].begin(), edited.amounts[use.place].end());
   }
-  for (const SurfaceState& s : edited.surfaces) append_surface(key, s, !terms);
+  for (const SurfaceState& s : edited.surfaces) append_key(key, s, !terms);
   for (const LightState& l : edited.lights) {
     key.insert(key.end(),
                {l.radius_m, l.tilt_x_rad, l.tilt_y_rad, l.nearness_per_m, static_cast<double>(l.lobe.size())});
@@ -65,7 +64,7 @@ std::shared_ptr<const Shaded> ShadingMemo::find(std::size_t image, const std::ve
                                                 std::span<const std::uint32_t> picked) const {
   const std::lock_guard lock(mutex_);
   for (const Entry& e : of_image_[image])
-    if (same(e.key, key) && std::ranges::equal(e.picked, picked)) return e.shaded;
+    if (same_bits(e.key, key) && std::ranges::equal(e.picked, picked)) return e.shaded;
   return nullptr;
 }
 

@@ -24,6 +24,10 @@ struct Shaded {
 // light; with one, nothing but the numbers of terms that act later.
 std::vector<double> shading_key(const SceneState& edited, std::span<const Use> uses);
 
+// Every number of a surface; `any_albedo`: without the albedo, where all it does is scale the base.
+void append_key(std::vector<double>& key, const SurfaceState& surface, bool any_albedo = false);
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b);  // a NaN equals itself
+
 class ShadingMemo {
  public:
   explicit ShadingMemo(std::size_t images) : of_image_(images) {}

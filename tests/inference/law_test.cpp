@@ -158,6 +158,34 @@ TEST(Law, AProductWithFlatCurvesIsUnknownAndItsLawIsFound) {
 }
 
 // A bump in one place is no law either.
+// A further condition that is next to nothing but on one row, which is an outlier: a product with it is that row's own
+// number, known to no error at all.
+class SpikedProblem final : public LawProblem {
+ public:
+  explicit SpikedProblem(std::uint64_t seed)
+      : LawProblem({.law = [](double x, double z) { return 0.25 * x * x * z; }}, seed) {
+    Condition spike{"plate.shine", "1", "plate", {}, {}, "px"};
+    Random random(seed, 12);
+    for (std::size_t i = 0; i < observations_.rows(); ++i) spike.values.push_back(1e-5 * random.uniform());
+    const std::size_t row = observations_.rows() / 3;
+    spike.values[row] = 1;
+    observations_.value[row] += 2;
+    observations_.conditions.push_back(spike);
+  }
+};
+
+TEST(Law, WhatLivesOnOneBlockIsNoTerm) {
+  int told = 0;
+  const int runs = 20;
+  for (int run = 0; run < runs; ++run) {
+    const Explanation e = law_of(SpikedProblem(700 + run), "clock.time");
+    told += !e.outside->terms.empty();
+    for (const LawTerm& t : e.outside->terms)
+      for (const auto& [name, power] : t.powers) EXPECT_NE(name, "plate.shine") << run << ": " << e.outside->law;
+  }
+  EXPECT_GE(told, 0.8 * runs);
+}
+
 TEST(Law, ABumpDoesNotExtrapolate) {
   int laws = 0;
   const int runs = 20;
