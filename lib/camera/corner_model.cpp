@@ -72,16 +72,20 @@ Vec2 scaled(const Values& v, Vec2 at) {
   return {at.x * (1 + v[C::scale]), at.y * (1 + v[C::scale + 1])};
 }
 
+Vec3 print_of(const Values& v) {
+  return {v[C::print], v[C::print + 1], v[C::print + 2]};
+}
+
 // Where a corner is on the board.
 Vec3 on_board(const CornerModel& m, Vec2 printed_m) {
-  static_assert(C::count - C::shape == equation::board_shape_terms.size());
+  static_assert(C::print - C::shape == equation::board_shape_terms.size());
   const Vec2 at = scaled(m.values, printed_m);
   const double* coefficients = &m.values[C::shape];
   const double height = board_height(m.extent, at, &m.values[BoardColumn::warp]);
   if (std::all_of(coefficients, coefficients + equation::board_shape_terms.size(), [](double c) { return c == 0; }))
-    return {at.x, at.y, height};
+    return Vec3{at.x, at.y, height} + print_of(m.values);
   const Vec2 from = printed_m - m.extent.middle_m;
-  return Vec3{at.x, at.y, height} +
+  return Vec3{at.x, at.y, height} + print_of(m.values) +
          equation::board_shape(coefficients, from.x / m.extent.half_m.x, from.y / m.extent.half_m.y);
 }
 
@@ -219,6 +223,7 @@ bool differentiate(const CornerModel& m, const BoardPose& pose, const CornerPlac
     const std::array<double, 3> along = {along_x, along_y, lift};
     for (std::size_t t = 0; t < shape.size(); ++t)
       j[C::shape + t] = along[static_cast<std::size_t>(equation::board_shape_terms[t].axis)] * shape[t];
+    for (std::size_t i = 0; i < along.size(); ++i) j[C::print + i] = along[i];
     j[C::pupil] = -by(2) * pupil.by_pupil;
   }
   return true;

@@ -4,6 +4,7 @@
 //
 //   board.shape             (x, y, z) += sum of coefficient P_i P_j over the printed place
 //                           (camera/mechanisms/board_shape.h)
+//   board.print             (x, y, z) += numbers of the corner that is asked for: whoever asks sets them
 //   board.scale             (x, y) -> ((1 + scale_x) x, (1 + scale_y) y) on the board; the warp's height at that place
 //   camera.rolling-shutter  the board stands at t + tau (motion_x_m, motion_y_m, 0) when row v is read,
 //                           tau = (v - (h - 1) / 2) / h; v solves v = P_v(t + tau(v) m) (Oth, Furgale, Kneip &
@@ -45,8 +46,11 @@ struct CornerColumn {                                         // continues Board
   static constexpr std::size_t port = by_time + 3;            // index, distance: m, tilt x, tilt y: rad
   static constexpr std::size_t focal = port + 4;              // relative change of fx and fy
   static constexpr std::size_t shape = focal + 1;             // as equation::board_shape_terms: m
-  static constexpr std::size_t count = shape + 26;
+  static constexpr std::size_t print = shape + 26;            // of the corner that is asked for: x, y, z: m
+  static constexpr std::size_t count = print + 3;
 };
+inline constexpr std::array<std::string_view, 3> print_names = {"x_m", "y_m", "z_m"};  // from CornerColumn::print on
+
 constexpr std::array<double, CornerColumn::count> neutral_corner_values() {
   std::array<double, CornerColumn::count> values{};
   values[CornerColumn::port] = 1;

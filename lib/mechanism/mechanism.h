@@ -51,6 +51,7 @@ struct Mechanism {
   // comes back to the last bit at the neutral values; a factor is never negative within the bounds.
   std::vector<Input> inputs{};
   double (*act)(double v, std::span<const double> at, std::span<const double> p) = nullptr;
+  bool lists = false;  // in a manifest its numbers are lists of one length: an entry for each thing that it tells of
 };
 
 std::span<const Mechanism* const> all_mechanisms();  // sorted by id; defined in a generated source

@@ -57,6 +57,15 @@ void validate_uses(const manifest::Document& d) {
       if (std::ranges::find(m->parameters, name, &Parameter::name) == m->parameters.end())
         throw Error(Exit::data, at + "/" + name, "is no parameter of " + id,
                     manifest::remedy_for(name, known_parameters(*m)));
+      if (m->lists) {
+        if (parameter.value.size() != use.parameters.begin()->second.value.size())
+          throw Error(Exit::data, at + "/" + name,
+                      "has " + std::to_string(parameter.value.size()) + " numbers, and " +
+                          use.parameters.begin()->first + " " +
+                          std::to_string(use.parameters.begin()->second.value.size()),
+                      "the lists of " + id + " have one length");
+        continue;
+      }
       if (parameter.value.size() != 1 && parameter.value.size() != use.on.size())
         throw Error(Exit::data, at + "/" + name, "has " + std::to_string(parameter.value.size()) + " numbers",
                     "give one, or one for each name in \"on\"");

@@ -43,7 +43,8 @@ const std::set<std::string> besides = words(
     "ct.beam-hardening ct.scatter ct.ring ct.streak ct.axis-tilt robot.warm-up robot.joule-heating "
     "robot.friction-heating marker.offset marker.refracted sensor.exposure light.reflector surface.metal surface.coat "
     "surface.sheen surface.translucent optics.bloom camera.flat-port camera.focal-length "
-    "camera.principal-point camera.aspect camera.pose board.shape robot.axis-scale robot.squareness robot.compliance "
+    "camera.principal-point camera.aspect camera.pose board.print board.shape robot.axis-scale robot.squareness "
+    "robot.compliance "
     "volume.fog probe.distance probe.centre probe.reflectance scene.moved sensor.dark-current");
 
 // Owed and not there yet: printed, until they are declared and leave this list.

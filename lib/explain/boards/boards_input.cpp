@@ -1,10 +1,13 @@
 // See boards_problem.h: from the manifest to plain numbers.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "base/error.h"
 #include "camera/board.h"
 #include "camera/board_projection.h"
+#include "camera/corner_model.h"
 #include "camera/corner_table.h"
 #include "explain/boards/boards_problem.h"
 #include "manifest/document.h"
@@ -16,10 +19,16 @@
 #include "manifest/sections/table.h"
 #include "mechanism/mechanism.h"
 
+namespace gonio::mechanism {
+const Mechanism& board_print();
+}
+
 namespace gonio::explain {
 namespace {
 
 constexpr std::size_t fewest_views = 3;
+constexpr std::size_t fewest_to_place = 4;  // views of a corner that tell its place from their noise
+constexpr std::size_t most_placed = 120;    // corners of a board: three numbers each, all in one fit
 
 bool is_corner_table(const manifest::Table& table) {
   return table.model == "camera";
@@ -49,8 +58,12 @@ BoardsInput::Camera camera_input(const manifest::Document& document, const std::
   camera.intrinsics = camera::intrinsics_of(found->second, place);
   camera.width_px = found->second.width_px;
   camera.height_px = found->second.height_px;
+  // What stands at zero and has no standard error while others have, a model's empty place, was no part of their fit.
+  const auto is_place = [&](const std::string& term, const manifest::Parameter& value) {
+    return !found->second.sigma.empty() && !found->second.sigma.contains(term) && value.scalar() == 0;
+  };
   for (const auto& [term, value] : found->second.distortion)
-    camera.terms.push_back(camera::distortion_index(term, place));
+    if (!is_place(term, value)) camera.terms.push_back(camera::distortion_index(term, place));
   std::sort(camera.terms.begin(), camera.terms.end());
   camera.held = found->second.held.value_or(false);
   if (camera.held) read_sigma(found->second, camera);
@@ -124,11 +137,42 @@ bool has_boards(const manifest::Document& document) {
 
 namespace {
 
+// board.print: a list of corners, each with its column, row and displacement.
+void read_print(const manifest::Document& document, const manifest::MechanismUse& use, BoardsInput& input) {
+  const std::string at = manifest::place(document, "/mechanisms/board.print");
+  const auto list = [&](std::string_view name) {
+    const auto found = use.parameters.find(std::string(name));
+    return found == use.parameters.end() ? std::vector<double>{} : found->second.value;
+  };
+  const std::vector<double> columns = list("column"), rows = list("row"), of = list("of");
+  if (columns.empty() || rows.empty())
+    throw Error(Exit::data, at, "does not say which corners", "add the lists \"column\" and \"row\"");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<double> shift = list(camera::print_names[axis]);
+    shift.resize(columns.size());  // one that is not there is zero
+    for (std::size_t k = 0; k < shift.size(); ++k) {
+      const auto board = static_cast<std::size_t>(of.empty() ? 0 : of[k]);
+      if (board >= std::max<std::size_t>(1, use.on.size()))
+        throw Error(Exit::data, at, "has a corner of board " + std::to_string(board) + ", counted from 0 in \"on\"");
+      if (use.on.empty() && input.boards.size() > 1)
+        throw Error(Exit::data, at, "does not say of which board", "add \"on\"");
+      const std::string& name = use.on.empty() ? input.boards.at(0).name : use.on[board];
+      if (std::ranges::find(input.boards, name, &BoardsInput::Board::name) == input.boards.end()) continue;
+      input.given.push_back({"board.print", name, camera::CornerColumn::print + axis, shift[k],
+                             std::array{std::lround(columns[k]), std::lround(rows[k])}});
+    }
+  }
+}
+
 // Terms that no section of cameras or boards has a place for, where the manifest switches them on.
 void read_given(const manifest::Document& document, BoardsInput& input) {
   for (const auto& [id, use] : document.mechanisms) {
     const mechanism::Mechanism* m = mechanism::find_mechanism(id);
     if (m == nullptr || std::ranges::find(m->domains, "boards") == m->domains.end()) continue;
+    if (id == mechanism::board_print().id) {
+      read_print(document, use, input);
+      continue;
+    }
     const auto add = [&](const std::string& name) {
       const auto found = std::find(use.on.begin(), use.on.end(), name);
       if (!use.on.empty() && found == use.on.end()) return;
@@ -169,9 +213,38 @@ bool of_one_target(const BoardsInput& input, const BoardsInput::View& a, const B
   });
 }
 
+std::array<long, 2> place_of(const BoardsInput::Corner& corner, const BoardsInput::Board& board) {
+  return {std::lround(corner.board_m.x / board.square_m), std::lround(corner.board_m.y / board.square_m)};
+}
+
+// Corners that enough views show, whatever their colour; of a board with too many, none.
+void settle_places(BoardsInput& input, std::size_t b) {
+  BoardsInput::Board& board = input.boards[b];
+  std::map<std::array<long, 2>, std::size_t> views;
+  for (const BoardsInput::View& view : input.views) {
+    if (view.board != b) continue;
+    std::set<std::array<long, 2>> own;
+    for (const BoardsInput::Corner& corner : view.corners) own.insert(place_of(corner, board));
+    for (const auto& place : own) ++views[place];
+  }
+  board.places.clear();
+  for (const auto& [place, count] : views)
+    if (count >= fewest_to_place) board.places.push_back(place);
+  if (board.places.size() > most_placed) board.places.clear();
+  for (BoardsInput::View& view : input.views) {
+    if (view.board != b) continue;
+    for (BoardsInput::Corner& corner : view.corners) {
+      const auto found = std::ranges::lower_bound(board.places, place_of(corner, board));
+      if (found != board.places.end() && *found == place_of(corner, board))
+        corner.of_board = static_cast<std::size_t>(found - board.places.begin());
+    }
+  }
+}
+
 }  // namespace
 
 void settle_views(BoardsInput& input) {
+  for (std::size_t b = 0; b < input.boards.size(); ++b) settle_places(input, b);
   for (std::size_t v = 0; v < input.views.size(); ++v) {
     BoardsInput::View& view = input.views[v];
     view.pose_of = v;

@@ -16,7 +16,11 @@ struct BoardRole {
   std::size_t camera = static_cast<std::size_t>(-1), board = static_cast<std::size_t>(-1),
               view = static_cast<std::size_t>(-1);
   std::size_t column = 0;
+  std::size_t corner = static_cast<std::size_t>(-1);  // of the board's places
 };
+
+// Family of the candidates that say where a board's corners stand.
+inline constexpr const char* the_boards_shape = "the board's shape";
 
 struct BoardParameters {
   std::vector<Parameter> parameters;
@@ -30,6 +34,9 @@ BoardParameters board_parameters(const BoardsInput& input);
 struct BoardScene {
   camera::CornerModel model;
   Vec3 turn;
+  std::vector<std::array<double, 3>> print_m{};  // of the board's places; empty: none stands beside
+  // The model as one corner needs it.
+  const camera::CornerModel& of(const BoardsInput::Corner& corner);
 };
 BoardScene board_scene(const BoardsInput& input, const std::vector<BoardRole>& roles, std::span<const double> values,
                        std::size_t view);
@@ -54,6 +61,10 @@ std::string uneven_print(const BoardsInput& input, const Explanation& explanatio
 
 // The shapes of boards that board.shape is named on, in millimetres: words, or nothing.
 std::string shapes_in_words(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
+                            const Explanation& explanation);
+
+// How far the corners of boards stand beside their printed places where board.print is named: words, or nothing.
+std::string prints_in_words(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
                             const Explanation& explanation);
 
 // Do the poses predict the motions that a rolling shutter has been given?

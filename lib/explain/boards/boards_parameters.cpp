@@ -9,6 +9,7 @@
 #include "explain/boards/boards_outcome.h"
 
 namespace gonio::mechanism {
+const Mechanism& board_print();
 const Mechanism& board_shape();
 const Mechanism& board_warp();
 }  // namespace gonio::mechanism
@@ -106,6 +107,8 @@ class Declaration {
       const BoardRole role{c, none, none, BoardColumn::distortion + t};
       if (own.held)
         declare_held(name, "1", k.distortion[t], own.sigma[4 + t], 0.01, role);
+      else if (t == LensTerm::fisheye)  // between perspective and equidistant: beyond, a lens shows nothing
+        declare_base(name, "1", k.distortion[t], 0, 1, 0.01, role);
       else
         declare_base(name, "1", k.distortion[t], -infinity, infinity, 0.01, role);
     }
@@ -125,7 +128,25 @@ class Declaration {
                  {none, b, none, BoardColumn::warp + 1});
   }
 
+  // Standard error of a corner's own place before it is seen: what a printer or a ruler leaves.
+  static double print_sigma_m(const BoardsInput::Board& board) { return std::max(1e-4, 0.01 * board.square_m); }
+  static std::string print_name(const std::string& board, const std::array<long, 2>& place, std::size_t axis) {
+    return "boards/" + board + "/" + std::to_string(place[0]) + "," + std::to_string(place[1]) + "." +
+           std::string(camera::print_names[axis]);
+  }
+
+  void declare_given_print(const BoardsInput::Given& given) {
+    const std::size_t b = place_of(true, given.on);
+    const BoardsInput::Board& board = input_.boards[b];
+    const auto place = std::ranges::find(board.places, *given.place);
+    const BoardRole role{none, b, none, given.column, static_cast<std::size_t>(place - board.places.begin())};
+    if (place != board.places.end())
+      declare_base(print_name(board.name, *place, given.column - CornerColumn::print), "m", given.value, -0.01, 0.01,
+                   1e-4, role, print_sigma_m(board));
+  }
+
   void declare_given(const BoardsInput::Given& given) {
+    if (given.place) return declare_given_print(given);
     const mechanism::Mechanism& m = *mechanism::find_mechanism(given.mechanism);
     const bool of_board = m.target == mechanism::Target::board;
     const std::size_t target = place_of(of_board, given.on);
@@ -174,8 +195,9 @@ class Declaration {
     for (const std::string& rate : rates) {
       Candidate candidate{&m, {}, {}, rates.size() > 1 ? m.id : ""};
       // A sag, or any smooth shape of which it is a part.
-      if (m.id == mechanism::board_warp().id || m.id == mechanism::board_shape().id)
-        candidate.family = "the board's shape";
+      if (m.id == mechanism::board_warp().id || m.id == mechanism::board_shape().id ||
+          m.id == mechanism::board_print().id)
+        candidate.family = the_boards_shape;
       const bool of_board = m.target == mechanism::Target::board;
       for (std::size_t t = 0; t < (of_board ? input_.boards.size() : input_.cameras.size()); ++t)
         add_target(m, rate, of_board, t, candidate);
@@ -192,6 +214,7 @@ class Declaration {
     const std::string& name = of_board ? input_.boards[target].name : input_.cameras[target].name;
     const std::size_t targets = of_board ? input_.boards.size() : input_.cameras.size();
     const std::size_t before = candidate.parameters.size();
+    if (m.id == mechanism::board_print().id) return add_print(m, target, candidate);
     std::vector<std::pair<const mechanism::Parameter*, std::size_t>> motions;
     for (const mechanism::Parameter& p : m.parameters) {
       const auto column = camera::corner_column(p.name);
@@ -212,6 +235,24 @@ class Declaration {
     }
     add_motions(motions, target, candidate);
     if (candidate.parameters.size() > before) candidate.on.push_back(name);
+  }
+
+  // Three numbers of every corner; the prior says what pose and scale leave open.
+  void add_print(const mechanism::Mechanism& m, std::size_t b, Candidate& candidate) {
+    const BoardsInput::Board& board = input_.boards[b];
+    const bool given =
+        std::ranges::any_of(input_.given, [&](const BoardsInput::Given& g) { return g.place && g.on == board.name; });
+    if (given || board.places.empty()) return;
+    candidate.finer = true;
+    candidate.on.push_back(board.name);
+    for (std::size_t k = 0; k < board.places.size(); ++k)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const mechanism::Parameter& p = m.parameters[axis];
+        const BoardRole role{none, b, none, CornerColumn::print + axis, k};
+        candidate.parameters.push_back(declare({print_name(board.name, board.places[k], axis), p.unit, 0, 0, p.lower,
+                                                p.upper, 1e-4, print_sigma_m(board), groups_of(role)},
+                                               role));
+      }
   }
 
   // Every view has its own motion: nuisance like its pose, under one mechanism.
@@ -291,6 +332,13 @@ BoardParameters board_parameters(const BoardsInput& input) {
   return std::move(Declaration(input).result);
 }
 
+const camera::CornerModel& BoardScene::of(const BoardsInput::Corner& corner) {
+  const std::array<double, 3> own =
+      corner.of_board < print_m.size() ? print_m[corner.of_board] : std::array{0., 0., 0.};
+  std::ranges::copy(own, model.values.begin() + CornerColumn::print);
+  return model;
+}
+
 BoardScene board_scene(const BoardsInput& input, const std::vector<BoardRole>& roles, std::span<const double> values,
                        std::size_t group) {
   const BoardsInput::View& view = input.views[group];
@@ -311,6 +359,12 @@ BoardScene board_scene(const BoardsInput& input, const std::vector<BoardRole>& r
     const BoardRole& r = roles[p];
     const bool pose = r.view != none && r.column < BoardColumn::warp;
     if (pose && r.view == view.pose_of) change[r.column - BoardColumn::rotation] = values[p];
+    if (r.corner != none) {
+      if (r.board != view.board || values[p] == 0) continue;
+      s.print_m.resize(board.places.size());
+      s.print_m[r.corner][r.column - CornerColumn::print] = values[p];
+      continue;
+    }
     if ((!pose && r.view == group) || r.camera == view.camera || r.board == view.board) v[r.column] = values[p];
   }
   s.turn = {change[0], change[1], change[2]};

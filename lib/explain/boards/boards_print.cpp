@@ -1,7 +1,7 @@
 // Columns and rows of a board that its printer set unevenly: in each view, the mean displacement of a line of corners
 // in the board's plane, from what the final model leaves; over the views, mean and standard error. Shift, turn, tilt
-// and stretch of the whole board are in the fit: what is left is the line's own. No mechanism describes it, as every
-// line has a number of its own.
+// and stretch of the whole board are in the fit: what is left is the line's own. board.print gives every
+// corner its own place; this says in few words what that looks like where it is not what is named.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -73,7 +73,7 @@ std::string uneven_print(const BoardsInput& input, const Explanation& e) {
               " stand aside in all views, the one at " + axis + " = " +
               printed(1e3 * static_cast<double>(place) * input.boards[b].square_m, 3) + " mm by " +
               printed(worst_mm, 2) + " mm along " + axis + " (standard error " + printed(sigma_mm, 1) +
-              " mm): the print is uneven, which no mechanism describes.";
+              " mm): the print is uneven.";
     }
   return text;
 }

@@ -44,14 +44,19 @@ class BoardsProblem : public Problem {
   std::string score_name() const override { return "RMS reprojection error"; }
   std::string group_noun() const override { return "board view"; }
   Importance importance() const override { return Importance::share_of_residual; }
+  // Sag, smooth shape and corners each on their own say the same, ever finer.
+  bool excludes(std::size_t candidate, std::size_t other) const override {
+    const std::string& family = candidates_[candidate].family;
+    return family == the_boards_shape && family == candidates_[other].family;
+  }
   bool sets_outliers_aside() const override { return true; }
 
   void predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const override {
-    const BoardScene s = board_scene(input_, roles_, values, group);
+    BoardScene s = board_scene(input_, roles_, values, group);
     const BoardsInput::View& view = input_.views[group];
     for (std::size_t i = 0; i < view.corners.size(); ++i) {
       Vec2 pixel{0, 0};
-      const bool seen = camera::predict(s.model, place_of(view.corners[i]), pixel);
+      const bool seen = camera::predict(s.of(view.corners[i]), place_of(view.corners[i]), pixel);
       prediction[2 * i] = seen ? pixel.x : infinity;
       prediction[2 * i + 1] = seen ? pixel.y : infinity;
     }
@@ -59,14 +64,14 @@ class BoardsProblem : public Problem {
 
   void jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
                 std::span<double> derivatives) const override {
-    const BoardScene s = board_scene(input_, roles_, values, group);
+    BoardScene s = board_scene(input_, roles_, values, group);
     const BoardsInput::View& view = input_.views[group];
     const Mat3 turn = left_jacobian(s.turn);
     const std::size_t rows = 2 * view.corners.size();
     for (std::size_t i = 0; i < view.corners.size(); ++i) {
       Vec2 pixel{0, 0};
       camera::CornerJacobian j{};
-      camera::predict(s.model, place_of(view.corners[i]), pixel, j);
+      camera::predict(s.of(view.corners[i]), place_of(view.corners[i]), pixel, j);
       for (std::size_t axis = 0; axis < 2; ++axis) {
         std::array<double, camera::CornerColumn::count>& d = j[axis];
         const std::array<double, 3> w = {d[BoardColumn::rotation], d[BoardColumn::rotation + 1],
@@ -75,7 +80,8 @@ class BoardsProblem : public Problem {
           d[BoardColumn::rotation + static_cast<std::size_t>(k)] =
               w[0] * turn(0, k) + w[1] * turn(1, k) + w[2] * turn(2, k);
         for (std::size_t k = 0; k < columns.size(); ++k)
-          derivatives[k * rows + 2 * i + axis] = acts_on(roles_[columns[k]], group) ? d[roles_[columns[k]].column] : 0;
+          derivatives[k * rows + 2 * i + axis] =
+              acts_on(roles_[columns[k]], group, view.corners[i]) ? d[roles_[columns[k]].column] : 0;
       }
     }
   }
@@ -138,7 +144,8 @@ class BoardsProblem : public Problem {
   std::string remarks(const Explanation& e) const override {
     std::string text;
     for (const std::string& said :
-         {shapes_in_words(*this, input_, roles_, e), rivals_cost(*this, input_, roles_, e), uneven_print(input_, e)})
+         {shapes_in_words(*this, input_, roles_, e), prints_in_words(*this, input_, roles_, e),
+          rivals_cost(*this, input_, roles_, e), uneven_print(input_, e)})
       text += (text.empty() || said.empty() ? "" : " ") + said;
     return text;
   }
@@ -154,7 +161,8 @@ class BoardsProblem : public Problem {
 
  private:
   static camera::CornerPlace place_of(const BoardsInput::Corner& c) { return {c.board_m, c.colour, c.turned_rad}; }
-  bool acts_on(const BoardRole& role, std::size_t group) const {
+  bool acts_on(const BoardRole& role, std::size_t group, const BoardsInput::Corner& corner) const {
+    if (role.corner != none && role.corner != corner.of_board) return false;
     const BoardsInput::View& view = input_.views[group];
     const std::size_t own = role.column < BoardColumn::warp ? view.pose_of : group;
     return (role.camera == none || role.camera == view.camera) && (role.board == none || role.board == view.board) &&

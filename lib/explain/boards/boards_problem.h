@@ -11,6 +11,7 @@
 // Frames: board (x along columns, y down the rows, z away from the viewer), camera (x right, y down, z forward);
 // metres, pixels. The forward model is camera/corner_model.h, which is calib-charuco's where nothing is added.
 #pragma once
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,12 +38,15 @@ struct BoardsInput {
     camera::BoardExtent extent;
     camera::BoardWarp warp;
     bool warped = false;  // the base model has the warp already
+    // Places, in whole squares, of the corners that enough views show for board.print to speak of them: settle_views().
+    std::vector<std::array<long, 2>> places{};
   };
   struct Corner {
     Vec2 board_m, pixel;
     double sigma_px = 0;
     camera::Colour colour = camera::Colour::green;
     double turned_rad = 0;
+    std::size_t of_board = static_cast<std::size_t>(-1);  // in Board::places; the largest number: none of them
   };
   struct View {
     std::string image;
@@ -57,6 +61,7 @@ struct BoardsInput {
     std::string mechanism, on;  // of which camera or board
     std::size_t column = 0;     // camera::CornerColumn
     double value = 0;
+    std::optional<std::array<long, 2>> place{};  // of the corner, in whole squares
   };
   std::vector<Camera> cameras;
   std::vector<Board> boards;
@@ -69,7 +74,7 @@ struct BoardsInput {
 bool has_boards(const manifest::Document& document);
 BoardsInput boards_input(const manifest::Document& document);
 
-// Fills pose_of, warmer_K and later_s from what the views state.
+// Fills pose_of, warmer_K and later_s from what the views state, and which corners are whose.
 void settle_views(BoardsInput& input);
 
 std::unique_ptr<Problem> boards_problem(BoardsInput input);

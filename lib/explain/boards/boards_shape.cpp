@@ -38,4 +38,28 @@ std::string shapes_in_words(const Problem& problem, const BoardsInput& input, co
   return text;
 }
 
+std::string prints_in_words(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
+                            const Explanation& e) {
+  std::string text;
+  for (std::size_t b = 0; b < input.boards.size(); ++b) {
+    std::vector<std::array<double, 3>> shift(input.boards[b].places.size());
+    for (const std::size_t c : e.named)
+      for (const std::size_t p : problem.candidates()[c].parameters)
+        if (roles[p].corner < shift.size() && roles[p].board == b)
+          shift[roles[p].corner][roles[p].column - camera::CornerColumn::print] = e.values[p];
+    double aside = 0, out = 0, most = 0;
+    for (const auto& [x, y, z] : shift) {
+      aside += x * x + y * y, out += z * z;
+      most = std::max(most, std::hypot(x, y));
+    }
+    if (aside == 0) continue;
+    const auto n = static_cast<double>(shift.size());
+    text += (text.empty() ? "" : " ") + std::string("The corners of ") + input.boards[b].name + " stand " +
+            inference::quantity(std::sqrt(aside / n), "m") +
+            " beside their printed places within the board (RMS; the furthest " + inference::quantity(most, "m") +
+            "), and " + inference::quantity(std::sqrt(out / n), "m") + " before or behind its plane.";
+  }
+  return text;
+}
+
 }  // namespace gonio::explain

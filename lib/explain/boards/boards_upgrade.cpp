@@ -14,8 +14,9 @@
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {
+const Mechanism& board_print();
 const Mechanism& board_warp();
-}
+}  // namespace gonio::mechanism
 
 namespace gonio::explain {
 namespace {
@@ -99,7 +100,7 @@ void upgrade_mechanisms(const Problem& problem, const BoardsInput& input, const 
                         const Explanation& e, manifest::Document& document) {
   for (std::size_t p = 0; p < roles.size(); ++p) {
     const BoardRole& role = roles[p];
-    if (role.column < camera::CornerColumn::scale) continue;
+    if (role.column < camera::CornerColumn::scale || role.corner != none) continue;
     const std::string& name = role.board != none ? input.boards[role.board].name : input.cameras[role.camera].name;
     const std::string& full = problem.parameters()[p].name;
     const auto holds = [&](const Candidate& c) {
@@ -125,6 +126,35 @@ void upgrade_mechanisms(const Problem& problem, const BoardsInput& input, const 
   }
 }
 
+// Is it free, as part of what is named or of the base model?
+bool was_fitted(const Problem& problem, const Explanation& e, std::size_t p) {
+  const auto has = [&](const std::vector<std::size_t>& list) { return std::ranges::find(list, p) != list.end(); };
+  return has(problem.base()) ||
+         std::ranges::any_of(e.named, [&](std::size_t c) { return has(problem.candidates()[c].parameters); });
+}
+
+// board.print anew: lists of corners, in the order in which the fit has them.
+void upgrade_print(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
+                   const Explanation& e, manifest::Document& document) {
+  manifest::MechanismUse use;
+  const auto append = [&](const std::string& key, double value) { use.parameters[key].value.push_back(value); };
+  for (std::size_t p = 0; p < roles.size(); ++p) {
+    const BoardRole& role = roles[p];
+    if (role.corner == none || !was_fitted(problem, e, p)) continue;
+    const BoardsInput::Board& board = input.boards[role.board];
+    const std::string key{camera::print_names[role.column - camera::CornerColumn::print]};
+    append(key, e.values[p]);
+    use.sigma[key].push_back(e.sigma[p]);
+    if (role.column != camera::CornerColumn::print) continue;
+    auto own = std::ranges::find(use.on, board.name);
+    if (own == use.on.end()) own = use.on.insert(use.on.end(), board.name);
+    append("column", static_cast<double>(board.places[role.corner][0]));
+    append("row", static_cast<double>(board.places[role.corner][1]));
+    append("of", static_cast<double>(own - use.on.begin()));
+  }
+  if (!use.on.empty()) document.mechanisms[mechanism::board_print().id] = use;
+}
+
 }  // namespace
 
 void upgrade_boards(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
@@ -144,6 +174,7 @@ void upgrade_boards(const Problem& problem, const BoardsInput& input, const std:
     section.sigma[axis] = {e.sigma[p]};
   }
   upgrade_mechanisms(problem, input, roles, e, document);
+  upgrade_print(problem, input, roles, e, document);
   for (std::size_t v = 0; v < input.views.size(); ++v) {
     const auto listed = manifest::index_of_image(document, input.views[v].image);
     if (!listed) continue;

@@ -40,6 +40,7 @@ const Domain& robot() {
       .untouched = {
           {"board.corner-bias",
            "a constant shift of all corners is the camera's mounting, by which they are held; boards shows it"},
+          {"board.print", "left to boards, which has the corners themselves: poses average over it"},
           {"board.shape", "left to boards, which has the corners themselves: poses average over it"},
           {"lens.",
            "poses from corners say of the lens what these terms of it say; all others are left to boards, which has "

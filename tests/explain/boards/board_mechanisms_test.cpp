@@ -159,16 +159,6 @@ TEST(BoardMechanisms, ADetectorsBiasShowsOnlyInTurnedPictures) {
   expect_covers(turned, "board.corner-bias.bias_x_px", 0.5);
 }
 
-// No mechanism describes columns that a printer set unevenly; the sentence does, and only there.
-TEST(BoardMechanisms, AnUnevenPrintIsDescribedInWords) {
-  CaseTruth truth;
-  truth.board.uneven_m = 1e-4;
-  const Answer uneven = explained(truth, known_lens(), 12, 8), even = explained({}, known_lens(), 12, 8);
-  EXPECT_THAT(uneven.e.sentence, testing::HasSubstr("print is uneven"));
-  EXPECT_THAT(uneven.e.sentence, testing::HasSubstr("0.1"));
-  EXPECT_THAT(even.e.sentence, testing::Not(testing::HasSubstr("print is uneven")));
-}
-
 // All at once could be asked of these recordings, and none is there.
 TEST(BoardMechanisms, WhereNothingIsLeftOutNothingIsNamed) {
   int named = 0;

@@ -133,7 +133,7 @@ TEST(ExplainBoards, SoDoesTheOtherCameraOfThePair) {
 TEST(ExplainBoards, TheFullLensLacksNothingButWhatTheBoardDoes) {
   GONIO_NEEDS_DATA("calibration/opencv_stereo_checkerboard");
   const gonio::tests::ScratchFolder folder;
-  const std::set<std::string> of_the_board = {"board.warp", "board.shape", "camera.rolling-shutter"};
+  const std::set<std::string> of_the_board = {"board.warp", "board.shape", "board.print", "camera.rolling-shutter"};
   for (const Recorded& camera : {left, right})
     for (const std::string& name : names(explained(camera, "radial-tangential", folder.path())))
       EXPECT_TRUE(of_the_board.contains(name)) << camera.prefix << ": " << name;
