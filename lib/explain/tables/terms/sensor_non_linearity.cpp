@@ -35,7 +35,7 @@ Term response(double (*act)(double, std::span<const double>, std::span<const dou
               void (*adapt)(const Table&, double, std::span<TermParameter>)) {
   return {.mechanism = mechanism::sensor_non_linearity,
           .order = term_order::non_linearity,
-          .models = {"sensor", "light", "volume", "expression", "probe-radiance"},
+          .models = {"sensor", "light", "volume", "expression", "probe-radiance", "chart"},
           .applies = [](const Table&) { return true; },
           .act = act,
           .adapt = adapt};
