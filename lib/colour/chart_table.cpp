@@ -24,9 +24,9 @@ std::optional<manifest::Table> chart_table(const Chart& chart, std::span<const P
                                            const ChartPose& pose, const io::Image& picture, const ChartPicture& of) {
   manifest::Table table;
   table.model = "chart";
-  table.columns = {{"patch", ""}, {"picture", ""},      {"X", "1"},      {"Y", "1"},      {"Z", "1"},
-                   {"x", "1"},    {"y", "1"},           {"mean_R", "1"}, {"mean_G", "1"}, {"mean_B", "1"},
-                   {"R", "1"},    {"G", "1"},           {"B", "1"},      {"R_sigma", "1"}, {"G_sigma", "1"},
+  table.columns = {{"patch", ""},    {"picture", ""},      {"X", "1"},      {"Y", "1"},       {"Z", "1"},
+                   {"x", "1"},       {"y", "1"},           {"mean_R", "1"}, {"mean_G", "1"},  {"mean_B", "1"},
+                   {"R", "1"},       {"G", "1"},           {"B", "1"},      {"R_sigma", "1"}, {"G_sigma", "1"},
                    {"B_sigma", "1"}, {"image_radius", "1"}};
   if (of.exposure_s) table.columns.emplace_back("exposure_s", "s");
   const Rgb mean = mean_of(picture);

@@ -1,6 +1,6 @@
 // A photograph's patches as a table, one row for each that counts: what color-calib writes and what the table model
-// "chart" of `explain` reads (lib/explain/tables/models/chart.cpp). References are XYZ under D50, a perfect white having
-// Y = 1; readings are the picture's own, over nothing; places are in widths of the chart.
+// "chart" of `explain` reads (lib/explain/tables/models/chart.cpp). References are XYZ under D50, a perfect white
+// having Y = 1; readings are the picture's own, over nothing; places are in widths of the chart.
 #pragma once
 #include <optional>
 #include <span>

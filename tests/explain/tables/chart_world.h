@@ -13,12 +13,12 @@
 namespace gonio::explain::tables::tests {
 
 struct ChartTruth {
-  double print = 0.01;     // scatter of the inks' density, relative: 0.4 in L*
-  double noise = 0.003;    // of a reading, relative
-  double glare = 0;        // share of the mean over patches
+  double print = 0.01;             // scatter of the inks' density, relative: 0.4 in L*
+  double noise = 0.003;            // of a reading, relative
+  double glare = 0;                // share of the mean over patches
   std::array<double, 3> offset{};  // over what white reads in green
-  double quadratic = 0;    // of a reading, at white
-  double full_scale = 2;   // over white
+  double quadratic = 0;            // of a reading, at white
+  double full_scale = 2;           // over white
   double across = 0, down = 0;     // change of the light over the chart
   std::vector<double> exposures{1};
   bool states_exposure = false;

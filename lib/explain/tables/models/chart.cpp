@@ -69,6 +69,7 @@ class Chart final : public BoundModel {
 
   std::vector<double> scatter() const override { return scatter_; }
   std::vector<double> sigma() const override { return scatter_; }
+  bool scatter_is_all() const override { return true; }
   std::string scatter_in_words() const override {
     return format(", and from patch to patch by %.2f in L* of greys and %.1f %% of colours", lightness_,
                   100 * colour_misfit_);
@@ -314,7 +315,7 @@ const Model& chart() {
                   {"mean_R", "", "mean of the whole picture in R; left out: of the patches", false},
                   {"mean_G", "", "in G", false},
                   {"mean_B", "", "in B", false}},
-      .group_noun = "patch",
+      .group_noun = "colour",
       .group = "patch",
       .bind = bind_as<Chart>};
   return model;
