@@ -25,7 +25,7 @@
 #include "manifest/document.h"
 #include "manifest/sections/table.h"
 #include "render/mechanisms/sensor_black_offset.h"
-#include "stats/intervals.h"
+#include "render/mechanisms/sensor_non_linearity.h"
 
 namespace gonio::explain::tables {
 namespace {
@@ -79,7 +79,7 @@ class Chart final : public BoundModel {
   std::string remarks(std::span<const std::string> named, Values, std::span<const double>) const override {
     const bool concerned = std::ranges::any_of(named, [](const std::string& id) {
       return id == mechanism::colour_glare().id || id == mechanism::sensor_black_offset().id ||
-             id == "sensor.non-linearity";
+             id == mechanism::sensor_non_linearity().id;
     });
     if (pictures_.size() > 1 || !concerned) return {};
     return "One exposure hardly tells glare, offsets of single channels and a response that is bent by some percent "
