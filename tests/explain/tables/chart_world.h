@@ -18,6 +18,7 @@ struct ChartTruth {
   double glare = 0;                // share of the mean over patches
   std::array<double, 3> offset{};  // over what white reads in green
   double quadratic = 0;            // of a reading, at white
+  double gamma = 1;                // exponent of a reading over white's
   double full_scale = 2;           // over white
   double across = 0, down = 0;     // change of the light over the chart
   std::vector<double> exposures{1};
@@ -107,6 +108,7 @@ inline World chart_world(std::uint64_t seed, const ChartSpectra& s, const ChartT
       std::array<double, 3> sigma{};
       for (std::size_t c = 0; c < 3; ++c) {
         double f = light * rgb[p][c] + t.exposures[e] * t.glare * mean[c];
+        f = std::pow(f, t.gamma);
         f = std::min(f * (1 + t.quadratic * f), t.full_scale) + t.offset[c];
         sigma[c] = t.noise * std::abs(f) + 1e-5;
         row.push_back(f + sigma[c] * random.normal());
