@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "colour/chart_detection.h"
+#include "colour/chart_table.h"
 #include "colour/preview.h"
 #include "io/codes.h"
 #include "io/picture.h"
@@ -15,6 +16,7 @@
 #include "manifest/image_list.h"
 #include "manifest/sections/colour_correction.h"
 #include "manifest/sections/image.h"
+#include "manifest/sections/table.h"
 #include "photograph/developed.h"
 #include "photograph/linear_picture.h"
 #include "photograph/mask.h"
@@ -141,7 +143,8 @@ ChartPhotograph photograph_of_image(const manifest::Document& document, const st
           image.saturation,
           manifest::place(document, "/images/" + std::to_string(shown[0])),
           image.id,
-          image.camera};
+          image.camera,
+          image.exposure_s};
 }
 
 Calibration calibrate_document(manifest::Document& document, const ChartRequest& request) {
@@ -169,6 +172,9 @@ Calibration calibrate_document(manifest::Document& document, const ChartRequest&
   manifest::ColourCorrection section;
   fill(section, request, pose, readings, calibration);
   document.colour[request.name] = std::move(section);
+  if (auto table =
+          chart_table(request.chart, readings, pose, picture.colour, {photograph.image, photograph.exposure_s}))
+    document.tables[request.name + "-chart"] = std::move(*table);
   return calibration;
 }
 

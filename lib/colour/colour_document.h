@@ -20,6 +20,7 @@ struct ChartPhotograph {
   std::optional<double> saturation;     // stored value from which on a pixel is clipped
   std::string place;                    // for messages
   std::string image, camera;            // id and name in the manifest; may be empty
+  std::optional<double> exposure_s{};   // where the manifest states it
 };
 
 struct ChartRequest {
@@ -35,7 +36,8 @@ struct ChartRequest {
 // The photograph of this image of the manifest, by its id; empty: the only one with a file.
 ChartPhotograph photograph_of_image(const manifest::Document& document, const std::string& id);
 
-// Finds and reads the chart, calibrates, logs what was found, draws the preview and enters document.colour[name].
+// Finds and reads the chart, calibrates, logs what was found, draws the preview and enters document.colour[name] and,
+// where enough patches count, the table NAME-chart for explain.
 Calibration calibrate_document(manifest::Document& document, const ChartRequest& request);
 
 // What is logged of a calibration, line by line.

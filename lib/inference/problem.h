@@ -152,6 +152,10 @@ class Problem {
   // Factor on the stated sigma, found from differences between neighbours that no smooth effect can reach. Nothing: the
   // stated noise stands. `residual`: y - f for all rows after the most flexible fit.
   virtual std::optional<double> noise_factor(std::span<const double> residual) const;
+  // Does the stated noise hold whatever the residuals look like, with all that rows differ by? Then the null test asks
+  // as well whether scores are larger than that noise makes them. An effect that few blocks show (the black of a chart)
+  // is invisible to signs alone.
+  virtual bool noise_is_known() const { return false; }
   // Blocks beyond five noise widths under the most flexible fit are set aside and counted (mis-detected corners).
   virtual bool sets_outliers_aside() const { return false; }
   // Of images, whose light is sampled and cached, the simulator errs.

@@ -120,11 +120,13 @@ ResidualStructure residual_structure(const Race& race, const Model& model, const
     if (kind != Structure::Kind::negative_control)
       looks.push_back({std::move(scores.families[s]), of_single_groups(system, structures.list[s])});
   }
+  const double by_stated_noise = system.problem().noise_is_known() ? stated_noise_p(p, structures) : 1;
   scores.families.clear();
   ResidualStructure r;
   r.looks = at;
   r.global_p = global_p(looks, scores.blocks, scores.inflation, options.draws, options.seed);
   r.global_p = std::min(r.global_p, price_of_further_looks * concentrated_p(p, structures, scores));
+  r.global_p = std::min(r.global_p, price_of_further_looks * by_stated_noise);
   r.serial_correlation = serial_correlation(system, model.fit.values);
   if (r.serial_correlation) r.global_p = std::min(r.global_p, price_of_further_looks * r.serial_correlation->p);
   if (r.global_p > options.level) r.interaction = interaction(system, model.fit);

@@ -18,7 +18,6 @@ namespace gonio::inference {
 namespace {
 
 constexpr std::size_t knots_of_a_curve = 6;
-constexpr double visible_share = 1e-3;
 constexpr std::size_t most_moved = 4;  // parameters of a mechanism that are tried elsewhere than at their start
 
 }  // namespace

@@ -66,6 +66,9 @@ struct Projection {
 };
 Projection project(const System& system, const Fit& fit, const Structures& structures);
 
+// A direction of which less survives, as a share of its length, is not looked at.
+inline constexpr double visible_share = 1e-3;
+
 // Contributions of every block to the scores of every structure, for stats::sign_flip_test. Directions that survive
 // with less than a thousandth of their length are left out.
 struct BlockScores {
@@ -84,6 +87,10 @@ BlockScores block_scores(const System& system, Projection& projection, const Str
 // What sits in a few blocks (readings that clip) can be flipped in too few ways for a sign-flip test to see it: the
 // chance of the largest trimmed score among all mechanisms and curves. Three blocks of dust do not move it.
 double concentrated_p(const Projection& projection, const Structures& structures, const BlockScores& scores);
+
+// Chance of the largest score, of all looks, under the stated noise alone (Rao's test); Sidak's price for looking
+// often.
+double stated_noise_p(const Projection& projection, const Structures& structures);
 
 // Signatures' |cos|: how much of the smaller of two structures' subspaces the other can imitate, root mean square of
 // the canonical correlations.

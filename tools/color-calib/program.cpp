@@ -57,7 +57,7 @@ const cli::Program& gonio_program() {
       .takes_out = true,
       .takes_seed = true,
       .sections_read = {"files", "images", "cameras"},
-      .sections_written = {"colour"},
+      .sections_written = {"colour", "tables"},
       .files = {{"chart.exr", "--specimen: the photograph"}},
       .exits = {{Exit::quality, "the mean held-out CIEDE2000 is above --accept; the correction is written"}},
       .references =
@@ -69,7 +69,7 @@ const cli::Program& gonio_program() {
            "and mathematical observations, Color Research & Application 30(1), 2005.",
            "CIE 15:2018, Colorimetry, 4th edition.",
            "X-Rite, New color specifications for ColorChecker SG and Classic charts, 2016."},
-      .see_also = {"develop(1)", "compare(1)", "gonio-manifest(5)", "gonio-conventions(7)"},
+      .see_also = {"develop(1)", "compare(1)", "explain(1)", "gonio-manifest(5)", "gonio-conventions(7)"},
       .check = check,
       .run = run};
   return program;

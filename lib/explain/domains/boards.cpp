@@ -45,6 +45,8 @@ const Domain& boards() {
            {"tracks.", "a board is rigid and its corners are named: no track can slip, no shape deforms"},
            {"marker.", "markers of other kinds are tables of the model markers"},
            {"ct.", "no X-rays"},
+           {"colour.",
+            "corners are places, and keep no brightness: readings of a colour chart are tables of the model chart"},
            {"probe.", "corners of boards show no mirror ball: highlights are tables of the model probe"}}};
   return domain;
 }

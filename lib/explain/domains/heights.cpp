@@ -45,6 +45,7 @@ const Domain& heights() {
            {"tracks.", "a height map does not move"},
            {"marker.", "a height map has no markers"},
            {"ct.", "no X-rays"},
+           {"colour.", "a height map has no light"},
            {"probe.", "a map of heights has no mirror ball beside it"}}};
   return domain;
 }

@@ -57,6 +57,9 @@ const Domain& images() {
            {"volume.",
             "what is seen through glass is left out of the fast model: tables of transmittance, or render and "
             "compare"},
+           {"colour.",
+            "glare on pictures of a scene is optics.veiling-glare; that on a chart is measured before anything is "
+            "rendered: color-calib(1) leaves tables of the model chart"},
            {"probe.",
             "what a mirror ball shows is measured before anything is rendered: light-probe(1) leaves tables of the "
             "models probe and probe-radiance"}}};

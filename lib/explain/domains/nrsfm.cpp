@@ -34,6 +34,7 @@ const Domain& nrsfm() {
           {"robot.", "no robot is known"},
           {"marker.", "markers are tables of the model markers"},
           {"ct.", "no X-rays"},
+          {"colour.", "tracks are places, and keep no brightness"},
           {"probe.", "tracks have no lamps: highlights are tables of the model probe"}}};
   return domain;
 }

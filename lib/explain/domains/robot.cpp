@@ -73,6 +73,7 @@ const Domain& robot() {
           {"tracks.", "no shape deforms, and corners are named"},
           {"marker.", "poses come from boards; markers of other kinds are tables of the model markers"},
           {"ct.", "no X-rays"},
+          {"colour.", "poses are places, and keep no brightness"},
           {"probe.", "a robot that carries a board carries no mirror ball"}}};
   return domain;
 }

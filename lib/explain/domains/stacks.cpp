@@ -55,6 +55,8 @@ std::vector<Untouched> stack_reasons() {
       {"tracks.", "nothing moves"},
       {"marker.", "markers are tables of the model markers"},
       {"ct.", "no X-rays"},
+      {"colour.",
+       "a stack knows no reference colours: glare on it is optics.veiling-glare, on a chart tables of the model chart"},
       {"probe.", "mirror balls beside a stack are read by light-probe(1), which leaves tables of the model probe"}};
 }
 

@@ -12,6 +12,7 @@ const Domain& tables() {
       .name = "tables",
       .sentence =
           "tables whose model predicts them (sensor, light, volume, surface, tracks, markers, probe, probe-radiance, "
+          "chart, "
           "temperature, "
           "ellipsometer, tracker, arm, expression)",
       .order = 4,

@@ -35,6 +35,7 @@ const Domain& volumes() {
           {"robot.", "a tomograph turns its part by no robot"},
           {"tracks.", "nothing moves"},
           {"marker.", "markers are tables of the model markers"},
+          {"colour.", "X-rays see no colours"},
           {"probe.", "X-rays see no mirror"}}};
   return domain;
 }

@@ -64,6 +64,11 @@ class BoundModel {
   // One standard deviation of every observation where the table states none; empty: from repeats, else from differences
   // between neighbouring rows (table_noise.h).
   virtual std::vector<double> sigma() const { return {}; }
+  // What readings differ by that the model cannot foretell and no mechanism is asked for, one standard deviation for
+  // each observation in its unit: beside the noise that the table states. Empty: nothing.
+  virtual std::vector<double> scatter() const { return {}; }
+  virtual bool scatter_is_all() const { return false; }        // with it the noise is known: Problem::noise_is_known
+  virtual std::string scatter_in_words() const { return {}; }  // goes on from "Noise as the table states it"
   // The scale in which a value of a row is compared with what was observed there: monotone, applied to observations
   // and, after all terms, to predictions (reflectance spans decades: log1p). Sigma, norm and conditions then live in
   // it.

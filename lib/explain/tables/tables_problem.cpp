@@ -193,7 +193,9 @@ void TablesProblem::set_noise(const manifest::Table& section, const ProblemOptio
     for (std::size_t r = 0; r < table_.rows(); ++r)
       for (const std::size_t c : table_.sigma) o.sigma.push_back(table_.values[c][r]);
     if (rescaled_) rescale_sigma();
-    noise_ = "as the table states it";
+    const std::vector<double> scatter = bound_->scatter();
+    for (std::size_t i = 0; i < scatter.size(); ++i) o.sigma[i] = std::hypot(o.sigma[i], scatter[i]);
+    noise_ = "as the table states it" + bound_->scatter_in_words();
     return;
   }
   if (!own.empty() && options.repeats.empty()) {

@@ -39,6 +39,7 @@ class TablesProblem final : public Problem {
   Importance importance() const override { return model_->importance; }
   // Noise that was estimated on the base model's residuals is measured again where every mechanism had its part.
   std::optional<double> noise_factor(std::span<const double> residual) const override;
+  bool noise_is_known() const override { return bound_->scatter_is_all(); }
   std::string remarks(const Explanation& explanation) const override;
   std::vector<Proposal> proposals() const override;
   ProposedRows propose(std::span<const double> values, std::size_t proposal) const override;

@@ -164,6 +164,22 @@ World probe_radiance() {
                  });
 }
 
+World chart() {
+  return rows_of({{"X", "1"},
+                  {"Y", "1"},
+                  {"Z", "1"},
+                  {"x", "1"},
+                  {"y", "1"},
+                  {"image_radius", "1"},
+                  {"exposure_s", "s"},
+                  {"R", "1"},
+                  {"G", "1"},
+                  {"B", "1"}},
+                 60, "", R"("model": "chart", "observed": ["R", "G", "B"])", [](const std::string& name, double share) {
+                   return name == "exposure_s" ? (share < 0.5 ? 0.1 : 0.4) : usual(name, share);
+                 });
+}
+
 class Candidates : public testing::TestWithParam<Walk> {};
 
 TEST_P(Candidates, AreSeenInConditionsThatTheProblemHas) {
@@ -194,6 +210,7 @@ INSTANTIATE_TEST_SUITE_P(
              {"image.edge-distance", "camera.edge-shift-x", "camera.edge-shift-y", "camera.edge-shift-radial",
               "light.shadow-edge-distance", "volume.size"}},
         Walk{"probe", probe, {"camera.distance", "camera.edge-shift-radial"}},
+        Walk{"chart", chart, {"light.distance", "surface.incidence-angle"}},
         Walk{"probe_radiance", probe_radiance, {"image.exposure", "surface.exitance-angle", "light.identity"}}),
     [](const auto& i) { return std::string(i.param.model); });
 

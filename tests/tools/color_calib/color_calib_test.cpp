@@ -16,6 +16,7 @@
 #include "manifest/document.h"
 #include "manifest/sections/colour_correction.h"
 #include "manifest/sections/image.h"
+#include "manifest/sections/table.h"
 #include "process.h"
 
 namespace gonio::tests {
@@ -66,6 +67,28 @@ TEST_F(ColorCalib, FindsTheChartAndTheCamera) {
     EXPECT_THAT(ended.err, HasSubstr(words));
   EXPECT_EQ(io::read_picture(folder_ / "preview.png").width, 2 * width);
   EXPECT_EQ(calib({"chart.exr", "--preview", "preview.png", "--to", "srgb"}).out, ended.out);
+}
+
+// Readings as they are, before anything was taken off: explain asks them.
+TEST_F(ColorCalib, LeavesReadingsThatExplainAsks) {
+  photograph_.offset = {0.012, 0.012, 0.012};
+  io::write_picture(folder_ / "veiled.exr", colour::photograph_of(chart_, photograph_, width, height));
+  const Ended ended = calib({"veiled.exr", "-o", "veiled.json"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const auto document = manifest::read_document(folder_ / "veiled.json");
+  const manifest::Table& table = document.tables.at("camera-chart");
+  EXPECT_EQ(table.model, "chart");
+  ASSERT_EQ(table.rows.as_array().size(), 24u);
+  const auto& black = table.rows.as_array().back().as_array();
+  ASSERT_EQ(black.size(), table.columns.size());
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (table.columns[c].first == "G") {
+      const double expected = read_of(photograph_, chart_.patches.back()).y + 0.012 * photograph_.exposure;
+      EXPECT_NEAR(black[c].as_number(), expected, 0.02 * expected);
+    }
+  const Ended explained = run({"explain", "veiled.json"}, folder_.path());
+  EXPECT_EQ(explained.status, 0) << explained.err;
+  EXPECT_THAT(explained.err, HasSubstr("sensor.black-offset"));
 }
 
 TEST_F(ColorCalib, TakesCornersAndAModel) {

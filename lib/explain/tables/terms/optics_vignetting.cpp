@@ -9,7 +9,7 @@ const Term& optics_vignetting() {
   static const Term term{.mechanism = mechanism::optics_vignetting,
                          .order = term_order::optics,
                          .columns = {{"image_radius", "1", "distance from the picture's centre over half its width"}},
-                         .models = {"sensor", "light", "surface", "expression"}};
+                         .models = {"sensor", "light", "surface", "expression", "chart"}};
   return term;
 }
 

@@ -10,7 +10,7 @@ namespace gonio::explain::tables::terms {
 const Term& sensor_saturation() {
   static const Term term{.mechanism = mechanism::sensor_saturation,
                          .order = term_order::saturation,
-                         .models = {"sensor", "light", "expression", "probe-radiance"},
+                         .models = {"sensor", "light", "expression", "probe-radiance", "chart"},
                          .applies = [](const Table&) { return true; },
                          .adapt =
                              [](const Table&, double scale, std::span<TermParameter> p) {
