@@ -31,7 +31,8 @@ struct Ball {
         document(manifest::parse_document(R"({"gonio": 1, "cameras": {"c": {"model": "orthographic", "width_px": 256,
             "height_px": 256, "px_per_m": )" + std::to_string(radius / radius_m) +
                                               R"(, "cx_px": 127.5, "cy_px": 127.5}},
-            "meshes": {"ball": {"sphere": {"radius_m": 0.05}}}, "surfaces": {"clay": {"model": "diffuse", "albedo": 0.5}},
+            "meshes": {"ball": {"sphere": {"radius_m": 0.05}}},
+            "surfaces": {"clay": {"model": "diffuse", "albedo": 0.5}},
             "lights": {"sun": {"model": "directional", "towards": [0.3, -0.2, -1], "watt_per_m2": [1, 1, 1]}},
             "objects": [{"id": "ball", "mesh": "ball", "surface": "clay",
                          "world_from_object": {"rotation": [1, 0, 0, 0], "translation_m": [0, 0, 0.5]}}],

@@ -139,7 +139,7 @@ namespace {
 
 // board.print: a list of corners, each with its column, row and displacement.
 void read_print(const manifest::Document& document, const manifest::MechanismUse& use, BoardsInput& input) {
-  const std::string at = manifest::place(document, "/mechanisms/board.print");
+  const std::string at = manifest::place(document, "/mechanisms/" + mechanism::board_print().id);
   const auto list = [&](std::string_view name) {
     const auto found = use.parameters.find(std::string(name));
     return found == use.parameters.end() ? std::vector<double>{} : found->second.value;
@@ -158,7 +158,7 @@ void read_print(const manifest::Document& document, const manifest::MechanismUse
         throw Error(Exit::data, at, "does not say of which board", "add \"on\"");
       const std::string& name = use.on.empty() ? input.boards.at(0).name : use.on[board];
       if (std::ranges::find(input.boards, name, &BoardsInput::Board::name) == input.boards.end()) continue;
-      input.given.push_back({"board.print", name, camera::CornerColumn::print + axis, shift[k],
+      input.given.push_back({mechanism::board_print().id, name, camera::CornerColumn::print + axis, shift[k],
                              std::array{std::lround(columns[k]), std::lround(rows[k])}});
     }
   }
