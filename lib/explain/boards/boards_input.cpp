@@ -217,7 +217,7 @@ std::array<long, 2> place_of(const BoardsInput::Corner& corner, const BoardsInpu
   return {std::lround(corner.board_m.x / board.square_m), std::lround(corner.board_m.y / board.square_m)};
 }
 
-// Corners that enough views show, whatever their colour; of a board with too many, none.
+// Corners that enough views show, whatever their colour, of a board with too many none; and those that are given.
 void settle_places(BoardsInput& input, std::size_t b) {
   BoardsInput::Board& board = input.boards[b];
   std::map<std::array<long, 2>, std::size_t> views;
@@ -227,10 +227,13 @@ void settle_places(BoardsInput& input, std::size_t b) {
     for (const BoardsInput::Corner& corner : view.corners) own.insert(place_of(corner, board));
     for (const auto& place : own) ++views[place];
   }
-  board.places.clear();
+  std::set<std::array<long, 2>> placed;
   for (const auto& [place, count] : views)
-    if (count >= fewest_to_place) board.places.push_back(place);
-  if (board.places.size() > most_placed) board.places.clear();
+    if (count >= fewest_to_place) placed.insert(place);
+  if (placed.size() > most_placed) placed.clear();
+  for (const BoardsInput::Given& given : input.given)
+    if (given.place && given.on == board.name) placed.insert(*given.place);
+  board.places.assign(placed.begin(), placed.end());
   for (BoardsInput::View& view : input.views) {
     if (view.board != b) continue;
     for (BoardsInput::Corner& corner : view.corners) {

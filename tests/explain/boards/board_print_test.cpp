@@ -103,6 +103,27 @@ TEST(BoardPrint, IsNotWhatBendsOrMoves) {
   }
 }
 
+// Corners that are stated count, however few views show them.
+TEST(BoardPrint, WhatIsStatedIsEvaluated) {
+  manifest::Document document = recorded({}, 1);
+  const auto predicted = [](const manifest::Document& d) {
+    const std::unique_ptr<Problem> problem = boards_problem(boards_input(d));
+    std::vector<double> values;
+    for (const Parameter& p : problem->parameters()) values.push_back(p.neutral);
+    for (const std::size_t p : problem->base()) values[p] = problem->parameters()[p].start;
+    const Observations& o = problem->observations();
+    std::vector<double> seen(o.first[1]);
+    problem->predict(values, 0, seen);
+    return seen;
+  };
+  const std::vector<double> plain = predicted(document);
+  auto& use = document.mechanisms["board.print"];
+  use.parameters["column"].value = {0}, use.parameters["row"].value = {0}, use.parameters["x_m"].value = {1e-3};
+  const std::vector<double> moved = predicted(document);
+  EXPECT_GT(std::hypot(moved[0] - plain[0], moved[1] - plain[1]), 0.5);  // 1 mm of the first corner
+  for (std::size_t i = 2; i < plain.size(); ++i) EXPECT_EQ(moved[i], plain[i]);
+}
+
 TEST(BoardPrint, ListsThatDoNotFitAreRefused) {
   const auto refusal = [](const std::map<std::string, std::vector<double>>& lists) -> std::string {
     manifest::Document document = recorded({}, 1);
