@@ -20,6 +20,7 @@
 #include "photograph/developed.h"
 #include "photograph/linear_picture.h"
 #include "photograph/mask.h"
+#include "photograph/noise_variance.h"
 
 namespace gonio::colour {
 namespace {
@@ -178,18 +179,48 @@ Calibration calibrate_document(manifest::Document& document, const ChartRequest&
   return calibration;
 }
 
+Correction correction_for(const manifest::Document& document, const std::string& name, std::size_t image) {
+  const manifest::ColourCorrection& section = section_of(document, name);
+  photograph::refuse_second(document, image, manifest::develop_step::colour, "is corrected already",
+                            "give the picture that it was made of");
+  const std::string& camera = document.images[image].camera;
+  if (!section.camera.empty() && !camera.empty() && camera != section.camera)
+    throw Error(Exit::data, manifest::place(document, "/images/" + std::to_string(image)),
+                "is of camera \"" + camera + "\", and the correction of \"" + section.camera + "\"",
+                "name the images of that camera");
+  return correction_of(section, manifest::place(document, "/colour/" + name));
+}
+
+void correct(const Correction& correction, photograph::LinearPicture& picture, std::optional<manifest::Noise>& noise,
+             const std::string& place) {
+  if (noise) {
+    picture.variance = picture.colour;
+    for (float& v : picture.variance.data) v = static_cast<float>(photograph::noise_variance(*noise, v));
+    noise.reset();
+  }
+  const bool varies = !picture.variance.data.empty();
+  const std::size_t colours = picture.colour.channels.size(), all = varies ? 2 * colours : colours;
+  std::vector<std::string> names = picture.colour.channels;
+  if (varies)
+    for (const std::string& channel : picture.colour.channels) names.push_back("variance." + channel);
+  io::Image joined(picture.colour.width, picture.colour.height, names);
+  const auto exchange = [&](auto&& move) {
+    for (std::size_t i = 0; i < joined.pixels(); ++i)
+      for (std::size_t c = 0; c < colours; ++c) {
+        move(joined.data[all * i + c], picture.colour.data[colours * i + c]);
+        if (varies) move(joined.data[all * i + colours + c], picture.variance.data[colours * i + c]);
+      }
+  };
+  exchange([](float& to, float from) { to = from; });
+  apply(correction, joined, place);
+  exchange([](float from, float& to) { to = from; });
+}
+
 void check_colours(const manifest::Document& document, const ColourRequest& request) {
-  const manifest::ColourCorrection& section = section_of(document, request.name);
-  correction_of(section, manifest::place(document, "/colour/" + request.name));
+  correction_of(section_of(document, request.name), manifest::place(document, "/colour/" + request.name));
   for (const std::size_t i : request.images) {
     const std::string place = manifest::place(document, "/images/" + std::to_string(i));
-    photograph::refuse_second(document, i, manifest::develop_step::colour, "is corrected already",
-                              "give the picture that it was made of");
-    const std::string& camera = document.images[i].camera;
-    if (!section.camera.empty() && !camera.empty() && camera != section.camera)
-      throw Error(Exit::data, place,
-                  "is of camera \"" + camera + "\", and the correction of \"" + section.camera + "\"",
-                  "name the images of that camera");
+    correction_for(document, request.name, i);
     if (io::code_bits(manifest::picture_path(document, i)) != 0)
       throw Error(Exit::data, place, "is a picture of codes, and colours are corrected in linear light",
                   "make OpenEXR of it with develop --merge");

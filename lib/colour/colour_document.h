@@ -9,8 +9,10 @@
 
 #include "colour/calibration.h"
 #include "colour/chart.h"
+#include "colour/correction.h"
 #include "manifest/sections/forward.h"
 #include "manifest/value.h"
+#include "photograph/linear_picture.h"
 
 namespace gonio::colour {
 
@@ -53,6 +55,12 @@ struct ColourRequest {
 // that was stated for the pixels before is taken back. Error(data) for pictures that are not OpenEXR with R, G, B, for
 // images of another camera than the correction's, and for those that say that they are corrected.
 void colour_document(manifest::Document& document, const ColourRequest& request);
+// The correction of that name for one of the images, whose pixels are still the camera's: Error(data) for images of
+// another camera, and for those that say that they are corrected.
+Correction correction_for(const manifest::Document& document, const std::string& name, std::size_t image);
+// A photograph as it was read, as colours. Noise that is stated for it becomes its variance, which is corrected too.
+void correct(const Correction& correction, photograph::LinearPicture& picture, std::optional<manifest::Noise>& noise,
+             const std::string& place);
 // The same without pixels: whether the correction and all files are there.
 void check_colours(const manifest::Document& document, const ColourRequest& request);
 

@@ -66,10 +66,13 @@ manifest::Document document_of(const Entry& entry) {
 Overlay lay_over(const Entry& entry, Channels channels) {
   std::optional<Mask> mask;
   if (!entry.mask.empty()) mask = photograph::read_mask(entry.mask);
-  return lay_over(entry.image,
-                  photograph::read_linear(entry.photograph, entry.response, entry.photograph_place, entry.saturation),
+  photograph::LinearPicture photograph =
+      photograph::read_linear(entry.photograph, entry.response, entry.photograph_place, entry.saturation);
+  std::optional<manifest::Noise> noise = entry.noise;
+  if (entry.prepare) entry.prepare(photograph, noise);
+  return lay_over(entry.image, std::move(photograph),
                   photograph::read_linear(entry.rendering, entry.rendering_response, entry.rendering_place),
-                  mask ? &*mask : nullptr, channels, entry.noise);
+                  mask ? &*mask : nullptr, channels, noise);
 }
 
 void enter(manifest::Document& document, const std::string& image, const Measures& m,

@@ -1,6 +1,7 @@
 // The manifest's side of a comparison: which photograph belongs to which rendering, and where the numbers go.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,6 +19,8 @@ struct Entry {
   std::optional<double> saturation{};                 // of the photograph
   std::string photograph_place, rendering_place;      // for messages
   std::optional<manifest::Noise> noise;
+  // Where given: what becomes of the photograph as it was read, and of the noise that is stated for it.
+  std::function<void(photograph::LinearPicture& photograph, std::optional<manifest::Noise>& noise)> prepare{};
 };
 
 // One entry per rendering, in the order of the manifest. Error(data) where there is none, or none of a photograph.

@@ -95,6 +95,38 @@ TEST_F(Compare, RefusesWhatItCannotAnswer) {
   EXPECT_THAT(ended.err, HasSubstr("nothing to compare"));
 }
 
+// The rendering shows colours, the photograph what the camera reads: green and blue exchanged, red half as bright. The
+// stated noise goes through the correction, too: a difference of one standard deviation in red stays one.
+TEST_F(Compare, PhotographsBecomeColours) {
+  io::Image photograph = io::read_picture(folder_ / "photo.exr"), colours = photograph;
+  for (std::size_t i = 0; i < photograph.pixels(); ++i) {
+    float* c = &colours.data[3 * i];
+    const float* v = &photograph.data[3 * i];
+    c[0] = 2 * (v[0] + (i % 2 == 0 ? 0.01f : -0.01f)), c[1] = v[2], c[2] = v[1];
+  }
+  io::write_picture(folder_ / "colours.exr", colours);
+  const auto manifest = [](const std::string& image) {
+    return R"({"gonio": 1, "files": {"p": {"path": "photo.exr"}, "r": {"path": "colours.exr"}},
+      "colour": {"c": {"model": "linear", "matrix": [[2, 0, 0], [0, 0, 1], [0, 1, 0]], "white": [1, 1, 1],
+                       "to": "srgb", "camera": "cam"}},
+      "images": [{"id": "view", "file": "p", )" +
+           image + R"(}], "renderings": [{"image": "view", "file": "r"}]})";
+  };
+  const std::string plain = manifest(R"("noise": {"gain": 0, "read": 0.01})");
+  EXPECT_GT(comparison(compare({}, plain)).find("rmse")->as_number(), 0.05);
+  const Ended ended = compare({"--colour", "c"}, plain);
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_NEAR(comparison(ended).find("rmse")->as_number(), 0.02 / std::sqrt(3.0), 1e-4);
+  EXPECT_NEAR(comparison(ended).find("z_rms")->as_number(), 1 / std::sqrt(3.0), 1e-3);
+  const auto refusal = [&](const std::string& name, const std::string& image) {
+    const Ended refused = compare({"--colour", name}, manifest(image));
+    EXPECT_EQ(refused.status, 65);
+    return refused.err;
+  };
+  EXPECT_THAT(refusal("d", R"("weight": 1)"), HasSubstr("has no \"d\""));
+  EXPECT_THAT(refusal("c", R"("developed": [{"step": "colour", "with": "c"}])"), HasSubstr("is corrected already"));
+}
+
 TEST_F(Compare, ReadsThePipeAndWritesPictures) {
   const std::string manifest = R"({"gonio": 1, "files": {"p": {"path": "photo.exr"}, "r": {"path": "half.exr"}},
     "images": [{"id": "view", "file": "p", "noise": {"gain": 1000, "read": 0.001}}],

@@ -3,7 +3,10 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/common_options.h"
+#include "colour/colour_document.h"
+#include "colour/correction.h"
 #include "io/picture.h"
+#include "manifest/image_list.h"
 #include "metric/difference_pictures.h"
 #include "metric/entries.h"
 #include "tools/compare/page.h"
@@ -55,6 +58,11 @@ cli::Program describe() {
        .help = "What to compare; colour against grey is compared as luminance.",
        .preset = "all",
        .choices = {"all", "luminance", "red", "green", "blue"}},
+      {.name = "colour",
+       .type = Type::text,
+       .help = "Compare photographs as colours: this correction of the manifest, as color-calib found it.",
+       .metavar = "NAME",
+       .conflicts = {"reference"}},
       {.name = "fit-exposure", .type = Type::flag, .help = "Fit one factor on each rendering before comparing."},
       {.name = "one-exposure",
        .type = Type::flag,
@@ -89,7 +97,7 @@ cli::Program describe() {
       cli::report_option()};
   p.standalone = {"reference"};
   p.takes_out = true;
-  p.sections_read = {"files", "images", "renderings"};
+  p.sections_read = {"files", "images", "renderings", "colour"};
   p.sections_written = {"comparisons", "files"};
   p.files = {{"ID-difference.exr",
               "difference.R, ...: scale x rendering - photograph, linear; z.R, ... where variances are known"},
@@ -120,9 +128,23 @@ Entry quick_entry(const cli::Invocation& call) {
   return e;
 }
 
+// Photographs as colours, where they are asked for.
+std::vector<Entry> in_colours(const cli::Invocation& call, std::vector<Entry> entries) {
+  if (!call.given("colour")) return entries;
+  for (Entry& entry : entries) {
+    const std::size_t image = manifest::index_of_image(call.document, entry.image).value();
+    const colour::Correction correction = colour::correction_for(call.document, call.text("colour"), image);
+    entry.prepare = [correction, place = entry.photograph_place](photograph::LinearPicture& picture,
+                                                                 std::optional<manifest::Noise>& noise) {
+      colour::correct(correction, picture, noise, place);
+    };
+  }
+  return entries;
+}
+
 std::vector<Entry> entries_of(const cli::Invocation& call) {
   if (call.given("reference")) return {quick_entry(call)};
-  if (call.has_document) return entries(call.document);
+  if (call.has_document) return in_colours(call, entries(call.document));
   throw Error(Exit::no_input, "compare", "has nothing to compare",
               "pipe a manifest in, or give --reference and --rendered");
 }
