@@ -108,7 +108,8 @@ void add_scene(List& all) {
       {.name = definition_name(Codec<MechanismUse>::schema()),
        .definition = mechanism_use_definition(),
        .text = "## mechanisms\nKeyed by id, of gonio-mechanisms(7). Optional physics that is switched on: its "
-               "parameters under their own names, each one number or one for each name in `on`, and:\n\n" +
+               "parameters under their own names, each one number or one for each name in `on` (or lists of one "
+               "length, of mechanisms that say so), and:\n\n" +
                table_of(mechanism_use_fields()),
        .section = "mechanisms",
        .section_schema = {}});

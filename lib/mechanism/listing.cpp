@@ -146,6 +146,8 @@ std::string markdown() {
       for (const Parameter& p : m->parameters)
         result += "| " + p.name + " | " + p.unit + " | " + number(p.neutral) + " | " + number(p.lower) + " to " +
                   number(p.upper) + " | " + usual(p, "") + " | " + manifest::in_cell(p.meaning) + " |\n";
+      if (m->lists)
+        result += "\nIn a manifest these are lists of one length: an entry for each thing that it tells of.\n";
       result += "\nHypothesis for: " + domains_in_words(*m) + ". Shows in: " + joined(m->conditions) + ".\n";
       for (const Confusion& c : m->mistaken_for)
         result += "- mistaken for **" + c.with + "**; told apart by: " + c.told_apart + "\n";
