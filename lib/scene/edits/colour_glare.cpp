@@ -1,0 +1,16 @@
+// colour.glare: of photographs of a chart, whose patches it was found on. What a lens spreads over a rendered picture is
+// optics.veiling-glare.
+#include "scene/edit.h"
+
+namespace gonio::mechanism {
+const Mechanism& colour_glare();
+}
+
+namespace gonio::scene::edits {
+
+const Edit& colour_glare() {
+  static const Edit edit{.mechanism = mechanism::colour_glare, .beyond_rendering = true};
+  return edit;
+}
+
+}  // namespace gonio::scene::edits
