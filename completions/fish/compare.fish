@@ -6,6 +6,7 @@ complete -c compare -l response -x -a 'linear srgb' -d 'How the codes of 8/16-bi
 complete -c compare -l gain -x -d 'Noise of the photograph: variance v / gain + read^2 of a linear value v.'
 complete -c compare -l read -x -d 'Read noise of the photograph, linear; see --gain.'
 complete -c compare -l channels -x -a 'all luminance red green blue' -d 'What to compare; colour against grey is compared as luminance.'
+complete -c compare -l colour -x -d 'Compare photographs as colours: this correction of the manifest, as color-calib found it.'
 complete -c compare -l fit-exposure -d 'Fit one factor on each rendering before comparing.'
 complete -c compare -l one-exposure -d 'Fit one factor for all renderings together.'
 complete -c compare -l exposure-scale -x -d 'Multiply the renderings by this factor.'

@@ -10,6 +10,7 @@
 #include "colour/calibration.h"
 #include "colour/chart.h"
 #include "colour/correction.h"
+#include "manifest/noise.h"
 #include "manifest/sections/forward.h"
 #include "manifest/value.h"
 #include "photograph/linear_picture.h"

@@ -108,11 +108,11 @@ TEST_F(Compare, PhotographsBecomeColours) {
   const auto manifest = [](const std::string& image) {
     return R"({"gonio": 1, "files": {"p": {"path": "photo.exr"}, "r": {"path": "colours.exr"}},
       "colour": {"c": {"model": "linear", "matrix": [[2, 0, 0], [0, 0, 1], [0, 1, 0]], "white": [1, 1, 1],
-                       "to": "srgb", "camera": "cam"}},
+                       "to": "srgb"}},
       "images": [{"id": "view", "file": "p", )" +
            image + R"(}], "renderings": [{"image": "view", "file": "r"}]})";
   };
-  const std::string plain = manifest(R"("noise": {"gain": 0, "read": 0.01})");
+  const std::string plain = manifest(R"("noise": {"gain": 1e12, "read": 0.01})");
   EXPECT_GT(comparison(compare({}, plain)).find("rmse")->as_number(), 0.05);
   const Ended ended = compare({"--colour", "c"}, plain);
   ASSERT_EQ(ended.status, 0) << ended.err;
@@ -124,7 +124,7 @@ TEST_F(Compare, PhotographsBecomeColours) {
     return refused.err;
   };
   EXPECT_THAT(refusal("d", R"("weight": 1)"), HasSubstr("has no \"d\""));
-  EXPECT_THAT(refusal("c", R"("developed": [{"step": "colour", "with": "c"}])"), HasSubstr("is corrected already"));
+  EXPECT_THAT(refusal("c", R"("developed": [{"step": "colour", "by": "c"}])"), HasSubstr("is corrected already"));
 }
 
 TEST_F(Compare, ReadsThePipeAndWritesPictures) {

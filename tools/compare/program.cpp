@@ -3,12 +3,10 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/common_options.h"
-#include "colour/colour_document.h"
-#include "colour/correction.h"
 #include "io/picture.h"
-#include "manifest/image_list.h"
 #include "metric/difference_pictures.h"
 #include "metric/entries.h"
+#include "tools/compare/colours.h"
 #include "tools/compare/page.h"
 
 namespace gonio::tools::compare {
@@ -58,11 +56,7 @@ cli::Program describe() {
        .help = "What to compare; colour against grey is compared as luminance.",
        .preset = "all",
        .choices = {"all", "luminance", "red", "green", "blue"}},
-      {.name = "colour",
-       .type = Type::text,
-       .help = "Compare photographs as colours: this correction of the manifest, as color-calib found it.",
-       .metavar = "NAME",
-       .conflicts = {"reference"}},
+      colour_option(),
       {.name = "fit-exposure", .type = Type::flag, .help = "Fit one factor on each rendering before comparing."},
       {.name = "one-exposure",
        .type = Type::flag,
@@ -126,20 +120,6 @@ Entry quick_entry(const cli::Invocation& call) {
   e.photograph_place = e.photograph.string();
   e.rendering_place = e.rendering.string();
   return e;
-}
-
-// Photographs as colours, where they are asked for.
-std::vector<Entry> in_colours(const cli::Invocation& call, std::vector<Entry> entries) {
-  if (!call.given("colour")) return entries;
-  for (Entry& entry : entries) {
-    const std::size_t image = manifest::index_of_image(call.document, entry.image).value();
-    const colour::Correction correction = colour::correction_for(call.document, call.text("colour"), image);
-    entry.prepare = [correction, place = entry.photograph_place](photograph::LinearPicture& picture,
-                                                                 std::optional<manifest::Noise>& noise) {
-      colour::correct(correction, picture, noise, place);
-    };
-  }
-  return entries;
 }
 
 std::vector<Entry> entries_of(const cli::Invocation& call) {

@@ -1,5 +1,5 @@
-// colour.glare: of photographs of a chart, whose patches it was found on. What a lens spreads over a rendered picture is
-// optics.veiling-glare.
+// colour.glare: of photographs of a chart, on whose patches it was found. What a lens spreads over a rendered picture
+// is optics.veiling-glare.
 #include "scene/edit.h"
 
 namespace gonio::mechanism {
