@@ -37,9 +37,13 @@ std::string law_sentence(const Problem& problem, const Outside& o) {
 
 std::string listed(const Problem& problem, const std::vector<std::size_t>& candidates, std::size_t first,
                    const char* last) {
+  std::vector<std::string> ids;  // each once, whatever its forms and targets
+  for (std::size_t k = first; k < candidates.size(); ++k) {
+    const std::string id = problem.candidates()[candidates[k]].id();
+    if (std::ranges::find(ids, id) == ids.end()) ids.push_back(id);
+  }
   std::string text;
-  for (std::size_t k = first; k < candidates.size(); ++k)
-    text += (k == first ? "" : k + 1 == candidates.size() ? last : ", ") + problem.candidates()[candidates[k]].id();
+  for (std::size_t k = 0; k < ids.size(); ++k) text += (k == 0 ? "" : k + 1 == ids.size() ? last : ", ") + ids[k];
   return text;
 }
 
