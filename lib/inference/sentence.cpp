@@ -38,12 +38,11 @@ std::string law_sentence(const Problem& problem, const Outside& o) {
 std::string listed(const Problem& problem, const std::vector<std::size_t>& candidates, std::size_t first,
                    const char* last) {
   std::vector<std::string> ids;  // each once, whatever its forms and targets
-  for (std::size_t k = first; k < candidates.size(); ++k) {
-    const std::string id = problem.candidates()[candidates[k]].id();
-    if (std::ranges::find(ids, id) == ids.end()) ids.push_back(id);
-  }
+  for (const std::size_t c : candidates)
+    if (const std::string id = problem.candidates()[c].id(); std::ranges::find(ids, id) == ids.end()) ids.push_back(id);
   std::string text;
-  for (std::size_t k = 0; k < ids.size(); ++k) text += (k == 0 ? "" : k + 1 == ids.size() ? last : ", ") + ids[k];
+  for (std::size_t k = first; k < ids.size(); ++k)
+    text += (k == first ? "" : k + 1 == ids.size() ? last : ", ") + ids[k];
   return text;
 }
 
@@ -143,8 +142,9 @@ std::string named_sentence(const Problem& problem, const Explanation& e) {
           score_in_words(e.held_out_before, problem.unit()) + " (" + problem.score_name() + ").";
   text += sure_sentence(problem, e);
   for (const std::vector<std::size_t>& set : e.not_told_apart)
-    text += " In the place of " + problem.candidates()[set[0]].id() + " it could be " +
-            listed(problem, set, 1, " or ") + ": these recordings cannot tell them apart.";
+    if (const std::string others = listed(problem, set, 1, " or "); !others.empty())
+      text += " In the place of " + problem.candidates()[set[0]].id() + " it could be " + others +
+              ": these recordings cannot tell them apart.";
   std::set<std::string> told;
   for (const std::vector<std::size_t>& set : e.instead) {
     const std::string other = listed(problem, set, 0, " with ");
