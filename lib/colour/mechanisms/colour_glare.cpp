@@ -1,5 +1,6 @@
-// colour.glare: light that lies on all patches of a chart.
-#include "colour/mechanisms/colour_glare.h"
+// colour.glare: light that lies on all patches of a chart. Equation: render/mechanisms/optics_veiling_glare.h, the
+// share by channel.
+#include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {
 

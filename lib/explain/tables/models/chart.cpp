@@ -15,7 +15,6 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "colour/mechanisms/colour_glare.h"
 #include "explain/tables/chart_scatter.h"
 #include "explain/tables/image_views.h"
 #include "explain/tables/model_parameters.h"
@@ -24,8 +23,13 @@
 #include "light/mechanisms/light_inverse_square.h"
 #include "manifest/document.h"
 #include "manifest/sections/table.h"
+#include "render/mechanisms/optics_veiling_glare.h"
 #include "render/mechanisms/sensor_black_offset.h"
 #include "render/mechanisms/sensor_non_linearity.h"
+
+namespace gonio::mechanism {
+const Mechanism& colour_glare();
+}
 
 namespace gonio::explain::tables {
 namespace {
@@ -60,7 +64,7 @@ class Chart final : public BoundModel {
       const double level = gain(values, r) * light(values, r);
       for (std::size_t c = 0; c < 3; ++c) {
         const double seen = level * through(values, c, xyz_[r]);
-        const double veiled = equation::colour_glare(seen, share(values, c), mean(values, c, r));
+        const double veiled = equation::optics_veiling_glare(seen, share(values, c), mean(values, c, r));
         prediction[3 * (r - first) + c] =
             equation::sensor_black_offset(veiled, values[offset_] + values[offset_ + 1 + c]);
       }
