@@ -171,8 +171,10 @@ Eigen::MatrixXd LawData::projected(const RawColumns& columns) const {
 Eigen::MatrixXd LawData::covariance(const RawColumns& columns, const Eigen::VectorXd& coefficients) const {
   const Eigen::MatrixXd all = projected(columns);
   const Eigen::Index n = coefficients.size();
-  const Eigen::MatrixXd p = all.leftCols(n);
-  const Eigen::VectorXd left = all.col(n) - p * coefficients;
+  // Columns of unit length: terms in their own units differ by many powers of ten.
+  const Eigen::VectorXd length = all.leftCols(n).colwise().norm().cwiseMax(1e-300).transpose();
+  const Eigen::MatrixXd p = all.leftCols(n) * length.cwiseInverse().asDiagonal();
+  const Eigen::VectorXd left = all.col(n) - all.leftCols(n) * coefficients;
   std::vector<Eigen::VectorXd> scores(blocks_, Eigen::VectorXd::Zero(n));
   for (Eigen::Index i = 0; i < p.rows(); ++i)
     scores[system_.observations().block[static_cast<std::size_t>(i)]] += p.row(i).transpose() * left[i];
@@ -180,8 +182,9 @@ Eigen::MatrixXd LawData::covariance(const RawColumns& columns, const Eigen::Vect
   for (const Eigen::VectorXd& u : scores) meat += u * u.transpose();
   const double rows = static_cast<double>(rows_),
                spent = static_cast<double>(own_.columns.size()) + static_cast<double>(n);
-  const Eigen::MatrixXd inverse = linear::LeastNorm(p.transpose() * p).pseudo_inverse();
-  return inverse * meat * inverse * (rows / std::max(1.0, rows - spent));
+  const Eigen::MatrixXd inverse =
+      length.cwiseInverse().asDiagonal() * linear::LeastNorm(p.transpose() * p).pseudo_inverse();
+  return inverse * meat * inverse.transpose() * (rows / std::max(1.0, rows - spent));
 }
 
 HeldOut LawData::held_out(const RawColumns& columns) const {

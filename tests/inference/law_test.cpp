@@ -186,6 +186,32 @@ TEST(Law, WhatLivesOnOneBlockIsNoTerm) {
   EXPECT_GE(told, 0.8 * runs);
 }
 
+// The same law in units that differ by 14 powers of ten: as sure of every number.
+class ScaledProblem final : public LawProblem {
+ public:
+  ScaledProblem(std::uint64_t seed, double of_x, double of_z)
+      : LawProblem({.law = [](double x, double z) { return 0.3 * x * x + 0.2 * z; }, .slope = false}, seed) {
+    for (double& v : observations_.conditions[0].values) v *= of_x;
+    for (double& v : observations_.conditions[1].values) v *= of_z;
+  }
+};
+
+TEST(Law, ErrorsDoNotDependOnUnits) {
+  int compared = 0;
+  for (int run = 0; run < 4; ++run) {
+    const Explanation plain = law_of(ScaledProblem(800 + run, 1, 1), "plate.height"),
+                      scaled = law_of(ScaledProblem(800 + run, 1e7, 1e-7), "plate.height");
+    ASSERT_EQ(plain.outside->terms.size(), scaled.outside->terms.size());
+    for (std::size_t k = 0; k < plain.outside->terms.size(); ++k, ++compared) {
+      const LawTerm &a = plain.outside->terms[k], &b = scaled.outside->terms[k];
+      EXPECT_EQ(a.powers, b.powers);
+      EXPECT_NEAR(b.sigma / std::abs(b.coefficient), a.sigma / std::abs(a.coefficient), 1e-3);
+      EXPECT_GT(a.sigma, 0);
+    }
+  }
+  EXPECT_GE(compared, 4);
+}
+
 TEST(Law, ABumpDoesNotExtrapolate) {
   int laws = 0;
   const int runs = 20;
