@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "camera/board.h"
 #include "camera/board_projection.h"
 #include "camera/corner_model.h"
@@ -151,9 +152,10 @@ void read_print(const manifest::Document& document, const manifest::MechanismUse
     std::vector<double> shift = list(camera::print_names[axis]);
     shift.resize(columns.size());  // one that is not there is zero
     for (std::size_t k = 0; k < shift.size(); ++k) {
-      const auto board = static_cast<std::size_t>(of.empty() ? 0 : of[k]);
-      if (board >= std::max<std::size_t>(1, use.on.size()))
-        throw Error(Exit::data, at, "has a corner of board " + std::to_string(board) + ", counted from 0 in \"on\"");
+      const double stated = of.empty() ? 0 : of[k];
+      if (!(stated >= 0 && stated < std::max(1.0, static_cast<double>(use.on.size()))))
+        throw Error(Exit::data, at, "has a corner of board " + shortest_text(stated) + ", counted from 0 in \"on\"");
+      const auto board = static_cast<std::size_t>(stated);
       if (use.on.empty() && input.boards.size() > 1)
         throw Error(Exit::data, at, "does not say of which board", "add \"on\"");
       const std::string& name = use.on.empty() ? input.boards.at(0).name : use.on[board];

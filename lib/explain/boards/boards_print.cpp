@@ -1,7 +1,7 @@
 // Columns and rows of a board that its printer set unevenly: in each view, the mean displacement of a line of corners
 // in the board's plane, from what the final model leaves; over the views, mean and standard error. Shift, turn, tilt
-// and stretch of the whole board are in the fit: what is left is the line's own. board.print gives every
-// corner its own place; this says in few words what that looks like where it is not what is named.
+// and stretch of the whole board are in the fit: what is left is the line's own. Words for what board.print would give
+// numbers, where it is not what is named.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -12,9 +12,7 @@ const Domain& tables() {
       .name = "tables",
       .sentence =
           "tables whose model predicts them (sensor, light, volume, surface, tracks, markers, probe, probe-radiance, "
-          "chart, "
-          "temperature, "
-          "ellipsometer, tracker, arm, expression)",
+          "chart, temperature, ellipsometer, tracker, arm, expression)",
       .order = 4,
       .applies = explain::tables::has_tables,
       .problems = explain::tables::table_problems,

@@ -139,7 +139,8 @@ TEST(BoardPrint, ListsThatDoNotFitAreRefused) {
   EXPECT_EQ(refusal({{"column", {0, 1}}, {"row", {0, 0}}, {"x_m", {1e-4, 0}}}), "");
   EXPECT_THAT(refusal({{"column", {0, 1}}, {"row", {0}}}), testing::HasSubstr("has 1 numbers, and column 2"));
   EXPECT_THAT(refusal({{"x_m", {1e-4}}}), testing::HasSubstr("does not say which corners"));
-  EXPECT_THAT(refusal({{"column", {0}}, {"row", {0}}, {"of", {1}}}), testing::HasSubstr("board 1, counted from 0"));
+  for (const auto& [of, said] : {std::pair{1.0, "board 1, counted from 0"}, {-1.0, "board -1, counted from 0"}})
+    EXPECT_THAT(refusal({{"column", {0}}, {"row", {0}}, {"of", {of}}}), testing::HasSubstr(said));
 }
 
 }  // namespace
