@@ -48,6 +48,7 @@ struct CornerColumn {                                         // continues Board
   static constexpr std::size_t shape = focal + 1;             // as equation::board_shape_terms: m
   static constexpr std::size_t print = shape + 26;            // of the corner that is asked for: x, y, z: m
   static constexpr std::size_t count = print + 3;
+  static constexpr bool is_motion(std::size_t column) { return column >= motion && column < scale; }
 };
 inline constexpr std::array<std::string_view, 3> print_names = {"x_m", "y_m", "z_m"};  // from CornerColumn::print on
 

@@ -91,7 +91,7 @@ void Finalists::add(Model model, std::shared_ptr<const ResidualStructure> after)
     for (const std::size_t p : candidate.parameters) {
       const std::size_t on = race_.system().problem().parameters()[p].groups.size();
       const double all = static_cast<double>(race_.system().observations().groups());
-      s.numbers += on == 0 || !(all > 0) ? 1 : static_cast<double>(on) / all;
+      s.numbers += (on == 0 || !(all > 0) ? 1 : static_cast<double>(on) / all) / candidate.things;
     }
     f.finer += candidate.finer;
   }

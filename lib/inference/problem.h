@@ -82,6 +82,9 @@ struct Candidate {
   // Where predict() can tell only a part of what it does (which pixels of a sensor are the sensitive ones, from a few
   // pictures): the parameter whose distance from neutral is all of it, as a share of every reading.
   std::optional<std::size_t> share_of_readings{};
+  // Where its numbers are draws of one law, the same for each of many things (corners of a print): how many of those.
+  // Each number speaks of its own share of the recordings, and counts by it, as one of a single group does.
+  double things = 1;
   const std::string& id() const { return mechanism->id; }
 };
 

@@ -25,6 +25,19 @@ def answer(question):
     return next(e for e in entries if e["domain"] == question.get("domain", entries[0]["domain"]))
 
 
+def asked_again(question):
+    """What explain names of its own output: nothing, where the answer is carried."""
+    here = os.path.join(folder, question["name"])
+    ended = subprocess.run("explain out.json -o again.json --force --log-level error --allow-outside", cwd=here, shell=True,
+                           stderr=subprocess.PIPE, text=True)
+    if ended.returncode > 2:
+        return "refused: " + (ended.stderr.strip().splitlines() or [""])[0]
+    with open(os.path.join(here, "again.json")) as file:
+        entries = json.load(file)["explanations"]
+    entry = [e for e in entries if e["domain"] == question.get("domain", entries[-1]["domain"])][-1]
+    return "nothing" if entry["verdict"] == "null" else " ".join(sorted(sets_of(entry)[0])) or entry["verdict"]
+
+
 def sets_of(entry):
     """What stands in the answer: the first set, and those that are listed beside it."""
     first = {n["mechanism"] for n in entry["named"]}
@@ -60,12 +73,12 @@ def row(question):
     try:
         entry = answer(question)
     except RuntimeError as error:
-        return (question, {"sentence": str(error)}, "no answer", "", "", "FAILED")
+        return (question, {"sentence": str(error)}, "no answer", "", "", "", "FAILED")
     held, stable = entry["held_out"], entry.get("stability", {"same": 0, "draws": 0})
     first, _ = sets_of(entry)
     change = f"{number(held['before'], held['unit'])} -> {number(held['after'], held['unit'])}"
     return (question, entry, " ".join(sorted(first)) or entry["verdict"], change, f"{stable['same']} of {stable['draws']}",
-            judged(entry, question))
+            asked_again(question), judged(entry, question))
 
 
 rows = []
@@ -74,13 +87,13 @@ with open(questions) as file:
         if only and q["name"] not in only:
             continue
         rows.append(row(q))
-        _, _, named, change, stable, verdict = rows[-1]
-        print(f"{q['name']:<26} {named:<52} {change:<26} {stable:>9}  {verdict}", flush=True)
+        _, _, named, change, stable, again, verdict = rows[-1]
+        print(f"{q['name']:<22} {named:<52} {change:<24} {stable:>8}  {verdict:<8} then {again}", flush=True)
 
 cells = ""
-for q, entry, named, change, stable, verdict in rows:
+for q, entry, named, change, stable, again, verdict in rows:
     cells += (f"<tr><td><a href='{q['name']}/page.html'>{q['name']}</a><br>{html.escape(q['question'])}</td>"
-              f"<td>{html.escape(entry['sentence'])}</td><td>{change}</td><td>{stable}</td>"
+              f"<td>{html.escape(entry['sentence'])}</td><td>{change}</td><td>{stable}</td><td>{html.escape(again)}</td>"
               f"<td><b>{verdict}</b><br>{html.escape(q['known'])}</td></tr>")
 with open(os.path.join(folder, "real.html"), "w") as page:
     page.write("<!doctype html><html lang='en'><meta charset='utf-8'><meta name='viewport' content='width=device-width'>"
@@ -89,7 +102,7 @@ with open(os.path.join(folder, "real.html"), "w") as page:
                "text-align:left;vertical-align:top}@media(max-width:45em){td,th{display:block;border:0}"
                "tr{display:block;border-top:1px solid #bbb}thead{display:none}}</style>"
                f"<h1>Real recordings</h1><p>Asked of each whole set, and of {runs} parts of it.</p><table><thead><tr><th>set"
-               "<th>answer<th>error on what the fit did not see<th>same answer<th>judged, and what is known</tr></thead>"
+               "<th>answer<th>error on what the fit did not see<th>same answer<th>asked of its own output<th>judged, and what is known</tr></thead>"
                f"{cells}</table></html>")
 
 wrong = [q["name"] for q, *_, verdict in rows if verdict in ("WRONG ALONE", "FAILED")]

@@ -11,7 +11,9 @@ const Mechanism& board_print() {
           "The corners of the calibration board stand each beside its printed place: the print is uneven, or its "
           "squares were set one by one.",
       .typical = "0.02 to 0.3 mm",
-      .equation = "(x, y, z) += (x_m, y_m, z_m), three numbers of every corner",
+      .equation =
+          "(x, y, z) += (x_m, y_m, z_m), three numbers of every corner; fitted less what shifts or stretches the whole "
+          "board along x, along y, or shifts or tilts it out of its plane: that is its pose and board.scale",
       .source =
           "Lavest, Viala & Dhome, Do we really need an accurate calibration pattern to achieve a reliable camera "
           "calibration?, ECCV 1998",

@@ -166,6 +166,26 @@ void read_print(const manifest::Document& document, const manifest::MechanismUse
   }
 }
 
+// Numbers that every view has of its own (a motion): for each image that is named, and for all of a camera's.
+void read_motions(const manifest::MechanismUse& use, const mechanism::Mechanism& m, BoardsInput& input) {
+  for (std::size_t v = 0; v < input.views.size(); ++v) {
+    const BoardsInput::View& view = input.views[v];
+    auto found = std::ranges::find(use.on, view.image);
+    if (found == use.on.end()) found = std::ranges::find(use.on, input.cameras[view.camera].name);
+    if (found == use.on.end() && !use.on.empty()) continue;
+    const auto place = static_cast<std::size_t>(found - use.on.begin());
+    for (const auto& [parameter, value] : use.parameters) {
+      const auto column = camera::corner_column(parameter);
+      if (!column || !camera::CornerColumn::is_motion(*column) || value.value.empty()) continue;
+      input.given.push_back({.mechanism = m.id,
+                             .on = view.image,
+                             .column = *column,
+                             .value = value.value[std::min(place, value.value.size() - 1)],
+                             .view = v});
+    }
+  }
+}
+
 // Terms that no section of cameras or boards has a place for, where the manifest switches them on.
 void read_given(const manifest::Document& document, BoardsInput& input) {
   for (const auto& [id, use] : document.mechanisms) {
@@ -175,6 +195,7 @@ void read_given(const manifest::Document& document, BoardsInput& input) {
       read_print(document, use, input);
       continue;
     }
+    if (m->target == mechanism::Target::camera) read_motions(use, *m, input);
     const auto add = [&](const std::string& name) {
       const auto found = std::find(use.on.begin(), use.on.end(), name);
       if (!use.on.empty() && found == use.on.end()) return;
@@ -233,9 +254,11 @@ void settle_places(BoardsInput& input, std::size_t b) {
   for (const auto& [place, count] : views)
     if (count >= fewest_to_place) placed.insert(place);
   if (placed.size() > most_placed) placed.clear();
-  for (const BoardsInput::Given& given : input.given)
-    if (given.place && given.on == board.name) placed.insert(*given.place);
+  bool given = false;
+  for (const BoardsInput::Given& g : input.given)
+    if (g.place && g.on == board.name) placed.insert(*g.place), given = true;
   board.places.assign(placed.begin(), placed.end());
+  board.print = given ? PrintPlaces() : PrintPlaces(board.places);
   for (BoardsInput::View& view : input.views) {
     if (view.board != b) continue;
     for (BoardsInput::Corner& corner : view.corners) {

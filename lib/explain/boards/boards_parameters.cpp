@@ -32,9 +32,6 @@ bool is_lens(std::size_t column) {
 bool is_sag(std::size_t column) {
   return column == camera::corner_column("z20_m") || column == camera::corner_column("z02_m");
 }
-bool is_motion(std::size_t column) {
-  return column >= CornerColumn::motion && column < CornerColumn::scale;
-}
 
 // Typical size of a change.
 double size_of(std::size_t column) {
@@ -145,9 +142,25 @@ class Declaration {
                    1e-4, role, print_sigma_m(board));
   }
 
+  void declare_given_motion(const mechanism::Mechanism& m, const BoardsInput::Given& given) {
+    for (const mechanism::Parameter& p : m.parameters)
+      if (camera::corner_column(p.name) == given.column)
+        result.base.push_back(declare({given.on + "/" + p.name,
+                                       p.unit,
+                                       given.value,
+                                       given.value,
+                                       p.lower,
+                                       p.upper,
+                                       size_of(given.column),
+                                       {},
+                                       {*given.view}},
+                                      {none, none, *given.view, given.column}));
+  }
+
   void declare_given(const BoardsInput::Given& given) {
     if (given.place) return declare_given_print(given);
     const mechanism::Mechanism& m = *mechanism::find_mechanism(given.mechanism);
+    if (given.view) return declare_given_motion(m, given);
     const bool of_board = m.target == mechanism::Target::board;
     const std::size_t target = place_of(of_board, given.on);
     for (const mechanism::Parameter& p : m.parameters)
@@ -224,7 +237,7 @@ class Declaration {
       const BoardRole role = role_of(of_board, target, *column);
       if (rate_of(p) != rate || !can_be_shown(role)) continue;
       candidate.finer = *column == BoardColumn::distortion + LensTerm::fisheye || *column >= CornerColumn::shape;
-      if (is_motion(*column)) {
+      if (CornerColumn::is_motion(*column)) {
         motions.emplace_back(&p, *column);
         continue;
       }
@@ -237,7 +250,7 @@ class Declaration {
     if (candidate.parameters.size() > before) candidate.on.push_back(name);
   }
 
-  // Three numbers of every corner; the prior says what pose and scale leave open.
+  // Three numbers of every corner (print_places.h).
   void add_print(const mechanism::Mechanism& m, std::size_t b, Candidate& candidate) {
     const BoardsInput::Board& board = input_.boards[b];
     const bool given =
@@ -253,6 +266,7 @@ class Declaration {
                                                 p.upper, 1e-4, print_sigma_m(board), groups_of(role)},
                                                role));
       }
+    candidate.things = static_cast<double>(candidate.parameters.size() / (3 * candidate.on.size()));
   }
 
   // Every view has its own motion: nuisance like its pose, under one mechanism.
@@ -278,10 +292,12 @@ class Declaration {
   // Does the base model lack it, and do these recordings speak of it?
   bool can_be_shown(const BoardRole& role) const {
     const std::size_t column = role.column;
-    for (const BoardsInput::Given& given : input_.given)
-      if (given.column == column &&
-          (role.board == none ? role.camera == place_of(false, given.on) : role.board == place_of(true, given.on)))
-        return false;
+    const auto says = [&](const BoardsInput::Given& given) {
+      if (given.column != column) return false;
+      if (given.view) return input_.views[*given.view].camera == role.camera;
+      return role.board == none ? role.camera == place_of(false, given.on) : role.board == place_of(true, given.on);
+    };
+    if (std::ranges::any_of(input_.given, says)) return false;
     if (is_lens(column)) return lacks_lens_term(input_.cameras[role.camera], column - BoardColumn::distortion);
     if (role.board != none && column < CornerColumn::motion) return !input_.boards[role.board].warped;
     if (column == CornerColumn::scale + 1) return false;  // only the ratio of the two shows
@@ -367,6 +383,7 @@ BoardScene board_scene(const BoardsInput& input, const std::vector<BoardRole>& r
     }
     if ((!pose && r.view == group) || r.camera == view.camera || r.board == view.board) v[r.column] = values[p];
   }
+  if (!s.print_m.empty()) s.print_m = board.print.displaced(std::move(s.print_m));
   s.turn = {change[0], change[1], change[2]};
   s.model.pose = camera::moved(view.camera_from_board, change);
   return s;

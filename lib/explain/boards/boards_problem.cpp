@@ -81,7 +81,7 @@ class BoardsProblem : public Problem {
               w[0] * turn(0, k) + w[1] * turn(1, k) + w[2] * turn(2, k);
         for (std::size_t k = 0; k < columns.size(); ++k)
           derivatives[k * rows + 2 * i + axis] =
-              acts_on(roles_[columns[k]], group, view.corners[i]) ? d[roles_[columns[k]].column] : 0;
+              d[roles_[columns[k]].column] * share_of(roles_[columns[k]], group, view.corners[i]);
       }
     }
   }
@@ -161,12 +161,17 @@ class BoardsProblem : public Problem {
 
  private:
   static camera::CornerPlace place_of(const BoardsInput::Corner& c) { return {c.board_m, c.colour, c.turned_rad}; }
-  bool acts_on(const BoardRole& role, std::size_t group, const BoardsInput::Corner& corner) const {
-    if (role.corner != none && role.corner != corner.of_board) return false;
+  // Of a parameter in what its column has for a corner.
+  double share_of(const BoardRole& role, std::size_t group, const BoardsInput::Corner& corner) const {
     const BoardsInput::View& view = input_.views[group];
     const std::size_t own = role.column < BoardColumn::warp ? view.pose_of : group;
-    return (role.camera == none || role.camera == view.camera) && (role.board == none || role.board == view.board) &&
-           (role.view == none || role.view == own);
+    if (!((role.camera == none || role.camera == view.camera) && (role.board == none || role.board == view.board) &&
+          (role.view == none || role.view == own)))
+      return 0;
+    if (role.corner == none) return 1;
+    if (corner.of_board == none) return 0;
+    return input_.boards[role.board].print.slope(role.column - camera::CornerColumn::print, corner.of_board,
+                                                 role.corner);
   }
 
   void observe() {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "camera/corner_model.h"
+#include "explain/boards/print_places.h"
 #include "explain/domain.h"
 #include "explain/engine.h"
 
@@ -40,6 +41,7 @@ struct BoardsInput {
     bool warped = false;  // the base model has the warp already
     // Places, in whole squares, of the corners that enough views show for board.print to speak of them: settle_views().
     std::vector<std::array<long, 2>> places{};
+    PrintPlaces print{};
   };
   struct Corner {
     Vec2 board_m, pixel;
@@ -58,10 +60,11 @@ struct BoardsInput {
     double warmer_K = 0, later_s = 0;  // than the mean of the views, where all of them say
   };
   struct Given {                // a term that the base model has by the manifest's "mechanisms"
-    std::string mechanism, on;  // of which camera or board
+    std::string mechanism, on;  // of which camera, board or image
     std::size_t column = 0;     // camera::CornerColumn
     double value = 0;
     std::optional<std::array<long, 2>> place{};  // of the corner, in whole squares
+    std::optional<std::size_t> view{};           // whose own number it is
   };
   std::vector<Camera> cameras;
   std::vector<Board> boards;

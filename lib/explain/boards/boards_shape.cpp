@@ -48,7 +48,7 @@ std::string prints_in_words(const Problem& problem, const BoardsInput& input, co
         if (roles[p].corner < shift.size() && roles[p].board == b)
           shift[roles[p].corner][roles[p].column - camera::CornerColumn::print] = e.values[p];
     double aside = 0, out = 0, most = 0;
-    for (const auto& [x, y, z] : shift) {
+    for (const auto& [x, y, z] : input.boards[b].print.displaced(shift)) {
       aside += x * x + y * y, out += z * z;
       most = std::max(most, std::hypot(x, y));
     }

@@ -100,8 +100,10 @@ void upgrade_mechanisms(const Problem& problem, const BoardsInput& input, const 
                         const Explanation& e, manifest::Document& document) {
   for (std::size_t p = 0; p < roles.size(); ++p) {
     const BoardRole& role = roles[p];
-    if (role.column < camera::CornerColumn::scale || role.corner != none) continue;
-    const std::string& name = role.board != none ? input.boards[role.board].name : input.cameras[role.camera].name;
+    if (role.column < camera::CornerColumn::motion || role.corner != none) continue;
+    const std::string& name = role.board != none    ? input.boards[role.board].name
+                              : role.camera != none ? input.cameras[role.camera].name
+                                                    : input.views[role.view].image;
     const std::string& full = problem.parameters()[p].name;
     const auto holds = [&](const Candidate& c) {
       return std::find(c.parameters.begin(), c.parameters.end(), p) != c.parameters.end();
@@ -133,24 +135,57 @@ bool was_fitted(const Problem& problem, const Explanation& e, std::size_t p) {
          std::ranges::any_of(e.named, [&](std::size_t c) { return has(problem.candidates()[c].parameters); });
 }
 
-// board.print anew: lists of corners, in the order in which the fit has them.
+// The parameters of board.print that were fitted, by the board's places and axis; none elsewhere.
+using PrintParameters = std::vector<std::array<std::size_t, 3>>;
+PrintParameters fitted_print(const Problem& problem, const BoardsInput& input, std::size_t board,
+                             const std::vector<BoardRole>& roles, const Explanation& e) {
+  PrintParameters list(input.boards[board].places.size(), {none, none, none});
+  for (std::size_t p = 0; p < roles.size(); ++p)
+    if (roles[p].corner != none && roles[p].board == board && was_fitted(problem, e, p))
+      list[roles[p].corner][roles[p].column - camera::CornerColumn::print] = p;
+  return list;
+}
+
+// One standard deviation of where a corner stands: d = S a has the covariance S C S'.
+double print_sigma(const PrintPlaces& print, const PrintParameters& list, std::size_t corner, std::size_t axis,
+                   const Explanation& e) {
+  std::vector<std::pair<std::size_t, double>> terms;  // places in `active`, slopes
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const auto active = std::ranges::find(e.active, list[k][axis]);
+    if (active != e.active.end())
+      terms.emplace_back(static_cast<std::size_t>(active - e.active.begin()), print.slope(axis, corner, k));
+  }
+  double variance = 0;
+  for (const auto& [i, si] : terms)
+    for (const auto& [j, sj] : terms) variance += si * sj * e.covariance[i * e.active.size() + j];
+  return std::sqrt(std::max(0.0, variance));
+}
+
+// board.print anew: lists of corners, in the order of their places.
 void upgrade_print(const Problem& problem, const BoardsInput& input, const std::vector<BoardRole>& roles,
                    const Explanation& e, manifest::Document& document) {
   manifest::MechanismUse use;
   const auto append = [&](const std::string& key, double value) { use.parameters[key].value.push_back(value); };
-  for (std::size_t p = 0; p < roles.size(); ++p) {
-    const BoardRole& role = roles[p];
-    if (role.corner == none || !was_fitted(problem, e, p)) continue;
-    const BoardsInput::Board& board = input.boards[role.board];
-    const std::string key{camera::print_names[role.column - camera::CornerColumn::print]};
-    append(key, e.values[p]);
-    use.sigma[key].push_back(e.sigma[p]);
-    if (role.column != camera::CornerColumn::print) continue;
-    auto own = std::ranges::find(use.on, board.name);
-    if (own == use.on.end()) own = use.on.insert(use.on.end(), board.name);
-    append("column", static_cast<double>(board.places[role.corner][0]));
-    append("row", static_cast<double>(board.places[role.corner][1]));
-    append("of", static_cast<double>(own - use.on.begin()));
+  for (std::size_t b = 0; b < input.boards.size(); ++b) {
+    const BoardsInput::Board& board = input.boards[b];
+    const PrintParameters list = fitted_print(problem, input, b, roles, e);
+    std::vector<std::array<double, 3>> stands(list.size());
+    for (std::size_t k = 0; k < list.size(); ++k)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (list[k][axis] != none) stands[k][axis] = e.values[list[k][axis]];
+    stands = board.print.displaced(std::move(stands));
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      if (list[k][0] == none) continue;
+      if (use.on.empty() || use.on.back() != board.name) use.on.push_back(board.name);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::string key{camera::print_names[axis]};
+        append(key, stands[k][axis]);
+        use.sigma[key].push_back(print_sigma(board.print, list, k, axis, e));
+      }
+      append("column", static_cast<double>(board.places[k][0]));
+      append("row", static_cast<double>(board.places[k][1]));
+      append("of", static_cast<double>(use.on.size() - 1));
+    }
   }
   if (!use.on.empty()) document.mechanisms[mechanism::board_print().id] = use;
 }

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "explain/boards/board_world.h"
 #include "explain/boards/boards_problem.h"
+#include "explain/boards/print_places.h"
 #include "explain/engine.h"
 #include "manifest/document.h"
 #include "manifest/sections/mechanism_use.h"
@@ -61,6 +62,54 @@ TEST(BoardPrint, IsNamedAndCarried) {
     EXPECT_NEAR(second.e.held_out_before, first.e.held_out_after, 0.03 * first.e.held_out_after);
   }
   EXPECT_EQ(named, runs);
+}
+
+// A print that is narrower than stated and uneven besides: the stretch is the board's scale, the rest its print.
+TEST(BoardPrint, StretchHasItsOwnName) {
+  CaseTruth truth = uneven();
+  truth.board.stretch_x = -0.007;
+  manifest::Document document = recorded(truth, 80);
+  const Answer first(document);
+  EXPECT_THAT(first.named, testing::UnorderedElementsAre("board.scale", "board.print")) << first.e.sentence;
+  first.problem->apply(first.e, document);
+  const Answer second(document);
+  EXPECT_TRUE(second.named.empty()) << second.e.sentence;
+}
+
+TEST(BoardPrint, ShiftStretchAndTiltAreNotThePrints) {
+  std::vector<std::array<long, 2>> places;
+  for (long column = 0; column < 5; ++column)
+    for (long row = 0; row < 4; ++row)
+      if (column + row != 3) places.push_back({column, row});
+  const PrintPlaces print(places);
+  std::vector<std::array<double, 3>> common, own(places.size());
+  for (const auto& [column, row] : places) {
+    const auto x = static_cast<double>(column), y = static_cast<double>(row);
+    common.push_back({0.3 - 0.1 * x, 0.2 + 0.4 * y, 1 + 0.5 * x - 0.25 * y});
+  }
+  for (const auto& d : print.displaced(common))
+    for (const double v : d) EXPECT_NEAR(v, 0, 1e-14);
+  own[7] = {1, 2, 3};
+  const std::vector<std::array<double, 3>> displaced = print.displaced(own);
+  for (std::size_t k = 0; k < places.size(); ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(displaced[k][axis], own[7][axis] * print.slope(axis, k, 7), 1e-14);
+  EXPECT_GT(displaced[7][0], 0.7);  // 17 corners, two numbers in common
+}
+
+// Every view's motion is carried, under the name of its image.
+TEST(BoardPrint, MotionsAreCarriedToo) {
+  CaseTruth moved;
+  moved.rolling_px = 2;
+  manifest::Document document = recorded(moved, 70);
+  const Answer first(document);
+  ASSERT_THAT(first.named, testing::Contains("camera.rolling-shutter"));
+  first.problem->apply(first.e, document);
+  mechanism::validate_uses(document);
+  EXPECT_EQ(document.mechanisms.at("camera.rolling-shutter").on.size(), 12u);
+  const Answer second(document);
+  EXPECT_TRUE(second.named.empty()) << second.e.sentence;
+  EXPECT_NEAR(second.e.held_out_before, first.e.held_out_after, 0.03 * first.e.held_out_after);
 }
 
 // Places along the rows less their own line: a shift and a stretch of all of them are the pose's and the lens's.

@@ -112,10 +112,12 @@ TEST(ExplainBoards, APinholeLacksItsRadialTermsFirst) {
   const Value& entry = at(document, "explanations").as_array().at(0);
   const Value& camera = at(document, "cameras").as_object().at(0).second;
   EXPECT_NE(at(camera, "model").as_string(), "pinhole");
-  EXPECT_NEAR(at(camera, "fx_px").as_number(), 532.8, 3);
-  EXPECT_NEAR(at(camera, "fy_px").as_number(), 532.9, 3);
-  EXPECT_NEAR(at(camera, "cx_px").as_number(), 342.5, 3);
-  EXPECT_NEAR(at(camera, "cy_px").as_number(), 233.9, 3);
+  // SciPy's least_squares on the same corners, radial terms and each corner's place and each view's motion free: 0.067 px.
+  // (With a flat board at rest, 0.168 px, it has 534.0, 534.1, 341.5, 232.9.)
+  EXPECT_NEAR(at(camera, "fx_px").as_number(), 537.1, 2);
+  EXPECT_NEAR(at(camera, "fy_px").as_number(), 536.2, 2);
+  EXPECT_NEAR(at(camera, "cx_px").as_number(), 342.5, 2);
+  EXPECT_NEAR(at(camera, "cy_px").as_number(), 241.4, 2);
   EXPECT_GT(at(at(camera, "sigma"), "k1").as_number(), 0);
   const std::string page = read_file(folder.path() / "report.html");
   EXPECT_NE(page.find(at(entry, "sentence").as_string().substr(0, 40)), std::string::npos);
