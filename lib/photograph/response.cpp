@@ -14,14 +14,14 @@ namespace {
 }
 
 // `table` from its column `from` to the other one, linear between rows, constant beyond its ends.
-float looked_up(const std::vector<std::pair<double, double>>& table, float value,
-                double std::pair<double, double>::*from, double std::pair<double, double>::*to) {
-  const auto above = std::ranges::upper_bound(table, static_cast<double>(value), {}, from);
-  if (above == table.begin()) return static_cast<float>(table.front().*to);
-  if (above == table.end()) return static_cast<float>(table.back().*to);
+double looked_up(const std::vector<std::pair<double, double>>& table, double value,
+                 double std::pair<double, double>::*from, double std::pair<double, double>::*to) {
+  const auto above = std::ranges::upper_bound(table, value, {}, from);
+  if (above == table.begin()) return table.front().*to;
+  if (above == table.end()) return table.back().*to;
   const auto below = above - 1;
   const double share = (value - (*below).*from) / ((*above).*from - (*below).*from);
-  return static_cast<float>((*below).*to + share * ((*above).*to - (*below).*to));
+  return (*below).*to + share * ((*above).*to - (*below).*to);
 }
 
 }  // namespace
@@ -45,13 +45,21 @@ Response::Response(const manifest::Value& stated, const std::string& place) {
 }
 
 float Response::operator()(float code) const {
-  if (srgb_) return io::linear_from_srgb(code);
+  return srgb_ ? io::linear_from_srgb(code) : static_cast<float>(linear_of(code));
+}
+
+float Response::code(float linear) const {
+  return srgb_ ? io::srgb_from_linear(linear) : static_cast<float>(code_of(linear));
+}
+
+double Response::linear_of(double code) const {
+  if (srgb_) return io::linear_from_srgb(static_cast<float>(code));
   if (table_.empty() || !std::isfinite(code)) return code;
   return looked_up(table_, code, &std::pair<double, double>::first, &std::pair<double, double>::second);
 }
 
-float Response::code(float linear) const {
-  if (srgb_) return io::srgb_from_linear(linear);
+double Response::code_of(double linear) const {
+  if (srgb_) return io::srgb_from_linear(static_cast<float>(linear));
   if (table_.empty() || !std::isfinite(linear)) return linear;
   return looked_up(table_, linear, &std::pair<double, double>::second, &std::pair<double, double>::first);
 }

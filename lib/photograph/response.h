@@ -15,7 +15,10 @@ class Response {
  public:
   explicit Response(const manifest::Value& stated, const std::string& place);  // null: linear
   float operator()(float code) const;
-  float code(float linear) const;                         // the inverse
+  float code(float linear) const;       // the inverse
+  double linear_of(double code) const;  // the same two, to the last digit where a table is stated
+  double code_of(double linear) const;
+  bool is_table() const { return !table_.empty(); }
   void check_invertible(const std::string& place) const;  // Error(data) for a table whose linear values do not rise
 
  private:

@@ -274,6 +274,7 @@ TEST(Bindings, StacksOfExposuresSayWhatTheEquationSays) {
       }
       explain::stacks::Taken taken{.exposure_s = random.uniform(0.01, 1), .gain = 1.3};
       ReadingChain chain;
+      chain.stack = &stack;
       binding->set(numbers, stack, chain);
       if (m.id == "sensor.shutter") taken.exposure_s = at[0];
       if (m.id == "light.drift") taken.since_s = at[0];

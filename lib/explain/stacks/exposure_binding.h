@@ -9,10 +9,10 @@
 
 namespace gonio::explain::stacks {
 
-struct ExposureFacts {    // of a stack, for bounds and starts
-  double shortest_s = 0;  // exposure
-  bool timed = false;     // every picture states its time
-  std::span<const double> readings;
+struct ExposureFacts {                       // of a stack, for bounds and starts
+  double shortest_s = 0;                     // exposure
+  bool timed = false;                        // every picture states its time
+  std::span<const double> readings, linear;  // the latter: what a linear sensor would have read
   std::span<const MovedRegion> moved;
   std::span<const double> standing_out;  // by picture: odd_pictures.h
 };

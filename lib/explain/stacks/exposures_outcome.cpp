@@ -27,14 +27,15 @@ std::string ExposuresProblem::response_remark(const Explanation& e) const {
   const std::string& id = candidates_[*response].id();
   if (form == id + ".gamma" && own.size() == 1)
     return "The response is a power law: readings grow with the light to the power " + printed(e.values[own[0]]) + ".";
-  const ReadingChain now = chain(e.values);
+  ReadingChain now = chain(e.values);
+  now.offset = 0;
   const bool of_all = form == id + ".slope" || form == id + ".gamma";
   std::string text = of_all ? "The response is a tone curve" : "The response is a tone curve of each channel";
   text += ", not one power: where it reads";
   for (const double z : {0.25, 0.5, 0.75}) {
-    const render::Response& curve = now.response[stack_.channels.size() > 1 ? 1 : 0];
+    const int channel = stack_.channels.size() > 1 ? 1 : 0;
     const double at = z * stack_.full_scale;
-    const double slope = std::log(curve.light(1.01 * at) / curve.light(at / 1.01)) / (2 * std::log(1.01));
+    const double slope = std::log(now.light(1.01 * at, channel) / now.light(at / 1.01, channel)) / (2 * std::log(1.01));
     text += (z == 0.25 ? " " : z == 0.75 ? " and " : ", ") + printed(100 * z) + " %";
     text += " of " + printed(stack_.full_scale) + " it grows with the light to the power " + printed(1 / slope, 2);
   }
@@ -61,9 +62,10 @@ Illustration ExposuresProblem::illustrate(const Explanation& e, const std::files
       dots.push_back({sites_[s].channel, radiance(after, e.values, s) * taken_[g].exposure_s * taken_[g].gain,
                       observations_.value[row++]});
   const std::string title = "Readings over radiance times exposure, both logarithmic";
-  result.pictures.push_back({title + (e.named.empty() ? "; the lines are a linear sensor"
-                                                      : ", with what was fitted; dashed, a linear sensor"),
-                             "", curve_drawing(stack_, after, dots)});
+  const std::string lines = stack_.stated.empty() ? "a linear sensor" : "the response as it is stated";
+  result.pictures.push_back(
+      {title + (e.named.empty() ? "; the lines are " : ", with what was fitted; dashed, ") + lines, "",
+       curve_drawing(stack_, after, dots)});
   if (e.verdict != Verdict::null)
     add_effects(stack_, exposure_effects(stack_, noise_, taken_, before, after, !e.named.empty()), e, out, document,
                 result);

@@ -27,9 +27,12 @@ double linear_radiance(const Stack& stack, const ReadingNoise& noise, const Site
   for (const std::size_t g : site.seen) {
     const StackImage& image = stack.images[g];
     const double y = image.picture.at(site.x, site.y, site.channel), t = image.exposure_s * image.gain;
-    const double sigma = noise.sigma(g, y);
-    top += y * t / (sigma * sigma);
-    bottom += t * t / (sigma * sigma);
+    const double error = noise.sigma(g, y);
+    const double sigma =
+        0.5 * (stack.linear(site.channel, y + error) - stack.linear(site.channel, std::max(0.0, y - error)));
+    const double weight = 1 / (sigma * sigma + 1e-30);
+    top += stack.linear(site.channel, y) * t * weight;
+    bottom += t * t * weight;
   }
   return bottom > 0 ? top / bottom : 0;
 }
@@ -41,7 +44,7 @@ std::array<double, 3> mean_radiance(const Stack& stack) {
     for (std::size_t i = 0; i < image.counts.size(); ++i) {
       if (!image.counts[i]) continue;
       const std::size_t c = i % stack.channels.size();
-      top[c] += image.picture.data[i];
+      top[c] += stack.linear(static_cast<int>(c), image.picture.data[i]);
       bottom[c] += image.exposure_s * image.gain;
     }
   for (std::size_t c = 0; c < 3; ++c) top[c] = bottom[c] > 0 ? top[c] / bottom[c] : 0;
@@ -91,7 +94,8 @@ void ExposuresProblem::add_radiances() {
     p.name = "radiance/" + std::to_string(site.x) + "," + std::to_string(site.y) + "." +
              stack_.channels[static_cast<std::size_t>(site.channel)];
     p.unit = "1";
-    const double start = linear_radiance(stack_, noise_, site) * taken_[image].exposure_s * taken_[image].gain;
+    const double start = stack_.reading(
+        site.channel, linear_radiance(stack_, noise_, site) * taken_[image].exposure_s * taken_[image].gain);
     p.size = std::max(noise_.sigma(image, start), 0.01 * std::abs(start));
     p.start = p.neutral = std::max(start, 0.1 * p.size);
     p.lower = 0;
@@ -131,7 +135,11 @@ void ExposuresProblem::add_rows() {
 // What the manifest's mechanisms already say of the camera belongs to the base model and is not proposed again.
 void ExposuresProblem::add_mechanisms(const manifest::Document& document) {
   const std::vector<double> odd = standing_out(stack_, sites_);
-  ExposureFacts facts{taken_[0].exposure_s, true, observations_.value, moved_.regions, odd};
+  std::vector<double> linear;
+  for (std::size_t g = 0; g < rows_.size(); ++g)
+    for (const std::size_t s : rows_[g])
+      linear.push_back(stack_.linear(sites_[s].channel, observations_.value[linear.size()]));
+  ExposureFacts facts{taken_[0].exposure_s, true, observations_.value, linear, moved_.regions, odd};
   for (const StackImage& image : stack_.images) {
     facts.shortest_s = std::min(facts.shortest_s, image.exposure_s);
     facts.timed = facts.timed && image.time_s.has_value();
@@ -159,7 +167,8 @@ void ExposuresProblem::add_conditions() {
   std::vector<double> expected_reading;
   for (std::size_t g = 0; g < rows_.size(); ++g)
     for (const std::size_t s : rows_[g])
-      expected_reading.push_back(linear_radiance(stack_, noise_, sites_[s]) * taken_[g].exposure_s * taken_[g].gain);
+      expected_reading.push_back(stack_.reading(
+          sites_[s].channel, linear_radiance(stack_, noise_, sites_[s]) * taken_[g].exposure_s * taken_[g].gain));
   std::vector<Condition> all = {{"image.radiance", "1", "sensor", expected_reading, {}, "1"},
                                 {"image.exposure", "s", "sensor", {}, expected_reading, "1"},
                                 {"image.identity", "1", "sensor", {}, expected_reading, "1"},
@@ -197,6 +206,7 @@ void ExposuresProblem::add_conditions() {
 
 ReadingChain ExposuresProblem::chain(std::span<const double> values) const {
   ReadingChain chain;
+  chain.stack = &stack_;
   chain.mean_radiance = mean_radiance_;
   for (const Bound& bound : bound_) bound.binding->set(values.subspan(bound.first, bound.count), stack_, chain);
   return chain;

@@ -22,7 +22,8 @@ std::vector<double> standing_out(const Stack& stack, const std::vector<Site>& si
   for (std::size_t s = 0; s < sites.size(); ++s)
     for (const std::size_t g : sites[s].seen) {
       const StackImage& image = stack.images[g];
-      const double y = image.picture.at(sites[s].x, sites[s].y, sites[s].channel);
+      const int channel = sites[s].channel;
+      const double y = stack.linear(channel, image.picture.at(sites[s].x, sites[s].y, channel));
       if (y > 0) levels.push_back({g, s, std::log(y / (image.exposure_s * image.gain))});
     }
   std::vector<double> out(stack.images.size());

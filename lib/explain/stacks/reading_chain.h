@@ -1,14 +1,16 @@
 // From a scene's radiance to the reading in one picture of a stack of exposures, in the order of
 // render/sensor_chain.h, with the equations of the mechanisms:
 //   u = radiance times the time that the shutter was open (in this picture longer by a share of its own), gain and the
-//   drifting lamp v = full scale of (response of (u under a veil, channel by channel) + offset)
-// Radiance is in readings per second: what a linear sensor would read after one second.
+//   drifting lamp v = full scale of (stated response of (response of (u under a veil, channel by channel)) + offset)
+// The stated response is that of Stack::stated, or none. Radiance is in readings per second: what a linear sensor would
+// read after one second.
 #pragma once
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
 
+#include "explain/stacks/stack_input.h"
 #include "light/mechanisms/light_drift.h"
 #include "render/mechanisms/optics_veiling_glare.h"
 #include "render/mechanisms/sensor_black_offset.h"
@@ -25,21 +27,28 @@ struct Taken {                                                         // how a 
 };
 
 struct ReadingChain {
+  const Stack* stack = nullptr;
   std::array<render::Response, 3> response;
   std::array<double, 3> mean_radiance{};
   std::vector<double> odd;  // by image: by how much its exposure is longer than stated; empty: none is
   double extra_s = 0, drift = 0, drift_s = 600, glare_share = 0, offset = 0, full_scale = 0;
 
   double operator()(double radiance, int channel, const Taken& at) const {
-    const auto c = static_cast<std::size_t>(channel);
-    const double time = effective_s(at);
-    const double u = equation::optics_veiling_glare(radiance * time, glare_share, mean_radiance[c] * time);
-    return equation::sensor_saturation(equation::sensor_black_offset(response[c](u), offset), full_scale);
+    const double time = effective_s(at), mean = mean_radiance[static_cast<std::size_t>(channel)];
+    return reading(equation::optics_veiling_glare(radiance * time, glare_share, mean * time), channel);
   }
-  // The radiance that gives this reading, were there no saturation.
+  // Of the light that arrived while the shutter was open.
+  double reading(double light, int channel) const {
+    const double bent = stack->reading(channel, response[static_cast<std::size_t>(channel)](light));
+    return equation::sensor_saturation(equation::sensor_black_offset(bent, offset), full_scale);
+  }
+  // The light that gives this reading, were there no saturation.
+  double light(double reading, int channel) const {
+    return response[static_cast<std::size_t>(channel)].light(stack->linear(channel, std::max(0.0, reading - offset)));
+  }
+  // The radiance that does.
   double radiance(double reading, int channel, const Taken& at) const {
-    const auto c = static_cast<std::size_t>(channel);
-    return response[c].light(std::max(0.0, reading - offset)) / effective_s(at) - glare_share * mean_radiance[c];
+    return light(reading, channel) / effective_s(at) - glare_share * mean_radiance[static_cast<std::size_t>(channel)];
   }
 
  private:

@@ -78,17 +78,39 @@ void drop_neighbours_of_clipped(const std::vector<std::uint8_t>& clipped, int re
     }
 }
 
-// Readings, and which of them count.
-void read_image(const Document& document, StackImage& image, Stack& stack) {
+// Have all images one table as their response, and none a noise, which would be one of linear readings?
+bool share_a_table(const Document& document, const std::vector<std::size_t>& entries) {
+  return std::ranges::all_of(entries, [&](std::size_t i) {
+    const ImageEntry& e = document.images[i];
+    const bool noisy = e.noise && (e.noise->gain > 0 || e.noise->read > 0);
+    return !noisy && (e.response.is_array() || e.response.is_object()) &&
+           e.response == document.images[entries[0]].response;
+  });
+}
+
+// The table of each channel, where readings are codes.
+void state_table(const ImageEntry& entry, const std::string& at, const std::vector<std::string>& channels,
+                 Stack& stack) {
+  if (!stack.stated.empty()) return;
+  for (const std::string& channel : channels) {
+    stack.stated.emplace_back(photograph::response_of_channel(entry.response, channel, at), at);
+    stack.stated.back().check_invertible(at);
+  }
+}
+
+// Readings, and which of them count; `codes`: they are the codes of files.
+void read_image(const Document& document, bool codes, StackImage& image, Stack& stack) {
   const ImageEntry& entry = document.images[image.entry];
   const std::string at = manifest::place(document, pointer(image.entry, "/response"));
+  const manifest::Value undone = codes ? manifest::Value("linear") : entry.response;
   photograph::LinearPicture read =
-      photograph::read_linear(manifest::picture_path(document, image.entry), entry.response, at, entry.saturation);
+      photograph::read_linear(manifest::picture_path(document, image.entry), undone, at, entry.saturation);
   stack.integer = read.integer_codes();
-  if (stack.integer && entry.response.is_string() && entry.response.as_string() == "linear")
+  if (codes) state_table(entry, at, read.colour.channels, stack);
+  if (stack.integer && undone.is_string() && undone.as_string() == "linear")
     stack.quantum = std::max(stack.quantum, 1 / (std::pow(2.0, read.code_bits) - 1));
   for (const std::string& channel : read.colour.channels) {
-    const photograph::Response response(photograph::response_of_channel(entry.response, channel, at), at);
+    const photograph::Response response(photograph::response_of_channel(undone, channel, at), at);
     const bool first = stack.images.empty() && &channel == &read.colour.channels[0];
     stack.lowest = std::max(response(0), first ? response(0) : static_cast<float>(stack.lowest));
     const float full = response(static_cast<float>(entry.saturation.value_or(1)));
@@ -162,6 +184,7 @@ Stack read_stack(const Document& document, const std::vector<std::size_t>& entri
   if (has_entry(document, "cameras", stack.camera))
     stack.step = camera::filter_pitch(camera::mosaic_of(document, stack.camera),
                                       manifest::place(document, "/cameras/" + stack.camera + "/mosaic"));
+  const bool codes = kind == Kind::exposures && share_a_table(document, entries);
   for (const std::size_t i : entries) {
     const ImageEntry& e = document.images[i];
     StackImage image;
@@ -175,7 +198,7 @@ Stack read_stack(const Document& document, const std::vector<std::size_t>& entri
     if (kind == Kind::lights) image.light = e.light[0];
     if (e.noise) image.noise = *e.noise;
     image.noise_stated = e.noise && (e.noise->gain > 0 || e.noise->read > 0);
-    read_image(document, image, stack);
+    read_image(document, codes, image, stack);
     leave_out_masked(document, image);
     if (!stack.images.empty()) check_alike(document, image, stack);
     stack.images.push_back(std::move(image));

@@ -2,10 +2,14 @@
 // stack of exposures shows it under one light for different times; a stack of lights shows it under one distant lamp
 // after the other (photometric stereo).
 //
-// Readings are what the file holds, through its stated response: codes over full scale, or an EXR file's values.
+// Readings are what the file holds, through its stated response: codes over full scale, or an EXR file's values. Of a
+// stack of exposures whose integer files share a table as their response and state no noise, readings are the codes
+// themselves and the table is a part of the model: their noise is even there, and nothing that is near a steep end of
+// the table weighs more than it tells.
 // Readings that say only "at least" or "at most" do not count: the highest and the lowest code of integer files, and
 // what is no number.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -17,6 +21,7 @@
 #include "io/image.h"
 #include "manifest/noise.h"
 #include "manifest/sections/forward.h"
+#include "photograph/response.h"
 
 namespace gonio::explain::stacks {
 
@@ -43,7 +48,20 @@ struct Stack {
   double quantum = 0;                 // of a reading, where codes are taken as linear: 1 / 255, 1 / 65535; else 0
   double lowest = 0, highest = 1;     // readings of the lowest and the highest code
   double full_scale = 1;              // largest reading that counts, or 1 for integer files
+  std::vector<photograph::Response> stated;  // by channel: of codes, where readings are codes; empty: they are linear
   std::vector<StackImage> images;
+  // From readings to what a linear sensor would read, and back.
+  double linear(int channel, double reading) const {
+    return stated.empty() ? reading : stated[static_cast<std::size_t>(channel)].linear_of(reading);
+  }
+  double reading(int channel, double linear) const {
+    return stated.empty() ? linear : stated[static_cast<std::size_t>(channel)].code_of(linear);
+  }
+  double linear_scale() const {  // of full_scale, the largest over the channels
+    double most = stated.empty() ? full_scale : 0;
+    for (const photograph::Response& response : stated) most = std::max(most, response.linear_of(full_scale));
+    return most;
+  }
   int width() const { return images[0].picture.width; }
   int height() const { return images[0].picture.height; }
 };

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int table_rows = 128;
 
-// [[code, light], ...] over the codes that the stack holds.
+// [[code, light], ...] over the codes that the stack holds. An offset is one of readings.
 manifest::Value response_table(const Stack& stack, const photograph::Response& stated, const render::Response& response,
                                double offset) {
   const double top = stack.integer ? 1 : stack.full_scale;
@@ -22,7 +22,9 @@ manifest::Value response_table(const Stack& stack, const photograph::Response& s
   double last = -std::numeric_limits<double>::infinity();
   for (int i = 0; i <= table_rows; ++i) {
     const double code = top * i / table_rows;
-    const double light = response.light(std::max(0.0, stated(static_cast<float>(code)) - offset));
+    const double linear =
+        stack.stated.empty() ? std::max(0.0, stated.linear_of(code) - offset) : stated.linear_of(code - offset);
+    const double light = response.light(linear);
     if (!(light > last)) continue;  // codes below the offset
     table.push_back(std::vector<double>{code, light});
     last = light;

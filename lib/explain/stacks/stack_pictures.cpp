@@ -129,9 +129,9 @@ std::string curve_drawing(const Stack& stack, const ReadingChain& chain, const s
     std::string path;
     for (int i = 0; i <= 100; ++i) {
       const double x = f.left + (f.right - f.left) * i / 100, light = std::pow(10, x);
-      const double v = linear ? light : chain.response[c](light) + chain.offset;
+      const double v = linear ? stack.reading(0, light) : chain.reading(light, static_cast<int>(c));
       if (!(v > 0)) continue;
-      const double y = std::log10(equation::sensor_saturation(v, chain.full_scale));
+      const double y = std::log10(v);
       if (y < f.bottom || y > f.top) continue;
       path += printed_path(path.empty() ? "M%.1f %.1f" : "L%.1f %.1f", f.x(x), f.y(y));
     }
@@ -178,7 +178,7 @@ Effects exposure_effects(const Stack& stack, const ReadingNoise& noise, const st
           site.seen.push_back(g);
           y.push_back(stack.images[g].picture.data[i]);
           sigma.push_back(noise.sigma(g, y.back()));
-          sum += y.back(), time += taken[g].exposure_s * taken[g].gain;
+          sum += stack.linear(c, y.back()), time += taken[g].exposure_s * taken[g].gain;
         }
         if (y.size() < 2) continue;
         const double start = std::log(std::max(1e-9, sum / time));

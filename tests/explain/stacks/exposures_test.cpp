@@ -51,6 +51,9 @@ TEST(Exposures, ToneCurveIsNamedAndItsInverseLeavesNothing) {
   first.problem->apply(first.explanation, upgraded);
   const Outcome second = run(upgraded);
   EXPECT_EQ(second.explanation.verdict, Verdict::null) << told(second);
+  // Of codes, as the first time: as light, those on the steep end of the table would weigh most.
+  EXPECT_NEAR(second.explanation.held_out_before, first.explanation.held_out_after,
+              0.05 * first.explanation.held_out_after);
 }
 
 TEST(Exposures, ColourChannelsHaveCurvesOfTheirOwnWhereTheyDiffer) {

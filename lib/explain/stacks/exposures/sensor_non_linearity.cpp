@@ -26,7 +26,7 @@ std::size_t curves_of(const Stack& stack) {
 
 void enter_responses(StackEntry& entry, const ExposureFacts& facts) {
   std::vector<double> readings;
-  for (const double y : facts.readings) readings.push_back(y / entry.stack.full_scale);
+  for (const double y : facts.linear) readings.push_back(y / entry.stack.linear_scale());
   const double lowest = stats::quantile(readings, least_support),
                highest = stats::quantile(readings, 1 - least_support);
   const auto reached = [&](std::size_t bend) {
@@ -73,7 +73,7 @@ void set_responses(std::span<const double> p, const Stack& stack, ReadingChain& 
     }
     chain.response[c] = {.quadratic = closed[1],
                          .gamma = closed[0],
-                         .reference = stack.full_scale,
+                         .reference = stack.linear_scale(),
                          .curve = render::ToneCurve(render::slopes_of(slope, bend)),
                          .toe = closed[2],
                          .shoulder = closed[3]};
