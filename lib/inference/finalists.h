@@ -83,6 +83,7 @@ class Finalists {
   const ResidualStructure before_;
   std::vector<Finalist> list_;
   double nothing_ = 1, outside_ = 0, rows_ = 0;
+  double beyond_ = 0;  // the noise, what the base model leaves: a share of the signal
 };
 
 }  // namespace gonio::inference

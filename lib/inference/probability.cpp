@@ -44,7 +44,9 @@ const Statistic all_statistics[] = {
     {"finer", "finer forms of a plainer mechanism among them", &Statistics::finer},
     {"mismatch", "of nothing: -log10 of the null test's p", &Statistics::mismatch},
     {"largest", "of nothing: ln of the largest effect fitted over the smallest of interest", &Statistics::largest},
-    {"outlying", "of outside: ln of the effect of readings that stand out over the smallest of interest",
+    {"outlying",
+     "of outside: ln of the effect of readings that stand out, or of all that scatter beyond known noise, over the "
+     "smallest of interest",
      &Statistics::outlying}};
 
 // What a rival repairs besides, what a curve over a condition of its own does and what any curve does are one fact seen

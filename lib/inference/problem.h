@@ -159,6 +159,9 @@ class Problem {
   // as well whether scores are larger than that noise makes them. An effect that few blocks show (the black of a chart)
   // is invisible to signs alone.
   virtual bool noise_is_known() const { return false; }
+  // Is what rows scatter beyond that noise a mismatch, whether or not it follows any condition? A sensor's noise is of
+  // single readings; corners and rows of tables may share more than is stated within a block.
+  virtual bool scatter_is_mismatch() const { return false; }
   // Blocks beyond five noise widths under the most flexible fit are set aside and counted (mis-detected corners).
   virtual bool sets_outliers_aside() const { return false; }
   // Of images, whose light is sampled and cached, the simulator errs.

@@ -129,6 +129,27 @@ TEST(Engine, SignificantIsNotImportant) {
   EXPECT_EQ(e.verdict, Verdict::null) << e.sentence;
 }
 
+// Where noise is known to be of single readings, what scatters three times as much is a mismatch that matters, though
+// nothing in the library and no curve repairs it; a small effect beside it does not make it nothing. Where blocks may
+// share more than is stated, it is noise.
+TEST(Engine, WhatScattersBeyondKnownNoiseIsNotNothing) {
+  class Scattering : public ToyProblem {
+   public:
+    explicit Scattering(bool known)
+        : ToyProblem(three_effects(), {{0.02, 0, 0}, {}, 0.1, 0.0}, 42, 10, 4000, 1), known_(known) {
+      for (double& s : observations_.sigma) s /= 3;
+    }
+    bool scatter_is_mismatch() const override { return known_; }
+
+   private:
+    bool known_;
+  };
+  const Explanation known = explain(Scattering(true), quick(1)), unknown = explain(Scattering(false), quick(1));
+  EXPECT_EQ(known.verdict, Verdict::unknown) << known.sentence;
+  EXPECT_TRUE(known.important);
+  EXPECT_EQ(unknown.verdict, Verdict::null) << unknown.sentence;
+}
+
 TEST(Engine, SameSeedSameAnswerWhateverTheThreads) {
   const ToyProblem problem(three_effects(), {{0.2, 0, 0.1}, {}, 0.1, 0.05}, 77);
   set_threads(1);

@@ -27,6 +27,7 @@ class ExposuresProblem final : public Problem {
   std::string score_name() const override { return "relative RMSE"; }
   std::string group_noun() const override { return "exposure"; }
   Importance importance() const override { return Importance::share_of_signal; }
+  bool scatter_is_mismatch() const override { return true; }
   // From pairs of sites of nearly the same brightness in one picture: what bends the response is the same for both.
   std::optional<double> noise_factor(std::span<const double> residual) const override;
   // Another exposure, beyond the longest and the shortest and in the widest gap, and the longest without any light.

@@ -31,6 +31,7 @@ class PhotometricProblem final : public Problem {
   std::string score_name() const override { return "relative RMSE"; }
   std::string group_noun() const override { return "light"; }
   Importance importance() const override { return Importance::share_of_signal; }
+  bool scatter_is_mismatch() const override { return true; }
   bool sets_outliers_aside() const override { return true; }
   // From sites and the pixels beside them.
   std::optional<double> noise_factor(std::span<const double> residual) const override;
