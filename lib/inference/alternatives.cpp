@@ -27,12 +27,14 @@ std::vector<std::size_t> stand_ins(const Race& race, const Selection& s, std::si
     if (e.structures.list[k].kind == Structure::Kind::mechanism && e.structures.list[k].index == named)
       own = e.projection.foreign(e.structures, k);
   if (own.empty()) return {};
+  const Subspace subspace(e.projection, own);
   for (std::size_t k = 0; k < e.structures.list.size(); ++k) {
     const Structure& other = e.structures.list[k];
     if ((other.kind != Structure::Kind::mechanism && other.kind != Structure::Kind::change) || other.index == named)
       continue;
     double& cosine = similar[other.index];
-    cosine = std::max(cosine, look_alike(e.projection, own, e.projection.foreign(e.structures, k)));
+    cosine =
+        std::max(cosine, look_alike(e.projection, subspace, {e.projection, e.projection.foreign(e.structures, k)}));
   }
   double best = 0;
   for (const Hypothesis& h : s.scoreboard)

@@ -85,7 +85,8 @@ Eigen::MatrixXd seen_along(const Eigen::MatrixXd& h, const Linearisation& l, con
   const Eigen::MatrixXd d = basis(dense, Eigen::all), coupling = h(unit, dense) * d, own = h(dense, dense) * d;
   sum(place, Eigen::all) += coupling;
   sum(Eigen::all, place) += coupling.transpose();
-  sum.noalias() += d.transpose() * own;
+  sum.triangularView<Eigen::Lower>() += d.transpose() * own;  // which is symmetric, as is all of it
+  sum.triangularView<Eigen::StrictlyUpper>() = sum.transpose();
   return sum;
 }
 

@@ -84,10 +84,12 @@ std::vector<double> limits_with_others(const System& system, const Projection& p
 
 }  // namespace
 
-double look_alike(const Projection& p, const std::vector<Eigen::Index>& a, const std::vector<Eigen::Index>& b) {
-  const Eigen::MatrixXd ga = p.surviving(a, a), gb = p.surviving(b, b);
-  const Eigen::MatrixXd c = inverse_root(ga).transpose() * p.surviving(a, b) * inverse_root(gb);
-  const double rank = static_cast<double>(std::min(a.size(), b.size()));
+Subspace::Subspace(const Projection& p, std::vector<Eigen::Index> own)
+    : columns(std::move(own)), root(inverse_root(p.surviving(columns, columns))) {}
+
+double look_alike(const Projection& p, const Subspace& a, const Subspace& b) {
+  const Eigen::MatrixXd c = a.root.transpose() * p.surviving(a.columns, b.columns) * b.root;
+  const double rank = static_cast<double>(std::min(a.columns.size(), b.columns.size()));
   return std::min(1.0, std::sqrt(c.squaredNorm() / rank));
 }
 
@@ -104,6 +106,29 @@ std::vector<double> inflation(const System& system, const Projection& p, const S
   }
   return result;
 }
+
+namespace {
+
+// Among those that are visible, each pair once.
+void find_look_alikes(const Projection& p, const std::vector<std::vector<Eigen::Index>>& places,
+                      std::vector<Isolability>& result) {
+  std::vector<std::size_t> visible;
+  std::vector<Subspace> subspaces;
+  for (std::size_t k = 0; k < result.size(); ++k)
+    if (result[k].visible) {
+      visible.push_back(k);
+      subspaces.emplace_back(p, places[k]);
+    }
+  for (std::size_t b = 0; b < visible.size(); ++b)
+    for (std::size_t a = 0; a < b; ++a) {
+      const double c = look_alike(p, subspaces[a], subspaces[b]);
+      if (!(c > alike)) continue;
+      result[visible[a]].look_alikes.emplace_back(result[visible[b]].candidate, c);
+      result[visible[b]].look_alikes.emplace_back(result[visible[a]].candidate, c);
+    }
+}
+
+}  // namespace
 
 std::vector<Isolability> isolability(const System& system, const Projection& p, const Structures& structures,
                                      const BlockScores& scores, const std::vector<double>& inflation,
@@ -145,12 +170,7 @@ std::vector<Isolability> isolability(const System& system, const Projection& p, 
                        : entry.detection_limit;
     result.push_back(std::move(entry));
   }
-  for (std::size_t a = 0; a < result.size(); ++a)
-    for (std::size_t b = 0; b < result.size(); ++b) {
-      if (a == b || !result[a].visible || !result[b].visible) continue;
-      const double c = look_alike(p, places[a], places[b]);
-      if (c > alike) result[a].look_alikes.emplace_back(result[b].candidate, c);
-    }
+  find_look_alikes(p, places, result);
   return result;
 }
 

@@ -190,6 +190,7 @@ std::vector<Term> possible_terms(const System& system, const std::vector<std::si
 std::vector<double> column_of(const System& system, const Term& term, const Mask& mask) {
   const std::vector<Condition>& conditions = system.observations().conditions;
   const Condition* along = term.along == Term::absolute ? absolute_condition(conditions) : &conditions[term.along];
+  const bool shaped = !term.shape.empty(), exponential = term.shape == "exp", sine = term.shape == "sin";
   std::vector<double> column(system.observations().rows(), 0.0);
   for (std::size_t i = 0; i < column.size(); ++i) {
     if (!(system.weight(i) > 0) || !(mask.empty() || mask[i])) continue;
@@ -198,9 +199,9 @@ std::vector<double> column_of(const System& system, const Term& term, const Mask
       const double x = conditions[c].values[i];
       value *= power == 1 ? x : power == 2 ? x * x : std::pow(x, power);
     }
-    if (!term.shape.empty()) {
+    if (shaped) {
       const double x = conditions[term.shape_of].values[i] / term.scale;
-      value *= term.shape == "exp" ? std::exp(-x) : term.shape == "sin" ? std::sin(x) : std::cos(x);
+      value *= exponential ? std::exp(-x) : sine ? std::sin(x) : std::cos(x);
     }
     if (std::isfinite(value)) column[i] = value;
   }

@@ -27,11 +27,33 @@ std::vector<Term> wave(std::size_t condition, double frequency) {
   return {{{}, "cos", condition, scale, true, condition, 0}, {{}, "sin", condition, scale, true, condition, 0}};
 }
 
-// Projected columns of several waves, two for each, and the residual.
+// Projected columns of several waves, two for each, and the residual. Each wave's angles are those of the one before,
+// turned on by what their frequencies differ: they are equally spaced but for a few, so that one turn does for all. A
+// few dozen turns, each as exact as a sine.
 Eigen::MatrixXd projected_waves(const LawData& data, std::size_t condition, const std::vector<double>& frequencies) {
+  const std::vector<double>& values = data.system().observations().conditions[condition].values;
   RawColumns columns;
-  for (const double f : frequencies)
-    for (const Term& t : wave(condition, f)) columns.push_back(column_of(data.system(), t));
+  columns.reserve(2 * frequencies.size());
+  for (const Term& t : wave(condition, frequencies[0])) columns.push_back(column_of(data.system(), t));
+  std::vector<double> cosine(values.size(), 1.0), sine(values.size(), 0.0);
+  double turn = 0;
+  for (std::size_t k = 1; k < frequencies.size(); ++k) {
+    const double further = frequencies[k] - frequencies[k - 1];
+    if (!(std::abs(further - turn) <= 1e-14 * frequencies[k])) {
+      turn = further;
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (const double angle = 2 * std::numbers::pi * turn * values[i]; std::isfinite(angle))
+          cosine[i] = std::cos(angle), sine[i] = std::sin(angle);
+    }
+    const std::vector<double>&c = columns[2 * k - 2], &s = columns[2 * k - 1];
+    std::vector<double> next_c(c.size()), next_s(c.size());
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      next_c[i] = c[i] * cosine[i] - s[i] * sine[i];
+      next_s[i] = s[i] * cosine[i] + c[i] * sine[i];
+    }
+    columns.push_back(std::move(next_c));
+    columns.push_back(std::move(next_s));
+  }
   return data.projected(columns);
 }
 

@@ -94,7 +94,12 @@ double stated_noise_p(const Projection& projection, const Structures& structures
 
 // Signatures' |cos|: how much of the smaller of two structures' subspaces the other can imitate, root mean square of
 // the canonical correlations.
-double look_alike(const Projection& projection, const std::vector<Eigen::Index>& a, const std::vector<Eigen::Index>& b);
+struct Subspace {
+  std::vector<Eigen::Index> columns;
+  Eigen::MatrixXd root;  // G^-1/2 of what the free parameters leave of them, on its range
+  Subspace(const Projection& projection, std::vector<Eigen::Index> columns);
+};
+double look_alike(const Projection& projection, const Subspace& a, const Subspace& b);
 
 // `inflation`: variance of each candidate's score over that of independent rows, by place in Problem::candidates.
 // A limit is the amplitude that the test finds with 80 % power among all its looks and that matters, whichever is more.

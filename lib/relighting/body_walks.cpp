@@ -39,6 +39,13 @@ Vec3 about(Vec3 n, double cosine, double azimuth) {
   return t * (sine * std::cos(azimuth)) + cross(n, t) * (sine * std::sin(azimuth)) + n * cosine;
 }
 
+// Any direction is as likely as any other.
+Vec3 any_direction(Random& random) {
+  const double azimuth = 2 * pi * random.uniform(), cosine = 2 * random.uniform() - 1;
+  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  return {-sine * std::sin(azimuth), sine * std::cos(azimuth), cosine};
+}
+
 struct Start {
   std::size_t view = 0, facet = 0;
   render::SurfacePoint point;
@@ -80,7 +87,7 @@ struct Bodies {
     if (caster->occluded(below, direction, path_m)) return outside(caster->closest_from(below, direction), 0);
     Vec3 at = below.position_m + direction * path_m;
     for (int n = 1; n <= most_scatterings; ++n) {
-      direction = about({0, 0, 1}, 2 * random.uniform() - 1, 2 * pi * random.uniform());
+      direction = any_direction(random);
       path_m = -mean_path_m * std::log(random.uniform());
       if (path_m > clearance.at(at) && caster->blocked(at, direction, path_m))
         return outside(caster->closest(at, direction), n);

@@ -15,8 +15,10 @@ struct CoatRegion {
     return {std::cos(elevation_rad) * std::cos(azimuth_rad), std::cos(elevation_rad) * std::sin(azimuth_rad),
             std::sin(elevation_rad)};
   }
-  double cover(Vec3 position_m) const {
-    return 1 / (1 + std::exp(-std::clamp((dot(towards(), position_m) - from_m) / edge_m, -40.0, 40.0)));
+  double cover(Vec3 position_m) const { return cover_at(dot(towards(), position_m)); }
+  // The same, of a position's part along towards(): for many positions.
+  double cover_at(double along_m) const {
+    return 1 / (1 + std::exp(-std::clamp((along_m - from_m) / edge_m, -40.0, 40.0)));
   }
 };
 

@@ -24,7 +24,7 @@ class InterfaceTrap {
  public:
   InterfaceTrap() = default;
   // By samples of the base's own, at fixed numbers: the same every time. A tenth of a millisecond or two; some twenty
-  // times that where the base depends on the azimuth.
+  // times that where the base depends on the azimuth, of which most is spared while the base and eta stay.
   InterfaceTrap(const CoatInterface& interface, Rgb depth, const Layer& base);
   // Of unit directions inside, above the base.
   Rgb escapes(Vec3 inside) const { return at(escapes_, inside); }
@@ -38,8 +38,10 @@ class InterfaceTrap {
   // spaced in the root of the cosine outside.
   static constexpr std::size_t below = 4, above = 9, cosines = below + above, turns = 16;
   using Nodes = std::vector<Rgb>;  // by azimuth, then by cosine
-  Vec3 node(std::size_t cosine, double azimuth_rad) const;
-  void sample_node(std::size_t at, Vec3 wo, const CoatInterface& interface, Rgb depth, const Layer& base);
+  struct Drawn;
+  static const Drawn& drawn_of(double eta, const Layer& base);
+  static Vec3 node(double eta, std::size_t cosine, double azimuth_rad);
+  void sum_node(std::size_t at, const Drawn& all, bool scaled, const CoatInterface& interface, Rgb depth);
   Rgb at(const Nodes& values, Vec3 inside) const;
   std::size_t azimuths_ = 1;
   double eta_ = 1, critical_ = 0;  // critical: cosine of that angle

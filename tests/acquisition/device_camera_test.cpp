@@ -1,4 +1,5 @@
 // Cameras that others wrote: aravis's own GigE Vision camera, a program; makers' feature files; and a folder.
+// One at a time: GenicamCamera.*
 #include <arv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // From the laboratory's raw frames to radiance, through the programs: what acquire(1) states of its frames is what
 // develop(1) goes by.
+// One process: RawChain.*
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

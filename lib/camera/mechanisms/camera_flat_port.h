@@ -46,11 +46,12 @@ inline FlatPortCrossing flat_port_crossing(const FlatPort& port, Vec3 point_m) {
     const double g = rho / std::sqrt(a) - port.index * s / std::sqrt(b);
     (g > 0 ? high : low) = rho;
     const double slope = d * d / (a * std::sqrt(a)) + port.index * gap * gap / (b * std::sqrt(b));
-    double next = rho - g / slope;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    const double moved = std::abs(next - rho);
-    rho = next;
-    if (moved < 1e-15) break;
+    const double step = g / slope;
+    if (std::abs(step) < 1e-15) {  // before the bracket: at the root, whose one end it is, there is nothing to halve
+      rho -= step;
+      break;
+    }
+    rho = rho - step > low && rho - step < high ? rho - step : 0.5 * (low + high);
   }
   c.rho = rho;
   return c;

@@ -53,19 +53,22 @@ std::vector<double> list_of(Vec3 v) {
 
 }  // namespace
 
-Rgb irradiance(const scene::Light& lamp, Vec3 point_m, Vec3 normal) {
+LampLight::LampLight(const scene::Light& lamp) : lamp_(lamp) {
   const std::string& model = lamp.model->info().id;
-  if (model == "point" || model == "sphere") {
-    const std::vector<double>* radius = given(lamp, "radius_m");
-    const Rgb intensity = lamp.parameters.at("watt_per_sr").rgb();
-    const Vec3 position = lamp.parameters.at("position_m").vector();
-    return radius == nullptr || radius->at(0) == 0
-               ? light::point_irradiance(intensity, position, point_m, normal)
-               : light::sphere_irradiance(intensity, position, radius->at(0), point_m, normal);
-  }
+  small_ = model == "point" || model == "sphere";
+  if (!small_) return;
+  intensity_ = lamp.parameters.at("watt_per_sr").rgb();
+  position_m_ = lamp.parameters.at("position_m").vector();
+  if (const std::vector<double>* radius = given(lamp, "radius_m")) radius_m_ = radius->at(0);
+}
+
+Rgb LampLight::irradiance(Vec3 point_m, Vec3 normal) const {
+  if (small_)
+    return radius_m_ == 0 ? light::point_irradiance(intensity_, position_m_, point_m, normal)
+                          : light::sphere_irradiance(intensity_, position_m_, radius_m_, point_m, normal);
   Rgb sum;
   for (int i = 0; i < grid * grid; ++i) {
-    const light::Sample s = lamp.emitter->sample(point_m, {(i % grid + 0.5) / grid, (i / grid + 0.5) / grid});
+    const light::Sample s = lamp_.emitter->sample(point_m, {(i % grid + 0.5) / grid, (i / grid + 0.5) / grid});
     if (s.valid) sum = sum + s.weight * std::max(0.0, dot(s.direction, normal));
     if (s.valid && s.delta) return sum * (1.0 / (i + 1));
   }
@@ -182,7 +185,7 @@ void LampState::second_source() {
   const mechanism::Mechanism* m = &mechanism::light_second_source();  // irradiance, azimuth, elevation
   double facing = 0;
   for (const scene::Light& lamp : lamps()) {
-    const Rgb e = irradiance(lamp, centre_m_, sight_of(lamp, centre_m_, centre_m_).towards);
+    const Rgb e = LampLight(lamp).irradiance(centre_m_, sight_of(lamp, centre_m_, centre_m_).towards);
     facing = std::max(facing, e.x);
   }
   if (!(facing > 0)) return;

@@ -58,7 +58,18 @@ class LampState {
 // found by small steps: four quarters of the horizon are alternatives of one family. Irradiance of an unoccluded lamp
 // on a small plane, W/m^2: in closed form for points and spheres, else the mean over a regular grid of the lamp's own
 // samples (12 x 12, a midpoint rule).
-Rgb irradiance(const scene::Light& lamp, Vec3 point_m, Vec3 normal);
+class LampLight {
+ public:
+  explicit LampLight(const scene::Light& lamp);  // which outlives it
+  Rgb irradiance(Vec3 point_m, Vec3 normal) const;
+
+ private:
+  const scene::Light& lamp_;
+  bool small_ = false;  // a point or a sphere
+  Rgb intensity_;
+  Vec3 position_m_;
+  double radius_m_ = 0;
+};
 
 // Where the lamp is as seen from a point: direction to it, distance (infinite ones: along the rays, from the centre)
 // and the angle between its axis and the way to the point (lamps without one face the centre).

@@ -47,12 +47,13 @@ double likely_gloss(const Setting& s, const Patch& patch, const std::vector<std:
 // How much of the residual a gloss within the region takes, in its own standard deviations. Every image has a
 // brightness of its own (rough.h). `seen`: image after image.
 double alike(const std::vector<Gleam>& seen, const surface::CoatRegion& region) {
+  const Vec3 towards = region.towards();
   double covariance = 0, of_gloss = 0, of_residual = 0;
   for (std::size_t first = 0, last = 0; first < seen.size(); first = last) {
     double ry = 0, rr = 0, yy = 0, r1 = 0, y1 = 0;
     for (; last < seen.size() && seen[last].image == seen[first].image; ++last) {
       const Gleam& g = seen[last];
-      const double r = g.gloss * region.cover(g.position_m);
+      const double r = g.gloss * region.cover_at(dot(towards, g.position_m));
       ry += r * g.relative, rr += r * r, yy += g.relative * g.relative, r1 += r, y1 += g.relative;
     }
     const auto n = static_cast<double>(last - first);
@@ -169,6 +170,7 @@ void shade(const Use& use, const Frame& frame, Shading& shading) {
   const std::span<const double> a = use.amounts(frame.state);
   const auto& pose = static_cast<const Frames&>(*use.prepared).object_from_world;
   const surface::CoatRegion region{a[2], a[3], a[4], a[5]};
+  const Vec3 towards = region.towards();
   const SceneLayout& layout = frame.model.layout();
   const SurfaceState& surface = frame.state.surfaces[use.targets[0]];
   if (!widened(surface, mechanism::surface_interface())) return;
@@ -182,7 +184,7 @@ void shade(const Use& use, const Frame& frame, Shading& shading) {
       if (facet.surface != use.targets[0]) continue;
       for (std::size_t place = facet.first_patch; place < facet.first_patch + facet.patches; ++place) {
         const Patch& patch = frame.cache.patches[place];
-        const double cover = region.cover(pose * patch.position_m);
+        const double cover = region.cover_at(dot(towards, pose * patch.position_m));
         const Basis basis(patch.normal);
         const Vec3 wo = basis.to_local(patch.wo);
         for (std::size_t j = 0; j < shading.lights; ++j) {

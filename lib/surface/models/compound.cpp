@@ -50,12 +50,25 @@ struct Parts {
     metal_values.v[0] = v.rgb(albedo_index);
     metal_values.v[1] = v.v[metal_alpha_index];
   }
+  // Remembered by each thread while neither parameters nor wo change: a path asks for a direction and for densities
+  // several times at one place, and what is sent back takes half a hundred directions to sum.
   void weigh_draws() {
+    struct Last {
+      decltype(Values::v) values{};
+      Vec3 wo;  // none at first: it has no length
+      std::array<double, 3> draws{};
+    };
+    thread_local Last last;
+    if (last.wo == wo && last.values == glossy_values.v) {
+      draws = last.draws;
+      return;
+    }
     draws[0] = glossy_share * std::max(0.05, mean(glossy().albedo(glossy_values, wo)));
     draws[1] = metal_share * (0.05 + 0.95 * mean(metal_values.rgb(0)));
     draws[2] = 0.5 * (sheen_share + forward_share);
     const double all = draws[0] + draws[1] + draws[2];
     for (double& d : draws) d /= all;
+    last = {glossy_values.v, wo, draws};
   }
   double sheen(Vec3 wi) const {
     double sum = 0;

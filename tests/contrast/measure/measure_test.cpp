@@ -1,5 +1,6 @@
 // Contrast measured in rendered photographs of a data matrix of micro-ridges, against the surfaces that were rendered.
 // The world is made once for the tests of this file; seeds are fixed.
+// One process: Measure.*
 #include "contrast/measure/measure.h"
 
 #include <gmock/gmock.h>

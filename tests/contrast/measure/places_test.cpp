@@ -1,5 +1,6 @@
 // Where the sample lies when nobody marks its corners: from its outline in rendered photographs, and from a calibration
 // board that it lies on.
+// One process: Outline.*:BoardPose.*
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Light within a ball: the term's prediction against walks that are followed here, in a sphere by its own equation, and
 // the limit of short paths. Nothing is shared but the facets' places and the law of the medium.
+// One process: LightInABall.*
 #include "relighting/body_walks.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // Files of other pictures in a set of images: said first and before any physics, with the scene left as it was given.
+// One process: Misplaced.*
 #include <gmock/gmock.h>
 
 #include "ball_world.h"

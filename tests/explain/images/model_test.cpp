@@ -82,7 +82,7 @@ class ImagesInjected : public testing::TestWithParam<Injected> {};
 TEST_P(ImagesInjected, IsNamed) {
   const tests::ScratchFolder folder;
   const images::ImagesProblem problem(record_ball(folder, GetParam().truth, GetParam().believed, 256, 7),
-                                      {.pixels = 3000});
+                                      {.pixels = 1800});
   const Explanation e = explain(problem, Options{});
   ASSERT_FALSE(e.named.empty()) << verdict_name(e.verdict) << ": " << e.sentence;
   EXPECT_EQ(problem.candidates()[e.named[0]].id(), GetParam().id) << e.sentence;
@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ImagesModel, NothingInjectedNothingNamed) {
   for (const std::uint64_t seed : {11, 12, 13}) {
     const tests::ScratchFolder folder;
-    const images::ImagesProblem problem(record_ball(folder, "", "", 256, seed), {.pixels = 3000});
+    const images::ImagesProblem problem(record_ball(folder, "", "", 256, seed), {.pixels = 1800});
     EXPECT_TRUE(explain(problem, Options{}).named.empty());
   }
 }

@@ -17,7 +17,7 @@ namespace {
 struct Outcome {
   images::ImagesProblem problem;
   Explanation explanation;
-  explicit Outcome(const std::string& file, std::size_t pixels = 2500)
+  explicit Outcome(const std::string& file, std::size_t pixels = 1500)
       : problem(manifest::read_document(tests::data("recordings") / file), {.pixels = pixels}),
         explanation(explain(problem, Options{})) {}
   std::string first() const { return explanation.named.empty() ? "" : problem.candidates()[explanation.named[0]].id(); }

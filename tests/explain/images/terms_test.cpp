@@ -1,5 +1,6 @@
 // The registry of terms: each belongs to a mechanism of images, leaves the prediction alone at neutral and changes it
 // otherwise, and the conditions that carry its signature are among those of the problem.
+// One process: BallOnATable.*
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // Plans: better than chance, reachable, ordered.
+// One process: Plans.*
 #include "goniometry/plan.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
 // Tables from few directions: the closed form, honest intervals, bands, energy, refusals.
+// One process: FromFewDirections.*
 #include "goniometry/reconstruct/reconstruction.h"
 
 #include <gmock/gmock.h>

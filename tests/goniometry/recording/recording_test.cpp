@@ -1,5 +1,6 @@
 // A known surface as a goniometer sees it, beside a white tile that is not Lambertian, through a lens that distorts:
 // the samples are the surface's within their uncertainties; what cannot count is dropped with its reason.
+// One process: RecordingTest.*
 #include "goniometry/sample/recording.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // The five animatronics: equilibrium in every frame, and the properties that give each kind its name.
+// One process: All/Kind.*:Animatronics.*:Articulated.*:Bending.*:Deflation.*:Stretching.*:Tearing.*
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>

@@ -1,5 +1,6 @@
 // Bad input to acquire: each kind ends it with its exit status and one clear line that names the place and the remedy;
 // nothing is half written, and nothing has moved.
+// One process: AcquireRefuses.*
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>

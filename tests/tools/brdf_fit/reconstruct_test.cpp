@@ -1,4 +1,5 @@
 // brdf-fit --reconstruct, and what --merl writes, as a person runs them, with a small basis that was saved.
+// One process: Reconstruct.*
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // Fits of many bands: spectra, tables of numbers, and the covariance that the manifest holds.
+// One process: FitOfManyBands.*
 #include "goniometry/spectra.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,6 @@
 // The built-in bowl and lid, photographed, reassembled by the program, held against where they stood; and everything
 // that people turn round, which is caught by name.
+// One process: Reassembled.*
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Bad input to reassemble: each kind ends it with its exit status and one clear line that names the place and the
 // remedy; nothing is half written.
+// One process: ReassembleRefuses.*
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

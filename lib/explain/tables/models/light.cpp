@@ -79,10 +79,11 @@ class Illumination final : public BoundModel {
   void predict(std::span<const double> values, std::size_t first, std::size_t last,
                std::span<double> prediction) const override {
     const std::vector<scene::Light> lamps = lamps_.at(values);
+    const std::vector<LampLight> light(lamps.begin(), lamps.end());
     for (std::size_t r = first; r < last; ++r) {
       const Spot& s = spots_[r];
-      Rgb e = irradiance(lamps[s.lamp], s.point_m, s.normal);
-      if (lamps.size() > lamps_.lamps().size()) e = e + irradiance(lamps.back(), s.point_m, s.normal);
+      Rgb e = light[s.lamp].irradiance(s.point_m, s.normal);
+      if (light.size() > lamps_.lamps().size()) e = e + light.back().irradiance(s.point_m, s.normal);
       const double band = s.channel < 0 ? (e.x + e.y + e.z) / 3 : e[s.channel];
       prediction[r - first] = values[gain_] * band * s.exposure;
     }

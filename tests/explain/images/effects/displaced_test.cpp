@@ -29,9 +29,8 @@ EffectWorld two_balls() {
 
 // The prediction with a mechanism in play, over the one of a model whose cameras have it: rms of the difference over
 // the rms of what it changes.
-double missed(const EffectWorld& world, const std::string& id, const std::map<std::string, double>& amounts) {
-  const ScratchFolder folder;
-  const ImagesProblem believed(world.record(folder), {.pixels = 3000});
+double missed(const EffectWorld& world, const ScratchFolder& folder, const ImagesProblem& believed,
+              const std::string& id, const std::map<std::string, double>& amounts) {
   std::string text;
   for (const auto& [name, value] : amounts)
     text += (text.empty() ? "" : ",") + ("\"" + name + "\":") + std::to_string(value);
@@ -95,8 +94,10 @@ TEST(Displaced, PredictionsAreThoseOfRaysCastElsewhere) {
       {"camera.pose", {{"x_m", 0.03}, {"z_m", 0.02}, {"turn_y_rad", -0.02}}, 0.25},
       {"camera.rolling-shutter", {{"motion_x_m", 0.012}, {"motion_y_m", 0.006}}, 0.2},
   };
+  const ScratchFolder folder;
+  const ImagesProblem believed(world.record(folder), {.pixels = 3000});
   for (const Case& c : cases) {
-    const double share = missed(world, c.id, c.amounts);
+    const double share = missed(world, folder, believed, c.id, c.amounts);
     RecordProperty(c.id, std::to_string(share));
     std::printf("%s %.3f\n", c.id, share);
     EXPECT_LT(share, c.most) << c.id;
