@@ -171,27 +171,14 @@ HighlightRow highlight_row(const Highlight& h, const FoundLight& light, const Se
   return row;
 }
 
-// Does the region end where pixels are no longer used, at the rim or at a mask? Its middle is then not the lamp's.
-bool cut_off(const Highlight& h, const Facing& face) {
-  const auto width = static_cast<std::ptrdiff_t>(face.radiance.width);
-  return std::ranges::any_of(h.pixels, [&](std::size_t pixel) {
-    for (const std::ptrdiff_t step : {std::ptrdiff_t{-1}, std::ptrdiff_t{1}, -width, width}) {
-      const std::ptrdiff_t next = static_cast<std::ptrdiff_t>(pixel) + step;
-      if (next < 0 || next >= std::ssize(face.used) || face.used[static_cast<std::size_t>(next)] == 0) return true;
-    }
-    return false;
-  });
-}
-
 // Highlights of lamps that two views or more show whole, as tables for explain.
 void enter_highlights(manifest::Document& document, const ProbeRequest& request, const BallViews& all,
-                      const std::vector<Facing>& faces, const std::vector<Highlight>& spots,
-                      const std::vector<FoundLight>& lights, const std::vector<std::string>& names) {
+                      const std::vector<Highlight>& spots, const std::vector<FoundLight>& lights,
+                      const std::vector<std::string>& names) {
   std::vector<HighlightRow> rows;
   for (std::size_t l = 0; l < lights.size(); ++l) {
     std::vector<std::size_t> whole;
-    std::ranges::copy_if(lights[l].seen, std::back_inserter(whole),
-                         [&](std::size_t k) { return !cut_off(spots[k], faces[spots[k].view]); });
+    std::ranges::copy_if(lights[l].seen, std::back_inserter(whole), [&](std::size_t k) { return !spots[k].cut; });
     if (whole.size() < 2) continue;
     for (const std::size_t k : whole) {
       const std::size_t v = spots[k].view, b = all.ball_of_view[v];
@@ -237,8 +224,24 @@ std::vector<std::string> enter_lights(manifest::Document& document, const ProbeR
     csv += row_of(names.back(), light, images_of(document, all, spots, light));
     say(names.back(), light);
   }
-  if (!request.each && !request.parallel) enter_highlights(document, request, all, faces, spots, lights, names);
+  if (!request.each && !request.parallel) enter_highlights(document, request, all, spots, lights, names);
   return names;
+}
+
+// The photographs were taken under what was found in them, and under nothing else of the manifest: other lights beside
+// it would be counted twice.
+void light_images(manifest::Document& document, const ProbeRequest& request, const std::vector<std::string>& names) {
+  for (const std::size_t index : request.images) document.images[index].light = names;
+  if (document.lights.size() == names.size()) return;
+  std::size_t all_on = 0;
+  std::string first;
+  for (const manifest::ImageEntry& image : document.images)
+    if (image.light.empty() && !image.dark.value_or(false) && all_on++ == 0) first = image.id;
+  if (all_on > 0)
+    log(LogLevel::warning,
+        format("image \"%s\"%s no light and has all of the manifest's on, what was found here and "
+               "what stood there before; say in its `light` which",
+               first.c_str(), all_on == 1 ? " names" : format(", one of %zu, names", all_on).c_str()));
 }
 
 std::vector<Facing> faces_of(const BallViews& all, const ProbeRequest& request, const std::string& place) {
@@ -285,7 +288,10 @@ void probe_all(manifest::Document& document, const ProbeRequest& request) {
   loaded.clear();
   std::vector<Facing> faces = faces_of(all, request, place);
   std::string lights = light_header;
-  if (request.lights) enter_lights(document, request, all, faces, request.name, lights);
+  std::vector<std::string> names{request.name};
+  if (request.lights)
+    for (std::string& name : enter_lights(document, request, all, faces, request.name, lights))
+      names.push_back(std::move(name));
   const Unwrapped map = unwrapped(all.views, faces, request.unwrap);
   io::write_picture(picture_path, map.radiance);
   io::write_picture(weight_path, map.weight);
@@ -300,6 +306,7 @@ void probe_all(manifest::Document& document, const ProbeRequest& request) {
     write_file(lights_path, lights);
     manifest::add_file(document, lights_path, request.name + "-lights");
   }
+  light_images(document, request, names);
   log(LogLevel::info, format("%zu views of %zu balls; %.3g sr of 12.6 are seen by none", all.views.size(),
                              all.balls.size(), map.blind_sr));
 }
