@@ -123,7 +123,7 @@ void add_parallel(BallViews& all, const LoadedView& loaded, const ProbeRequest& 
 
 }  // namespace
 
-LoadedView load_view(const manifest::Document& document, std::size_t index, const ProbeRequest& request) {
+LoadedView read_view(const manifest::Document& document, std::size_t index, const ProbeRequest& request) {
   const manifest::ImageEntry& image = document.images[index];
   const auto path = manifest::picture_path(document, index), mask = manifest::mask_path(document, index);
   request.note_input(path);
@@ -160,8 +160,14 @@ LoadedView load_view(const manifest::Document& document, std::size_t index, cons
       }
     }
   }
+  return view;
+}
+
+LoadedView load_view(const manifest::Document& document, std::size_t index, const ProbeRequest& request) {
+  LoadedView view = read_view(document, index, request);
   const camera::CameraModel seen_by = view.camera ? *view.camera : far_camera(view.picture.width, view.picture.height);
-  view.outlines.outlines = ball_outlines(view.picture, seen_by, wish_of(view, request), path.string());
+  view.outlines.outlines =
+      ball_outlines(view.picture, seen_by, wish_of(view, request), manifest::picture_path(document, index).string());
   return view;
 }
 

@@ -57,6 +57,13 @@ std::vector<std::size_t> without_camera(const std::vector<std::string>& paths, c
   return entered;
 }
 
+std::size_t image_named(const cli::Invocation& call, const char* option, const std::string& id) {
+  const auto index = manifest::index_of_image(call.document, id);
+  if (!index)
+    throw Error(Exit::usage, option, "\"" + id + "\" is no image of " + call.document.name, "name one of its images");
+  return *index;
+}
+
 // The photographs on the command line become images of the manifest; without any, all of its images are looked at.
 std::vector<std::size_t> chosen_images(cli::Invocation& call) {
   std::vector<std::size_t> images;
@@ -75,16 +82,11 @@ std::vector<std::size_t> chosen_images(cli::Invocation& call) {
     call.document.allow_outside = true;  // what the user names may lie anywhere
   } else {
     images = camera::images_with_pictures(call.document, {});
+    if (call.given("scale")) std::erase(images, image_named(call, "--scale", call.text("scale")));
   }
   if (!call.given("image")) return images;
   std::vector<std::size_t> wanted;
-  for (const std::string& id : call.texts("image")) {
-    const auto index = manifest::index_of_image(call.document, id);
-    if (!index)
-      throw Error(Exit::usage, "--image", "\"" + id + "\" is no image of " + call.document.name,
-                  "name one of its images");
-    wanted.push_back(*index);
-  }
+  for (const std::string& id : call.texts("image")) wanted.push_back(image_named(call, "--image", id));
   return wanted;
 }
 
@@ -134,6 +136,9 @@ ProbeRequest request_of(cli::Invocation& call) {
   request.name = call.text("name");
   request.images = chosen_images(call);
   check_count("--silhouette", request.silhouettes.size(), request.images.size());
+  if (call.given("scale"))
+    request.scale = probe::ScaleWish{image_named(call, "--scale", call.text("scale")),
+                                     call.given("tile") ? call.text("tile") : std::string()};
   if (call.given("mask")) enter_masks(call.texts("mask"), request.images, call.document);
   request.output_path = [&call](const std::string& name) { return call.output_path(name); };
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
@@ -215,6 +220,18 @@ std::vector<cli::Option> result_options() {
        .help = "What no photograph shows: from its neighbours, or black.",
        .preset = "neighbours",
        .choices = {"neighbours", "black"}},
+      {.name = "scale",
+       .type = Type::text,
+       .help = "Scale the light to this image of the manifest, taken under it with another exposure or by another "
+               "camera: by the ball in it, or by a white tile (--tile). The factor and its standard error are stated.",
+       .metavar = "IMAGE",
+       .conflicts = {"orthographic", "each"}},
+      {.name = "tile",
+       .type = Type::text,
+       .help = "White tile that the image of --scale shows: a name in the manifest's goniometer, with reflectance, "
+               "place and outline; near where the ball was.",
+       .metavar = "NAME",
+       .needs = {"scale"}},
       {.name = "lights",
        .type = Type::flag,
        .help = "Take bright small regions out of the picture and enter them as lights: with a position where several "
