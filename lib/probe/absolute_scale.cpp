@@ -38,8 +38,9 @@ struct Shown {
 Shown shown_by(const Tile& tile, const ReferenceView& view) {
   const std::string what = "the tile \"" + tile.name + "\"";
   const auto seen = footprint(tile.patch, view.camera, inverse(view.world_from_camera) * tile.world_from_tile);
-  if (!seen.refusal.empty())
-    throw Error(Exit::data, view.place, what + " is not to be seen: it " + seen.refusal,
+  if (!seen.refusal.empty() || seen.pixels.empty())
+    throw Error(Exit::data, view.place,
+                what + " is not to be seen: " + (seen.refusal.empty() ? "no pixel lies wholly on it" : seen.refusal),
                 "name a photograph that shows it");
   std::size_t clipped = 0, masked = 0, used = 0;
   double area = 0;

@@ -40,8 +40,8 @@ TEST(Arriving, IsTheIntegralOverTheHalfSpaceAndTheLamps) {
   const Unwrapped map = surroundings(256);
   for (const Vec3 n : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, normalized(Vec3{1, 2, -0.5}), normalized(Vec3{-1, 0.1, 0.2})}) {
     const Arriving a = arriving_at(map, {}, n);
-    EXPECT_NEAR(a.irradiance.x, arriving(n), 2e-4);
-    EXPECT_NEAR(a.irradiance.y, 2 * arriving(n), 4e-4);
+    EXPECT_NEAR(a.irradiance.x, arriving(n), 4e-4);
+    EXPECT_NEAR(a.irradiance.y, 2 * arriving(n), 8e-4);
     EXPECT_NEAR(a.sigma, 0, 1e-12);
     const Lamp before{n, {3, 3, 3}, {0.3, 0.3, 0.3}}, behind{-n, {9, 9, 9}, {}};
     const Arriving lit = arriving_at(map, {before, behind}, n);
@@ -101,7 +101,7 @@ class OnATile : public testing::Test {
 };
 
 // 200 draws of noise, of the tile's reflectance and of a lamp, each with the deviation that is stated. The one
-// per cent for unwrapping, which is no error here, takes the mean square of z to 0.8; it is outside of 0.55 to 1.35, or
+// per cent for unwrapping, which is no error here, takes the mean square of z to 0.66; it is outside of 0.45 to 1.1, or
 // fewer than 180 are within 1.96, less than once in a thousand.
 TEST_F(OnATile, TheScaleIsWithinItsError) {
   const Unwrapped map = surroundings(64);
@@ -121,15 +121,15 @@ TEST_F(OnATile, TheScaleIsWithinItsError) {
   }
   std::printf("scale: 95 %% interval covers %d of %d, mean square %.2f (1)\n", covered, draws, squares);
   EXPECT_GE(covered, 180);
-  EXPECT_GT(squares, 0.55);
-  EXPECT_LT(squares, 1.35);
+  EXPECT_GT(squares, 0.45);
+  EXPECT_LT(squares, 1.1);
 }
 
 TEST_F(OnATile, WhatSaysNothingIsRefused) {
   Random random(1, 1);
   paint(1, 0, random);
   const Unwrapped map = surroundings(64);
-  EXPECT_NEAR(scale_by_tile(map, {}, tile(0.9, 0), view_).value, 1, 1e-3);
+  EXPECT_NEAR(scale_by_tile(map, {}, tile(0.9, 0), view_).value, 1, 2e-3);
   Tile away = tile(0.9, 0);
   away.world_from_tile.translation_m = {5, 0, 0};
   refused(map, away, "is not to be seen");
