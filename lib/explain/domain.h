@@ -56,6 +56,9 @@ struct Domain {
   // What the domain's own fit says against a candidate that it has named.
   std::optional<Testimony> (*objects)(const Problem& problem, const Explanation& e, std::size_t candidate) = nullptr;
   bool (*applies)(const manifest::Document& document) = nullptr;
+  // Throws Error(data) where recordings need what the domain's simulation does not have: no fault of theirs. Where
+  // others can be asked, these are left out with a warning; else it is the answer.
+  void (*within_reach)(const manifest::Document& document) = nullptr;
   std::vector<std::unique_ptr<Problem>> (*problems)(const manifest::Document& document,
                                                     const ProblemOptions& options) = nullptr;
   // Files of the manifest that the problems read, for provenance.

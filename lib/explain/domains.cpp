@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "manifest/document.h"
 
 namespace gonio::explain {
@@ -34,11 +35,22 @@ std::vector<AskedDomain> domains_of(const manifest::Document& document, const Pr
   std::vector<AskedDomain> all;
   const std::vector<const Domain*> domains = that_apply(document);
   bool any = false;
+  std::vector<std::pair<std::string, Error>> beyond;
   for (const Domain* domain : domains) {
+    try {
+      if (domain->within_reach != nullptr) domain->within_reach(document);
+    } catch (const Error& error) {
+      beyond.emplace_back(domain->name, error);
+      continue;
+    }
     AskedDomain asked{domain, std::ranges::find(domains, domain->after, &Domain::name) != domains.end(), {}};
     if (!asked.waits) asked.problems = domain->problems(document, options);
     any = any || !asked.problems.empty();
     all.push_back(std::move(asked));
+  }
+  for (const auto& [name, error] : beyond) {
+    if (!any) throw error;
+    log(LogLevel::warning, name + ": not asked: " + error.what());
   }
   if (any) return all;
   std::string known;

@@ -21,6 +21,7 @@
 #include "manifest/sections/colour_correction.h"
 #include "manifest/sections/comparison.h"
 #include "manifest/sections/contrast.h"
+#include "manifest/sections/environment.h"
 #include "manifest/sections/evaluation.h"
 #include "manifest/sections/explanation.h"
 #include "manifest/sections/file.h"
@@ -68,6 +69,7 @@ void for_each_section(D& d, const Visit& visit) {
   visit("colour", d.colour);
   visit("meshes", d.meshes);
   visit("surfaces", d.surfaces);
+  visit("environments", d.environments);
   visit("lights", d.lights);
   visit("objects", d.objects);
   visit("tables", d.tables);

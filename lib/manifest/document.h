@@ -40,6 +40,7 @@ struct Document {
   std::map<std::string, ColourCorrection> colour;
   std::map<std::string, Mesh> meshes;
   std::map<std::string, Surface> surfaces;
+  std::map<std::string, Environment> environments;
   std::map<std::string, Light> lights;
   std::vector<Object> objects;
   std::map<std::string, Table> tables;

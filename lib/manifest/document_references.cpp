@@ -11,6 +11,7 @@
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/colour_correction.h"
+#include "manifest/sections/environment.h"
 #include "manifest/sections/file.h"
 #include "manifest/sections/flat_patch.h"
 #include "manifest/sections/ground_noise.h"
@@ -292,6 +293,18 @@ void check_plans(const Document& d) {
     must_exist(d.files, "files", d.runs[i].journal, place(d, "/runs/" + std::to_string(i) + "/journal"));
 }
 
+void check_lights(const Document& d) {
+  for (const auto& [name, around] : d.environments)
+    must_exist(d.files, "files", around.file, place(d, "/environments/" + name + "/file"));
+  for (const auto& [name, light] : d.lights) {
+    const std::string at = place(d, "/lights/" + name);
+    must_exist(d.files, "files", light.file, at + "/file");
+    must_exist(d.environments, "environments", light.environment, at + "/environment");
+    if (!light.file.empty() && !light.environment.empty())
+      throw Error(Exit::data, at, "has both \"file\" and \"environment\"", "keep one of the two");
+  }
+}
+
 }  // namespace
 
 void check_references(const Document& d) {
@@ -328,8 +341,7 @@ void check_references(const Document& d) {
     must_exist(d.files, "files", surface.file, at + "/file");
     must_exist(d.surfaces, "surfaces", surface.base, at + "/base");
   }
-  for (const auto& [name, light] : d.lights)
-    must_exist(d.files, "files", light.file, place(d, "/lights/" + name + "/file"));
+  check_lights(d);
   for (const auto& [name, table] : d.tables) {
     const std::string at = place(d, "/tables/" + name);
     must_exist(d.files, "files", table.file, at + "/file");

@@ -33,6 +33,7 @@ struct ModelInfo {
   Attachment attachment = Attachment::none;
   std::string attachment_meaning{};  // what the file holds
   bool takes_base = false;           // surfaces: lies on another surface, `base`
+  bool takes_environment = false;    // lights: the attachment may be one of the manifest's environments
 };
 
 std::span<const ModelInfo* const> models(Family family);            // sorted by id

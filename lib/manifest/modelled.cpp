@@ -35,6 +35,7 @@ const ModelInfo& known_model(Family family, const std::string& id, const std::st
 // Has this model the member `key` of the table?
 bool takes(const ModelInfo& info, const std::string& key) {
   if (key == "file") return info.attachment != Attachment::none;
+  if (key == "environment") return info.takes_environment;
   if (key == "base") return info.takes_base;
   return true;
 }
@@ -161,6 +162,7 @@ const std::vector<Field<Light>>& light_fields() {
   static const std::vector<Field<Light>> table{
       field("model", &Light::model, "", "how it shines: one of those below"),
       field("file", &Light::file, "", "of a model that has a picture or table: its file id"),
+      field("environment", &Light::environment, "", "of surroundings, instead of a file: name in environments"),
       sigma_field(&Light::sigma)};
   return table;
 }

@@ -99,6 +99,9 @@ void add_scene(List& all) {
                       surface_fields()));
   all.back().definition = surface_definition();
   all.push_back({.name = definition_name(Codec<LawUse>::schema()), .definition = law_definition(), .text = ""});
+  all.push_back(keyed("environments",
+                      "Pictures of all directions about a place, written by light-probe; a light refers to one.",
+                      environment_fields()));
   all.push_back(keyed("lights", "A model, its parameters under their own names, and:", light_fields()));
   all.back().definition = light_definition();
   all.back().text += models_text(Family::light, "## lights: ");

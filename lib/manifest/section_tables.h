@@ -32,6 +32,7 @@ GONIO_TABLE(ImageEntry, image_fields);
 GONIO_TABLE(Mesh, mesh_fields);
 GONIO_TABLE(Object, object_fields);
 GONIO_TABLE(Table, table_fields);
+GONIO_TABLE(Environment, environment_fields);
 GONIO_TABLE(Rendering, rendering_fields);
 GONIO_TABLE(Comparison, comparison_fields);
 GONIO_TABLE(SeenBoard, seen_board_fields);

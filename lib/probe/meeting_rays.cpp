@@ -2,35 +2,53 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "linear/geom_matrices.h"
+#include "linear/solve.h"
 #include "optim/least_squares.h"
 #include "probe/bright_lights.h"
 #include "probe/mechanisms/probe_distance.h"
+#include "stats/distributions.h"
 
 namespace gonio::probe {
 namespace {
 
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-struct WhiteRay {
+struct Ray {
   Vec3 point_m, direction;  // point from the balls' middle
-  Vec3 rows[2];             // whitened tangents: residual k is dot(rows[k], predicted - direction)
+  Vec3 across[2];
 };
 
-// Rows that make the tangential covariance a unit matrix.
-WhiteRay white_ray(const Highlight& h, Vec3 middle_m) {
-  const Basis f(h.direction);
-  const auto by = [&](Vec3 a, Vec3 b) { return dot(a, h.covariance * b); };
-  const double tt = by(f.t, f.t), tb = by(f.t, f.b), bb = by(f.b, f.b);
-  const double l11 = std::sqrt(std::max(tt, 1e-18)), l21 = tb / l11, l22 = std::sqrt(std::max(bb - l21 * l21, 1e-18));
-  return {h.point_m - middle_m, h.direction, {f.t / l11, (f.b - f.t * (l21 / l11)) / l22}};
+// Covariance of all rays' tangents: each has errors of its own, and rays from one ball share those of its place,
+// however many views they were seen in. (Taken as independent, four views of one ball would halve an error that no view
+// reduces.)
+MatrixXd joint_covariance(const std::vector<const Highlight*>& seen, const std::vector<Ray>& rays) {
+  const auto n = static_cast<Eigen::Index>(2 * rays.size());
+  MatrixXd sum = MatrixXd::Zero(n, n);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      const Highlight &a = *seen[i], &b = *seen[j];
+      for (Eigen::Index k = 0; k < 2; ++k)
+        for (Eigen::Index l = 0; l < 2; ++l) {
+          const Vec3 s = rays[i].across[k], t = rays[j].across[l];
+          double value = i != j ? 0 : dot(s, a.own_covariance * t) + (k == l ? 1e-18 : 0);
+          for (std::size_t v = 0; a.ball == b.ball && v < a.shifts.size() && v < b.shifts.size(); ++v)
+            value += dot(s, a.shifts[v].turn) * dot(t, b.shifts[v].turn);
+          const auto row = 2 * static_cast<Eigen::Index>(i) + k, column = 2 * static_cast<Eigen::Index>(j) + l;
+          sum(row, column) = sum(column, row) = value;
+        }
+    }
+  return sum;
 }
 
 class Lamp final : public optim::Model {  // x: two tangents of the direction, inverse distance times `unit_m`
  public:
-  Lamp(std::vector<WhiteRay> rays, Vec3 towards, double unit_m)
-      : rays_(std::move(rays)), frame_(towards), unit_m_(unit_m) {}
+  Lamp(std::vector<Ray> rays, const MatrixXd& covariance, Vec3 towards, double unit_m)
+      : rays_(std::move(rays)), white_(covariance), frame_(towards), unit_m_(unit_m) {}
+  bool sound() const { return white_.info() == Eigen::Success; }
   Vec3 direction(const VectorXd& x) const { return normalized(frame_.n + frame_.t * x[0] + frame_.b * x[1]); }
   const Basis& frame() const { return frame_; }
   bool residuals(const VectorXd& x, VectorXd& r) const override {
@@ -40,13 +58,15 @@ class Lamp final : public optim::Model {  // x: two tangents of the direction, i
       const Vec3 way = equation::probe_distance(u, rays_[i].point_m, x[2] / unit_m_);
       if (!(dot(way, u) > 0)) return false;
       const Vec3 miss = normalized(way) - rays_[i].direction;
-      for (std::size_t k = 0; k < 2; ++k) r[static_cast<Eigen::Index>(2 * i + k)] = dot(rays_[i].rows[k], miss);
+      for (std::size_t k = 0; k < 2; ++k) r[static_cast<Eigen::Index>(2 * i + k)] = dot(rays_[i].across[k], miss);
     }
+    r = white_.solve_lower(r).eval();
     return true;
   }
 
  private:
-  std::vector<WhiteRay> rays_;
+  std::vector<Ray> rays_;
+  linear::Llt white_;
   Basis frame_;
   double unit_m_;
 };
@@ -54,16 +74,21 @@ class Lamp final : public optim::Model {  // x: two tangents of the direction, i
 // The lamp of these highlights, two or more.
 std::optional<FoundLight> lamp_of(const std::vector<Highlight>& all, const std::vector<std::size_t>& seen,
                                   Vec3 middle_m, const LightWish& wish) {
-  std::vector<WhiteRay> rays;
+  std::vector<Ray> rays;
+  std::vector<const Highlight*> used;
   Vec3 towards{};
   double unit_m = 0;
   for (const std::size_t k : seen) {
-    rays.push_back(white_ray(all[k], middle_m));
+    const Basis f(all[k].direction);
+    rays.push_back({all[k].point_m - middle_m, all[k].direction, {f.t, f.b}});
+    used.push_back(&all[k]);
     towards += all[k].direction;
     unit_m = std::max(unit_m, norm(rays.back().point_m));
   }
   if (!(norm(towards) > 0.1) || !(unit_m > 0)) return {};
-  const Lamp lamp(std::move(rays), normalized(towards), unit_m);
+  const MatrixXd covariance_of_rays = joint_covariance(used, rays);
+  const Lamp lamp(std::move(rays), covariance_of_rays, normalized(towards), unit_m);
+  if (!lamp.sound()) return {};
   const optim::Fit fit = optim::fit(lamp, VectorXd::Zero(3));
   if (!fit.determined) return {};
   FoundLight light;
@@ -83,18 +108,25 @@ std::optional<FoundLight> lamp_of(const std::vector<Highlight>& all, const std::
     const double d = 1 / inverse;
     light.distance_m = d;
     light.position_m = middle_m + light.direction * d;
-    by << linear::as_eigen(f.t * d), linear::as_eigen(f.b * d), linear::as_eigen(light.direction * (-d * d / unit_m));
+    // The distance's interval is not even. As far as the farther end of 95 % of the inverse distance.
+    const double far = 1 / (1 - stats::normal_quantile(0.975) * sigma / inverse);
+    by << linear::as_eigen(f.t * d), linear::as_eigen(f.b * d),
+        linear::as_eigen(light.direction * (-d * d * far / unit_m));
     light.position_covariance_m2 = linear::mat3_of(Eigen::Matrix3d(by * covariance * by.transpose()));
   }
   return light;
 }
 
-// Irradiance at the middle, its scatter, size: from all that show the lamp.
+// Irradiance at the middle, its scatter, size: from all that show the whole lamp.
 void take_means(FoundLight& light, const std::vector<Highlight>& all) {
-  const auto n = static_cast<double>(light.seen.size());
+  std::vector<std::size_t> seen;
+  std::ranges::copy_if(light.seen, std::back_inserter(seen), [&](std::size_t k) { return !all[k].cut; });
+  if (seen.empty()) seen = light.seen;
+  const auto n = static_cast<double>(seen.size());
   std::vector<Rgb> each;
+  std::map<std::pair<std::size_t, std::size_t>, Rgb> shifted;  // by ball and direction of its error
   double half_angle = 0;
-  for (const std::size_t k : light.seen) {
+  for (const std::size_t k : seen) {
     const Highlight& h = all[k];
     double nearer = 1;  // irradiance at the middle over what the ball's own directions say
     if (light.position_m) {
@@ -103,12 +135,20 @@ void take_means(FoundLight& light, const std::vector<Highlight>& all) {
     }
     each.push_back(h.irradiance * nearer);
     light.irradiance += each.back() / n;
-    light.irradiance_sigma += h.irradiance_sigma * h.irradiance_sigma / (n * n);
+    light.irradiance_sigma += h.own_irradiance_variance * (nearer * nearer / (n * n));
+    for (std::size_t v = 0; v < h.shifts.size(); ++v) shifted[{h.ball, v}] += h.shifts[v].more * (nearer / n);
     half_angle += h.half_angle_rad * std::sqrt(nearer) / n;
     light.clipped = light.clipped || h.clipped;
   }
   light.half_angle_rad = half_angle;
-  if (light.seen.size() > 1)
+  if (!light.position_m) {  // as if it were infinitely far, which it may not be
+    double focus_m = 0;
+    for (const std::size_t k : seen) focus_m += (all[k].focus_m.x + all[k].focus_m.y) / n;
+    const Rgb nearer = light.irradiance * (focus_m * std::hypot(light.nearness_per_m, light.nearness_sigma_per_m));
+    light.irradiance_sigma += nearer * nearer;
+  }
+  for (const auto& [which, more] : shifted) light.irradiance_sigma += more * more;
+  if (seen.size() > 1)
     for (const Rgb& e : each) {
       const Rgb off = e - light.irradiance;
       light.irradiance_sigma += off * off / (n * (n - 1));

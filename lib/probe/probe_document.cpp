@@ -14,11 +14,13 @@
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
+#include "manifest/sections/environment.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/table.h"
 #include "probe/highlight_rows.h"
 #include "probe/probe_views.h"
+#include "probe/scale_document.h"
 
 namespace gonio::probe {
 namespace {
@@ -171,27 +173,14 @@ HighlightRow highlight_row(const Highlight& h, const FoundLight& light, const Se
   return row;
 }
 
-// Does the region end where pixels are no longer used, at the rim or at a mask? Its middle is then not the lamp's.
-bool cut_off(const Highlight& h, const Facing& face) {
-  const auto width = static_cast<std::ptrdiff_t>(face.radiance.width);
-  return std::ranges::any_of(h.pixels, [&](std::size_t pixel) {
-    for (const std::ptrdiff_t step : {std::ptrdiff_t{-1}, std::ptrdiff_t{1}, -width, width}) {
-      const std::ptrdiff_t next = static_cast<std::ptrdiff_t>(pixel) + step;
-      if (next < 0 || next >= std::ssize(face.used) || face.used[static_cast<std::size_t>(next)] == 0) return true;
-    }
-    return false;
-  });
-}
-
 // Highlights of lamps that two views or more show whole, as tables for explain.
 void enter_highlights(manifest::Document& document, const ProbeRequest& request, const BallViews& all,
-                      const std::vector<Facing>& faces, const std::vector<Highlight>& spots,
-                      const std::vector<FoundLight>& lights, const std::vector<std::string>& names) {
+                      const std::vector<Highlight>& spots, const std::vector<FoundLight>& lights,
+                      const std::vector<std::string>& names) {
   std::vector<HighlightRow> rows;
   for (std::size_t l = 0; l < lights.size(); ++l) {
     std::vector<std::size_t> whole;
-    std::ranges::copy_if(lights[l].seen, std::back_inserter(whole),
-                         [&](std::size_t k) { return !cut_off(spots[k], faces[spots[k].view]); });
+    std::ranges::copy_if(lights[l].seen, std::back_inserter(whole), [&](std::size_t k) { return !spots[k].cut; });
     if (whole.size() < 2) continue;
     for (const std::size_t k : whole) {
       const std::size_t v = spots[k].view, b = all.ball_of_view[v];
@@ -215,30 +204,58 @@ void enter_highlights(manifest::Document& document, const ProbeRequest& request,
   document.tables[reflected] = reflected_table(manifest::add_file(document, reflected_path, reflected), metal);
 }
 
-// Lights of these views, entered; their highlights leave the faces. Returns their names.
-std::vector<std::string> enter_lights(manifest::Document& document, const ProbeRequest& request, const BallViews& all,
-                                      std::vector<Facing>& faces, const std::string& stem, std::string& csv) {
+struct Lamps {
   std::vector<Highlight> spots;
+  std::vector<FoundLight> lights;
+};
+// Lights of these views; their highlights leave the faces.
+Lamps taken_out(const ProbeRequest& request, const BallViews& all, std::vector<Facing>& faces) {
+  Lamps lamps;
   for (std::size_t v = 0; v < all.views.size(); ++v) {
     auto here = highlights(all.views, faces, v, *request.lights);
-    spots.insert(spots.end(), here.begin(), here.end());
+    lamps.spots.insert(lamps.spots.end(), here.begin(), here.end());
   }
-  const std::vector<FoundLight> found = lights_of(spots, all.middle_m, *request.lights),
-                                lights = agreed(found, spots, all.views, faces);
-  take_out(lights, spots, faces);
-  if (lights.size() < found.size())
+  const std::vector<FoundLight> found = lights_of(lamps.spots, all.middle_m, *request.lights);
+  lamps.lights = agreed(found, lamps.spots, all.views, faces);
+  take_out(lamps.lights, lamps.spots, faces);
+  if (lamps.lights.size() < found.size())
     log(LogLevel::info, format("%zu bright regions stay in the picture, because not all views that show them have them "
                                "as one region",
-                               found.size() - lights.size()));
+                               found.size() - lamps.lights.size()));
+  return lamps;
+}
+
+// Returns their names.
+std::vector<std::string> enter_lights(manifest::Document& document, const ProbeRequest& request, const BallViews& all,
+                                      const Lamps& lamps, const Scale& scale, const std::string& stem,
+                                      std::string& csv) {
   std::vector<std::string> names;
-  for (const FoundLight& light : lights) {
+  for (const FoundLight& found : lamps.lights) {
+    const FoundLight light = scaled(found, scale);
     names.push_back(stem + "-" + std::to_string(names.size() + 1));
     document.lights[names.back()] = entry_of(light);
-    csv += row_of(names.back(), light, images_of(document, all, spots, light));
+    csv += row_of(names.back(), light, images_of(document, all, lamps.spots, light));
     say(names.back(), light);
   }
-  if (!request.each && !request.parallel) enter_highlights(document, request, all, faces, spots, lights, names);
+  if (!request.each && !request.parallel) enter_highlights(document, request, all, lamps.spots, lamps.lights, names);
   return names;
+}
+
+// The photographs were taken under what was found in them, and under nothing else of the manifest: other lights beside
+// it would be counted twice.
+void light_images(manifest::Document& document, const ProbeRequest& request, const std::vector<std::string>& names) {
+  for (const std::size_t index : request.images) document.images[index].light = names;
+  if (request.scale) document.images[request.scale->image].light = names;
+  if (document.lights.size() == names.size()) return;
+  std::size_t all_on = 0;
+  std::string first;
+  for (const manifest::ImageEntry& image : document.images)
+    if (image.light.empty() && !image.dark.value_or(false) && all_on++ == 0) first = image.id;
+  if (all_on > 0)
+    log(LogLevel::warning,
+        format("image \"%s\"%s no light and has all of the manifest's on, what was found here and "
+               "what stood there before; say in its `light` which",
+               first.c_str(), all_on == 1 ? " names" : format(", one of %zu, names", all_on).c_str()));
 }
 
 std::vector<Facing> faces_of(const BallViews& all, const ProbeRequest& request, const std::string& place) {
@@ -261,7 +278,8 @@ void probe_each(manifest::Document& document, const ProbeRequest& request) {
     const std::string id = document.images[index].id;
     const BallViews all = ball_views({load_view(document, index, request)}, request, id);
     std::vector<Facing> faces = faces_of(all, request, id);
-    const auto names = enter_lights(document, request, all, faces, request.name + "-" + id, lights);
+    const Lamps lamps = taken_out(request, all, faces);
+    const auto names = enter_lights(document, request, all, lamps, {}, request.name + "-" + id, lights);
     if (names.empty())
       log(LogLevel::warning, id + ": shows no light above " + shortest_text(request.lights->ratio) + " times the mean");
     document.images[index].light = names;
@@ -285,14 +303,25 @@ void probe_all(manifest::Document& document, const ProbeRequest& request) {
   loaded.clear();
   std::vector<Facing> faces = faces_of(all, request, place);
   std::string lights = light_header;
-  if (request.lights) enter_lights(document, request, all, faces, request.name, lights);
+  const std::vector<Facing> whole = request.scale && request.lights ? faces : std::vector<Facing>{};
+  const Lamps lamps = request.lights ? taken_out(request, all, faces) : Lamps{};
   const Unwrapped map = unwrapped(all.views, faces, request.unwrap);
+  const Scale scale = request.scale ? scale_of(document, request, all, whole, lamps.lights, map) : Scale{};
+  std::vector<std::string> names = enter_lights(document, request, all, lamps, scale, request.name, lights);
+  names.insert(names.begin(), request.name);
   io::write_picture(picture_path, map.radiance);
   io::write_picture(weight_path, map.weight);
   write_file(balls_path, balls_csv(document, all));
+  manifest::Environment& around = document.environments[request.name];
+  around = {.file = manifest::add_file(document, picture_path, request.name), .blind_sr = map.blind_sr};
+  if (request.scale) {
+    around.scale = scale.value, around.sigma["scale"] = {scale.sigma};
+    log(LogLevel::info, request.name + format(": scale %.5g +- %.2g, by image \"%s\"", scale.value, scale.sigma,
+                                              document.images[request.scale->image].id.c_str()));
+  }
   manifest::Light entry;
   entry.model = "lat-long";
-  entry.file = manifest::add_file(document, picture_path, request.name);
+  entry.environment = request.name;
   document.lights[request.name] = entry;
   manifest::add_file(document, weight_path, request.name + "-weight");
   manifest::add_file(document, balls_path, request.name + "-balls");
@@ -300,6 +329,7 @@ void probe_all(manifest::Document& document, const ProbeRequest& request) {
     write_file(lights_path, lights);
     manifest::add_file(document, lights_path, request.name + "-lights");
   }
+  light_images(document, request, names);
   log(LogLevel::info, format("%zu views of %zu balls; %.3g sr of 12.6 are seen by none", all.views.size(),
                              all.balls.size(), map.blind_sr));
 }
@@ -310,6 +340,7 @@ void check_probe(const manifest::Document& document, const ProbeRequest& request
   if (request.images.empty())
     throw Error(Exit::data, manifest::place(document, "/images"), "has no image with a file",
                 "name photographs of the ball");
+  if (request.scale) check_scale(document, *request.scale);
   for (const std::size_t index : request.images) {
     manifest::picture_path(document, index), manifest::mask_path(document, index);
     if (request.parallel) continue;

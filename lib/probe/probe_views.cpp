@@ -16,6 +16,7 @@
 #include "manifest/sections/image.h"
 #include "photograph/linear_picture.h"
 #include "photograph/mask.h"
+#include "photograph/noise_variance.h"
 
 namespace gonio::probe {
 namespace {
@@ -112,6 +113,7 @@ void add_parallel(BallViews& all, const LoadedView& loaded, const ProbeRequest& 
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         world(i, j) = covariance(0, 0) * right[i] * right[j] + covariance(1, 1) * down[i] * down[j];
+    view.number = all.balls.size();
     all.balls.push_back({view.ball, world, 0, 0, {{all.views.size(), o}}});
     all.image_of_view.push_back(loaded.image), all.ball_of_view.push_back(all.balls.size() - 1);
     all.outline_of_view.push_back(o);
@@ -121,7 +123,7 @@ void add_parallel(BallViews& all, const LoadedView& loaded, const ProbeRequest& 
 
 }  // namespace
 
-LoadedView load_view(const manifest::Document& document, std::size_t index, const ProbeRequest& request) {
+LoadedView read_view(const manifest::Document& document, std::size_t index, const ProbeRequest& request) {
   const manifest::ImageEntry& image = document.images[index];
   const auto path = manifest::picture_path(document, index), mask = manifest::mask_path(document, index);
   request.note_input(path);
@@ -130,6 +132,10 @@ LoadedView load_view(const manifest::Document& document, std::size_t index, cons
   view.image = index;
   view.picture = std::move(read.colour), view.variance = std::move(read.variance),
   view.clipped = std::move(read.clipped);
+  if (view.variance.data.empty() && image.noise) {
+    view.variance = view.picture;
+    for (float& v : view.variance.data) v = static_cast<float>(photograph::noise_variance(*image.noise, double{v}));
+  }
   if (!mask.empty()) {
     request.note_input(mask);
     view.counts = photograph::read_mask_of(view.picture, mask, mask.string());
@@ -154,8 +160,14 @@ LoadedView load_view(const manifest::Document& document, std::size_t index, cons
       }
     }
   }
+  return view;
+}
+
+LoadedView load_view(const manifest::Document& document, std::size_t index, const ProbeRequest& request) {
+  LoadedView view = read_view(document, index, request);
   const camera::CameraModel seen_by = view.camera ? *view.camera : far_camera(view.picture.width, view.picture.height);
-  view.outlines.outlines = ball_outlines(view.picture, seen_by, wish_of(view, request), path.string());
+  view.outlines.outlines =
+      ball_outlines(view.picture, seen_by, wish_of(view, request), manifest::picture_path(document, index).string());
   return view;
 }
 
@@ -170,7 +182,9 @@ BallViews ball_views(const std::vector<LoadedView>& loaded, const ProbeRequest& 
     for (std::size_t b = 0; b < all.balls.size(); ++b)
       for (const BallSighting& s : all.balls[b].sightings) {
         BallView view = picture_view(loaded[s.view]);
-        view.ball = all.balls[b].ball;
+        view.ball = all.balls[b].ball, view.number = b;
+        for (std::size_t other = 0; other < all.balls.size(); ++other)
+          if (other != b) view.others.push_back(all.balls[other].ball);
         view.variants = moved_balls(view.ball, all.balls[b].covariance_m2, false, {}, {});
         view.radius_px = s.outline.radius_px;
         const double px_per_rad = s.outline.radius_px / s.outline.half_angle_rad,

@@ -15,6 +15,8 @@ struct LoadedView {
   std::optional<camera::CameraModel> camera;  // nothing: without perspective
   OutlineView outlines;                       // of parallel views: as far_camera() sees them
 };
+// The picture with its mask, camera and pose, without outlines.
+LoadedView read_view(const manifest::Document& document, std::size_t image, const ProbeRequest& request);
 // Pictures read, outlines found.
 LoadedView load_view(const manifest::Document& document, std::size_t image, const ProbeRequest& request);
 

@@ -39,6 +39,14 @@ bool look_up(const Facing& face, Vec2 p, Rgb& sum) {
   return true;
 }
 
+// Does a ray meet the ball? Its rim is known less well than the rest.
+bool meets(Vec3 origin_m, Vec3 direction, const Ball& ball) {
+  constexpr double margin = 1.1;
+  const Vec3 way = ball.centre_m - origin_m;
+  const double ahead = dot(way, direction);
+  return ahead > 0 && dot(way, way) - ahead * ahead < std::pow(margin * ball.radius_m, 2);
+}
+
 class TexelView {  // how one view sees texels
  public:
   TexelView(const BallView& view, const Facing& face, const UnwrapWish& wish)
@@ -134,6 +142,7 @@ Facing facing(const BallView& view, const UnwrapWish& wish) {
       const auto r =
           mirror.reflect(view.world_from_camera * ray.origin_m, view.world_from_camera.rotate(ray.direction));
       if (!r || (1 - r->offset) * view.radius_px < margin_px || r->cosine < steepest) continue;
+      if (std::ranges::any_of(view.others, [&](const Ball& b) { return meets(r->point_m, r->direction, b); })) continue;
       const float* v = &p.data[i * channels];
       const Rgb light = channels >= 3 ? Rgb{v[0], v[1], v[2]} : Rgb{v[0], v[0], v[0]};
       if (!is_finite(light)) continue;

@@ -34,6 +34,8 @@ struct BallView {                       // one ball in one picture
   camera::CameraModel camera;           // orthographic: a picture without perspective
   Rigid<frame::World, frame::Camera> world_from_camera{};
   Ball ball{};                   // world
+  std::size_t number = 0;        // of the ball: views that share it share the error of its place
+  std::vector<Ball> others{};    // balls that stood beside it: what it shows of them is no surroundings
   std::vector<Ball> variants{};  // the ball moved by one standard deviation in each of its independent directions
   double radius_px = 0;          // of the outline
   double sigma_px = 0;           // of the outline's place
@@ -57,7 +59,7 @@ struct Unwrapped {
 };
 
 // Reflected radiance over reflectance at each pixel of the ball, the rest zero; R, G, B. `used`: pixels within the
-// outline by a pixel and a half, that count, and whose incidence is below the steepest.
+// outline by a pixel and a half, that count, whose incidence is below the steepest, and that show no other ball.
 struct Facing {
   io::Image radiance;
   std::vector<std::uint8_t> used;

@@ -128,6 +128,16 @@ std::size_t view_of(const manifest::Document& document, const manifest::ImageEnt
   return recordings.views.size() - 1;
 }
 
+// Is the light on in this image? One that names none has all of them.
+bool is_lit(const manifest::ImageEntry& entry, const std::string& light) {
+  return (entry.light.empty() && !entry.dark.value_or(false)) ||
+         std::ranges::find(entry.light, light) != entry.light.end();
+}
+
+bool counts(const manifest::ImageEntry& entry) {
+  return !entry.weight || *entry.weight != 0;
+}
+
 }  // namespace
 
 bool has_recordings(const manifest::Document& document) {
@@ -136,13 +146,21 @@ bool has_recordings(const manifest::Document& document) {
                      [](const manifest::ImageEntry& e) { return !e.file.empty() && !e.camera.empty(); });
 }
 
+std::vector<std::string> lights_of_recordings(const manifest::Document& document) {
+  std::vector<std::string> names;
+  for (const auto& [name, light] : document.lights)
+    if (std::ranges::any_of(document.images, [&](const auto& entry) { return counts(entry) && is_lit(entry, name); }))
+      names.push_back(name);
+  return names;
+}
+
 Recordings read_recordings(const manifest::Document& document) {
   Recordings recordings;
   bool timed = false;
-  for (const auto& [name, light] : document.lights) recordings.lights.push_back(name);
+  recordings.lights = lights_of_recordings(document);
   for (std::size_t i = 0; i < document.images.size(); ++i) {
     const manifest::ImageEntry& entry = document.images[i];
-    if (entry.weight && *entry.weight == 0) continue;
+    if (!counts(entry)) continue;
     if (!has_entry(document, "cameras", entry.camera))
       refuse(document, i, "/camera", "names no camera: \"" + entry.camera + "\"", "enter it in cameras");
     Recording image;
@@ -150,9 +168,7 @@ Recordings read_recordings(const manifest::Document& document) {
     image.entry = i;
     image.view = view_of(document, entry, recordings);
     for (std::size_t l = 0; l < recordings.lights.size(); ++l)
-      if ((entry.light.empty() && !entry.dark.value_or(false)) ||
-          std::find(entry.light.begin(), entry.light.end(), recordings.lights[l]) != entry.light.end())
-        image.lights.push_back(l);
+      if (is_lit(entry, recordings.lights[l])) image.lights.push_back(l);
     read_pixels(document, manifest::picture_path(document, i), image);
     const camera::CameraModel& camera = recordings.views[image.view].model;
     if (image.picture.width != camera.width_px() || image.picture.height != camera.height_px())

@@ -44,13 +44,15 @@ struct Recording {
 
 struct Recordings {
   std::vector<View> views;
-  std::vector<std::string> lights;  // keys in the manifest's lights, sorted
+  std::vector<std::string> lights;  // keys in the manifest's lights, sorted: those that were on in any
   std::vector<Recording> images;
   double first_time_s = 0, last_time_s = 0;  // of those that state one
 };
 
 // Objects, and images of them that name a file and a camera.
 bool has_recordings(const manifest::Document& document);
+// Keys in the manifest's lights: those that were on in an image whose weight is not zero, sorted.
+std::vector<std::string> lights_of_recordings(const manifest::Document& document);
 // Reads the pictures and masks of all images whose weight is not zero. Error(data) with the place in the manifest where
 // a size, a response or a reference does not fit.
 Recordings read_recordings(const manifest::Document& document);

@@ -42,23 +42,31 @@ SurfaceState surface_state(const manifest::Document& document, const std::string
   return state;
 }
 
+[[noreturn]] void refuse_light(const manifest::Document& document, const std::string& name) {
+  throw Error(Exit::data, manifest::place(document, "/lights/" + name),
+              "has the model \"" + document.lights.at(name).model + "\", which explain does not simulate on images yet",
+              "use directional, point or sphere; a uniform surrounding is the mechanism light.ambient; render and "
+              "compare know all models");
+}
+
+bool is_known(const manifest::Light& entry) {
+  return entry.model == "directional" || entry.model == "point" || entry.model == "sphere";
+}
+
 void read_light(const manifest::Document& document, const std::string& name, SceneLayout& layout) {
   const manifest::Light& entry = document.lights.at(name);
-  const std::string place = manifest::place(document, "/lights/" + name);
   LightSource source;
   LightState state;
   if (entry.model == "directional") {
     source.directional = true;
     source.direction = normalized(entry.parameters.at("towards").vector());
     state.intensity = entry.parameters.at("watt_per_m2").rgb();
-  } else if (entry.model == "point" || entry.model == "sphere") {
+  } else if (is_known(entry)) {
     source.position_m = entry.parameters.at("position_m").vector();
     state.intensity = entry.parameters.at("watt_per_sr").rgb();
     if (entry.parameters.contains("radius_m")) state.radius_m = entry.parameters.at("radius_m").scalar();
   } else {
-    throw Error(Exit::data, place,
-                "has the model \"" + entry.model + "\", which explain does not simulate on images yet",
-                "use directional, point or sphere; a uniform surrounding is the mechanism light.ambient");
+    refuse_light(document, name);
   }
   layout.lights.push_back(source);
   layout.start.lights.push_back(state);
@@ -82,6 +90,11 @@ std::size_t parameter_index(const surface::Model& model, const std::string& name
   for (std::size_t i = 0; i < model.info().parameters.size(); ++i)
     if (model.info().parameters[i].name == name) return i;
   throw Error(Exit::internal, "surface " + model.info().id, "has no parameter \"" + name + "\"");
+}
+
+void check_lights(const manifest::Document& document) {
+  for (const std::string& name : lights_of_recordings(document))
+    if (!is_known(document.lights.at(name))) refuse_light(document, name);
 }
 
 LightSource moved(const LightSource& given, const LightState& state, Vec3 centre_m) {

@@ -47,6 +47,9 @@ struct SceneLayout {
   SceneState start;                   // as the manifest has it, its mechanisms included
 };
 
+// Error(data) where a light that was on in a recording has a model that is not simulated here.
+void check_lights(const manifest::Document& document);
+
 SceneLayout read_scene(const manifest::Document& document, const Recordings& recordings,
                        const std::vector<std::string>& surfaces, Vec3 centre_m);
 

@@ -8,6 +8,7 @@
 #include "io/picture.h"
 #include "io/ply.h"
 #include "manifest/document.h"
+#include "manifest/environments.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
@@ -123,17 +124,18 @@ class Builder {
   }
 
   void add_lights(Appearance& appearance) const {
-    for (const auto& [id, entry] : document_.lights) {
-      const std::string pointer = "/lights/" + id;
+    for (const auto& [id, stated] : document_.lights) {
+      const std::string pointer = "/lights/" + id, pictured = manifest::picture_pointer(document_, id);
+      const manifest::Light entry = manifest::with_environment(document_, id);
       Light light;
       light.id = id;
       light.model = light::find(entry.model);
       light.parameters = entry.parameters;
       if (!light.model) throw Error(Exit::data, at(pointer + "/model"), "no light model \"" + entry.model + "\"");
       if (!entry.file.empty()) {
-        light.file = file(entry.file, pointer + "/file");
+        light.file = file(entry.file, pictured);
         if (light.model->info().attachment == manifest::Attachment::picture)
-          light.picture = picture(entry.file, pointer + "/file", true, 0, std::numeric_limits<double>::infinity());
+          light.picture = picture(entry.file, pictured, true, 0, std::numeric_limits<double>::infinity());
       }
       light.bands = reading_.bands;
       refresh(light, at(pointer));

@@ -121,6 +121,27 @@ TEST_F(Unwrapping, MaskedPixelsAreNotUsed) {
   EXPECT_GT(of({view}).blind_sr, 2);
 }
 
+// Another ball that stands beside it is no surroundings: a disc of its own half angle, seen from the first.
+TEST_F(Unwrapping, WhatTheBallShowsOfOtherBallsIsLeftOut) {
+  wish_.camera_radius_m = 0;
+  wish_.fill = false;
+  BallView view = view_from(eye_);
+  const double before = of({view}).blind_sr;
+  const Ball other{{-0.3, 2, 0.2}, 0.3};  // far enough that all points of the first ball see it alike
+  view.others = {other};
+  const Unwrapped u = of({view});
+  const double half_angle = std::asin(other.radius_m / norm(other.centre_m));
+  const double disc =
+      2 * pi * (1 - std::cos(half_angle));  // and a tenth of the radius and a pixel, 2 degrees, about it
+  EXPECT_GT(u.blind_sr - before, disc);
+  EXPECT_LT(u.blind_sr - before, 2.2 * disc);
+  each_texel([&](int x, int y, Vec3 d) {
+    if (angle_between(d, other.centre_m) < 0.8 * half_angle) {
+      EXPECT_EQ(u.weight.at(x, y, 0), 0);
+    }
+  });
+}
+
 // A lamp that one view shows and the other denies stays in the picture; one that both show leaves it.
 TEST_F(Unwrapping, ALampThatAViewDeniesIsNone) {
   const Vec3 lamp = normalized(Vec3{-0.4, 0.6, 0.7});

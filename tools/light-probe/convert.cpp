@@ -41,7 +41,7 @@ std::vector<cli::Option> convert_options() {
                    "the second. Its light is conserved.",
            .metavar = "PROJECTION",
            .choices = projections,
-           .conflicts = {"radius", "orthographic", "lights", "silhouette", "circle", "each"},
+           .conflicts = {"radius", "orthographic", "lights", "silhouette", "circle", "mask", "scale", "each"},
            .needs = {"to"}},
           {.name = "to",
            .type = Type::choice,

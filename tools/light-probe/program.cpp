@@ -38,8 +38,8 @@ const cli::Program& gonio_program() {
                     .repeat = true}},
       .standalone = {"convert", "orthographic"},
       .takes_out = true,
-      .sections_read = {"files", "cameras", "images"},
-      .sections_written = {"files", "lights", "images", "tables"},
+      .sections_read = {"files", "cameras", "images", "goniometer"},
+      .sections_written = {"files", "environments", "lights", "images", "tables"},
       .files = {{"NAME.exr", "the surroundings: latitude-longitude, linear radiance, the light lat-long of render(1)"},
                 {"NAME-weight.exr",
                  "Y: share of the texel that some photograph shows, 0 where it was filled; footprint: width of the "

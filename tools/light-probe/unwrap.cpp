@@ -57,6 +57,13 @@ std::vector<std::size_t> without_camera(const std::vector<std::string>& paths, c
   return entered;
 }
 
+std::size_t image_named(const cli::Invocation& call, const char* option, const std::string& id) {
+  const auto index = manifest::index_of_image(call.document, id);
+  if (!index)
+    throw Error(Exit::usage, option, "\"" + id + "\" is no image of " + call.document.name, "name one of its images");
+  return *index;
+}
+
 // The photographs on the command line become images of the manifest; without any, all of its images are looked at.
 std::vector<std::size_t> chosen_images(cli::Invocation& call) {
   std::vector<std::size_t> images;
@@ -75,17 +82,37 @@ std::vector<std::size_t> chosen_images(cli::Invocation& call) {
     call.document.allow_outside = true;  // what the user names may lie anywhere
   } else {
     images = camera::images_with_pictures(call.document, {});
+    if (call.given("scale")) std::erase(images, image_named(call, "--scale", call.text("scale")));
   }
   if (!call.given("image")) return images;
   std::vector<std::size_t> wanted;
-  for (const std::string& id : call.texts("image")) {
-    const auto index = manifest::index_of_image(call.document, id);
-    if (!index)
-      throw Error(Exit::usage, "--image", "\"" + id + "\" is no image of " + call.document.name,
-                  "name one of its images");
-    wanted.push_back(*index);
-  }
+  for (const std::string& id : call.texts("image")) wanted.push_back(image_named(call, "--image", id));
   return wanted;
+}
+
+void check_count(const char* option, std::size_t files, std::size_t photographs) {
+  if (files > 1 && files != photographs)
+    throw Error(Exit::usage, option,
+                std::to_string(files) + " of them for " + std::to_string(photographs) + " photographs",
+                "give one for all, or one for each");
+}
+
+// What is not surroundings is no more so for the programs that read the photographs next: masks become those of the
+// images.
+void enter_masks(const std::vector<std::string>& paths, const std::vector<std::size_t>& images,
+                 manifest::Document& document) {
+  check_count("--mask", paths.size(), images.size());
+  std::vector<std::string> files;
+  for (const std::string& path : paths)
+    files.push_back(add_file(document, path, std::filesystem::path(path).stem().string()));
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    manifest::ImageEntry& image = document.images[images[k]];
+    if (!image.mask.empty())
+      throw Error(Exit::usage, "--mask", "image \"" + image.id + "\" has a mask in the manifest",
+                  "leave one of them out");
+    image.mask = files[files.size() == 1 ? 0 : k];
+  }
+  document.allow_outside = true;  // what the user names may lie anywhere
 }
 
 ProbeRequest request_of(cli::Invocation& call) {
@@ -108,11 +135,11 @@ ProbeRequest request_of(cli::Invocation& call) {
         probe::LightWish{call.number("light-ratio"), call.number("largest-light"), call.number("least-light"), 5};
   request.name = call.text("name");
   request.images = chosen_images(call);
-  if (request.silhouettes.size() > 1 && request.silhouettes.size() != request.images.size())
-    throw Error(Exit::usage, "--silhouette",
-                std::to_string(request.silhouettes.size()) + " of them for " + std::to_string(request.images.size()) +
-                    " photographs",
-                "give one for all, or one for each");
+  check_count("--silhouette", request.silhouettes.size(), request.images.size());
+  if (call.given("scale"))
+    request.scale = probe::ScaleWish{image_named(call, "--scale", call.text("scale")),
+                                     call.given("tile") ? call.text("tile") : std::string()};
+  if (call.given("mask")) enter_masks(call.texts("mask"), request.images, call.document);
   request.output_path = [&call](const std::string& name) { return call.output_path(name); };
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
   return request;
@@ -143,6 +170,12 @@ std::vector<cli::Option> ball_options() {
                "one for each in their order.",
        .repeat = true,
        .conflicts = {"circle"}},
+      {.name = "mask",
+       .type = Type::input_file,
+       .help = "A picture that is white where the photograph shows surroundings, and black over the camera, its "
+               "tripod or a hand as the ball mirrors them: it becomes the image's mask. One for all photographs, or "
+               "one for each in their order.",
+       .repeat = true},
       {.name = "orthographic",
        .type = Type::flag,
        .help = "Photographs without a camera: take them as seen from infinitely far, along the world's +x, z up."},
@@ -187,6 +220,18 @@ std::vector<cli::Option> result_options() {
        .help = "What no photograph shows: from its neighbours, or black.",
        .preset = "neighbours",
        .choices = {"neighbours", "black"}},
+      {.name = "scale",
+       .type = Type::text,
+       .help = "Scale the light to this image of the manifest, taken under it with another exposure or by another "
+               "camera: by the ball in it, or by a white tile (--tile). The factor and its standard error are stated.",
+       .metavar = "IMAGE",
+       .conflicts = {"orthographic", "each"}},
+      {.name = "tile",
+       .type = Type::text,
+       .help = "White tile that the image of --scale shows: a name in the manifest's goniometer, with reflectance, "
+               "place and outline; near where the ball was.",
+       .metavar = "NAME",
+       .needs = {"scale"}},
       {.name = "lights",
        .type = Type::flag,
        .help = "Take bright small regions out of the picture and enter them as lights: with a position where several "

@@ -112,7 +112,8 @@ cli::Program describe() {
   };
   program.standalone = {"specimen"};
   program.takes_out = program.takes_seed = program.takes_resume = true;
-  program.sections_read = {"files", "cameras", "images", "meshes", "surfaces", "lights", "objects", "mechanisms"};
+  program.sections_read = {"files",        "cameras", "images",  "meshes",    "surfaces",
+                           "environments", "lights",  "objects", "mechanisms"};
   program.sections_written = {"files", "images", "renderings"};
   program.files = {{"ID.exr",
                     "R, G, B radiance; variance.R/G/B of the pixel's mean; id (object's place + 1), position.X/Y/Z, "

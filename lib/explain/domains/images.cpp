@@ -4,6 +4,7 @@
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/mesh.h"
+#include "relighting/scene_state.h"
 
 namespace gonio::explain::domains {
 
@@ -15,6 +16,7 @@ const Domain& images() {
       .after = "boards",
       .needs_it = true,
       .applies = explain::images::has_recordings,
+      .within_reach = relighting::check_lights,
       .problems =
           [](const manifest::Document& document, const ProblemOptions& options) {
             std::vector<std::unique_ptr<Problem>> problems;

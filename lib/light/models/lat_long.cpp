@@ -108,6 +108,7 @@ class LatLongModel final : public Model {
               .meaning = "turn about +z, counter-clockwise seen from above; at 0 the picture's centre looks along +x"}},
         .attachment = manifest::Attachment::picture,
         .attachment_meaning = "the picture, latitude-longitude",
+        .takes_environment = true,
     };
     return info;
   }

@@ -27,6 +27,7 @@ struct Contrast;
 struct DetectedFlip;
 struct DroppedRows;
 struct EvaluatedError;
+struct Environment;
 struct Evaluation;
 struct File;
 struct FlatPatch;

@@ -1,5 +1,5 @@
 // light-probe | explain, from GONIO_BIN: highlights of lamps in pictures by the path tracer, with the lamps far and
-// near.
+// near, without and with the scene that was photographed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@ namespace {
 class Explained : public testing::Test {
  protected:
   // Four views of one ball under eight small lamps at this distance, photographed and read: light-probe's manifest, in
-  // which every lamp is a direction.
-  manifest::Document probed(double distance_m) {
+  // which every lamp is a direction. `scene`: the manifest has the ball as an object and the lamps as lights, too.
+  manifest::Document probed(double distance_m, bool scene) {
     ProbeWorld world;
     world.eyes = {{-0.5, 0, 0.1}, {0.25, -0.45, 0.2}, {0.25, 0.45, 0.15}, {-0.1, 0.3, 0.4}};
     world.balls = {{}};
@@ -36,10 +36,9 @@ class Explained : public testing::Test {
     write_file(folder_ / "scene.json", scene_text(world));
     const Ended rendered = run({"render", "scene.json", "--spp", "4", "--out", "r"}, folder_.path());
     EXPECT_EQ(rendered.status, 0) << rendered.err;
-    // Photographs and cameras alone: no scene that explain would render.
-    std::string text = recorded(scene_text(world), world.eyes.size());
+    const std::string text = recorded(scene_text(world), world.eyes.size());
     const auto first = text.find("\"meshes\""), images = text.find("\"images\"");
-    write_file(folder_ / "in.json", text.substr(0, first) + text.substr(images));
+    write_file(folder_ / "in.json", scene ? text : text.substr(0, first) + text.substr(images));
     const Ended read = run({"light-probe", "--metal", "metal.yml", "--radius", "40mm", "--circle", "119.5,119.5,84",
                             "--lights", "--columns", "32", "--out", "p", "in.json"},
                            folder_.path());
@@ -66,7 +65,7 @@ class Explained : public testing::Test {
 };
 
 TEST_F(Explained, FarLampsAndABallThatIsWhereItWasFoundLackNothing) {
-  const Ended ended = explained(probed(60));
+  const Ended ended = explained(probed(60, false));
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, testing::HasSubstr("tables-probe-highlights: No mismatch")) << ended.err;
   EXPECT_THAT(ended.err, testing::HasSubstr("tables-probe-reflected: No mismatch")) << ended.err;
@@ -74,9 +73,11 @@ TEST_F(Explained, FarLampsAndABallThatIsWhereItWasFoundLackNothing) {
 }
 
 TEST_F(Explained, NearLampsThatWereTakenForFarOnesGetTheirPlaces) {
-  const Ended ended = explained(probed(0.7));
+  const Ended ended = explained(probed(0.7, true));
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, testing::HasSubstr("probe.distance")) << ended.err;
+  // Surroundings are beyond what explain renders: its photographs are left out, in one line that says so.
+  EXPECT_THAT(ended.err, testing::HasSubstr("images: not asked: read.json#/lights/probe: has the model \"lat-long\""));
   const manifest::Document d = manifest::parse_document(ended.out, "explained", folder_.path());
   double worst_m = 0;
   for (const Vec3 lamp : lamps_) {

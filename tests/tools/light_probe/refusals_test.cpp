@@ -82,6 +82,8 @@ TEST_F(Refusals, CommandLines) {
   refused({"--radius", "20mm", "--image", "w", "camera.json"}, 64, "is no image of");
   refused({"--radius", "20mm", "--silhouette", "mask.exr", "--silhouette", "mask.exr", "camera.json"}, 64,
           "2 of them for 1 photographs");
+  refused({"--radius", "20mm", "--mask", "mask.exr", "--mask", "mask.exr", "camera.json"}, 64,
+          "--mask: 2 of them for 1 photographs");
   refused({"--orthographic", "ball.exr", "ball.exr"}, 64, "has no poses");
   refused({"--radius", "20mm", "ball.exr"}, 66, "has no manifest");
   refused({"--orthographic", "white.png"}, 65, "response is not stated");
@@ -109,6 +111,10 @@ TEST_F(Refusals, Pictures) {
   refused(with({"--balls", "2", "--silhouette", "mask.exr", "camera.json"}), 65, "shows 1 of 2 outlines");
   write("masked.json", manifest("ball.exr", "\"camera\": \"c\"", ", \"mask\": \"m\""));
   refused(with({"--silhouette", "mask.exr", "masked.json"}), 65, "counts no pixel");
+  refused(with({"--silhouette", "mask.exr", "--mask", "mask.exr", "masked.json"}), 64, "has a mask in the manifest");
+  refused(with({"--silhouette", "mask.exr", "--mask", "black.exr", "camera.json"}), 65, "counts no pixel");
+  refused(with({"--silhouette", "mask.exr", "--mask", "small.exr", "camera.json"}), 65,
+          "small.exr: has another size than the picture");
   write("nobody.json", manifest("ball.exr", "\"camera\": \"d\""));
   refused(with({"nobody.json"}), 65, "camera");
   write("gone.json", manifest("gone.exr"));

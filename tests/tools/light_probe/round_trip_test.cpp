@@ -59,6 +59,22 @@ class RoundTrip : public testing::Test {
     EXPECT_EQ(ended.status, 0) << ended.err;
     return io::read_picture(folder_ / "m/v0.exr");
   }
+  // light-probe | render: the scene under what was found, and not under its first lights as well.
+  void expect_the_photograph_again(const Ended& found) const {
+    write_file(folder_ / "found.json", found.out);
+    const Ended ended = run({"render", "found.json", "--spp", "4", "--aov", "off", "--out", "again"}, folder_.path());
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    const Rgb before = mean_of(io::read_picture(folder_ / "r/v1.exr")),
+              after = mean_of(io::read_picture(folder_ / "again/v1.exr"));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(after[c] / before[c], 1, 0.01);
+    std::printf("light-probe | render: %+.3f %%\n", 100 * (after.y / before.y - 1));
+  }
+  static Rgb mean_of(const io::Image& p) {
+    Rgb sum{};
+    for (int y = 0; y < p.height; ++y)
+      for (int x = 0; x < p.width; ++x) sum += Rgb{p.at(x, y, 0), p.at(x, y, 1), p.at(x, y, 2)};
+    return sum / static_cast<double>(p.pixels());
+  }
   // --lights: each lamp once, in its direction, and all light together as before.
   void expect_lamps_apart(Rgb whole) const {
     const Ended ended = unwrap({"--radius", "30mm", "--lights", "--out", "l", "in.json"});
@@ -94,6 +110,7 @@ TEST_F(RoundTrip, SurroundingsComeBackAndOrthographicOnesDoNot) {
   const io::Image found = io::read_picture(folder_ / "p/probe.exr"), truth = sky();
   double mean_deg = 0;
   const double worst_deg = worst_direction_deg(found, &mean_deg);
+  expect_the_photograph_again(ended);
   const Rgb before = integral(truth), after = integral(found);
   RecordProperty("worst_direction_deg", std::to_string(worst_deg));
   std::printf("directions: worst %.4f deg, mean %.4f deg; energy %+.4f %+.4f %+.4f %%\n", worst_deg, mean_deg,
