@@ -205,6 +205,7 @@ Completion complete(const Sequence& sequence, Eigen::Index rank, int most_iterat
 }
 
 Eigen::Index completion_rank(const Sequence& sequence, double share, Eigen::Index most) {
+  require_seen(sequence, 3);
   Sequence less = sequence;  // without one visible track in twenty
   Random random(1, 0x4e1d);
   for (Eigen::Index f = 0; f < sequence.frames(); ++f) {

@@ -69,6 +69,9 @@ TEST(Refusals, points_and_frames_that_are_seen_too_rarely) {
   Sequence s = made({});
   for (Eigen::Index f = 1; f < s.frames(); ++f) hide(s, f, 7);
   refused([&] { answer("rigid", s); }, Exit::data, "point 8 is seen in 1 frames, and rank 3 needs 2");
+  s.visible.col(7).setConstant(false);
+  for (const char* solver : {"rigid", "csf"})
+    refused([&] { answer(solver, s); }, Exit::data, "point 8 is seen in 0 frames, and rank 3 needs 2");
   Sequence t = made({});
   for (Eigen::Index p = 3; p < t.points(); ++p) hide(t, 5, p);
   refused([&] { answer("rigid", t); }, Exit::data, "frame 6 sees 3 points, and rank 3 needs 4");
