@@ -305,9 +305,8 @@ void Finalists::compare() {
   }
 }
 
-std::vector<Member> Finalists::members(std::vector<std::size_t>* places) const {
-  Member nothing{Member::Kind::nothing, {}};
-  double largest = 1e-3;
+double Finalists::largest_effect() const {
+  double largest = std::max(1e-3, beyond_);
   for (const Finalist& f : list_) largest = std::max(largest, std::exp(f.statistics.times) * options_.smallest_effect);
   for (const Competitor& c : before_.curves)
     if (c.hypothesis.gain > c.hypothesis.gain_sigma) largest = std::max(largest, c.hypothesis.effect);
@@ -316,8 +315,12 @@ std::vector<Member> Finalists::members(std::vector<std::size_t>* places) const {
   };
   take(before_.serial_correlation);
   take(before_.interaction);
-  largest = std::max(largest, beyond_);
-  Member outside{Member::Kind::outside, {}};
+  return largest;
+}
+
+std::vector<Member> Finalists::members(std::vector<std::size_t>* places) const {
+  double largest = largest_effect();
+  Member nothing{Member::Kind::nothing, {}}, outside{Member::Kind::outside, {}};
   if (before_.global_p <= options_.level && matter(before_.outliers, options_.smallest_effect)) {
     largest = std::max(largest, before_.outliers->effect);
     outside.statistics.outlying = std::log(before_.outliers->effect / std::max(1e-6, options_.smallest_effect));

@@ -59,6 +59,7 @@ class Finalists {
   std::vector<Member> members(std::vector<std::size_t>* places = nullptr) const;
 
  private:
+  double largest_effect() const;  // of what was fitted or looked at, and of what stands beyond the noise
   std::set<std::string> physics_of(const Finalist& f) const;  // "sensor.non-linearity/camera", whatever the form
   bool is_form_of(const Finalist& f, const Finalist& of) const;
   const Finalist& plainest_form(const Finalist& of) const;
