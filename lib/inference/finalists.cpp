@@ -31,9 +31,8 @@ bool is_too_small(const Finalist& f) {
 }
 bool holds_more(const Finalist& more, const Finalist& f) {
   const std::vector<std::size_t>&all = more.model.candidates, &own = f.model.candidates;
-  return all.size() > own.size() && std::all_of(own.begin(), own.end(), [&](std::size_t c) {
-           return std::find(all.begin(), all.end(), c) != all.end();
-         });
+  const auto holds = [&](std::size_t c) { return std::find(all.begin(), all.end(), c) != all.end(); };
+  return all.size() > own.size() && std::all_of(own.begin(), own.end(), holds);
 }
 
 double part_of_all(double part, double of) {
