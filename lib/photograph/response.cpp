@@ -64,11 +64,16 @@ double Response::code_of(double linear) const {
   return looked_up(table_, linear, &std::pair<double, double>::second, &std::pair<double, double>::first);
 }
 
-void Response::check_invertible(const std::string& place) const {
+bool Response::is_rising_table() const {
   for (std::size_t i = 1; i < table_.size(); ++i)
-    if (!(table_[i].second > table_[i - 1].second))
-      throw Error(Exit::data, place, "has linear values that do not rise in the response table",
-                  "write OpenEXR (--format exr), which needs no way back to codes");
+    if (!(table_[i].second > table_[i - 1].second)) return false;
+  return !table_.empty();
+}
+
+void Response::check_invertible(const std::string& place) const {
+  if (!table_.empty() && !is_rising_table())
+    throw Error(Exit::data, place, "has linear values that do not rise in the response table",
+                "write OpenEXR (--format exr), which needs no way back to codes");
 }
 
 const manifest::Value& response_of_channel(const manifest::Value& stated, const std::string& channel,

@@ -18,7 +18,7 @@ class Response {
   float code(float linear) const;       // the inverse
   double linear_of(double code) const;  // the same two, to the last digit where a table is stated
   double code_of(double linear) const;
-  bool is_table() const { return !table_.empty(); }
+  bool is_rising_table() const;                           // it has an inverse
   void check_invertible(const std::string& place) const;  // Error(data) for a table whose linear values do not rise
 
  private:

@@ -78,13 +78,21 @@ void drop_neighbours_of_clipped(const std::vector<std::uint8_t>& clipped, int re
     }
 }
 
-// Have all images one table as their response, and none a noise, which would be one of linear readings?
+// Is it a table, or one for each channel, that has an inverse?
+bool is_rising_table(const manifest::Value& response, const std::string& at) {
+  if (response.is_array()) return photograph::Response(response, at).is_rising_table();
+  return response.is_object() && std::ranges::all_of(response.as_object(), [&](const auto& own) {
+           return photograph::Response(own.second, at).is_rising_table();
+         });
+}
+
+// Have all images one such table as their response, and none a noise, which would be one of linear readings?
 bool share_a_table(const Document& document, const std::vector<std::size_t>& entries) {
+  const manifest::Value& first = document.images[entries[0]].response;
+  if (!is_rising_table(first, manifest::place(document, pointer(entries[0], "/response")))) return false;
   return std::ranges::all_of(entries, [&](std::size_t i) {
     const ImageEntry& e = document.images[i];
-    const bool noisy = e.noise && (e.noise->gain > 0 || e.noise->read > 0);
-    return !noisy && (e.response.is_array() || e.response.is_object()) &&
-           e.response == document.images[entries[0]].response;
+    return !(e.noise && (e.noise->gain > 0 || e.noise->read > 0)) && e.response == first;
   });
 }
 
@@ -92,10 +100,8 @@ bool share_a_table(const Document& document, const std::vector<std::size_t>& ent
 void state_table(const ImageEntry& entry, const std::string& at, const std::vector<std::string>& channels,
                  Stack& stack) {
   if (!stack.stated.empty()) return;
-  for (const std::string& channel : channels) {
+  for (const std::string& channel : channels)
     stack.stated.emplace_back(photograph::response_of_channel(entry.response, channel, at), at);
-    stack.stated.back().check_invertible(at);
-  }
 }
 
 // Readings, and which of them count; `codes`: they are the codes of files.

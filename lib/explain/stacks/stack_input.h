@@ -3,7 +3,7 @@
 // after the other (photometric stereo).
 //
 // Readings are what the file holds, through its stated response: codes over full scale, or an EXR file's values. Of a
-// stack of exposures whose integer files share a table as their response and state no noise, readings are the codes
+// stack of exposures whose files share a rising table as their response and state no noise, readings are the codes
 // themselves and the table is a part of the model: their noise is even there, and nothing that is near a steep end of
 // the table weighs more than it tells.
 // Readings that say only "at least" or "at most" do not count: the highest and the lowest code of integer files, and

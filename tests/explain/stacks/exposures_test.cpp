@@ -51,9 +51,45 @@ TEST(Exposures, ToneCurveIsNamedAndItsInverseLeavesNothing) {
   first.problem->apply(first.explanation, upgraded);
   const Outcome second = run(upgraded);
   EXPECT_EQ(second.explanation.verdict, Verdict::null) << told(second);
-  // Of codes, as the first time: as light, those on the steep end of the table would weigh most.
   EXPECT_NEAR(second.explanation.held_out_before, first.explanation.held_out_after,
               0.05 * first.explanation.held_out_after);
+}
+
+// Without a stated noise the table is a part of the model, and readings are codes, as they were the first time.
+TEST(Exposures, ACurveIsCarriedWhereNoNoiseIsStated) {
+  const tests::ScratchFolder folder;
+  ExposureWorld world;
+  world.response = film;
+  world.bits = 8;
+  manifest::Document document = record(world, folder.path());
+  for (manifest::ImageEntry& image : document.images) image.noise.reset();
+  const Outcome first = run(document);
+  ASSERT_EQ(first.named, (Names{"sensor.non-linearity"})) << told(first);
+  manifest::Document upgraded = first.document;
+  first.problem->apply(first.explanation, upgraded);
+  const Outcome second = run(upgraded);
+  ASSERT_FALSE(dynamic_cast<const ExposuresProblem&>(*second.problem).stack().stated.empty());
+  EXPECT_TRUE(second.named.empty()) << told(second);
+  EXPECT_NEAR(second.explanation.held_out_before, first.explanation.held_out_after,
+              0.05 * first.explanation.held_out_after);
+}
+
+// A table that is flat somewhere has no way back to codes: it is undone where the pictures are read, as ever.
+TEST(Exposures, ATableWithoutAnInverseIsUndone) {
+  const tests::ScratchFolder folder;
+  ExposureWorld world;
+  world.bits = 8;
+  manifest::Document document = record(world, folder.path());
+  for (manifest::ImageEntry& image : document.images)
+    image.noise.reset(), image.response = manifest::parse_json("[[0, 0], [0.004, 0], [1, 1]]", "response");
+  const Stack flat = read_stack(document, stacks_of(document, Kind::exposures).at(0), Kind::exposures);
+  EXPECT_TRUE(flat.stated.empty());
+  for (manifest::ImageEntry& image : document.images)
+    image.response = manifest::parse_json("[[0, 0], [0.5, 0.2], [1, 1]]", "response");
+  const Stack rising = read_stack(document, stacks_of(document, Kind::exposures).at(0), Kind::exposures);
+  ASSERT_EQ(rising.stated.size(), rising.channels.size());
+  EXPECT_NEAR(rising.linear(0, 0.25), 0.1, 1e-12);
+  EXPECT_NEAR(rising.reading(0, 0.1), 0.25, 1e-12);
 }
 
 TEST(Exposures, ColourChannelsHaveCurvesOfTheirOwnWhereTheyDiffer) {
