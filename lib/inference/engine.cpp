@@ -10,6 +10,7 @@
 #include "inference/compensation.h"
 #include "inference/judgement.h"
 #include "inference/law.h"
+#include "inference/left_over.h"
 #include "inference/noise.h"
 #include "inference/odd_group.h"
 #include "inference/plan.h"
@@ -121,6 +122,7 @@ void final_fit(const System& system, const Race& race, const Selection& selectio
   e.base_values = base.fit.values;
   e.residual_before = system.raw_residual(e.base_values);
   e.residual_after = system.raw_residual(model.fit.values);
+  e.left_beyond_noise = beyond_noise(system, e.residual_after);
   // At a bound under the base model, and not freed of it by what is named: a mismatch that is explained pressed it
   // there.
   const auto inside = [](const Fit& f, std::size_t p) { return std::ranges::find(f.inner, p) != f.inner.end(); };

@@ -189,6 +189,7 @@ struct Explanation {
   std::vector<double> covariance;        // of `active`, row-major: sandwich over blocks
   std::vector<Estimate> estimates;       // of the named mechanisms' parameters
   std::vector<double> residual_before, residual_after;  // y - f of all rows
+  double left_beyond_noise = 0;  // of residual_after, as a share of the signal (beyond_noise() in left_over.h)
 
   double held_out_before = 0, held_out_after = 0;  // user's unit
   double fitted_before = 0, fitted_after = 0;      // the same score on the groups that were fitted

@@ -12,7 +12,6 @@ namespace {
 constexpr double worth_a_look = 0.02;  // probability, before what it leaves is known
 constexpr double last_digit = 0.0025;  // of what can be repaired: a difference that could be anyone's
 constexpr double surely_helps = 2;     // standard errors, of what is said to matter beside something else
-constexpr double mostly_no_noise = 2;  // mean square of a residual over that of its noise
 constexpr double a_square = 0.5;       // noise widths squared, over all rows: no test parts what differs by less
 
 bool same_set(std::vector<std::size_t> a, std::vector<std::size_t> b) {
@@ -46,21 +45,6 @@ double excess_of(const HeldOut& h) {
   return rows > 0 ? squares / rows - 1 : 0;
 }
 
-// What a fit leaves beyond the noise, of the signal; 0 where most of it may be noise.
-double beyond_noise(const System& system, const Model& model) {
-  if (!system.problem().scatter_is_mismatch()) return 0;
-  const Observations& o = system.observations();
-  const std::vector<double> residual = system.raw_residual(model.fit.values);
-  double left = 0, noise = 0, norm = 0;
-  for (const std::size_t g : system.groups)
-    for (std::size_t i = o.first[g]; i < o.first[g + 1]; ++i) {
-      const double w = system.weight(i);
-      if (!(w > 0)) continue;
-      left += residual[i] * residual[i], noise += 1 / (w * w), norm += o.norm[i];
-    }
-  return norm > 0 && left > mostly_no_noise * noise ? std::sqrt((left - noise) / norm) : 0;
-}
-
 // The shares that depend on what a set leaves; `most`: what can be repaired.
 void set_shares(const Finalist& f, double most, Statistics& s) {
   const double gained = std::max(0.0, f.gained);
@@ -81,7 +65,8 @@ double errors_of_help(const HeldOut& before, const HeldOut& after) {
 Finalists::Finalists(const Race& race, const Options& options, const Model& base, const ResidualStructure& before)
     : race_(race), options_(options), base_(base), before_(before) {
   for (const double r : base.held_out.rows) rows_ += r;
-  if (before.global_p <= options.level) beyond_ = beyond_noise(race.system(), base);
+  if (before.global_p <= options.level)
+    beyond_ = beyond_noise(race.system(), race.system().raw_residual(base.fit.values));
 }
 
 bool Finalists::knows(const std::vector<std::size_t>& candidates) const {

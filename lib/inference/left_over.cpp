@@ -2,11 +2,13 @@
 #include "inference/left_over.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gonio::inference {
 namespace {
 
 constexpr double price_of_a_look = 10;  // as in the null test
+constexpr double mostly_no_noise = 2;   // mean square of a residual over that of its noise
 
 // Does any of the candidates declare the condition as a carrier of its signature?
 bool declares(const Problem& problem, const std::vector<std::size_t>& candidates, const std::string& condition) {
@@ -44,6 +46,19 @@ LeftOver left_over(const Problem& problem, const std::vector<std::size_t>& candi
     more(product->power, product->first,
          "over the product of " + conditions[product->first].name + " and " + conditions[product->second].name);
   return left;
+}
+
+double beyond_noise(const System& system, const std::vector<double>& residual) {
+  if (!system.problem().scatter_is_mismatch()) return 0;
+  const Observations& o = system.observations();
+  double left = 0, noise = 0, norm = 0;
+  for (const std::size_t g : system.groups)
+    for (std::size_t i = o.first[g]; i < o.first[g + 1]; ++i) {
+      const double w = system.weight(i);
+      if (!(w > 0)) continue;
+      left += residual[i] * residual[i], noise += 1 / (w * w), norm += o.norm[i];
+    }
+  return norm > 0 && left > mostly_no_noise * noise ? std::sqrt((left - noise) / norm) : 0;
 }
 
 }  // namespace gonio::inference

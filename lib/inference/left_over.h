@@ -17,4 +17,9 @@ struct LeftOver {
 LeftOver left_over(const Problem& problem, const std::vector<std::size_t>& candidates, const ResidualStructure& after,
                    const Options& options);
 
+// What raw residuals (of System::raw_residual) leave beyond the noise, root mean square as a share of the signal; 0
+// where most of it may be noise, or where the problem does not know the noise of single readings
+// (Problem::scatter_is_mismatch).
+double beyond_noise(const System& system, const std::vector<double>& residual);
+
 }  // namespace gonio::inference

@@ -155,6 +155,9 @@ std::string named_sentence(const Problem& problem, const Explanation& e) {
   if (e.outside)
     text += " Structure over the " + condition_in_words(e.outside->condition) +
             " remains that nothing in the library repairs." + law_sentence(problem, *e.outside);
+  else if (e.left_beyond_noise >= e.smallest_effect)
+    text += " It is not all: what is left scatters by " + printed(100 * e.left_beyond_noise, 2) +
+            " % of the signal, more than the noise, and nothing in the library repairs it.";
   return text;
 }
 

@@ -132,22 +132,34 @@ TEST(Engine, SignificantIsNotImportant) {
 // Where noise is known to be of single readings, what scatters three times as much is a mismatch that matters, though
 // nothing in the library and no curve repairs it; a small effect beside it does not make it nothing. Where blocks may
 // share more than is stated, it is noise.
-TEST(Engine, WhatScattersBeyondKnownNoiseIsNotNothing) {
-  class Scattering : public ToyProblem {
-   public:
-    explicit Scattering(bool known)
-        : ToyProblem(three_effects(), {{0.02, 0, 0}, {}, 0.1, 0.0}, 42, 10, 4000, 1), known_(known) {
-      for (double& s : observations_.sigma) s /= 3;
-    }
-    bool scatter_is_mismatch() const override { return known_; }
+// Noise of a third of what is there, stated by a problem that knows it, or does not.
+class Scattering : public ToyProblem {
+ public:
+  Scattering(bool known, double amplitude)
+      : ToyProblem(three_effects(), {{amplitude, 0, 0}, {}, 0.1, 0.0}, 42, 10, 4000, 1), known_(known) {
+    for (double& s : observations_.sigma) s /= 3;
+  }
+  bool scatter_is_mismatch() const override { return known_; }
 
-   private:
-    bool known_;
-  };
-  const Explanation known = explain(Scattering(true), quick(1)), unknown = explain(Scattering(false), quick(1));
+ private:
+  bool known_;
+};
+
+TEST(Engine, WhatScattersBeyondKnownNoiseIsNotNothing) {
+  const Explanation known = explain(Scattering(true, 0.02), quick(1)),
+                    unknown = explain(Scattering(false, 0.02), quick(1));
   EXPECT_EQ(known.verdict, Verdict::unknown) << known.sentence;
   EXPECT_TRUE(known.important);
   EXPECT_EQ(unknown.verdict, Verdict::null) << unknown.sentence;
+}
+
+TEST(Engine, ANameSaysWhatScattersBesideIt) {
+  const Explanation known = explain(Scattering(true, 0.2), quick(1)),
+                    unknown = explain(Scattering(false, 0.2), quick(1));
+  ASSERT_FALSE(known.named.empty()) << known.sentence;
+  EXPECT_NE(known.sentence.find("It is not all: what is left scatters by"), std::string::npos) << known.sentence;
+  ASSERT_FALSE(unknown.named.empty()) << unknown.sentence;
+  EXPECT_EQ(unknown.sentence.find("It is not all"), std::string::npos) << unknown.sentence;
 }
 
 TEST(Engine, SameSeedSameAnswerWhateverTheThreads) {
