@@ -10,10 +10,11 @@
 namespace gonio::inference {
 namespace {
 
-constexpr double least_share = 0.5;     // of what the first choice repaired, for a runner-up to be worth a look
-constexpr double worth_a_turn = 0.02;   // of probability, that another choice brings
-constexpr std::size_t most_idle = 1;    // turns in a row that bring less
-constexpr double near_finalists = 0.3;  // the same, for a place among the finalists as it stands
+constexpr double least_share = 0.5;       // of what the first choice repaired, for a runner-up to be worth a look
+constexpr double worth_a_turn = 0.02;     // of probability, that another choice brings
+constexpr std::size_t most_idle = 1;      // turns in a row that bring less
+constexpr double worth_exchanging = 0.1;  // of probability, for stand-ins of its members to be fitted
+constexpr double near_finalists = 0.3;    // the same, for a place among the finalists as it stands
 // Once something has joined, what is left is worth a round where a tenth of clean remainders would look like it: what
 // joins has a test of its own, counted over all looks, and the null test sees but what is smooth over one condition.
 constexpr double left_level = 0.1;
@@ -150,16 +151,27 @@ class Search {
     }
   }
 
-  // What could stand in for a member of the likeliest set; and, where that makes another the likeliest, of that one.
+  // What could stand in for a member of the set that predicts best, where that is likely, and of the likeliest; and,
+  // where that makes another the likeliest, of that one. A plain set may be the likeliest and still lack what the best
+  // one has beside another form of it: a fisheye without the uneven print that was found beside radial terms.
   void exchange() {
-    std::vector<std::size_t> of;
-    for (int turn = 0; turn < 2; ++turn) {
-      const Finalist* top = finalists_.likeliest();
-      if (top == nullptr || top->model.candidates == of) return;
-      of = top->model.candidates;
-      add_alternatives(race_, effort_, s_, Model(top->model), finalists_);
+    std::vector<std::vector<std::size_t>> done;
+    const auto exchange_in = [&](const Finalist* f) {
+      if (f == nullptr || std::ranges::find(done, f->model.candidates) != done.end()) return;
+      done.push_back(f->model.candidates);
+      add_alternatives(race_, effort_, s_, Model(f->model), finalists_);
       finalists_.weigh(effort_.looks);
-    }
+    };
+    exchange_in(best_of_the_likely());
+    exchange_in(finalists_.likeliest());
+    exchange_in(finalists_.likeliest());
+  }
+  const Finalist* best_of_the_likely() const {
+    const Finalist* best = nullptr;
+    for (const Finalist& f : finalists_.list())
+      if (f.refused.empty() && f.probability > worth_exchanging && (best == nullptr || f.gained > best->gained))
+        best = &f;
+    return best;
   }
 
   // The selection as the likeliest set leaves it.
