@@ -24,6 +24,7 @@ complete -c develop -l overshoot -x -a 'keep limit' -d 'Keep what the kernel mak
 complete -c develop -l saturation -x -d 'Stored values from here on are saturated; 8 and 16-bit codes over full scale. Default: the highest code, and none in OpenEXR.'
 complete -c develop -l format -x -a 'same exr png8 png16' -d 'What to write; same: OpenEXR from OpenEXR, else PNG with as many bits.'
 complete -c develop -l colour -x -d 'Apply this correction of the manifest, as color-calib found it, to OpenEXR pictures.'
+complete -c develop -l white -x -a '1 green' -d 'What a perfect white in the light of the charts photograph becomes: 1, or as bright as the cameras green was, so that radiance stays radiance.'
 complete -c develop -l characterize -d 'Find a sensors gain, noise and fixed pattern (EMVA 1288) in frames of even light at several exposures and in dark frames, two or more of each.'
 complete -c develop -l find-response -d 'Find how codes of a camera that is not linear depend on light, from photographs of 8 or 16 bits of one view at several exposures, and state it as the images response.'
 complete -c develop -l shutter-error -x -d 'How far stated exposure times may be off, relative, one standard deviation. 0: they are exact.'

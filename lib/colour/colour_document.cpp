@@ -228,8 +228,9 @@ void check_colours(const manifest::Document& document, const ColourRequest& requ
 }
 
 void colour_document(manifest::Document& document, const ColourRequest& request) {
-  const Correction correction =
+  Correction correction =
       correction_of(section_of(document, request.name), manifest::place(document, "/colour/" + request.name));
+  if (request.keeps_level) correction = correction.scaled(correction.white().y);
   Progress progress("develop", request.images.size());
   for (const std::size_t i : request.images) {
     manifest::ImageEntry& image = document.images[i];

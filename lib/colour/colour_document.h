@@ -48,6 +48,7 @@ std::vector<std::string> words_of(const Chart& chart, const Calibration& calibra
 
 struct ColourRequest {
   std::string name;                 // in the manifest's "colour"
+  bool keeps_level = false;         // white comes out as bright as the camera's G of it was, instead of 1
   std::vector<std::size_t> images;  // places in document.images
   std::function<std::filesystem::path(const std::string& name)> output_path;
   std::function<void(const std::filesystem::path&)> note_input;

@@ -152,6 +152,13 @@ Correction::Correction(Model model, std::vector<std::vector<double>> matrix, Rgb
     throw Error(Exit::data, place + "/white", "is not above zero");
 }
 
+Correction Correction::scaled(double by) const {
+  Correction result = *this;
+  for (std::vector<double>& row : result.matrix_)
+    for (double& x : row) x *= by;
+  return result;
+}
+
 Rgb Correction::operator()(Rgb pixel) const {
   const Rgb c{pixel.x / white_.x, pixel.y / white_.y, pixel.z / white_.z};
   Rgb out;

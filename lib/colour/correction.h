@@ -68,6 +68,8 @@ class Correction {
   Target target() const { return target_; }
   Rgb white() const { return white_; }
   const std::vector<std::vector<double>>& matrix() const { return matrix_; }
+  // The same colours, so many times as bright: polynomials too, whose terms are of the pixel and not of what comes out.
+  Correction scaled(double by) const;
   Rgb operator()(Rgb pixel) const;   // a pixel as the camera gave it
   Mat3 slopes(Rgb pixel) const;      // d colour / d pixel; where a root has none, zero
   optics::Lab lab(Rgb pixel) const;  // about D50's white

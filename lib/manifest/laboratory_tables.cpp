@@ -77,8 +77,11 @@ const std::vector<Field<LaboratoryCamera>>& laboratory_camera_fields() {
       field("black_code", &C::black_code, "", "mean code without light; left out: 0").range(0, infinite),
       field("electrons_per_code", &C::electrons_per_code, "", "whose shot noise a code has (EMVA 1288: 1 / K)")
           .positive(),
-      field("read_electrons", &C::read_electrons, "", "noise without light, one standard deviation")
-          .range(0, infinite)};
+      field("read_electrons", &C::read_electrons, "", "noise without light, one standard deviation").range(0, infinite),
+      field("filters", &C::filters, "",
+            "of a simulated colour camera: three rows of what its red, green and blue pass of the scene's; left out: "
+            "each "
+            "its own")};
   return table;
 }
 

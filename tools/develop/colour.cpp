@@ -16,6 +16,7 @@ namespace {
 colour::ColourRequest request_of(cli::Invocation& call) {
   colour::ColourRequest request;
   request.name = call.text("colour");
+  request.keeps_level = call.text("white") == "green";
   std::optional<std::string> camera;
   if (call.given("camera")) camera = call.text("camera");
   if (call.given("PHOTOGRAPH")) {
@@ -33,11 +34,19 @@ colour::ColourRequest request_of(cli::Invocation& call) {
 }  // namespace
 
 std::vector<cli::Option> colour_options() {
-  return {{.name = "colour",
-           .type = cli::Type::text,
-           .help = "Apply this correction of the manifest, as color-calib found it, to OpenEXR pictures.",
-           .metavar = "NAME",
-           .conflicts = {"merge", "undistort"}}};
+  return {
+      {.name = "colour",
+       .type = cli::Type::text,
+       .help = "Apply this correction of the manifest, as color-calib found it, to OpenEXR pictures.",
+       .metavar = "NAME",
+       .conflicts = {"merge", "undistort"}},
+      {.name = "white",
+       .type = cli::Type::choice,
+       .help = "What a perfect white in the light of the chart's photograph becomes: 1, or as bright as the camera's "
+               "green was, so that radiance stays radiance.",
+       .preset = "1",
+       .choices = {"1", "green"},
+       .needs = {"colour"}}};
 }
 
 void check_colour(cli::Invocation& call) {

@@ -67,6 +67,8 @@ struct LaboratoryCamera {
   std::optional<double> white{};                                 // code at which a pixel is saturated
   std::optional<double> black_code{};                            // mean code without light; left out: 0
   std::optional<double> electrons_per_code{}, read_electrons{};  // its noise, as EMVA 1288 measures it
+  std::vector<double>
+      filters{};  // simulated, in colour: 3 x 3, row-major: what its r, g, b read of the scene's R, G, B
 };
 
 struct LaboratoryLamp {

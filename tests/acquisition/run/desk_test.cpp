@@ -1,11 +1,13 @@
 // The laboratory on a desk: what it shows is what is so, and nothing of it lies about afterwards.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 
 #include "acquisition/desk/specimen_laboratory.h"
 #include "acquisition/desk/true_laboratory.h"
+#include "base/error.h"
 #include "data.h"
 #include "manifest/document.h"
 #include "manifest/sections/laboratory.h"
@@ -49,6 +51,36 @@ TEST(Desk, AMechanismMovesTheCameraAndNotTheReport) {
   EXPECT_EQ(believed.robots.at("arm")->state().joints_rad, real.robots.at("arm")->state().joints_rad);
   EXPECT_NE(believed.cameras.at("camera")->take({0.01, {}}).samples,
             real.cameras.at("camera")->take({0.01, {}}).samples);
+}
+
+// Red, green and blue read what their filters pass of the scene's three colours, each with its own noise.
+TEST(Desk, FiltersPassWhatTheDescriptionSays) {
+  const tests::ScratchFolder folder;
+  const WorkIn here(folder.path());
+  manifest::Document lab = specimen_laboratory("desk", folder.path());
+  manifest::LaboratoryCamera& camera = lab.laboratory.entry.front().cameras.at("camera");
+  camera.pixel_format = "BayerRG12";
+  const auto light = [&] {  // at the filters of one row of the grid and the next: red, green, green, blue
+    Instrument instrument = desk_instrument(lab, nullptr, {.seed = 3, .spp = 4});
+    instrument.lamps.at("lamp")->set(true);
+    const RawFrame frame = instrument.cameras.at("camera")->take({0.005, {}});
+    std::array<double, 4> sums{};
+    const auto width = static_cast<std::size_t>(frame.width_px);
+    for (std::size_t i = 0; i < frame.samples.size(); ++i)
+      sums[2 * (i / width % 2) + i % width % 2] += frame.samples[i] - *camera.black_code;
+    return sums;
+  };
+  const std::array<double, 4> own = light();
+  ASSERT_GT(own[0], 1e5);
+  camera.filters = {0.5, 0, 0, 0.25, 0.5, 0.25, 0.75, 0.5, 0.25};
+  const std::array<double, 4> passed = light();  // the board is grey: what a row passes in all is what its filter reads
+  EXPECT_NEAR(passed[0] / own[0], 0.5, 0.005);
+  EXPECT_NEAR(passed[1] / own[1], 1, 0.005);
+  EXPECT_NEAR(passed[2] / own[2], 1, 0.005);
+  EXPECT_NEAR(passed[3] / own[3], 1.5, 0.01);
+  camera.filters.pop_back();
+  Instrument short_of_one = desk_instrument(lab, nullptr, {.seed = 3, .spp = 1});
+  EXPECT_THROW(short_of_one.cameras.at("camera")->take({0.005, {}}), Error);
 }
 
 // Without light: the black code and the read noise that the description states, and rounding's. In the light: shot

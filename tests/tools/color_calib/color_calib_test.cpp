@@ -142,6 +142,28 @@ TEST_F(ColorCalib, DevelopAppliesIt) {
   EXPECT_THAT(unknown.err, HasSubstr("has no \"other\"; there is camera"));
 }
 
+// Radiance stays radiance: all colours as they are with white at 1, times what green read of a perfect white.
+TEST_F(ColorCalib, DevelopKeepsTheLevelWhereAsked) {
+  const Ended calibrated = calib({"chart.exr", "-o", "colour.json"});
+  ASSERT_EQ(calibrated.status, 0) << calibrated.err;
+  const auto colours = [&](const std::string& white) {
+    const Ended developed = run({"develop", "--colour", "camera", "--white", white, "--out", "white-" + white, "-i",
+                                 "colour.json", "chart.exr"},
+                                folder_.path());
+    EXPECT_EQ(developed.status, 0) << developed.err;
+    const auto document = manifest::parse_document(developed.out, "out", folder_.path());
+    return io::read_picture(manifest::resolve(document, document.images[0].file, "test"));
+  };
+  const double level = manifest::read_document(folder_ / "colour.json").colour.at("camera").white[1];
+  ASSERT_GT(level, 2);
+  const io::Image one = colours("1"), green = colours("green");
+  for (std::size_t i = 0; i < one.data.size(); i += 97)
+    EXPECT_NEAR(green.data[i], level * one.data[i], 1e-5 * (level + std::abs(green.data[i])));
+  const Ended alone =
+      run({"develop", "--merge", "--white", "green", "--out", "x", "-i", "colour.json"}, folder_.path());
+  EXPECT_EQ(alone.status, 64) << alone.err;
+}
+
 TEST_F(ColorCalib, ReadsCodesAndImagesOfAManifest) {
   io::Image codes = picture_;
   for (float& v : codes.data) v = io::srgb_from_linear(v / 45);
