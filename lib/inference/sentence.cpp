@@ -156,8 +156,8 @@ std::string named_sentence(const Problem& problem, const Explanation& e) {
     text += " Structure over the " + condition_in_words(e.outside->condition) +
             " remains that nothing in the library repairs." + law_sentence(problem, *e.outside);
   else if (e.left_beyond_noise >= e.smallest_effect)
-    text += " It is not all: what is left scatters by " + printed(100 * e.left_beyond_noise, 2) +
-            " % of the signal, more than the noise, and nothing in the library repairs it.";
+    text += " It is not all: what is left scatters by " + share_in_words(e.left_beyond_noise) +
+            " of the signal, more than the noise, and nothing in the library repairs it.";
   return text;
 }
 
@@ -204,10 +204,7 @@ std::string plain_sentence(const Problem& problem, const Explanation& e) {
     const std::string where = e.outside ? e.outside->condition : e.conditions.empty() ? "" : e.conditions[0].name;
     const std::string few = outlying_in_words(problem, e);
     std::string text = "There is a mismatch that matters";
-    if (!few.empty() && !e.outside)
-      text += ", in " + few;
-    else if (!where.empty())
-      text += structured(problem, e, where);
+    text += !few.empty() && !e.outside ? ", in " + few : where.empty() ? "" : structured(problem, e, where);
     text += ", and no physics in the library repairs it on unseen " + problem.group_noun() + "s (" + score + ").";
     text += likeliest_sentence(problem, e);
     return e.outside ? text + law_sentence(problem, *e.outside) : text;

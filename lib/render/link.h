@@ -14,6 +14,7 @@ namespace gonio::render {
 
 enum class Step {  // in the order of the chain
   optics,          // pictures before the filters, linear in all bands: Stokes planes are treated as the radiance is
+  charge,          // pictures behind the filters: what pixels give each other
   light,           // a value before photon noise
   signal,          // a value behind photon noise
   dark,            // what is read without light: read noise, and what these add

@@ -158,6 +158,7 @@ io::Image recorded(const io::Image& rendered, const Sensor& sensor, const std::s
   const std::uint64_t own_seed = seed_of(seed ^ 0x73656e736f72u, image_id);  // not the numbers that made the rendering
   const std::uint64_t camera_seed = seed_of(0x70726e75u, sensor.camera);
   io::Image image = behind_filters(rendered, sensor);
+  act(sensor, Step::charge, image);
   const int channels = static_cast<int>(image.channels.size());
   const Pixel bound(sensor);
   for (int y = 0; y < image.height; ++y)

@@ -4,6 +4,7 @@
 //   optics      pictures before the filters: lateral colour, shutter, ghost, bloom, veiling glare,
 //               crosstalk
 //               the camera's mosaic: one channel Y behind colour filters; "polarizers": behind these (render/mosaic.h)
+//   charge      what flows over
 //   light       sensitivity of pixels
 //               photon noise, Poisson: v is v * gain electrons (Janesick 2007, equation 2.14)
 //   signal      response, rows

@@ -104,6 +104,25 @@ TEST(SensorChain, LinksDoWhatTheirEquationsSay) {
   EXPECT_NEAR(value("sensor.saturation", {{"full_scale", 5.0}}, 0), r, 1e-7);
 }
 
+// One pixel of six times what it holds, green behind a grid: of the five parts that flow over each neighbour gets its
+// share, whatever its filter, and what is read of it is cut off behind.
+TEST(SensorChain, WhatAFullPixelCannotHoldFlowsToItsFourNeighbours) {
+  io::Image flat(8, 8, {"R", "G", "B"});
+  for (float& v : flat.data) v = 0.1f;
+  flat.at(3, 4, 1) = 3;
+  Sensor sensor;
+  sensor.mosaic = "RGGB";
+  sensor.switch_on(*mechanism::find_mechanism("sensor.saturation"), {0.5});
+  sensor.switch_on(*mechanism::find_mechanism("sensor.blooming"), {0.02, 0.01, 0.5});
+  const io::Image raw = recorded(flat, sensor, "raw", 1);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) {
+      const int away = std::abs(x - 3) + std::abs(y - 4);
+      const double wanted = away == 0 ? 0.5 : away > 1 ? 0.1 : x == 3 ? 0.1 + 0.02 * 2.5 : 0.1 + 0.01 * 2.5;
+      EXPECT_NEAR(raw.at(x, y, 0), wanted, 1e-6) << x << " " << y;
+    }
+}
+
 TEST(SensorChain, PrnuIsTheSameInEveryPictureOfACameraAndNoiseIsNot) {
   io::Image flat(200, 200, {"R", "G", "B"});
   for (float& v : flat.data) v = 1;

@@ -45,6 +45,7 @@ const Domain& images() {
            {"ct.", "no X-rays"},
            {"scene.", "each picture is held against its own simulation: what stands elsewhere is geometry.pose"},
            {"reference.", "pictures are held against a simulation, and no white tile"},
+           {"sensor.blooming", "clipped readings, and how much flows over there, are left out: ask a stack"},
            {"sensor.dark-current",
             "dark frames take it off (develop --dark); what is left adds the same to all exposures: light.ambient"},
            {"camera.thermal", "pictures of a scene state no temperature; corners with a column of it are boards"},

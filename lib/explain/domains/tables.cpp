@@ -36,6 +36,7 @@ const Domain& tables() {
           {"light.reflector", "irradiance is measured over a free plane; what stands beside it is light.second-source"},
           {"optics.", "a row has no neighbours in a picture for light to go to"},
           {"sensor.clipped-resampling", "a row has no neighbours in a picture"},
+          {"sensor.blooming", "a row has no neighbours in a picture"},
           {"sensor.crosstalk", "a row has no neighbours in a picture, and its channels are measured apart"},
           {"sensor.prnu", "a row names no pixel"},
           {"sensor.exposure", "a reading states its own exposure: sensor.shutter is what all of them have in common"},

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "explain/stacks/moved.h"
+#include "explain/stacks/overflow.h"
 #include "explain/stacks/reading_chain.h"
 #include "explain/stacks/stack_binding.h"
 
@@ -14,6 +15,7 @@ struct ExposureFacts {                       // of a stack, for bounds and start
   bool timed = false;                        // every picture states its time
   std::span<const double> readings, linear;  // the latter: what a linear sensor would have read
   std::span<const MovedRegion> moved;
+  const Overflow& overflow;
   std::span<const double> standing_out;  // by picture: odd_pictures.h
 };
 

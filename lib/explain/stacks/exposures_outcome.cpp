@@ -8,11 +8,16 @@
 #include "explain/stacks/stack_pictures.h"
 #include "inference/explanation.h"
 #include "inference/sentence.h"
+#include "render/mechanisms/sensor_blooming.h"
 
 namespace gonio::explain::stacks {
 std::string ExposuresProblem::remarks(const Explanation& e) const {
-  const std::string moved = moved_remark(stack_, moved_), bent = response_remark(e);
-  return moved.empty() || bent.empty() ? moved + bent : moved + " " + bent;
+  std::string text;
+  const std::string flowed =
+      is_named(*this, e, mechanism::sensor_blooming().id) ? overflow_remark(overflow_) : std::string();
+  for (const std::string& remark : {moved_remark(stack_, moved_), response_remark(e), flowed})
+    if (!remark.empty()) text += (text.empty() ? "" : " ") + remark;
+  return text;
 }
 
 std::string ExposuresProblem::response_remark(const Explanation& e) const {

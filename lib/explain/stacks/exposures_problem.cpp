@@ -9,6 +9,7 @@
 #include "explain/stacks/moved_outcome.h"
 #include "explain/stacks/odd_pictures.h"
 #include "manifest/document.h"
+#include "render/mechanisms/sensor_blooming.h"
 #include "stats/intervals.h"
 
 namespace gonio::mechanism {
@@ -60,6 +61,10 @@ std::vector<Taken> taken(const Stack& stack) {
   return all;
 }
 
+bool is_tested_apart(const std::string& id) {
+  return id == mechanism::scene_moved().id || id == mechanism::sensor_blooming().id;
+}
+
 double mean_reading(const StackImage& image) {
   double sum = 0;
   for (const float v : image.picture.data) sum += v;
@@ -74,6 +79,7 @@ ExposuresProblem::ExposuresProblem(const manifest::Document& document, Stack sta
   leave_out_stated(document, stack_);
   if (!document.mechanisms.contains(mechanism::scene_moved().id)) moved_ = find_moved(stack_, noise_);
   leave_out(moved_, stack_);
+  if (!document.mechanisms.contains(mechanism::sensor_blooming().id)) overflow_ = find_overflow(stack_, noise_);
   sites_ = choose_sites(stack_, noise_, options, place);
   add_radiances();
   add_rows();
@@ -139,7 +145,7 @@ void ExposuresProblem::add_mechanisms(const manifest::Document& document) {
   for (std::size_t g = 0; g < rows_.size(); ++g)
     for (const std::size_t s : rows_[g])
       linear.push_back(stack_.linear(sites_[s].channel, observations_.value[linear.size()]));
-  ExposureFacts facts{taken_[0].exposure_s, true, observations_.value, linear, moved_.regions, odd};
+  ExposureFacts facts{taken_[0].exposure_s, true, observations_.value, linear, moved_.regions, overflow_, odd};
   for (const StackImage& image : stack_.images) {
     facts.shortest_s = std::min(facts.shortest_s, image.exposure_s);
     facts.timed = facts.timed && image.time_s.has_value();
@@ -278,12 +284,17 @@ std::optional<double> ExposuresProblem::noise_factor(std::span<const double> res
 std::vector<std::size_t> ExposuresProblem::tested_apart() const {
   std::vector<std::size_t> apart;
   for (std::size_t c = 0; c < candidates_.size(); ++c)
-    if (candidates_[c].id() == mechanism::scene_moved().id) apart.push_back(c);
+    if (is_tested_apart(candidates_[c].id())) apart.push_back(c);
   return apart;
 }
 
 void ExposuresProblem::conclude(Explanation& e) const {
-  for (const std::size_t c : tested_apart()) conclude_moved(*this, moved_, c, e);
+  for (const std::size_t c : tested_apart()) {
+    if (candidates_[c].id() == mechanism::scene_moved().id)
+      conclude_moved(*this, moved_, c, e);
+    else
+      conclude_overflow(*this, overflow_, c, e);
+  }
 }
 
 std::vector<std::unique_ptr<Problem>> exposures_problems(const manifest::Document& document) {

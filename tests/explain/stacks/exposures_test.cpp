@@ -13,6 +13,7 @@
 #include "io/picture.h"
 #include "manifest/document.h"
 #include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
 
 namespace gonio::explain::stacks {
 namespace {
@@ -134,6 +135,25 @@ TEST(Exposures, OffsetIsFoundAndItsIntervalsCover) {
   EXPECT_GE(covered, 2);  // of 4 at 95 %: one or none with probability 0.0005
 }
 
+// Red and blue beside clipped green read too much: named beside nothing else, carried, and found no second time.
+TEST(Exposures, BloomingIsFoundBesideClippedGreen) {
+  const tests::ScratchFolder folder;
+  ExposureWorld world;
+  world.width = 144, world.height = 120;
+  world.red = 0.2, world.blue = 0.15, world.along = 0.012, world.across = 0.006;
+  world.bits = 16;
+  const Outcome r = run(record(world, folder.path()));
+  ASSERT_EQ(r.named, Names{"sensor.blooming"}) << told(r);
+  EXPECT_NEAR(r.value("sensor.blooming.along"), 0.012, 0.0004);
+  EXPECT_NEAR(r.value("sensor.blooming.across"), 0.006, 0.0004);
+  EXPECT_NE(r.explanation.sentence.find("What flows over from clipped pixels"), std::string::npos) << told(r);
+  manifest::Document upgraded = r.document;
+  r.problem->apply(r.explanation, upgraded);
+  const manifest::MechanismUse& use = upgraded.mechanisms.at("sensor.blooming");
+  EXPECT_NEAR(use.parameters.at("full_scale").scalar(), 1, 1e-9);
+  EXPECT_EQ(run(upgraded).explanation.verdict, Verdict::null);
+}
+
 TEST(Exposures, SaturationIsFoundWhereReadingsStopBelowFullScale) {
   ExposureWorld world;
   world.full_scale = 0.6;
@@ -163,6 +183,8 @@ TEST(Exposures, OneWrongShutterTimeIsFoundAndItsIntervalsCover) {
     world.longer.assign(7, 0);
     world.longer[odd] = k % 2 == 0 ? 0.05 : -0.08;
     world.seed = 60 + k;
+    world.electrons = 1e7;
+    world.read = 1e-5;
     const Outcome r = run(world, 0.001);  // a short exposure is a small part of all light
     ASSERT_EQ(r.named, (Names{"sensor.exposure"})) << k << ": " << told(r);
     ASSERT_EQ(r.explanation.estimates.size(), 1u) << told(r);

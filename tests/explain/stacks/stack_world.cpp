@@ -37,6 +37,32 @@ void write(const std::filesystem::path& path, const io::Image& image, int bits) 
 
 }  // namespace
 
+namespace {
+
+// What the filter of a pixel passes.
+double passed(int x, int y, const ExposureWorld& world) {
+  if (!(world.red > 0)) return 1;
+  return y % 2 == 0 ? (x % 2 == 0 ? world.red : 1) : (x % 2 == 0 ? 1 : world.blue);
+}
+
+// What full pixels give their neighbours, counted from whoever gives.
+void flow_over(io::Image& light, const ExposureWorld& world) {
+  const io::Image before = light;
+  const auto give = [&](int x, int y, int c, double charge) {
+    if (x >= 0 && y >= 0 && x < light.width && y < light.height) light.at(x, y, c) += static_cast<float>(charge);
+  };
+  for (int y = 0; y < light.height; ++y)
+    for (int x = 0; x < light.width; ++x)
+      for (int c = 0; c < world.channels; ++c) {
+        const double more = before.at(x, y, c) - 1;
+        if (more <= 0) continue;
+        for (const int step : {-1, 1})
+          give(x, y + step, c, world.along * more), give(x + step, y, c, world.across * more);
+      }
+}
+
+}  // namespace
+
 manifest::Document record(const ExposureWorld& world, const std::filesystem::path& folder) {
   const std::vector<std::string> names =
       world.channels == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
@@ -49,14 +75,21 @@ manifest::Document record(const ExposureWorld& world, const std::filesystem::pat
     io::Image picture(world.width, world.height, names);
     const double open_s =
         (world.exposures_s[g] + world.extra_s) * (1 + (world.longer.empty() ? 0 : world.longer.at(g)));
+    io::Image light(world.width, world.height, names);
     for (int y = 0; y < world.height; ++y)
       for (int x = 0; x < world.width; ++x)
         for (int c = 0; c < world.channels; ++c) {
-          double scene = std::exp(scene_log(x, y, c, world));
+          double scene = std::exp(scene_log(x, y, c, world)) * passed(x, y, world);
           for (const ExposureWorld::Passer& p : world.passers)
             if (p.picture == g && std::hypot(x - p.x, y - p.y) < p.radius) scene = p.light;
-          double v = scene * scale * open_s;
-          if (world.light) v = world.light(v, world.times_s.at(g));
+          const double v = scene * scale * open_s;
+          light.at(x, y, c) = static_cast<float>(world.light ? world.light(v, world.times_s.at(g)) : v);
+        }
+    if (world.along > 0 || world.across > 0) flow_over(light, world);
+    for (int y = 0; y < world.height; ++y)
+      for (int x = 0; x < world.width; ++x)
+        for (int c = 0; c < world.channels; ++c) {
+          double v = light.at(x, y, c);
           v = static_cast<double>(std::poisson_distribution<long>(std::min(50.0, v) * world.electrons)(random)) /
               world.electrons;
           if (world.response) v = world.response(v);
@@ -77,7 +110,8 @@ manifest::Document record(const ExposureWorld& world, const std::filesystem::pat
       "{\"gonio\": 1, \"files\": {" + files +
       "}, \"cameras\": {\"c\": {\"model\": \"pinhole\", \"width_px\": " + std::to_string(world.width) +
       ", \"height_px\": " + std::to_string(world.height) +
-      ", \"fx_px\": 80, \"fy_px\": 80, \"cx_px\": 35.5, \"cy_px\": 29.5}}, \"images\": [" + images + "]}";
+      ", \"fx_px\": 80, \"fy_px\": 80, \"cx_px\": 35.5, \"cy_px\": 29.5" +
+      (world.red > 0 ? ", \"mosaic\": \"RGGB\"" : "") + "}}, \"images\": [" + images + "]}";
   return manifest::parse_document(text, "stack.json", folder);
 }
 

@@ -26,6 +26,9 @@ struct ExposureWorld {
   double electrons = 20000, read = 0.0005;         // at full scale; of full scale
   double offset = 0, full_scale = 0, extra_s = 0;  // of full scale; 0: no limit but that of codes; s
   int bits = 0;                                    // 0: OpenEXR
+  // One channel behind a Bayer grid RGGB: red and blue read so much of what green does. Of what flows over full scale
+  // (1) shares go to the neighbours in the column and in the row.
+  double red = 0, blue = 0, along = 0, across = 0;
   std::uint64_t seed = 1;
 };
 
