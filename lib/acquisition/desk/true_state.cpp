@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "acquisition/desk/colour_filters.h"
 #include "acquisition/laboratory/usual.h"
 #include "acquisition/run/frame_record.h"
 #include "base/atomic_file.h"
@@ -322,30 +323,6 @@ manifest::Document TrueState::scene_of(const std::string& camera, const Shot& sh
   return scene;
 }
 
-// The light that the camera's filters pass, of the scene's three colours.
-io::Image TrueState::through_filters(const io::Image& light, const std::string& camera) const {
-  const std::vector<double>& filters = section().cameras.at(camera).filters;
-  io::Image passed = light;
-  if (filters.empty()) return passed;
-  const std::string place = manifest::place(document, "/laboratory/cameras/" + camera + "/filters");
-  if (filters.size() != 9)
-    throw Error(Exit::data, place, format("has %zu numbers", filters.size()), "give three rows of three, row by row");
-  std::array<std::size_t, 3> colour{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const int channel = light.channel(std::string(1, "RGB"[c]));
-    if (channel < 0) throw Error(Exit::data, place, "is for cameras of three colours", "take it out");
-    colour[c] = static_cast<std::size_t>(channel);
-  }
-  const std::size_t channels = light.channels.size();
-  for (std::size_t i = 0; i < light.pixels(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) {
-      double sum = 0;
-      for (std::size_t k = 0; k < 3; ++k) sum += filters[3 * c + k] * light.data[channels * i + colour[k]];
-      passed.data[channels * i + colour[c]] = static_cast<float>(sum);
-    }
-  return passed;
-}
-
 RawFrame TrueState::expose(const std::string& camera, const Shot& asked, const PixelFormat* format) {
   const Shot shot = told(asked);
   const PixelFormat own = format_of(camera);
@@ -366,10 +343,11 @@ RawFrame TrueState::expose(const std::string& camera, const Shot& asked, const P
     rendered = session.render(0, id + ".exr").picture;
     rendered_light = light;
   }
-  io::Image picture = through_filters(rendered, camera);
+  const manifest::LaboratoryCamera& entry = document.laboratory.entry.front().cameras.at(camera);
+  io::Image picture = desk::through_filters(rendered, entry.filters,
+                                            manifest::place(document, "/laboratory/cameras/" + camera + "/filters"));
   for (float& v : picture.data) v = static_cast<float>(gain * v);
   const io::Image seen = render::recorded(picture, sensor, id, options.seed);
-  const manifest::LaboratoryCamera& entry = document.laboratory.entry.front().cameras.at(camera);
   RawFrame frame;
   frame.width_px = seen.width;
   frame.height_px = seen.height;

@@ -49,7 +49,6 @@ struct TrueState {
   std::mutex busy;  // devices are called from several threads
 
  private:
-  io::Image through_filters(const io::Image& light, const std::string& camera) const;
   manifest::Document scene_of(const std::string& camera, const Shot& shot) const;
   void place_lamps(manifest::Document& scene) const;
   void turn_objects(manifest::Document& scene) const;
