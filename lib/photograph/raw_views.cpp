@@ -7,6 +7,8 @@
 #include <set>
 
 #include "base/error.h"
+#include "io/camera_raw.h"
+#include "io/exif.h"
 
 namespace gonio::photograph {
 namespace {
@@ -30,7 +32,8 @@ struct Frame {
 // By the file, where nothing else says it.
 double exposure_of(const Frame& frame, const RawStated& stated) {
   if (frame.exposure_s) return *frame.exposure_s;
-  const auto said = read_raw_frame(frame.path, stated).exposure_s;
+  const auto said = io::is_camera_raw(frame.path) ? read_raw_frame(frame.path, stated).exposure_s
+                                                  : io::exif_of(frame.path).exposure_s;
   if (!said)
     throw Error(Exit::data, frame.path.string(), "does not say how long it was exposed",
                 "state the exposures, or write them into the names: scene_20ms.png");
@@ -58,6 +61,12 @@ std::optional<NamedExposure> exposure_in_name(const std::string& stem) {
     }
   }
   return found;
+}
+
+Grouping usual_grouping(const std::vector<std::filesystem::path>& frames) {
+  const bool named =
+      std::ranges::all_of(frames, [](const auto& path) { return exposure_in_name(path.stem().string()).has_value(); });
+  return named ? Grouping::names : Grouping::sequence;
 }
 
 std::vector<RawView> raw_views(const std::vector<std::filesystem::path>& paths, const std::vector<double>& exposures_s,

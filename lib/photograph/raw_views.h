@@ -25,6 +25,9 @@ struct NamedExposure {
 };
 std::optional<NamedExposure> exposure_in_name(const std::string& stem);
 
+// By names where all have an exposure, else in sequence.
+Grouping usual_grouping(const std::vector<std::filesystem::path>& frames);
+
 // `exposures_s`: as stated for all frames in their order; empty: by names, else by the files themselves. Views have
 // unique names, in the order of their first frames. Error(data) for `names` where a file's has no exposure.
 std::vector<RawView> raw_views(const std::vector<std::filesystem::path>& frames, const std::vector<double>& exposures_s,

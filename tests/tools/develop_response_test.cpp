@@ -107,7 +107,7 @@ TEST_F(DevelopResponse, WhatTellsNoResponseIsRefusedInOneLine) {
        std::vector<Case>{{{"wall_50ms.png"}, 65, "are all of one time"},
                          {{"wall_50ms.png", "wall_400ms.png"}, 65, "has 100 x 120 pixels"},
                          {{"wall_50ms.png", "wall_100ms.png", "grey_100ms.png"}, 65, "has other channels"},
-                         {{"untimed.png", "wall_50ms.png"}, 65, "has no exposure in its name"},
+                         {{"untimed.png", "wall_50ms.png"}, 65, "untimed.png: does not say how long it was exposed"},
                          {{"wall_20ms.exr", "wall_50ms.png"}, 65, "linear already"},
                          {{"cut_20ms.png", "wall_50ms.png"}, 65, "cut_20ms.png"},
                          {{"nowhere_20ms.png", "wall_50ms.png"}, 66, "nowhere_20ms.png"},
@@ -121,6 +121,75 @@ TEST_F(DevelopResponse, WhatTellsNoResponseIsRefusedInOneLine) {
     EXPECT_THAT(ended.err, HasSubstr(c.says));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "r/response.csv")) << c.says;
   }
+}
+
+// A JPEG as a camera writes it: exposure time, aperture and sensitivity in front of the picture.
+void write_jpeg(const std::filesystem::path& path, std::uint32_t exposure_us, std::uint32_t f_tenths,
+                std::uint16_t iso) {
+  const std::string picture = [&] {
+    std::vector<unsigned char> bytes;
+    cv::Mat grey(120, 200, CV_8UC3);
+    for (int y = 0; y < grey.rows; ++y)
+      for (int x = 0; x < grey.cols; ++x) {
+        const double light = 0.02 * std::exp(std::log(500.0) * x / 199) * (1 + 0.3 * std::sin(0.1 * y));
+        const double code = 255 * io::srgb_from_linear(static_cast<float>(std::min(1.0, light * 1e-6 * exposure_us)));
+        grey.at<cv::Vec3b>(y, x) = cv::Vec3b::all(cv::saturate_cast<unsigned char>(code));
+      }
+    cv::imencode(".jpg", grey, bytes, {cv::IMWRITE_JPEG_QUALITY, 100});
+    return std::string(bytes.begin(), bytes.end());
+  }();
+  std::string exif("Exif\0\0II*\0\x08\0\0\0", 14);
+  const auto put = [&exif](std::uint64_t value, int bytes) {
+    for (int k = 0; k < bytes; ++k) exif += static_cast<char>(value >> (8 * k) & 255);
+  };
+  const auto entry = [&put](std::uint32_t tag, std::uint32_t format, std::uint32_t value) {
+    put(tag, 2), put(format, 2), put(1, 4), put(value, 4);
+  };
+  put(1, 2), entry(0x8769, 4, 26), put(0, 4);  // a directory that says where the camera's own is, 26 bytes behind "II"
+  put(3, 2), entry(0x829A, 5, 68), entry(0x829D, 5, 76), entry(0x8827, 3, iso), put(0, 4);
+  put(exposure_us, 4), put(1000000, 4), put(f_tenths, 4), put(10, 4);
+  const std::size_t length = exif.size() + 2;
+  write_file(path, picture.substr(0, 2) + "\xFF\xE1" + static_cast<char>(length >> 8) +
+                       static_cast<char>(length & 255) + exif + picture.substr(2));
+}
+
+TEST_F(DevelopResponse, ExposuresStandInTheCamerasFiles) {
+  std::vector<std::string> words;
+  for (const std::uint32_t ms : {25, 100, 400, 1600}) {
+    words.push_back(format("IMG_%u.jpg", 1000 + ms));
+    write_jpeg(folder_ / words.back(), 1000 * ms, 56, 200);
+  }
+  const Ended ended = find(words);
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const auto made = images_of(ended);
+  ASSERT_EQ(made.size(), 4u);
+  EXPECT_EQ(made[2].find("exposure_s")->as_number(), 0.4);
+  EXPECT_EQ(made[2].find("group")->as_string(), made[0].find("group")->as_string());
+  write_file(folder_ / "in.json", R"({"gonio": 1, "files": {"a": {"path": "IMG_1025.jpg"}, "b": {"path":
+    "IMG_1100.jpg"}, "c": {"path": "IMG_1400.jpg"}}, "images": [{"id": "a", "file": "a", "group": "v"},
+    {"id": "b", "file": "b", "group": "v"}, {"id": "c", "file": "c", "group": "v"}]})");
+  const Ended listed = find({"in.json"});
+  ASSERT_EQ(listed.status, 0) << listed.err;
+  EXPECT_EQ(images_of(listed)[1].find("exposure_s")->as_number(), 0.1);
+
+  write_jpeg(folder_ / words[1], 100000, 80, 200);
+  EXPECT_THAT(find(words).err, HasSubstr("IMG_1100.jpg: was taken at f/8, and others of its view at 5.6"));
+  write_jpeg(folder_ / words[1], 100000, 56, 800);
+  EXPECT_THAT(find(words).err, HasSubstr("IMG_1100.jpg: was taken at ISO 800, and others of its view at 200"));
+  write_jpeg(folder_ / words[1], 0, 56, 200);
+  EXPECT_THAT(find(words).err, HasSubstr("IMG_1100.jpg: does not say how long it was exposed"));
+}
+
+// Three JPEGs of a camera with exposures of 1/10, 1/40 and 1/160 s in them: their codes say the same times to 2 %.
+TEST_F(DevelopResponse, RecordedBracketIsReadByItsExif) {
+  GONIO_NEEDS_DATA("light-probe/a6400_ball");
+  const Ended ended = find({data("light-probe/a6400_ball/raw1.jpg"), data("light-probe/a6400_ball/raw2.jpg"),
+                            data("light-probe/a6400_ball/raw3.jpg")});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const auto made = images_of(ended);
+  ASSERT_EQ(made.size(), 3u);
+  for (const auto& [k, stated] : {std::pair{0, 0.1}, {1, 0.025}, {2, 0.00625}})
+    EXPECT_EQ(made[static_cast<std::size_t>(k)].find("exposure_s")->as_number(), stated);
 }
 
 // Median departure from the published map, after a factor for each channel, of means over exposures whose codes lie

@@ -40,9 +40,7 @@ namespace {
 photograph::Grouping grouping(const cli::Invocation& call, const std::vector<std::filesystem::path>& frames) {
   if (call.given("views"))
     return static_cast<photograph::Grouping>(std::ranges::find(groupings, call.text("views")) - groupings.begin());
-  const bool named = std::ranges::all_of(
-      frames, [](const auto& path) { return photograph::exposure_in_name(path.stem().string()).has_value(); });
-  return named ? photograph::Grouping::names : photograph::Grouping::sequence;
+  return photograph::usual_grouping(frames);
 }
 
 RawRequest request_of(cli::Invocation& call) {

@@ -2,6 +2,7 @@
 #include "tools/develop/response.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/atomic_file.h"
@@ -9,6 +10,7 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "io/codes.h"
+#include "io/exif.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/image.h"
@@ -23,14 +25,34 @@ using cli::Type;
 using photograph::FoundResponse;
 using photograph::ResponseView;
 
-std::vector<ResponseView> views_by_name(const cli::Invocation& call) {
+// By the exposures in the names, or by those that the camera wrote into the files.
+std::vector<ResponseView> views_of_photographs(const cli::Invocation& call) {
   std::vector<ResponseView> views;
-  for (const photograph::RawView& named :
-       photograph::raw_views(paths(call, "PHOTOGRAPH"), {}, photograph::Grouping::names, {})) {
-    views.push_back({named.name, named.frames, {}});
-    for (const auto& exposure_s : named.exposures_s) views.back().exposures_s.push_back(*exposure_s);
+  const std::vector<std::filesystem::path> all = paths(call, "PHOTOGRAPH");
+  for (const photograph::RawView& view : photograph::raw_views(all, {}, photograph::usual_grouping(all), {})) {
+    views.push_back({view.name, view.frames, {}});
+    for (const auto& exposure_s : view.exposures_s) views.back().exposures_s.push_back(*exposure_s);
   }
   return views;
+}
+
+// Exposure times say how much light there was where aperture and sensitivity stayed.
+void check_settings(const ResponseView& view) {
+  const auto same = [&](std::optional<double> io::Exif::*setting, const char* words) {
+    std::optional<double> first;
+    for (const std::filesystem::path& picture : view.pictures) {
+      const std::optional<double> own = io::exif_of(picture).*setting;
+      if (!own) continue;
+      if (first && std::abs(*own - *first) > 0.01 * *first)
+        throw Error(Exit::data, picture.string(),
+                    format("was taken at %s%g, and others of its view at %g: exposure times alone do not say how much "
+                           "light that is",
+                           words, *own, *first),
+                    "leave it out, or take a view at one aperture and one sensitivity");
+      first = own;
+    }
+  };
+  same(&io::Exif::f_number, "f/"), same(&io::Exif::iso, "ISO ");
 }
 
 // Photographs of the command line as images.
@@ -54,10 +76,10 @@ std::vector<std::size_t> enter_photographs(cli::Invocation& call, const std::vec
 }
 
 // Images with a file, of one camera; those of one group are exposures of one view.
-std::vector<std::size_t> images_of_camera(const cli::Invocation& call, std::vector<ResponseView>& views) {
+std::vector<std::size_t> images_of_camera(cli::Invocation& call, std::vector<ResponseView>& views) {
   std::vector<std::size_t> images;
   std::set<std::string> cameras;
-  const auto& all = call.document.images;
+  auto& all = call.document.images;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].file.empty() || all[i].dark == true || (call.given("camera") && all[i].camera != call.text("camera")))
       continue;
@@ -65,6 +87,7 @@ std::vector<std::size_t> images_of_camera(const cli::Invocation& call, std::vect
     if (io::code_bits(path) == 0) continue;
     images.push_back(i), cameras.insert(all[i].camera);
     if (all[i].group.empty()) continue;
+    if (!all[i].exposure_s) all[i].exposure_s = io::exif_of(path).exposure_s;
     if (!all[i].exposure_s)
       throw Error(Exit::data, manifest::place(call.document, "/images/" + std::to_string(i)),
                   "does not say how long it was exposed", "state exposure_s");
@@ -151,12 +174,13 @@ Exit find_response(cli::Invocation& call) {
   std::vector<ResponseView> views;
   std::vector<std::size_t> images;
   if (call.given("PHOTOGRAPH"))
-    views = views_by_name(call);
+    views = views_of_photographs(call);
   else
     images = images_of_camera(call, views);
   if (views.empty())
     throw Error(Exit::no_input, "develop", "has no exposures of one view",
                 "images of 8 or 16 bits with a group and exposure_s");
+  for (const ResponseView& view : views) check_settings(view);
   // Before anything names the files: reading says what is wrong with them.
   const photograph::ResponseData data = photograph::response_data(views);
   const FoundResponse found = photograph::find_response(data, call.number("shutter-error"));
