@@ -17,7 +17,7 @@ constexpr double whole_px = 1e-9;
 constexpr double most_pixels = 268435456;  // 2^28
 constexpr int border_samples = 400;        // along each side
 constexpr double spare_px = 0.01;          // between them the border may bend by less
-constexpr std::size_t most_channels = 16;
+constexpr std::size_t most_channels = 24;
 
 // Ray through a pixel position as (x / z, y / z); nothing where the lens cannot be inverted or the angle is too large.
 std::optional<Vec2> on_plane(const CameraModel& lens, Vec2 pixel, double largest_angle_rad) {
@@ -218,7 +218,7 @@ manifest::Camera pinhole_for(const manifest::Camera& camera, const PinholeChoice
 
 Undistorted undistort(const io::Image& source, const std::vector<std::uint8_t>& good, const CameraModel& from,
                       const CameraModel& to, const Resampling& resampling) {
-  if (source.channels.size() > most_channels) throw Error(Exit::data, "picture", "has more than 16 channels");
+  if (source.channels.size() > most_channels) throw Error(Exit::data, "picture", "has more than 24 channels");
   if (source.width < resampling.pitch || source.height < resampling.pitch)
     throw Error(Exit::data, "picture", "is smaller than its mosaic of filters");
   Undistorted result;

@@ -74,11 +74,17 @@ PinholeChoice choice_of(const UndistortRequest& request, int pitch) {
   return choice;
 }
 
-// Colour and its variances; other channels of an EXR (ids, positions) mean nothing between pixels.
+bool is_stokes(const std::string& channel) {  // s1.R, s2.Y, ...
+  return channel.size() == 4 && channel[0] == 's' && channel[1] >= '1' && channel[1] <= '3' && channel[2] == '.';
+}
+
+// Colour, what polarizers say of it, and their variances; other channels of an EXR (ids, positions) mean nothing
+// between pixels. Stokes vectors are relative to the camera's x axis, whatever the lens draws where.
 io::Image colour_of(const io::Image& raw, const std::string& place) {
   std::vector<std::string> names;
   for (const std::string& name : raw.channels) {
-    const std::string base = name.starts_with("variance.") ? name.substr(9) : name;
+    std::string base = name.starts_with("variance.") ? name.substr(9) : name;
+    if (is_stokes(base)) base = base.substr(3);
     if (base == "R" || base == "G" || base == "B" || base == "Y") names.push_back(name);
   }
   if (names.empty()) throw Error(Exit::data, place, "has neither the channels R, G, B nor Y");
@@ -92,8 +98,10 @@ io::Image colour_of(const io::Image& raw, const std::string& place) {
   return image;
 }
 
-bool is_variance(const io::Image& image, std::size_t value) {
-  return image.channels[value % image.channels.size()].starts_with("variance.");
+// Is it a reading of light, and no variance or difference of such?
+bool is_reading(const io::Image& image, std::size_t value) {
+  const std::string& channel = image.channels[value % image.channels.size()];
+  return !channel.starts_with("variance.") && !is_stokes(channel);
 }
 
 // Per pixel: no saturated sample, and counted by the image's mask.
@@ -101,7 +109,7 @@ std::vector<std::uint8_t> good_pixels(const io::Image& stored, double saturation
   std::vector<std::uint8_t> good(stored.pixels(), 1);
   const std::size_t channels = stored.channels.size();
   for (std::size_t i = 0; i < stored.data.size(); ++i)
-    if (stored.data[i] >= saturation && !is_variance(stored, i)) good[i / channels] = 0;
+    if (stored.data[i] >= saturation && is_reading(stored, i)) good[i / channels] = 0;
   if (mask.empty()) return good;
   const std::vector<std::uint8_t> counts = photograph::read_mask_of(stored, mask, mask.string());
   for (std::size_t i = 0; i < good.size(); ++i) good[i] = good[i] && counts[i];
@@ -174,7 +182,7 @@ void undistort_image(manifest::Document& document, std::size_t index, const Undi
   const std::vector<std::uint8_t> good = good_pixels(stored, saturation, mask);
   const photograph::Response response = response_of(image.response, place, bits != 0);
   for (std::size_t i = 0; i < stored.data.size(); ++i)
-    if (!is_variance(stored, i)) stored.data[i] = response(stored.data[i]);
+    if (is_reading(stored, i)) stored.data[i] = response(stored.data[i]);
   const Resampling resampling{request.choice.kernel, std::max(1.0, 1 / request.choice.scale), request.limit_overshoot,
                               pitch};
   Undistorted result =

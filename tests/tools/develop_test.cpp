@@ -133,6 +133,33 @@ TEST_F(Develop, SaturatedPixelsAreMaskedWithTheirNeighbours) {
   for (const float v : picture("e/bright-mask.png").data) ASSERT_EQ(v, 0);
 }
 
+// What polarizers said of the light is interpolated as the light is; ids are not.
+TEST_F(Develop, StokesVectorsAreCarriedAlong) {
+  io::Image seen(96, 64, {"Y", "s1.Y", "s2.Y", "variance.Y", "variance.s1.Y", "object"});
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 96; ++x) {
+      const float light = 0.2f + 0.005f * static_cast<float>(x);
+      const float values[] = {light, 0.5f * light, -0.25f * light, 4, 2, 1};
+      for (int c = 0; c < 6; ++c) seen.at(x, y, c) = values[c];
+    }
+  io::write_picture(folder_ / "stokes.exr", seen);
+  const Ended ended = develop({"-i", "barrel.json", "--out", "d", "stokes.exr"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const io::Image out = picture("d/stokes.exr"), mask = picture("d/stokes-mask.png");
+  EXPECT_EQ(out.channel("object"), -1);
+  int seen_pixels = 0;
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x) {
+      if (mask.at(x, y, 0) < 0.5f) continue;
+      const float light = out.at(x, y, out.channel("Y"));
+      EXPECT_NEAR(out.at(x, y, out.channel("s1.Y")), 0.5f * light, 1e-5);
+      EXPECT_NEAR(out.at(x, y, out.channel("s2.Y")), -0.25f * light, 1e-5);
+      EXPECT_NEAR(out.at(x, y, out.channel("variance.s1.Y")), 0.5f * out.at(x, y, out.channel("variance.Y")), 1e-4);
+      ++seen_pixels;
+    }
+  EXPECT_GT(seen_pixels, 1000);
+}
+
 TEST_F(Develop, ReadsTiffAndJpegAndRefusesWhatItCannotUse) {
   const cv::Mat grey(64, 96, CV_16U, cv::Scalar(20000)), colour(64, 96, CV_8UC3, cv::Scalar(10, 120, 200));
   cv::imwrite((folder_ / "grey.tif").string(), grey);
