@@ -35,6 +35,8 @@ struct Link {
   int order = 0;  // within the step: ascending
   // The one that its step calls for; `p` are the mechanism's amounts. A null function: does not act on this picture.
   OnValue (*value)(std::span<const double> p) = nullptr;
+  OnValue (*timed)(std::span<const double> p,
+                   double exposure_s) = nullptr;  // instead: what the exposure's length changes
   OnPicture (*picture)(std::span<const double> p, double exposure_s) = nullptr;  // exposure_s 0: not stated
   // Step optics only, instead of `picture`: what depends on where the axis meets the picture.
   OnPicture (*lens)(std::span<const double> p, const camera::CameraModel& camera) = nullptr;

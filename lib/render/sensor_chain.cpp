@@ -87,9 +87,11 @@ io::Image behind_filters(const io::Image& rendered, const Sensor& sensor) {
 class Pixel {
  public:
   explicit Pixel(const Sensor& sensor) : noise_(sensor.noise) {
-    for (const Sensor::Active& active : sensor.links)
-      if (active.link->value != nullptr)
-        steps_[static_cast<std::size_t>(active.link->step)].push_back(active.link->value(active.amounts));
+    for (const Sensor::Active& active : sensor.links) {
+      std::vector<OnValue>& step = steps_[static_cast<std::size_t>(active.link->step)];
+      if (active.link->value != nullptr) step.push_back(active.link->value(active.amounts));
+      if (active.link->timed != nullptr) step.push_back(active.link->timed(active.amounts, sensor.exposure_s));
+    }
   }
   // One reading; `random` belongs to this picture.
   double reading(double v, const Site& site, Random& random) const {

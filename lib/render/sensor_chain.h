@@ -5,7 +5,7 @@
 //               crosstalk
 //               the camera's mosaic: one channel Y behind colour filters; "polarizers": behind these (render/mosaic.h)
 //   charge      what flows over
-//   light       sensitivity of pixels
+//   light       sensitivity of pixels, hot ones
 //               photon noise, Poisson: v is v * gain electrons (Janesick 2007, equation 2.14)
 //   signal      response, rows
 //   dark        read noise, normal; black offset. Added to the signal

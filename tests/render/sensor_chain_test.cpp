@@ -104,6 +104,26 @@ TEST(SensorChain, LinksDoWhatTheirEquationsSay) {
   EXPECT_NEAR(value("sensor.saturation", {{"full_scale", 5.0}}, 0), r, 1e-7);
 }
 
+// Of 40,000 pixels one in fifty, always the same of a camera, in proportion to the exposure.
+TEST(SensorChain, HotPixelsStayWhereTheyAreAndGrowWithTheExposure) {
+  io::Image dark(200, 200, {"R", "G", "B"});
+  Sensor sensor;
+  sensor.camera = "a", sensor.mosaic = "RGGB", sensor.exposure_s = 2;
+  sensor.switch_on(*mechanism::find_mechanism("sensor.hot-pixel"), {0.02, 0.5});
+  const io::Image one = recorded(dark, sensor, "one", 1);
+  sensor.exposure_s = 6;
+  const io::Image longer = recorded(dark, sensor, "two", 1);
+  double hot = 0, sum = 0;
+  for (std::size_t i = 0; i < one.data.size(); ++i) {
+    EXPECT_NEAR(longer.data[i], 3 * one.data[i], 1e-5f * (1 + longer.data[i]));
+    hot += one.data[i] > 0, sum += one.data[i];
+  }
+  EXPECT_NEAR(hot, 800, 4.5 * std::sqrt(800 * 0.98));
+  EXPECT_NEAR(sum / hot, 0.5 * 2, 4.5 / std::sqrt(800));
+  sensor.camera = "b";
+  EXPECT_NE(recorded(dark, sensor, "one", 1).data, one.data);
+}
+
 // One pixel of six times what it holds, green behind a grid: of the five parts that flow over each neighbour gets its
 // share, whatever its filter, and what is read of it is cut off behind.
 TEST(SensorChain, WhatAFullPixelCannotHoldFlowsToItsFourNeighbours) {

@@ -8,6 +8,43 @@
 
 namespace gonio::explain::domains {
 
+namespace {
+
+std::vector<Untouched> image_reasons() {
+  return {{"board.", "a board in a scene is an object like others; what its corners tell is the domain boards"},
+          {"robot.",
+           "where the cameras stand is known here or free; how a robot missed that place is a hand-eye set (robot)"},
+          {"tracks.", "no point is followed: pixels are compared where they are"},
+          {"marker.", "markers are tables of the model markers"},
+          {"ct.", "no X-rays"},
+          {"scene.", "each picture is held against its own simulation: what stands elsewhere is geometry.pose"},
+          {"reference.", "pictures are held against a simulation, and no white tile"},
+          {"sensor.blooming", "clipped readings, and how much flows over there, are left out: ask a stack"},
+          {"sensor.hot-pixel", "dark frames take them off (develop --dark); a stack finds them"},
+          {"sensor.dark-current",
+           "dark frames take it off (develop --dark); what is left adds the same to all exposures: light.ambient"},
+          {"camera.thermal", "pictures of a scene state no temperature; corners with a column of it are boards"},
+          {"camera.flat-port",
+           "moves the whole picture by more than the fast model looks around a pixel; corners of a board "
+           "behind it are boards, and render has it"},
+          {"surface.micro-ridges",
+           "glints between two and ten pixels wide: the model of a mean lobe holds for tables of a sample alone"},
+          {"surface.residue", "reliefs turn with the sample, which is measured by tables of reflectance"},
+          {"surface.walls", "reliefs turn with the sample, which is measured by tables of reflectance"},
+          {"surface.thin-film", "three channels average over its fringes: tables of reflectance in narrow bands"},
+          {"volume.",
+           "what is seen through glass is left out of the fast model: tables of transmittance, or render and "
+           "compare"},
+          {"colour.",
+           "glare on pictures of a scene is optics.veiling-glare; that on a chart is measured before anything is "
+           "rendered: color-calib(1) leaves tables of the model chart"},
+          {"probe.",
+           "what a mirror ball shows is measured before anything is rendered: light-probe(1) leaves tables of the "
+           "models probe and probe-radiance"}};
+}
+
+}  // namespace
+
 const Domain& images() {
   static const Domain domain{
       .name = "images",
@@ -36,36 +73,7 @@ const Domain& images() {
                 files.push_back(manifest::resolve(document, mesh.file, "/meshes/" + name + "/file"));
             return files;
           },
-      .untouched =
-          {{"board.", "a board in a scene is an object like others; what its corners tell is the domain boards"},
-           {"robot.",
-            "where the cameras stand is known here or free; how a robot missed that place is a hand-eye set (robot)"},
-           {"tracks.", "no point is followed: pixels are compared where they are"},
-           {"marker.", "markers are tables of the model markers"},
-           {"ct.", "no X-rays"},
-           {"scene.", "each picture is held against its own simulation: what stands elsewhere is geometry.pose"},
-           {"reference.", "pictures are held against a simulation, and no white tile"},
-           {"sensor.blooming", "clipped readings, and how much flows over there, are left out: ask a stack"},
-           {"sensor.dark-current",
-            "dark frames take it off (develop --dark); what is left adds the same to all exposures: light.ambient"},
-           {"camera.thermal", "pictures of a scene state no temperature; corners with a column of it are boards"},
-           {"camera.flat-port",
-            "moves the whole picture by more than the fast model looks around a pixel; corners of a board "
-            "behind it are boards, and render has it"},
-           {"surface.micro-ridges",
-            "glints between two and ten pixels wide: the model of a mean lobe holds for tables of a sample alone"},
-           {"surface.residue", "reliefs turn with the sample, which is measured by tables of reflectance"},
-           {"surface.walls", "reliefs turn with the sample, which is measured by tables of reflectance"},
-           {"surface.thin-film", "three channels average over its fringes: tables of reflectance in narrow bands"},
-           {"volume.",
-            "what is seen through glass is left out of the fast model: tables of transmittance, or render and "
-            "compare"},
-           {"colour.",
-            "glare on pictures of a scene is optics.veiling-glare; that on a chart is measured before anything is "
-            "rendered: color-calib(1) leaves tables of the model chart"},
-           {"probe.",
-            "what a mirror ball shows is measured before anything is rendered: light-probe(1) leaves tables of the "
-            "models probe and probe-radiance"}}};
+      .untouched = image_reasons()};
   return domain;
 }
 

@@ -37,6 +37,7 @@ const Domain& tables() {
           {"optics.", "a row has no neighbours in a picture for light to go to"},
           {"sensor.clipped-resampling", "a row has no neighbours in a picture"},
           {"sensor.blooming", "a row has no neighbours in a picture"},
+          {"sensor.hot-pixel", "a row names no pixel"},
           {"sensor.crosstalk", "a row has no neighbours in a picture, and its channels are measured apart"},
           {"sensor.prnu", "a row names no pixel"},
           {"sensor.exposure", "a reading states its own exposure: sensor.shutter is what all of them have in common"},

@@ -3,6 +3,7 @@
 #pragma once
 #include <span>
 
+#include "explain/stacks/hot_pixels.h"
 #include "explain/stacks/moved.h"
 #include "explain/stacks/overflow.h"
 #include "explain/stacks/reading_chain.h"
@@ -16,6 +17,7 @@ struct ExposureFacts {                       // of a stack, for bounds and start
   std::span<const double> readings, linear;  // the latter: what a linear sensor would have read
   std::span<const MovedRegion> moved;
   const Overflow& overflow;
+  const HotPixels& hot;
   std::span<const double> standing_out;  // by picture: odd_pictures.h
 };
 

@@ -15,7 +15,7 @@ std::string ExposuresProblem::remarks(const Explanation& e) const {
   std::string text;
   const std::string flowed =
       is_named(*this, e, mechanism::sensor_blooming().id) ? overflow_remark(overflow_) : std::string();
-  for (const std::string& remark : {moved_remark(stack_, moved_), response_remark(e), flowed})
+  for (const std::string& remark : {moved_remark(stack_, moved_), response_remark(e), flowed, hot_pixels_remark(hot_)})
     if (!remark.empty()) text += (text.empty() ? "" : " ") + remark;
   return text;
 }

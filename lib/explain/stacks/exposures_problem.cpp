@@ -14,7 +14,8 @@
 
 namespace gonio::mechanism {
 const Mechanism& scene_moved();
-}
+const Mechanism& sensor_hot_pixel();
+}  // namespace gonio::mechanism
 
 namespace gonio::explain::stacks {
 namespace {
@@ -62,7 +63,8 @@ std::vector<Taken> taken(const Stack& stack) {
 }
 
 bool is_tested_apart(const std::string& id) {
-  return id == mechanism::scene_moved().id || id == mechanism::sensor_blooming().id;
+  return id == mechanism::scene_moved().id || id == mechanism::sensor_blooming().id ||
+         id == mechanism::sensor_hot_pixel().id;
 }
 
 double mean_reading(const StackImage& image) {
@@ -80,6 +82,7 @@ ExposuresProblem::ExposuresProblem(const manifest::Document& document, Stack sta
   if (!document.mechanisms.contains(mechanism::scene_moved().id)) moved_ = find_moved(stack_, noise_);
   leave_out(moved_, stack_);
   if (!document.mechanisms.contains(mechanism::sensor_blooming().id)) overflow_ = find_overflow(stack_, noise_);
+  if (!document.mechanisms.contains(mechanism::sensor_hot_pixel().id)) hot_ = find_hot_pixels(stack_, noise_);
   sites_ = choose_sites(stack_, noise_, options, place);
   add_radiances();
   add_rows();
@@ -145,7 +148,7 @@ void ExposuresProblem::add_mechanisms(const manifest::Document& document) {
   for (std::size_t g = 0; g < rows_.size(); ++g)
     for (const std::size_t s : rows_[g])
       linear.push_back(stack_.linear(sites_[s].channel, observations_.value[linear.size()]));
-  ExposureFacts facts{taken_[0].exposure_s, true, observations_.value, linear, moved_.regions, overflow_, odd};
+  ExposureFacts facts{taken_[0].exposure_s, true, observations_.value, linear, moved_.regions, overflow_, hot_, odd};
   for (const StackImage& image : stack_.images) {
     facts.shortest_s = std::min(facts.shortest_s, image.exposure_s);
     facts.timed = facts.timed && image.time_s.has_value();
@@ -292,6 +295,8 @@ void ExposuresProblem::conclude(Explanation& e) const {
   for (const std::size_t c : tested_apart()) {
     if (candidates_[c].id() == mechanism::scene_moved().id)
       conclude_moved(*this, moved_, c, e);
+    else if (candidates_[c].id() == mechanism::sensor_hot_pixel().id)
+      conclude_hot_pixels(*this, hot_, c, e);
     else
       conclude_overflow(*this, overflow_, c, e);
   }

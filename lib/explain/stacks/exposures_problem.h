@@ -33,7 +33,7 @@ class ExposuresProblem final : public Problem {
   // Another exposure, beyond the longest and the shortest and in the widest gap, and the longest without any light.
   std::vector<Proposal> proposals() const override;
   ProposedRows propose(std::span<const double> values, std::size_t proposal) const override;
-  // What moved, and what flowed over, was found before anything is fitted.
+  // What moved, what flowed over and which pixels are hot was found before anything is fitted.
   std::vector<std::size_t> tested_apart() const override;
   void conclude(Explanation& explanation) const override;
   std::string remarks(const Explanation& explanation) const override;
@@ -68,6 +68,7 @@ class ExposuresProblem final : public Problem {
   ReadingNoise noise_;
   Moved moved_;
   Overflow overflow_;
+  HotPixels hot_;
   std::vector<Site> sites_;
   std::vector<std::size_t> shown_in_;           // by site: the image that its radiance is stated in
   std::vector<std::vector<std::size_t>> rows_;  // by image: sites, ascending

@@ -9,6 +9,7 @@
 #include <map>
 #include <vector>
 
+#include "explain/stacks/pixel_radiance.h"
 #include "inference/apart.h"
 #include "inference/wording.h"
 #include "linear/solve.h"
@@ -24,57 +25,6 @@ constexpr std::size_t most_of_a_picture = 20000, fewest = 200, levels = 24, fewe
 constexpr int tile_px = 16;
 constexpr double most_by_chance = 1e-4, each_side = 2;  // standard errors
 constexpr double least_repaired = 0.3;
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
-struct Radiance {
-  double value = none, variance = 0;  // none: no picture shows it
-};
-
-// Of single pixels, each looked for once.
-class Radiances {
- public:
-  Radiances(const Stack& stack, const ReadingNoise& noise) : stack_(stack), noise_(noise) {
-    known_.resize(stack.images[0].picture.data.size());
-    seen_.resize(known_.size());
-  }
-  // By weighted least squares over the pictures in which the pixel counts and is clear of full scale. Weights are those
-  // of what all pictures together expect: by their own noise, low readings would weigh more than high ones.
-  const Radiance& at(int x, int y, int c) {
-    const std::size_t i = stack_.images[0].picture.index(x, y, c);
-    if (!seen_[i]) known_[i] = over_all_but(stack_.images.size(), i, c), seen_[i] = 1;
-    return known_[i];
-  }
-  Radiance without(std::size_t g, int x, int y, int c) const {
-    return over_all_but(g, stack_.images[0].picture.index(x, y, c), c);
-  }
-
- private:
-  bool tells(std::size_t g, std::size_t i) const {
-    const StackImage& image = stack_.images[g];
-    return image.counts[i] != 0 && image.picture.data[i] < clear * stack_.full_scale;
-  }
-  Radiance over_all_but(std::size_t left_out, std::size_t i, int c) const {
-    double light = 0, time = 0, top = 0, bottom = 0;
-    for (std::size_t g = 0; g < stack_.images.size(); ++g) {
-      if (g == left_out || !tells(g, i)) continue;
-      light += stack_.linear(c, stack_.images[g].picture.data[i]), time += time_of(g);
-    }
-    if (!(time > 0)) return {};
-    for (std::size_t g = 0; g < stack_.images.size(); ++g) {
-      if (g == left_out || !tells(g, i)) continue;
-      const double t = time_of(g), v = stack_.reading(c, std::max(0.0, light / time * t)), sigma = noise_.sigma(g, v);
-      const double spread = 0.5 * (stack_.linear(c, v + sigma) - stack_.linear(c, std::max(0.0, v - sigma)));
-      const double weight = 1 / (spread * spread + 1e-30);
-      top += weight * t * stack_.linear(c, stack_.images[g].picture.data[i]), bottom += weight * t * t;
-    }
-    return {top / bottom, 1 / bottom};
-  }
-  double time_of(std::size_t g) const { return stack_.images[g].exposure_s * stack_.images[g].gain; }
-  const Stack& stack_;
-  const ReadingNoise& noise_;
-  std::vector<Radiance> known_;
-  std::vector<std::uint8_t> seen_;
-};
 
 struct Look {
   double expected = 0, residual = 0, sigma = 1;  // linear readings
@@ -89,7 +39,7 @@ constexpr std::array<std::pair<int, int>, 4> around{{{0, -1}, {0, 1}, {-1, 0}, {
 class Looks {
  public:
   Looks(const Stack& stack, const ReadingNoise& noise)
-      : stack_(stack), noise_(noise), radiances_(stack, noise), full_(stack.linear(0, stack.full_scale)) {}
+      : stack_(stack), noise_(noise), radiances_(stack, noise, clear), full_(stack.linear(0, stack.full_scale)) {}
 
   // Readings beside clipped pixels, of all pictures, less what others of their brightness depart by.
   std::vector<Look> all() {
@@ -116,8 +66,8 @@ class Looks {
     for (std::size_t k = 0; k < around.size(); ++k) {
       const int u = x + around[k].first, v = y + around[k].second;
       if (u < 0 || v < 0 || u >= stack_.width() || v >= stack_.height()) return false;
-      const Radiance& r = radiances_.at(u, v, c);
-      if (std::isnan(r.value)) return false;
+      const PixelRadiance& r = radiances_.at(u, v, c);
+      if (!r.known()) return false;
       over[k] = equation::overflow(r.value * t, full_);
     }
     return true;
@@ -152,8 +102,8 @@ class Looks {
   }
   bool see(std::size_t g, int x, int y, int c, Look& look) {
     const StackImage& image = stack_.images[g];
-    const Radiance r = radiances_.without(g, x, y, c);
-    if (std::isnan(r.value)) return false;
+    const PixelRadiance r = radiances_.without(g, x, y, c);
+    if (!r.known()) return false;
     const double t = image.exposure_s * image.gain;
     look.expected = r.value * t;
     look.residual = stack_.linear(c, image.picture.at(x, y, c)) - look.expected;
@@ -191,7 +141,7 @@ class Looks {
 
   const Stack& stack_;
   const ReadingNoise& noise_;
-  Radiances radiances_;
+  PixelRadiances radiances_;
   double full_;
   std::size_t levels_ = 0;  // so far
 };

@@ -85,6 +85,8 @@ manifest::Document record(const ExposureWorld& world, const std::filesystem::pat
           const double v = scene * scale * open_s;
           light.at(x, y, c) = static_cast<float>(world.light ? world.light(v, world.times_s.at(g)) : v);
         }
+    for (const ExposureWorld::Hot& hot : world.hot)
+      light.at(hot.x, hot.y, 0) += static_cast<float>(hot.per_s * world.exposures_s[g]);
     if (world.along > 0 || world.across > 0) flow_over(light, world);
     for (int y = 0; y < world.height; ++y)
       for (int x = 0; x < world.width; ++x)

@@ -29,6 +29,11 @@ struct ExposureWorld {
   // One channel behind a Bayer grid RGGB: red and blue read so much of what green does. Of what flows over full scale
   // (1) shares go to the neighbours in the column and in the row.
   double red = 0, blue = 0, along = 0, across = 0;
+  struct Hot {
+    int x = 0, y = 0;
+    double per_s = 0;  // of full scale
+  };
+  std::vector<Hot> hot{};  // of the first channel
   std::uint64_t seed = 1;
 };
 
