@@ -19,6 +19,8 @@ constexpr double clear = 0.8;            // of full scale
 constexpr double false_share = 0.1;      // of those that are found
 constexpr double least_z = 5;            // of a point that stands out
 constexpr double most_beside = 0.05;     // of what a hot pixel gathers, in the pixels right beside it
+constexpr double most_elsewhere = 0.2;   // of it, in the other channels of the same pixel
+constexpr double least_p = 1e-3;         // of its growth with the exposure
 constexpr std::size_t named_pixels = 4;  // in words
 
 // A point that is brighter, or darker, than all eight neighbours of its filter.
@@ -30,7 +32,8 @@ struct Point {
 
 class Points {
  public:
-  Points(const Stack& stack, const ReadingNoise& noise) : stack_(stack), radiances_(stack, noise, clear) {}
+  Points(const Stack& stack, const ReadingNoise& noise)
+      : stack_(stack), noise_(noise), radiances_(stack, noise, clear) {}
 
   std::vector<Point> all() {
     std::vector<Point> points;
@@ -93,6 +96,35 @@ class Points {
     return count > 0 ? sum / count : 0;
   }
 
+  // Does it stand out in another channel, too? What a scene or a speck does is seen in several.
+  bool elsewhere(int x, int y, int c, double excess) {
+    for (int other = 0; other < static_cast<int>(stack_.channels.size()); ++other) {
+      std::array<double, 8> around{};
+      double variance = 0;
+      const PixelRadiance r = radiances_.at(x, y, other);
+      if (other == c || !r.known() || !ring(x, y, other, around, variance)) continue;
+      if (!(std::abs(r.value - middle(around)) < most_elsewhere * std::abs(excess))) return true;
+    }
+    return false;
+  }
+
+  // Does its reading grow with the exposure, within half a code, where two pictures at least show that it is hot?
+  bool grows(int x, int y, int c, double rate, double excess, double uneven) const {
+    double chi_square = 0, pictures = 0, clear_ones = 0;
+    for (std::size_t g = 0; g < stack_.images.size(); ++g) {
+      const StackImage& image = stack_.images[g];
+      const std::size_t i = image.picture.index(x, y, c);
+      const double read = image.picture.data[i], t = image.exposure_s * image.gain;
+      if (!image.counts[i] || !(read < clear * stack_.full_scale)) continue;
+      const double noise = noise_.sigma(g, read);
+      const double spread = 0.5 * (stack_.linear(c, read + noise) - stack_.linear(c, std::max(0.0, read - noise)));
+      const double sigma = std::hypot(spread, uneven * (rate - excess) * t, 0.5 * stack_.quantum);
+      chi_square += std::pow((stack_.linear(c, read) - rate * t) / sigma, 2);
+      pictures += 1, clear_ones += excess * t > 3 * sigma;
+    }
+    return clear_ones >= 2 && stats::chi2_upper(chi_square, pictures - 1) > least_p;
+  }
+
   bool stands_out(int x, int y, int c, double uneven, Point& point) {
     const PixelRadiance r = radiances_.at(x, y, c);
     std::array<double, 8> around{};
@@ -103,12 +135,14 @@ class Points {
     const double sigma = std::sqrt(r.variance + variance + std::pow(uneven * middle_of_all, 2));
     if (!(beyond > least_z * sigma) || !(beyond > around.back() - around.front())) return false;
     const double excess = r.value - middle_of_all;
-    if (!(std::abs(beside(x, y, c)) < most_beside * std::abs(excess))) return false;
+    if (!(std::abs(beside(x, y, c)) < most_beside * std::abs(excess)) || elsewhere(x, y, c, excess)) return false;
+    if (!grows(x, y, c, r.value, excess, uneven)) return false;
     point = {{x, y, c, excess, std::sqrt(r.variance + variance / 8)}, beyond / sigma, excess > 0};
     return true;
   }
 
   const Stack& stack_;
+  const ReadingNoise& noise_;
   PixelRadiances radiances_;
   std::size_t looked_at_ = 0;
 };
@@ -146,7 +180,9 @@ HotPixels find_hot_pixels(const Stack& stack, const ReadingNoise& noise) {
   hot.rate = rates / n, hot.rate_sigma = std::sqrt(std::max(0.0, squares / n - hot.rate * hot.rate) / (n - 1));
   double gathered = 0, readings = 0;
   for (const StackImage& image : stack.images) {
-    gathered += squares * std::pow(image.exposure_s * image.gain, 2);
+    for (const HotPixels::Pixel& pixel : hot.pixels)
+      if (image.counts[image.picture.index(pixel.x, pixel.y, pixel.channel)])
+        gathered += std::pow(pixel.rate * image.exposure_s * image.gain, 2);
     for (std::size_t i = 0; i < image.counts.size(); ++i)
       if (image.counts[i])
         readings += std::pow(stack.linear(static_cast<int>(i % stack.channels.size()), image.picture.data[i]), 2);

@@ -1,11 +1,12 @@
 // Pixels of a stack of exposures that gather more in the dark than others do (sensor.hot-pixel).
 //
-// A hot pixel reads more than all eight neighbours of its filter, in proportion to the exposure, by more than these
-// differ (it lies at no edge), and stands alone: a lens draws no point that leaves the pixels right beside it, whatever
-// their filters, as dark as before. A scene has points that are darker than all eight neighbours as often as brighter
-// ones: how many of these stand out as far is the control. Those count from where one in ten, at most, is the scene's
-// ((1 + dark ones) / bright ones <= 0.1: Barber & Candes 2015, Controlling the false discovery rate via knockoffs,
-// Annals of Statistics 43(5)); fewer than ten are not found.
+// A hot pixel reads more than all eight neighbours of its filter, by more than these differ (it lies at no edge), and
+// what it reads beyond them grows with the exposure. It stands alone: a lens draws no point that leaves the pixels
+// right beside it, whatever their filters, as dark as before, and where pixels have three channels it is hot in one. A
+// scene has points that are darker than all eight neighbours as often as brighter ones: how many of these stand out as
+// far is the control. Those count from where one in ten, at most, is the scene's ((1 + dark ones) / bright ones <= 0.1:
+// Barber & Candes 2015, Controlling the false discovery rate via knockoffs, Annals of Statistics 43(5)); fewer than ten
+// are not found.
 #pragma once
 #include <string>
 #include <vector>
