@@ -195,7 +195,7 @@ manifest::AnswerStability stability(const Problem& problem, const Explanation& e
   const Stability& s = *e.stability;
   manifest::AnswerStability entry{static_cast<std::int64_t>(s.draws),
                                   static_cast<std::int64_t>(s.groups),
-                                  static_cast<std::int64_t>(s.same(e.verdict, e.named)),
+                                  static_cast<std::int64_t>(s.same(problem, e.verdict, e.named)),
                                   {}};
   for (const Stability::Answer& a : s.answers)
     entry.answers.push_back({verdict_name(a.verdict), ids_of(problem, a.named), static_cast<std::int64_t>(a.times)});

@@ -138,12 +138,12 @@ struct Stability {
   std::size_t draws = 0, groups = 0;  // so many draws of so many groups
   struct Answer {
     Verdict verdict = Verdict::null;
-    std::vector<std::size_t> named;  // candidates, ascending; empty: nothing was named
+    std::vector<std::size_t> named;  // candidates, ascending, one for all forms of a mechanism; empty: none
     std::size_t times = 0;
   };
   std::vector<Answer> answers;  // the most frequent first
   // Draws whose answer names what `named` holds, no more and no less, or names nothing, as `verdict` has it.
-  std::size_t same(Verdict verdict, std::vector<std::size_t> named) const;
+  std::size_t same(const Problem& problem, Verdict verdict, std::vector<std::size_t> named) const;
 };
 
 struct Explanation {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "inference/compensation.h"
+#include "inference/stability.h"
 
 namespace gonio::inference {
 namespace {
@@ -334,12 +335,11 @@ std::string contradicted_sentence(const Problem& problem, const Explanation& e) 
 std::string stability_sentence(const Problem& problem, const Explanation& e) {
   if (!e.stability || e.stability->draws == 0) return "";
   const Stability& s = *e.stability;
-  const std::size_t same = s.same(e.verdict, e.named);
+  const std::size_t same = s.same(problem, e.verdict, e.named);
   std::string text = " The same answer came out in " + std::to_string(same) + " of " + std::to_string(s.draws) +
                      " draws of " + std::to_string(s.groups) + " of the " +
                      std::to_string(problem.observations().groups()) + " " + problem.group_noun() + "s";
-  std::vector<std::size_t> own = e.named;
-  std::sort(own.begin(), own.end());
+  const std::vector<std::size_t> own = whatever_the_form(problem, e.named);
   std::string others;
   for (const Stability::Answer& a : s.answers) {
     if (a.named == own && (!own.empty() || a.verdict == e.verdict)) continue;

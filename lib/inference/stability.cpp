@@ -28,15 +28,24 @@ std::set<std::vector<std::size_t>> parts_left_out(std::size_t groups, std::size_
   return parts;
 }
 
-std::vector<std::size_t> sorted(std::vector<std::size_t> candidates) {
-  std::sort(candidates.begin(), candidates.end());
-  return candidates;
-}
-
 }  // namespace
 
-std::size_t Stability::same(Verdict verdict, std::vector<std::size_t> named) const {
-  named = sorted(std::move(named));
+// A power law and a spline of one response are one answer: the first candidate of a mechanism on its targets stands for
+// all of them.
+std::vector<std::size_t> whatever_the_form(const Problem& problem, std::vector<std::size_t> named) {
+  const std::vector<Candidate>& all = problem.candidates();
+  for (std::size_t& c : named)
+    c = static_cast<std::size_t>(
+        std::ranges::find_if(
+            all, [&](const Candidate& other) { return other.id() == all[c].id() && other.on == all[c].on; }) -
+        all.begin());
+  std::ranges::sort(named);
+  named.erase(std::ranges::unique(named).begin(), named.end());
+  return named;
+}
+
+std::size_t Stability::same(const Problem& problem, Verdict verdict, std::vector<std::size_t> named) const {
+  named = whatever_the_form(problem, std::move(named));
   std::size_t times = 0;
   for (const Answer& a : answers)
     if (a.named == named && (!named.empty() || a.verdict == verdict)) times += a.times;
@@ -52,7 +61,7 @@ Stability stability(const Problem& problem, std::size_t draws, std::uint64_t see
   const std::set<std::vector<std::size_t>> parts = parts_left_out(groups, draws, seed);
   for (const std::vector<std::size_t>& part : parts) {
     const Explanation e = explained(part);
-    const std::vector<std::size_t> named = sorted(e.named);
+    const std::vector<std::size_t> named = whatever_the_form(problem, e.named);
     const auto known = std::ranges::find_if(result.answers, [&](const Stability::Answer& a) {
       return a.named == named && (!named.empty() || a.verdict == e.verdict);
     });

@@ -14,4 +14,7 @@ namespace gonio::inference {
 Stability stability(const Problem& problem, std::size_t draws, std::uint64_t seed,
                     const std::function<Explanation(const std::vector<std::size_t>& left_out)>& explained);
 
+// What is named, ascending, as Stability counts it.
+std::vector<std::size_t> whatever_the_form(const Problem& problem, std::vector<std::size_t> named);
+
 }  // namespace gonio::inference

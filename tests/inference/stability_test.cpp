@@ -30,7 +30,7 @@ TEST(Stability, PartsAreThreeQuartersAllDifferentAndTheSameForOneSeed) {
   const Stability s = stability(problem, 20, 7, ask);
   EXPECT_EQ(s.draws, 20u);
   EXPECT_EQ(s.groups, 6u);
-  EXPECT_EQ(s.same(Verdict::null, {}), 20u);
+  EXPECT_EQ(s.same(problem, Verdict::null, {}), 20u);
   const std::set<std::vector<std::size_t>> first = std::exchange(parts, {});
   stability(problem, 20, 7, ask);
   EXPECT_EQ(parts, first);
@@ -44,6 +44,25 @@ TEST(Stability, FewGroupsHaveFewParts) {
   EXPECT_EQ(stability(Recordings(3), 20, 1, ask).draws, 0u);
 }
 
+// Two forms of one mechanism on the same things are one answer.
+TEST(Stability, FormsOfAMechanismAreOneAnswer) {
+  class TwoForms : public Recordings {
+   public:
+    TwoForms() : Recordings(8) { candidates_.push_back(candidates_[0]), candidates_.back().finer = true; }
+  };
+  const TwoForms problem;
+  const std::size_t other = problem.candidates().size() - 1;
+  std::size_t asked = 0;
+  const Stability s = stability(problem, 10, 1, [&](const std::vector<std::size_t>&) {
+    Explanation e;
+    e.verdict = Verdict::named, e.named = {++asked % 2 == 0 ? other : 0};
+    return e;
+  });
+  ASSERT_EQ(s.answers.size(), 1u);
+  EXPECT_EQ(s.same(problem, Verdict::named, {other}), 10u);
+  EXPECT_EQ(s.same(problem, Verdict::named, {1}), 0u);
+}
+
 // A name that hangs on one recording comes out where that one takes part, and only there.
 TEST(Stability, CountsWhatComesOut) {
   const Recordings problem(8);
@@ -55,9 +74,9 @@ TEST(Stability, CountsWhatComesOut) {
     return e;
   });
   ASSERT_EQ(s.draws, 28u);  // all parts of six of eight
-  EXPECT_EQ(s.same(Verdict::named, {0, 2}), 21u);
-  EXPECT_EQ(s.same(Verdict::null, {}), 7u);
-  EXPECT_EQ(s.same(Verdict::named, {0}), 0u);
+  EXPECT_EQ(s.same(problem, Verdict::named, {0, 2}), 21u);
+  EXPECT_EQ(s.same(problem, Verdict::null, {}), 7u);
+  EXPECT_EQ(s.same(problem, Verdict::named, {0}), 0u);
   EXPECT_EQ(s.answers.at(0).times, 21u);
 }
 
