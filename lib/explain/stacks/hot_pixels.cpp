@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/parallel.h"
 #include "explain/stacks/pixel_radiance.h"
 #include "inference/apart.h"
 #include "inference/wording.h"
@@ -46,6 +45,23 @@ class Points {
     return points;
   }
   std::size_t looked_at() const { return looked_at_; }
+
+  // Relative RMSE of the hot pixels' readings about what their neighbours say, and about what their own other pictures
+  // do.
+  void score(HotPixels& hot) {
+    double with = 0, without = 0, norm = 0;
+    for (const HotPixels::Pixel& p : hot.pixels)
+      for (std::size_t g = 0; g < stack_.images.size(); ++g) {
+        const StackImage& image = stack_.images[g];
+        const std::size_t i = image.picture.index(p.x, p.y, p.channel);
+        const PixelRadiance own = radiances_.without(g, p.x, p.y, p.channel);
+        if (!image.counts[i] || !own.known()) continue;
+        const double read = stack_.linear(p.channel, image.picture.data[i]), t = image.exposure_s * image.gain;
+        const double neighbours = radiances_.at(p.x, p.y, p.channel).value - p.rate;
+        with += std::pow(read - neighbours * t, 2), without += std::pow(read - own.value * t, 2), norm += read * read;
+      }
+    if (norm > 0) hot.with = std::sqrt(with / norm), hot.without = std::sqrt(without / norm);
+  }
 
  private:
   int reach() const { return stack_.step + 1; }
@@ -175,6 +191,7 @@ HotPixels find_hot_pixels(const Stack& stack, const ReadingNoise& noise) {
   }
   if (hot.pixels.empty()) return hot;
   std::ranges::sort(hot.pixels, std::ranges::greater(), &HotPixels::Pixel::rate);
+  looking.score(hot);
   const double n = static_cast<double>(hot.pixels.size()), all = static_cast<double>(looking.looked_at());
   hot.share = n / all, hot.share_sigma = std::sqrt(n) / all;
   hot.rate = rates / n, hot.rate_sigma = std::sqrt(std::max(0.0, squares / n - hot.rate * hot.rate) / (n - 1));
@@ -194,7 +211,7 @@ HotPixels find_hot_pixels(const Stack& stack, const ReadingNoise& noise) {
 void conclude_hot_pixels(const Problem& problem, const HotPixels& hot, std::size_t candidate, Explanation& e) {
   const std::vector<std::size_t>& numbers = problem.candidates()[candidate].parameters;
   inference::Apart apart{.candidate = candidate, .estimates = {}, .p = hot.p, .effect = hot.effect};
-  apart.with = apart.without = e.held_out_before;
+  apart.with = hot.with, apart.without = hot.without;
   const double values[] = {hot.share, hot.rate}, sigmas[] = {hot.share_sigma, hot.rate_sigma};
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     e.values[numbers[k]] = values[k], e.sigma[numbers[k]] = sigmas[k];

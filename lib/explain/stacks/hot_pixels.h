@@ -25,6 +25,8 @@ struct HotPixels {
   double share = 0, share_sigma = 0;  // of those that were looked at
   double rate = 0, rate_sigma = 0;    // mean of theirs
   double p = 1;                       // chance that as many bright points stand out among as many in all
+  double with = 0, without = 0;       // relative RMSE of their readings about their neighbours', and about their own in
+                                      // the other pictures
   double effect = 0;                  // root mean square of what they gather over that of all readings
 };
 HotPixels find_hot_pixels(const Stack& stack, const ReadingNoise& noise);

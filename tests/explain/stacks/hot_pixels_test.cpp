@@ -80,6 +80,7 @@ TEST(HotPixels, AreToldWhereTheyMatter) {
   EXPECT_EQ(few.explanation.minor.size(), 1u);
   ASSERT_EQ(all.named, std::vector<std::string>{"sensor.hot-pixel"}) << all.explanation.sentence;
   EXPECT_NE(all.explanation.sentence.find("pixels gather more in the dark"), std::string::npos);
+  EXPECT_LT(all.explanation.held_out_after, 0.1 * all.explanation.held_out_before) << all.explanation.sentence;
 }
 
 // Disks in narrow bands, photographed by a camera whose own dark frames say which pixels are hot: those that read more
