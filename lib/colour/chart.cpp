@@ -117,8 +117,11 @@ class Reader {
     patch.name = r.name;
     if (!r.lab.empty() + !r.xyz.empty() + !r.reflectance.empty() != 1)
       throw Error(Exit::data, at, "needs exactly one of \"lab\", \"xyz\", \"reflectance\"");
-    if (!r.reflectance.empty()) lit_ = true;
-    const optics::Xyz xyz = r.reflectance.empty() ? tristimulus(r, at) : lit(r.reflectance, at + "/reflectance");
+    if (!r.reflectance.empty()) {
+      lit_ = true;
+      patch.reflectance = reflectance_of(r.reflectance, at + "/reflectance");
+    }
+    const optics::Xyz xyz = r.reflectance.empty() ? tristimulus(r, at) : optics::xyz_of(patch.reflectance, light_);
     const optics::Xyz white = r.reflectance.empty() ? white_ : optics::xyz_of([](double) { return 1.0; }, light_);
     set_lab(patch, optics::lab_from_xyz(optics::bradford(white, optics::white_d50) * xyz, optics::white_d50));
     if (record_.grid.empty()) {
@@ -141,7 +144,7 @@ class Reader {
     needs(r.xyz.size(), 3, at + "/xyz", "give X, Y, Z");
     return {r.xyz[0], r.xyz[1], r.xyz[2]};
   }
-  optics::Xyz lit(const std::vector<double>& reflectance, const std::string& at) const {
+  std::function<double(double)> reflectance_of(const std::vector<double>& reflectance, const std::string& at) const {
     const auto& nm = record_.wavelengths_nm;
     needs(reflectance.size(), nm.size(), at, "one number for each of \"wavelengths_nm\"");
     if (nm.front() > 400 || nm.back() < 700)
@@ -150,8 +153,7 @@ class Reader {
     std::vector<double> metres;
     for (const double w : nm) metres.push_back(w * 1e-9);
     const optics::Spectrum spectrum(metres, reflectance, at);
-    return optics::xyz_of([&](double w) { return spectrum.at(std::clamp(w, spectrum.first_m(), spectrum.last_m())); },
-                          light_);
+    return [spectrum](double w) { return spectrum.at(std::clamp(w, spectrum.first_m(), spectrum.last_m())); };
   }
   const ChartRecord& record_;
   std::string place_;

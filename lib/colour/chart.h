@@ -17,11 +17,12 @@ namespace gonio::colour {
 
 struct Patch {
   std::string name{};
-  Vec2 centre{};         // chart's coordinates
-  Vec2 size{};           // of its coloured area, chart's coordinates
-  optics::Xyz xyz{};     // under D50
-  optics::Lab lab{};     // about D50's white
-  bool neutral = false;  // chroma C*ab below 6
+  Vec2 centre{};                                             // chart's coordinates
+  Vec2 size{};                                               // of its coloured area, chart's coordinates
+  optics::Xyz xyz{};                                         // under D50
+  optics::Lab lab{};                                         // about D50's white
+  bool neutral = false;                                      // chroma C*ab below 6
+  std::function<double(double wavelength_m)> reflectance{};  // where the chart's file has it; else empty
 };
 
 struct Chart {

@@ -33,6 +33,8 @@ std::optional<manifest::Table> chart_table(const Chart& chart, std::span<const P
                    {"mean_B", "1"},  {"R", "1"},       {"G", "1"},           {"B", "1"},      {"R_sigma", "1"},
                    {"G_sigma", "1"}, {"B_sigma", "1"}, {"image_radius", "1"}};
   if (of.exposure_s) table.columns.emplace_back("exposure_s", "s");
+  for (const char* channel : {"sensed_R", "sensed_G", "sensed_B"})
+    if (!of.sensed.empty()) table.columns.emplace_back(channel, "1");
   const Rgb mean = mean_of(picture);
   manifest::Value::Array rows;
   for (std::size_t p = 0; p < readings.size(); ++p) {
@@ -49,6 +51,7 @@ std::optional<manifest::Table> chart_table(const Chart& chart, std::span<const P
           norm(at - middle) / (0.5 * picture.width)})
       row.emplace_back(number);
     if (of.exposure_s) row.emplace_back(*of.exposure_s);
+    for (int channel = 0; channel < 3 && !of.sensed.empty(); ++channel) row.emplace_back(of.sensed[p][channel]);
     rows.emplace_back(std::move(row));
   }
   if (rows.size() < fewest_chart_rows) return {};

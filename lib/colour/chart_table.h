@@ -20,6 +20,7 @@ constexpr std::size_t fewest_chart_rows = 12;
 struct ChartPicture {
   std::string image;                 // id in the manifest; may be empty
   std::optional<double> exposure_s;  // where it is known
+  std::span<const Rgb> sensed{};     // of every patch, by the sensor's sensitivities (metamerism.h); may be empty
 };
 
 // Nothing where too few patches count. `picture`: the means of its three channels are those of its finite pixels.

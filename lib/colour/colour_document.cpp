@@ -173,8 +173,8 @@ Calibration calibrate_document(manifest::Document& document, const ChartRequest&
   manifest::ColourCorrection section;
   fill(section, request, pose, readings, calibration);
   document.colour[request.name] = std::move(section);
-  if (auto table =
-          chart_table(request.chart, readings, pose, picture.colour, {photograph.image, photograph.exposure_s}))
+  if (auto table = chart_table(request.chart, readings, pose, picture.colour,
+                               {photograph.image, photograph.exposure_s, request.sensed}))
     document.tables[request.name + "-chart"] = std::move(*table);
   return calibration;
 }

@@ -31,9 +31,11 @@ struct ChartRequest {
   Chart chart;
   std::optional<std::array<Vec2, 4>> corners;  // of pose_from_corners(); left out: the chart is searched for
   CalibrationRequest calibration;
-  std::string name;                         // in the manifest's "colour"
-  std::filesystem::path preview;            // empty: none is drawn
-  std::optional<double> metamerism_de00{};  // of the sensor, where it is known: metamerism.h
+  std::string name;               // in the manifest's "colour"
+  std::filesystem::path preview;  // empty: none is drawn
+  // Of the sensor, where it is known (metamerism.h): the bound, and what it reads of the patches; may be empty.
+  std::optional<double> metamerism_de00{};
+  std::vector<Rgb> sensed{};
 };
 
 // The photograph of this image of the manifest, by its id; empty: the only one with a file.

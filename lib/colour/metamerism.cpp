@@ -93,4 +93,21 @@ double metamerism_de00(const Sensitivities& sensor, const std::function<double(d
   return std::sqrt(std::max(0.0, (whiten * left * whiten.transpose()).trace()));
 }
 
+std::vector<Rgb> sensed(const Chart& chart, const Sensitivities& sensor, const std::function<double(double)>& light,
+                        const std::string& place) {
+  Rgb white{};
+  for (Index i = 0; i < steps; ++i) white += sensor(wavelength_m(i)) * light(wavelength_m(i));
+  if (!(white.x > 0 && white.y > 0 && white.z > 0))
+    throw Error(Exit::data, place, "has a channel that sees nothing of the light", "name another --light or --sensor");
+  std::vector<Rgb> all;
+  for (const Patch& patch : chart.patches) {
+    if (!patch.reflectance) return {};
+    Rgb sum{};
+    for (Index i = 0; i < steps; ++i)
+      sum += sensor(wavelength_m(i)) * (light(wavelength_m(i)) * patch.reflectance(wavelength_m(i)));
+    all.push_back({sum.x / white.x, sum.y / white.y, sum.z / white.z});
+  }
+  return all;
+}
+
 }  // namespace gonio::colour

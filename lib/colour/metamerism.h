@@ -13,7 +13,9 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
+#include "colour/chart.h"
 #include "geom/vector.h"
 
 namespace gonio::colour {
@@ -28,6 +30,11 @@ Sensitivities parse_sensitivities(const std::string& text, const std::string& pl
 // Error(data) at `place` where the three channels are mixtures of two.
 double metamerism_de00(const Sensitivities& sensor, const std::function<double(double)>& light,
                        const std::string& place);
+
+// What the sensor reads of every patch's reflectance under the light, over what it reads of a perfect white; empty
+// where a patch has none. Error(data) at `place` where a channel sees nothing of the light.
+std::vector<Rgb> sensed(const Chart& chart, const Sensitivities& sensor, const std::function<double(double)>& light,
+                        const std::string& place);
 
 // Covariance of reflectances at two wavelengths, as above.
 double reflectance_covariance(double a_m, double b_m);

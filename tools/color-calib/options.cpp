@@ -218,8 +218,9 @@ colour::ChartRequest request_of(cli::Invocation& call) {
                                                      : request.photograph.camera;
   if (call.given("sensor")) {
     call.note_input(call.text("sensor"));
-    request.metamerism_de00 =
-        colour::metamerism_de00(colour::read_sensitivities(call.text("sensor")), light_of(call), call.text("sensor"));
+    const colour::Sensitivities sensor = colour::read_sensitivities(call.text("sensor"));
+    request.metamerism_de00 = colour::metamerism_de00(sensor, light_of(call), call.text("sensor"));
+    request.sensed = colour::sensed(request.chart, sensor, light_of(call), call.text("sensor"));
   }
   if (call.given("preview")) request.preview = call.text("preview");
   return request;

@@ -123,19 +123,70 @@ TEST(Chart, UnevenLightIsWrittenAndNotAskedTwice) {
   EXPECT_EQ(named(again, explain(again, {})), "");
 }
 
+// The camera's own curves stated: what they do to colours is named, and all of it; of the eye's functions in their
+// place nothing is left that a matrix does not make.
+TEST(Chart, MetamerismIsNamedWhereTheSensorIsKnown) {
+  GONIO_NEEDS_DATA("colour/camera_sensitivities");
+  int found = 0, covered = 0, wrong = 0;
+  constexpr int seeds = 9;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const std::string camera = cameras[static_cast<std::size_t>(seed) % cameras.size()];
+    const TablesProblem problem =
+        chart_world(static_cast<std::uint64_t>(seed), chart_spectra(camera), {.print = 0.004, .sensed = camera})
+            .problem();
+    const Explanation e = explain(problem, {});
+    const std::set<std::string> all = listed_in(problem, e);
+    found += all.contains("colour.metamerism"), wrong += !all.empty() && !all.contains("colour.metamerism");
+    std::printf("%d: %s\n", seed, e.sentence.c_str());
+    if (const Estimate* x = estimate_of(problem, e, "colour.metamerism.share"))
+      covered += x->lower_95 <= 1 && 1 <= x->upper_95;
+  }
+  EXPECT_GE(found, 8);
+  EXPECT_GE(covered, 7);
+  EXPECT_EQ(wrong, 0);
+}
+
+// A camera that sees as the eye does, and the curves of another one stated for it.
+TEST(Chart, NoMetamerismOfASensorThatSeesAsTheEyeDoes) {
+  GONIO_NEEDS_DATA("colour/camera_sensitivities");
+  int nothing = 0;
+  for (int seed = 1; seed <= 20; ++seed) {
+    const std::string camera = cameras[static_cast<std::size_t>(seed) % cameras.size()];
+    ChartSpectra eye = chart_spectra(camera);
+    eye.camera = eye.observer;
+    const TablesProblem problem =
+        chart_world(static_cast<std::uint64_t>(seed), eye, {.print = 0.004, .sensed = camera}).problem();
+    nothing += named(problem, explain(problem, {})).empty();
+  }
+  EXPECT_GE(nothing, 19);
+}
+
 // X-Rite's values of before November 2014, and what was read of a Passport before a window (17 codes on black, as its
 // source says), with the right black and with one that is 72 codes too low.
-World passport(double black) {
+World passport(double black, const std::string& sensed = "") {
   const colour::Chart chart = colour::colorchecker_classic("before-2014", "test");
   World w;
   w.columns = {{"patch", ""}, {"fold", ""}, {"X", "1"}, {"Y", "1"}, {"Z", "1"}, {"x", "1"}, {"y", "1"}};
   for (const char* name : {"R", "G", "B", "R_sigma", "G_sigma", "B_sigma"}) w.columns.emplace_back(name, "1");
   w.rest =
       R"("model": "chart", "observed": ["R", "G", "B"], "sigma": ["R_sigma", "G_sigma", "B_sigma"], "group": "fold")";
+  ChartNumbers spectral{};
+  if (!sensed.empty()) {
+    for (const char* name : {"sensed_R", "sensed_G", "sensed_B"}) w.columns.emplace_back(name, "1");
+    const ChartSpectra s = chart_spectra(sensed);
+    std::array<double, 24> once{};
+    once.fill(1);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const ChartNumbers of_channel = integrated(s, s.camera, c, once);
+      for (std::size_t p = 0; p < 24; ++p) spectral[p][c] = of_channel[p][c];
+    }
+  }
   for (const auto& r : numbers_in(gonio::tests::data("colour/passport_canon550d/peer_patches.csv"))) {
     const colour::Patch& patch = chart.patches[w.rows.size()];
     w.rows.push_back({r[0], std::fmod(r[0] - 1, 8), patch.xyz.x, patch.xyz.y, patch.xyz.z, patch.centre.x,
                       patch.centre.y, r[3] - black, r[4] - black, r[5] - black, r[6], r[7], r[8]});
+    const std::array<double, 3>& own = spectral[w.rows.size() - 1];
+    if (!sensed.empty()) w.rows.back().insert(w.rows.back().end(), own.begin(), own.end());
   }
   return w;
 }
@@ -157,6 +208,17 @@ TEST(ChartPhotographs, ABlackThatWasLeftIsNamed) {
   const TablesProblem problem = passport(1976).problem();
   const Explanation e = explain(problem, {});
   EXPECT_EQ(named(problem, e), offset) << e.sentence;
+}
+
+// The same photograph, with the curves of a camera that has the same sensor (Canon 600D), measured elsewhere, and
+// daylight for the window's light: what they do to colours is found beside the glare.
+TEST(ChartPhotographs, MetamerismIsFoundByTheCurvesOfASisterCamera) {
+  GONIO_NEEDS_DATA("colour/passport_canon550d/peer_patches.csv");
+  GONIO_NEEDS_DATA("colour/camera_sensitivities");
+  const TablesProblem problem = passport(2048, "Canon_600D_camspec_Canon_600D.csv").problem();
+  const Explanation e = explain(problem, {});
+  std::printf("%s\n", e.sentence.c_str());
+  EXPECT_TRUE(listed_in(problem, e).contains("colour.metamerism")) << e.sentence;
 }
 
 TEST(Chart, WhatIsWrongWithATableIsSaid) {

@@ -23,6 +23,7 @@ struct ChartTruth {
   double across = 0, down = 0;     // change of the light over the chart
   std::vector<double> exposures{1};
   bool states_exposure = false;
+  std::string sensed{};  // camera whose curves are stated for the one that took the picture; empty: none are
 };
 
 inline std::vector<std::vector<double>> numbers_in(const std::filesystem::path& path) {
@@ -94,6 +95,15 @@ inline World chart_world(std::uint64_t seed, const ChartSpectra& s, const ChartT
                {"Y", "1"},    {"Z", "1"},   {"x", "1"},      {"y", "1"}};
   if (t.states_exposure) w.columns.emplace_back("exposure_s", "s");
   for (const char* name : {"R", "G", "B", "R_sigma", "G_sigma", "B_sigma"}) w.columns.emplace_back(name, "1");
+  ChartNumbers sensed{};
+  if (!t.sensed.empty()) {
+    for (const char* name : {"sensed_R", "sensed_G", "sensed_B"}) w.columns.emplace_back(name, "1");
+    const ChartSpectra other = chart_spectra(t.sensed);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const ChartNumbers of_channel = integrated(other, other.camera, c, stated);
+      for (std::size_t p = 0; p < 24; ++p) sensed[p][c] = of_channel[p][c];
+    }
+  }
   w.rest =
       R"("model": "chart", "observed": ["R", "G", "B"], "sigma": ["R_sigma", "G_sigma", "B_sigma"], "group": "fold", "block": "patch")";
   std::array<double, 3> mean{};
@@ -114,6 +124,7 @@ inline World chart_world(std::uint64_t seed, const ChartSpectra& s, const ChartT
         row.push_back(f + sigma[c] * random.normal());
       }
       row.insert(row.end(), sigma.begin(), sigma.end());
+      if (!t.sensed.empty()) row.insert(row.end(), sensed[p].begin(), sensed[p].end());
       w.rows.push_back(std::move(row));
     }
   return w;

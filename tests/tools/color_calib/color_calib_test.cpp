@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
+#include <sstream>
 
 #include "base/atomic_file.h"
 #include "base/text.h"
@@ -231,6 +235,44 @@ TEST_F(ColorCalib, OfARecordedPassport) {
   // Corners of half-size pixels; the peer's patch 1 lies at (358, 312), patch 24 at (628, 461).
   EXPECT_NEAR(found.corners_px[0], 2 * (358 - 26), 16);
   EXPECT_NEAR(found.corners_px[4], 2 * (628 + 26), 16);
+}
+
+// The same, with measured reflectances of a chart's patches and the curves of a camera of the same sensor: what they do
+// to colours goes into the table, and explain finds it in the photograph, beside the glare.
+TEST_F(ColorCalib, ReflectancesAndCurvesTellExplainOfMetamerism) {
+  GONIO_NEEDS_DATA("colour/passport_canon550d");
+  GONIO_NEEDS_DATA("colour/camera_sensitivities");
+  std::string nm, line;
+  std::array<std::string, 24> reflectance;
+  std::ifstream measured(data("colour/colorchecker-reference/data_babelcolor_average_reflectance.csv"));
+  for (std::getline(measured, line); std::getline(measured, line);) {
+    std::istringstream cells(line);
+    std::string cell;
+    std::getline(cells, cell, ',');
+    nm += (nm.empty() ? "" : ", ") + cell;
+    for (std::string& patch : reflectance) std::getline(cells, cell, ','), patch += (patch.empty() ? "" : ", ") + cell;
+  }
+  std::string patches;
+  for (std::size_t p = 0; p < 24; ++p)
+    patches += (p == 0 ? "" : ", ") + format(R"({"name": "%zu", "reflectance": [%s]})", p + 1, reflectance[p].c_str());
+  write_file(folder_ / "spectra.json",
+             R"({"name": "spectra", "grid": [6, 4], "patch_share": 0.87, "wavelengths_nm": [)" + nm +
+                 R"(], "patches": [)" + patches + "]}");
+  const std::string raw = data("colour/passport_canon550d/colorchart.dng"),
+                    curves = data("colour/camera_sensitivities/Canon_600D_camspec_Canon_600D.csv");
+  ASSERT_EQ(run({"develop", "--merge", "--views", "each", "--noise-gain", "2", "--out", "d", "--black", "2048", raw,
+                 "-o", "radiance.json"},
+                folder_.path())
+                .status,
+            0);
+  const Ended ended = calib({"radiance.json", "--chart", "spectra.json", "--sensor", curves, "-o", "colour.json"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const auto document = manifest::read_document(folder_ / "colour.json");
+  ASSERT_EQ(document.tables.size(), 1u);
+  const auto& columns = document.tables.begin()->second.columns;
+  EXPECT_NE(std::ranges::find(columns, "sensed_R", &std::pair<std::string, std::string>::first), columns.end());
+  const Ended explained = run({"explain", "colour.json"}, folder_.path());
+  EXPECT_THAT(explained.err, HasSubstr("colour.metamerism")) << explained.err;
 }
 
 }  // namespace

@@ -6,8 +6,11 @@
 // What may be left out beside the terms of sensor and lens: colour.glare, of the colour of the mean or of its own;
 // sensor.black-offset, one number or one for each channel, for pictures that were balanced; light.inverse-square, light
 // that falls along the chart: E = 1 / (1 + n_x dx + n_y dy)^2 about its middle, nearness n of either sign, in one over
-// the unit of the places. One exposure shows glare of any colour as it shows three offsets. Glare and offset act here
-// before the sensor's response: on readings as dark as they matter for, that is linear.
+// the unit of the places; colour.metamerism, where the table says what the sensor reads of each patch by its
+// sensitivities: what of that no matrix makes of X, Y, Z. One exposure shows glare of any colour as it shows three
+// offsets. Glare and offset act here before the sensor's response: on readings as dark as they matter for, that is
+// linear.
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,6 +24,7 @@
 #include "explain/tables/table_conditions.h"
 #include "explain/tables/table_model.h"
 #include "light/mechanisms/light_inverse_square.h"
+#include "linear/solve.h"
 #include "manifest/document.h"
 #include "manifest/sections/table.h"
 #include "render/mechanisms/optics_veiling_glare.h"
@@ -29,7 +33,8 @@
 
 namespace gonio::mechanism {
 const Mechanism& colour_glare();
-}
+const Mechanism& colour_metamerism();
+}  // namespace gonio::mechanism
 
 namespace gonio::explain::tables {
 namespace {
@@ -51,10 +56,12 @@ class Chart final : public BoundModel {
     read_places(table);
     bind_matrix(table);
     bind_gains(table);
+    read_spectra(table);
     estimate_scatter(table);
     bind_glare(table);
     bind_offset(table);
     bind_light(document.tables.at(name), table);
+    bind_metamerism();
     for (const char* column : {"x", "y", "exposure_s"})
       if (std::optional<Condition> c = condition_of(table, column)) conditions_.push_back(std::move(*c));
   }
@@ -63,7 +70,7 @@ class Chart final : public BoundModel {
     for (std::size_t r = first; r < last; ++r) {
       const double level = gain(values, r) * light(values, r);
       for (std::size_t c = 0; c < 3; ++c) {
-        const double seen = level * through(values, c, xyz_[r]);
+        const double seen = level * (through(values, c, xyz_[r]) + spectral(values, c, r));
         const double veiled = equation::optics_veiling_glare(seen, share(values, c), mean(values, c, r));
         prediction[3 * (r - first) + c] =
             equation::sensor_black_offset(veiled, values[offset_] + values[offset_ + 1 + c]);
@@ -205,15 +212,52 @@ class Chart final : public BoundModel {
     }
   }
 
+  // What no matrix makes of X, Y, Z, over a white's reading: the rest of the closest one, over all rows. And as much of
+  // it as the readings show, which is no scatter of the print.
+  void read_spectra(const Table& table) {
+    if (table.find("sensed_R") == nullptr) return;
+    Eigen::MatrixX3d xyz(static_cast<Eigen::Index>(table.rows()), 3), sensed = xyz, observed = xyz;
+    for (int c = 0; c < 3; ++c) {
+      const std::vector<double>& column = table.needed(std::string("sensed_") + channel_names[c], "1");
+      for (std::size_t r = 0; r < table.rows(); ++r) {
+        const auto row = static_cast<Eigen::Index>(r);
+        xyz(row, c) = xyz_[r][c], sensed(row, c) = column[r];
+        observed(row, c) = table.values[table.observed[c]][r] / level_of(r) / white_[c];
+      }
+    }
+    const Eigen::Matrix3d normal = xyz.transpose() * xyz;
+    const auto rest_of = [&](const Eigen::MatrixX3d& of) {
+      return Eigen::MatrixX3d(of - xyz * linear::solve_ldlt(normal, Eigen::Matrix3Xd(xyz.transpose() * of)));
+    };
+    const Eigen::MatrixX3d rest = rest_of(sensed), left = rest_of(observed);
+    for (Eigen::Index r = 0; r < rest.rows(); ++r) spectral_.push_back({rest(r, 0), rest(r, 1), rest(r, 2)});
+    shown_share_ = (left.array() * rest.array()).sum() / std::max(1e-300, rest.squaredNorm());
+  }
+  double level_of(std::size_t row) const {
+    return picture_[row] == 0 ? 1 : parameters_[gain_ + picture_[row] - 1].start;
+  }
+  void bind_metamerism() {
+    if (spectral_.empty()) return;
+    const mechanism::Mechanism& m = mechanism::colour_metamerism();
+    metamerism_ = add_declared(m, 0, "");
+    candidates_.push_back({&m, {}, {metamerism_}, m.id});
+  }
+  double spectral(Values values, std::size_t c, std::size_t row) const {
+    return metamerism_ == none ? 0 : values[metamerism_] * white_[c] * spectral_[row][c];
+  }
+
   void estimate_scatter(const Table& table) {
     std::vector<ChartPatch> all(patches_);
     std::vector<std::size_t> rows(patches_, 0);
     for (std::size_t r = 0; r < table.rows(); ++r) {
       ChartPatch& p = all[patch_[r]];
-      const double level = picture_[r] == 0 ? 1 : parameters_[gain_ + picture_[r] - 1].start;
+      const double level = level_of(r);
       p.xyz = xyz_[r], p.across = places_[0][r] / std::max(largest_, 1e-300);
       p.down = places_[1][r] / std::max(largest_, 1e-300);
-      for (std::size_t c = 0; c < 3; ++c) p.read[c] += table.values[table.observed[c]][r] / level;
+      for (std::size_t c = 0; c < 3; ++c) {
+        p.read[c] += table.values[table.observed[c]][r] / level;
+        if (!spectral_.empty()) p.read[c] -= shown_share_ * white_[c] * spectral_[r][c];
+      }
       ++rows[patch_[r]];
     }
     for (std::size_t p = 0; p < patches_; ++p) {
@@ -223,7 +267,7 @@ class Chart final : public BoundModel {
     const ChartScatter found = chart_scatter(all);
     lightness_ = found.lightness, colour_misfit_ = colour_misfit(found);
     for (std::size_t r = 0; r < table.rows(); ++r) {
-      const double level = picture_[r] == 0 ? 1 : parameters_[gain_ + picture_[r] - 1].start;
+      const double level = level_of(r);
       for (const double s : found.sigma[patch_[r]]) scatter_.push_back(s * level);
     }
     for (std::size_t c = 0; c < 3; ++c) white_[c] = found.white[c];
@@ -304,10 +348,12 @@ class Chart final : public BoundModel {
   std::vector<Channels> means_;  // per picture
   std::array<std::vector<double>, 2> places_;
   Channels white_{};
+  std::vector<Channels> spectral_;  // of every row; empty: sensitivities or reflectances are not known
+  double shown_share_ = 0;
   Vec3 mean_xyz_{};
   std::vector<double> scatter_;
   double lightness_ = 0, colour_misfit_ = 0, largest_ = 0;
-  std::size_t patches_ = 0, gain_ = 0, glare_ = 0, offset_ = 0, light_ = none;
+  std::size_t patches_ = 0, gain_ = 0, glare_ = 0, offset_ = 0, light_ = none, metamerism_ = none;
   bool by_patch_ = true, has_means_ = false, placed_ = true, light_in_base_ = false;
 };
 
@@ -327,7 +373,11 @@ const Model& chart() {
                   {"y", "", "place along its height, in the same unit", false},
                   {"mean_R", "", "mean of the whole picture in R; left out: of the patches", false},
                   {"mean_G", "", "in G", false},
-                  {"mean_B", "", "in B", false}},
+                  {"mean_B", "", "in B", false},
+                  {"sensed_R", "1", "what the sensor's sensitivities read of it in R under the light, a white giving 1",
+                   false},
+                  {"sensed_G", "1", "in G", false},
+                  {"sensed_B", "1", "in B", false}},
       .group_noun = "colour",
       .group = "patch",
       .bind = bind_as<Chart>};
