@@ -59,7 +59,9 @@ manifest::MechanismUse use(const Mechanism& m, bool neutral) {
   manifest::MechanismUse use;
   for (const auto& p : m.parameters)
     use.parameters[p.name] = neutral ? p.neutral : p.start != p.neutral ? p.start : 0.5 * (p.start + p.upper);
-  if (!neutral && m.id == "sensor.clipped-resampling") use.parameters["full_scale"] = 0.05;
+  const bool clips = m.id == "sensor.clipped-resampling" || m.id == "sensor.blooming";
+  if (!neutral && clips) use.parameters["full_scale"] = 0.05;
+  if (!neutral && m.id == "sensor.hot-pixel") use.parameters["share"] = 0.1;
   // Where the camera sees it: a light on its own side, a stain on the ball.
   if (!neutral && m.id == "light.second-source") use.parameters["elevation_rad"] = -0.8;
   if (!neutral && m.id == "surface.spatial-variation")

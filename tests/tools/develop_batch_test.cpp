@@ -75,8 +75,11 @@ class DevelopBatch : public testing::Test {
   std::map<std::string, fs::file_time_type> times_in(const std::string& out) const {
     std::map<std::string, fs::file_time_type> times;
     if (fs::exists(folder_ / out))
-      for (const auto& entry : fs::directory_iterator(folder_ / out))
-        times[entry.path().filename().string()] = entry.last_write_time();
+      for (const auto& entry : fs::directory_iterator(folder_ / out)) {
+        std::error_code gone;  // what is being written takes another name at any moment
+        const auto time = entry.last_write_time(gone);
+        if (!gone) times[entry.path().filename().string()] = time;
+      }
     return times;
   }
   ScratchFolder folder_;
