@@ -17,6 +17,7 @@
 #include <cstring>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <thread>
 
 #include "acquisition/desk/gige_packets.h"
@@ -266,7 +267,9 @@ std::string GigeCamera::Camera::answer(const std::uint8_t* request, std::size_t 
 }
 
 void GigeCamera::Camera::control() {
-  std::vector<std::uint8_t> request(2048);
+  std::vector<std::uint8_t> request(2048), answered;
+  sockaddr_in asked_by{};
+  std::string reply;
   while (!ending) {
     pollfd wanted{control_socket, POLLIN, 0};
     if (::poll(&wanted, 1, 20) <= 0) continue;
@@ -275,7 +278,13 @@ void GigeCamera::Camera::control() {
     const ssize_t length = ::recvfrom(control_socket, request.data(), request.size(), MSG_DONTWAIT,
                                       reinterpret_cast<sockaddr*>(&from), &size);
     if (length <= 0) continue;
-    const auto reply = answer(request.data(), static_cast<std::size_t>(length), from);
+    // Who heard no answer asks again under the same number: it is answered again, and not done twice. A trigger would
+    // send a second frame, which the next shot would take for its own.
+    const std::span<const std::uint8_t> now(request.data(), static_cast<std::size_t>(length));
+    const bool again = std::ranges::equal(now, answered) && from.sin_port == asked_by.sin_port &&
+                       from.sin_addr.s_addr == asked_by.sin_addr.s_addr;
+    if (!again) reply = answer(now.data(), now.size(), from);
+    answered.assign(now.begin(), now.end()), asked_by = from;
     if (reply.empty() || faults.strikes(Fault::gige_dropped)) continue;
     ::sendto(control_socket, reply.data(), reply.size(), 0, reinterpret_cast<const sockaddr*>(&from), size);
   }
