@@ -195,16 +195,12 @@ HotPixels find_hot_pixels(const Stack& stack, const ReadingNoise& noise) {
   const double n = static_cast<double>(hot.pixels.size()), all = static_cast<double>(looking.looked_at());
   hot.share = n / all, hot.share_sigma = std::sqrt(n) / all;
   hot.rate = rates / n, hot.rate_sigma = std::sqrt(std::max(0.0, squares / n - hot.rate * hot.rate) / (n - 1));
-  double gathered = 0, readings = 0;
-  for (const StackImage& image : stack.images) {
+  double gathered = 0;
+  for (const StackImage& image : stack.images)
     for (const HotPixels::Pixel& pixel : hot.pixels)
       if (image.counts[image.picture.index(pixel.x, pixel.y, pixel.channel)])
         gathered += std::pow(pixel.rate * image.exposure_s * image.gain, 2);
-    for (std::size_t i = 0; i < image.counts.size(); ++i)
-      if (image.counts[i])
-        readings += std::pow(stack.linear(static_cast<int>(i % stack.channels.size()), image.picture.data[i]), 2);
-  }
-  hot.effect = std::sqrt(gathered / readings);
+  hot.effect = std::sqrt(gathered / sum_of_squared_readings(stack));
   return hot;
 }
 

@@ -39,7 +39,7 @@ constexpr std::array<std::pair<int, int>, 4> around{{{0, -1}, {0, 1}, {-1, 0}, {
 class Looks {
  public:
   Looks(const Stack& stack, const ReadingNoise& noise)
-      : stack_(stack), noise_(noise), radiances_(stack, noise, clear), full_(stack.linear(0, stack.full_scale)) {}
+      : stack_(stack), radiances_(stack, noise, clear), full_(stack.linear(0, stack.full_scale)) {}
 
   // Readings beside clipped pixels, of all pictures, less what others of their brightness depart by.
   std::vector<Look> all() {
@@ -140,7 +140,6 @@ class Looks {
   }
 
   const Stack& stack_;
-  const ReadingNoise& noise_;
   PixelRadiances radiances_;
   double full_;
   std::size_t levels_ = 0;  // so far
@@ -214,15 +213,6 @@ void score_unseen(const std::vector<Look>& looks, const Columns& columns, Overfl
   found.repaired = before > noise ? std::min(1.0, (before - after) / (before - noise)) : 0;
 }
 
-double sum_of_squares(const Stack& stack) {
-  double sum = 0;
-  for (const StackImage& image : stack.images)
-    for (std::size_t i = 0; i < image.counts.size(); ++i)
-      if (image.counts[i])
-        sum += std::pow(stack.linear(static_cast<int>(i % stack.channels.size()), image.picture.data[i]), 2);
-  return sum;
-}
-
 }  // namespace
 
 Overflow find_overflow(const Stack& stack, const ReadingNoise& noise) {
@@ -248,7 +238,7 @@ Overflow find_overflow(const Stack& stack, const ReadingNoise& noise) {
   found.p = std::max(least_p, std::numeric_limits<double>::min());
   found.along = value[0], found.across = value[1], found.sigma_along = sigma[0], found.sigma_across = sigma[1];
   score_unseen(looks, columns, found);
-  double flowed = 0, readings = sum_of_squares(stack);
+  double flowed = 0, readings = sum_of_squared_readings(stack);
   for (const Look& l : looks) {
     flowed += std::pow(found.along * over_of(l, columns[0]) + found.across * over_of(l, columns[1]), 2);
     readings += l.reading() * l.reading();

@@ -51,4 +51,13 @@ PixelRadiance PixelRadiances::over_all_but(std::size_t left_out, std::size_t i, 
   return {top / bottom, 1 / bottom};
 }
 
+double sum_of_squared_readings(const Stack& stack) {
+  double sum = 0;
+  for (const StackImage& image : stack.images)
+    for (std::size_t i = 0; i < image.counts.size(); ++i)
+      if (image.counts[i])
+        sum += std::pow(stack.linear(static_cast<int>(i % stack.channels.size()), image.picture.data[i]), 2);
+  return sum;
+}
+
 }  // namespace gonio::explain::stacks

@@ -34,4 +34,7 @@ class PixelRadiances {
   std::vector<std::uint8_t> looked_;
 };
 
+// Over all readings that count, linear: what an effect is a share of.
+double sum_of_squared_readings(const Stack& stack);
+
 }  // namespace gonio::explain::stacks
