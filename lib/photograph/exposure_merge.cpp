@@ -5,19 +5,19 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "geom/angle.h"
 #include "photograph/exposure_times.h"
+#include "photograph/merge_sums.h"
 #include "photograph/noise_variance.h"
 #include "stats/distributions.h"
 
 namespace gonio::photograph {
 namespace {
 
-constexpr double far_from_full = 8;  // standard deviations: of such light all is full, or nothing
-constexpr double clear_of_full = 4;  // standard deviations: nearer to full scale what was read is a selection
 constexpr int strip_rows = 16;
 constexpr std::size_t pixels_at_once = 2048;  // that the nearest cache holds with all that is made of them
 constexpr std::size_t rows_at_once = 16;
@@ -128,15 +128,17 @@ class Merge {
     });
   }
 
-  template <class Body>  // body(place in the order, how long it lasts, kind, code, pixel) for every `stride`th pixel
-  void pass(const Strip& strip, const Body& body, std::size_t stride = 1) const {
+  // body(run) for each exposure, and some of the strip's pixels at a time.
+  template <class Body>
+  void pass(const Strip& strip, const Body& body) const {
     constexpr std::size_t chunk = 1 << 14;
     const auto some = [&](std::size_t place, const Sorted& s, std::size_t first, std::size_t last, std::size_t from) {
-      const SampleKind* kinds = s.kinds.data();
-      const float* codes = s.codes.data();
-      const double t = lasts(place);
-      for (std::size_t i = (first + stride - 1) / stride * stride; i < last; i += stride)
-        body(place, t, kinds[i - from], codes[i - from], i);
+      const std::size_t count = last - first;
+      body(ExposureRun{{&s.codes[first - from], count},
+                       {&s.kinds[first - from], count},
+                       first - strip.first,
+                       static_cast<float>(lasts(place)),
+                       static_cast<std::uint8_t>(place)});
     };
     for (std::size_t place = 0; place < order_.size(); ++place) {
       if (strip.loaded != nullptr) {
@@ -156,13 +158,13 @@ class Merge {
     ExposureSamples samples{r_.exposures_s, {}, r_.noise, r_.full_scale, r_.floor};
     samples.codes.assign(order_.size(), std::vector<float>((pixels_ + stride - 1) / stride));
     for_strips([&](const Strip& strip) {
-      pass(
-          strip,
-          [&](std::size_t place, double, SampleKind kind, float code, std::size_t i) {
-            samples.codes[order_[place]][i / stride] =
-                kind == SampleKind::read ? code : std::numeric_limits<float>::quiet_NaN();
-          },
-          stride);
+      pass(strip, [&](const ExposureRun& run) {
+        std::vector<float>& codes = samples.codes[order_[run.place]];
+        const std::size_t first = strip.first + run.begin, last = first + run.codes.size();
+        for (std::size_t i = (first + stride - 1) / stride * stride; i < last; i += stride)
+          codes[i / stride] =
+              run.kinds[i - first] == SampleKind::read ? run.codes[i - first] : std::numeric_limits<float>::quiet_NaN();
+      });
     });
     const RefinedExposures refined = refine_exposures(samples);
     merged_.exposures_s = refined.exposures_s, merged_.exposures_sigma = refined.sigma_s;
@@ -170,128 +172,149 @@ class Merge {
 
   // All light over all time: the best where there is shot noise alone.
   void start(const Strip& strip) {
-    std::vector<float> time(strip.size()), bound(strip.size(), std::numeric_limits<float>::infinity());
-    pass(strip, [f = strip.first, times = time.data(), bounds = bound.data(), rates = merged_.rate.data(),
-                 trusts = merged_.trust.data(), firsts = merged_.first.data(), lasts = merged_.last.data(),
-                 full = r_.full_scale](std::size_t place, double t, SampleKind kind, float code, std::size_t i) {
-      if (kind == SampleKind::full) {
-        bounds[i - f] = std::min(bounds[i - f], static_cast<float>(full / t));
-      } else if (kind == SampleKind::read) {
-        rates[i] += code, times[i - f] += static_cast<float>(t);
-        if (trusts[i] == Trust::no_sample) firsts[i] = static_cast<std::uint8_t>(place);
-        lasts[i] = static_cast<std::uint8_t>(place);
-        trusts[i] = Trust::good;
-      }
-    });
+    LightSums sums(strip.size());
+    pass(strip, [&](const ExposureRun& run) { sums.add(run, static_cast<float>(r_.full_scale)); });
     for (std::size_t n = 0, i = strip.first; n < strip.size(); ++n, ++i) {
-      if (time[n] > 0) {
-        merged_.rate[i] /= time[n];
+      if (sums.time_s[n] > 0) {
+        merged_.rate[i] = sums.light[n] / sums.time_s[n];
+        merged_.first[i] = sums.first[n], merged_.last[i] = sums.last[n];
+        merged_.trust[i] = Trust::good;
       } else {
         merged_.variance[i] = std::numeric_limits<float>::infinity();
-        if (std::isfinite(bound[n])) merged_.rate[i] = bound[n], merged_.trust[i] = Trust::too_bright;
+        if (std::isfinite(sums.bound[n])) merged_.rate[i] = sums.bound[n], merged_.trust[i] = Trust::too_bright;
       }
     }
   }
 
-  Word said_by(SampleKind kind, double code, double t, double rate) const {
-    const double variance = variance_of_(rate * t), left = r_.full_scale - rate * t, weight = t / variance;
-    const double read = kind == SampleKind::read ? weight * (code - rate * t) : 0;
-    // So far from full scale what is not 0 is 1, to fourteen digits.
-    if (left * left >= far_from_full * far_from_full * variance) return {read, left > 0 ? weight * t : 0};
-    const double sigma = std::sqrt(variance), a = -left / sigma;
+  // Of a sample that is not far from full scale. Full and usable ones alone.
+  Word said_near_full(SampleKind kind, double code, double t, double rate) const {
+    const double variance = variance_of_(rate * t), left = r_.full_scale - rate * t, weight = t / variance,
+                 sigma = std::sqrt(variance), a = -left / sigma;
     const double phi = std::exp(-0.5 * a * a) / std::sqrt(2 * pi), below = stats::normal_cdf(-a),
                  above = stats::normal_cdf(a), hazard = above > 0 ? phi / above : 0;
-    return {kind == SampleKind::read ? read : t / sigma * hazard,
+    return {kind == SampleKind::read ? weight * (code - rate * t) : t / sigma * hazard,
             weight * t * std::max(0.0, below + a * phi + phi * hazard)};
   }
 
+  std::span<const float> rates_of(const Strip& strip) const { return {&merged_.rate[strip.first], strip.size()}; }
+
   // One step of scoring; the last one leaves the variance.
   void step(const Strip& strip, bool last) {
-    std::vector<double> score(strip.size()), information(strip.size());
-    pass(strip,
-         [this, f = strip.first, scores = score.data(), informations = information.data(), rates = merged_.rate.data(),
-          trusts = merged_.trust.data()](std::size_t, double t, SampleKind kind, float code, std::size_t i) {
-           if (trusts[i] != Trust::good || kind == SampleKind::unusable) return;
-           const Word word = said_by(kind, code, t, rates[i]);
-           scores[i - f] += word.score, informations[i - f] += word.information;
-         });
+    ScoreSums sums(strip.size());
+    const std::span<const float> rates = rates_of(strip);
+    pass(strip, [&](const ExposureRun& run) {
+      if (!sums.add(run, rates, variance_of_, static_cast<float>(r_.full_scale))) return;
+      for (std::size_t k = 0, n = run.begin; k < run.codes.size(); ++k, ++n) {
+        if (sums.near[n] == 0) continue;
+        const Word word = said_near_full(run.kinds[k], run.codes[k], run.exposure_s, rates[n]);
+        sums.score[n] += static_cast<float>(word.score), sums.information[n] += static_cast<float>(word.information);
+      }
+    });
     for (std::size_t n = 0, i = strip.first; n < strip.size(); ++n, ++i) {
-      if (merged_.trust[i] != Trust::good || !(information[n] > 0)) continue;
-      merged_.rate[i] = static_cast<float>(merged_.rate[i] + score[n] / information[n]);
-      if (last) merged_.variance[i] = static_cast<float>(1 / information[n]);
+      if (merged_.trust[i] != Trust::good || !(sums.information[n] > 0)) continue;
+      merged_.rate[i] += sums.score[n] / sums.information[n];
+      if (last) merged_.variance[i] = 1 / sums.information[n];
     }
   }
 
   // Chi-square of what each pixel read about its rate, of samples that are clear of full scale.
   void compare(const Strip& strip) {
-    pass(strip, [full = r_.full_scale, variance_of = variance_of_, chi = chi_square_.data(), freedom = freedom_.data(),
-                 rates = merged_.rate.data(),
-                 trusts = merged_.trust.data()](std::size_t, double t, SampleKind kind, float code, std::size_t i) {
-      if (trusts[i] != Trust::good || kind != SampleKind::read) return;
-      const double expected = rates[i] * t, variance = variance_of(expected), left = full - expected;
-      if (left < 0 || left * left < clear_of_full * clear_of_full * variance) return;
-      const double off = code - expected;
-      chi[i] += static_cast<float>(off * off / variance), ++freedom[i];
+    const std::span<float> chi_square{&chi_square_[strip.first], strip.size()};
+    const std::span<std::uint8_t> freedom{&freedom_[strip.first], strip.size()};
+    pass(strip, [&](const ExposureRun& run) {
+      add_squares(run, rates_of(strip), variance_of_, static_cast<float>(r_.full_scale), chi_square, freedom);
     });
     for (std::size_t i = strip.first; i < strip.last; ++i) {
-      freedom_[i] = freedom_[i] > 1 ? static_cast<std::uint8_t>(freedom_[i] - 1) : 0;
+      freedom_[i] = freedom_[i] > 1 && merged_.trust[i] == Trust::good ? static_cast<std::uint8_t>(freedom_[i] - 1) : 0;
       if (freedom_[i] == 0) chi_square_[i] = 0;
     }
   }
 
-  // Of a pixel and its neighbours of the same colour, as a standard normal (Wilson & Hilferty 1931); not a number where
-  // no pixel was seen twice.
-  double contradiction(int x, int y, double noise_factor) const {
-    double chi_square = 0, freedom = 0;
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
-        const int u = x + dx * r_.period_px, v = y + dy * r_.period_px;
-        if (u < 0 || v < 0 || u >= r_.width || v >= r_.height) continue;
-        chi_square += chi_square_[at(u, v)], freedom += freedom_[at(u, v)];
-      }
-    if (freedom == 0) return std::numeric_limits<double>::quiet_NaN();
-    const double ratio = chi_square / (noise_factor * freedom), spread = 2 / (9 * freedom);
-    if (ratio <= 1) return 0;  // or a little less: nothing that contradicts
-    return (std::cbrt(ratio) - (1 - spread)) / std::sqrt(spread);
+  // The chi-square of so many degrees of freedom that is as unlikely as `moved_beyond` (Wilson & Hilferty 1931).
+  static std::vector<float> limits(std::size_t most_freedom) {
+    std::vector<float> of(most_freedom + 1, std::numeric_limits<float>::infinity());
+    for (std::size_t f = 1; f < of.size(); ++f) {
+      const double freedom = static_cast<double>(f), spread = 2 / (9 * freedom),
+                   root = 1 - spread + moved_beyond * std::sqrt(spread);
+      of[f] = static_cast<float>(freedom * root * root * root);
+    }
+    return of;
+  }
+
+  // Sums of each pixel of a row and its neighbours of the same colour, above and below; then of those beside it, too.
+  struct Neighbourhoods {
+    std::vector<float> chi_square;
+    std::vector<std::uint16_t> freedom;
+  };
+  void add_neighbours(int y, Neighbourhoods& columns, Neighbourhoods& all) const {
+    const auto width = static_cast<std::size_t>(r_.width), beside = static_cast<std::size_t>(r_.period_px);
+    columns.chi_square.assign(width + 2 * beside, 0), columns.freedom.assign(width + 2 * beside, 0);
+    for (int v = y - r_.period_px; v <= y + r_.period_px; v += r_.period_px) {
+      if (v < 0 || v >= r_.height) continue;
+      const float* chi = &chi_square_[at(0, v)];
+      const std::uint8_t* freedom = &freedom_[at(0, v)];
+      for (std::size_t x = 0; x < width; ++x) columns.chi_square[x + beside] += chi[x];
+      for (std::size_t x = 0; x < width; ++x)
+        columns.freedom[x + beside] = static_cast<std::uint16_t>(columns.freedom[x + beside] + freedom[x]);
+    }
+    all.chi_square.resize(width), all.freedom.resize(width);
+    const float* chi = columns.chi_square.data();
+    const std::uint16_t* freedom = columns.freedom.data();
+    for (std::size_t x = 0; x < width; ++x) {
+      all.chi_square[x] = chi[x] + chi[x + beside] + chi[x + 2 * beside];
+      all.freedom[x] = static_cast<std::uint16_t>(freedom[x] + freedom[x + beside] + freedom[x + 2 * beside]);
+    }
+  }
+
+  // Noise that was stated too small makes everything contradict itself: half of all pixels show no motion. A
+  // chi-square's own median lies below its mean. From some of the pixels, of all colours of a mosaic.
+  double noise_factor() const {
+    constexpr std::size_t some = 300000;
+    const std::size_t stride = std::max<std::size_t>(1, pixels_ / some) | 1;
+    std::vector<float> ratios;
+    double sum = 0;
+    for (std::size_t i = 0; i < pixels_; i += stride)
+      if (freedom_[i] > 0)
+        ratios.push_back(chi_square_[i] / static_cast<float>(freedom_[i])), sum += static_cast<double>(freedom_[i]);
+    if (ratios.empty()) return 1;
+    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+    std::nth_element(ratios.begin(), middle, ratios.end());
+    const double freedom = sum / static_cast<double>(ratios.size());
+    return std::max(1.0, *middle * freedom / stats::chi2_quantile(0.5, freedom));
   }
 
   void mark_moved() {
-    double chi_square = 0, freedom = 0;
-    std::vector<float> ratios;
-    for (std::size_t i = 0; i < pixels_; ++i)
-      if (freedom_[i] > 0) ratios.push_back(chi_square_[i] / static_cast<float>(freedom_[i]));
-    if (ratios.empty()) return;
-    // Noise that was stated too small makes everything contradict itself: half of all pixels show no motion. A
-    // chi-square's own median lies below its mean.
-    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-    std::nth_element(ratios.begin(), middle, ratios.end());
-    const double noise_factor = std::max(1.0, *middle / usual_median());
-    std::vector<std::vector<std::size_t>> found(static_cast<std::size_t>(r_.height));
-    parallel_for(
-        0, found.size(),
-        [&](std::size_t row) {
-          const int y = static_cast<int>(row);
-          for (int x = 0; x < r_.width; ++x)
-            if (merged_.trust[at(x, y)] == Trust::good && contradiction(x, y, noise_factor) > moved_beyond)
-              found[row].push_back(at(x, y));
-        },
-        rows_at_once);
+    const std::vector<float> limit = limits(9 * order_.size());
+    const auto factor = static_cast<float>(noise_factor());
+    struct Row {
+      std::vector<std::size_t> moved;
+      double chi_square = 0, freedom = 0;  // of those that did not move
+    };
+    std::vector<Row> rows(static_cast<std::size_t>(r_.height));
+    parallel_for(0, (rows.size() + rows_at_once - 1) / rows_at_once, [&](std::size_t some) {
+      Neighbourhoods columns, all;
+      for (std::size_t y = some * rows_at_once; y < std::min(rows.size(), (some + 1) * rows_at_once); ++y) {
+        add_neighbours(static_cast<int>(y), columns, all);
+        const std::size_t first = at(0, static_cast<int>(y));
+        for (std::size_t x = 0, i = first; x < all.freedom.size(); ++x, ++i) {
+          if (merged_.trust[i] != Trust::good) continue;
+          if (all.chi_square[x] > factor * limit[all.freedom[x]])
+            rows[y].moved.push_back(i);
+          else
+            rows[y].chi_square += chi_square_[i], rows[y].freedom += freedom_[i];
+        }
+      }
+    });
     std::vector<std::size_t> moved;
-    for (const auto& row : found) moved.insert(moved.end(), row.begin(), row.end());
+    double chi_square = 0, freedom = 0;
+    for (const Row& row : rows) {
+      moved.insert(moved.end(), row.moved.begin(), row.moved.end());
+      chi_square += row.chi_square, freedom += row.freedom;
+    }
     for (const std::size_t i : moved) merged_.trust[i] = Trust::moved;
-    for (std::size_t i = 0; i < pixels_; ++i)
-      if (merged_.trust[i] == Trust::good) chi_square += chi_square_[i], freedom += freedom_[i];
     if (freedom > 0) merged_.chi_square_per_freedom = chi_square / freedom;
     if (!moved.empty()) take_one_exposure(moved);
   }
-  double usual_median() const {  // of chi-square over its freedom, at the pixels' mean freedom
-    double sum = 0, count = 0;
-    for (const std::uint8_t f : freedom_)
-      if (f > 0) sum += f, ++count;
-    const double freedom = std::max(1.0, sum / std::max(1.0, count));
-    return stats::chi2_quantile(0.5, freedom) / freedom;
-  }
-
   // What an exposure read in these pixels, which are in order.
   Sorted read_at(std::size_t k, const std::vector<std::size_t>& pixels) const {
     Sorted picked{std::vector<float>(pixels.size()), std::vector<SampleKind>(pixels.size())};

@@ -60,8 +60,13 @@ void FrameStore::rows(std::size_t k, int first, int count, std::vector<float>& i
   const Kept& kept = kept_[k];
   const auto columns = static_cast<std::size_t>(kept.head.width), from = static_cast<std::size_t>(first) * columns;
   into.resize(static_cast<std::size_t>(count) * columns);
-  for (std::size_t i = 0; i < into.size(); ++i)
-    into[i] = kept.whole.empty() ? kept.other[from + i] : kept.least + static_cast<float>(kept.whole[from + i]);
+  if (kept.whole.empty()) {
+    std::copy_n(kept.other.begin() + static_cast<std::ptrdiff_t>(from), into.size(), into.begin());
+    return;
+  }
+  const std::uint16_t* whole = &kept.whole[from];
+  float* codes = into.data();
+  for (std::size_t i = 0; i < into.size(); ++i) codes[i] = kept.least + static_cast<float>(whole[i]);
 }
 
 }  // namespace gonio::photograph

@@ -41,6 +41,10 @@ class NoiseVariance {
     if (!noise_.variances.empty()) return noise_variance(noise_, value);
     return (value > 0 ? value * slope_ : 0) + least_;
   }
+  // Whether it is least() + slope() times what is above zero.
+  bool is_line() const { return noise_.variances.empty(); }
+  double least() const { return least_; }
+  double slope() const { return slope_; }
 
  private:
   const NoiseModel& noise_;
