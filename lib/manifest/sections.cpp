@@ -144,6 +144,7 @@ const std::vector<Field<ImageEntry>>& image_fields() {
           }),
       field("dark", &ImageEntry::dark, "", "true: no light of the scene is on"),
       field("exposure_s", &ImageEntry::exposure_s, "s", "exposure time").positive(),
+      field("f_number", &ImageEntry::f_number, "", "of the aperture, as the lens says").positive(),
       field("time_s", &ImageEntry::time_s, "s", "when it was taken, counted from any moment common to all images"),
       field("temperature_K", &ImageEntry::temperature_K, "K", "of the instrument at that moment").positive(),
       field("saturation", &ImageEntry::saturation, "",

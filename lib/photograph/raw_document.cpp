@@ -154,6 +154,17 @@ std::string free_name(const std::vector<RawView>& views, const manifest::ImageEn
 
 }  // namespace
 
+void refuse_other_aperture(const manifest::Document& document, std::size_t first, std::size_t image) {
+  const double own = document.images[image].f_number.value_or(0), other = document.images[first].f_number.value_or(own);
+  if (own == other) return;
+  throw Error(Exit::data, manifest::place(document, format("/images/%zu/f_number", image)),
+              own > 0 ? format("is %g, and that of its view's first image, %s, is %g", own,
+                               document.images[first].id.c_str(), other)
+                      : format("is missing, and that of its view's first image, %s, is %g",
+                               document.images[first].id.c_str(), other),
+              "make views of one aperture: exposure times alone do not say how much light that is");
+}
+
 void views_of_images(const manifest::Document& document, const std::string& camera, RawRequest& request,
                      std::vector<std::filesystem::path>& dark_frames) {
   const RawStated by_user = request.recipe.stated;
@@ -180,6 +191,7 @@ void views_of_images(const manifest::Document& document, const std::string& came
       request.views.push_back({free_name(request.views, image), {}, {}});
       request.images.emplace_back();
     }
+    if (!request.images[at].empty()) refuse_other_aperture(document, request.images[at][0], i);
     request.views[at].frames.push_back(path);
     request.views[at].exposures_s.push_back(image.exposure_s);
     request.images[at].push_back(i);

@@ -23,6 +23,10 @@ struct RawRequest {
   std::size_t memory_bytes = std::size_t{4} << 30;
 };
 
+// Exposure times say how much light there was where the aperture stayed: Error(data) where an image of a view states
+// another f_number than the view's first image.
+void refuse_other_aperture(const manifest::Document& document, std::size_t first, std::size_t image);
+
 // Views of the manifest's images with a file, by camera: images of one `group` are exposures of one view, others stand
 // alone; Error(data) for images that say that they are developed. Images that are `dark` become `dark_frames`. Fills
 // `views`, `images` and, of the recipe where it does not say so already, black and full scale by the images' response

@@ -279,6 +279,8 @@ TEST(Bindings, StacksOfExposuresSayWhatTheEquationSays) {
       if (m.id == "sensor.shutter") taken.exposure_s = at[0];
       if (m.id == "light.drift") taken.since_s = at[0];
       if (m.id == "sensor.exposure") taken.image = 0;
+      if (m.id == "optics.lens-shading")
+        taken.radius = input(m, at, "image_radius"), taken.f_number = input(m, at, "f_number");
       const double v = random.uniform(0, 5), exposure = taken.exposure_s * taken.gain;
       if (m.id == "optics.veiling-glare") chain.mean_radiance[0] = input(m, at, "mean_of_picture") / exposure;
       expect_same(chain(v / exposure, 0, taken), m.act(v, at, p), m.id);

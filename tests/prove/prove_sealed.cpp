@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <numeric>
+#include <set>
 #include <thread>
 
 #include "base/atomic_file.h"
@@ -40,6 +42,14 @@ void for_all(std::size_t count, Work work) {
 }
 
 std::vector<Spec> chosen(bool quick, const std::vector<std::string>& domains) {
+  std::set<std::string> known;
+  for (const Spec& s : all_specs()) known.insert(s.domain);
+  for (const std::string& domain : domains)
+    if (!known.contains(domain))
+      throw Error(Exit::usage, domain, "is no domain of sealed cases",
+                  "give some of:" +
+                      std::accumulate(known.begin(), known.end(), std::string(),
+                                      [](const std::string& all, const std::string& one) { return all + " " + one; }));
   std::vector<Spec> specs;
   for (Spec& s : all_specs()) {
     const bool wanted = domains.empty() || std::find(domains.begin(), domains.end(), s.domain) != domains.end();

@@ -246,6 +246,10 @@ TEST_F(DevelopMerge, WhatCannotBeMergedIsRefusedInOneLine) {
   io::Image colours(8, 8, {"R", "G", "B"}), grey(8, 8, {"Y"});
   io::write_png(folder_ / "colours_4ms.png", colours, 16);
   io::write_png(folder_ / "grey.png", grey, 16);
+  write_file(folder_ / "apertures.json",
+             R"({"gonio": 1, "files": {"a": {"path": "wall_4ms.dng"}, "b": {"path": "wall_64ms.dng"}}, "images": [
+    {"id": "a", "file": "a", "group": "view", "exposure_s": 0.004, "f_number": 2.8},
+    {"id": "b", "file": "b", "group": "view", "exposure_s": 0.064, "f_number": 4}]})");
   struct Case {
     std::vector<std::string> words;
     int status;
@@ -253,6 +257,7 @@ TEST_F(DevelopMerge, WhatCannotBeMergedIsRefusedInOneLine) {
   };
   for (const Case& c : std::vector<Case>{
            {{"wall_1ms.dng", "wall_9ms.dng"}, 65, "the view's first frame 96 x 64"},
+           {{"apertures.json"}, 65, "/images/1/f_number: is 4, and that of its view's first image, a, is 2.8"},
            {{"cut_4ms.dng"}, 65, "cut_4ms.dng"},
            {{"nowhere_4ms.dng"}, 66, "nowhere_4ms.dng"},
            {{"colours_4ms.png"}, 65, "has 3 channels: it is no sensor's picture"},

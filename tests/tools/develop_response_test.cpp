@@ -96,6 +96,10 @@ TEST_F(DevelopResponse, WhatTellsNoResponseIsRefusedInOneLine) {
   write_file(folder_ / "cut_20ms.png", read_file(folder_ / "wall_50ms.png").substr(0, 900));
   write_file(folder_ / "lone.json", R"({"gonio": 1, "files": {"a": {"path": "wall_50ms.png"}},
     "images": [{"id": "a", "file": "a", "exposure_s": 0.05}]})");
+  write_file(folder_ / "apertures.json",
+             R"({"gonio": 1, "files": {"a": {"path": "wall_50ms.png"}, "b": {"path": "wall_100ms.png"}},
+    "images": [{"id": "a", "file": "a", "group": "v", "exposure_s": 0.05, "f_number": 2.8},
+               {"id": "b", "file": "b", "group": "v", "exposure_s": 0.1}]})");
   write_file(folder_ / "untimed.json", R"({"gonio": 1, "files": {"a": {"path": "wall_50ms.png"}},
     "images": [{"id": "a", "file": "a", "group": "v"}]})");
   struct Case {
@@ -112,6 +116,7 @@ TEST_F(DevelopResponse, WhatTellsNoResponseIsRefusedInOneLine) {
                          {{"cut_20ms.png", "wall_50ms.png"}, 65, "cut_20ms.png"},
                          {{"nowhere_20ms.png", "wall_50ms.png"}, 66, "nowhere_20ms.png"},
                          {{"lone.json"}, 66, "has no exposures of one view"},
+                         {{"apertures.json"}, 65, "/images/1/f_number: is missing, and that of its view's first image"},
                          {{"untimed.json"}, 65, "does not say how long it was exposed"},
                          {{"--shutter-error", "2", "wall_50ms.png"}, 64, "--shutter-error"},
                          {{"--merge", "wall_50ms.png", "wall_100ms.png"}, 64, "--merge"},

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "base/atomic_file.h"
@@ -14,6 +15,7 @@
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/image.h"
+#include "photograph/raw_document.h"
 #include "photograph/raw_views.h"
 #include "photograph/response_patches.h"
 #include "tools/develop/merge.h"
@@ -79,6 +81,7 @@ std::vector<std::size_t> enter_photographs(cli::Invocation& call, const std::vec
 std::vector<std::size_t> images_of_camera(cli::Invocation& call, std::vector<ResponseView>& views) {
   std::vector<std::size_t> images;
   std::set<std::string> cameras;
+  std::map<std::string, std::size_t> first_of;  // image of each view
   auto& all = call.document.images;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].file.empty() || all[i].dark == true || (call.given("camera") && all[i].camera != call.text("camera")))
@@ -92,7 +95,10 @@ std::vector<std::size_t> images_of_camera(cli::Invocation& call, std::vector<Res
       throw Error(Exit::data, manifest::place(call.document, "/images/" + std::to_string(i)),
                   "does not say how long it was exposed", "state exposure_s");
     auto view = std::ranges::find(views, all[i].group, &ResponseView::name);
-    if (view == views.end()) view = views.insert(views.end(), {all[i].group, {}, {}});
+    if (view == views.end())
+      view = views.insert(views.end(), {all[i].group, {}, {}}), first_of[all[i].group] = i;
+    else
+      photograph::refuse_other_aperture(call.document, first_of[all[i].group], i);
     view->pictures.push_back(path), view->exposures_s.push_back(*all[i].exposure_s);
   }
   if (cameras.size() > 1)

@@ -58,7 +58,7 @@ std::vector<Taken> taken(const Stack& stack) {
   for (const StackImage& image : stack.images) first = std::min(first, image.time_s.value_or(first));
   std::vector<Taken> all;
   for (const StackImage& image : stack.images)
-    all.push_back({image.exposure_s, image.gain, image.time_s ? *image.time_s - first : 0, all.size()});
+    all.push_back({image.exposure_s, image.gain, image.time_s ? *image.time_s - first : 0, all.size(), image.f_number});
   return all;
 }
 
@@ -116,7 +116,11 @@ void ExposuresProblem::add_radiances() {
 }
 
 double ExposuresProblem::radiance(const ReadingChain& chain, std::span<const double> values, std::size_t site) const {
-  return chain.radiance(values[base_[site]], sites_[site].channel, taken_[shown_in_[site]]);
+  return chain.radiance(values[base_[site]], sites_[site].channel, taken_at(shown_in_[site], site));
+}
+
+Taken ExposuresProblem::taken_at(std::size_t image, std::size_t site) const {
+  return taken_[image].at(stack_, sites_[site].x, sites_[site].y);
 }
 
 void ExposuresProblem::add_rows() {
@@ -180,6 +184,7 @@ void ExposuresProblem::add_conditions() {
           sites_[s].channel, linear_radiance(stack_, noise_, sites_[s]) * taken_[g].exposure_s * taken_[g].gain));
   std::vector<Condition> all = {{"image.radiance", "1", "sensor", expected_reading, {}, "1"},
                                 {"image.exposure", "s", "sensor", {}, expected_reading, "1"},
+                                {"image.aperture", "1", "optics", {}, expected_reading, "1"},
                                 {"image.identity", "1", "sensor", {}, expected_reading, "1"},
                                 {"image.mean", "1", "optics", {}, {}, "1"},
                                 {"camera.image-radius", "half width", "optics", {}, expected_reading, "1"},
@@ -194,6 +199,7 @@ void ExposuresProblem::add_conditions() {
     for (const std::size_t s : rows_[g]) {
       const Site& site = sites_[s];
       const double values[] = {image.exposure_s,
+                               image.f_number > 0 ? image.f_number : none,
                                static_cast<double>(g),
                                mean,
                                std::hypot(site.x - cx, site.y - cy) / half,
@@ -225,7 +231,7 @@ void ExposuresProblem::predict(std::span<const double> values, std::size_t group
   const ReadingChain now = chain(values);
   for (std::size_t i = 0; i < rows_[group].size(); ++i) {
     const std::size_t s = rows_[group][i];
-    prediction[i] = now(radiance(now, values, s), sites_[s].channel, taken_[group]);
+    prediction[i] = now(radiance(now, values, s), sites_[s].channel, taken_at(group, s));
   }
 }
 
@@ -253,7 +259,7 @@ void ExposuresProblem::jacobian(std::span<const double> values, std::size_t grou
     if (column_of[s] == columns.size()) continue;
     const auto reading = [&](double at) {
       moved[p] = at;
-      return now(radiance(now, moved, s), sites_[s].channel, taken_[group]);
+      return now(radiance(now, moved, s), sites_[s].channel, taken_at(group, s));
     };
     const double step = 1e-4 * parameters_[p].size, lower = std::max(0.0, values[p] - step);
     derivatives[column_of[s] * rows + i] = (reading(values[p] + step) - reading(lower)) / (values[p] + step - lower);

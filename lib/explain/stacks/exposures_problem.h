@@ -62,6 +62,7 @@ class ExposuresProblem final : public Problem {
   void add_conditions();
   void add_mechanisms(const manifest::Document& document);
   double radiance(const ReadingChain& chain, std::span<const double> values, std::size_t site) const;
+  Taken taken_at(std::size_t image, std::size_t site) const;
   Written written(std::size_t candidate) const;  // of the mechanism that it is of
 
   Stack stack_;

@@ -50,12 +50,12 @@ std::vector<Proposal> ExposuresProblem::proposals() const {
 ProposedRows ExposuresProblem::propose(std::span<const double> values, std::size_t proposal) const {
   const Proposed p = proposed()[proposal];
   const ReadingChain now = chain(values);
-  Taken at = taken_[p.like];
-  at.exposure_s = p.exposure_s;
-  at.image = Taken::unseen;
   ProposedRows rows;
   for (std::size_t s = 0; s < sites_.size(); ++s) {
     const int channel = sites_[s].channel;
+    Taken at = taken_at(p.like, s);
+    at.exposure_s = p.exposure_s;
+    at.image = Taken::unseen;
     const double light = p.dark ? 0 : radiance(now, values, s);
     const double reading = now(light, channel, at);
     rows.prediction.push_back(reading);

@@ -143,11 +143,11 @@ Pair against(const std::vector<Reading>& own, const std::vector<Reading>& other)
   return pair;
 }
 
-// Pictures by the distance of their exposures, the nearest first.
+// Pictures through the same aperture, which shades alike, by the distance of their exposures, the nearest first.
 std::vector<std::size_t> partners(const Stack& stack, std::size_t picture) {
   std::vector<std::size_t> others;
   for (std::size_t g = 0; g < stack.images.size(); ++g)
-    if (g != picture) others.push_back(g);
+    if (g != picture && stack.images[g].f_number == stack.images[picture].f_number) others.push_back(g);
   const auto away = [&](std::size_t g) {
     return std::abs(std::log(stack.images[g].exposure_s / stack.images[picture].exposure_s));
   };

@@ -57,10 +57,12 @@ bool StackEntry::is_stated() const {
   return document_.mechanisms.contains(mechanism_.id);
 }
 
-void StackEntry::propose_all(std::vector<std::string> on) {
+void StackEntry::propose_all(std::vector<std::string> on, bool gradual) {
   std::vector<std::size_t> numbers;
   for (std::size_t k = 0; k < count(); ++k) numbers.push_back(k);
+  const std::size_t before = candidates_.size();
   propose(numbers, std::move(on));
+  if (candidates_.size() > before) candidates_.back().gradual = gradual;
 }
 
 bool is_switched_on(Written written, bool bent) {

@@ -29,9 +29,9 @@ class StackEntry {
   // One that belongs to the base model and to no mechanism.
   void add_base(Parameter parameter);
   // A candidate of these numbers, counted from `first`; nothing where the manifest has switched the mechanism on.
-  // Several are alternatives of one family.
+  // Several are alternatives of one family. `gradual`: Candidate::gradual.
   void propose(const std::vector<std::size_t>& numbers, std::vector<std::string> on = {}, bool finer = false);
-  void propose_all(std::vector<std::string> on = {});
+  void propose_all(std::vector<std::string> on = {}, bool gradual = false);
   // Does the manifest say anything of the mechanism, of whatever target?
   bool is_stated() const;
   std::size_t count() const { return parameters_.size() - first; }

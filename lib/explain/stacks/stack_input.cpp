@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -54,10 +55,10 @@ std::string place_of_camera(const ImageEntry& e) {
 }
 
 bool large_enough(const Document& document, const std::vector<std::size_t>& entries, Kind kind) {
-  std::set<double> times;
+  std::set<std::pair<double, double>> times;  // and f-numbers
   std::set<std::string> lamps;
   for (const std::size_t i : entries) {
-    times.insert(document.images[i].exposure_s.value_or(0));
+    times.insert({document.images[i].exposure_s.value_or(0), document.images[i].f_number.value_or(0)});
     lamps.insert(distant_lamp(document, document.images[i]));
   }
   return kind == Kind::exposures ? times.size() >= fewest_exposures
@@ -150,6 +151,24 @@ void check_alike(const Document& document, const StackImage& image, const Stack&
               "has another size or other channels than the stack's first picture", "give pictures of one kind");
 }
 
+// What each aperture lets in, where nothing else is said of the light: as areas go, the widest is the unit. All state
+// one, or none does.
+void set_apertures(const Document& document, Stack& stack) {
+  double widest = std::numeric_limits<double>::infinity();
+  for (StackImage& image : stack.images) {
+    const std::optional<double>& own = document.images[image.entry].f_number;
+    if (own.has_value() != document.images[stack.images[0].entry].f_number.has_value())
+      throw Error(Exit::data, manifest::place(document, pointer(image.entry, own ? "/f_number" : "")),
+                  own ? "is said, and of the stack's first picture none is"
+                      : "states no f_number, as the stack's first picture does",
+                  "state it of all pictures of a stack, or of none");
+    image.f_number = own.value_or(0);
+    widest = std::min(widest, image.f_number);
+  }
+  for (StackImage& image : stack.images)
+    if (widest > 0 && !document.images[image.entry].gain) image.gain *= std::pow(widest / image.f_number, 2);
+}
+
 void set_scale(Stack& stack) {
   if (stack.integer && stack.quantum > 0) return;
   double largest = 0;
@@ -213,6 +232,7 @@ Stack read_stack(const Document& document, const std::vector<std::size_t>& entri
     for (const std::string& light : document.images[entries[0]].light)
       stack.name += (stack.name.empty() ? "" : ", ") + light;
   stack.channels = stack.images[0].picture.channels;
+  set_apertures(document, stack);
   set_scale(stack);
   return stack;
 }

@@ -1,6 +1,6 @@
 // Stacks of pictures that a manifest names: one camera in one pose, a scene that nothing moved in, and no geometry. A
-// stack of exposures shows it under one light for different times; a stack of lights shows it under one distant lamp
-// after the other (photometric stereo).
+// stack of exposures shows it under one light for different times, or through different apertures; a stack of lights
+// shows it under one distant lamp after the other (photometric stereo).
 //
 // Readings are what the file holds, through its stated response: codes over full scale, or an EXR file's values. Of a
 // stack of exposures whose files share a rising table as their response and state no noise, readings are the codes
@@ -32,6 +32,7 @@ struct StackImage {
   std::vector<std::uint8_t> counts;    // one per reading
   std::vector<std::uint8_t> at_least;  // one per pixel: some channel is clipped, and no mask hides it
   double exposure_s = 1, gain = 1;     // gain: factor on the light, 1 unless the manifest knows better
+  double f_number = 0;                 // of the aperture; 0: not said
   std::optional<double> time_s, temperature_K;
   std::optional<Rigid<frame::World, frame::Camera>> world_from_camera;  // where it is stated
   std::string light;  // of a stack of lights: key in the manifest's lights
@@ -68,8 +69,9 @@ struct Stack {
 
 enum class Kind { exposures, lights };
 
-// Places in document.images, stack by stack. Exposures: at least three images with three exposure times under the same
-// lights. Lights: at least six, each under one distant lamp of its own, all with one exposure time.
+// Places in document.images, stack by stack. Exposures: at least three images with three exposures (times, or times and
+// f-numbers) under the same lights. Lights: at least six, each under one distant lamp of its own, all with one exposure
+// time.
 std::vector<std::vector<std::size_t>> stacks_of(const manifest::Document& document, Kind kind);
 
 // Reads the pictures and masks. Error(data) at the place in the manifest where sizes, channels or responses do not fit.

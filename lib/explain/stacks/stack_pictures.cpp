@@ -167,6 +167,7 @@ Effects exposure_effects(const Stack& stack, const ReadingNoise& noise, const st
   }
   parallel_for(0, static_cast<std::size_t>(effects.height), [&](std::size_t row) {
     std::vector<double> y, sigma;
+    std::vector<Taken> there = taken;
     for (int column = 0; column < effects.width; ++column)
       for (int c = 0; c < static_cast<int>(stack.channels.size()); ++c) {
         Site site{column * effects.stride, static_cast<int>(row) * effects.stride, c, 0, 0, {}};
@@ -182,12 +183,13 @@ Effects exposure_effects(const Stack& stack, const ReadingNoise& noise, const st
         }
         if (y.size() < 2) continue;
         const double start = std::log(std::max(1e-9, sum / time));
-        const double b = fitted_log_radiance(before, site, taken, y, sigma, start);
-        const double a = named ? fitted_log_radiance(after, site, taken, y, sigma, b) : b;
+        for (Taken& t : there) t = t.at(stack, site.x, site.y);
+        const double b = fitted_log_radiance(before, site, there, y, sigma, start);
+        const double a = named ? fitted_log_radiance(after, site, there, y, sigma, b) : b;
         for (std::size_t k = 0; k < y.size(); ++k) {
           const std::size_t g = site.seen[k];
-          const double f = before(std::exp(b), c, taken[g]);
-          const double change = std::abs((named ? after(std::exp(a), c, taken[g]) : y[k]) - f);
+          const double f = before(std::exp(b), c, there[g]);
+          const double change = std::abs((named ? after(std::exp(a), c, there[g]) : y[k]) - f);
           const std::size_t place = row * static_cast<std::size_t>(effects.width) + static_cast<std::size_t>(column);
           effects.effect[g][place] = std::max(effects.effect[g][place], static_cast<float>(change / sigma[k]));
           effects.share[g][place] = std::max(effects.share[g][place], static_cast<float>(change / rms[g]));

@@ -21,9 +21,9 @@ struct SeenBoard {  // one of several boards in an image
 struct ImageEntry {  // "images"
   std::string id, file, camera;
   std::optional<Pose<frame::World, frame::Camera>> world_from_camera;  // absent: the camera sits at the world's origin
-  std::vector<std::string> light;  // one name or a list; empty: every light of the scene is on
-  std::optional<bool> dark{};      // true: none is
-  std::optional<double> exposure_s;
+  std::vector<std::string> light;                   // one name or a list; empty: every light of the scene is on
+  std::optional<bool> dark{};                       // true: none is
+  std::optional<double> exposure_s, f_number{};     // f_number: of the aperture, as the lens says
   std::optional<double> time_s{}, temperature_K{};  // when it was taken, counted from any moment; of the instrument
   std::optional<double> saturation{};  // stored value from which on a pixel is saturated; absent: the highest code
   Value response;                      // "linear" (default for EXR), "srgb", or a table [[code, linear], ...]

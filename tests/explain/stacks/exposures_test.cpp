@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "base/error.h"
 #include "data.h"
 #include "explain/engine.h"
 #include "explain/stacks/exposure_outcome.h"
@@ -133,6 +134,72 @@ TEST(Exposures, OffsetIsFoundAndItsIntervalsCover) {
   }
   EXPECT_EQ(found, runs);
   EXPECT_GE(covered, 2);  // of 4 at 95 %: one or none with probability 0.0005
+}
+
+// Three apertures, each at three times, of a lens whose rim shades the widest most.
+ExposureWorld through_apertures() {
+  ExposureWorld world;
+  world.exposures_s = {0.002, 0.006, 0.018, 0.004, 0.012, 0.036, 0.016, 0.048, 0.144};
+  world.f_numbers = {2, 2, 2, 2.8, 2.8, 2.8, 5.6, 5.6, 5.6};
+  world.stopped_down = 0.94;
+  world.bits = 16;
+  return world;
+}
+
+TEST(Exposures, ShadingThatGoesWithTheApertureIsFoundAndCarried) {
+  const tests::ScratchFolder folder;
+  ExposureWorld world = through_apertures();
+  world.rim = 2.2, world.rim_shift = 0.5;
+  const Outcome first = run(record(world, folder.path()));
+  ASSERT_EQ(first.named, (Names{"optics.lens-shading"})) << told(first);
+  ASSERT_EQ(first.explanation.estimates.size(), 2u);
+  for (const Estimate& e : first.explanation.estimates) {
+    const bool shift = first.problem->parameters()[e.parameter].name.ends_with("shift");
+    EXPECT_NEAR(e.value, shift ? world.rim_shift : world.rim, shift ? 0.05 : 0.15) << told(first);
+  }
+  manifest::Document upgraded = first.document;
+  first.problem->apply(first.explanation, upgraded);
+  const Outcome second = run(upgraded);
+  EXPECT_EQ(second.explanation.verdict, Verdict::null) << told(second);
+}
+
+TEST(Exposures, ApertureThatShadesNothingAndPassesLessThanItSaysIsNoMismatch) {
+  const Outcome none = run(through_apertures());
+  EXPECT_EQ(none.explanation.verdict, Verdict::null) << told(none);
+}
+
+// Intervals over other seeds, rims and shifts: of 10 at 95 % fewer than 8 with probability 0.012.
+TEST(Exposures, IntervalsOfTheRimCover) {
+  int covered = 0, asked = 0;
+  for (int k = 0; k < 15; k += 3) {
+    ExposureWorld world = through_apertures();
+    world.seed = 300 + k;
+    world.rim = 2 + 0.04 * k, world.rim_shift = 0.35 + 0.02 * ((k * 7) % 15);
+    const Outcome r = run(world);
+    if (r.named != Names{"optics.lens-shading"}) {
+      ADD_FAILURE() << told(r);
+      continue;
+    }
+    for (const Estimate& e : r.explanation.estimates) {
+      const bool shift = r.problem->parameters()[e.parameter].name.ends_with("shift");
+      const double truth = shift ? world.rim_shift : world.rim;
+      covered += e.lower_95 <= truth && truth <= e.upper_95, ++asked;
+    }
+  }
+  EXPECT_EQ(asked, 10);
+  EXPECT_GE(covered, 8);
+}
+
+TEST(Exposures, AnApertureOfSomePicturesAloneIsRefused) {
+  const tests::ScratchFolder folder;
+  manifest::Document document = record(through_apertures(), folder.path());
+  document.images[4].f_number.reset();
+  try {
+    run(document);
+    FAIL() << "taken";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("/images/4"), std::string::npos) << e.what();
+  }
 }
 
 // Red and blue beside clipped green read too much: named beside nothing else, carried, and found no second time.

@@ -61,6 +61,25 @@ void flow_over(io::Image& light, const ExposureWorld& world) {
       }
 }
 
+// What passes the lens in a picture at a place `radius` half widths from the centre: rays on a grid, counted one by
+// one.
+double through_lens(double radius, std::size_t picture, const ExposureWorld& world) {
+  if (world.f_numbers.empty()) return 1;
+  const double n = world.f_numbers[picture], widest = std::ranges::min(world.f_numbers);
+  double share = std::pow(widest / n, 2) * (n > widest ? world.stopped_down : 1);
+  if (!(world.rim > 0)) return share;
+  int started = 0, passed_rim = 0;
+  constexpr int across = 160;
+  for (int j = 0; j < across; ++j)
+    for (int i = 0; i < across; ++i) {
+      const double x = (2 * i + 1.0) / across - 1, y = (2 * j + 1.0) / across - 1;  // over the aperture
+      if (x * x + y * y > 1) continue;
+      ++started;
+      passed_rim += std::hypot(x / n - world.rim_shift * radius / world.rim, y / n) < 1 / world.rim;
+    }
+  return share * passed_rim / started;
+}
+
 }  // namespace
 
 manifest::Document record(const ExposureWorld& world, const std::filesystem::path& folder) {
@@ -76,13 +95,17 @@ manifest::Document record(const ExposureWorld& world, const std::filesystem::pat
     const double open_s =
         (world.exposures_s[g] + world.extra_s) * (1 + (world.longer.empty() ? 0 : world.longer.at(g)));
     io::Image light(world.width, world.height, names);
+    std::vector<double> lens;  // by tenths of a pixel from the centre
+    for (int r = 0; r < 10 * (world.width + world.height); ++r)
+      lens.push_back(through_lens((r + 0.5) / 5 / world.width, g, world));
     for (int y = 0; y < world.height; ++y)
       for (int x = 0; x < world.width; ++x)
         for (int c = 0; c < world.channels; ++c) {
           double scene = std::exp(scene_log(x, y, c, world)) * passed(x, y, world);
           for (const ExposureWorld::Passer& p : world.passers)
             if (p.picture == g && std::hypot(x - p.x, y - p.y) < p.radius) scene = p.light;
-          const double v = scene * scale * open_s;
+          const double from_centre = std::hypot(x + 0.5 - 0.5 * world.width, y + 0.5 - 0.5 * world.height);
+          const double v = scene * scale * open_s * lens[static_cast<std::size_t>(10 * from_centre)];
           light.at(x, y, c) = static_cast<float>(world.light ? world.light(v, world.times_s.at(g)) : v);
         }
     for (const ExposureWorld::Hot& hot : world.hot)
@@ -103,6 +126,7 @@ manifest::Document record(const ExposureWorld& world, const std::filesystem::pat
     files += (g ? ", \"" : "\"") + id + "\": {\"path\": \"" + file + "\"}";
     images += (g ? ", " : "") + std::string("{\"id\": \"") + id + "\", \"file\": \"" + id +
               "\", \"camera\": \"c\", \"exposure_s\": " + number(world.exposures_s[g]) + ", \"response\": \"linear\"";
+    if (!world.f_numbers.empty()) images += ", \"f_number\": " + number(world.f_numbers[g]);
     if (!world.times_s.empty()) images += ", \"time_s\": " + number(world.times_s[g]);
     if (!world.response)
       images += ", \"noise\": {\"gain\": " + number(world.electrons) + ", \"read\": " + number(world.read) + "}";

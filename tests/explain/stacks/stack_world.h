@@ -34,6 +34,12 @@ struct ExposureWorld {
     double per_s = 0;  // of full scale
   };
   std::vector<Hot> hot{};  // of the first channel
+  // Of each picture; empty: not said. Rays fill an aperture of radius 1 / N, except where they miss a rim as wide as
+  // that of f/rim, which stands `rim_shift` of its radii aside half a picture's width from the centre. 0: there is no
+  // rim.
+  std::vector<double> f_numbers{};
+  double rim = 0, rim_shift = 0;
+  double stopped_down = 1;  // what apertures but the widest pass of what they say
   std::uint64_t seed = 1;
 };
 
