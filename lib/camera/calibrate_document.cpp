@@ -11,6 +11,7 @@
 #include "camera/detection_failure.h"
 #include "camera/model_choice.h"
 #include "camera/moved_corners.h"
+#include "camera/picture_names.h"
 #include "camera/quality/quality.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
@@ -185,18 +186,6 @@ void enter_picture(const std::string& path, const std::string& camera, const std
   document.images.push_back(entry);
 }
 
-// The camera that a name speaks of; nothing where that is none or several. A longer name beats one that it contains.
-std::string spoken_of(const std::string& name, const std::vector<std::string>& cameras) {
-  std::string found;
-  bool several = false;
-  for (const std::string& camera : cameras) {
-    if (name.find(camera) == std::string::npos || found.find(camera) != std::string::npos) continue;
-    several = !found.empty() && camera.find(found) == std::string::npos;
-    found = camera;
-  }
-  return several ? "" : found;
-}
-
 }  // namespace
 
 void enter_board(const Board& board, manifest::Document& document) {
@@ -224,12 +213,8 @@ void enter_rig(const std::vector<std::string>& cameras, const std::vector<std::s
   for (const std::string& path : paths) {
     const std::filesystem::path whole(path);
     std::string shot = whole.stem().string();
-    std::string camera = spoken_of(shot, cameras);
-    if (!camera.empty()) {
-      shot.erase(shot.find(camera), camera.size());
-    } else {
-      camera = spoken_of(whole.parent_path().filename().string(), cameras);
-    }
+    const std::string in_name = camera_in_name(shot, cameras), camera = camera_of_picture(whole, cameras);
+    if (!in_name.empty()) shot.erase(shot.find(in_name), in_name.size());
     if (camera.empty()) {
       throw Error(Exit::usage, path, "is the picture of none, or of several, of the cameras that --rig names",
                   "name pictures after their camera, left01.jpg or left/01.jpg, or write a manifest with images");

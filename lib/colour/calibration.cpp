@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "colour/correction_fit.h"
+#include "geom/mat3_inverse.h"
 #include "stats/intervals.h"
 
 namespace gonio::colour {
@@ -205,7 +206,7 @@ Calibration calibrate(const Chart& chart, std::span<const PatchReading> readings
 }
 
 double exposure_change(const Correction& correction, std::span<const Rgb> pixels) {
-  const Mat3 xyz = optics::inverse(from_xyz_d50(correction.target()));
+  const Mat3 xyz = inverse(from_xyz_d50(correction.target()));
   double most = 0;
   for (const double factor : {0.1, 0.3, 3.0, 10.0}) {
     double mean = 0;

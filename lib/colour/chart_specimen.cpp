@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "geom/mat3_inverse.h"
 
 namespace gonio::colour {
 namespace {
@@ -40,7 +41,7 @@ Rgb read_of(const ChartSpecimen& specimen, const Patch& patch) {
 
 io::Image photograph_of(const Chart& chart, const ChartSpecimen& p, int width, int height) {
   Random random(p.seed);
-  const Mat3 chart_from_image = optics::inverse(p.pose.image_from_chart);
+  const Mat3 chart_from_image = inverse(p.pose.image_from_chart);
   const Rgb dark = p.camera_from_xyz * (optics::white_d50 * frame_reflectance);
   const auto light_at = [&](double x, double y) {
     const Vec3 h = chart_from_image * Vec3{x, y, 1};

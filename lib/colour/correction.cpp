@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "geom/mat3_inverse.h"
 #include "manifest/sections/colour_correction.h"
 
 namespace gonio::colour {
@@ -183,7 +184,7 @@ Mat3 Correction::slopes(Rgb pixel) const {
 }
 
 optics::Lab Correction::lab(Rgb pixel) const {
-  return optics::lab_from_xyz(optics::inverse(from_xyz_d50(target_)) * (*this)(pixel), optics::white_d50);
+  return optics::lab_from_xyz(inverse(from_xyz_d50(target_)) * (*this)(pixel), optics::white_d50);
 }
 
 Correction correction_of(const manifest::ColourCorrection& section, const std::string& place) {

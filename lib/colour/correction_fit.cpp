@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "geom/mat3_inverse.h"
 #include "linear/geom_matrices.h"
 #include "linear/qr.h"
 #include "linear/symmetric_eigen.h"
@@ -44,7 +45,7 @@ class Fitting {
  public:
   Fitting(std::span<const Sample> samples, const FitRequest& request)
       : request_(request),
-        xyz_from_target_(as_eigen(optics::inverse(from_xyz_d50(request.target)))),
+        xyz_from_target_(as_eigen(inverse(from_xyz_d50(request.target)))),
         terms_(static_cast<Index>(terms_of(request.model).size())),
         free_(static_cast<Index>(free_terms(request.model))) {
     for (const Sample& sample : samples) rows_.push_back(row_of(sample));

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "colour/correction_fit.h"
+#include "geom/mat3_inverse.h"
 #include "linear/geom_matrices.h"
 #include "linear/symmetric_eigen.h"
 #include "optics/colorimetry.h"
@@ -86,7 +87,7 @@ double metamerism_de00(const Sensitivities& sensor, const std::function<double(d
                 "name a file of three different sensitivities");
   const Eigen::Matrix3d shared = over.asDiagonal() * read * covariance * observer.transpose();
   const Eigen::Matrix3d left = observer * covariance * observer.transpose() -
-                               shared.transpose() * linear::as_eigen(optics::inverse(linear::mat3_of(even))) * shared;
+                               shared.transpose() * linear::as_eigen(inverse(linear::mat3_of(even))) * shared;
   const optics::Xyz white = optics::xyz_of([](double) { return 1.0; }, light), grey = white * mean_reflectance;
   const Eigen::Matrix3d whiten =
       linear::as_eigen(difference_root(optics::lab_from_xyz(grey, white)) * optics::lab_slopes(grey, white));

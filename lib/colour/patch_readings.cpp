@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "geom/mat3_inverse.h"
 #include "linear/geom_matrices.h"
 #include "linear/qr.h"
 #include "stats/intervals.h"
@@ -39,7 +40,7 @@ std::vector<Pixel> pixels_of(const io::Image& picture, std::span<const PixelStat
                 format("patch %s reaches out of the picture (%.0f, %.0f to %.0f, %.0f px of %d x %d)",
                        patch.name.c_str(), left, top, right, bottom, picture.width, picture.height),
                 "show the whole chart");
-  const Mat3 chart_from_image = optics::inverse(pose.image_from_chart);
+  const Mat3 chart_from_image = inverse(pose.image_from_chart);
   std::vector<Pixel> found;
   for (int y = static_cast<int>(top); y <= static_cast<int>(bottom) + 1 && y < picture.height; ++y)
     for (int x = static_cast<int>(left); x <= static_cast<int>(right) + 1 && x < picture.width; ++x) {

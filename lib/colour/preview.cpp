@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/mat3_inverse.h"
 #include "io/picture.h"
 
 namespace gonio::colour {
@@ -16,9 +17,9 @@ class Drawing {
   Drawing(const Chart& chart, const ChartPose& pose, const Calibration& calibration)
       : chart_(chart),
         calibration_(calibration),
-        chart_from_image_(optics::inverse(pose.image_from_chart)),
+        chart_from_image_(inverse(pose.image_from_chart)),
         srgb_(from_xyz_d50(Target::srgb)),
-        srgb_from_target_(srgb_ * optics::inverse(from_xyz_d50(calibration.correction.target()))) {}
+        srgb_from_target_(srgb_ * inverse(from_xyz_d50(calibration.correction.target()))) {}
 
   Rgb pixel(Rgb read, double x, double y, bool corrected) const {
     const Vec3 h = chart_from_image_ * Vec3{x, y, 1};

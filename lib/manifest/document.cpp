@@ -18,6 +18,7 @@
 #include "manifest/sections/acceptance.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
+#include "manifest/sections/cloud.h"
 #include "manifest/sections/colour_correction.h"
 #include "manifest/sections/comparison.h"
 #include "manifest/sections/contrast.h"
@@ -39,6 +40,7 @@
 #include "manifest/sections/pattern.h"
 #include "manifest/sections/placement.h"
 #include "manifest/sections/plan.h"
+#include "manifest/sections/projection.h"
 #include "manifest/sections/provenance.h"
 #include "manifest/sections/reconstruction.h"
 #include "manifest/sections/relief.h"
@@ -82,6 +84,8 @@ void for_each_section(D& d, const Visit& visit) {
   visit("goniometer", d.goniometer);
   visit("surface_fits", d.surface_fits);
   visit("patterns", d.patterns);
+  visit("projections", d.projections);
+  visit("clouds", d.clouds);
   visit("contrasts", d.contrasts);
   visit("reliefs", d.reliefs);
   visit("ground_noises", d.ground_noises);

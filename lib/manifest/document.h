@@ -53,6 +53,8 @@ struct Document {
   std::map<std::string, FlatPatch> goniometer;
   std::map<std::string, SurfaceFit> surface_fits;
   std::map<std::string, Pattern> patterns;
+  std::map<std::string, Projection> projections;
+  std::map<std::string, Cloud> clouds;
   std::vector<Contrast> contrasts;
   std::map<std::string, ReliefMap> reliefs;
   std::map<std::string, GroundNoiseFit> ground_noises;

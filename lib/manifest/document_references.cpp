@@ -10,6 +10,7 @@
 #include "manifest/image_list.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
+#include "manifest/sections/cloud.h"
 #include "manifest/sections/colour_correction.h"
 #include "manifest/sections/environment.h"
 #include "manifest/sections/file.h"
@@ -24,6 +25,7 @@
 #include "manifest/sections/pattern.h"
 #include "manifest/sections/placement.h"
 #include "manifest/sections/plan.h"
+#include "manifest/sections/projection.h"
 #include "manifest/sections/reconstruction.h"
 #include "manifest/sections/relief.h"
 #include "manifest/sections/rendering.h"
@@ -305,6 +307,31 @@ void check_lights(const Document& d) {
   }
 }
 
+void check_scans(const Document& d) {
+  for (const auto& [name, projection] : d.projections)
+    for (std::size_t i = 0; i < projection.frames.size(); ++i)
+      must_exist(d.files, "files", projection.frames[i].file,
+                 place(d, "/projections/" + name + "/frames/" + std::to_string(i) + "/file"));
+  for (std::size_t i = 0; i < d.images.size(); ++i) {
+    const ImageEntry& image = d.images[i];
+    const std::string at = place(d, "/images/" + std::to_string(i));
+    must_exist(d.projections, "projections", image.projection, at + "/projection");
+    if (image.shows && image.projection.empty())
+      throw Error(Exit::data, at + "/shows", "stands without a projection", "name the projection whose frame it shows");
+    if (image.shows && static_cast<std::size_t>(*image.shows) >= d.projections.at(image.projection).frames.size())
+      throw Error(Exit::data, at + "/shows",
+                  "is " + std::to_string(*image.shows) + ", and the projection has " +
+                      std::to_string(d.projections.at(image.projection).frames.size()) + " frames",
+                  "count from 0");
+  }
+  for (const auto& [name, cloud] : d.clouds) {
+    const std::string at = place(d, "/clouds/" + name);
+    must_exist(d.files, "files", cloud.file, at + "/file");
+    must_exist(d.projections, "projections", cloud.projection, at + "/projection");
+    for (const std::string& camera : cloud.cameras) must_exist(d.cameras, "cameras", camera, at + "/cameras");
+  }
+}
+
 }  // namespace
 
 void check_references(const Document& d) {
@@ -316,6 +343,7 @@ void check_references(const Document& d) {
   check_laboratory(d);
   check_plans(d);
   check_nrsfm(d);
+  check_scans(d);
   unique_ids(d.objects, place(d, "/objects"));
   for (std::size_t i = 0; i < d.objects.size(); ++i) {
     const std::string at = place(d, "/objects/" + std::to_string(i));

@@ -33,7 +33,8 @@ const std::vector<Field<DhRow>>& dh_row_fields() {
 
 const std::vector<Field<Robot>>& robot_fields() {
   static const std::vector<Field<Robot>> table{
-      field("model", &Robot::model, "", "ur3, ur3e, ur5, ur5e, ur10e, abb-irb-1600, or dh with the rows below").needed(),
+      field("model", &Robot::model, "", "ur3, ur3e, ur5, ur5e, ur10e, abb-irb-1600, or dh with the rows below")
+          .needed(),
       field("dh", &Robot::dh, "", "standard Denavit-Hartenberg rows, base to flange"),
       field("calibration", &Robot::calibration, "", "file id of a UR controller's calibration.conf")};
   return table;
@@ -74,7 +75,8 @@ const std::vector<Field<Mounting>>& mounting_fields() {
       field("light_in_tool_m", &Mounting::light_in_tool_m, "m", "light-in-hand: position of the light"),
       sigma_field(&Mounting::sigma),
       field("method", &Mounting::method, "", "closed form and refinement"),
-      field("corner_px", &Mounting::corner_px, "px", "estimated noise of one coordinate of a corner").range(0, infinite),
+      field("corner_px", &Mounting::corner_px, "px", "estimated noise of one coordinate of a corner")
+          .range(0, infinite),
       field("robot_m", &Mounting::robot_m, "m", "estimated noise of the tool's position, one coordinate")
           .range(0, infinite),
       field("robot_rad", &Mounting::robot_rad, "rad", "estimated noise of the tool's rotation, one axis")
@@ -101,7 +103,8 @@ const std::vector<Field<LightPosition>>& light_position_fields() {
       field("robot", &LightPosition::robot, "", "name of the robot that held it"),
       field("base_from_tool", &LightPosition::base_from_tool, "", "takes tool to robot base coordinates").needed(),
       field("position_m", &LightPosition::position_m, "m", "of the light, world").needed(),
-      field("sigma_m", &LightPosition::sigma_m, "m", "one standard deviation, one or three numbers").range(0, infinite)};
+      field("sigma_m", &LightPosition::sigma_m, "m", "one standard deviation, one or three numbers")
+          .range(0, infinite)};
   return table;
 }
 
@@ -116,7 +119,8 @@ const std::vector<Field<AcceptanceResult>>& acceptance_fields() {
       field("bias", &AcceptanceResult::bias, "m", "mean deviation"),
       field("sigma", &AcceptanceResult::sigma, "m", "standard deviation").range(0, infinite),
       field("limit", &AcceptanceResult::limit, "m", "largest value that was allowed").range(0, infinite),
-      field("uncertainty", &AcceptanceResult::uncertainty, "m", "one standard deviation of the value").range(0, infinite),
+      field("uncertainty", &AcceptanceResult::uncertainty, "m", "one standard deviation of the value")
+          .range(0, infinite),
       field("count", &AcceptanceResult::count, "", "points or distances that counted"),
       field("rejected", &AcceptanceResult::rejected, "", "points left out as outliers")};
   return table;

@@ -167,6 +167,8 @@ const std::vector<Field<ImageEntry>>& image_fields() {
       field("joints_rad", &ImageEntry::joints_rad, "rad", "joint angles of the robot"),
       field("shapes", &ImageEntry::shapes, "",
             "by object: how far it was through its mesh's shapes, 0 the first, 1 the last; left out: at the first"),
+      field("projection", &ImageEntry::projection, "", "what the projector shows in it: name in projections"),
+      field("shows", &ImageEntry::shows, "", "place in the frames of the projection, from 0").range(0, 4095),
       field("boards", &ImageEntry::boards, "", "instead of board, where it shows several: one entry each"),
       field(
           "developed", &ImageEntry::developed, "",

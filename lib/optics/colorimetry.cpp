@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "geom/dual.h"
+#include "geom/mat3_inverse.h"
 #include "optics/standard_observer.h"
 
 namespace gonio::optics {
@@ -171,14 +172,6 @@ const Mat3& srgb_from_xyz() {
   static const Mat3 matrix =
       inverse({{0.4124564, 0.3575761, 0.1804375, 0.2126729, 0.7151522, 0.0721750, 0.0193339, 0.1191920, 0.9503041}});
   return matrix;
-}
-
-Mat3 inverse(const Mat3& a) {
-  const Vec3 p{a.m[0], a.m[1], a.m[2]}, q{a.m[3], a.m[4], a.m[5]}, r{a.m[6], a.m[7], a.m[8]};
-  const Vec3 qr = cross(q, r), rp = cross(r, p), pq = cross(p, q);
-  const double over = 1 / dot(p, qr);
-  return {{qr.x * over, rp.x * over, pq.x * over, qr.y * over, rp.y * over, pq.y * over, qr.z * over, rp.z * over,
-           pq.z * over}};
 }
 
 Xyz xyz_of(const std::function<double(double)>& reflectance, const std::function<double(double)>& light) {

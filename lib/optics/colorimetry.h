@@ -42,7 +42,6 @@ Mat3 bradford(Xyz from, Xyz to);
 const Mat3& cie_rgb_from_xyz();
 // Linear RGB of IEC 61966-2-1 from XYZ whose white is D65.
 const Mat3& srgb_from_xyz();
-Mat3 inverse(const Mat3& a);  // not finite where `a` is singular
 
 // Light of a spectrum (over metres, any unit) off a reflectance: relative to that off the perfect diffuser. Sums over
 // the observer's table at 5 nm, 380 to 780 nm (CIE 15:2018, 7.1). With reflectance 1 it is the light's white point.

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "geom/mat3_inverse.h"
 #include "optics/colorimetry.h"
 #include "optics/standard_observer.h"
 
@@ -61,17 +62,16 @@ Rgb boxes(double wavelength_m) {
 
 // Of the matrix of the boxes' RGBs: what to take of each box so that the RGB is right.
 const Mat3& boxes_from_rgb() {
-  static const Mat3 inverse = [] {
+  static const Mat3 solved = [] {
     std::array<Vec3, 3> column{};  // RGB of each box
     over_visible([&](double wavelength_m, Rgb weight) {
       const Rgb box = boxes(wavelength_m);
       column[0] += weight * box.x, column[1] += weight * box.y, column[2] += weight * box.z;
     });
-    const Vec3 a = cross(column[1], column[2]), b = cross(column[2], column[0]), c = cross(column[0], column[1]);
-    const double det = dot(column[0], a);
-    return Mat3{{a.x / det, a.y / det, a.z / det, b.x / det, b.y / det, b.z / det, c.x / det, c.y / det, c.z / det}};
+    return inverse(Mat3{{column[0].x, column[1].x, column[2].x, column[0].y, column[1].y, column[2].y, column[0].z,
+                         column[1].z, column[2].z}});
   }();
-  return inverse;
+  return solved;
 }
 
 }  // namespace

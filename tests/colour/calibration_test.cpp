@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "data.h"
+#include "geom/mat3_inverse.h"
 #include "optics/spectrum.h"
 
 namespace gonio::colour {
@@ -219,7 +220,7 @@ TEST(Coefficients, HaveHonestIntervals) {
   const Chart chart = colorchecker_classic("after-2014", "test");
   const Rgb white = camera * optics::white_d50;
   const Mat3 truth =
-      from_xyz_d50(Target::cie_rgb) * optics::inverse(camera) * Mat3{{white.x, 0, 0, 0, white.y, 0, 0, 0, white.z}};
+      from_xyz_d50(Target::cie_rgb) * inverse(camera) * Mat3{{white.x, 0, 0, 0, white.y, 0, 0, 0, white.z}};
   for (const bool refine : {false, true}) {
     double covered = 0, count = 0, squares = 0;
     for (std::uint64_t seed = 1; seed <= (refine ? 100u : 200u); ++seed) {

@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "colour/chart.h"
 #include "colour/correction_fit.h"
+#include "geom/mat3_inverse.h"
 
 namespace gonio::colour {
 namespace {
@@ -169,7 +170,7 @@ TEST(Fits, AHomographyDoesNotMindUnevenLight) {
   EXPECT_GT(mean_difference(fit_correction(samples, request(Model::linear), "test"), even), 0.5);
   const Correction homography = fit_correction(samples, request(Model::homography), "test");
   for (const Sample& s : even) {
-    const optics::Xyz found = optics::inverse(from_xyz_d50(Target::cie_rgb)) * homography(s.rgb),
+    const optics::Xyz found = inverse(from_xyz_d50(Target::cie_rgb)) * homography(s.rgb),
                       wanted = optics::xyz_from_lab(s.lab, optics::white_d50);
     EXPECT_LT(norm(found / found.y - wanted / wanted.y), 2e-3);
   }

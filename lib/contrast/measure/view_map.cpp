@@ -2,10 +2,10 @@
 #include "contrast/measure/view_map.h"
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "geom/mat3_inverse.h"
 #include "linear/svd.h"
 
 namespace gonio::contrast {
@@ -17,24 +17,13 @@ std::optional<Vec2> mapped(const Mat3& h, Vec2 p) {
   return Vec2{q.x / q.z, q.y / q.z};
 }
 
-Mat3 inverted(const Mat3& a) {
-  Eigen::Matrix3d m;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) m(i, j) = a(i, j);
-  const Eigen::Matrix3d inverse = m.inverse();
-  Mat3 out;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) out(i, j) = inverse(i, j);
-  return out;
-}
-
 }  // namespace
 
 ViewMap::ViewMap(const camera::CameraModel& camera, const Rigid<frame::Camera, frame::Object>& camera_from_pattern)
     : camera_(camera), camera_from_pattern_(camera_from_pattern), pattern_from_camera_(inverse(camera_from_pattern)) {}
 
 ViewMap::ViewMap(const Mat3& pixel_from_plane)
-    : pixel_from_plane_(pixel_from_plane), plane_from_pixel_(inverted(pixel_from_plane)) {}
+    : pixel_from_plane_(pixel_from_plane), plane_from_pixel_(inverse(pixel_from_plane)) {}
 
 std::array<double, 4> corner_weights(Vec2 s) {
   return {(1 - s.x) * (1 - s.y), s.x * (1 - s.y), s.x * s.y, (1 - s.x) * s.y};

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "geom/mat3_inverse.h"
 #include "relighting/shading.h"
 #include "relighting/textures.h"
 
@@ -85,7 +86,7 @@ struct Back {
 };
 Back taken_back(const scene::Instance& instance, const Mat3& meant_from_file) {
   const Mat3 rotation = matrix_of(instance.world_from_object.rotation);
-  const Mat3 linear = rotation * inverse_of(meant_from_file) * transposed(rotation);
+  const Mat3 linear = rotation * inverse(meant_from_file) * transposed(rotation);
   const Vec3 origin_m = instance.world_from_object.translation_m;
   return {linear, origin_m - linear * origin_m};
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <memory>
 
+#include "geom/mat3_inverse.h"
+
 namespace gonio::explain::images {
 namespace {
 
@@ -58,7 +60,7 @@ double determinant(const Mat3& a) {
 MeshOf changed(const mesh::Mesh& mesh, const Mat3& m) {
   auto meant = std::make_shared<mesh::Mesh>(mesh);
   const double turned = determinant(m) < 0 ? -1 : 1;
-  const Mat3 of_normals = transposed(inverse_of(m));
+  const Mat3 of_normals = transposed(inverse(m));
   for (Vec3& p : meant->positions_m) p = m * p;
   for (Vec3& n : meant->normals) n = normalized(of_normals * n);
   if (turned < 0)
@@ -125,17 +127,6 @@ void add_picture_readings(std::vector<Reading>& all) {
 }
 
 }  // namespace
-
-Mat3 inverse_of(const Mat3& a) {
-  const double d = determinant(a);
-  Mat3 inverse;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      const int r = (j + 1) % 3, s = (j + 2) % 3, c = (i + 1) % 3, e = (i + 2) % 3;
-      inverse(i, j) = (a(r, c) * a(s, e) - a(r, e) * a(s, c)) / d;
-    }
-  return inverse;
-}
 
 std::vector<Reading> readings_of(const scene::Scene& scene) {
   std::vector<Reading> all;

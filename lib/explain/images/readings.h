@@ -32,7 +32,4 @@ std::vector<scene::Instance> meant(const scene::Scene& scene, const Reading& rea
 View meant(const View& view, const Reading& reading);
 LightSource meant(const LightSource& lamp, const Reading& reading);
 
-// Of a matrix that is not singular.
-Mat3 inverse_of(const Mat3& m);
-
 }  // namespace gonio::explain::images

@@ -1,5 +1,6 @@
 // "images": recordings, and under what they were made.
 #pragma once
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -42,6 +43,8 @@ struct ImageEntry {  // "images"
   std::map<std::string, double> shapes{};  // objects whose mesh has shapes: how far through them, 0 to 1
   std::vector<SeenBoard> boards{};         // instead of `board`, where it shows several
   std::vector<DevelopedStep> developed{};  // what was done to the picture, in order
+  std::string projection{};                // name in projections
+  std::optional<std::int64_t> shows{};     // place in its frames, from 0
 };
 
 }  // namespace gonio::manifest

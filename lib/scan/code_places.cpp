@@ -1,0 +1,128 @@
+// See code_places.h.
+#include "scan/code_places.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gonio::scan {
+namespace {
+
+constexpr double least_spread = 0.02;  // px^2 of the projector, in each axis: codes that span a plane
+constexpr double rounding = 1.0 / 12;  // variance of what is rounded to whole numbers
+constexpr double enough = 12;          // pixels that need no neighbours
+constexpr double bent = 3;             // times a cell's own variance: a plane over its neighbours does not fit
+
+// PixelSums over pixels (x, y) at distances (u, v) of their codes from a pixel of the projector.
+struct PixelSums {
+  double pixels = 0, squared_weights = 0;
+  double n = 0, u = 0, v = 0, x = 0, y = 0, uu = 0, uv = 0, vv = 0, ux = 0, vx = 0, uy = 0, vy = 0, xx = 0, yy = 0;
+
+  void add(double du, double dv, double px, double py) {
+    ++pixels, ++squared_weights;
+    ++n, u += du, v += dv, x += px, y += py, uu += du * du, uv += du * dv, vv += dv * dv;
+    ux += du * px, vx += dv * px, uy += du * py, vy += dv * py, xx += px * px, yy += py * py;
+  }
+  // Those of another pixel of the projector, which lies (du, dv) from this one.
+  void add(const PixelSums& o, double du, double dv, double weight) {
+    pixels += o.pixels, squared_weights += weight * weight * o.squared_weights;
+    n += weight * o.n, u += weight * (o.u + o.n * du), v += weight * (o.v + o.n * dv);
+    x += weight * o.x, y += weight * o.y;
+    uu += weight * (o.uu + 2 * du * o.u + o.n * du * du), vv += weight * (o.vv + 2 * dv * o.v + o.n * dv * dv);
+    uv += weight * (o.uv + du * o.v + dv * o.u + o.n * du * dv);
+    ux += weight * (o.ux + du * o.x), vx += weight * (o.vx + dv * o.x);
+    uy += weight * (o.uy + du * o.y), vy += weight * (o.vy + dv * o.y);
+    xx += weight * o.xx, yy += weight * o.yy;
+  }
+  double variance() const { return 0.5 * (xx - x * x / n + yy - y * y / n) / n; }
+};
+
+struct Cell {
+  std::int64_t code = 0;
+  PixelSums sums;
+  double reflected = 0;
+};
+
+// The centroid; its variance that of the pixels, over their number.
+CodePlace centroid(const PixelSums& s) {
+  CodePlace p;
+  p.pixel = {s.x / s.n, s.y / s.n};
+  p.variance_px2 = std::max(rounding, s.variance()) / s.n;
+  return p;
+}
+
+// x and y as planes over (u, v), at (0, 0). `left`: of a pixel, in either coordinate; of whole codes no less than their
+// rounding, whatever a regular grid of them hides. False where codes do not span a plane.
+bool on_plane(const PixelSums& s, bool whole, CodePlace& p, double& left) {
+  const double cuu = s.uu - s.u * s.u / s.n, cuv = s.uv - s.u * s.v / s.n, cvv = s.vv - s.v * s.v / s.n,
+               determinant = cuu * cvv - cuv * cuv;
+  if (s.pixels < 4 || cuu < least_spread * s.n || cvv < least_spread * s.n || determinant < 0.2 * cuu * cvv)
+    return false;
+  double squares = 0, slopes = 0;
+  const auto at_zero = [&](double sx, double su, double sv, double square) {
+    const double cu = su - s.u * sx / s.n, cv = sv - s.v * sx / s.n, a = (cvv * cu - cuv * cv) / determinant,
+                 b = (cuu * cv - cuv * cu) / determinant;
+    squares += std::max(0.0, square - sx * sx / s.n - a * cu - b * cv), slopes += a * a + b * b;
+    return (sx - a * s.u - b * s.v) / s.n;
+  };
+  p.pixel.x = at_zero(s.x, s.ux, s.vx, s.xx), p.pixel.y = at_zero(s.y, s.uy, s.vy, s.yy);
+  left = std::max({squares / (2 * s.n) * s.pixels / (s.pixels - 3), whole ? 0.5 * slopes * rounding : 0, 1e-6});
+  const double lever = 1 / s.n + (cvv * s.u * s.u - 2 * cuv * s.u * s.v + cuu * s.v * s.v) / (s.n * s.n * determinant);
+  p.variance_px2 = left * lever * s.squared_weights / s.n;
+  return true;
+}
+
+std::vector<Cell> cells_of(const Codes& codes, int projector_width_px) {
+  struct Seen {
+    std::int64_t code = 0;
+    std::uint32_t pixel = 0;
+  };
+  const std::vector<float>&columns = codes.place[0], &rows = codes.place[1];
+  std::vector<Seen> seen;
+  for (std::size_t i = 0; i < codes.refusal.size(); ++i) {
+    if (!codes.told(i)) continue;
+    const auto column = static_cast<std::int64_t>(std::lround(columns[i])),
+               row = static_cast<std::int64_t>(std::lround(rows[i]));
+    if (column >= 0 && row >= 0 && column < projector_width_px)
+      seen.push_back({row * projector_width_px + column, static_cast<std::uint32_t>(i)});
+  }
+  std::ranges::sort(seen, {}, [](const Seen& s) { return std::pair(s.code, s.pixel); });
+  std::vector<Cell> cells;
+  const auto width = static_cast<std::size_t>(codes.width);
+  for (const Seen& s : seen) {
+    if (cells.empty() || cells.back().code != s.code) cells.push_back({s.code, {}, 0});
+    cells.back().sums.add(columns[s.pixel] - std::round(columns[s.pixel]), rows[s.pixel] - std::round(rows[s.pixel]),
+                          static_cast<double>(s.pixel % width), static_cast<double>(s.pixel / width));
+    cells.back().reflected += codes.reflected[s.pixel];
+  }
+  return cells;
+}
+
+}  // namespace
+
+std::vector<CodePlace> places_of(const Codes& codes, int projector_width_px) {
+  const std::vector<Cell> cells = cells_of(codes, projector_width_px);
+  std::vector<CodePlace> places;
+  std::array<std::size_t, 3> first{};  // of the rows above, here and below: the cell at or beyond the column before
+  for (const Cell& cell : cells) {
+    CodePlace place = centroid(cell.sums);
+    double left = 0;
+    if (codes.whole || cell.sums.n < enough || !on_plane(cell.sums, false, place, left)) {
+      PixelSums all;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int64_t row = cell.code + (static_cast<std::int64_t>(k) - 1) * projector_width_px;
+        while (first[k] < cells.size() && cells[first[k]].code < row - 1) ++first[k];
+        for (std::size_t c = first[k]; c < cells.size() && cells[c].code <= row + 1; ++c)
+          all.add(cells[c].sums, static_cast<double>(cells[c].code - row), static_cast<double>(k) - 1,
+                  (cells[c].code == row ? 1 : 0.5) * (k == 1 ? 1 : 0.5));
+      }
+      CodePlace wider;
+      if (on_plane(all, codes.whole, wider, left) && left < bent * std::max(rounding, cell.sums.variance()))
+        place = wider;
+    }
+    place.code = cell.code, place.reflected = static_cast<float>(cell.reflected / cell.sums.n);
+    places.push_back(place);
+  }
+  return places;
+}
+
+}  // namespace gonio::scan

@@ -1,0 +1,23 @@
+// Where a camera sees each pixel of the projector. For this room.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "geom/vector.h"
+#include "scan/decode.h"
+
+namespace gonio::scan {
+
+struct CodePlace {
+  std::int64_t code = 0;  // row times width plus column of the projector
+  Vec2 pixel;             // of the camera
+  double variance_px2 = 0;
+  float reflected = 0;
+};
+
+// Ascending codes. Both axes must be told. A pixel of the projector is seen by a few of the camera, of which a Gray
+// code tells no more than that: its middle is that of a plane, pixel over code, through it and its eight neighbours,
+// unless these do not lie on one (an edge of the scene); then the centroid.
+std::vector<CodePlace> places_of(const Codes& codes, int projector_width_px);
+
+}  // namespace gonio::scan

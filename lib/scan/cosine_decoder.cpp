@@ -1,0 +1,213 @@
+// See cosine_decoder.h.
+#include "scan/cosine_decoder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "base/parallel.h"
+#include "geom/mat3_inverse.h"
+#include "photograph/noise_variance.h"
+#include "scan/frame_noise.h"
+
+namespace gonio::scan {
+namespace {
+
+using What = Shown::What;
+
+constexpr double least_of_noise = 6;    // amplitude, over that of its noise
+constexpr double own_error_rad = 0.03;  // of any phase, whatever the noise: gamma, rounding, light from elsewhere
+constexpr double most_contradicting = 25,
+                 least_ahead = 12;  // chi-square, for each further number of periods; of the next
+constexpr std::size_t pixels_at_once = 1 << 14;
+
+// Sums over the shifts of one number of periods.
+struct Sums {
+  double periods = 1;
+  std::vector<double> shifts_rad;
+  std::vector<float> of_all, with_cos, with_sin;
+  std::vector<std::uint8_t> spoiled;
+};
+
+// A + C cos + S sin fitted to readings at given shifts: (A, C, S) = inverse * (sum, with cos, with sin).
+Mat3 inverse_of(const std::vector<double>& shifts) {
+  Mat3 m{{}};
+  for (const double s : shifts) {
+    const double row[3] = {1, std::cos(s), std::sin(s)};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) m(i, j) += row[i] * row[j];
+  }
+  return inverse(m);  // three shifts that differ: sequence_of()
+}
+
+struct Phase {
+  double theta = 0, sigma = 0, mean = 0, amplitude = 0, amplitude_sigma = 0;
+};
+
+Phase phase_of(const Mat3& solve, double sum, double with_cos, double with_sin, const manifest::Noise& noise) {
+  const Vec3 fit = solve * Vec3{sum, with_cos, with_sin};
+  Phase p;
+  p.mean = fit.x, p.amplitude = std::hypot(fit.y, fit.z), p.theta = std::atan2(fit.z, fit.y);
+  const double variance = photograph::noise_variance(noise, std::max(0.0, p.mean)), c = std::cos(p.theta),
+               s = std::sin(p.theta);
+  // Along (c, s) lies the amplitude, across it the phase.
+  const double along = c * c * solve(1, 1) + 2 * c * s * solve(1, 2) + s * s * solve(2, 2),
+               across = s * s * solve(1, 1) - 2 * c * s * solve(1, 2) + c * c * solve(2, 2);
+  p.amplitude_sigma = std::sqrt(variance * std::max(0.0, along));
+  p.sigma = p.amplitude > 0 ? std::sqrt(variance * std::max(0.0, across)) / p.amplitude : pi;
+  return p;
+}
+
+double wrapped(double angle) {
+  return angle - 2 * pi * std::round(angle / (2 * pi));
+}
+
+class CosineDecoder {
+ public:
+  CosineDecoder(const DecodeRequest& r, const FrameReader& read, Codes& codes) : r_(r), read_(read), codes_(codes) {}
+
+  void run() {
+    for (const Axis axis : {Axis::column, Axis::row}) {
+      std::vector<Sums> all = sums(axis);
+      if (all.empty()) continue;
+      std::ranges::sort(all, {}, &Sums::periods);
+      if (!noise_known_) find_noise(all);
+      places(axis, all);
+    }
+  }
+
+ private:
+  std::vector<Sums> sums(Axis axis) const {
+    std::map<double, std::vector<std::size_t>> frames;
+    for (std::size_t f = 0; f < r_.sequence.frames.size(); ++f) {
+      const Shown& s = r_.sequence.frames[f];
+      if (s.what == What::cosine && s.axis == axis) frames[s.periods].push_back(f);
+    }
+    std::vector<Sums> all;
+    for (const auto& [periods, own] : frames) all.push_back(sums_of(periods, own));
+    return all;
+  }
+
+  Sums sums_of(double periods, const std::vector<std::size_t>& frames) const {
+    const std::size_t pixels = codes_.refusal.size();
+    Sums s;
+    s.periods = periods;
+    s.of_all.resize(pixels), s.with_cos.resize(pixels), s.with_sin.resize(pixels), s.spoiled.resize(pixels);
+    for (const std::size_t f : frames) {
+      const double shift = r_.sequence.frames[f].shift_rad;
+      s.shifts_rad.push_back(shift);
+      const CameraFrame frame = read_(f);
+      const auto c = static_cast<float>(std::cos(shift)), sine = static_cast<float>(std::sin(shift));
+      for (std::size_t i = 0; i < pixels; ++i) {
+        const float v = frame.light[i];
+        s.of_all[i] += v, s.with_cos[i] += c * v, s.with_sin[i] += sine * v;
+        s.spoiled[i] = static_cast<std::uint8_t>(s.spoiled[i] | frame.saturated[i]);
+      }
+    }
+    return s;
+  }
+
+  // Means of two numbers of periods must be equal.
+  void find_noise(const std::vector<Sums>& all) {
+    noise_known_ = true;
+    if (r_.noise) {
+      codes_.noise = *r_.noise;
+      return;
+    }
+    if (codes_.whole) return;  // the Gray code's
+    const Sums &a = all.front(), &b = all.back();
+    const auto na = static_cast<float>(a.shifts_rad.size()), nb = static_cast<float>(b.shifts_rad.size());
+    std::vector<float> mean(a.of_all.size()), left(mean.size());
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      mean[i] = a.of_all[i] / na;
+      left[i] = all.size() > 1 ? mean[i] - b.of_all[i] / nb : mean[i];
+      if (a.spoiled[i] != 0 || b.spoiled[i] != 0) left[i] = std::numeric_limits<float>::quiet_NaN();
+    }
+    const double unit = std::sqrt(1 / na + (all.size() > 1 ? 1 / nb : 0));
+    std::vector<Contradiction> found = between_neighbours(left, unit, mean, codes_.width, codes_.height);
+    codes_.noise = noise_of(std::move(found));
+  }
+
+  void places(Axis axis, const std::vector<Sums>& all) {
+    const auto a = static_cast<std::size_t>(axis);
+    const std::size_t pixels = codes_.refusal.size();
+    std::vector<float>&place = codes_.place[a], &sigma = codes_.sigma[a];
+    const std::vector<float> stripe = place, stripe_sigma = sigma;  // of a Gray code, which tells the period, too
+    place.assign(pixels, 0), sigma.assign(pixels, 0);
+    if (codes_.reflected.empty()) codes_.reflected.assign(pixels, 0);
+    std::vector<Mat3> inverses;
+    for (const Sums& s : all) inverses.push_back(inverse_of(s.shifts_rad));
+    parallel_for(0, (pixels + pixels_at_once - 1) / pixels_at_once, [&](std::size_t n) {
+      std::vector<Phase> phases(all.size());
+      for (std::size_t i = n * pixels_at_once; i < std::min(pixels, (n + 1) * pixels_at_once); ++i) {
+        if (!codes_.told(i)) continue;
+        const Stripe known = stripe.empty() ? Stripe{} : Stripe{stripe[i], stripe_sigma[i]};
+        codes_.refusal[i] = place_of(axis, all, inverses, i, known, phases, place[i], sigma[i]);
+      }
+    });
+  }
+
+  struct Stripe {
+    double place = 0, sigma = 0;  // 0: no Gray code
+  };
+  Refusal place_of(Axis axis, const std::vector<Sums>& all, const std::vector<Mat3>& inverses, std::size_t i,
+                   const Stripe& stripe, std::vector<Phase>& phases, float& place, float& sigma) {
+    double reflected = 0;
+    for (std::size_t f = 0; f < all.size(); ++f) {
+      if (all[f].spoiled[i] != 0) return Refusal::saturated;
+      phases[f] = phase_of(inverses[f], all[f].of_all[i], all[f].with_cos[i], all[f].with_sin[i], codes_.noise);
+      if (2 * phases[f].amplitude < r_.least_reflected ||
+          phases[f].amplitude <= least_of_noise * phases[f].amplitude_sigma)
+        return Refusal::dark;
+      reflected = std::max(reflected, 2 * phases[f].amplitude);
+    }
+    codes_.reflected[i] = static_cast<float>(reflected);
+    const double size = r_.sequence.size(axis);
+    const std::size_t finest = all.size() - 1;
+    const double period = size / all[finest].periods;
+    double best = 0, least = -1, next = -1;
+    for (int k = 0; k < static_cast<int>(std::ceil(all[finest].periods - 1e-9)); ++k) {
+      const double turn = phases[finest].theta / (2 * pi), u = (turn - std::floor(turn) + k) * period - 0.5;
+      if (u > size) break;
+      double chi_square = stripe.sigma > 0 ? std::pow((u - stripe.place) / stripe.sigma, 2) : 0;
+      for (std::size_t f = 0; f < finest; ++f) {
+        const double ratio = all[f].periods / all[finest].periods,
+                     variance = phases[f].sigma * phases[f].sigma +
+                                ratio * ratio * phases[finest].sigma * phases[finest].sigma +
+                                own_error_rad * own_error_rad,
+                     off = wrapped(phases[f].theta - 2 * pi * all[f].periods * (u + 0.5) / size);
+        chi_square += off * off / variance;
+      }
+      if (least < 0 || chi_square < least)
+        next = least, least = chi_square, best = u;
+      else if (next < 0 || chi_square < next)
+        next = chi_square;
+    }
+    if (least > most_contradicting * std::max<double>(1, static_cast<double>(finest))) return Refusal::contradictory;
+    if (next >= 0 && next - least < least_ahead) return Refusal::contradictory;
+    double sum = 0, weights = 0;
+    for (std::size_t f = 0; f <= finest; ++f) {
+      const double px_per_rad = size / (2 * pi * all[f].periods),
+                   own = best + px_per_rad * wrapped(phases[f].theta - 2 * pi * all[f].periods * (best + 0.5) / size),
+                   s = px_per_rad * phases[f].sigma, weight = 1 / std::max(1e-12, s * s);
+      sum += weight * own, weights += weight;
+    }
+    place = static_cast<float>(sum / weights), sigma = static_cast<float>(std::sqrt(1 / weights));
+    return Refusal::none;
+  }
+
+  const DecodeRequest& r_;
+  const FrameReader& read_;
+  Codes& codes_;
+  bool noise_known_ = false;
+};
+
+}  // namespace
+
+void decode_cosines(const DecodeRequest& request, const FrameReader& read, Codes& codes) {
+  CosineDecoder(request, read, codes).run();
+  codes.whole = false;
+}
+
+}  // namespace gonio::scan

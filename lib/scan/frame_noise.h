@@ -1,0 +1,25 @@
+// The noise of single readings where nobody stated it, from what must be equal but for noise and for light that the
+// scene sends on to itself: two bits, each together with its inverse; the means over the shifts of two numbers of
+// periods. That light varies slowly over the picture, and second differences along the rows do not see it.
+#pragma once
+#include <vector>
+
+#include "manifest/noise.h"
+
+namespace gonio::scan {
+
+struct Contradiction {
+  float light = 0;       // of the pixel
+  float difference = 0;  // with the variance of a single reading
+};
+
+// A line in the light, variance = read^2 + light / gain, from medians over pixels of one brightness (of a normal
+// distribution the median of |difference| is 0.6745 sigma). No gain where it does not rise.
+manifest::Noise noise_of(std::vector<Contradiction> contradictions);
+
+// Second differences along the rows of `value`, which has `unit` times the noise of a single reading, at some of the
+// pixels; `light` is their brightness. Pixels that are not a number do not count.
+std::vector<Contradiction> between_neighbours(const std::vector<float>& value, double unit,
+                                              const std::vector<float>& light, int width, int height);
+
+}  // namespace gonio::scan

@@ -1,0 +1,142 @@
+// See gray_decoder.h.
+#include "scan/gray_decoder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "photograph/noise_variance.h"
+#include "scan/frame_noise.h"
+
+namespace gonio::scan {
+namespace {
+
+using What = Shown::What;
+
+constexpr float least_of_noise = 8;  // what white adds, over its noise
+constexpr std::size_t rows_at_once = 1 << 15;
+
+class GrayDecoder {
+ public:
+  GrayDecoder(const DecodeRequest& r, const FrameReader& read, std::size_t white, std::size_t black, Codes& codes)
+      : r_(r), read_(read), codes_(codes), white_(read(white)), black_(read(black)) {}
+
+  void run() {
+    const std::size_t pixels = white_.light.size();
+    codes_.reflected.resize(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) codes_.reflected[i] = white_.light[i] - black_.light[i];
+    codes_.noise = r_.noise ? *r_.noise : found_noise();
+    find_dark();
+    for (const Axis axis : {Axis::column, Axis::row})
+      for (std::size_t f = 0; f < r_.sequence.frames.size(); ++f) {
+        const Shown& s = r_.sequence.frames[f];
+        if (s.what == What::bit && s.axis == axis && !s.inverse) take(axis, s.bit, f, inverse_of(s));
+      }
+    for (const Axis axis : {Axis::column, Axis::row}) places(axis);
+    codes_.whole = true;
+  }
+
+ private:
+  std::optional<std::size_t> inverse_of(const Shown& shown) const {
+    Shown wanted = shown;
+    wanted.inverse = true;
+    const auto found = std::ranges::find(r_.sequence.frames, wanted);
+    if (found == r_.sequence.frames.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - r_.sequence.frames.begin());
+  }
+
+  template <class Body>
+  void for_pixels(const Body& body) const {
+    const std::size_t pixels = white_.light.size();
+    parallel_for(0, (pixels + rows_at_once - 1) / rows_at_once, [&](std::size_t n) {
+      for (std::size_t i = n * rows_at_once; i < std::min(pixels, (n + 1) * rows_at_once); ++i) body(i);
+    });
+  }
+
+  void find_dark() {
+    for_pixels([&](std::size_t i) {
+      if (!codes_.told(i)) return;
+      const double noise = std::sqrt(photograph::noise_variance(codes_.noise, white_.light[i]) +
+                                     photograph::noise_variance(codes_.noise, black_.light[i]));
+      if (codes_.reflected[i] < r_.least_reflected || codes_.reflected[i] <= least_of_noise * noise)
+        codes_.refusal[i] = Refusal::dark;
+      else if (black_.saturated[i] != 0)
+        codes_.refusal[i] = Refusal::saturated;  // and white: nothing differs
+    });
+  }
+
+  // Two bits that are shown one after the other, each with its inverse: later ones have seen the scene drift.
+  manifest::Noise found_noise() const {
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (std::size_t f = 0; f < r_.sequence.frames.size() && pairs.size() < 2; ++f) {
+      const Shown& s = r_.sequence.frames[f];
+      if (s.what != What::bit || s.inverse) continue;
+      if (const auto inverse = inverse_of(s)) pairs.emplace_back(f, *inverse);
+    }
+    if (pairs.size() < 2) return noise_of(between_neighbours(white_.light, 1, white_.light, r_.width, r_.height));
+    std::vector<float> left(white_.light.size()), light(left.size());
+    for (const auto& [bit, inverse] : pairs) {
+      const CameraFrame a = read_(bit), b = read_(inverse);
+      const float sign = bit == pairs[0].first ? 1.0f : -1.0f;
+      for (std::size_t i = 0; i < left.size(); ++i) {
+        const bool counts = a.saturated[i] == 0 && b.saturated[i] == 0;
+        left[i] += counts ? sign * (a.light[i] + b.light[i]) : std::numeric_limits<float>::quiet_NaN();
+        light[i] += 0.25f * (a.light[i] + b.light[i]);
+      }
+    }
+    return noise_of(between_neighbours(left, 2, light, r_.width, r_.height));
+  }
+
+  void take(Axis axis, int bit, std::size_t frame, std::optional<std::size_t> inverse_frame) {
+    const CameraFrame own = read_(frame);
+    const std::optional<CameraFrame> inverse =
+        inverse_frame ? std::optional<CameraFrame>(read_(*inverse_frame)) : std::nullopt;
+    std::vector<std::uint32_t>& gray = gray_[static_cast<std::size_t>(axis)];
+    gray.resize(own.light.size());
+    int& finest = finest_[static_cast<std::size_t>(axis)];
+    finest = std::min(finest, bit);
+    for_pixels([&](std::size_t i) {
+      if (!codes_.told(i)) return;
+      const float other = inverse ? inverse->light[i] : 0.5f * (white_.light[i] + black_.light[i]),
+                  difference = inverse ? own.light[i] - other : 2 * (own.light[i] - other), size = std::abs(difference);
+      const double variance =
+          photograph::noise_variance(codes_.noise, own.light[i]) + photograph::noise_variance(codes_.noise, other);
+      const double least =
+          std::max({r_.least_sigmas * std::sqrt(variance), r_.least_share * codes_.reflected[i], r_.least_difference});
+      if (size < least) codes_.refusal[i] = Refusal::edge;
+      if (difference > 0) gray[i] |= 1u << bit;
+    });
+  }
+
+  // A stripe's middle.
+  void places(Axis axis) {
+    const std::vector<std::uint32_t>& gray = gray_[static_cast<std::size_t>(axis)];
+    if (gray.empty()) return;
+    std::vector<float>&place = codes_.place[static_cast<std::size_t>(axis)],
+    &sigma = codes_.sigma[static_cast<std::size_t>(axis)];
+    place.resize(gray.size()), sigma.resize(gray.size());
+    const int finest = finest_[static_cast<std::size_t>(axis)], width = 1 << finest;
+    for_pixels([&](std::size_t i) {
+      const int stripe = number_of_gray(static_cast<int>(gray[i] >> finest));
+      place[i] = static_cast<float>(stripe * width) + 0.5f * static_cast<float>(width - 1);
+      sigma[i] = static_cast<float>(width / std::sqrt(12.0));
+    });
+  }
+
+  const DecodeRequest& r_;
+  const FrameReader& read_;
+  Codes& codes_;
+  CameraFrame white_, black_;
+  std::array<std::vector<std::uint32_t>, 2> gray_;
+  std::array<int, 2> finest_{31, 31};
+};
+
+}  // namespace
+
+void decode_gray(const DecodeRequest& request, const FrameReader& read, std::size_t white, std::size_t black,
+                 Codes& codes) {
+  GrayDecoder(request, read, white, black, codes).run();
+}
+
+}  // namespace gonio::scan

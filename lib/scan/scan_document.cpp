@@ -1,0 +1,324 @@
+// See scan_document.h.
+#include "scan/scan_document.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "base/text.h"
+#include "io/picture.h"
+#include "io/ply.h"
+#include "linear/symmetric_eigen.h"
+#include "manifest/document.h"
+#include "manifest/image_list.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/cloud.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/projection.h"
+#include "manifest/sections/rig.h"
+#include "photograph/linear_picture.h"
+#include "photograph/mask.h"
+#include "scan/triangulate.h"
+#include "stats/intervals.h"
+
+namespace gonio::scan {
+namespace {
+
+using manifest::Document;
+using manifest::ImageEntry;
+
+// Places in document.images, by frame of the projection.
+using Frames = std::vector<std::size_t>;
+
+struct View {
+  std::string name;
+  std::vector<Frames> cameras;  // in the request's order
+};
+
+std::string place_of(const Document& document, std::size_t image, const std::string& key = "") {
+  return manifest::place(document, "/images/" + std::to_string(image) + key);
+}
+
+std::string words_of(const manifest::ProjectedFrame& f) {
+  if (f.show == "bit")
+    return format("bit %lld of %ss%s", static_cast<long long>(*f.bit), f.axis.c_str(),
+                  f.inverse.value_or(false) ? ", inverse" : "");
+  if (f.show == "cosine")
+    return format("%g periods along the %ss, shifted by %.4g rad", *f.periods, f.axis.c_str(), *f.shift_rad);
+  return f.show;
+}
+
+std::vector<View> views_of(const Document& document, const ScanRequest& request) {
+  const manifest::Projection& projection = document.projections.at(request.projection);
+  constexpr auto none = static_cast<std::size_t>(-1);
+  std::map<std::string, View> found;
+  for (std::size_t i = 0; i < document.images.size(); ++i) {
+    const ImageEntry& image = document.images[i];
+    if (image.projection != request.projection || image.file.empty() || image.weight == 0.0) continue;
+    const auto camera = std::ranges::find(request.cameras, image.camera);
+    if (camera == request.cameras.end()) continue;
+    if (!image.shows)
+      throw Error(Exit::data, place_of(document, i), "does not say which frame of its projection it shows",
+                  "\"shows\": its place, from 0");
+    View& view = found[image.group];
+    view.name = image.group.empty() ? request.projection : image.group;
+    view.cameras.resize(request.cameras.size(), Frames(projection.frames.size(), none));
+    std::size_t& place = view.cameras[static_cast<std::size_t>(camera - request.cameras.begin())]
+                                     [static_cast<std::size_t>(*image.shows)];
+    if (place != none)
+      throw Error(Exit::data, place_of(document, i),
+                  "shows the same frame as " + document.images[place].id + ", by the same camera",
+                  "give views different groups, or leave one out");
+    place = i;
+  }
+  std::vector<View> views;
+  for (auto& [key, view] : found) {
+    for (std::size_t c = 0; c < view.cameras.size(); ++c)
+      for (std::size_t f = 0; f < projection.frames.size(); ++f)
+        if (view.cameras[c][f] == none)
+          throw Error(Exit::data, manifest::place(document, "/images"),
+                      format("have no picture of frame %zu (%s) by camera %s in view %s", f,
+                             words_of(projection.frames[f]).c_str(), request.cameras[c].c_str(), view.name.c_str()),
+                      "record it again, whole: everything else stands still only once");
+    views.push_back(std::move(view));
+  }
+  if (views.empty())
+    throw Error(Exit::no_input, manifest::place(document, "/images"),
+                "have no pictures of projection " + request.projection + " by " + request.cameras[0],
+                "say in each what it shows (projection, shows), or name the photographs");
+  return views;
+}
+
+Station station_of(const Document& document, const std::string& name) {
+  const manifest::Camera& camera = document.cameras.at(name);
+  Station s{camera::CameraModel(camera, manifest::place(document, "/cameras/" + name)), {}};
+  return s;
+}
+
+// Of one rig: the first that has all of them. Several cameras that no rig holds are refused.
+std::vector<Station> stations_of(const Document& document, const std::vector<std::string>& names) {
+  std::vector<Station> stations;
+  for (const std::string& name : names) stations.push_back(station_of(document, name));
+  for (const auto& [key, rig] : document.rigs) {
+    std::size_t known = 0;
+    for (std::size_t k = 0; k < names.size(); ++k)
+      for (const manifest::RigMember& member : rig.cameras)
+        if (member.camera == names[k]) stations[k].rig_from_camera = member.rig_from_camera, ++known;
+    if (known == names.size()) return stations;
+  }
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  throw Error(Exit::data, manifest::place(document, "/rigs"), "hold no rig of " + all,
+              "calib-charuco --rig calibrates cameras that are held together");
+}
+
+CameraFrame read_frame(const Document& document, std::size_t image, int width, int height) {
+  const ImageEntry& entry = document.images[image];
+  photograph::LinearPicture read = photograph::read_linear(manifest::picture_path(document, image), entry.response,
+                                                           place_of(document, image, "/response"), entry.saturation);
+  if (read.colour.width != width || read.colour.height != height)
+    throw Error(
+        Exit::data, manifest::picture_path(document, image).string(),
+        format("has %d x %d pixels, and its camera %d x %d", read.colour.width, read.colour.height, width, height),
+        "give pictures of this camera, uncut");
+  CameraFrame frame;
+  const std::size_t channels = read.colour.channels.size(), pixels = read.colour.pixels();
+  if (channels == 1)
+    frame.light = std::move(read.colour.data);
+  else {
+    frame.light.resize(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) {
+      float sum = 0;
+      for (std::size_t c = 0; c < channels; ++c) sum += read.colour.data[i * channels + c];
+      frame.light[i] = sum / static_cast<float>(channels);
+    }
+  }
+  frame.saturated = std::move(read.clipped);
+  return frame;
+}
+
+// Nothing where one states none, or another.
+std::optional<manifest::Noise> noise_of_frames(const Document& document, const Frames& frames) {
+  const auto& first = document.images[frames[0]].noise;
+  for (const std::size_t i : frames) {
+    const auto& own = document.images[i].noise;
+    if (!own || !(own->gain > 0 || own->read > 0) || own->gain != first->gain || own->read != first->read)
+      return std::nullopt;
+  }
+  return first;
+}
+
+Codes codes_of(const Document& document, const ScanRequest& request, const Frames& frames, const Station& camera) {
+  DecodeRequest decoding;
+  decoding.sequence = sequence_of(document, request.projection);
+  decoding.width = camera.lens.width_px(), decoding.height = camera.lens.height_px();
+  decoding.read = [&](std::size_t frame) {
+    return read_frame(document, frames[frame], decoding.width, decoding.height);
+  };
+  const std::filesystem::path mask = manifest::mask_path(document, frames[0]);
+  if (!mask.empty())
+    decoding.mask = photograph::read_mask_of(io::Image(decoding.width, decoding.height, {"Y"}), mask,
+                                             place_of(document, frames[0], "/mask"));
+  decoding.noise = noise_of_frames(document, frames);
+  decoding.least_reflected = request.least_reflected, decoding.least_difference = request.least_difference;
+  decoding.least_share = request.least_share, decoding.least_sigmas = request.least_sigmas;
+  return decode(decoding);
+}
+
+void write_codes(const std::filesystem::path& path, const Codes& codes) {
+  std::vector<std::string> names{"reflected", "refusal"};
+  constexpr const char* axes[] = {"column", "row"};
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (!codes.place[axis].empty()) names.insert(names.end(), {axes[axis], std::string("sigma.") + axes[axis]});
+  io::Image picture(codes.width, codes.height, names);
+  for (std::size_t i = 0; i < codes.refusal.size(); ++i) {
+    float* at = &picture.data[i * names.size()];
+    *at++ = codes.reflected.empty() ? 0 : codes.reflected[i];
+    *at++ = static_cast<float>(codes.refusal[i]);
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      if (!codes.place[axis].empty()) *at++ = codes.place[axis][i], *at++ = codes.sigma[axis][i];
+  }
+  io::write_picture(path, picture);
+}
+
+double largest_sigma(const std::array<double, 6>& c) {
+  Eigen::Matrix3d v;
+  v << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+  const linear::SymmetricEigen<Eigen::Matrix3d> own(v, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, own.eigenvalues()[2]));
+}
+
+const io::PlyWish columns{.properties = {"sigma", "reprojection_px", "pixel_x", "pixel_y", "reflected", "cov_xx",
+                                         "cov_xy", "cov_xz", "cov_yy", "cov_yz", "cov_zz"}};
+
+// The covariance turns along.
+template <class To>
+io::TriangleMesh mesh_of(const Cloud& cloud, const Rigid<To, frame::Rig>& to_from_rig) {
+  io::TriangleMesh mesh;
+  mesh.properties.resize(columns.properties.size());
+  const Mat3 turn = matrix_of(to_from_rig.rotation);
+  for (const ScanPoint& point : cloud.points) {
+    mesh.positions_m.push_back(to_from_rig * point.position_m);
+    const std::array<double, 6>& c = point.covariance;
+    const Mat3 v = turn * Mat3{{c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5]}} * transposed(turn);
+    const double values[] = {largest_sigma(c),
+                             point.reprojection_px,
+                             point.pixel.x,
+                             point.pixel.y,
+                             double{point.reflected},
+                             v(0, 0),
+                             v(0, 1),
+                             v(0, 2),
+                             v(1, 1),
+                             v(1, 2),
+                             v(2, 2)};
+    for (std::size_t k = 0; k < std::size(values); ++k) mesh.properties[k].push_back(static_cast<float>(values[k]));
+  }
+  return mesh;
+}
+
+manifest::Cloud entry_of(const Cloud& cloud, const ScanRequest& request) {
+  manifest::Cloud entry;
+  entry.cameras = request.cameras;
+  if (!request.projector.empty()) entry.cameras.push_back(request.projector);
+  entry.projection = request.projection;
+  entry.points = static_cast<std::int64_t>(cloud.points.size());
+  std::vector<double> sigmas, off;
+  for (const ScanPoint& p : cloud.points)
+    sigmas.push_back(largest_sigma(p.covariance)), off.push_back(p.reprojection_px);
+  if (!sigmas.empty()) entry.sigma_m = stats::median(sigmas), entry.reprojection_px = stats::median(off);
+  if (cloud.epipolar_chi_square > 0) entry.epipolar_chi_square = cloud.epipolar_chi_square;
+  for (const auto& [reason, count] : cloud.refused) entry.refused[reason] = static_cast<std::int64_t>(count);
+  return entry;
+}
+
+void log_noise(const std::string& camera, const Codes& codes) {
+  log(LogLevel::info,
+      format("camera %s: noise %.3g of a full picture in the dark%s", camera.c_str(), codes.noise.read,
+             codes.noise.gain > 0 ? format(", %.3g in the brightest",
+                                           std::sqrt(codes.noise.read * codes.noise.read + 1 / codes.noise.gain))
+                                        .c_str()
+                                  : ""));
+}
+
+void log_cloud(const std::string& name, const manifest::Cloud& c, std::size_t matched) {
+  std::string text = format("view %s: %lld points", name.c_str(), static_cast<long long>(c.points));
+  if (matched > 0) text += format(" of %zu pixels of the projector that both cameras see", matched);
+  if (c.sigma_m) text += format(", sigma %.3g mm", 1e3 * *c.sigma_m);
+  if (c.reprojection_px && *c.reprojection_px > 0) text += format(", reprojection %.3g px", *c.reprojection_px);
+  std::string refused;
+  for (const auto& [reason, count] : c.refused)
+    refused += format("%s%lld %s", refused.empty() ? "" : ", ", static_cast<long long>(count), reason.c_str());
+  log(LogLevel::info, text + (refused.empty() ? "" : "; without a point: " + refused));
+}
+
+}  // namespace
+
+void check_scan(const Document& document, const ScanRequest& request) {
+  const Sequence sequence = sequence_of(document, request.projection);
+  std::vector<std::string> names = request.cameras;
+  if (!request.projector.empty()) names.push_back(request.projector);
+  const std::vector<Station> stations = stations_of(document, names);
+  if (!request.projector.empty()) {
+    const Station& projector = stations.back();
+    if (projector.lens.width_px() != sequence.width_px || projector.lens.height_px() != sequence.height_px)
+      throw Error(Exit::data, manifest::place(document, "/cameras/" + request.projector),
+                  format("has %d x %d pixels, and what it shows %d x %d", projector.lens.width_px(),
+                         projector.lens.height_px(), sequence.width_px, sequence.height_px),
+                  "state the projector's own size in both");
+  } else if (!sequence.tells(Axis::column) || !sequence.tells(Axis::row)) {
+    throw Error(Exit::data, manifest::place(document, "/projections/" + request.projection),
+                "tells one axis alone, and two cameras need both to find the same pixel of the projector",
+                "show columns and rows, or calibrate the projector (--projector)");
+  }
+  for (const View& view : views_of(document, request))
+    for (const Frames& frames : view.cameras)
+      for (const std::size_t i : frames) {
+        const std::filesystem::path path = manifest::picture_path(document, i);
+        if (!std::filesystem::exists(path))
+          throw Error(Exit::no_input, path.string(), "is missing", "a sequence is complete or nothing");
+        if (request.note_input) request.note_input(path);
+      }
+}
+
+double scan_document(Document& document, const ScanRequest& request) {
+  std::vector<std::string> names = request.cameras;
+  if (!request.projector.empty()) names.push_back(request.projector);
+  const std::vector<Station> stations = stations_of(document, names);
+  const Sequence sequence = sequence_of(document, request.projection);
+  double worst = 1;
+  for (const View& view : views_of(document, request)) {
+    std::vector<Codes> codes;
+    for (std::size_t c = 0; c < view.cameras.size(); ++c) {
+      codes.push_back(codes_of(document, request, view.cameras[c], stations[c]));
+      if (request.codes)
+        write_codes(request.output_path(file_stem(view.name + "-" + request.cameras[c]) + "-codes.exr"), codes.back());
+    }
+    const Cloud cloud = request.projector.empty()
+                            ? points_of_cameras(codes[0], stations[0], codes[1], stations[1], sequence.width_px)
+                            : points_of_projector(codes[0], stations[0], stations[1]);
+    for (std::size_t c = 0; c < codes.size(); ++c) log_noise(request.cameras[c], codes[c]);
+    const auto& pose = document.images[view.cameras[0][0]].world_from_camera;
+    const auto path = request.output_path(file_stem(view.name) + ".ply");
+    if (pose) {
+      const Rigid<frame::World, frame::Camera>& world_from_camera = *pose;
+      io::write_ply(path, mesh_of(cloud, world_from_camera * inverse(stations[0].rig_from_camera)), columns);
+    } else {
+      io::write_ply(path, mesh_of(cloud, Rigid<frame::Rig, frame::Rig>{}), columns);
+    }
+    manifest::Cloud entry = entry_of(cloud, request);
+    entry.file = manifest::add_file(document, path, "cloud-" + view.name);
+    log_cloud(view.name, entry, cloud.matched);
+    worst = std::max(worst, cloud.epipolar_chi_square);
+    document.clouds[view.name] = std::move(entry);
+  }
+  return worst;
+}
+
+}  // namespace gonio::scan

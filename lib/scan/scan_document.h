@@ -1,0 +1,40 @@
+// The manifest's pictures of a projection, as clouds in the manifest.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "manifest/sections/forward.h"
+
+namespace gonio::scan {
+
+struct ScanRequest {
+  std::string projection;            // name in projections
+  std::vector<std::string> cameras;  // that look on: one, with a projector, or two
+  std::string projector{};           // name in cameras; empty: its pixels tell cameras apart, and no more
+  double least_reflected = 0, least_difference = 0, least_share = 0.05,
+         least_sigmas = 2;  // decode.h; light, 1 where a file is full
+  bool codes = false;       // write VIEW-CAMERA-codes.exr
+  std::function<std::filesystem::path(const std::string& name)> output_path{};
+  std::function<void(const std::filesystem::path&)> note_input{};
+};
+
+// Photographs of one view, in the order of the projection's frames, become images of the manifest. With several cameras
+// a photograph belongs to the one whose name its file name contains, or else its folder's; of one camera they are in
+// the order of the numbers in their names. Error(data) where there are not as many as frames.
+void enter_photographs(const std::vector<std::string>& paths, const std::string& projection,
+                       const std::vector<std::string>& cameras, const std::string& response,
+                       manifest::Document& document);
+
+// Every picture of every view is there once, of one size; the cameras are of one rig, or of images with poses. No pixel
+// is looked at. Error(data | no_input).
+void check_scan(const manifest::Document& document, const ScanRequest& request);
+
+// Writes VIEW.ply for each `group` of the images (without one: the projection's name) and enters the cloud. Points are
+// in the world, where the first camera's images say where it stood, else in the frame of the rig, which is that of its
+// first camera. What was found is logged. The largest chi-square that cameras contradict each other by is returned (1:
+// none).
+double scan_document(manifest::Document& document, const ScanRequest& request);
+
+}  // namespace gonio::scan

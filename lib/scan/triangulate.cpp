@@ -1,0 +1,230 @@
+// See triangulate.h.
+#include "scan/triangulate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/parallel.h"
+#include "geom/mat3_inverse.h"
+#include "scan/code_places.h"
+#include "stats/intervals.h"
+
+namespace gonio::scan {
+namespace {
+
+constexpr int most_steps = 12;
+constexpr double step_m = 1e-5;  // of finite differences, per metre of depth
+constexpr std::size_t points_at_once = 512;
+constexpr double chi_square_median = 0.45493642311957275;  // of one degree of freedom
+const std::string contradictory(refusal_names[static_cast<std::size_t>(Refusal::contradictory)]);
+
+void count_refusals(const Codes& codes, Cloud& cloud) {
+  for (const Refusal r : codes.refusal)
+    if (r != Refusal::none) ++cloud.refused[std::string(refusal_names[static_cast<std::size_t>(r)])];
+}
+
+// `chi_square`: of what its pictures contradict each other by, one degree of freedom; below zero: they cannot.
+struct Solved {
+  ScanPoint point;
+  double chi_square = -1;
+};
+
+// Joins what was found side by side, in order, and says by how much variances were too small.
+template <class Body>  // std::optional<Solved> of each
+void gather(std::size_t count, double most_px, const Body& body, Cloud& cloud) {
+  std::vector<std::optional<Solved>> found(count);
+  parallel_for(0, (count + points_at_once - 1) / points_at_once, [&](std::size_t n) {
+    for (std::size_t i = n * points_at_once; i < std::min(count, (n + 1) * points_at_once); ++i) found[i] = body(i);
+  });
+  std::size_t lost = 0;
+  std::vector<double> chi_squares;
+  for (const std::optional<Solved>& solved : found) {
+    if (!solved || solved->point.reprojection_px > most_px) {
+      ++lost;
+      continue;
+    }
+    cloud.points.push_back(solved->point);
+    if (solved->chi_square >= 0) chi_squares.push_back(solved->chi_square);
+  }
+  if (lost > 0) cloud.refused[contradictory] += lost;
+  if (chi_squares.empty()) return;
+  cloud.epipolar_chi_square = stats::median(chi_squares) / chi_square_median;
+  const double factor = std::max(1.0, cloud.epipolar_chi_square);
+  for (ScanPoint& point : cloud.points)
+    for (double& v : point.covariance) v *= factor;
+}
+
+// A projector's pixels along the ray of one camera's pixel.
+class RayInProjector {
+ public:
+  RayInProjector(const Station& projector, Vec3 origin, Vec3 direction) : projector_(projector) {
+    const auto projector_from_rig = inverse(projector.rig_from_camera);
+    origin_ = projector_from_rig * origin, direction_ = projector_from_rig.rotate(direction);
+  }
+  std::optional<Vec2> at(double depth) const { return projector_.lens.project(origin_ + depth * direction_); }
+  // Depth at which the plane (or line) of the projector's ray is nearest: a start.
+  std::optional<double> start(Vec2 pixel, bool columns, bool rows) const {
+    const camera::Ray ray = projector_.lens.ray(pixel);
+    Vec3 normal = columns ? cross(ray.direction, Vec3{0, 1, 0}) : cross(ray.direction, Vec3{1, 0, 0});
+    if (columns && rows &&
+        std::abs(dot(direction_, normal)) < std::abs(dot(direction_, cross(ray.direction, {1, 0, 0}))))
+      normal = cross(ray.direction, Vec3{1, 0, 0});
+    const double along = dot(direction_, normal);
+    if (along == 0) return std::nullopt;
+    const double depth = dot(ray.origin_m - origin_, normal) / along;
+    return depth > 0 && std::isfinite(depth) ? std::optional(depth) : std::nullopt;
+  }
+
+ private:
+  const Station& projector_;
+  Vec3 origin_, direction_;
+};
+
+struct Decoded {
+  Vec2 place;             // of the projector; the middle where an axis is not told
+  double weight[2] = {};  // 1 / variance; 0: not told
+};
+
+Decoded decoded(const Codes& codes, std::size_t i, const Station& projector) {
+  Decoded d{{0.5 * projector.lens.width_px(), 0.5 * projector.lens.height_px()}, {}};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (codes.place[axis].empty()) continue;
+    (axis == 0 ? d.place.x : d.place.y) = codes.place[axis][i];
+    d.weight[axis] = 1 / (double{codes.sigma[axis][i]} * codes.sigma[axis][i]);
+  }
+  return d;
+}
+
+std::optional<Solved> on_ray(const Codes& codes, std::size_t i, const Station& camera, const Station& projector) {
+  const auto width = static_cast<std::size_t>(codes.width);
+  const Vec2 pixel{static_cast<double>(i % width), static_cast<double>(i / width)};
+  const camera::Ray seen = camera.lens.ray(pixel);
+  const Vec3 origin = camera.rig_from_camera * seen.origin_m, direction = camera.rig_from_camera.rotate(seen.direction);
+  const RayInProjector ray(projector, origin, direction);
+  const Decoded code = decoded(codes, i, projector);
+  const std::optional<double> start = ray.start(code.place, code.weight[0] > 0, code.weight[1] > 0);
+  if (!start) return std::nullopt;
+  double depth = *start, information = 0;
+  Vec2 off;
+  for (int k = 0; k < most_steps; ++k) {
+    const double step = step_m * depth;
+    const auto here = ray.at(depth), there = ray.at(depth + step);
+    if (!here || !there) return std::nullopt;
+    off = code.place - *here;
+    const Vec2 slope = (*there - *here) * (1 / step);
+    information = code.weight[0] * slope.x * slope.x + code.weight[1] * slope.y * slope.y;
+    if (!(information > 0)) return std::nullopt;
+    const double move = (code.weight[0] * slope.x * off.x + code.weight[1] * slope.y * off.y) / information;
+    depth += move;
+    if (!(depth > 0) || !std::isfinite(depth)) return std::nullopt;
+    if (std::abs(move) < 1e-10 * depth) break;
+  }
+  Solved solved;
+  ScanPoint& point = solved.point;
+  point.position_m = origin + depth * direction, point.pixel = pixel, point.reflected = codes.reflected[i];
+  const double v = 1 / information;
+  const Vec3 d = direction;
+  point.covariance = {v * d.x * d.x, v * d.x * d.y, v * d.x * d.z, v * d.y * d.y, v * d.y * d.z, v * d.z * d.z};
+  if (code.weight[0] > 0 && code.weight[1] > 0) {
+    point.reprojection_px = norm(off) / std::sqrt(2.0);
+    solved.chi_square = code.weight[0] * off.x * off.x + code.weight[1] * off.y * off.y;
+  }
+  return solved;
+}
+
+// Two rays' common point, by the pixels' distances over their sigmas.
+struct Pair {
+  const CodePlace *first = nullptr, *second = nullptr;
+};
+
+std::optional<Solved> common_point(const Pair& pair, const Station& a, const Station& b) {
+  const Station* stations[2] = {&a, &b};
+  const CodePlace* places[2] = {pair.first, pair.second};
+  const Rigid<frame::Camera, frame::Rig> from_rig[2] = {inverse(a.rig_from_camera), inverse(b.rig_from_camera)};
+  Vec3 origins[2], directions[2];
+  for (int k = 0; k < 2; ++k) {
+    const camera::Ray ray = stations[k]->lens.ray(places[k]->pixel);
+    origins[k] = stations[k]->rig_from_camera * ray.origin_m;
+    directions[k] = stations[k]->rig_from_camera.rotate(ray.direction);
+  }
+  // The middle of the rays' least distance.
+  const Vec3 apart = origins[1] - origins[0];
+  const double c = dot(directions[0], directions[1]), d = 1 - c * c;
+  if (!(d > 1e-12)) return std::nullopt;
+  const double s = (dot(apart, directions[0]) - c * dot(apart, directions[1])) / d,
+               t = (c * dot(apart, directions[0]) - dot(apart, directions[1])) / d;
+  if (!(s > 0 && t > 0)) return std::nullopt;
+  Solved solved;
+  Vec3 x = 0.5 * (origins[0] + s * directions[0] + origins[1] + t * directions[1]);
+  Mat3 covariance{{}};
+  for (int step = 0; step < 4; ++step) {
+    Mat3 normal{{}};
+    Vec3 right;
+    double chi_square = 0, square = 0;
+    const double h = step_m * s;
+    for (int k = 0; k < 2; ++k) {
+      const Vec3 there = from_rig[k] * x;
+      const auto here = stations[k]->lens.project(there);
+      if (!here) return std::nullopt;
+      const Vec2 off = places[k]->pixel - *here;
+      const double weight = 1 / places[k]->variance_px2;
+      chi_square += weight * dot(off, off), square += dot(off, off);
+      Vec2 slopes[3];
+      for (int i = 0; i < 3; ++i) {
+        const auto moved = stations[k]->lens.project(
+            from_rig[k] * (x + h * Vec3{i == 0 ? 1.0 : 0, i == 1 ? 1.0 : 0, i == 2 ? 1.0 : 0}));
+        if (!moved) return std::nullopt;
+        slopes[i] = (*moved - *here) * (1 / h);
+      }
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) normal(i, j) += weight * dot(slopes[i], slopes[j]);
+      right += weight * Vec3{dot(slopes[0], off), dot(slopes[1], off), dot(slopes[2], off)};
+    }
+    solved.chi_square = chi_square, solved.point.reprojection_px = std::sqrt(0.5 * square);
+    covariance = inverse(normal);
+    if (!std::isfinite(covariance(0, 0))) return std::nullopt;
+    const Vec3 move = covariance * right;
+    x += move;
+    if (norm(move) < 1e-9 * s) break;
+  }
+  solved.point.position_m = x, solved.point.pixel = places[0]->pixel, solved.point.reflected = places[0]->reflected;
+  solved.point.covariance = {covariance(0, 0), covariance(0, 1), covariance(0, 2),
+                             covariance(1, 1), covariance(1, 2), covariance(2, 2)};
+  return solved;
+}
+
+}  // namespace
+
+Cloud points_of_projector(const Codes& codes, const Station& camera, const Station& projector, double most_px) {
+  Cloud cloud;
+  count_refusals(codes, cloud);
+  std::vector<std::size_t> told;
+  for (std::size_t i = 0; i < codes.refusal.size(); ++i)
+    if (codes.told(i)) told.push_back(i);
+  gather(
+      told.size(), most_px, [&](std::size_t n) { return on_ray(codes, told[n], camera, projector); }, cloud);
+  return cloud;
+}
+
+Cloud points_of_cameras(const Codes& first, const Station& first_camera, const Codes& second,
+                        const Station& second_camera, int projector_width_px, double most_px) {
+  Cloud cloud;
+  count_refusals(first, cloud);
+  const std::vector<CodePlace> a = places_of(first, projector_width_px), b = places_of(second, projector_width_px);
+  std::vector<Pair> pairs;
+  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
+    if (i->code == j->code)
+      pairs.push_back({&*i++, &*j++});
+    else if (i->code < j->code)
+      ++i;
+    else
+      ++j;
+  }
+  cloud.matched = pairs.size();
+  gather(
+      pairs.size(), most_px, [&](std::size_t n) { return common_point(pairs[n], first_camera, second_camera); }, cloud);
+  return cloud;
+}
+
+}  // namespace gonio::scan

@@ -1,0 +1,166 @@
+// structured-light: what a projector shows, and points from what cameras saw of it (lib/scan).
+#include "cli/program.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "scan/scan_document.h"
+#include "tools/structured-light/pattern.h"
+
+namespace gonio::tools::structured_light {
+namespace {
+
+using cli::Type;
+
+std::string projection_of(const cli::Invocation& call) {
+  const auto& all = names_in(call.document, "projections");
+  if (call.given("name") || all.size() != 1) {
+    if (std::ranges::find(all, call.text("name")) != all.end()) return call.text("name");
+    throw Error(Exit::data, call.document.name + "#/projections",
+                all.empty() ? "has none" : "has no " + call.text("name") + " among " + std::to_string(all.size()),
+                "--pattern writes one; --name says which");
+  }
+  return all.front();
+}
+
+scan::ScanRequest request_of(cli::Invocation& call) {
+  scan::ScanRequest request;
+  request.projection = projection_of(call);
+  request.cameras = call.texts("camera");
+  if (call.given("projector")) request.projector = call.text("projector");
+  const auto known = names_in(call.document, "cameras");
+  for (const std::string& name : request.cameras)
+    if (std::ranges::find(known, name) == known.end())
+      throw Error(Exit::usage, "--camera", name + " is none of the manifest's cameras",
+                  "calib-charuco calibrates them");
+  if (!request.projector.empty() && std::ranges::find(known, request.projector) == known.end())
+    throw Error(Exit::usage, "--projector", request.projector + " is none of the manifest's cameras",
+                "a projector is calibrated as a camera of the rig");
+  if (request.projector.empty() ? request.cameras.size() != 2 : request.cameras.size() != 1)
+    throw Error(Exit::usage, "--camera", "is given " + std::to_string(request.cameras.size()) + " times",
+                "one camera with --projector, or two cameras: --camera left --camera right");
+  request.least_reflected = call.number("least-light");
+  request.least_difference = call.number("least-difference");
+  request.least_share = call.number("least-share");
+  request.least_sigmas = call.number("least-sigmas");
+  request.codes = call.flag("codes");
+  request.output_path = [&call](const std::string& name) { return call.output_path(name); };
+  request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
+  return request;
+}
+
+void check(cli::Invocation& call) {
+  if (call.given("pattern")) return check_pattern(call);
+  if (!call.has_document)
+    throw Error(Exit::usage, "manifest", "is missing", "-i rig.json: the calibrated cameras and what was shown");
+  if (call.out.empty()) throw Error(Exit::usage, "--out", "is missing", "say where the cloud goes: --out scan");
+  const scan::ScanRequest request = request_of(call);
+  if (call.given("PICTURE")) {
+    call.document.allow_outside = true;  // what the user names may lie anywhere
+    scan::enter_photographs(call.texts("PICTURE"), request.projection, request.cameras, call.text("response"),
+                            call.document);
+  }
+  scan::check_scan(call.document, request);
+}
+
+Exit run(cli::Invocation& call) {
+  if (call.given("pattern")) return write_pattern(call);
+  scan::scan_document(call.document, request_of(call));
+  return Exit::done;
+}
+
+std::vector<cli::Option> options() {
+  std::vector<cli::Option> all = pattern_options();
+  const std::vector<cli::Option> more{
+      {.name = "name",
+       .type = Type::text,
+       .help = "Of the projection in the manifest; left out, measuring takes the only one.",
+       .metavar = "NAME",
+       .preset = "projection"},
+      {.name = "camera",
+       .type = Type::text,
+       .help = "Which looks on; the first one's pixels are those of the points.",
+       .metavar = "NAME",
+       .repeat = true},
+      {.name = "projector",
+       .type = Type::text,
+       .help =
+           "The camera of the rig that is the projector. Left out: two cameras measure, and the projector only marks.",
+       .metavar = "NAME"},
+      {.name = "response",
+       .type = Type::choice,
+       .help = "What the codes of PICTURE mean.",
+       .preset = "linear",
+       .choices = {"linear", "srgb"}},
+      {.name = "least-light",
+       .type = Type::number,
+       .help =
+           "Pixels that the projector's white lights by less, as a share of a full picture, are dark, whatever their "
+           "noise.",
+       .preset = "0",
+       .lower = 0,
+       .upper = 1e6},
+      {.name = "least-difference",
+       .type = Type::number,
+       .help = "A bit and its inverse that differ by less, as a share of a full picture, are the border of a stripe, "
+               "whatever their noise.",
+       .preset = "0",
+       .lower = 0,
+       .upper = 1e6},
+      {.name = "least-share",
+       .type = Type::number,
+       .help = "The same, as a share of what white adds there.",
+       .preset = "0.05",
+       .lower = 0,
+       .upper = 0.9},
+      {.name = "least-sigmas",
+       .type = Type::number,
+       .help = "The same, in standard deviations of the difference.",
+       .preset = "2",
+       .lower = 0,
+       .upper = 100},
+      {.name = "codes", .type = Type::flag, .help = "Write VIEW-CAMERA-codes.exr, too."}};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+}  // namespace
+
+const cli::Program& gonio_program() {
+  static const cli::Program program{
+      .name = "structured-light",
+      .sentence = "points with their own error from patterns that a projector shows",
+      .synopsis = {"--pattern gray|cosine --size WIDTHxHEIGHT --out DIR [OPTION]... [manifest.json]",
+                   "--camera NAME --camera NAME --out DIR [OPTION]... -i rig.json [PICTURE]...",
+                   "--camera NAME --projector NAME --out DIR [OPTION]... -i rig.json [PICTURE]..."},
+      .options = options(),
+      .operands = {{.name = "PICTURE",
+                    .type = Type::text,
+                    .help =
+                        "Photographs of one view, all frames in their order, each of the camera that its name or its "
+                        "folder's says; else the manifest's images with a projection.",
+                    .repeat = true}},
+      .standalone = {"pattern"},
+      .takes_out = true,
+      .sections_read = {"files", "cameras", "rigs", "images", "projections"},
+      .sections_written = {"files", "images", "projections", "clouds"},
+      .files = {{"NAME-000.png", "what the projector shows, frame by frame"},
+                {"VIEW.ply",
+                 "points with sigma, covariance, reprojection_px, pixel_x, pixel_y (of the first camera) and "
+                 "reflected (what the projector's white adds there)"},
+                {"VIEW-CAMERA-codes.exr",
+                 "column, row, sigma.column, sigma.row: the projector's pixel; reflected; refusal: 0 "
+                 "told, 1 masked, 2 dark, 3 saturated, 4 edge, 5 contradictory, 6 outside"}},
+      .references =
+          {"Inokuchi, Sato & Matsuda, Range imaging system for 3-D object recognition, ICPR 1984.",
+           "Srinivasan, Liu & Halioua, Automated phase-measuring profilometry of 3-D diffuse objects, Applied "
+           "Optics 23, 1984.",
+           "Gupta & Nayar, Micro phase shifting, CVPR 2012.",
+           "Hartley & Sturm, Triangulation, Computer Vision and Image Understanding 68, 1997."},
+      .see_also = {"calib-charuco(1)", "acquire(1)", "vdi2634(1)", "gonio-conventions(7)", "gonio-manifest(5)"},
+      .check = check,
+      .run = run};
+  return program;
+}
+
+}  // namespace gonio::tools::structured_light
