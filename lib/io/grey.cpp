@@ -2,7 +2,10 @@
 #include "io/grey.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
+#include <string_view>
 
 #include "base/atomic_file.h"
 #include "io/picture.h"
@@ -48,6 +51,13 @@ GreyImage grey_of(const Image& image) {
 GreyImage read_grey(const std::filesystem::path& path) {
   if (picture_format(path) == PictureFormat::exr) return grey_of(read_picture(path));
   return decode_grey(read_file(path), path.string());
+}
+
+bool is_grey_of_8_bits(const std::filesystem::path& path) {
+  std::array<char, 26> head{};
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(head.data(), head.size()) || std::string_view(head.data(), 8) != "\x89PNG\r\n\x1a\n") return false;
+  return head[24] == 8 && head[25] == 0;  // bits, and the colour type of one channel without a palette
 }
 
 }  // namespace gonio::io

@@ -19,6 +19,9 @@ struct GreyImage {
 // EXR and 16-bit files as by grey_of(). Error(no_input | data) as read_picture().
 GreyImage read_grey(const std::filesystem::path& path);
 
+// Does the file hold one channel of 8 bits, as its first bytes tell? PNG alone; of others: no.
+bool is_grey_of_8_bits(const std::filesystem::path& path);
+
 // Values beyond [0, 1], and those that all stay below 1/8 (12 bits in a file of 16), are scaled by their 99.5th
 // percentile; what is no number is black.
 GreyImage grey_of(const Image& image);

@@ -32,6 +32,24 @@ io::Image select(const io::Image& raw, const std::vector<std::string>& names, co
   return selected;
 }
 
+// Where nothing else is in it, nothing is copied.
+io::Image select_colour(io::Image raw, const std::vector<std::string>& names) {
+  if (raw.channels != names) return select(raw, names, "");
+  if (names.size() == 1) raw.channels = {"Y"};
+  return raw;
+}
+
+void mark(const io::Image& colour, double highest, double lowest, LinearPicture& picture) {
+  picture.clipped.assign(colour.pixels(), 0);
+  picture.dark.assign(colour.data.size(), 0);
+  const std::size_t channels = colour.channels.size(), values = colour.data.size();
+  const float* value = colour.data.data();
+  std::uint8_t* dark = picture.dark.data();
+  for (std::size_t i = 0; i < values; ++i) dark[i] = value[i] < lowest;
+  for (std::size_t i = 0; i < values; ++i)
+    if (value[i] >= highest) picture.clipped[i / channels] = 1;
+}
+
 }  // namespace
 
 LinearPicture read_linear(const std::filesystem::path& path, const manifest::Value& response, const std::string& place,
@@ -42,21 +60,18 @@ LinearPicture read_linear(const std::filesystem::path& path, const manifest::Val
   if (picture.integer_codes() && response.is_null())
     throw Error(Exit::data, place, "is an 8 or 16-bit picture whose response is not stated",
                 "state \"response\" (--response): \"linear\", \"srgb\" or a table");
-  const io::Image raw = io::read_picture(path);
+  io::Image raw = io::read_picture(path);
   const auto names = colour_names(raw, picture.name);
   std::vector<Response> linear;
   for (const auto& name : names) linear.emplace_back(response_of_channel(response, name, place), place);
-  picture.colour = select(raw, names, "");
   picture.variance = select(raw, names, "variance.");
-  picture.clipped.assign(raw.pixels(), 0);
-  picture.dark.assign(picture.colour.data.size(), 0);
-  const double highest = saturated_from(picture.code_bits, saturation), lowest = dark_below(picture.code_bits);
+  picture.colour = select_colour(std::move(raw), names);
+  mark(picture.colour, saturated_from(picture.code_bits, saturation), dark_below(picture.code_bits), picture);
   const std::size_t channels = names.size();
-  for (std::size_t i = 0; i < picture.colour.data.size(); ++i) {
-    float& value = picture.colour.data[i];
-    if (value >= highest) picture.clipped[i / channels] = 1;
-    picture.dark[i] = value < lowest;
-    value = linear[i % channels](value);
+  for (std::size_t c = 0; c < channels; ++c) {
+    if (linear[c].is_linear()) continue;
+    for (std::size_t i = c; i < picture.colour.data.size(); i += channels)
+      picture.colour.data[i] = linear[c](picture.colour.data[i]);
   }
   return picture;
 }

@@ -14,6 +14,7 @@ namespace gonio::photograph {
 class Response {
  public:
   explicit Response(const manifest::Value& stated, const std::string& place);  // null: linear
+  bool is_linear() const { return !srgb_ && table_.empty(); }
   float operator()(float code) const;
   float code(float linear) const;       // the inverse
   double linear_of(double code) const;  // the same two, to the last digit where a table is stated

@@ -71,28 +71,52 @@ bool on_plane(const PixelSums& s, bool whole, CodePlace& p, double& left) {
   return true;
 }
 
-std::vector<Cell> cells_of(const Codes& codes, int projector_width_px) {
-  struct Seen {
-    std::int64_t code = 0;
-    std::uint32_t pixel = 0;
-  };
-  const std::vector<float>&columns = codes.place[0], &rows = codes.place[1];
-  std::vector<Seen> seen;
+// The projector's pixel that lit a pixel of the camera; -1: none.
+std::int64_t code_of(const Codes& codes, std::size_t i, int projector_width_px) {
+  if (!codes.told(i)) return -1;
+  const auto column = static_cast<std::int64_t>(std::lround(codes.place[0][i])),
+             row = static_cast<std::int64_t>(std::lround(codes.place[1][i]));
+  return column >= 0 && row >= 0 && column < projector_width_px ? row * projector_width_px + column : -1;
+}
+
+// Pixels in the order of their codes: counted first, then put in their places.
+struct ByCode {
+  std::vector<std::uint32_t> first;  // of each code, in `pixels`, and the end
+  std::vector<std::uint32_t> pixels;
+};
+ByCode by_code(const Codes& codes, int projector_width_px) {
+  ByCode sorted;
   for (std::size_t i = 0; i < codes.refusal.size(); ++i) {
-    if (!codes.told(i)) continue;
-    const auto column = static_cast<std::int64_t>(std::lround(columns[i])),
-               row = static_cast<std::int64_t>(std::lround(rows[i]));
-    if (column >= 0 && row >= 0 && column < projector_width_px)
-      seen.push_back({row * projector_width_px + column, static_cast<std::uint32_t>(i)});
+    const std::int64_t code = code_of(codes, i, projector_width_px);
+    if (code < 0) continue;
+    if (static_cast<std::size_t>(code) + 2 > sorted.first.size())
+      sorted.first.resize(static_cast<std::size_t>(code) + 2);
+    ++sorted.first[static_cast<std::size_t>(code) + 1];
   }
-  std::ranges::sort(seen, {}, [](const Seen& s) { return std::pair(s.code, s.pixel); });
+  for (std::size_t c = 1; c < sorted.first.size(); ++c) sorted.first[c] += sorted.first[c - 1];
+  sorted.pixels.resize(sorted.first.empty() ? 0 : sorted.first.back());
+  std::vector<std::uint32_t> next = sorted.first;
+  for (std::size_t i = 0; i < codes.refusal.size(); ++i) {
+    const std::int64_t code = code_of(codes, i, projector_width_px);
+    if (code >= 0) sorted.pixels[next[static_cast<std::size_t>(code)]++] = static_cast<std::uint32_t>(i);
+  }
+  return sorted;
+}
+
+std::vector<Cell> cells_of(const Codes& codes, int projector_width_px) {
+  const std::vector<float>&columns = codes.place[0], &rows = codes.place[1];
+  const ByCode sorted = by_code(codes, projector_width_px);
   std::vector<Cell> cells;
-  const auto width = static_cast<std::size_t>(codes.width);
-  for (const Seen& s : seen) {
-    if (cells.empty() || cells.back().code != s.code) cells.push_back({s.code, {}, 0});
-    cells.back().sums.add(columns[s.pixel] - std::round(columns[s.pixel]), rows[s.pixel] - std::round(rows[s.pixel]),
-                          static_cast<double>(s.pixel % width), static_cast<double>(s.pixel / width));
-    cells.back().reflected += codes.reflected[s.pixel];
+  const auto width = static_cast<std::uint32_t>(codes.width);
+  for (std::size_t code = 0; code + 1 < sorted.first.size(); ++code) {
+    if (sorted.first[code] == sorted.first[code + 1]) continue;
+    Cell& cell = cells.emplace_back();
+    cell.code = static_cast<std::int64_t>(code);
+    for (std::uint32_t k = sorted.first[code]; k < sorted.first[code + 1]; ++k) {
+      const std::uint32_t i = sorted.pixels[k];
+      cell.sums.add(columns[i] - std::round(columns[i]), rows[i] - std::round(rows[i]), i % width, i / width);
+      cell.reflected += codes.reflected[i];
+    }
   }
   return cells;
 }

@@ -100,9 +100,9 @@ class CosineDecoder {
       const CameraFrame frame = read_(f);
       const auto c = static_cast<float>(std::cos(shift)), sine = static_cast<float>(std::sin(shift));
       for (std::size_t i = 0; i < pixels; ++i) {
-        const float v = frame.light[i];
+        const float v = frame.at(i);
         s.of_all[i] += v, s.with_cos[i] += c * v, s.with_sin[i] += sine * v;
-        s.spoiled[i] = static_cast<std::uint8_t>(s.spoiled[i] | frame.saturated[i]);
+        s.spoiled[i] = static_cast<std::uint8_t>(s.spoiled[i] | (frame.full(i) ? 1 : 0));
       }
     }
     return s;

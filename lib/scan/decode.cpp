@@ -21,10 +21,9 @@ using What = Shown::What;
 CameraFrame read_checked(const DecodeRequest& r, std::size_t frame) {
   CameraFrame f = r.read(frame);
   const std::size_t pixels = static_cast<std::size_t>(r.width) * static_cast<std::size_t>(r.height);
-  if (f.light.size() != pixels)
+  if (f.size() != pixels)
     throw Error(Exit::data, format("frame %zu", frame), "is of another size than the first",
                 "give pictures of one camera that did not move");
-  f.saturated.resize(pixels);
   return f;
 }
 

@@ -25,9 +25,19 @@
 
 namespace gonio::scan {
 
-struct CameraFrame {                    // linear light
-  std::vector<float> light;             // row by row
-  std::vector<std::uint8_t> saturated;  // as many, or none
+// Linear light, row by row: numbers, with those that are saturated marked (or none); or codes of 8 bits, with the light
+// that each means, and from which on they are saturated.
+struct CameraFrame {
+  std::vector<float> light;
+  std::vector<std::uint8_t> saturated;
+  std::vector<std::uint8_t> codes{};
+  std::array<float, 256> light_of_code{};
+  int full_from = 256;
+  std::size_t size() const { return codes.empty() ? light.size() : codes.size(); }
+  float at(std::size_t i) const { return codes.empty() ? light[i] : light_of_code[codes[i]]; }
+  bool full(std::size_t i) const {
+    return codes.empty() ? !saturated.empty() && saturated[i] != 0 : codes[i] >= full_from;
+  }
 };
 
 // Why a pixel has no code. edge: the stripe's border goes through it; contradictory: its numbers of periods do not

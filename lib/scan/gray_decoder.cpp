@@ -23,9 +23,9 @@ class GrayDecoder {
       : r_(r), read_(read), codes_(codes), white_(read(white)), black_(read(black)) {}
 
   void run() {
-    const std::size_t pixels = white_.light.size();
+    const std::size_t pixels = white_.size();
     codes_.reflected.resize(pixels);
-    for (std::size_t i = 0; i < pixels; ++i) codes_.reflected[i] = white_.light[i] - black_.light[i];
+    for (std::size_t i = 0; i < pixels; ++i) codes_.reflected[i] = white_.at(i) - black_.at(i);
     codes_.noise = r_.noise ? *r_.noise : found_noise();
     find_dark();
     for (const Axis axis : {Axis::column, Axis::row})
@@ -48,20 +48,21 @@ class GrayDecoder {
 
   template <class Body>
   void for_pixels(const Body& body) const {
-    const std::size_t pixels = white_.light.size();
+    const std::size_t pixels = white_.size();
     parallel_for(0, (pixels + rows_at_once - 1) / rows_at_once, [&](std::size_t n) {
       for (std::size_t i = n * rows_at_once; i < std::min(pixels, (n + 1) * rows_at_once); ++i) body(i);
     });
   }
 
   void find_dark() {
+    const photograph::NoiseModel own(codes_.noise);
+    const photograph::NoiseVariance variance_of(own);
     for_pixels([&](std::size_t i) {
       if (!codes_.told(i)) return;
-      const double noise = std::sqrt(photograph::noise_variance(codes_.noise, white_.light[i]) +
-                                     photograph::noise_variance(codes_.noise, black_.light[i]));
+      const double noise = std::sqrt(variance_of(white_.at(i)) + variance_of(black_.at(i)));
       if (codes_.reflected[i] < r_.least_reflected || codes_.reflected[i] <= least_of_noise * noise)
         codes_.refusal[i] = Refusal::dark;
-      else if (black_.saturated[i] != 0)
+      else if (black_.full(i))
         codes_.refusal[i] = Refusal::saturated;  // and white: nothing differs
     });
   }
@@ -74,37 +75,44 @@ class GrayDecoder {
       if (s.what != What::bit || s.inverse) continue;
       if (const auto inverse = inverse_of(s)) pairs.emplace_back(f, *inverse);
     }
-    if (pairs.size() < 2) return noise_of(between_neighbours(white_.light, 1, white_.light, r_.width, r_.height));
-    std::vector<float> left(white_.light.size()), light(left.size());
+    if (pairs.size() < 2)
+      return noise_of(between_neighbours(codes_.reflected, std::sqrt(2.0), codes_.reflected, r_.width, r_.height));
+    std::vector<float> left(white_.size()), light(left.size());
     for (const auto& [bit, inverse] : pairs) {
       const CameraFrame a = read_(bit), b = read_(inverse);
       const float sign = bit == pairs[0].first ? 1.0f : -1.0f;
       for (std::size_t i = 0; i < left.size(); ++i) {
-        const bool counts = a.saturated[i] == 0 && b.saturated[i] == 0;
-        left[i] += counts ? sign * (a.light[i] + b.light[i]) : std::numeric_limits<float>::quiet_NaN();
-        light[i] += 0.25f * (a.light[i] + b.light[i]);
+        const bool counts = !a.full(i) && !b.full(i);
+        left[i] += counts ? sign * (a.at(i) + b.at(i)) : std::numeric_limits<float>::quiet_NaN();
+        light[i] += 0.25f * (a.at(i) + b.at(i));
       }
     }
     return noise_of(between_neighbours(left, 2, light, r_.width, r_.height));
   }
 
   void take(Axis axis, int bit, std::size_t frame, std::optional<std::size_t> inverse_frame) {
-    const CameraFrame own = read_(frame);
-    const std::optional<CameraFrame> inverse =
-        inverse_frame ? std::optional<CameraFrame>(read_(*inverse_frame)) : std::nullopt;
+    CameraFrame own;
+    std::optional<CameraFrame> inverse;
+    parallel_for(0, inverse_frame ? 2 : 1, [&](std::size_t k) {
+      if (k == 0)
+        own = read_(frame);
+      else
+        inverse = read_(*inverse_frame);
+    });
     std::vector<std::uint32_t>& gray = gray_[static_cast<std::size_t>(axis)];
-    gray.resize(own.light.size());
+    gray.resize(own.size());
     int& finest = finest_[static_cast<std::size_t>(axis)];
     finest = std::min(finest, bit);
+    const photograph::NoiseModel noise(codes_.noise);
+    const photograph::NoiseVariance variance_of(noise);
+    const double sigmas = r_.least_sigmas * r_.least_sigmas;
     for_pixels([&](std::size_t i) {
       if (!codes_.told(i)) return;
-      const float other = inverse ? inverse->light[i] : 0.5f * (white_.light[i] + black_.light[i]),
-                  difference = inverse ? own.light[i] - other : 2 * (own.light[i] - other), size = std::abs(difference);
-      const double variance =
-          photograph::noise_variance(codes_.noise, own.light[i]) + photograph::noise_variance(codes_.noise, other);
-      const double least =
-          std::max({r_.least_sigmas * std::sqrt(variance), r_.least_share * codes_.reflected[i], r_.least_difference});
-      if (size < least) codes_.refusal[i] = Refusal::edge;
+      const float read = own.at(i), other = inverse ? inverse->at(i) : 0.5f * (white_.at(i) + black_.at(i)),
+                  difference = inverse ? read - other : 2 * (read - other), size = std::abs(difference);
+      if (size < r_.least_difference || size < r_.least_share * codes_.reflected[i] ||
+          double{size} * size < sigmas * (variance_of(read) + variance_of(other)))
+        codes_.refusal[i] = Refusal::edge;
       if (difference > 0) gray[i] |= 1u << bit;
     });
   }

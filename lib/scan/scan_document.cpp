@@ -1,7 +1,6 @@
 // See scan_document.h.
 #include "scan/scan_document.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,9 +11,9 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "io/grey.h"
 #include "io/picture.h"
 #include "io/ply.h"
-#include "linear/symmetric_eigen.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
@@ -24,6 +23,8 @@
 #include "manifest/sections/rig.h"
 #include "photograph/linear_picture.h"
 #include "photograph/mask.h"
+#include "photograph/response.h"
+#include "photograph/saturation.h"
 #include "scan/triangulate.h"
 #include "stats/intervals.h"
 
@@ -118,15 +119,39 @@ std::vector<Station> stations_of(const Document& document, const std::vector<std
               "calib-charuco --rig calibrates cameras that are held together");
 }
 
+void check_size(const std::filesystem::path& path, int own_width, int own_height, int width, int height) {
+  if (own_width == width && own_height == height) return;
+  throw Error(Exit::data, path.string(),
+              format("has %d x %d pixels, and its camera %d x %d", own_width, own_height, width, height),
+              "give pictures of this camera, uncut");
+}
+
+// Codes of a file that is grey and has 8 bits: a quarter of the numbers' bytes.
+std::optional<CameraFrame> read_codes(const Document& document, std::size_t image, int width, int height) {
+  const ImageEntry& entry = document.images[image];
+  const std::filesystem::path path = manifest::picture_path(document, image);
+  if (!io::is_grey_of_8_bits(path) || entry.response.is_null()) return std::nullopt;
+  io::GreyImage read = io::read_grey(path);
+  check_size(path, read.width, read.height, width, height);
+  const std::string at = place_of(document, image, "/response");
+  const photograph::Response response(photograph::response_of_channel(entry.response, "Y", at), at);
+  CameraFrame frame;
+  frame.codes = std::move(read.bytes);
+  const double full = photograph::saturated_from(8, entry.saturation);
+  for (int code = 255; code >= 0; --code) {
+    const float share = static_cast<float>(code) / 255;
+    frame.light_of_code[static_cast<std::size_t>(code)] = response(share);
+    if (share >= full) frame.full_from = code;
+  }
+  return frame;
+}
+
 CameraFrame read_frame(const Document& document, std::size_t image, int width, int height) {
+  if (std::optional<CameraFrame> codes = read_codes(document, image, width, height)) return std::move(*codes);
   const ImageEntry& entry = document.images[image];
   photograph::LinearPicture read = photograph::read_linear(manifest::picture_path(document, image), entry.response,
                                                            place_of(document, image, "/response"), entry.saturation);
-  if (read.colour.width != width || read.colour.height != height)
-    throw Error(
-        Exit::data, manifest::picture_path(document, image).string(),
-        format("has %d x %d pixels, and its camera %d x %d", read.colour.width, read.colour.height, width, height),
-        "give pictures of this camera, uncut");
+  check_size(manifest::picture_path(document, image), read.colour.width, read.colour.height, width, height);
   CameraFrame frame;
   const std::size_t channels = read.colour.channels.size(), pixels = read.colour.pixels();
   if (channels == 1)
@@ -187,13 +212,6 @@ void write_codes(const std::filesystem::path& path, const Codes& codes) {
   io::write_picture(path, picture);
 }
 
-double largest_sigma(const std::array<double, 6>& c) {
-  Eigen::Matrix3d v;
-  v << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
-  const linear::SymmetricEigen<Eigen::Matrix3d> own(v, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, own.eigenvalues()[2]));
-}
-
 const io::PlyWish columns{.properties = {"sigma", "reprojection_px", "pixel_x", "pixel_y", "reflected", "cov_xx",
                                          "cov_xy", "cov_xz", "cov_yy", "cov_yz", "cov_zz"}};
 
@@ -207,7 +225,7 @@ io::TriangleMesh mesh_of(const Cloud& cloud, const Rigid<To, frame::Rig>& to_fro
     mesh.positions_m.push_back(to_from_rig * point.position_m);
     const std::array<double, 6>& c = point.covariance;
     const Mat3 v = turn * Mat3{{c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5]}} * transposed(turn);
-    const double values[] = {largest_sigma(c),
+    const double values[] = {point.sigma_m,
                              point.reprojection_px,
                              point.pixel.x,
                              point.pixel.y,
@@ -230,8 +248,7 @@ manifest::Cloud entry_of(const Cloud& cloud, const ScanRequest& request) {
   entry.projection = request.projection;
   entry.points = static_cast<std::int64_t>(cloud.points.size());
   std::vector<double> sigmas, off;
-  for (const ScanPoint& p : cloud.points)
-    sigmas.push_back(largest_sigma(p.covariance)), off.push_back(p.reprojection_px);
+  for (const ScanPoint& p : cloud.points) sigmas.push_back(p.sigma_m), off.push_back(p.reprojection_px);
   if (!sigmas.empty()) entry.sigma_m = stats::median(sigmas), entry.reprojection_px = stats::median(off);
   if (cloud.epipolar_chi_square > 0) entry.epipolar_chi_square = cloud.epipolar_chi_square;
   for (const auto& [reason, count] : cloud.refused) entry.refused[reason] = static_cast<std::int64_t>(count);
@@ -294,12 +311,11 @@ double scan_document(Document& document, const ScanRequest& request) {
   const Sequence sequence = sequence_of(document, request.projection);
   double worst = 1;
   for (const View& view : views_of(document, request)) {
-    std::vector<Codes> codes;
-    for (std::size_t c = 0; c < view.cameras.size(); ++c) {
-      codes.push_back(codes_of(document, request, view.cameras[c], stations[c]));
-      if (request.codes)
-        write_codes(request.output_path(file_stem(view.name + "-" + request.cameras[c]) + "-codes.exr"), codes.back());
-    }
+    std::vector<Codes> codes(view.cameras.size());
+    parallel_for(0, codes.size(),
+                 [&](std::size_t c) { codes[c] = codes_of(document, request, view.cameras[c], stations[c]); });
+    for (std::size_t c = 0; c < codes.size() && request.codes; ++c)
+      write_codes(request.output_path(file_stem(view.name + "-" + request.cameras[c]) + "-codes.exr"), codes[c]);
     const Cloud cloud = request.projector.empty()
                             ? points_of_cameras(codes[0], stations[0], codes[1], stations[1], sequence.width_px)
                             : points_of_projector(codes[0], stations[0], stations[1]);

@@ -1,12 +1,14 @@
 // See triangulate.h.
 #include "scan/triangulate.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "base/parallel.h"
 #include "geom/mat3_inverse.h"
+#include "linear/symmetric_eigen.h"
 #include "scan/code_places.h"
 #include "stats/intervals.h"
 
@@ -30,6 +32,13 @@ struct Solved {
   double chi_square = -1;
 };
 
+double largest_sigma(const std::array<double, 6>& c) {
+  Eigen::Matrix3d v;
+  v << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+  const linear::SymmetricEigen<Eigen::Matrix3d> own(v, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, own.eigenvalues()[2]));
+}
+
 // Joins what was found side by side, in order, and says by how much variances were too small.
 template <class Body>  // std::optional<Solved> of each
 void gather(std::size_t count, double most_px, const Body& body, Cloud& cloud) {
@@ -48,11 +57,15 @@ void gather(std::size_t count, double most_px, const Body& body, Cloud& cloud) {
     if (solved->chi_square >= 0) chi_squares.push_back(solved->chi_square);
   }
   if (lost > 0) cloud.refused[contradictory] += lost;
-  if (chi_squares.empty()) return;
-  cloud.epipolar_chi_square = stats::median(chi_squares) / chi_square_median;
+  if (!chi_squares.empty()) cloud.epipolar_chi_square = stats::median(chi_squares) / chi_square_median;
   const double factor = std::max(1.0, cloud.epipolar_chi_square);
-  for (ScanPoint& point : cloud.points)
-    for (double& v : point.covariance) v *= factor;
+  parallel_for(0, (cloud.points.size() + points_at_once - 1) / points_at_once, [&](std::size_t n) {
+    for (std::size_t i = n * points_at_once; i < std::min(cloud.points.size(), (n + 1) * points_at_once); ++i) {
+      ScanPoint& point = cloud.points[i];
+      for (double& v : point.covariance) v *= factor;
+      point.sigma_m = largest_sigma(point.covariance);
+    }
+  });
 }
 
 // A projector's pixels along the ray of one camera's pixel.
@@ -157,36 +170,38 @@ std::optional<Solved> common_point(const Pair& pair, const Station& a, const Sta
   if (!(s > 0 && t > 0)) return std::nullopt;
   Solved solved;
   Vec3 x = 0.5 * (origins[0] + s * directions[0] + origins[1] + t * directions[1]);
-  Mat3 covariance{{}};
+  // The slopes once: the start is within a fraction of a pixel.
+  Mat3 normal{{}};
+  Vec2 slopes[2][3];
+  const double h = step_m * s;
+  for (int k = 0; k < 2; ++k) {
+    const auto here = stations[k]->lens.project(from_rig[k] * x);
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 beside = x + h * Vec3{i == 0 ? 1.0 : 0, i == 1 ? 1.0 : 0, i == 2 ? 1.0 : 0};
+      const auto moved = stations[k]->lens.project(from_rig[k] * beside);
+      if (!here || !moved) return std::nullopt;
+      slopes[k][i] = (*moved - *here) * (1 / h);
+    }
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) normal(i, j) += dot(slopes[k][i], slopes[k][j]) / places[k]->variance_px2;
+  }
+  const Mat3 covariance = inverse(normal);
+  if (!std::isfinite(covariance(0, 0))) return std::nullopt;
   for (int step = 0; step < 4; ++step) {
-    Mat3 normal{{}};
     Vec3 right;
     double chi_square = 0, square = 0;
-    const double h = step_m * s;
     for (int k = 0; k < 2; ++k) {
-      const Vec3 there = from_rig[k] * x;
-      const auto here = stations[k]->lens.project(there);
+      const auto here = stations[k]->lens.project(from_rig[k] * x);
       if (!here) return std::nullopt;
       const Vec2 off = places[k]->pixel - *here;
       const double weight = 1 / places[k]->variance_px2;
       chi_square += weight * dot(off, off), square += dot(off, off);
-      Vec2 slopes[3];
-      for (int i = 0; i < 3; ++i) {
-        const auto moved = stations[k]->lens.project(
-            from_rig[k] * (x + h * Vec3{i == 0 ? 1.0 : 0, i == 1 ? 1.0 : 0, i == 2 ? 1.0 : 0}));
-        if (!moved) return std::nullopt;
-        slopes[i] = (*moved - *here) * (1 / h);
-      }
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) normal(i, j) += weight * dot(slopes[i], slopes[j]);
-      right += weight * Vec3{dot(slopes[0], off), dot(slopes[1], off), dot(slopes[2], off)};
+      right += weight * Vec3{dot(slopes[k][0], off), dot(slopes[k][1], off), dot(slopes[k][2], off)};
     }
     solved.chi_square = chi_square, solved.point.reprojection_px = std::sqrt(0.5 * square);
-    covariance = inverse(normal);
-    if (!std::isfinite(covariance(0, 0))) return std::nullopt;
     const Vec3 move = covariance * right;
     x += move;
-    if (norm(move) < 1e-9 * s) break;
+    if (norm(move) < 1e-7 * s) break;
   }
   solved.point.position_m = x, solved.point.pixel = places[0]->pixel, solved.point.reflected = places[0]->reflected;
   solved.point.covariance = {covariance(0, 0), covariance(0, 1), covariance(0, 2),
@@ -211,7 +226,8 @@ Cloud points_of_cameras(const Codes& first, const Station& first_camera, const C
                         const Station& second_camera, int projector_width_px, double most_px) {
   Cloud cloud;
   count_refusals(first, cloud);
-  const std::vector<CodePlace> a = places_of(first, projector_width_px), b = places_of(second, projector_width_px);
+  std::vector<CodePlace> a, b;
+  parallel_for(0, 2, [&](std::size_t k) { (k == 0 ? a : b) = places_of(k == 0 ? first : second, projector_width_px); });
   std::vector<Pair> pairs;
   for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
     if (i->code == j->code)

@@ -31,6 +31,7 @@ struct ScanPoint {
   std::array<double, 6> covariance{};  // xx, xy, xz, yy, yz, zz, m^2
   Vec2 pixel;                          // of the first camera
   double reprojection_px = 0;          // root mean square over its pictures
+  double sigma_m = 0;                  // the largest standard deviation, in whatever direction
   float reflected = 0;                 // what the projector's white adds there
 };
 
