@@ -304,12 +304,12 @@ void check_scan(const Document& document, const ScanRequest& request) {
       }
 }
 
-double scan_document(Document& document, const ScanRequest& request) {
+ScanSummary scan_document(Document& document, const ScanRequest& request) {
   std::vector<std::string> names = request.cameras;
   if (!request.projector.empty()) names.push_back(request.projector);
   const std::vector<Station> stations = stations_of(document, names);
   const Sequence sequence = sequence_of(document, request.projection);
-  double worst = 1;
+  std::optional<ScanSummary> all;
   for (const View& view : views_of(document, request)) {
     std::vector<Codes> codes(view.cameras.size());
     parallel_for(0, codes.size(),
@@ -331,10 +331,12 @@ double scan_document(Document& document, const ScanRequest& request) {
     manifest::Cloud entry = entry_of(cloud, request);
     entry.file = manifest::add_file(document, path, "cloud-" + view.name);
     log_cloud(view.name, entry, cloud.matched);
-    worst = std::max(worst, cloud.epipolar_chi_square);
+    if (!all) all = ScanSummary{cloud.points.size()};
+    all->fewest_points = std::min(all->fewest_points, cloud.points.size());
+    all->epipolar_chi_square = std::max(all->epipolar_chi_square, cloud.epipolar_chi_square);
     document.clouds[view.name] = std::move(entry);
   }
-  return worst;
+  return *all;
 }
 
 }  // namespace gonio::scan

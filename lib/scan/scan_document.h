@@ -1,5 +1,6 @@
 // The manifest's pictures of a projection, as clouds in the manifest.
 #pragma once
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -31,10 +32,14 @@ void enter_photographs(const std::vector<std::string>& paths, const std::string&
 // is looked at. Error(data | no_input).
 void check_scan(const manifest::Document& document, const ScanRequest& request);
 
+struct ScanSummary {  // over all views
+  std::size_t fewest_points = 0;
+  double epipolar_chi_square = 1;  // the largest; 1: as noise says, or not told
+};
+
 // Writes VIEW.ply for each `group` of the images (without one: the projection's name) and enters the cloud. Points are
 // in the world, where the first camera's images say where it stood, else in the frame of the rig, which is that of its
-// first camera. What was found is logged. The largest chi-square that cameras contradict each other by is returned (1:
-// none).
-double scan_document(manifest::Document& document, const ScanRequest& request);
+// first camera. What was found is logged.
+ScanSummary scan_document(manifest::Document& document, const ScanRequest& request);
 
 }  // namespace gonio::scan

@@ -2,8 +2,11 @@
 #include "cli/program.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
+#include "base/progress.h"
+#include "base/text.h"
 #include "scan/scan_document.h"
 #include "tools/structured-light/pattern.h"
 
@@ -11,6 +14,8 @@ namespace gonio::tools::structured_light {
 namespace {
 
 using cli::Type;
+
+constexpr double most_chi_square = 9;  // three standard deviations, in the middle of all points
 
 std::string projection_of(const cli::Invocation& call) {
   const auto& all = names_in(call.document, "projections");
@@ -65,8 +70,14 @@ void check(cli::Invocation& call) {
 
 Exit run(cli::Invocation& call) {
   if (call.given("pattern")) return write_pattern(call);
-  scan::scan_document(call.document, request_of(call));
-  return Exit::done;
+  const scan::ScanSummary made = scan::scan_document(call.document, request_of(call));
+  if (made.fewest_points == 0) return Exit::negative;
+  if (made.epipolar_chi_square <= most_chi_square) return Exit::done;
+  log(LogLevel::warning,
+      format("what should meet misses by %.2g times its noise: the rig, a lens or the projector's size is "
+             "not as stated; calibrate them again, or see where it is (--codes)",
+             std::sqrt(made.epipolar_chi_square)));
+  return Exit::quality;
 }
 
 std::vector<cli::Option> options() {
@@ -151,6 +162,10 @@ const cli::Program& gonio_program() {
                 {"VIEW-CAMERA-codes.exr",
                  "column, row, sigma.column, sigma.row: the projector's pixel; reflected; refusal: 0 "
                  "told, 1 masked, 2 dark, 3 saturated, 4 edge, 5 contradictory, 6 outside"}},
+      .exits = {{Exit::negative, "a view has no point"},
+                {Exit::quality,
+                 "cameras, or a projector's columns and rows, contradict each other by more than three times "
+                 "their noise"}},
       .references =
           {"Inokuchi, Sato & Matsuda, Range imaging system for 3-D object recognition, ICPR 1984.",
            "Srinivasan, Liu & Halioua, Automated phase-measuring profilometry of 3-D diffuse objects, Applied "
