@@ -20,6 +20,8 @@ std::vector<Untouched> image_reasons() {
           {"scene.", "each picture is held against its own simulation: what stands elsewhere is geometry.pose"},
           {"reference.", "pictures are held against a simulation, and no white tile"},
           {"sensor.blooming", "clipped readings, and how much flows over there, are left out: ask a stack"},
+          {"optics.lens-shading",
+           "what one aperture shades is optics.vignetting; a stack through several tells them apart"},
           {"sensor.hot-pixel", "dark frames take them off (develop --dark); a stack finds them"},
           {"sensor.dark-current",
            "dark frames take it off (develop --dark); what is left adds the same to all exposures: light.ambient"},
