@@ -12,6 +12,7 @@ complete -c structured-light -l least-light -x -d 'Pixels that the projectors wh
 complete -c structured-light -l least-difference -x -d 'A bit and its inverse that differ by less, as a share of a full picture, are the border of a stripe, whatever their noise.'
 complete -c structured-light -l least-share -x -d 'The same, as a share of what white adds there.'
 complete -c structured-light -l least-sigmas -x -d 'The same, in standard deviations of the difference.'
+complete -c structured-light -l html -r -d 'Write a report page here.'
 complete -c structured-light -l codes -d 'Write VIEW-CAMERA-codes.exr, too.'
 complete -c structured-light -l input -s i -r -d 'Manifest to read; - is standard input.'
 complete -c structured-light -l output -s o -r -d 'Where the manifest goes instead of standard output; written whole or not at all.'

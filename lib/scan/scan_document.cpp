@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -25,6 +26,7 @@
 #include "photograph/mask.h"
 #include "photograph/response.h"
 #include "photograph/saturation.h"
+#include "scan/scan_page.h"
 #include "scan/triangulate.h"
 #include "stats/intervals.h"
 
@@ -310,6 +312,7 @@ ScanSummary scan_document(Document& document, const ScanRequest& request) {
   const std::vector<Station> stations = stations_of(document, names);
   const Sequence sequence = sequence_of(document, request.projection);
   std::optional<ScanSummary> all;
+  ScanPage page;
   for (const View& view : views_of(document, request)) {
     std::vector<Codes> codes(view.cameras.size());
     parallel_for(0, codes.size(),
@@ -334,8 +337,10 @@ ScanSummary scan_document(Document& document, const ScanRequest& request) {
     if (!all) all = ScanSummary{cloud.points.size()};
     all->fewest_points = std::min(all->fewest_points, cloud.points.size());
     all->epipolar_chi_square = std::max(all->epipolar_chi_square, cloud.epipolar_chi_square);
+    if (!request.page.empty()) page.add(view.name, request.cameras, codes, sequence, stations[0], cloud, entry);
     document.clouds[view.name] = std::move(entry);
   }
+  if (!request.page.empty()) write_file(request.page, page.html());
   return *all;
 }
 

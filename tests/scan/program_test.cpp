@@ -64,7 +64,8 @@ TEST_F(StructuredLight, PatternsArePhotographedAndBecomeAPlane) {
   EXPECT_EQ(shown.width, 480);
   EXPECT_NEAR(shown.at(0, 100, 0), 0.5 + 0.5 * std::cos(2 * pi * 6 * 0.5 / 480), 0.01);
   photograph(world_.left, "left"), photograph(world_.right, "right");
-  const Ended one = measure({"--camera", "left", "--projector", "projector", "--codes"}, pictures("left"));
+  const Ended one =
+      measure({"--camera", "left", "--projector", "projector", "--codes", "--html", "page.html"}, pictures("left"));
   ASSERT_EQ(one.status, 0) << one.err;
   write_file(folder_ / "one.json", one.out);
   const manifest::Document d = manifest::parse_document(one.out, "one.json", folder_.path());
@@ -72,6 +73,11 @@ TEST_F(StructuredLight, PatternsArePhotographedAndBecomeAPlane) {
   EXPECT_GT(cloud.points, 60000);
   EXPECT_NEAR(cloud.epipolar_chi_square.value(), 1, 0.3);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "scan/cosines-left-codes.exr"));
+  const std::string page = read_file(folder_ / "page.html");
+  EXPECT_THAT(page, HasSubstr(format("<h1>%lld points, half of them to", static_cast<long long>(cloud.points))));
+  EXPECT_THAT(page, HasSubstr("contradictory"));
+  const io::Image codes = io::read_picture(folder_ / "scan/cosines-left-codes.exr");
+  EXPECT_NEAR(codes.at(160, 120, codes.channel("column")), lit_by(world_, world_.left, 160, 120)[0], 0.5);
   // The projector stands a little elsewhere than its rig says.
   std::string moved = read_file(folder_ / "cosines.json");
   const std::size_t at = moved.find("-0.02");

@@ -49,6 +49,7 @@ scan::ScanRequest request_of(cli::Invocation& call) {
   request.least_share = call.number("least-share");
   request.least_sigmas = call.number("least-sigmas");
   request.codes = call.flag("codes");
+  if (call.given("html")) request.page = call.text("html");
   request.output_path = [&call](const std::string& name) { return call.output_path(name); };
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
   return request;
@@ -130,6 +131,7 @@ std::vector<cli::Option> options() {
        .preset = "2",
        .lower = 0,
        .upper = 100},
+      {.name = "html", .type = Type::output_file, .help = "Write a report page here."},
       {.name = "codes", .type = Type::flag, .help = "Write VIEW-CAMERA-codes.exr, too."}};
   all.insert(all.end(), more.begin(), more.end());
   return all;
