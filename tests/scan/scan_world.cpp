@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/parallel.h"
 #include "base/text.h"
 #include "camera/intrinsics.h"
 
@@ -35,7 +36,7 @@ Point met(const ScanWorld& w, const Pinhole& camera, double x, double y) {
   const Point d = camera.direction(x, y);
   double s = 0;
   if (w.shape == ScanWorld::Shape::ball) {
-    const Point o{camera.at[0], camera.at[1], camera.at[2] - w.distance};
+    const Point o{camera.at[0] - w.ball_x, camera.at[1], camera.at[2] - w.distance};
     const double a = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], b = o[0] * d[0] + o[1] * d[1] + o[2] * d[2],
                  c = o[0] * o[0] + o[1] * o[1] + o[2] * o[2] - w.radius * w.radius, root = b * b - a * c;
     if (root < 0) return {};
@@ -51,7 +52,7 @@ Point met(const ScanWorld& w, const Pinhole& camera, double x, double y) {
 }
 
 double off_shape(const ScanWorld& w, Point p) {
-  if (w.shape == ScanWorld::Shape::ball) return std::hypot(p[0], p[1], p[2] - w.distance) - w.radius;
+  if (w.shape == ScanWorld::Shape::ball) return std::hypot(p[0] - w.ball_x, p[1], p[2] - w.distance) - w.radius;
   return (depth_of_plane(w, p[0]) - p[2]) / std::sqrt(1 + w.tilt * w.tilt);
 }
 
@@ -61,35 +62,36 @@ std::array<double, 2> lit_by(const ScanWorld& w, const Pinhole& camera, int x, i
   return w.projector.pixel(p);
 }
 
-namespace {
-constexpr int across = 5;
-}
-
 Recorder::Recorder(const ScanWorld& w, const Pinhole& camera, const scan::Sequence& sequence)
     : world_(w), second_(camera.at[0] > 0), width_(camera.width), height_(camera.height), sequence_(sequence) {
-  for (int y = 0; y < height_; ++y)
+  const int places = w.across * w.across;
+  lit_.resize(static_cast<std::size_t>(width_ * height_ * places));
+  parallel_for(0, static_cast<std::size_t>(height_), [&](std::size_t row) {
+    std::size_t at = row * static_cast<std::size_t>(width_ * places);
     for (int x = 0; x < width_; ++x)
-      for (int k = 0; k < across * across; ++k) {
-        const Point p = met(w, camera, x + (k % across - 2) / double(across), y + (k / across - 2) / double(across));
+      for (int k = 0; k < places; ++k) {
+        const double dx = (k % w.across + 0.5) / w.across - 0.5, dy = (k / w.across + 0.5) / w.across - 0.5;
+        const Point p = met(w, camera, x + dx, static_cast<double>(row) + dy);
         const auto u = p[2] == 0 ? std::array<double, 2>{-9, -9} : w.projector.pixel(p);
         const bool inside =
             u[0] > -0.5 && u[1] > -0.5 && u[0] < sequence.width_px - 0.5 && u[1] < sequence.height_px - 0.5;
-        lit_.emplace_back(inside ? u[0] : -9, inside ? u[1] : -9);
+        lit_[at++] = {inside ? u[0] : -9, inside ? u[1] : -9};
       }
+  });
 }
 
 scan::CameraFrame Recorder::operator()(std::size_t frame) const {
   const ScanWorld& w = world_;
+  const auto places = static_cast<std::size_t>(w.across * w.across);
   std::mt19937_64 random(w.seed * 977 + frame * 31 + (second_ ? 7 : 0));
   const bool of_rows = sequence_.frames[frame].axis == scan::Axis::row;
   std::vector<double> shown;
   for (int u = 0; u < (of_rows ? sequence_.height_px : sequence_.width_px); ++u)
-    shown.push_back(std::pow(scan::light_at(sequence_, frame, of_rows ? 0 : u, of_rows ? u : 0), w.gamma) /
-                    (across * across));
+    shown.push_back(std::pow(scan::light_at(sequence_, frame, of_rows ? 0 : u, of_rows ? u : 0), w.gamma) / places);
   scan::CameraFrame f;
   for (std::size_t i = 0; i < static_cast<std::size_t>(width_ * height_); ++i) {
     double light = 0;
-    for (std::size_t k = i * across * across; k < (i + 1) * across * across; ++k) {
+    for (std::size_t k = i * places; k < (i + 1) * places; ++k) {
       if (lit_[k].first < -1) continue;
       const double at = std::clamp<double>(of_rows ? lit_[k].second : lit_[k].first, 0, double(shown.size()) - 1.001);
       const auto u = static_cast<std::size_t>(at);

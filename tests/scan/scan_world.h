@@ -24,13 +24,14 @@ struct Pinhole {
 struct ScanWorld {
   enum class Shape { plane, step, ball } shape = Shape::plane;
   double tilt = 0.2, distance = 0.7;  // z = distance + tilt x (left of x = 0.01 the step stands 12 mm nearer)
-  double radius = 0.08;               // of the ball, whose middle lies at the distance
+  double ball_x = 0, radius = 0.08;   // of the ball, whose middle lies at the distance and at ball_x
   Pinhole left{320, 240, 640, {-0.06, 0, 0}, 0.0873}, right{320, 240, 640, {0.06, 0, 0}, -0.0873};
   Pinhole projector{480, 360, 700, {0, -0.02, 0}, 0};
   double white = 0.7, ambient = 0.05;  // what the camera reads, 1: full
   double gain = 8000, read = 0.002;    // electrons at 1; of 1
   double gamma = 1;                    // of the projector
   int bits = 0;                        // of codes; 0: floats
+  int across = 5;                      // places of a pixel that light is summed over, a side
   std::uint64_t seed = 1;
 };
 
@@ -38,7 +39,7 @@ struct ScanWorld {
 std::array<double, 3> met(const ScanWorld& world, const Pinhole& camera, double x, double y);
 // Distance from the shape's surface along its normal, towards the cameras.
 double off_shape(const ScanWorld& world, std::array<double, 3> p);
-// Frame by frame what the camera reads: the mean over 5 by 5 places of its pixel of what the projector shows there,
+// Frame by frame what the camera reads: the mean over places of its pixel of what the projector shows there,
 // whose pixels blend into their neighbours (linearly, a lens a little out of focus).
 class Recorder {
  public:
