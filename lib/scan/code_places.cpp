@@ -46,28 +46,31 @@ struct Cell {
 CodePlace centroid(const PixelSums& s) {
   CodePlace p;
   p.pixel = {s.x / s.n, s.y / s.n};
-  p.variance_px2 = std::max(rounding, s.variance()) / s.n;
+  const double xx = (s.xx - s.x * s.x / s.n) / s.n, yy = (s.yy - s.y * s.y / s.n) / s.n;
+  p.variance_px2 = Vec2{std::max(rounding, xx), std::max(rounding, yy)} * (1 / s.n);
   return p;
 }
 
-// x and y as planes over (u, v), at (0, 0). `left`: of a pixel, in either coordinate; of whole codes no less than their
-// rounding, whatever a regular grid of them hides. False where codes do not span a plane.
+// x and y as planes over (u, v), at (0, 0). `left`: of a pixel, the mean of both coordinates; of whole codes neither
+// has less than their rounding, whatever a regular grid of them hides. False where codes do not span a plane.
 bool on_plane(const PixelSums& s, bool whole, CodePlace& p, double& left) {
   const double cuu = s.uu - s.u * s.u / s.n, cuv = s.uv - s.u * s.v / s.n, cvv = s.vv - s.v * s.v / s.n,
                determinant = cuu * cvv - cuv * cuv;
   if (s.pixels < 4 || cuu < least_spread * s.n || cvv < least_spread * s.n || determinant < 0.2 * cuu * cvv)
     return false;
-  double squares = 0, slopes = 0;
-  const auto at_zero = [&](double sx, double su, double sv, double square) {
+  const double free_share = (s.pixels - 3) / s.pixels;
+  const auto at_zero = [&](double sx, double su, double sv, double square, double& own) {
     const double cu = su - s.u * sx / s.n, cv = sv - s.v * sx / s.n, a = (cvv * cu - cuv * cv) / determinant,
                  b = (cuu * cv - cuv * cu) / determinant;
-    squares += std::max(0.0, square - sx * sx / s.n - a * cu - b * cv), slopes += a * a + b * b;
+    const double squares = std::max(0.0, square - sx * sx / s.n - a * cu - b * cv);
+    own = std::max({squares / (s.n * free_share), whole ? (a * a + b * b) * rounding : 0, 1e-6});
     return (sx - a * s.u - b * s.v) / s.n;
   };
-  p.pixel.x = at_zero(s.x, s.ux, s.vx, s.xx), p.pixel.y = at_zero(s.y, s.uy, s.vy, s.yy);
-  left = std::max({squares / (2 * s.n) * s.pixels / (s.pixels - 3), whole ? 0.5 * slopes * rounding : 0, 1e-6});
+  Vec2 own;
+  p.pixel.x = at_zero(s.x, s.ux, s.vx, s.xx, own.x), p.pixel.y = at_zero(s.y, s.uy, s.vy, s.yy, own.y);
+  left = 0.5 * (own.x + own.y);
   const double lever = 1 / s.n + (cvv * s.u * s.u - 2 * cuv * s.u * s.v + cuu * s.v * s.v) / (s.n * s.n * determinant);
-  p.variance_px2 = left * lever * s.squared_weights / s.n;
+  p.variance_px2 = own * (lever * s.squared_weights / s.n);
   return true;
 }
 

@@ -11,7 +11,7 @@ namespace gonio::scan {
 struct CodePlace {
   std::int64_t code = 0;  // row times width plus column of the projector
   Vec2 pixel;             // of the camera
-  double variance_px2 = 0;
+  Vec2 variance_px2;      // along x and y: columns are often told better than rows, or worse
   float reflected = 0;
 };
 

@@ -172,7 +172,8 @@ std::optional<Solved> common_point(const Pair& pair, const Station& a, const Sta
   Vec3 x = 0.5 * (origins[0] + s * directions[0] + origins[1] + t * directions[1]);
   // The slopes once: the start is within a fraction of a pixel.
   Mat3 normal{{}};
-  Vec2 slopes[2][3];
+  Vec2 slopes[2][3], weights[2];
+  for (int k = 0; k < 2; ++k) weights[k] = {1 / places[k]->variance_px2.x, 1 / places[k]->variance_px2.y};
   const double h = step_m * s;
   for (int k = 0; k < 2; ++k) {
     const auto here = stations[k]->lens.project(from_rig[k] * x);
@@ -183,7 +184,8 @@ std::optional<Solved> common_point(const Pair& pair, const Station& a, const Sta
       slopes[k][i] = (*moved - *here) * (1 / h);
     }
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) normal(i, j) += dot(slopes[k][i], slopes[k][j]) / places[k]->variance_px2;
+      for (int j = 0; j < 3; ++j)
+        normal(i, j) += weights[k].x * slopes[k][i].x * slopes[k][j].x + weights[k].y * slopes[k][i].y * slopes[k][j].y;
   }
   const Mat3 covariance = inverse(normal);
   if (!std::isfinite(covariance(0, 0))) return std::nullopt;
@@ -194,9 +196,9 @@ std::optional<Solved> common_point(const Pair& pair, const Station& a, const Sta
       const auto here = stations[k]->lens.project(from_rig[k] * x);
       if (!here) return std::nullopt;
       const Vec2 off = places[k]->pixel - *here;
-      const double weight = 1 / places[k]->variance_px2;
-      chi_square += weight * dot(off, off), square += dot(off, off);
-      right += weight * Vec3{dot(slopes[k][0], off), dot(slopes[k][1], off), dot(slopes[k][2], off)};
+      const Vec2 weighed{weights[k].x * off.x, weights[k].y * off.y};
+      chi_square += dot(weighed, off), square += dot(off, off);
+      right += Vec3{dot(slopes[k][0], weighed), dot(slopes[k][1], weighed), dot(slopes[k][2], weighed)};
     }
     solved.chi_square = chi_square, solved.point.reprojection_px = std::sqrt(0.5 * square);
     const Vec3 move = covariance * right;
