@@ -12,7 +12,7 @@ constexpr double rounding = 1.0 / 12;  // variance of what is rounded to whole n
 constexpr double enough = 12;          // pixels that need no neighbours
 constexpr double bent = 3;             // times a cell's own variance: a plane over its neighbours does not fit
 
-// PixelSums over pixels (x, y) at distances (u, v) of their codes from a pixel of the projector.
+// Sums, with weights, over pixels (x, y) at distances (u, v) of their codes from a pixel of the projector.
 struct PixelSums {
   double pixels = 0, squared_weights = 0;
   double n = 0, u = 0, v = 0, x = 0, y = 0, uu = 0, uv = 0, vv = 0, ux = 0, vx = 0, uy = 0, vy = 0, xx = 0, yy = 0;

@@ -23,7 +23,7 @@ constexpr double most_contradicting = 25,
 constexpr std::size_t pixels_at_once = 1 << 14;
 
 // Sums over the shifts of one number of periods.
-struct Sums {
+struct ShiftSums {
   double periods = 1;
   std::vector<double> shifts_rad;
   std::vector<float> of_all, with_cos, with_sin;
@@ -69,29 +69,29 @@ class CosineDecoder {
 
   void run() {
     for (const Axis axis : {Axis::column, Axis::row}) {
-      std::vector<Sums> all = sums(axis);
+      std::vector<ShiftSums> all = sums(axis);
       if (all.empty()) continue;
-      std::ranges::sort(all, {}, &Sums::periods);
+      std::ranges::sort(all, {}, &ShiftSums::periods);
       if (!noise_known_) find_noise(all);
       places(axis, all);
     }
   }
 
  private:
-  std::vector<Sums> sums(Axis axis) const {
+  std::vector<ShiftSums> sums(Axis axis) const {
     std::map<double, std::vector<std::size_t>> frames;
     for (std::size_t f = 0; f < r_.sequence.frames.size(); ++f) {
       const Shown& s = r_.sequence.frames[f];
       if (s.what == What::cosine && s.axis == axis) frames[s.periods].push_back(f);
     }
-    std::vector<Sums> all;
+    std::vector<ShiftSums> all;
     for (const auto& [periods, own] : frames) all.push_back(sums_of(periods, own));
     return all;
   }
 
-  Sums sums_of(double periods, const std::vector<std::size_t>& frames) const {
+  ShiftSums sums_of(double periods, const std::vector<std::size_t>& frames) const {
     const std::size_t pixels = codes_.refusal.size();
-    Sums s;
+    ShiftSums s;
     s.periods = periods;
     s.of_all.resize(pixels), s.with_cos.resize(pixels), s.with_sin.resize(pixels), s.spoiled.resize(pixels);
     for (const std::size_t f : frames) {
@@ -109,14 +109,14 @@ class CosineDecoder {
   }
 
   // Means of two numbers of periods must be equal.
-  void find_noise(const std::vector<Sums>& all) {
+  void find_noise(const std::vector<ShiftSums>& all) {
     noise_known_ = true;
     if (r_.noise) {
       codes_.noise = *r_.noise;
       return;
     }
     if (codes_.whole) return;  // the Gray code's
-    const Sums &a = all.front(), &b = all.back();
+    const ShiftSums &a = all.front(), &b = all.back();
     const auto na = static_cast<float>(a.shifts_rad.size()), nb = static_cast<float>(b.shifts_rad.size());
     std::vector<float> mean(a.of_all.size()), left(mean.size());
     for (std::size_t i = 0; i < mean.size(); ++i) {
@@ -129,7 +129,7 @@ class CosineDecoder {
     codes_.noise = noise_of(std::move(found));
   }
 
-  void places(Axis axis, const std::vector<Sums>& all) {
+  void places(Axis axis, const std::vector<ShiftSums>& all) {
     const auto a = static_cast<std::size_t>(axis);
     const std::size_t pixels = codes_.refusal.size();
     std::vector<float>&place = codes_.place[a], &sigma = codes_.sigma[a];
@@ -137,7 +137,7 @@ class CosineDecoder {
     place.assign(pixels, 0), sigma.assign(pixels, 0);
     if (codes_.reflected.empty()) codes_.reflected.assign(pixels, 0);
     std::vector<Mat3> inverses;
-    for (const Sums& s : all) inverses.push_back(inverse_of(s.shifts_rad));
+    for (const ShiftSums& s : all) inverses.push_back(inverse_of(s.shifts_rad));
     parallel_for(0, (pixels + pixels_at_once - 1) / pixels_at_once, [&](std::size_t n) {
       std::vector<Phase> phases(all.size());
       for (std::size_t i = n * pixels_at_once; i < std::min(pixels, (n + 1) * pixels_at_once); ++i) {
@@ -151,7 +151,7 @@ class CosineDecoder {
   struct Stripe {
     double place = 0, sigma = 0;  // 0: no Gray code
   };
-  Refusal place_of(Axis axis, const std::vector<Sums>& all, const std::vector<Mat3>& inverses, std::size_t i,
+  Refusal place_of(Axis axis, const std::vector<ShiftSums>& all, const std::vector<Mat3>& inverses, std::size_t i,
                    const Stripe& stripe, std::vector<Phase>& phases, float& place, float& sigma) {
     double reflected = 0;
     for (std::size_t f = 0; f < all.size(); ++f) {

@@ -37,13 +37,16 @@ std::map<double, double> light_at(const Stack& stack, std::size_t i, int channel
   return lights;
 }
 
+double widest_of(const Stack& stack) {
+  return std::ranges::min_element(stack.images, {}, &StackImage::f_number)->f_number;
+}
+
 std::vector<Profile> profiles_of(const Stack& stack) {
   const double half = 0.5 * stack.width(), corner = std::hypot(1.0, double(stack.height()) / stack.width());
   const int channels = static_cast<int>(stack.channels.size());
   const double pixels = static_cast<double>(stack.width()) * stack.height();
   const int stride = std::max(1, static_cast<int>(std::ceil(std::sqrt(pixels / most_pixels)))) | 1;  // all colours
-  double widest = std::numeric_limits<double>::infinity();
-  for (const StackImage& image : stack.images) widest = std::min(widest, image.f_number);
+  const double widest = widest_of(stack);
   std::map<double, std::vector<std::vector<double>>> ratios;
   for (int y = 0; y < stack.height(); y += stride)
     for (int x = 0; x < stack.width(); x += stride)
@@ -85,8 +88,7 @@ double left_of(const Profile& profile, double widest, double rim, double shift) 
 }  // namespace
 
 ApertureShading aperture_shading(const Stack& stack) {
-  double widest = std::numeric_limits<double>::infinity();
-  for (const StackImage& image : stack.images) widest = std::min(widest, image.f_number);
+  const double widest = widest_of(stack);
   const std::vector<Profile> profiles = profiles_of(stack);
   ApertureShading best{0, widest};
   double least = std::numeric_limits<double>::infinity();
