@@ -329,6 +329,7 @@ void check_scans(const Document& d) {
     must_exist(d.files, "files", cloud.file, at + "/file");
     must_exist(d.projections, "projections", cloud.projection, at + "/projection");
     for (const std::string& camera : cloud.cameras) must_exist(d.cameras, "cameras", camera, at + "/cameras");
+    if (cloud.shape) must_exist(d.meshes, "meshes", cloud.shape->mesh, at + "/shape/mesh");
   }
 }
 

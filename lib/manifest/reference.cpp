@@ -124,6 +124,7 @@ void add_results(List& all) {
   all.push_back(
       part("projections: frames", "Pictures, in the order in which they are shown.", projected_frame_fields()));
   all.push_back(keyed("clouds", "Written by structured-light: points that were measured.", cloud_fields()));
+  all.push_back(part("clouds: shape", "What is known of the thing that was measured.", known_shape_fields()));
   all.push_back(listed("renderings", "Written by render.", rendering_fields()));
   all.push_back(listed("comparisons", "Written by compare.", comparison_fields()));
   all.push_back(keyed("mountings", "Written by handeye. What is fixed to a robot's tool or stands in its world.",

@@ -29,6 +29,16 @@ const std::vector<Field<Projection>>& projection_fields() {
   return table;
 }
 
+const std::vector<Field<KnownShape>>& known_shape_fields() {
+  using S = KnownShape;
+  static const std::vector<Field<S>> table{
+      field("model", &S::model, "", "what it is").one_of({"plane", "sphere", "mesh"}).needed(),
+      field("radius_m", &S::radius_m, "m", "sphere: calibrated").positive(),
+      field("mesh", &S::mesh, "", "mesh: name in meshes"),
+      field("world_from_object", &S::world_from_object, "", "mesh: where it stands among the points, roughly")};
+  return table;
+}
+
 const std::vector<Field<Cloud>>& cloud_fields() {
   static const std::vector<Field<Cloud>> table{
       field("file", &Cloud::file, "", "file id of the PLY file").needed(),
@@ -42,12 +52,14 @@ const std::vector<Field<Cloud>>& cloud_fields() {
       field("epipolar_chi_square", &Cloud::epipolar_chi_square, "",
             "how far two cameras contradict each other, over what the stated noise says; 1: as much")
           .range(0, infinite),
-      field("refused", &Cloud::refused, "", "pixels of the first camera without a point, by reason")};
+      field("refused", &Cloud::refused, "", "pixels of the first camera without a point, by reason"),
+      field("shape", &Cloud::shape, "", "what all its points lie on, where that is known: explain asks why they do not")};
   return table;
 }
 
 GONIO_RECORD(ProjectedFrame, projected_frame_fields);
 GONIO_RECORD(Projection, projection_fields);
+GONIO_RECORD(KnownShape, known_shape_fields);
 GONIO_RECORD(Cloud, cloud_fields);
 
 }  // namespace gonio::manifest

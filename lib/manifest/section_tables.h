@@ -15,6 +15,7 @@ struct Provenance;  // sections/provenance.h; nobody passes them on
 struct ProvenanceRun;
 struct ProvenanceStep;
 struct DevelopedStep;  // sections/developed.h
+struct KnownShape;     // sections/cloud.h
 struct MarkerPair;     // sections/placement.h
 struct PlacementContact;
 struct MeasuredView;  // sections/plan.h
@@ -35,6 +36,7 @@ GONIO_TABLE(Table, table_fields);
 GONIO_TABLE(Environment, environment_fields);
 GONIO_TABLE(ProjectedFrame, projected_frame_fields);
 GONIO_TABLE(Projection, projection_fields);
+GONIO_TABLE(KnownShape, known_shape_fields);
 GONIO_TABLE(Cloud, cloud_fields);
 GONIO_TABLE(Rendering, rendering_fields);
 GONIO_TABLE(Comparison, comparison_fields);

@@ -14,19 +14,19 @@
 #include "base/text.h"
 #include "io/grey.h"
 #include "io/picture.h"
-#include "io/ply.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/cloud.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/projection.h"
-#include "manifest/sections/rig.h"
 #include "photograph/linear_picture.h"
 #include "photograph/mask.h"
 #include "photograph/response.h"
 #include "photograph/saturation.h"
+#include "scan/cloud_file.h"
 #include "scan/scan_page.h"
+#include "scan/stations.h"
 #include "scan/triangulate.h"
 #include "stats/intervals.h"
 
@@ -96,29 +96,6 @@ std::vector<View> views_of(const Document& document, const ScanRequest& request)
                 "have no pictures of projection " + request.projection + " by " + request.cameras[0],
                 "say in each what it shows (projection, shows), or name the photographs");
   return views;
-}
-
-Station station_of(const Document& document, const std::string& name) {
-  const manifest::Camera& camera = document.cameras.at(name);
-  Station s{camera::CameraModel(camera, manifest::place(document, "/cameras/" + name)), {}};
-  return s;
-}
-
-// Of one rig: the first that has all of them. Several cameras that no rig holds are refused.
-std::vector<Station> stations_of(const Document& document, const std::vector<std::string>& names) {
-  std::vector<Station> stations;
-  for (const std::string& name : names) stations.push_back(station_of(document, name));
-  for (const auto& [key, rig] : document.rigs) {
-    std::size_t known = 0;
-    for (std::size_t k = 0; k < names.size(); ++k)
-      for (const manifest::RigMember& member : rig.cameras)
-        if (member.camera == names[k]) stations[k].rig_from_camera = member.rig_from_camera, ++known;
-    if (known == names.size()) return stations;
-  }
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  throw Error(Exit::data, manifest::place(document, "/rigs"), "hold no rig of " + all,
-              "calib-charuco --rig calibrates cameras that are held together");
 }
 
 void check_size(const std::filesystem::path& path, int own_width, int own_height, int width, int height) {
@@ -214,35 +191,6 @@ void write_codes(const std::filesystem::path& path, const Codes& codes) {
   io::write_picture(path, picture);
 }
 
-const io::PlyWish columns{.properties = {"sigma", "reprojection_px", "pixel_x", "pixel_y", "reflected", "cov_xx",
-                                         "cov_xy", "cov_xz", "cov_yy", "cov_yz", "cov_zz"}};
-
-// The covariance turns along.
-template <class To>
-io::TriangleMesh mesh_of(const Cloud& cloud, const Rigid<To, frame::Rig>& to_from_rig) {
-  io::TriangleMesh mesh;
-  mesh.properties.resize(columns.properties.size());
-  const Mat3 turn = matrix_of(to_from_rig.rotation);
-  for (const ScanPoint& point : cloud.points) {
-    mesh.positions_m.push_back(to_from_rig * point.position_m);
-    const std::array<double, 6>& c = point.covariance;
-    const Mat3 v = turn * Mat3{{c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5]}} * transposed(turn);
-    const double values[] = {point.sigma_m,
-                             point.reprojection_px,
-                             point.pixel.x,
-                             point.pixel.y,
-                             double{point.reflected},
-                             v(0, 0),
-                             v(0, 1),
-                             v(0, 2),
-                             v(1, 1),
-                             v(1, 2),
-                             v(2, 2)};
-    for (std::size_t k = 0; k < std::size(values); ++k) mesh.properties[k].push_back(static_cast<float>(values[k]));
-  }
-  return mesh;
-}
-
 manifest::Cloud entry_of(const Cloud& cloud, const ScanRequest& request) {
   manifest::Cloud entry;
   entry.cameras = request.cameras;
@@ -325,12 +273,12 @@ ScanSummary scan_document(Document& document, const ScanRequest& request) {
     for (std::size_t c = 0; c < codes.size(); ++c) log_noise(request.cameras[c], codes[c]);
     const auto& pose = document.images[view.cameras[0][0]].world_from_camera;
     const auto path = request.output_path(file_stem(view.name) + ".ply");
+    Rigid<frame::World, frame::Rig> world_from_rig;
     if (pose) {
       const Rigid<frame::World, frame::Camera>& world_from_camera = *pose;
-      io::write_ply(path, mesh_of(cloud, world_from_camera * inverse(stations[0].rig_from_camera)), columns);
-    } else {
-      io::write_ply(path, mesh_of(cloud, Rigid<frame::Rig, frame::Rig>{}), columns);
+      world_from_rig = world_from_camera * inverse(stations[0].rig_from_camera);
     }
+    write_cloud(path, cloud, world_from_rig);
     manifest::Cloud entry = entry_of(cloud, request);
     entry.file = manifest::add_file(document, path, "cloud-" + view.name);
     log_cloud(view.name, entry, cloud.matched);

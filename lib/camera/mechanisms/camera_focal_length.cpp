@@ -16,7 +16,7 @@ const Mechanism& camera_focal_length() {
       .source = "Hartley & Zisserman 2004, section 6.1",
       .stage = "optics",
       .target = Target::camera,
-      .domains = {"boards", "images"},
+      .domains = {"boards", "images", "clouds"},
       .parameters = {{.name = "relative",
                       .unit = "1",
                       .lower = -0.5,

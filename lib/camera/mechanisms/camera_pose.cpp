@@ -17,7 +17,7 @@ const Mechanism& camera_pose() {
       .source = "Hartley & Zisserman 2004, section 6.1; Rodrigues for the turn",
       .stage = "pose",
       .target = Target::camera,
-      .domains = {"images"},
+      .domains = {"images", "clouds"},
       .parameters = {{.name = "x_m",
                       .unit = "m",
                       .lower = -0.2,

@@ -15,7 +15,7 @@ const Mechanism& camera_principal_point() {
       .source = "Hartley & Zisserman 2004, section 6.1",
       .stage = "sensor",
       .target = Target::camera,
-      .domains = {"images"},
+      .domains = {"images", "clouds"},
       .parameters = {{.name = "x_px",
                       .unit = "px",
                       .lower = -100,

@@ -17,7 +17,7 @@ const Mechanism& camera_thermal() {
       .source = "Handel, ACCV 2007 (warm-up of cameras); here linear in temperature or time",
       .stage = "sensor",
       .target = Target::camera,
-      .domains = {"boards"},
+      .domains = {"boards", "clouds"},
       .parameters =
           {{.name = "focal_per_K",
             .unit = "1/K",

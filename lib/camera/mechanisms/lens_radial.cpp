@@ -13,7 +13,7 @@ const Mechanism& lens_radial() {
       .source = "Brown 1971, equation 9; OpenCV's order and sign",
       .stage = "lens",
       .target = Target::camera,
-      .domains = {"boards", "robot", "tables", "images"},
+      .domains = {"boards", "robot", "tables", "images", "clouds"},
       .parameters =
           {{.name = "k1", .unit = "1", .lower = -1, .upper = 1, .typical = 0.2, .meaning = "third-order radial term"},
            {.name = "k2", .unit = "1", .lower = -10, .upper = 10, .typical = 0.3, .meaning = "fifth-order radial term"},

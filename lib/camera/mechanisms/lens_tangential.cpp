@@ -12,7 +12,7 @@ const Mechanism& lens_tangential() {
       .source = "Brown 1971, equation 9; OpenCV's order and sign",
       .stage = "lens",
       .target = Target::camera,
-      .domains = {"boards", "robot", "images"},
+      .domains = {"boards", "robot", "images", "clouds"},
       .parameters = {{.name = "p1",
                       .unit = "1",
                       .lower = -0.5,

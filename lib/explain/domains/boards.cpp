@@ -47,7 +47,10 @@ const Domain& boards() {
            {"ct.", "no X-rays"},
            {"colour.",
             "corners are places, and keep no brightness: readings of a colour chart are tables of the model chart"},
-           {"probe.", "corners of boards show no mirror ball: highlights are tables of the model probe"}}};
+           {"probe.", "corners of boards show no mirror ball: highlights are tables of the model probe"},
+           {"projector.", "corners are seen by cameras alone"},
+           {"rig.", "every view has a pose of its own, whatever holds its camera"},
+           {"structured-light.", "corners are seen by cameras alone"}}};
   return domain;
 }
 

@@ -46,7 +46,10 @@ const Domain& heights() {
            {"marker.", "a height map has no markers"},
            {"ct.", "no X-rays"},
            {"colour.", "a height map has no light"},
-           {"probe.", "a map of heights has no mirror ball beside it"}}};
+           {"probe.", "a map of heights has no mirror ball beside it"},
+           {"projector.", "a height map states no projector"},
+           {"rig.", "a height map states no projector"},
+           {"structured-light.", "a height map states no projector"}}};
   return domain;
 }
 

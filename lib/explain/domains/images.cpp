@@ -11,7 +11,10 @@ namespace gonio::explain::domains {
 namespace {
 
 std::vector<Untouched> image_reasons() {
-  return {{"board.", "a board in a scene is an object like others; what its corners tell is the domain boards"},
+  return {{"projector.", "pictures of a scene are no codes: points that were decoded from them are clouds"},
+          {"rig.", "pictures of a scene are no codes: points that were decoded from them are clouds"},
+          {"structured-light.", "pictures of a scene are no codes: points that were decoded from them are clouds"},
+          {"board.", "a board in a scene is an object like others; what its corners tell is the domain boards"},
           {"robot.",
            "where the cameras stand is known here or free; how a robot missed that place is a hand-eye set (robot)"},
           {"tracks.", "no point is followed: pixels are compared where they are"},

@@ -19,6 +19,9 @@ const Domain& nrsfm() {
           },
       .files = gonio::nrsfm::followed_files,
       .untouched = {
+          {"projector.", "tracks have no projector"},
+          {"rig.", "tracks have no projector"},
+          {"structured-light.", "tracks have no projector"},
           {"lens.", "tracks of one view under an orthographic camera: bent rays and a bent shape are one and the same"},
           {"camera.", "tracks state neither exposure nor temperature"},
           {"board.", "the shape is unknown: a board is one that does not deform"},

@@ -38,6 +38,9 @@ const Domain& robot() {
           },
       .files = calibrations_of,
       .untouched = {
+          {"projector.", "poses come from boards; no projector shows codes"},
+          {"rig.", "poses come from boards; no projector shows codes"},
+          {"structured-light.", "poses come from boards; no projector shows codes"},
           {"board.corner-bias",
            "a constant shift of all corners is the camera's mounting, by which they are held; boards shows it"},
           {"board.print", "left to boards, which has the corners themselves: poses average over it"},

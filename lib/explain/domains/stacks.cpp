@@ -11,6 +11,9 @@ namespace {
 
 std::vector<Untouched> stack_reasons() {
   return {
+      {"projector.", "exposures of a still scene are no codes: points that were decoded from them are clouds"},
+      {"rig.", "exposures of a still scene are no codes: points that were decoded from them are clouds"},
+      {"structured-light.", "exposures of a still scene are no codes: points that were decoded from them are clouds"},
       {"lens.", "camera and scene stand still: where a pixel looks cancels"},
       {"camera.", "camera and scene stand still while and between pictures are taken"},
       {"board.", "camera and scene stand still: where a pixel looks cancels"},

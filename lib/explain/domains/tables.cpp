@@ -25,6 +25,9 @@ const Domain& tables() {
             return files;
           },
       .untouched = {
+          {"projector.", "rows of a table are no codes: points that were decoded from pictures are clouds"},
+          {"rig.", "rows of a table are no codes: points that were decoded from pictures are clouds"},
+          {"structured-light.", "rows of a table are no codes: points that were decoded from pictures are clouds"},
           {"board.", "corners of boards are the domain boards"},
           {"lens.",
            "a table's rows have no pixels but those of tracks and markers, to which lens.radial says what so few can "

@@ -18,6 +18,9 @@ const Domain& volumes() {
           },
       .files = volumes_files,
       .untouched = {
+          {"projector.", "no projector shows codes"},
+          {"rig.", "no projector shows codes"},
+          {"structured-light.", "no projector shows codes"},
           {"light.", "X-rays: no lamp"},
           {"optics.", "X-rays: no lens"},
           {"lens.", "X-rays: no lens"},

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "explain/robot/robot_findings.h"
 #include "explain/robot/robot_proposals.h"
+#include "inference/estimable.h"
 #include "manifest/document.h"
 
 namespace gonio::explain {
@@ -96,31 +97,22 @@ class HandEyeProblem final : public RobotProblem {
   // Parameters that the mounting, or parameters before them, imitate to 0.02 of their length are no hypotheses here:
   // rotations of the first and the last joint, offsets along parallel axes.
   void keep_estimable() {
-    const std::vector<double> values = start_values(work_);
-    const auto columns = [&](std::size_t p) {
-      Eigen::VectorXd column(6 * static_cast<Eigen::Index>(work_.noisy.size()));
-      for (std::size_t v = 0; v < work_.noisy.size(); ++v)
-        column.segment<6>(6 * static_cast<Eigen::Index>(v)) =
-            whitener_[v] * work_.noisy[v].jacobian.col(static_cast<Eigen::Index>(p));
-      return column;
+    const auto columns_of = [&](const std::vector<std::size_t>& parameters) {
+      std::vector<Estimable::Column> columns;
+      for (const std::size_t p : parameters) {
+        Eigen::VectorXd column(6 * static_cast<Eigen::Index>(work_.noisy.size()));
+        for (std::size_t v = 0; v < work_.noisy.size(); ++v)
+          column.segment<6>(6 * static_cast<Eigen::Index>(v)) =
+              whitener_[v] * work_.noisy[v].jacobian.col(static_cast<Eigen::Index>(p));
+        columns.emplace_back(column.begin(), column.end());
+      }
+      return columns;
     };
+    const Estimable beside(columns_of(base_));
     for (Candidate& candidate : work_.parameters.candidates) {
-      std::vector<Eigen::VectorXd> basis;
-      const auto remainder = [&](Eigen::VectorXd column) {
-        for (int twice = 0; twice < 2; ++twice)
-          for (const Eigen::VectorXd& b : basis) column -= b * b.dot(column);
-        return column;
-      };
-      const auto join = [&](std::size_t p, double least) {
-        const Eigen::VectorXd column = columns(p), rest = remainder(column);
-        if (!(rest.norm() > least * column.norm())) return false;
-        basis.push_back(rest / rest.norm());
-        return true;
-      };
-      for (const std::size_t p : base_) join(p, 1e-9);
       std::vector<std::size_t> kept;
-      for (const std::size_t p : candidate.parameters)
-        if (join(p, estimable)) kept.push_back(p);
+      for (const std::size_t k : beside.kept(columns_of(candidate.parameters), estimable))
+        kept.push_back(candidate.parameters[k]);
       candidate.parameters = kept;
       if (!kept.empty()) candidates_.push_back(candidate);
     }

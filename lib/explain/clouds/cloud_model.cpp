@@ -1,0 +1,173 @@
+// See cloud_model.h.
+#include "explain/clouds/cloud_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geom/rigid.h"
+#include "scan/mechanisms/structured_light_subsurface.h"
+
+namespace gonio::explain {
+namespace {
+
+using Part = CloudRole::Part;
+constexpr double least_cosine = 0.4;      // of the angle that either device looks at the surface by
+constexpr double step_m = 1e-6;           // along a ray, for its slope
+constexpr double least_variance = 1e-16;  // m^2: a cloud that states none
+
+Vec3 direction_to(const scan::Station& station, Vec3 point) {
+  return normalized(station.rig_from_camera.translation_m - point);
+}
+
+std::optional<Vec2> seen_by(const scan::Station& station, Vec3 point) {
+  return station.lens.project(inverse(station.rig_from_camera) * point);
+}
+
+}  // namespace
+
+struct CloudModel::State {
+  std::vector<scan::Station> stations;
+  std::vector<double> shape;
+  double gamma = 1, depth_m = 0, along_m = 0;
+  bool first_as_stated = true;
+};
+
+CloudModel::CloudModel(const CloudsInput& input)
+    : input_(input),
+      told_{scan::ToldPlace(input.sequence, scan::Axis::column), scan::ToldPlace(input.sequence, scan::Axis::row)} {
+  double columns = 0, rows = 0;
+  for (const CloudView& view : input.views) {
+    rows_.emplace_back();
+    for (std::size_t p = 0; p < view.points.size(); ++p)
+      if (std::optional<CloudRow> row = row_of(view, p)) {
+        columns += std::abs(row->along.x), rows += std::abs(row->along.y);
+        rows_.back().push_back(*row);
+      }
+  }
+  if (rows > columns) telling_ = scan::Axis::row;
+}
+
+std::optional<CloudRow> CloudModel::row_of(const CloudView& view, std::size_t point) const {
+  const scan::ScanPoint& p = view.points[point];
+  CloudRow row;
+  row.pixel = p.pixel, row.point = point;
+  const scan::Station &first = input_.stations[0], &second = input_.stations[1];
+  const camera::Ray ray = first.lens.ray(p.pixel);
+  row.origin = first.rig_from_camera * ray.origin_m, row.direction = first.rig_from_camera.rotate(ray.direction);
+  const std::vector<double> unmoved(view.shape.freedoms().size(), 0.0);
+  const auto met = view.shape.met(row.origin, row.direction, unmoved);
+  if (!met) return std::nullopt;
+  // The point on the ray of its own pixel, which of two cameras it passes at a distance of its noise.
+  const double at = dot(p.position_m - row.origin, row.direction);
+  const Vec3 here = row.origin + at * row.direction, shape = row.origin + met->distance_m * row.direction;
+  const auto told = seen_by(second, here), beside = seen_by(second, here + step_m * row.direction),
+             expected = seen_by(second, shape);
+  if (!told || !beside || !expected) return std::nullopt;
+  const Vec2 slope = (*beside - *told) * (1 / step_m);
+  row.px_per_metre = std::hypot(slope.x, slope.y);
+  const double cosine = -dot(met->normal, row.direction), other = dot(met->normal, direction_to(second, shape));
+  if (!(row.px_per_metre > 0) || cosine < least_cosine || other < least_cosine) return std::nullopt;
+  row.told = *told, row.expected = *expected, row.along = slope * (1 / row.px_per_metre);
+  row.metre_per_px = cosine / row.px_per_metre;
+  const std::array<double, 6>& c = p.covariance;
+  const Vec3 n = met->normal;
+  row.sigma_m = std::sqrt(std::max(least_variance, c[0] * n.x * n.x + c[3] * n.y * n.y + c[5] * n.z * n.z +
+                                                       2 * (c[1] * n.x * n.y + c[2] * n.x * n.z + c[4] * n.y * n.z)));
+  row.covers_px = covered(view, row);
+  row.incidence_rad = std::acos(std::min(1.0, other)), row.depth_m = met->distance_m;
+  return row;
+}
+
+// By where the rays of the pixel's neighbours go.
+Vec2 CloudModel::covered(const CloudView& view, const CloudRow& row) const {
+  const scan::Station& first = input_.stations[0];
+  const std::vector<double> unmoved(view.shape.freedoms().size(), 0.0);
+  Vec2 most;
+  for (const Vec2 beside : {Vec2{1, 0}, Vec2{0, 1}}) {
+    const camera::Ray ray = first.lens.ray(row.pixel + beside);
+    const Vec3 origin = first.rig_from_camera * ray.origin_m, direction = first.rig_from_camera.rotate(ray.direction);
+    const auto met = view.shape.met(origin, direction, unmoved);
+    const auto seen = met ? seen_by(input_.stations[1], origin + met->distance_m * direction) : std::nullopt;
+    if (!seen) continue;
+    const Vec2 across = *seen - row.expected;
+    most = {std::max(most.x, std::abs(across.x)), std::max(most.y, std::abs(across.y))};
+  }
+  return most;
+}
+
+CloudModel::State CloudModel::state_of(std::span<const CloudRole> roles, std::span<const double> values,
+                                       std::size_t view) const {
+  State s{input_.stations, std::vector<double>(input_.views[view].shape.freedoms().size(), 0.0)};
+  camera::Intrinsics lens[2] = {s.stations[0].lens.intrinsics(), s.stations[1].lens.intrinsics()};
+  const camera::Intrinsics stated[2] = {lens[0], lens[1]};
+  std::array<double, 6> pose{};
+  for (std::size_t p = 0; p < roles.size(); ++p) {
+    const CloudRole& r = roles[p];
+    const double v = values[p], change = r.by_time ? v * input_.views[view].later_s : v * input_.views[view].warmer_K;
+    camera::Intrinsics& own = lens[r.device];
+    switch (r.part) {
+      case Part::shape:
+        if (r.view == view) s.shape[r.index] = v;
+        break;
+      case Part::along:
+        if (r.view == view) s.along_m = v;
+        break;
+      case Part::pose: pose[r.index] += v; break;
+      case Part::drift: pose[r.index] += change; break;
+      case Part::lens: own.distortion[r.index] += v; break;
+      case Part::focal: own.fx_px *= 1 + v, own.fy_px *= 1 + v; break;
+      case Part::principal: (r.index == 0 ? own.cx_px : own.cy_px) += v; break;
+      case Part::thermal:
+        if (r.index == 0)
+          own.fx_px *= 1 + change, own.fy_px *= 1 + change;
+        else
+          (r.index == 1 ? own.cx_px : own.cy_px) += change;
+        break;
+      case Part::gamma: s.gamma = v; break;
+      case Part::depth: s.depth_m = v; break;
+    }
+  }
+  for (std::size_t d = 0; d < 2; ++d)
+    if (!(lens[d] == stated[d])) s.stations[d].lens = s.stations[d].lens.with(lens[d]);
+  s.first_as_stated = lens[0] == stated[0];
+  Rigid<frame::Camera, frame::Camera> moved;
+  moved.translation_m = {pose[0], pose[1], pose[2]};
+  moved.rotation = quaternion_of_rotation_vector({pose[3], pose[4], pose[5]});
+  if (pose != std::array<double, 6>{}) s.stations[1].rig_from_camera = s.stations[1].rig_from_camera * moved;
+  return s;
+}
+
+std::optional<Vec2> CloudModel::pixel_told(const State& s, const CloudRow& row, const CloudView& view) const {
+  Vec3 origin = row.origin, direction = row.direction;
+  if (!s.first_as_stated) {
+    const camera::Ray ray = s.stations[0].lens.ray(row.pixel);
+    origin = s.stations[0].rig_from_camera * ray.origin_m;
+    direction = s.stations[0].rig_from_camera.rotate(ray.direction);
+  }
+  const auto met = view.shape.met(origin, direction, s.shape);
+  if (!met) return std::nullopt;
+  Vec3 at = origin + met->distance_m * direction;
+  if (s.depth_m != 0)
+    at += equation::structured_light_subsurface(met->normal, -direction, direction_to(s.stations[1], at), s.depth_m);
+  std::optional<Vec2> pixel = seen_by(s.stations[1], at);
+  if (!pixel || !input_.projector || (s.gamma == 1 && s.along_m == 0)) return pixel;
+  // A surface that goes by `along_m` along the camera's axis meets the ray farther by n . axis / n . ray of it.
+  const Vec3 axis = s.stations[0].rig_from_camera.rotate({0, 0, 1});
+  const double farther = s.along_m * dot(met->normal, axis) / dot(met->normal, direction);
+  const Vec2 moves = row.along * (row.px_per_metre * farther);
+  pixel->x = told_[0](pixel->x, {s.gamma, moves.x, row.covers_px.x});
+  pixel->y = told_[1](pixel->y, {s.gamma, moves.y, row.covers_px.y});
+  return pixel;
+}
+
+void CloudModel::predict(std::span<const CloudRole> roles, std::span<const double> values, std::size_t view,
+                         std::span<double> prediction) const {
+  const State state = state_of(roles, values, view);
+  const std::vector<CloudRow>& rows = rows_[view];
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto pixel = pixel_told(state, rows[i], input_.views[view]);
+    prediction[i] = pixel ? rows[i].metre_per_px * dot(*pixel - rows[i].expected, rows[i].along) : 0;
+  }
+}
+
+}  // namespace gonio::explain

@@ -1,0 +1,168 @@
+// See clouds_problem.h.
+#include "explain/clouds/clouds_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "explain/clouds/clouds_outcome.h"
+#include "inference/estimable.h"
+#include "inference/explanation.h"
+#include "manifest/document.h"
+
+namespace gonio::explain {
+namespace {
+
+constexpr double estimable = 0.02;  // share of a parameter's signature that free and earlier parameters must leave
+
+class CloudsProblem final : public Problem {
+ public:
+  explicit CloudsProblem(CloudsInput input) : input_(std::move(input)), model_(input_) {
+    declared_ = cloud_parameters(input_, model_);
+    parameters_ = declared_.parameters, base_ = declared_.base;
+    observe();
+    keep_estimable();
+  }
+
+  void predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const override {
+    model_.predict(declared_.roles, values, group, prediction);
+  }
+  // A shape's place moves its own cloud alone.
+  void jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
+                std::span<double> derivatives) const override {
+    const std::size_t rows = model_.rows(group).size();
+    std::vector<std::size_t> own, places;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const std::size_t view = declared_.roles[columns[c]].view;
+      if (view != static_cast<std::size_t>(-1) && view != group) continue;
+      own.push_back(columns[c]), places.push_back(c);
+    }
+    std::vector<double> found(own.size() * rows);
+    Problem::jacobian(values, group, own, found);
+    std::ranges::fill(derivatives, 0.0);
+    for (std::size_t k = 0; k < own.size(); ++k)
+      std::copy_n(found.begin() + static_cast<std::ptrdiff_t>(k * rows), rows,
+                  derivatives.begin() + static_cast<std::ptrdiff_t>(places[k] * rows));
+  }
+
+  std::string domain() const override { return "clouds"; }
+  std::string unit() const override { return "m"; }
+  std::string score_name() const override { return "RMS distance off the shape"; }
+  std::string group_noun() const override { return "cloud"; }
+  Importance importance() const override { return Importance::share_of_residual; }
+
+  std::string remarks(const Explanation& e) const override { return clouds_remarks(*this, model_, e); }
+  void apply(const Explanation& e, manifest::Document& document) const override {
+    upgrade_clouds(*this, input_, declared_, e, document);
+  }
+  Illustration illustrate(const Explanation& e, const std::filesystem::path&, manifest::Document&) const override {
+    return illustrate_clouds(model_, observations_, e);
+  }
+
+ private:
+  void observe() {
+    Observations& o = observations_;
+    o.first.push_back(0);
+    std::uint32_t blocks = 0;
+    for (std::size_t v = 0; v < input_.views.size(); ++v) {
+      o.group.push_back(input_.views[v].name);
+      std::uint32_t last = 0;
+      for (const CloudRow& row : model_.rows(v)) {
+        o.value.push_back(row.metre_per_px * dot(row.told - row.expected, row.along));
+        o.sigma.push_back(row.sigma_m);
+        o.norm.push_back(1);
+        const std::uint32_t tile = input_.views[v].tile[row.point];
+        o.block.push_back(blocks + tile);
+        last = std::max(last, tile + 1);
+      }
+      blocks += last;
+      o.first.push_back(o.value.size());
+    }
+    number_blocks();
+    observe_conditions();
+  }
+
+  // Tiles without rows leave no gaps.
+  void number_blocks() {
+    std::uint32_t next = 0, previous = static_cast<std::uint32_t>(-1);
+    for (std::uint32_t& b : observations_.block) {
+      const std::uint32_t own = b;
+      if (own != previous && previous != static_cast<std::uint32_t>(-1)) ++next;
+      previous = own, b = next;
+    }
+  }
+
+  void observe_conditions() {
+    const camera::CameraModel &first = input_.stations[0].lens, &second = input_.stations[1].lens;
+    const std::string prefix = input_.projector ? "projector" : "camera";
+    Condition phase{"projector.phase", "rad", "light", {}, {}, "m"},
+        second_radius{
+            prefix + (input_.projector ? ".image-radius" : ".second-image-radius"), "half width", "lens", {}, {}, "m"},
+        radius{"camera.image-radius", "half width", "lens", {}, {}, "m"},
+        x{"camera.image-x", "half width", "pose", {}, {}, "m"}, y{"camera.image-y", "half width", "pose", {}, {}, "m"},
+        incidence{"surface.incidence-angle", "rad", "surface", {}, {}, "m"},
+        depth{"scene.depth", "m", "pose", {}, {}, "m"}, later{"camera.time", "s", "pose", {}, {}, "m"},
+        warmer{"camera.temperature", "K", "pose", {}, {}, "m"};
+    const auto place = [](const camera::CameraModel& lens, Vec2 pixel) {
+      return (pixel - lens.principal_point_px()) * (2.0 / lens.width_px());
+    };
+    const scan::ToldPlace& told = model_.told_place(model_.telling());
+    for (std::size_t v = 0; v < input_.views.size(); ++v)
+      for (const CloudRow& row : model_.rows(v)) {
+        const Vec2 a = place(first, row.pixel), b = place(second, row.expected);
+        const double u = model_.telling() == scan::Axis::column ? row.expected.x : row.expected.y;
+        phase.values.push_back(told.finest_phase(u) - 2 * pi * std::floor(told.finest_phase(u) / (2 * pi)));
+        second_radius.values.push_back(std::hypot(b.x, b.y)), radius.values.push_back(std::hypot(a.x, a.y));
+        x.values.push_back(a.x), y.values.push_back(a.y);
+        incidence.values.push_back(row.incidence_rad), depth.values.push_back(row.depth_m);
+        later.values.push_back(input_.views[v].later_s), warmer.values.push_back(input_.views[v].warmer_K);
+      }
+    for (Condition* c : {&phase, &second_radius, &radius, &x, &y, &incidence, &depth, &later, &warmer}) {
+      const auto [low, high] = std::ranges::minmax_element(c->values);
+      if (*low < *high && (c != &phase || (input_.projector && told.any())))
+        observations_.conditions.push_back(std::move(*c));
+    }
+  }
+
+  Estimable::Column column_of(std::size_t parameter, const std::vector<double>& values) const {
+    Estimable::Column column(observations_.rows());
+    const std::size_t one[] = {parameter};
+    for (std::size_t g = 0; g < observations_.groups(); ++g)
+      jacobian(values, g, one,
+               std::span(column).subspan(observations_.first[g], observations_.first[g + 1] - observations_.first[g]));
+    for (std::size_t i = 0; i < column.size(); ++i) column[i] /= observations_.sigma[i];
+    return column;
+  }
+
+  void keep_estimable() {
+    std::vector<double> values;
+    for (const Parameter& p : parameters_) values.push_back(p.neutral);
+    const auto columns_of = [&](const std::vector<std::size_t>& parameters) {
+      std::vector<Estimable::Column> columns;
+      for (const std::size_t p : parameters) columns.push_back(column_of(p, values));
+      return columns;
+    };
+    const Estimable beside(columns_of(base_));
+    for (Candidate c : declared_.candidates) {
+      std::vector<std::size_t> kept;
+      std::vector<double> usual;
+      for (const std::size_t p : c.parameters) usual.push_back(parameters_[p].size / size_of_usual);
+      for (const std::size_t k : beside.kept(columns_of(c.parameters), estimable, usual))
+        kept.push_back(c.parameters[k]);
+      c.parameters = kept;
+      if (!kept.empty()) candidates_.push_back(std::move(c));
+    }
+  }
+
+  CloudsInput input_;
+  CloudModel model_;
+  CloudParameters declared_;
+};
+
+}  // namespace
+
+std::unique_ptr<Problem> clouds_problem(CloudsInput input) {
+  return std::make_unique<CloudsProblem>(std::move(input));
+}
+
+}  // namespace gonio::explain

@@ -1,0 +1,42 @@
+// What least squares over the shifts of cosines (decode.h) make of readings that are no cosines: of a projector whose
+// light is a power of what it is told (projector.gamma), of a thing that moves meanwhile (structured-light.motion).
+#pragma once
+#include <vector>
+
+#include "geom/vector.h"
+#include "scan/sequence.h"
+
+namespace gonio::scan {
+
+// The cosines of one axis as they were shown, and the place that they tell.
+//
+// A bent cosine is one of the same period with harmonics: ((1 + cos x) / 2)^gamma = cos^(2 gamma)(x / 2) is the sum of
+// a(h) cos(h x), a(h + 1) / a(h) = (gamma - h) / (gamma + h + 1) from h = 1 on (Gradshteyn & Ryzhik 3.631.9). A pixel
+// of the camera takes the mean over what it covers, `covers_px` of the projector's, which leaves sinc(h periods
+// covers_px / size) of each; what a projector out of focus does to them is not known here.
+class ToldPlace {
+ public:
+  struct Bend {
+    double gamma = 1;
+    double moves_px = 0;   // by which the place is another, evenly from the first frame to the last
+    double covers_px = 0;  // of a pixel of the camera
+  };
+  ToldPlace(const Sequence& sequence, Axis axis);
+  bool any() const { return !sets_.empty(); }
+  // The mean of what all numbers of periods say, weighed as by noise, of a pixel that `place` lights in the middle of
+  // the sequence. `place` itself where gamma is 1 and nothing moves.
+  double operator()(double place, const Bend& bend) const;
+  // 2 pi periods (place + 1/2) / size of the most periods, not wrapped.
+  double finest_phase(double place) const;
+
+ private:
+  struct Set {
+    double periods = 1;
+    std::vector<double> shifts_rad, times;  // times: -1/2 the first frame, 1/2 the last
+    Mat3 solve;
+  };
+  std::vector<Set> sets_;  // ascending periods
+  double size_ = 1;
+};
+
+}  // namespace gonio::scan

@@ -1,0 +1,30 @@
+// A camera and a projector about planes and balls, by rays in closed form that share nothing with the library but the
+// sequence's pictures, the decoder and the file: what a user would hand to explain, with physics that the rig left out.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+
+#include "manifest/document.h"
+#include "scan/scan_world.h"
+
+namespace gonio::tests {
+
+struct CloudsWorld {
+  enum class Shape { planes, balls } shape = Shape::planes;
+  std::size_t clouds = 6;
+  double gamma = 1;            // of the projector
+  double moves_m = 0;          // of each thing, from the first frame to the last, away from the rig; signs alternate
+  double nudged_m = 0;         // of the projector, along its x, since the rig was calibrated
+  double turned_rad = 0;       // about its y
+  double k1 = 0;               // of the projector's lens
+  double turns_rad_per_s = 0;  // rig.drift, of the projector about its y
+  double depth_m = 0;          // light comes back from exponential depths of this mean, index 1.5
+  bool gray = false;           // else cosines of 1, 8 and 40 periods at three shifts
+  double read = 0.002, gain = 8000;
+  std::uint64_t seed = 1;
+};
+
+// Clouds c0, c1, ... in `folder`, measured by `camera` and `projector` of the rig as it was calibrated.
+manifest::Document measured_clouds(const CloudsWorld& world, const std::filesystem::path& folder);
+
+}  // namespace gonio::tests
