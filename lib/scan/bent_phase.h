@@ -11,9 +11,11 @@ namespace gonio::scan {
 // The cosines of one axis as they were shown, and the place that they tell.
 //
 // A bent cosine is one of the same period with harmonics: ((1 + cos x) / 2)^gamma = cos^(2 gamma)(x / 2) is the sum of
-// a(h) cos(h x), a(h + 1) / a(h) = (gamma - h) / (gamma + h + 1) from h = 1 on (Gradshteyn & Ryzhik 3.631.9). A pixel
-// of the camera takes the mean over what it covers, `covers_px` of the projector's, which leaves sinc(h periods
-// covers_px / size) of each; what a projector out of focus does to them is not known here.
+// a(h) cos(h x), a(h + 1) / a(h) = (gamma - h) / (gamma + h + 1) from h = 1 on (Gradshteyn & Ryzhik 3.631.9). Of each
+// the square pixels of the projector leave sinc(h periods / size), and a pixel of the camera that covers `covers_px` of
+// them sinc(h periods covers_px / size). What a projector out of focus does is not known here: it blurs harmonics more
+// than the cosine, so that an exponent is taken for one nearer to 1. Four equal shifts see the third and fifth
+// harmonic, which two exponents about 1.5 make alike; three see the second.
 class ToldPlace {
  public:
   struct Bend {
