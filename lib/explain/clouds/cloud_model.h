@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "explain/clouds/clouds_problem.h"
-#include "scan/bent_phase.h"
+#include "scan/told_place.h"
 
 namespace gonio::explain {
 

@@ -1,5 +1,5 @@
 // projector.gamma: cosines that a projector's tone curve bends. Equation: projector_gamma.h; what it does to phases:
-// scan/bent_phase.h.
+// scan/told_place.h.
 #include "scan/mechanisms/projector_gamma.h"
 
 #include <algorithm>

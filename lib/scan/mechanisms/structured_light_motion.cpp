@@ -1,4 +1,4 @@
-// structured-light.motion: a thing that moves while patterns are shown. Equation: scan/bent_phase.h.
+// structured-light.motion: a thing that moves while patterns are shown. Equation: scan/told_place.h.
 #include "mechanism/mechanism.h"
 
 namespace gonio::mechanism {

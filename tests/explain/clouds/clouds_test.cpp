@@ -13,7 +13,7 @@
 #include "manifest/sections/cloud.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/rig.h"
-#include "scan/bent_phase.h"
+#include "scan/told_place.h"
 #include "scan/clouds_world.h"
 
 namespace gonio::tests {

@@ -1,5 +1,5 @@
-// See bent_phase.h.
-#include "scan/bent_phase.h"
+// See told_place.h.
+#include "scan/told_place.h"
 
 #include <array>
 #include <cmath>
