@@ -20,6 +20,9 @@ constexpr double least_of_noise = 6;    // amplitude, over that of its noise
 constexpr double own_error_rad = 0.03;  // of any phase, whatever the noise: gamma, rounding, light from elsewhere
 constexpr double most_contradicting = 25,
                  least_ahead = 12;  // chi-square, for each further number of periods; of the next
+// Light from other parts of the scene adds to coarse cosines, by a share of what they have more than the finest, and
+// turns their phases by a share of that, unless phases agree all the same; and it makes fine ones disagree.
+constexpr double turned_by_indirect = 0.05, agreeing = 4, disagreeing = 0.5;
 constexpr std::size_t pixels_at_once = 1 << 14;
 
 // Sums over the shifts of one number of periods.
@@ -166,26 +169,31 @@ class CosineDecoder {
     const double size = r_.sequence.size(axis);
     const std::size_t finest = all.size() - 1;
     const double period = size / all[finest].periods;
-    double best = 0, least = -1, next = -1;
+    double best = 0, least = -1, next = -1, fine_least = 0;  // of fine ones: chi-square times (periods / finest)^2
     for (int k = 0; k < static_cast<int>(std::ceil(all[finest].periods - 1e-9)); ++k) {
       const double turn = phases[finest].theta / (2 * pi), u = (turn - std::floor(turn) + k) * period - 0.5;
       if (u > size) break;
-      double chi_square = stripe.sigma > 0 ? std::pow((u - stripe.place) / stripe.sigma, 2) : 0;
+      double chi_square = stripe.sigma > 0 ? std::pow((u - stripe.place) / stripe.sigma, 2) : 0, fine = 0;
       for (std::size_t f = 0; f < finest; ++f) {
         const double ratio = all[f].periods / all[finest].periods,
                      variance = phases[f].sigma * phases[f].sigma +
                                 ratio * ratio * phases[finest].sigma * phases[finest].sigma +
                                 own_error_rad * own_error_rad,
                      off = wrapped(phases[f].theta - 2 * pi * all[f].periods * (u + 0.5) / size);
-        chi_square += off * off / variance;
+        chi_square += off * off / variance, fine += ratio * ratio * off * off / variance;
       }
       if (least < 0 || chi_square < least)
-        next = least, least = chi_square, best = u;
+        next = least, least = chi_square, best = u, fine_least = fine;
       else if (next < 0 || chi_square < next)
         next = chi_square;
     }
-    if (least > most_contradicting * std::max<double>(1, static_cast<double>(finest))) return Refusal::contradictory;
-    if (next >= 0 && next - least < least_ahead) return Refusal::contradictory;
+    const double further = std::max<double>(1, static_cast<double>(finest));
+    const double wider = r_.indirect ? widened_by_indirect(phases, least / further) : 1;
+    if (r_.contradictions &&
+        (least > most_contradicting * further * wider || (next >= 0 && next - least < least_ahead)))
+      return Refusal::contradictory;
+    if (r_.indirect && next >= 0 && next - least < least_ahead * (wider + disagreeing * fine_least / further))
+      return Refusal::interreflection;
     double sum = 0, weights = 0;
     for (std::size_t f = 0; f <= finest; ++f) {
       const double px_per_rad = size / (2 * pi * all[f].periods),
@@ -195,6 +203,14 @@ class CosineDecoder {
     }
     place = static_cast<float>(sum / weights), sigma = static_cast<float>(std::sqrt(1 / weights));
     return Refusal::none;
+  }
+
+  // By how much variances of phases are larger than own_error_rad has it.
+  static double widened_by_indirect(const std::vector<Phase>& phases, double chi_square) {
+    double largest = 0;
+    for (const Phase& p : phases) largest = std::max(largest, p.amplitude);
+    const double turned = turned_by_indirect * (largest / phases.back().amplitude - 1) / own_error_rad;
+    return 1 + std::min(turned * turned, agreeing * chi_square);
   }
 
   const DecodeRequest& r_;

@@ -54,6 +54,9 @@ std::string words_of(const manifest::ProjectedFrame& f) {
                   f.inverse.value_or(false) ? ", inverse" : "");
   if (f.show == "cosine")
     return format("%g periods along the %ss, shifted by %.4g rad", *f.periods, f.axis.c_str(), *f.shift_rad);
+  if (f.show == "line")
+    return format("lines %lld pixels apart along the %ss, at %lld", static_cast<long long>(*f.period_px),
+                  f.axis.c_str(), static_cast<long long>(*f.offset_px));
   return f.show;
 }
 
@@ -195,6 +198,7 @@ Codes codes_of(const Document& document, const ScanRequest& request, const Frame
   decoding.noise = noise_of_frames(document, frames);
   decoding.least_reflected = request.least_reflected, decoding.least_difference = request.least_difference;
   decoding.least_share = request.least_share, decoding.least_sigmas = request.least_sigmas;
+  decoding.indirect = request.indirect;
   return decode(decoding);
 }
 
