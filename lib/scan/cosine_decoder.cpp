@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "geom/mat3_inverse.h"
 #include "photograph/noise_variance.h"
+#include "scan/bent_phase.h"
 #include "scan/frame_noise.h"
 
 namespace gonio::scan {
@@ -22,7 +23,7 @@ constexpr double most_contradicting = 25,
                  least_ahead = 12;  // chi-square, for each further number of periods; of the next
 // Light from other parts of the scene adds to coarse cosines, by a share of what they have more than the finest, and
 // turns their phases by a share of that, unless phases agree all the same; and it makes fine ones disagree.
-constexpr double turned_by_indirect = 0.05, agreeing = 4, disagreeing = 0.5;
+constexpr double turned_by_indirect = 0.05, agreeing = 8, disagreeing = 0.5;
 constexpr std::size_t pixels_at_once = 1 << 14;
 
 // Sums over the shifts of one number of periods.
@@ -31,6 +32,7 @@ struct ShiftSums {
   std::vector<double> shifts_rad;
   std::vector<float> of_all, with_cos, with_sin;
   std::vector<std::uint8_t> spoiled;
+  std::vector<float> with_cos_2{}, with_sin_2{};  // of twice the shifts, where these tell the projector's exponent
 };
 
 // A + C cos + S sin fitted to readings at given shifts: (A, C, S) = inverse * (sum, with cos, with sin).
@@ -76,6 +78,7 @@ class CosineDecoder {
       if (all.empty()) continue;
       std::ranges::sort(all, {}, &ShiftSums::periods);
       if (!noise_known_) find_noise(all);
+      find_gamma(all);
       places(axis, all);
     }
   }
@@ -88,15 +91,21 @@ class CosineDecoder {
       if (s.what == What::cosine && s.axis == axis) frames[s.periods].push_back(f);
     }
     std::vector<ShiftSums> all;
-    for (const auto& [periods, own] : frames) all.push_back(sums_of(periods, own));
+    bool told = false;  // coarse cosines tell the projector's exponent: a lens takes least from their harmonics
+    for (const auto& [periods, own] : frames) {
+      const bool tells = !told && own.size() >= 4;
+      all.push_back(sums_of(periods, own, tells));
+      told = told || tells;
+    }
     return all;
   }
 
-  ShiftSums sums_of(double periods, const std::vector<std::size_t>& frames) const {
+  ShiftSums sums_of(double periods, const std::vector<std::size_t>& frames, bool harmonics) const {
     const std::size_t pixels = codes_.refusal.size();
     ShiftSums s;
     s.periods = periods;
     s.of_all.resize(pixels), s.with_cos.resize(pixels), s.with_sin.resize(pixels), s.spoiled.resize(pixels);
+    if (harmonics) s.with_cos_2.resize(pixels), s.with_sin_2.resize(pixels);
     for (const std::size_t f : frames) {
       const double shift = r_.sequence.frames[f].shift_rad;
       s.shifts_rad.push_back(shift);
@@ -107,6 +116,9 @@ class CosineDecoder {
         s.of_all[i] += v, s.with_cos[i] += c * v, s.with_sin[i] += sine * v;
         s.spoiled[i] = static_cast<std::uint8_t>(s.spoiled[i] | (frame.full(i) ? 1 : 0));
       }
+      const auto c2 = static_cast<float>(std::cos(2 * shift)), s2 = static_cast<float>(std::sin(2 * shift));
+      for (std::size_t i = 0; harmonics && i < pixels; ++i)
+        s.with_cos_2[i] += c2 * frame.at(i), s.with_sin_2[i] += s2 * frame.at(i);
     }
     return s;
   }
@@ -132,6 +144,26 @@ class CosineDecoder {
     codes_.noise = noise_of(std::move(found));
   }
 
+  // The first axis tells it for both.
+  void find_gamma(std::vector<ShiftSums>& all) {
+    const auto s = std::ranges::find_if(all, [](const ShiftSums& own) { return !own.with_cos_2.empty(); });
+    if (s == all.end()) return;
+    if (codes_.gamma_sigma == 0 && in_equal_steps(s->shifts_rad)) {
+      const Mat3 solve = inverse_of(s->shifts_rad);
+      std::vector<float> phase(s->of_all.size()), amplitude(phase.size());
+      for (std::size_t i = 0; i < phase.size(); ++i) {
+        const Phase p = phase_of(solve, s->of_all[i], s->with_cos[i], s->with_sin[i], codes_.noise);
+        const bool counts = codes_.told(i) && s->spoiled[i] == 0 && p.amplitude > least_of_noise * p.amplitude_sigma;
+        phase[i] = counts ? static_cast<float>(p.theta) : std::numeric_limits<float>::quiet_NaN();
+        amplitude[i] = static_cast<float>(p.amplitude);
+      }
+      if (const auto found =
+              gamma_of({s->shifts_rad.size(), s->with_cos_2, s->with_sin_2, phase, amplitude, codes_.width}))
+        codes_.gamma = found->gamma, codes_.gamma_sigma = found->sigma;
+    }
+    s->with_cos_2 = {}, s->with_sin_2 = {};
+  }
+
   void places(Axis axis, const std::vector<ShiftSums>& all) {
     const auto a = static_cast<std::size_t>(axis);
     const std::size_t pixels = codes_.refusal.size();
@@ -140,7 +172,12 @@ class CosineDecoder {
     place.assign(pixels, 0), sigma.assign(pixels, 0);
     if (codes_.reflected.empty()) codes_.reflected.assign(pixels, 0);
     std::vector<Mat3> inverses;
-    for (const ShiftSums& s : all) inverses.push_back(inverse_of(s.shifts_rad));
+    bent_.clear();
+    const ProjectorGamma gamma{codes_.gamma, codes_.gamma_sigma};
+    for (const ShiftSums& s : all) {
+      inverses.push_back(inverse_of(s.shifts_rad));
+      if (gamma.bends()) bent_.emplace_back(gamma, s.shifts_rad, inverses.back());
+    }
     parallel_for(0, (pixels + pixels_at_once - 1) / pixels_at_once, [&](std::size_t n) {
       std::vector<Phase> phases(all.size());
       for (std::size_t i = n * pixels_at_once; i < std::min(pixels, (n + 1) * pixels_at_once); ++i) {
@@ -164,6 +201,9 @@ class CosineDecoder {
           phases[f].amplitude <= least_of_noise * phases[f].amplitude_sigma)
         return Refusal::dark;
       reflected = std::max(reflected, 2 * phases[f].amplitude);
+      if (bent_.empty()) continue;
+      const BentPhase::True straight = bent_[f].straightened(phases[f].theta, phases[f].sigma);
+      phases[f].theta = straight.theta, phases[f].sigma = straight.sigma;
     }
     codes_.reflected[i] = static_cast<float>(reflected);
     const double size = r_.sequence.size(axis);
@@ -217,6 +257,7 @@ class CosineDecoder {
   const FrameReader& read_;
   Codes& codes_;
   bool noise_known_ = false;
+  std::vector<BentPhase> bent_;  // by number of periods; none: the projector is linear
 };
 
 }  // namespace

@@ -23,6 +23,9 @@
 // each other (heterodyne), or many high ones (micro phase shifting, Gupta & Nayar 2012). Then u is the mean of what all
 // say, by their variances.
 //
+// A projector that is not linear bends cosines; four shifts and more tell its exponent, and phases are straightened
+// (bent_phase.h).
+//
 // Lines: the centroid of the light over the offsets at which the pixel is lit, where a Gray code tells the period
 // (Guehring 2001).
 #pragma once
@@ -66,6 +69,7 @@ struct Codes {
   std::vector<float> reflected;                    // what the projector's white adds
   bool whole = false;                              // places are stripes of a Gray code
   manifest::Noise noise{};                         // as stated, or as found
+  double gamma = 1, gamma_sigma = 0;               // of the projector, by its cosines; sigma 0: not told
   bool told(std::size_t pixel) const { return refusal[pixel] == Refusal::none; }
 };
 

@@ -268,6 +268,9 @@ void log_noise(const std::string& camera, const Codes& codes) {
                                            std::sqrt(codes.noise.read * codes.noise.read + 1 / codes.noise.gain))
                                         .c_str()
                                   : ""));
+  if (codes.gamma_sigma > 0)
+    log(LogLevel::info, format("camera %s: the projector's light goes with the power %.4g +- %.2g of what is sent",
+                               camera.c_str(), codes.gamma, codes.gamma_sigma));
 }
 
 void log_cloud(const std::string& name, const manifest::Cloud& c, std::size_t matched) {
