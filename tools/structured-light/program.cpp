@@ -132,9 +132,7 @@ std::vector<cli::Option> options() {
        .preset = "2",
        .lower = 0,
        .upper = 100},
-      {.name = "keep-indirect",
-       .type = Type::flag,
-       .help = "Keep pixels that light from other parts of the scene may have made another."},
+      {.name = "keep-indirect", .type = Type::flag, .help = "Keep pixels that indirect light may have changed."},
       {.name = "html", .type = Type::output_file, .help = "Write a report page here."},
       {.name = "codes", .type = Type::flag, .help = "Write VIEW-CAMERA-codes.exr, too."}};
   all.insert(all.end(), more.begin(), more.end());
@@ -177,8 +175,6 @@ const cli::Program& gonio_program() {
            "Guehring, Dense 3D surface acquisition by structured light using off-the-shelf components, SPIE 4309, "
            "2001.",
            "Xu & Aliaga, Robust pixel classification for 3D modeling with structured light, Graphics Interface 2007.",
-           "Nayar, Krishnan, Grossberg & Raskar, Fast separation of direct and global components of a scene using high "
-           "frequency illumination, ACM Transactions on Graphics 25, 2006.",
            "Srinivasan, Liu & Halioua, Automated phase-measuring profilometry of 3-D diffuse objects, Applied "
            "Optics 23, 1984.",
            "Gupta & Nayar, Micro phase shifting, CVPR 2012.",
