@@ -46,10 +46,8 @@ scan::ScanRequest request_of(cli::Invocation& call) {
                 "one camera with --projector, or two cameras: --camera left --camera right");
   request.least_reflected = call.number("least-light");
   request.least_difference = call.number("least-difference");
-  request.least_share = call.number("least-share");
-  request.least_sigmas = call.number("least-sigmas");
-  request.indirect = !call.flag("keep-indirect");
-  request.codes = call.flag("codes");
+  request.least_share = call.number("least-share"), request.least_sigmas = call.number("least-sigmas");
+  request.indirect = !call.flag("keep-indirect"), request.codes = call.flag("codes");
   if (call.given("html")) request.page = call.text("html");
   request.output_path = [&call](const std::string& name) { return call.output_path(name); };
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
