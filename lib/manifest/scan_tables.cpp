@@ -9,15 +9,17 @@ namespace gonio::manifest {
 const std::vector<Field<ProjectedFrame>>& projected_frame_fields() {
   using F = ProjectedFrame;
   static const std::vector<Field<F>> table{
-      field("show", &F::show, "", "what it is").one_of({"white", "black", "bit", "cosine"}).needed(),
+      field("show", &F::show, "", "what it is").one_of({"white", "black", "bit", "cosine", "line"}).needed(),
       field("file", &F::file, "", "file id of the picture"),
-      field("axis", &F::axis, "", "of bit and cosine: what it tells of the projector's pixel")
+      field("axis", &F::axis, "", "of bit, cosine and line: what it tells of the projector's pixel")
           .one_of({"column", "row"}),
       field("bit", &F::bit, "", "of the Gray code of the column or row, 0 the finest").range(0, 31),
       field("inverse", &F::inverse, "", "bit: dark where the bit is set"),
       field("periods", &F::periods, "", "cosine: over the whole width or height").positive(),
       field("shift_rad", &F::shift_rad, "rad",
-            "cosine: light = (1 + cos(2 pi periods (u + 1/2) / size - shift)) / 2, u the column or row")};
+            "cosine: light = (1 + cos(2 pi periods (u + 1/2) / size - shift)) / 2, u the column or row"),
+      field("period_px", &F::period_px, "px", "line: of lines one pixel wide").range(2, 1 << 16),
+      field("offset_px", &F::offset_px, "px", "line: column or row of the first").range(0, (1 << 16) - 1)};
   return table;
 }
 

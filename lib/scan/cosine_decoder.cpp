@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "geom/mat3_inverse.h"
 #include "photograph/noise_variance.h"
+#include "scan/bent_phase.h"
 #include "scan/frame_noise.h"
 
 namespace gonio::scan {
@@ -20,6 +21,9 @@ constexpr double least_of_noise = 6;    // amplitude, over that of its noise
 constexpr double own_error_rad = 0.03;  // of any phase, whatever the noise: gamma, rounding, light from elsewhere
 constexpr double most_contradicting = 25,
                  least_ahead = 12;  // chi-square, for each further number of periods; of the next
+// Light from other parts of the scene adds to coarse cosines, by a share of what they have more than the finest, and
+// turns their phases by a share of that, unless phases agree all the same; and it makes fine ones disagree.
+constexpr double turned_by_indirect = 0.05, agreeing = 8, disagreeing = 0.5;
 constexpr std::size_t pixels_at_once = 1 << 14;
 
 // Sums over the shifts of one number of periods.
@@ -28,6 +32,7 @@ struct ShiftSums {
   std::vector<double> shifts_rad;
   std::vector<float> of_all, with_cos, with_sin;
   std::vector<std::uint8_t> spoiled;
+  std::vector<float> with_cos_2{}, with_sin_2{};  // of twice the shifts, where these tell the projector's exponent
 };
 
 // A + C cos + S sin fitted to readings at given shifts: (A, C, S) = inverse * (sum, with cos, with sin).
@@ -73,6 +78,7 @@ class CosineDecoder {
       if (all.empty()) continue;
       std::ranges::sort(all, {}, &ShiftSums::periods);
       if (!noise_known_) find_noise(all);
+      find_gamma(all);
       places(axis, all);
     }
   }
@@ -85,15 +91,21 @@ class CosineDecoder {
       if (s.what == What::cosine && s.axis == axis) frames[s.periods].push_back(f);
     }
     std::vector<ShiftSums> all;
-    for (const auto& [periods, own] : frames) all.push_back(sums_of(periods, own));
+    bool told = false;  // coarse cosines tell the projector's exponent: a lens takes least from their harmonics
+    for (const auto& [periods, own] : frames) {
+      const bool tells = !told && own.size() >= 4;
+      all.push_back(sums_of(periods, own, tells));
+      told = told || tells;
+    }
     return all;
   }
 
-  ShiftSums sums_of(double periods, const std::vector<std::size_t>& frames) const {
+  ShiftSums sums_of(double periods, const std::vector<std::size_t>& frames, bool harmonics) const {
     const std::size_t pixels = codes_.refusal.size();
     ShiftSums s;
     s.periods = periods;
     s.of_all.resize(pixels), s.with_cos.resize(pixels), s.with_sin.resize(pixels), s.spoiled.resize(pixels);
+    if (harmonics) s.with_cos_2.resize(pixels), s.with_sin_2.resize(pixels);
     for (const std::size_t f : frames) {
       const double shift = r_.sequence.frames[f].shift_rad;
       s.shifts_rad.push_back(shift);
@@ -104,6 +116,9 @@ class CosineDecoder {
         s.of_all[i] += v, s.with_cos[i] += c * v, s.with_sin[i] += sine * v;
         s.spoiled[i] = static_cast<std::uint8_t>(s.spoiled[i] | (frame.full(i) ? 1 : 0));
       }
+      const auto c2 = static_cast<float>(std::cos(2 * shift)), s2 = static_cast<float>(std::sin(2 * shift));
+      for (std::size_t i = 0; harmonics && i < pixels; ++i)
+        s.with_cos_2[i] += c2 * frame.at(i), s.with_sin_2[i] += s2 * frame.at(i);
     }
     return s;
   }
@@ -129,6 +144,26 @@ class CosineDecoder {
     codes_.noise = noise_of(std::move(found));
   }
 
+  // The first axis tells it for both.
+  void find_gamma(std::vector<ShiftSums>& all) {
+    const auto s = std::ranges::find_if(all, [](const ShiftSums& own) { return !own.with_cos_2.empty(); });
+    if (s == all.end()) return;
+    if (codes_.gamma_sigma == 0 && in_equal_steps(s->shifts_rad)) {
+      const Mat3 solve = inverse_of(s->shifts_rad);
+      std::vector<float> phase(s->of_all.size()), amplitude(phase.size());
+      for (std::size_t i = 0; i < phase.size(); ++i) {
+        const Phase p = phase_of(solve, s->of_all[i], s->with_cos[i], s->with_sin[i], codes_.noise);
+        const bool counts = codes_.told(i) && s->spoiled[i] == 0 && p.amplitude > least_of_noise * p.amplitude_sigma;
+        phase[i] = counts ? static_cast<float>(p.theta) : std::numeric_limits<float>::quiet_NaN();
+        amplitude[i] = static_cast<float>(p.amplitude);
+      }
+      if (const auto found =
+              gamma_of({s->shifts_rad.size(), s->with_cos_2, s->with_sin_2, phase, amplitude, codes_.width}))
+        codes_.gamma = found->gamma, codes_.gamma_sigma = found->sigma;
+    }
+    s->with_cos_2 = {}, s->with_sin_2 = {};
+  }
+
   void places(Axis axis, const std::vector<ShiftSums>& all) {
     const auto a = static_cast<std::size_t>(axis);
     const std::size_t pixels = codes_.refusal.size();
@@ -137,7 +172,12 @@ class CosineDecoder {
     place.assign(pixels, 0), sigma.assign(pixels, 0);
     if (codes_.reflected.empty()) codes_.reflected.assign(pixels, 0);
     std::vector<Mat3> inverses;
-    for (const ShiftSums& s : all) inverses.push_back(inverse_of(s.shifts_rad));
+    bent_.clear();
+    const ProjectorGamma gamma{codes_.gamma, codes_.gamma_sigma};
+    for (const ShiftSums& s : all) {
+      inverses.push_back(inverse_of(s.shifts_rad));
+      if (gamma.bends()) bent_.emplace_back(gamma, s.shifts_rad, inverses.back());
+    }
     parallel_for(0, (pixels + pixels_at_once - 1) / pixels_at_once, [&](std::size_t n) {
       std::vector<Phase> phases(all.size());
       for (std::size_t i = n * pixels_at_once; i < std::min(pixels, (n + 1) * pixels_at_once); ++i) {
@@ -161,31 +201,39 @@ class CosineDecoder {
           phases[f].amplitude <= least_of_noise * phases[f].amplitude_sigma)
         return Refusal::dark;
       reflected = std::max(reflected, 2 * phases[f].amplitude);
+      if (bent_.empty()) continue;
+      const BentPhase::True straight = bent_[f].straightened(phases[f].theta, phases[f].sigma);
+      phases[f].theta = straight.theta, phases[f].sigma = straight.sigma;
     }
     codes_.reflected[i] = static_cast<float>(reflected);
     const double size = r_.sequence.size(axis);
     const std::size_t finest = all.size() - 1;
     const double period = size / all[finest].periods;
-    double best = 0, least = -1, next = -1;
+    double best = 0, least = -1, next = -1, fine_least = 0;  // of fine ones: chi-square times (periods / finest)^2
     for (int k = 0; k < static_cast<int>(std::ceil(all[finest].periods - 1e-9)); ++k) {
       const double turn = phases[finest].theta / (2 * pi), u = (turn - std::floor(turn) + k) * period - 0.5;
       if (u > size) break;
-      double chi_square = stripe.sigma > 0 ? std::pow((u - stripe.place) / stripe.sigma, 2) : 0;
+      double chi_square = stripe.sigma > 0 ? std::pow((u - stripe.place) / stripe.sigma, 2) : 0, fine = 0;
       for (std::size_t f = 0; f < finest; ++f) {
         const double ratio = all[f].periods / all[finest].periods,
                      variance = phases[f].sigma * phases[f].sigma +
                                 ratio * ratio * phases[finest].sigma * phases[finest].sigma +
                                 own_error_rad * own_error_rad,
                      off = wrapped(phases[f].theta - 2 * pi * all[f].periods * (u + 0.5) / size);
-        chi_square += off * off / variance;
+        chi_square += off * off / variance, fine += ratio * ratio * off * off / variance;
       }
       if (least < 0 || chi_square < least)
-        next = least, least = chi_square, best = u;
+        next = least, least = chi_square, best = u, fine_least = fine;
       else if (next < 0 || chi_square < next)
         next = chi_square;
     }
-    if (least > most_contradicting * std::max<double>(1, static_cast<double>(finest))) return Refusal::contradictory;
-    if (next >= 0 && next - least < least_ahead) return Refusal::contradictory;
+    const double further = std::max<double>(1, static_cast<double>(finest));
+    const double wider = r_.indirect ? widened_by_indirect(phases, least / further) : 1;
+    if (r_.contradictions &&
+        (least > most_contradicting * further * wider || (next >= 0 && next - least < least_ahead)))
+      return Refusal::contradictory;
+    if (r_.indirect && next >= 0 && next - least < least_ahead * (wider + disagreeing * fine_least / further))
+      return Refusal::interreflection;
     double sum = 0, weights = 0;
     for (std::size_t f = 0; f <= finest; ++f) {
       const double px_per_rad = size / (2 * pi * all[f].periods),
@@ -197,10 +245,19 @@ class CosineDecoder {
     return Refusal::none;
   }
 
+  // By how much variances of phases are larger than own_error_rad has it.
+  static double widened_by_indirect(const std::vector<Phase>& phases, double chi_square) {
+    double largest = 0;
+    for (const Phase& p : phases) largest = std::max(largest, p.amplitude);
+    const double turned = turned_by_indirect * (largest / phases.back().amplitude - 1) / own_error_rad;
+    return 1 + std::min(turned * turned, agreeing * chi_square);
+  }
+
   const DecodeRequest& r_;
   const FrameReader& read_;
   Codes& codes_;
   bool noise_known_ = false;
+  std::vector<BentPhase> bent_;  // by number of periods; none: the projector is linear
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "scan/cosine_decoder.h"
 #include "scan/frame_noise.h"
 #include "scan/gray_decoder.h"
+#include "scan/line_decoder.h"
 
 namespace gonio::scan {
 namespace {
@@ -54,6 +55,7 @@ Codes decode(const DecodeRequest& r) {
     decode_gray(r, reader, *white, *black, codes);
   }
   if (frame_that(r.sequence, [](const Shown& s) { return s.what == What::cosine; })) decode_cosines(r, reader, codes);
+  if (frame_that(r.sequence, [](const Shown& s) { return s.what == What::line; })) decode_lines(r, reader, codes);
   const float none = std::numeric_limits<float>::quiet_NaN();
   for (std::size_t axis = 0; axis < 2; ++axis)
     for (std::size_t i = 0; i < codes.place[axis].size(); ++i) {

@@ -5,13 +5,29 @@
 // white and black differ by; else it is an edge: the border of two stripes, or light that comes from other parts
 // of the scene. It tells a whole stripe: sigma is its width over sqrt(12).
 //
+// What white adds is light d on the straight way and g by way of other parts of the scene. With the lit share x of g, a
+// bit and its inverse differ by |d + (2 x - 1) g|, of d + g: fine stripes light half of what the scene sends on, x =
+// 1/2, and show the share r = d / (d + g), here the median over both axes' finest bits but the very finest, of which
+// borders blur few. A bit that was read wrong differs by (1 - 2 x) g - d, at most by the share 1 - 2 r; one that
+// differs by more is right, and a pixel with one that does not is refused (interreflection): the rules of Xu & Aliaga
+// 2007 for a bit and its inverse, with d and g as Nayar et al. 2006 find them. Where d > g none is refused but for the
+// margin of 0.1.
+//
 // Cosines: least squares for A + C cos(shift) + S sin(shift) = A + B cos(theta - shift), theta = atan2(S, C), whose
 // variance is that of the frames times (J^-1) in the direction across (C, S), over B^2. Which period it is, all numbers
 // of periods say together: of the places u that the finest theta leaves open the one that contradicts the others least,
 //   chi^2(u) = sum_f (theta_f - 2 pi P_f (u + 1/2) / size, wrapped)^2 / sigma_f^2,
-// if none other is nearly as good. Any numbers of periods that do not all repeat together will do: a coarse one to
-// start from, several close to each other (heterodyne), or many high ones (micro phase shifting, Gupta & Nayar 2012).
-// Then u is the mean of what all say, by their variances.
+// if none other is nearly as good. The light of other parts of the scene turns coarse phases: where the coarse
+// amplitudes are larger than the finest one, and phases disagree, the next has to be worse by more (interreflection,
+// else). Any numbers of periods that do not all repeat together will do: a coarse one to start from, several close to
+// each other (heterodyne), or many high ones (micro phase shifting, Gupta & Nayar 2012). Then u is the mean of what all
+// say, by their variances.
+//
+// A projector that is not linear bends cosines; four shifts and more tell its exponent, and phases are straightened
+// (bent_phase.h).
+//
+// Lines: the centroid of the light over the offsets at which the pixel is lit, where a Gray code tells the period
+// (Guehring 2001).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -41,10 +57,10 @@ struct CameraFrame {
 };
 
 // Why a pixel has no code. edge: the stripe's border goes through it; contradictory: its numbers of periods do not
-// agree.
-enum class Refusal : std::uint8_t { none, masked, dark, saturated, edge, contradictory, outside };
-constexpr std::array<std::string_view, 7> refusal_names{"none", "masked",        "dark",   "saturated",
-                                                        "edge", "contradictory", "outside"};
+// agree; interreflection: light from other parts of the scene may have made a bit, or a period, another.
+enum class Refusal : std::uint8_t { none, masked, dark, saturated, edge, contradictory, outside, interreflection };
+constexpr std::array<std::string_view, 8> refusal_names{"none", "masked",        "dark",    "saturated",
+                                                        "edge", "contradictory", "outside", "interreflection"};
 
 struct Codes {
   int width = 0, height = 0;
@@ -53,6 +69,7 @@ struct Codes {
   std::vector<float> reflected;                    // what the projector's white adds
   bool whole = false;                              // places are stripes of a Gray code
   manifest::Noise noise{};                         // as stated, or as found
+  double gamma = 1, gamma_sigma = 0;               // of the projector, by its cosines; sigma 0: not told
   bool told(std::size_t pixel) const { return refusal[pixel] == Refusal::none; }
 };
 
@@ -67,6 +84,8 @@ struct DecodeRequest {
   double least_difference = 0;  // between a bit and its inverse: less is an edge, whatever the noise
   double least_share = 0.05;    // of what white adds, for the same
   double least_sigmas = 2;      // of its noise, for the same
+  bool indirect = true;         // refuse what light from other parts of the scene may have made another
+  bool contradictions = true;   // refuse phases that do not agree on a place; else the best is taken
 };
 
 // Error(data) for frames of another size.

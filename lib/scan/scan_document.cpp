@@ -54,6 +54,9 @@ std::string words_of(const manifest::ProjectedFrame& f) {
                   f.inverse.value_or(false) ? ", inverse" : "");
   if (f.show == "cosine")
     return format("%g periods along the %ss, shifted by %.4g rad", *f.periods, f.axis.c_str(), *f.shift_rad);
+  if (f.show == "line")
+    return format("lines %lld pixels apart along the %ss, at %lld", static_cast<long long>(*f.period_px),
+                  f.axis.c_str(), static_cast<long long>(*f.offset_px));
   return f.show;
 }
 
@@ -172,6 +175,7 @@ Codes codes_of(const Document& document, const ScanRequest& request, const Frame
   decoding.noise = noise_of_frames(document, frames);
   decoding.least_reflected = request.least_reflected, decoding.least_difference = request.least_difference;
   decoding.least_share = request.least_share, decoding.least_sigmas = request.least_sigmas;
+  decoding.indirect = request.indirect;
   return decode(decoding);
 }
 
@@ -212,6 +216,9 @@ void log_noise(const std::string& camera, const Codes& codes) {
                                            std::sqrt(codes.noise.read * codes.noise.read + 1 / codes.noise.gain))
                                         .c_str()
                                   : ""));
+  if (codes.gamma_sigma > 0)
+    log(LogLevel::info, format("camera %s: the projector's light goes with the power %.4g +- %.2g of what is sent",
+                               camera.c_str(), codes.gamma, codes.gamma_sigma));
 }
 
 void log_cloud(const std::string& name, const manifest::Cloud& c, std::size_t matched) {

@@ -16,6 +16,7 @@ struct ScanRequest {
   std::string projector{};           // name in cameras; empty: its pixels tell cameras apart, and no more
   double least_reflected = 0, least_difference = 0, least_share = 0.05,
          least_sigmas = 2;       // decode.h; light, 1 where a file is full
+  bool indirect = true;          // decode.h
   std::filesystem::path page{};  // report to write; empty: none
   bool codes = false;            // write VIEW-CAMERA-codes.exr
   std::function<std::filesystem::path(const std::string& name)> output_path{};

@@ -78,6 +78,56 @@ TEST(Decode, BitsTellTheStripe) {
   EXPECT_TRUE(codes.whole);
 }
 
+// Of lines apart by 6 to 16 pixels, in a lens a little out of focus.
+TEST(Decode, LinesHaveTheErrorsThatTheyState) {
+  for (const int period : {6, 8, 13}) {
+    ScanWorld world;
+    const Codes codes = tests::decoded(world, world.left, line_sequence(480, 360, both, period));
+    for (const Axis axis : both) {
+      const Errors e = errors_of(world, codes, axis);
+      EXPECT_GT(e.told, 0.75 * e.all) << period;  // the others are the borders of the Gray code's stripes
+      EXPECT_NEAR(e.square, 1, 0.3) << period << " " << static_cast<int>(axis);
+      EXPECT_LT(std::abs(e.mean), 0.02) << period;
+      EXPECT_LT(e.largest, 1) << period;
+    }
+    EXPECT_FALSE(codes.whole);
+  }
+}
+
+// Projectors that are not linear: the exponent is found, and phases are as true as their sigmas say. Four shifts and
+// more tell it, and three are straightened by it.
+TEST(Decode, ABentProjectorIsFoundAndStraightened) {
+  const double coarse[] = {1, 6}, fine[] = {40};
+  for (const double gamma : {1.0, 1.4, 2.2})
+    for (const int shifts : {4, 5, 8}) {
+      ScanWorld world;
+      world.gamma = gamma;
+      Sequence s = cosine_sequence(480, 360, columns, coarse, shifts);
+      for (const Shown& frame : cosine_sequence(480, 360, columns, fine, 3).frames) s.frames.push_back(frame);
+      const Codes codes = tests::decoded(world, world.left, s);
+      EXPECT_GT(codes.gamma_sigma, 0);
+      EXPECT_LT(codes.gamma_sigma, shifts == 4 ? 0.05 : 0.01);
+      EXPECT_NEAR(codes.gamma, gamma, 3 * codes.gamma_sigma) << shifts;
+      const Errors e = errors_of(world, codes, Axis::column);
+      EXPECT_GT(e.told, 0.95 * e.all) << gamma << " " << shifts;
+      EXPECT_NEAR(std::sqrt(e.square), 1, 0.2) << gamma << " " << shifts;
+    }
+  ScanWorld bent;
+  bent.gamma = 2.2;
+  const double all[] = {1, 6, 40};
+  const Errors three =
+      errors_of(bent, tests::decoded(bent, bent.left, cosine_sequence(480, 360, columns, all, 3)), Axis::column);
+  EXPECT_GT(std::sqrt(three.square), 3) << "three shifts alone do not tell it: the ripple stays";
+}
+
+TEST(Decode, NothingOnAPlaneIsTakenForLightFromElsewhere) {
+  ScanWorld world;
+  const double coarse_to_fine[] = {1, 8, 64}, heterodyne[] = {36, 33, 31};
+  for (const Sequence& s : {gray_sequence(480, 360, both), cosine_sequence(480, 360, both, coarse_to_fine, 4),
+                            cosine_sequence(480, 360, both, heterodyne, 4)})
+    EXPECT_EQ(std::ranges::count(tests::decoded(world, world.left, s).refusal, Refusal::interreflection), 0);
+}
+
 TEST(Decode, NoiseIsFoundInTheFrames) {
   ScanWorld world;
   const double periods[] = {1, 6, 40};

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "base/error.h"
 #include "geom/vector.h"
@@ -57,9 +58,26 @@ TEST(Sequence, CosinesAreTheMeanOverAPixel) {
   }
 }
 
+TEST(Sequence, LinesCoverEveryPixelOnceAndBitsTellThemApart) {
+  for (const int period : {6, 8, 15, 16}) {
+    const Sequence s = line_sequence(100, 60, both, period);
+    std::map<int, int> lit;
+    int finest = 9;
+    for (std::size_t f = 0; f < s.frames.size(); ++f) {
+      if (s.frames[f].what == Shown::What::bit) finest = std::min(finest, s.frames[f].bit);
+      if (s.frames[f].what != Shown::What::line || s.frames[f].axis != Axis::column) continue;
+      for (int u = 0; u < 100; ++u) lit[u] += light_at(s, f, u, 7) == 1 ? 1 : 0;
+    }
+    for (int u = 0; u < 100; ++u) EXPECT_EQ(lit[u], 1) << u;
+    EXPECT_LE(2 << finest, period);        // stripes of half a period
+    EXPECT_GT(2 * (2 << finest), period);  // and no finer
+  }
+}
+
 TEST(Sequence, GoesThroughAManifest) {
   const double periods[] = {1, 16};
-  for (const Sequence& s : {gray_sequence(640, 480, both), cosine_sequence(640, 480, both, periods, 4)}) {
+  for (const Sequence& s : {gray_sequence(640, 480, both), cosine_sequence(640, 480, both, periods, 4),
+                            line_sequence(640, 480, both, 10)}) {
     manifest::Document d;
     d.projections["p"] = projection_of(s);
     const Sequence read = sequence_of(d, "p");
@@ -90,6 +108,13 @@ TEST(Sequence, WhatSaysTooLittleIsRefused) {
   gray.width_px = 1920;
   EXPECT_THAT(refused(gray), testing::HasSubstr("there are 1920 columns"));
   EXPECT_THAT(refused(cosine_sequence(640, 480, both, periods, 2)), testing::HasSubstr("at 2 shifts"));
+  Sequence lines = line_sequence(640, 480, both, 8);
+  std::erase_if(lines.frames, [](const Shown& f) { return f.what == Shown::What::line && f.offset_px == 3; });
+  EXPECT_THAT(refused(lines), testing::HasSubstr("at 7 of 8 offsets"));
+  EXPECT_THAT(refused(line_sequence(640, 480, both, 5)), testing::HasSubstr("5 pixels apart"));
+  lines = line_sequence(640, 480, both, 8);
+  std::erase_if(lines.frames, [](const Shown& f) { return f.what == Shown::What::bit && f.bit < 3; });
+  EXPECT_THAT(refused(lines), testing::HasSubstr("no bits that tell its lines apart"));
   EXPECT_THAT(refused({640, 480, {{.what = Shown::What::white}}}), testing::HasSubstr("neither columns nor rows"));
 }
 

@@ -45,6 +45,8 @@ scan::Sequence sequence_of(const cli::Invocation& call) {
     throw Error(Exit::usage, "--size", "\"" + call.text("size") + "\" is no size", "WIDTHxHEIGHT in pixels: 1920x1080");
   const int width = static_cast<int>(size[0]), height = static_cast<int>(size[1]);
   if (call.text("pattern") == "gray") return scan::gray_sequence(width, height, axes_of(call));
+  if (call.text("pattern") == "line-shift")
+    return scan::line_sequence(width, height, axes_of(call), static_cast<int>(call.integer("line-period")));
   const std::vector<double> periods = numbers_of(call.text("periods"), ',', "--periods", "numbers: 1,16");
   for (const Axis axis : axes_of(call))
     for (const double p : periods)
@@ -56,39 +58,45 @@ scan::Sequence sequence_of(const cli::Invocation& call) {
 }  // namespace
 
 std::vector<cli::Option> pattern_options() {
-  return {
-      {.name = "pattern",
-       .type = Type::choice,
-       .help =
-           "Write the pictures that a projector shows: bits of a Gray code with their inverses, white and black; or "
-           "cosines.",
-       .choices = {"gray", "cosine"},
-       .conflicts = {"camera", "projector"},
-       .needs = {"size"}},
-      {.name = "size",
-       .type = Type::text,
-       .help = "Of the projector.",
-       .metavar = "WIDTHxHEIGHT",
-       .needs = {"pattern"}},
-      {.name = "axes",
-       .type = Type::choice,
-       .help = "What is told. Two cameras without a calibrated projector need both.",
-       .preset = "both",
-       .choices = {"both", "columns", "rows"},
-       .needs = {"pattern"}},
-      {.name = "periods",
-       .type = Type::text,
-       .help = "Of cosines, over the whole width or height; a pixel must be told by all together.",
-       .metavar = "N,N,...",
-       .preset = "1,8,64",
-       .needs = {"pattern"}},
-      {.name = "shifts",
-       .type = Type::integer,
-       .help = "Of cosines, for each number of periods.",
-       .preset = "4",
-       .lower = 3,
-       .upper = 64,
-       .needs = {"pattern"}}};
+  return {{.name = "pattern",
+           .type = Type::choice,
+           .help = "Write the pictures that a projector shows: bits of a Gray code with their inverses, white and "
+                   "black; a coarse "
+                   "one and lines that move on by a pixel; or cosines.",
+           .choices = {"gray", "line-shift", "cosine"},
+           .conflicts = {"camera", "projector"},
+           .needs = {"size"}},
+          {.name = "size",
+           .type = Type::text,
+           .help = "Of the projector.",
+           .metavar = "WIDTHxHEIGHT",
+           .needs = {"pattern"}},
+          {.name = "axes",
+           .type = Type::choice,
+           .help = "What is told. Two cameras without a calibrated projector need both.",
+           .preset = "both",
+           .choices = {"both", "columns", "rows"},
+           .needs = {"pattern"}},
+          {.name = "periods",
+           .type = Type::text,
+           .help = "Of cosines, over the whole width or height; a pixel must be told by all together.",
+           .metavar = "N,N,...",
+           .preset = "1,8,64",
+           .needs = {"pattern"}},
+          {.name = "shifts",
+           .type = Type::integer,
+           .help = "Of cosines, for each number of periods.",
+           .preset = "4",
+           .lower = 3,
+           .upper = 64,
+           .needs = {"pattern"}},
+          {.name = "line-period",
+           .type = Type::integer,
+           .help = "Pixels from line to line, and so pictures of lines for each axis.",
+           .preset = "8",
+           .lower = 6,
+           .upper = 64,
+           .needs = {"pattern"}}};
 }
 
 void check_pattern(cli::Invocation& call) {

@@ -46,9 +46,8 @@ scan::ScanRequest request_of(cli::Invocation& call) {
                 "one camera with --projector, or two cameras: --camera left --camera right");
   request.least_reflected = call.number("least-light");
   request.least_difference = call.number("least-difference");
-  request.least_share = call.number("least-share");
-  request.least_sigmas = call.number("least-sigmas");
-  request.codes = call.flag("codes");
+  request.least_share = call.number("least-share"), request.least_sigmas = call.number("least-sigmas");
+  request.indirect = !call.flag("keep-indirect"), request.codes = call.flag("codes");
   if (call.given("html")) request.page = call.text("html");
   request.output_path = [&call](const std::string& name) { return call.output_path(name); };
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
@@ -131,6 +130,7 @@ std::vector<cli::Option> options() {
        .preset = "2",
        .lower = 0,
        .upper = 100},
+      {.name = "keep-indirect", .type = Type::flag, .help = "Keep pixels that indirect light may have changed."},
       {.name = "html", .type = Type::output_file, .help = "Write a report page here."},
       {.name = "codes", .type = Type::flag, .help = "Write VIEW-CAMERA-codes.exr, too."}};
   all.insert(all.end(), more.begin(), more.end());
@@ -143,7 +143,7 @@ const cli::Program& gonio_program() {
   static const cli::Program program{
       .name = "structured-light",
       .sentence = "points with their own error from patterns that a projector shows",
-      .synopsis = {"--pattern gray|cosine --size WIDTHxHEIGHT --out DIR [OPTION]... [manifest.json]",
+      .synopsis = {"--pattern gray|line-shift|cosine --size WIDTHxHEIGHT --out DIR [OPTION]... [manifest.json]",
                    "--camera NAME --camera NAME --out DIR [OPTION]... -i rig.json [PICTURE]...",
                    "--camera NAME --projector NAME --out DIR [OPTION]... -i rig.json [PICTURE]..."},
       .options = options(),
@@ -163,13 +163,16 @@ const cli::Program& gonio_program() {
                  "reflected (what the projector's white adds there)"},
                 {"VIEW-CAMERA-codes.exr",
                  "column, row, sigma.column, sigma.row: the projector's pixel; reflected; refusal: 0 "
-                 "told, 1 masked, 2 dark, 3 saturated, 4 edge, 5 contradictory, 6 outside"}},
+                 "told, 1 masked, 2 dark, 3 saturated, 4 edge, 5 contradictory, 6 outside, 7 interreflection"}},
       .exits = {{Exit::negative, "a view has no point"},
                 {Exit::quality,
                  "cameras, or a projector's columns and rows, contradict each other by more than three times "
                  "their noise"}},
       .references =
           {"Inokuchi, Sato & Matsuda, Range imaging system for 3-D object recognition, ICPR 1984.",
+           "Guehring, Dense 3D surface acquisition by structured light using off-the-shelf components, SPIE 4309, "
+           "2001.",
+           "Xu & Aliaga, Robust pixel classification for 3D modeling with structured light, Graphics Interface 2007.",
            "Srinivasan, Liu & Halioua, Automated phase-measuring profilometry of 3-D diffuse objects, Applied "
            "Optics 23, 1984.",
            "Gupta & Nayar, Micro phase shifting, CVPR 2012.",
