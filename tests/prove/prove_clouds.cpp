@@ -32,6 +32,19 @@ const World worlds[] = {
     {"drift-balls", "rig.drift", "turn_y_rad_per_s", 2e-7, {.shape = Shape::balls, .turns_rad_per_s = 2e-7}},
     {"deep-balls", "structured-light.subsurface", "depth_m", 3e-4, {.shape = Shape::balls, .depth_m = 3e-4}},
     {"moving-planes", "structured-light.motion", "-", 0, {.shape = Shape::planes, .clouds = 8, .moves_m = 2e-3}},
+    // By lib/render; how deep light of a translucent solid comes from is not known, and is more than nothing.
+    {"rendered-null-balls", "nothing", "-", 0, {.shape = Shape::balls, .rendered = 64}},
+    {"rendered-gamma-planes", "projector.gamma", "gamma", 1.3, {.shape = Shape::planes, .gamma = 1.3, .rendered = 64}},
+    {"rendered-moved-planes",
+     "projector.moved",
+     "turn_y_rad",
+     0.002,
+     {.shape = Shape::planes, .turned_rad = 0.002, .rendered = 64}},
+    {"rendered-marble-balls",
+     "structured-light.subsurface",
+     "-",
+     0,
+     {.shape = Shape::balls, .rendered = 64, .scattering_per_m = 2000}},
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "scan/cloud_file.h"
 #include "scan/decode.h"
+#include "scan/rendered_world.h"
 
 namespace gonio::tests {
 namespace {
@@ -58,11 +59,20 @@ class World {
     scan::DecodeRequest request;
     request.sequence = sequence, request.width = view_.left.width, request.height = view_.left.height;
     request.noise = manifest::Noise{w_.gain, w_.read};
-    request.read = [&](std::size_t frame) { return seen(sequence, frame); };
+    std::optional<RenderedFrames> frames;
+    if (w_.rendered > 0) frames.emplace(rendered_world(), view_.left, sequence);
+    request.read = [&](std::size_t frame) { return frames ? (*frames)(frame) : seen(sequence, frame); };
     return scan::decode(request);
   }
 
  private:
+  RenderedWorld rendered_world() const {
+    RenderedWorld r = tests::rendered(view_);
+    r.gamma = w_.gamma, r.gain = w_.gain, r.read = w_.read, r.seed = w_.seed * 131 + cloud_;
+    r.spp = static_cast<int>(w_.rendered), r.scattering_per_m = w_.scattering_per_m;
+    return r;
+  }
+
   Point normal(const Point& at) const {
     if (view_.shape == ScanWorld::Shape::plane) return unit({view_.tilt, 0, -1});
     return unit({at[0] - view_.ball_x, at[1], at[2] - view_.distance});

@@ -12,14 +12,16 @@ namespace gonio::tests {
 struct CloudsWorld {
   enum class Shape { planes, balls } shape = Shape::planes;
   std::size_t clouds = 6;
-  double gamma = 1;            // of the projector
-  double moves_m = 0;          // of each thing, from the first frame to the last, away from the rig; signs alternate
-  double nudged_m = 0;         // of the projector, along its x, since the rig was calibrated
-  double turned_rad = 0;       // about its y
-  double k1 = 0;               // of the projector's lens
-  double turns_rad_per_s = 0;  // rig.drift, of the projector about its y
-  double depth_m = 0;          // light comes back from exponential depths of this mean, index 1.5
-  bool gray = false;           // else cosines of 1, 8 and 40 periods at three shifts
+  double gamma = 1;             // of the projector
+  double moves_m = 0;           // of each thing, from the first frame to the last, away from the rig; signs alternate
+  double nudged_m = 0;          // of the projector, along its x, since the rig was calibrated
+  double turned_rad = 0;        // about its y
+  double k1 = 0;                // of the projector's lens
+  double turns_rad_per_s = 0;   // rig.drift, of the projector about its y
+  double depth_m = 0;           // light comes back from exponential depths of this mean, index 1.5
+  double rendered = 0;          // > 0: by lib/render (rendered_world.h), so many samples a pixel
+  double scattering_per_m = 0;  // rendered: of a translucent solid (see there)
+  bool gray = false;            // else cosines of 1, 8 and 40 periods at three shifts
   double read = 0.002, gain = 8000;
   std::uint64_t seed = 1;
 };

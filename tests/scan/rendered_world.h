@@ -19,6 +19,7 @@ struct RenderedWorld {
   std::vector<Board> boards;
   std::vector<std::pair<Vec3, double>> balls;  // middle, radius
   double albedo = 0.6;
+  double scattering_per_m = 0;  // > 0: a translucent solid (directional dipole, index 1.4) in the place of the albedo
   Pinhole projector{480, 360, 700, {0, -0.02, 0}, 0};
   double lens_radius_m = 0, focus_m = 0.7;  // of the projector
   double gamma = 1;
