@@ -32,8 +32,10 @@ struct ModelInfo {
   std::vector<ParameterInfo> parameters;
   Attachment attachment = Attachment::none;
   std::string attachment_meaning{};  // what the file holds
-  bool takes_base = false;           // surfaces: lies on another surface, `base`
-  bool takes_environment = false;    // lights: the attachment may be one of the manifest's environments
+  // A picture's values are those of its file; else those of whole numbers are sRGB.
+  bool attachment_as_sent = false;
+  bool takes_base = false;         // surfaces: lies on another surface, `base`
+  bool takes_environment = false;  // lights: the attachment may be one of the manifest's environments
 };
 
 std::span<const ModelInfo* const> models(Family family);            // sorted by id

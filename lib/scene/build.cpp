@@ -73,11 +73,11 @@ class Builder {
 
   // Linear values: codes of 8/16-bit pictures are taken as sRGB where they stand for a colour.
   std::shared_ptr<const io::Image> picture(const std::string& id, const std::string& pointer, bool colour, double lower,
-                                           double upper) const {
+                                           double upper, bool as_sent = false) const {
     const auto path = file(id, pointer);
     io::Image image = io::read_picture(path);
     if (image.pixels() == 0) throw Error(Exit::data, path.string(), "picture is empty");
-    if (colour && path.extension() != ".exr")
+    if (colour && !as_sent && path.extension() != ".exr")
       for (float& v : image.data) v = io::linear_from_srgb(v);
     if (colour) image = in_bands(std::move(image), lower, upper, reading_.bands);
     return std::make_shared<const io::Image>(std::move(image));
@@ -135,7 +135,8 @@ class Builder {
       if (!entry.file.empty()) {
         light.file = file(entry.file, pictured);
         if (light.model->info().attachment == manifest::Attachment::picture)
-          light.picture = picture(entry.file, pictured, true, 0, std::numeric_limits<double>::infinity());
+          light.picture = picture(entry.file, pictured, true, 0, std::numeric_limits<double>::infinity(),
+                                  light.model->info().attachment_as_sent);
       }
       light.bands = reading_.bands;
       refresh(light, at(pointer));

@@ -62,12 +62,13 @@ std::array<double, patches> power_by_direction(const light::Emitter& emitter) {
   const Vec3 middle = middle_of(emitter);
   const Basis frame = axis_of(emitter);
   std::array<double, patches> power{};
+  Random random(8);
   for (int i = 0; i < rows * parts; ++i)
     for (int j = 0; j < columns * parts; ++j) {
       const double s = (i + 0.5) * ds, z = 1 - 2 * s * s, phi = (j + 0.5) * dphi - pi, r = std::sqrt(1 - z * z);
       const Vec3 away = frame.to_world({r * std::cos(phi), r * std::sin(phi), z});
       power[static_cast<std::size_t>(i / parts * columns + j / parts)] +=
-          irradiance_at(emitter, middle + away * far_m, -away, grid) * far_m * far_m * 4 * s * ds * dphi;
+          irradiance_at(emitter, middle + away * far_m, -away, grid, random) * far_m * far_m * 4 * s * ds * dphi;
     }
   return power;
 }

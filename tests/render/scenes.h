@@ -22,11 +22,13 @@ class SceneBuilder {
   }
   std::size_t diffuse(double albedo) { return surface("diffuse", {{"albedo", albedo}}); }
 
-  SceneBuilder& light(const std::string& model, const manifest::Parameters& parameters) {
+  SceneBuilder& light(const std::string& model, const manifest::Parameters& parameters,
+                      std::shared_ptr<const io::Image> picture = {}) {
     scene::Light light;
     light.id = "l" + std::to_string(scene_.appearance.lights.size());
     light.model = light::find(model);
     light.parameters = parameters;
+    light.picture = std::move(picture);
     scene::refresh(light, "test");
     scene_.appearance.lights.push_back(light);
     return *this;
