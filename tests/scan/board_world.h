@@ -33,7 +33,7 @@ struct BoardWorld {
   double white = 0.8, black = 0.05, around = 0.3;  // albedo; about the board a wall in its plane
   double projected = 0.75, ambient = 0.05;         // what white reads; 1 is full
   double gain = 600, read = 0.004;                // electrons at 1
-  int across = 4;
+  int across = 8;
   bool mirrored = false, exchanged = false;  // what the projector truly does with the picture's columns
   // Of board poses: tilted all round, over the whole picture.
   std::vector<Turned> poses(int count) const;
