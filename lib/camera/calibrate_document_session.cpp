@@ -276,6 +276,21 @@ void check_found(const manifest::Document& document, const Session& session) {
   }
 }
 
+void check_looked_up(const manifest::Document& document, const Session& session) {
+  const Picture* first = nullptr;
+  for (const Picture& picture : session.pictures) {
+    if (!picture.path.empty()) continue;
+    if (first == nullptr) first = &picture;
+    for (const Sighting& s : picture.sightings)
+      if (s.detection.corners.size() >= enough_corners) return;
+  }
+  if (first == nullptr) return;
+  throw Error(Exit::data, manifest::place(document, image_pointer(first->entry)),
+              document.images[first->entry].id +
+                  " has no corners, nor has any other view of it: " + first->sightings.front().detection.problem,
+              "light the boards by the projector, expose so that white is not saturated, and focus it");
+}
+
 }  // namespace
 
 std::string image_pointer(std::size_t index) {
@@ -339,6 +354,7 @@ void look_at_all(Session& session, const CalibrationRequest& request, const mani
 void check_pictures(const manifest::Document& document, const Session& session) {
   check_sizes(document, session);
   check_found(document, session);
+  check_looked_up(document, session);
   check_mirrored(document, session);
   check_duplicates(document, session);
 }

@@ -188,6 +188,7 @@ std::string reason_of(const Codes& codes, const camera::Detection& detection) {
 }  // namespace
 
 std::optional<LitCorner> lit_corner(const Codes& codes, Vec2 corner, Vec2 along_columns, Vec2 along_rows) {
+  if (codes.place[0].empty() || codes.place[1].empty()) return std::nullopt;
   const double unit_px = reach * std::max(norm(along_columns), norm(along_rows));
   const std::vector<Sample> samples = samples_about(codes, corner, along_columns, along_rows, unit_px);
   if (samples.size() < fewest_pixels) return std::nullopt;

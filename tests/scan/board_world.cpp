@@ -8,16 +8,21 @@
 #include "base/parallel.h"
 #include "camera/corner_detection.h"
 #include "io/image.h"
-#include "scan/projector_corners.h"
 
 namespace gonio::tests {
 namespace {
 
 using Point = std::array<double, 3>;
 
-Point inverse_of(const Turned& t, Point p) {
-  const Turned back{{-t.turn[0], -t.turn[1], -t.turn[2]}, {}};
-  return back({p[0] - t.shift[0], p[1] - t.shift[1], p[2] - t.shift[2]});
+using Axes = std::array<Point, 3>;  // where x, y and z go
+Axes axes_of(const Turned& t) {
+  const Turned turn{t.turn, {}};
+  return {turn({1, 0, 0}), turn({0, 1, 0}), turn({0, 0, 1})};
+}
+Point turned(const Axes& a, Point p) {
+  Point q{};
+  for (std::size_t k = 0; k < 3; ++k) q[k] = a[0][k] * p[0] + a[1][k] * p[1] + a[2][k] * p[2];
+  return q;
 }
 
 double albedo(const BoardWorld& w, double x, double y) {  // of the board's plane; the origin is the first inner corner
@@ -39,7 +44,7 @@ std::array<double, 2> BentLens::pixel(Point p) const {
 Point BentLens::direction(double u, double v) const {
   const double a = (u - cx) / fx, b = (v - cy) / fy;
   double x = a, y = b;
-  for (int k = 0; k < 40; ++k) {
+  for (int k = 0; k < 15; ++k) {
     const double r2 = x * x + y * y, bent = 1 + r2 * (k1 + r2 * k2);
     x = a / bent, y = b / bent;
   }
@@ -87,30 +92,45 @@ std::vector<std::vector<float>> light_of(const BoardWorld& w, const Turned& came
                                         std::vector<float>(static_cast<std::size_t>(w.camera.width * w.camera.height)));
   const Point n = Turned{camera_from_board.turn, {}}({0, 0, 1}), t = camera_from_board.shift;
   const double height = n[0] * t[0] + n[1] * t[1] + n[2] * t[2];
+  const Point back{-camera_from_board.turn[0], -camera_from_board.turn[1], -camera_from_board.turn[2]};
+  const Axes rotation = axes_of({back, {}}), projector = axes_of(w.projector_from_camera);
   parallel_for(0, static_cast<std::size_t>(w.camera.height), [&](std::size_t row) {
-    for (int x = 0; x < w.camera.width; ++x)
-      for (int k = 0; k < w.across * w.across; ++k) {
-        const double i = k % w.across, j = k / w.across, n1 = w.across, n2 = n1 * n1;  // no two in one row or column
-        const Point d = w.camera.direction(x + (i + 0.5) / n1 + (j + 0.5) / n2 - 0.5 / n1 - 0.5,
-                                           static_cast<double>(row) + (j + 0.5) / n1 + (i + 0.5) / n2 - 0.5 / n1 - 0.5);
-        const double s = height / (n[0] * d[0] + n[1] * d[1] + n[2] * d[2]);
-        const Point p{s * d[0], s * d[1], s * d[2]}, on_board = inverse_of(camera_from_board, p);
-        std::array<double, 2> u = w.projector.pixel(w.projector_from_camera(p));
+    const auto met = [&](double x, double y) {
+      const Point d = w.camera.direction(x, y);
+      const double s = height / (n[0] * d[0] + n[1] * d[1] + n[2] * d[2]);
+      return Point{s * d[0], s * d[1], s * d[2]};
+    };
+    const auto seen = [&](Point p) {
+      const Point q = turned(rotation, {p[0] - t[0], p[1] - t[1], p[2] - t[2]});
+      return albedo(w, q[0], q[1]);
+    };
+    for (int x = 0; x < w.camera.width; ++x) {
+      const double y = static_cast<double>(row), here = seen(met(x, y));
+      bool edge = false;
+      for (int k = 0; k < 4; ++k) edge |= seen(met(x + (k % 2) - 0.5, y + (k / 2) - 0.5)) != here;
+      const int n1 = edge ? w.at_edges : w.across, n2 = n1 * n1;
+      for (int k = 0; k < n2; ++k) {
+        const double i = k % n1, j = k / n1;  // no two in one row or column
+        const Point p = met(x + (i + 0.5) / n1 + (j + 0.5) / n2 - 0.5 / n1 - 0.5,
+                            y + (j + 0.5) / n1 + (i + 0.5) / n2 - 0.5 / n1 - 0.5);
+        const Point q = turned(projector, p), s = w.projector_from_camera.shift;
+        std::array<double, 2> u = w.projector.pixel({q[0] + s[0], q[1] + s[1], q[2] + s[2]});
         if (w.mirrored) u[0] = w.projector.width - 1 - u[0];
         if (w.exchanged) std::swap(u[0], u[1]);
-        const double share = albedo(w, on_board[0], on_board[1]) / (w.across * w.across);
+        const double share = seen(p) / n2;
         for (std::size_t f = 0; f < shown.size(); ++f) {
           const double at = sequence.frames[f].axis == scan::Axis::row ? u[1] : u[0];
           double lit = 0;
           if (at > -0.5 && at < static_cast<double>(shown[f].size()) - 0.5) {
             const double c = std::clamp(at, 0.0, static_cast<double>(shown[f].size()) - 1.001);
-            const auto i = static_cast<std::size_t>(c);
-            lit = shown[f][i] * (1 - (c - double(i))) + shown[f][i + 1] * (c - double(i));
+            const auto e = static_cast<std::size_t>(c);
+            lit = shown[f][e] * (1 - (c - double(e))) + shown[f][e + 1] * (c - double(e));
           }
           light[f][row * static_cast<std::size_t>(w.camera.width) + static_cast<std::size_t>(x)] +=
               static_cast<float>(share * (w.ambient + w.projected * lit));
         }
       }
+    }
   });
   return light;
 }
@@ -129,22 +149,37 @@ BoardSession::BoardSession(BoardWorld world, scan::Sequence sequence, int poses)
   for (const Turned& pose : world_.poses(poses)) light_.push_back(light_of(world_, pose, sequence_));
 }
 
+scan::CameraFrame BoardSession::frame(std::size_t pose, std::size_t frame, std::uint64_t seed) const {
+  return read_with_noise(world_, light_[pose][frame], (seed * 1000 + pose) * 100 + frame);
+}
+
+camera::Detection BoardSession::seen(std::size_t pose, std::uint64_t seed) const {
+  io::Image white(world_.camera.width, world_.camera.height, {"Y"});
+  white.data = frame(pose, sequence_.frames.size() - 1, seed).light;
+  return camera::detect_board(white, world_.board(), {});
+}
+
+scan::Codes BoardSession::codes(std::size_t pose, std::uint64_t seed) const {
+  scan::DecodeRequest request;
+  request.sequence = sequence_, request.width = world_.camera.width, request.height = world_.camera.height;
+  request.read = [&](std::size_t f) { return frame(pose, f, seed); };
+  request.noise = manifest::Noise{world_.gain, world_.read};
+  return scan::decode(request);
+}
+
+scan::ProjectorCorners BoardSession::corners(std::size_t pose, std::uint64_t seed) const {
+  const camera::Detection found = seen(pose, seed);
+  const scan::Codes told = codes(pose, seed);
+  return scan::projector_corners({{0, &found, &told}}, world_.board());
+}
+
 std::vector<camera::View> BoardSession::views(std::uint64_t seed) const {
   std::vector<camera::View> views(2 * light_.size());
   parallel_for(0, light_.size(), [&](std::size_t p) {
-    std::vector<scan::CameraFrame> frames;
-    for (std::size_t f = 0; f < light_[p].size(); ++f)
-      frames.push_back(read_with_noise(world_, light_[p][f], (seed * 1000 + p) * 100 + f));
-    io::Image white(world_.camera.width, world_.camera.height, {"Y"});
-    white.data = frames.back().light;
-    const camera::Detection seen = camera::detect_board(white, world_.board(), {});
-    scan::DecodeRequest request;
-    request.sequence = sequence_, request.width = world_.camera.width, request.height = world_.camera.height;
-    request.read = [&](std::size_t f) { return frames[f]; };
-    request.noise = manifest::Noise{world_.gain, world_.read};
-    const scan::Codes codes = scan::decode(request);
-    const scan::ProjectorCorners lit = scan::projector_corners({{0, &seen, &codes}}, world_.board());
-    views[2 * p] = {"camera", seen.corners, seen.noise_px, 0, 0, p};
+    const camera::Detection found = seen(p, seed);
+    const scan::Codes told = codes(p, seed);
+    const scan::ProjectorCorners lit = scan::projector_corners({{0, &found, &told}}, world_.board());
+    views[2 * p] = {"camera", found.corners, found.noise_px, 0, 0, p};
     views[2 * p + 1] = {"projector", lit.detection.corners, lit.detection.noise_px, 1, 0, p};
   });
   return views;

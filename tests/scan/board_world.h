@@ -9,6 +9,7 @@
 #include "camera/board.h"
 #include "camera/calibration.h"
 #include "scan/decode.h"
+#include "scan/projector_corners.h"
 #include "scan/sequence.h"
 
 namespace gonio::tests {
@@ -25,16 +26,16 @@ struct Turned {  // p' = R(axis * angle) p + t, Rodrigues
 };
 
 struct BoardWorld {
-  BentLens camera{400, 300, 520, 521, 203, 147, -0.12, 0.05};
+  BentLens camera{320, 240, 416, 417, 162, 118, -0.12, 0.05};
   BentLens projector{480, 360, 700, 703, 236, 300, -0.09, 0.04};  // its axis leaves the picture low, as of most
   Turned projector_from_camera{{0.03, 0.28, 0.02}, {-0.165, -0.085, 0.03}};
   int columns = 9, rows = 6;  // inner corners
   double square = 0.022;
   double white = 0.8, black = 0.05, around = 0.3;  // albedo; about the board a wall in its plane
   double projected = 0.75, ambient = 0.05;         // what white reads; 1 is full
-  double gain = 600, read = 0.004;                // electrons at 1
-  int across = 8;
-  bool mirrored = false, exchanged = false;  // what the projector truly does with the picture's columns
+  double gain = 600, read = 0.004;                 // electrons at 1
+  int across = 3, at_edges = 16;                   // places of a pixel that light is summed over, a side
+  bool mirrored = false, exchanged = false;        // what the projector truly does with the picture's columns
   // Of board poses: tilted all round, over the whole picture.
   std::vector<Turned> poses(int count) const;
   camera::Board board() const;
@@ -51,11 +52,17 @@ class BoardSession {
  public:
   BoardSession(BoardWorld world, scan::Sequence sequence, int poses);
   std::vector<camera::View> views(std::uint64_t seed) const;
+  // Of one pose: what the camera's white picture shows, what its pixels are told, and what follows for the projector.
+  camera::Detection seen(std::size_t pose, std::uint64_t seed) const;
+  scan::Codes codes(std::size_t pose, std::uint64_t seed) const;
+  scan::ProjectorCorners corners(std::size_t pose, std::uint64_t seed) const;
   camera::CalibrationSetup setup() const;
   const BoardWorld& world() const { return world_; }
   const std::vector<std::vector<std::vector<float>>>& light() const { return light_; }  // pose, frame
 
  private:
+  scan::CameraFrame frame(std::size_t pose, std::size_t frame, std::uint64_t seed) const;
+
   BoardWorld world_;
   scan::Sequence sequence_;
   std::vector<std::vector<std::vector<float>>> light_;

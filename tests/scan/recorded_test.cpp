@@ -3,12 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <opencv2/core.hpp>
+#include <set>
 
 #include "base/text.h"
+#include "camera/calibration.h"
 #include "data.h"
+#include "io/csv.h"
 #include "io/grey.h"
 #include "scan/decode.h"
+#include "scan/projector_corners.h"
 #include "scan/triangulate.h"
 #include "stats/intervals.h"
 
@@ -90,9 +95,9 @@ TEST(RecordedStructuredLight, BagUnderAGrayCodeIsThatOfThePeer) {
 }
 
 // The projector's pixel j shows cos(2 pi j / pitch - shift).
-Sequence slstudio(std::span<const double> periods) {
-  Sequence s = cosine_sequence(1824, 1140, std::span(both, 1), periods, 3);
-  for (Shown& f : s.frames) f.shift_rad += pi * f.periods / 1824;
+Sequence slstudio(std::span<const double> periods, std::size_t axes = 1) {
+  Sequence s = cosine_sequence(1824, 1140, std::span(both, axes), periods, 3);
+  for (Shown& f : s.frames) f.shift_rad += pi * f.periods / s.size(f.axis);
   return s;
 }
 
@@ -168,6 +173,97 @@ TEST(RecordedStructuredLight, BoardsAreAsFlatAsByThePeer) {
     EXPECT_LT(plane.rms_mm, 1.03 * board.peer_mm) << board.folder;
     EXPECT_NEAR(plane.stated_mm / plane.rms_mm, 1, 0.35) << board.folder;  // the rest is the projector's ripple
   }
+}
+
+struct PeerCorner {
+  Vec2 camera, projector;
+};
+std::vector<PeerCorner> peer_corners(const std::string& recording) {
+  std::vector<PeerCorner> corners;
+  const io::Csv table = io::read_csv(tests::data("structured-light/slstudio_calibration/peer_corners.csv"));
+  for (const auto& row : table.rows)
+    if (row[0] == recording)
+      corners.push_back({{std::stod(row[4]), std::stod(row[5])}, {std::stod(row[6]), std::stod(row[7])}});
+  return corners;
+}
+
+const camera::Board slstudio_board{camera::BoardKind::checkerboard, 9, 13, 0.01, 0, "", {}};
+
+// The camera's corners, in pixels of the whole picture, and the projector's that follow.
+std::pair<camera::Detection, camera::Detection> corners_of(const std::filesystem::path& folder, Vec2 cut) {
+  const double periods[] = {16, 1};
+  const io::GreyImage first = io::read_grey(folder / "frame_00.png");
+  DecodeRequest request;
+  request.sequence = slstudio(periods, 2), request.width = first.width, request.height = first.height;
+  request.read = reader(folder, "frame_%02d.png");
+  io::Image plain(first.width, first.height, {"Y"});
+  for (std::size_t f = 0; f < request.sequence.frames.size(); ++f)
+    for (std::size_t i = 0; const float v : request.read(f).light) plain.data[i++] += v / 12;
+  camera::Detection seen = camera::detect_board(plain, slstudio_board, {});
+  const Codes codes = decode(request);
+  camera::Detection lit = projector_corners({{0, &seen, &codes}}, slstudio_board).detection;
+  for (camera::Corner& c : seen.corners) c.pixel = c.pixel + cut;
+  return {seen, lit};
+}
+
+// Others' corners of the same pictures (OpenCV's, and a homography about each); and the camera and projector that three
+// boards make, beside the published ones, which six made.
+TEST(RecordedStructuredLight, BoardsCalibrateTheProjectorAsByThePeer) {
+  GONIO_NEEDS_DATA("structured-light/slstudio_calibration");
+  struct Board {
+    const char* name;
+    Vec2 cut;
+  };
+  std::vector<camera::View> views;
+  std::vector<double> in_camera, in_projector;
+  for (const Board& b : {Board{"3", {600, 169}}, Board{"4", {575, 96}}, Board{"5", {572, 148}}}) {
+    const auto [seen, lit] =
+        corners_of(tests::data("structured-light/slstudio_calibration") / (std::string("calseq") + b.name), b.cut);
+    EXPECT_GE(lit.corners.size(), 110u) << b.name;
+    for (const PeerCorner& peer : peer_corners(b.name))
+      for (const camera::Corner& c : seen.corners) {
+        const auto own = std::ranges::find(lit.corners, c.id, &camera::Corner::id);
+        if (norm(c.pixel - peer.camera) > 3 || own == lit.corners.end()) continue;
+        in_camera.push_back(norm(c.pixel - peer.camera)), in_projector.push_back(norm(own->pixel - peer.projector));
+      }
+    views.push_back({"camera", seen.corners, seen.noise_px, 0, 0, views.size() / 2});
+    views.push_back({"projector", lit.corners, lit.noise_px, 1, 0, views.size() / 2});
+  }
+  ASSERT_GT(in_camera.size(), 220u);
+  EXPECT_LT(stats::median(in_camera), 0.15);
+  EXPECT_LT(stats::median(in_projector), 0.35);
+  camera::CalibrationSetup setup;
+  const std::set<std::string> fixed{"aspect", "k2", "k3", "p1", "p2"};
+  std::set<std::string> centred = fixed;  // as the published camera is
+  centred.insert("principal-point");
+  setup.cameras = {{"camera", 1688, 1352, "radial-tangential", centred, {}},
+                   {"projector", 1824, 1140, "radial-tangential", fixed, {}}};
+  setup.boards.push_back({"board", slstudio_board, false, {}});
+  const camera::Calibration c = camera::calibrate(views, setup);
+  ASSERT_TRUE(c.converged);
+  EXPECT_LT(c.cameras[0].rms_px, 0.283);  // peer: on four boards; published: 0.282
+  EXPECT_LT(c.cameras[1].rms_px, 0.329);  // published: 0.463
+  const Slstudio published = slstudio_stations(1688, 1352, 0, 0);
+  const auto sigmas = [&](std::size_t k, const char* name, double value, double said) {
+    std::printf("%s %s: %.2f +- %.2f, published %.2f\n", setup.cameras[k].name.c_str(), name, value, *c.sigma(name, k),
+                said);
+    return std::abs(value - said) / c.sigma(name, k).value_or(1e9);
+  };
+  for (std::size_t k = 0; k < 2; ++k) {
+    const camera::Intrinsics& own = c.cameras[k].lens;
+    const camera::Intrinsics& said = (k == 0 ? published.camera : published.projector).lens.intrinsics();
+    EXPECT_LT(sigmas(k, "fx_px", own.fx_px, said.fx_px), 4);
+    EXPECT_LT(sigmas(k, "cx_px", own.cx_px, said.cx_px), 5);
+    EXPECT_LT(sigmas(k, "cy_px", own.cy_px, said.cy_px), 5);
+    sigmas(k, "k1", own.distortion[0], said.distortion[0]);
+  }
+  const Vec3 at = c.cameras[1].rig_from_camera.translation_m, said = published.projector.rig_from_camera.translation_m;
+  std::printf(
+      "projector at %.2f %.2f %.2f mm, published %.2f %.2f %.2f; rms %.3f %.3f; corners off the peer's by %.3f %.3f "
+      "px\n",
+      1e3 * at.x, 1e3 * at.y, 1e3 * at.z, 1e3 * said.x, 1e3 * said.y, 1e3 * said.z, c.cameras[0].rms_px,
+      c.cameras[1].rms_px, stats::median(in_camera), stats::median(in_projector));
+  EXPECT_LT(norm(at - said), 3e-3);
 }
 
 TEST(RecordedStructuredLight, ASkullIsWhereThePeerHasIt) {

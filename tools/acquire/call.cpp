@@ -112,6 +112,8 @@ void start_fresh(manifest::Document& d) {
   for (const auto& [name, lamp] : d.laboratory.entry.front().lamps)
     std::erase_if(d.lights,
                   [&](const auto& e) { return is_light_at_step(e.first, lamp.light.empty() ? name : lamp.light); });
+  for (const auto& [name, screen] : d.laboratory.entry.front().screens)
+    std::erase_if(d.lights, [&](const auto& e) { return is_light_at_step(e.first, name); });
 }
 
 }  // namespace

@@ -23,8 +23,10 @@ manifest::Pose<frame::World, frame::Object> leaning(double tilt_rad, Vec3 middle
   return {{quaternion_of_rotation_vector({tilt_rad, 0.3 * tilt_rad, 0}), middle_m}, {}};
 }
 
-void write_plate(const std::filesystem::path& out) {
+// The lens is told, too: what the description believes of it may be calibrated by then.
+void write_plate(const manifest::Document& scanner, const std::filesystem::path& out) {
   manifest::Document there;
+  there.cameras = scanner.cameras;
   there.meshes["plate"].plane_size_m = {0.16, 0.16};
   manifest::Surface& matte = there.surfaces["plate"];
   matte.model = "diffuse";
@@ -41,13 +43,13 @@ manifest::Document specimen_scanner(const std::filesystem::path& out) {
   document.images.clear();
   document.lights.clear();
   document.objects.front().world_from_object = leaning(28 * degree, {0.012, 0.008, 0.05});
-  write_plate(out);
   manifest::Camera& lens = document.cameras.at("camera");
   lens.width_px = 320;
   lens.height_px = 240;
   lens.fx_px = lens.fy_px = 460;
   lens.cx_px = 162;
   lens.cy_px = 118;
+  write_plate(document, out);
   manifest::Light& light = document.lights["projector"];
   light.model = "projector";
   light.parameters = {{"position_m", std::vector<double>{aside_m, 0.02, height_m}},
@@ -59,7 +61,7 @@ manifest::Document specimen_scanner(const std::filesystem::path& out) {
                       {"cy_px", 123.0},
                       {"watt_per_sr", std::vector<double>{1, 1, 1}}};
   manifest::Laboratory& lab = document.laboratory.entry.emplace_back();
-  manifest::LaboratoryCamera& camera = lab.cameras["camera"] = simulated_camera(0.02);
+  manifest::LaboratoryCamera& camera = lab.cameras["camera"] = simulated_camera(0.032);
   static_cast<Rigid<frame::World, frame::Camera>&>(camera.world_from_camera.emplace()) =
       render::looking_at({-aside_m, 0, height_m}, {0, 0, 0.03}, {0, 1, 0}, {1, 0, 0});
   manifest::LaboratoryScreen& screen = lab.screens["projector"];

@@ -188,6 +188,8 @@ TrueState::TrueState(const manifest::Document& believed, const manifest::Documen
     std::erase_if(document.lights, [&](const auto& e) { return is_light_at_step(e.first, light_of(name, lamp)); });
     lamp_number.emplace(name, static_cast<int>(lamp_number.size()));
   }
+  for (const auto& [name, screen] : lab.screens)  // what frames of earlier runs were lit by
+    std::erase_if(document.lights, [&](const auto& e) { return is_light_at_step(e.first, name); });
   for (const auto& [name, table] : lab.turntables)
     tables[name] = std::make_unique<desk::TrueTurntable>(
         clock, table.speed_rad_per_s.value_or(usual_table_speed_rad_per_s),
