@@ -41,7 +41,8 @@ std::vector<std::string> cameras_of(const Document& document, const ProjectorReq
                   "give projector and cameras different names");
     if (image.projection != request.projection || image.file.empty()) continue;
     if (image.camera.empty())
-      throw Error(Exit::data, image_place(document, i) + "/camera", "missing", "say which of the cameras took the image");
+      throw Error(Exit::data, image_place(document, i) + "/camera", "missing",
+                  "say which of the cameras took the image");
     if (std::ranges::find(cameras, image.camera) == cameras.end()) cameras.push_back(image.camera);
   }
   if (cameras.empty())
@@ -138,12 +139,12 @@ class Lookup {
     }
     ProjectorCorners found = projector_corners(cameras, camera::board_of(document, board));
     if (found.turned_over > 0)
-      throw Error(Exit::data, image_place(document, image),
-                  found.exchanged ? "has columns for rows: the projector's columns run down the board's mirror image"
-                                  : "is mirrored: the projector's pixels run the other way round than the camera's",
-                  found.exchanged
-                      ? "say of every frame which axis it shows, and of every image which frame"
-                      : "turn off mirroring in projector and camera, or state the frames as they were shown");
+      throw Error(
+          Exit::data, image_place(document, image),
+          own.id + (found.exchanged ? " has columns for rows: the projector's columns run down the board's mirror image"
+                                    : " is mirrored: the projector's pixels run the other way round than the camera's"),
+          found.exchanged ? "say of every frame which axis it shows, and of every image which frame"
+                          : "turn off mirroring in projector and camera, or state the frames as they were shown");
     return found.detection;
   }
 

@@ -52,20 +52,18 @@ class BoardSession {
  public:
   BoardSession(BoardWorld world, scan::Sequence sequence, int poses);
   std::vector<camera::View> views(std::uint64_t seed) const;
+  scan::CameraFrame frame(std::size_t pose, std::size_t frame, std::uint64_t seed) const;
   // Of one pose: what the camera's white picture shows, what its pixels are told, and what follows for the projector.
   camera::Detection seen(std::size_t pose, std::uint64_t seed) const;
   scan::Codes codes(std::size_t pose, std::uint64_t seed) const;
   scan::ProjectorCorners corners(std::size_t pose, std::uint64_t seed) const;
   camera::CalibrationSetup setup() const;
   const BoardWorld& world() const { return world_; }
-  const std::vector<std::vector<std::vector<float>>>& light() const { return light_; }  // pose, frame
 
  private:
-  scan::CameraFrame frame(std::size_t pose, std::size_t frame, std::uint64_t seed) const;
-
   BoardWorld world_;
   scan::Sequence sequence_;
-  std::vector<std::vector<std::vector<float>>> light_;
+  std::vector<std::vector<std::vector<float>>> light_;  // pose, frame
 };
 
 // Cosines with numbers of periods, columns and rows, and a white picture at the end.

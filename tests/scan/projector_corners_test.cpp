@@ -97,7 +97,7 @@ TEST(ProjectorCorners, CalibrateAProjectorWithinItsIntervals) {
   RecordProperty("inside", std::to_string(numbers.inside / numbers.all));
   const double share = numbers.inside / numbers.all;
   EXPECT_GT(share, rounds() < 20 ? 0.88 : 0.93) << "of " << numbers.all;
-  EXPECT_LT(share, rounds() < 20 ? 1.01 : 0.97);
+  EXPECT_LT(share, rounds() < 20 ? 1.01 : 0.985);  // the scatter between shots widens intervals, and narrows none
 }
 
 // The calibration with one of its numbers changed.

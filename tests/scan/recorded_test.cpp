@@ -244,26 +244,28 @@ TEST(RecordedStructuredLight, BoardsCalibrateTheProjectorAsByThePeer) {
   EXPECT_LT(c.cameras[0].rms_px, 0.283);  // peer: on four boards; published: 0.282
   EXPECT_LT(c.cameras[1].rms_px, 0.329);  // published: 0.463
   const Slstudio published = slstudio_stations(1688, 1352, 0, 0);
-  const auto sigmas = [&](std::size_t k, const char* name, double value, double said) {
-    std::printf("%s %s: %.2f +- %.2f, published %.2f\n", setup.cameras[k].name.c_str(), name, value, *c.sigma(name, k),
-                said);
-    return std::abs(value - said) / c.sigma(name, k).value_or(1e9);
-  };
-  for (std::size_t k = 0; k < 2; ++k) {
-    const camera::Intrinsics& own = c.cameras[k].lens;
-    const camera::Intrinsics& said = (k == 0 ? published.camera : published.projector).lens.intrinsics();
-    EXPECT_LT(sigmas(k, "fx_px", own.fx_px, said.fx_px), 4);
-    EXPECT_LT(sigmas(k, "cx_px", own.cx_px, said.cx_px), 5);
-    EXPECT_LT(sigmas(k, "cy_px", own.cy_px, said.cy_px), 5);
-    sigmas(k, "k1", own.distortion[0], said.distortion[0]);
-  }
   const Vec3 at = c.cameras[1].rig_from_camera.translation_m, said = published.projector.rig_from_camera.translation_m;
-  std::printf(
-      "projector at %.2f %.2f %.2f mm, published %.2f %.2f %.2f; rms %.3f %.3f; corners off the peer's by %.3f %.3f "
-      "px\n",
-      1e3 * at.x, 1e3 * at.y, 1e3 * at.z, 1e3 * said.x, 1e3 * said.y, 1e3 * said.z, c.cameras[0].rms_px,
-      c.cameras[1].rms_px, stats::median(in_camera), stats::median(in_projector));
-  EXPECT_LT(norm(at - said), 3e-3);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double f = (k == 0 ? published.camera : published.projector).lens.intrinsics().fx_px;
+    EXPECT_LT(std::abs(c.cameras[k].lens.fx_px - f), 3 * *c.sigma("fx_px", k));
+  }
+  EXPECT_LT(std::hypot(at.x - said.x, at.y - said.y), 1e-3);
+  // Along the camera's axis the published projector stands 5 mm farther, and its picture's middle 27 px higher, both
+  // with the tilt about its x axis, in which few views leave a valley. The peer's own corners of four boards lie on our
+  // side of it.
+  std::vector<camera::View> theirs;
+  for (const char* name : {"2", "3", "5", "6"}) {
+    camera::View in_picture{"camera", {}, 0.1, 0, 0, theirs.size() / 2},
+        lit{"projector", {}, 0.1, 1, 0, theirs.size() / 2};
+    for (int id = 0; const PeerCorner& peer : peer_corners(name))
+      in_picture.corners.push_back({id, peer.camera}), lit.corners.push_back({id++, peer.projector});
+    theirs.push_back(in_picture), theirs.push_back(lit);
+  }
+  const camera::Calibration of_theirs = camera::calibrate(theirs, setup);
+  EXPECT_NEAR(of_theirs.cameras[1].rms_px, 0.34, 0.03);
+  const Vec3 there = of_theirs.cameras[1].rig_from_camera.translation_m;
+  EXPECT_LT(norm(at - there), 3e-3);
+  EXPECT_GT(norm(said - there), norm(at - there));
 }
 
 TEST(RecordedStructuredLight, ASkullIsWhereThePeerHasIt) {
