@@ -21,6 +21,7 @@
 #include "manifest/sections/projection.h"
 #include "manifest/sections/rig.h"
 #include "process.h"
+#include "reassembly/specimen.h"
 #include "stats/intervals.h"
 
 namespace gonio::acquisition {
@@ -110,7 +111,10 @@ TEST_F(Scanner, APlateIsShownRecordedMeasuredAndTakenAsBackground) {
   const manifest::Document plane = manifest::read_document(folder_ / "plane.json");
   ASSERT_FALSE(plane.acceptance.empty());
   EXPECT_EQ(plane.acceptance.front().quantity, "flatness");
-  write_file(folder_ / "bowl.json", done({"reassemble", "--specimen", "bowl", "--out", "bowl"}));
+  write_file(
+      folder_ / "bowl.json",
+      manifest::print_document(reassembly::specimen(folder_ / "bowl", {.width_px = 320, .height_px = 240, .spp = 1}),
+                               folder_.path()));
   const Ended placed = run({"reassemble", "bowl.json", "--piece", "bowl/bowl.json", "--background",
                             "scan/turntable-0001.ply", "--out", "pieces", "--allow-outside"});
   EXPECT_EQ(placed.status, 0) << placed.err;
