@@ -17,7 +17,6 @@
 #include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/cloud.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/projection.h"
 #include "manifest/sections/rig.h"
 #include "scan/scan_page.h"
@@ -187,11 +186,10 @@ ScanSummary scan_document(Document& document, const ScanRequest& request) {
                             ? points_of_cameras(codes[0], stations[0], codes[1], stations[1], sequence.width_px)
                             : points_of_projector(codes[0], stations[0], stations[1]);
     for (std::size_t c = 0; c < codes.size(); ++c) log_noise(request.cameras[c], codes[c]);
-    const auto& pose = document.images[view.cameras[0][0]].world_from_camera;
+    const auto pose = world_from_camera(document, view.cameras[0][0]);
     const auto path = request.output_path(file_stem(view.name) + ".ply");
     if (pose) {
-      const Rigid<frame::World, frame::Camera>& world_from_camera = *pose;
-      io::write_ply(path, mesh_of(cloud, world_from_camera * inverse(stations[0].rig_from_camera)), columns);
+      io::write_ply(path, mesh_of(cloud, *pose * inverse(stations[0].rig_from_camera)), columns);
     } else {
       io::write_ply(path, mesh_of(cloud, Rigid<frame::Rig, frame::Rig>{}), columns);
     }

@@ -120,6 +120,11 @@ std::vector<ScanView> views_of(const Document& document, const std::string& proj
   return views;
 }
 
+std::optional<Rigid<frame::World, frame::Camera>> world_from_camera(const Document& document, std::size_t image) {
+  const auto& pose = document.images[image].world_from_camera;
+  return pose ? std::optional<Rigid<frame::World, frame::Camera>>(*pose) : std::nullopt;
+}
+
 CameraFrame read_frame(const Document& document, std::size_t image, int width, int height) {
   if (std::optional<CameraFrame> codes = read_codes(document, image, width, height)) return std::move(*codes);
   const ImageEntry& entry = document.images[image];

@@ -1,9 +1,11 @@
 // The views of a projection among the manifest's images, and what their frames say. For this room.
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "geom/rigid.h"
 #include "manifest/sections/forward.h"
 #include "scan/decode.h"
 
@@ -20,6 +22,10 @@ struct ScanView {
 // Error(data | no_input) where a frame is missing, or there twice.
 std::vector<ScanView> views_of(const manifest::Document& document, const std::string& projection,
                                const std::vector<std::string>& cameras);
+
+// Where the camera stood, if an image says so.
+std::optional<Rigid<frame::World, frame::Camera>> world_from_camera(const manifest::Document& document,
+                                                                    std::size_t image);
 
 // Error(data) for a picture of another size.
 CameraFrame read_frame(const manifest::Document& document, std::size_t image, int width, int height);

@@ -5,8 +5,8 @@
 #include "base/atomic_file.h"
 #include "geom/angle.h"
 #include "manifest/document.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
@@ -40,7 +40,7 @@ void write_plate(const manifest::Document& scanner, const std::filesystem::path&
 
 manifest::Document specimen_scanner(const std::filesystem::path& out) {
   manifest::Document document = render::board_specimen(out);
-  document.images.clear();
+  manifest::keep_images(document, {});
   document.lights.clear();
   document.objects.front().world_from_object = leaning(28 * degree, {0.012, 0.008, 0.05});
   manifest::Camera& lens = document.cameras.at("camera");

@@ -245,7 +245,8 @@ void TrueState::show(const std::string& name, const std::string& path) {
   const auto light = document.lights.find(name);
   if (light == document.lights.end() || !is_screen(light->second))
     throw Error(Exit::data, manifest::place(document, "/laboratory/screens/" + name),
-                "is no light of the scene: it shows nothing but black", "enter it in lights, of model screen or projector");
+                "is no light of the scene: it shows nothing but black",
+                "enter it in lights, of model screen or projector");
   const io::RasterHeader head = io::read_raster_header(read_file(path), path);
   if (head.width != static_cast<std::uint64_t>(screen.width_px) ||
       head.height != static_cast<std::uint64_t>(screen.height_px))
