@@ -10,7 +10,7 @@ complete -c reassemble -l least-cover -x -d 'Share of a markers outline that has
 complete -c reassemble -l free-scale -d 'The tomographs scale is fitted with the poses, one for all pieces; their meshes are written anew.'
 complete -c reassemble -l max-error -x -d 'Exit 2 where a pieces markers are placed less surely than this (one standard deviation).'
 complete -c reassemble -l marker-surface -x -d 'Markers enter the scene as spheres with this surface. Default: they do not.'
-complete -c reassemble -l background -r -d 'Mesh of the surroundings, scanned in place: a PLY file in the worlds frame.'
+complete -c reassemble -l background -r -d 'Mesh of the surroundings, scanned in place: a PLY file in the worlds frame, or the cloud of one camera and a projector (structured-light).'
 complete -c reassemble -l background-surface -x -d 'Its surface, where no label says another.'
 complete -c reassemble -l labels -d 'Find out by the photographs which surface each face of the background has.'
 complete -c reassemble -l label-surface -x -d 'A surface that the background may have: name in surfaces. Default: found by themselves.'

@@ -2,8 +2,10 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "camera/bundle_adjustment.h"
+#include "camera/carried_corners.h"
 #include "linear/solve.h"
 
 namespace gonio::camera {
@@ -46,55 +48,99 @@ double directional(const FreeParameter& parameter, const Row& row, const std::ar
   return sum;
 }
 
-// Adds one view: its Jacobian, columns [shared that act on it, six of the placement, residual], rows weighted.
-void add_view(const View& view, std::size_t index, const BoardSetup& board, const std::vector<FreeParameter>& free,
-              const Adjustment& state, NormalEquations& n) {
-  std::vector<std::size_t> acting;
-  for (std::size_t p = 0; p < free.size(); ++p) {
-    if (acts_on(free[p], view)) acting.push_back(p);
+// How a view's predicted corners move: with the shared numbers that act on it or on the views that carry it, and with
+// the board's place, which all of them share.
+struct ViewMotion {
+  ViewMotion(const std::vector<View>& views, std::size_t index, const CalibrationSetup& setup, const Adjustment& state)
+      : view(views[index]),
+        board(setup.boards[view.board].board),
+        extent(board.extent()),
+        lens(state.lenses[view.camera]),
+        warp(state.warps[view.board]) {
+    const CameraFromRig& rig = state.camera_from_rig[view.camera];
+    const PlacedBoard& placed = state.placements[state.placement_of[index]];
+    chain = {transposed(matrix_of(rig.rotation)), rig.rotate(placed.translation_m)};
+    pose = rig * placed;
   }
+
+  // Adds factor times the derivatives of corner k, columns [acting, six of the placement], to `rows` and takes factor
+  // times its residual from `r`; false where the lens does not show it.
+  bool add(std::size_t k, const Eigen::Matrix2d& factor, const std::vector<const FreeParameter*>& acting,
+           Eigen::Matrix2Xd& rows, Eigen::Vector2d& r) const {
+    Vec2 pixel;
+    std::array<Row, 2> derivatives{};
+    const Corner& corner = view.corners[k];
+    if (!predict(lens, pose, extent, warp, board.corner_m(corner.id), pixel, derivatives)) return false;
+    const auto m = static_cast<Eigen::Index>(acting.size());
+    Eigen::Matrix2Xd own = Eigen::Matrix2Xd::Zero(2, m + 6);
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
+      const Row& row = derivatives[static_cast<std::size_t>(axis)];
+      const std::array<double, 12> motion = chain(row);
+      for (Eigen::Index p = 0; p < m; ++p) {
+        const FreeParameter& parameter = *acting[static_cast<std::size_t>(p)];
+        if (acts_on(parameter, view)) own(axis, p) = directional(parameter, row, motion);
+      }
+      for (Eigen::Index p = 0; p < 6; ++p) own(axis, m + p) = motion[static_cast<std::size_t>(6 + p)];
+    }
+    rows += factor * own;
+    r += factor * Eigen::Vector2d(corner.pixel.x - pixel.x, corner.pixel.y - pixel.y);
+    return true;
+  }
+
+  const View& view;
+  const Board& board;
+  BoardExtent extent;
+  const Intrinsics& lens;
+  const BoardWarp& warp;
+  Chain chain;
+  BoardPose pose;
+};
+
+// Adds one view: its Jacobian, columns [shared that act on it, six of the placement, residual], rows weighted.
+void add_view(const std::vector<View>& views, std::size_t index, const CalibrationSetup& setup,
+              const std::vector<FreeParameter>& free, const Adjustment& state, NormalEquations& n) {
+  const View& view = views[index];
+  const Carriers carriers(views, index);
+  const ViewMotion own(views, index, setup, state);
+  std::vector<std::optional<ViewMotion>> carrying(views.size());
+  for (const std::size_t v : carriers.views()) carrying[v].emplace(views, v, setup, state);
+  std::vector<const FreeParameter*> acting;
+  for (const FreeParameter& parameter : free)
+    if (acts_on(parameter, view) ||
+        std::ranges::any_of(carriers.views(), [&](std::size_t v) { return acts_on(parameter, views[v]); }))
+      acting.push_back(&parameter);
   const auto m = static_cast<Eigen::Index>(acting.size());
-  const CameraFromRig& rig = state.camera_from_rig[view.camera];
-  const PlacedBoard& placed = state.placements[state.placement_of[index]];
-  const Chain chain{transposed(matrix_of(rig.rotation)), rig.rotate(placed.translation_m)};
-  const BoardPose pose = rig * placed;
-  const BoardExtent extent = board.board.extent();
   Matrix j(m + 7, 2 * static_cast<Eigen::Index>(view.corners.size()));  // transposed: a corner's row is a column
   Eigen::Index rows = 0;
-  std::array<Row, 2> derivatives{};
   for (std::size_t k = 0; k < view.corners.size(); ++k) {
-    const Corner& corner = view.corners[k];
     const double weight = state.view_weights[index] * state.precision[index][k];
-    Vec2 pixel;
-    if (!predict(state.lenses[view.camera], pose, extent, state.warps[view.board], board.board.corner_m(corner.id),
-                 pixel, derivatives)) {
+    Eigen::Matrix2Xd d = Eigen::Matrix2Xd::Zero(2, m + 6);
+    Eigen::Vector2d r(0, 0);
+    const Eigen::Matrix2d whitening = carriers.whitening(k);
+    bool seen = own.add(k, whitening, acting, d, r);
+    for (const CarriedFrom& from : carriers.of(k))
+      seen = seen && carrying[from.view]->add(from.corner, -whitening * from.slope, acting, d, r);
+    if (!seen) {
       n.cost += state.loss_px * (2 * unseen_px - state.loss_px);
       continue;
     }
-    const Vec2 r = corner.pixel - pixel;
-    const double size = std::sqrt(weight) * norm(r);
+    const double size = std::sqrt(weight) * r.norm();
     const double robust = size > state.loss_px ? state.loss_px / size : 1;
     n.cost += size > state.loss_px ? state.loss_px * (2 * size - state.loss_px) : size * size;
-    n.squares += robust * weight * dot(r, r);
+    n.squares += robust * weight * r.squaredNorm();
     n.coordinates += 2 * robust;
     const double root = std::sqrt(robust * weight);
-    for (std::size_t axis = 0; axis < 2; ++axis, ++rows) {
-      const std::array<double, 12> motion = chain(derivatives[axis]);
-      for (Eigen::Index p = 0; p < m; ++p) {
-        j(p, rows) = root * directional(free[acting[static_cast<std::size_t>(p)]], derivatives[axis], motion);
-      }
-      for (Eigen::Index p = 0; p < 6; ++p) j(m + p, rows) = root * motion[static_cast<std::size_t>(6 + p)];
-      j(m + 6, rows) = root * (axis == 0 ? r.x : r.y);
+    for (Eigen::Index axis = 0; axis < 2; ++axis, ++rows) {
+      j.col(rows).head(m + 6) = root * d.row(axis).transpose();
+      j(m + 6, rows) = root * r(axis);
     }
   }
   const auto used = j.leftCols(rows);
   const Matrix gram = used * used.transpose();
   const std::size_t p = state.placement_of[index];
   for (Eigen::Index s = 0; s < m; ++s) {
-    const auto to = static_cast<Eigen::Index>(acting[static_cast<std::size_t>(s)]);
-    for (Eigen::Index t = 0; t < m; ++t) {
-      n.a(to, static_cast<Eigen::Index>(acting[static_cast<std::size_t>(t)])) += gram(s, t);
-    }
+    const auto to = acting[static_cast<std::size_t>(s)] - free.data();
+    for (Eigen::Index t = 0; t < m; ++t) n.a(to, acting[static_cast<std::size_t>(t)] - free.data()) += gram(s, t);
     n.g(to) += gram(s, m + 6);
     n.b[p].row(to) += gram.block<1, 6>(s, m);
   }
@@ -159,7 +205,7 @@ NormalEquations normal_equations(const std::vector<View>& views, const Calibrati
                     .c = std::vector<Pose6>(placements, Pose6::Zero()),
                     .h = std::vector<Eigen::Matrix<double, 6, 1>>(placements, Eigen::Matrix<double, 6, 1>::Zero())};
   for (std::size_t i = 0; i < views.size(); ++i) {
-    if (state.view_weights[i] > 0) add_view(views[i], i, setup.boards[views[i].board], free, state, n);
+    if (state.view_weights[i] > 0) add_view(views, i, setup, free, state, n);
   }
   return n;
 }

@@ -234,9 +234,9 @@ void enter_rig(const std::vector<std::string>& cameras, const std::vector<std::s
   }
 }
 
-void check_calibration(const manifest::Document& document) {
+void check_calibration(const manifest::Document& document, bool projector) {
   refuse_mechanisms(document);
-  sessions_of(document);
+  sessions_of(document, projector);
 }
 
 namespace {
@@ -261,12 +261,12 @@ void judge_cameras(const std::vector<View>& views, const CalibrationSetup& setup
 
 Exit calibrate_document(manifest::Document& document, const CalibrationRequest& request) {
   Exit worst = Exit::done;
-  std::vector<Session> sessions = sessions_of(document);
+  std::vector<Session> sessions = sessions_of(document, request.look_up != nullptr);
   for (Session& session : sessions) {
     check_models(session, request, document);
-    look_at_all(session, request.detection);
+    look_at_all(session, request, document);
     for (const Picture& picture : session.pictures) {
-      if (request.note_input) request.note_input(picture.path);
+      if (request.note_input && !picture.path.empty()) request.note_input(picture.path);
     }
     check_pictures(document, session);
     const std::vector<View> views = views_of(document, session);

@@ -9,6 +9,7 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -21,6 +22,13 @@ namespace gonio::camera {
 
 struct CameraResult;  // quality/projection_law.h
 struct Quality;       // quality/quality.h
+
+// What a camera's picture shows of a board.
+struct SeenBoard {
+  std::size_t image = 0;   // place in images
+  std::size_t camera = 0;  // of the calibration: LookedUp::At
+  const Detection& detection;
+};
 
 struct CalibrationRequest {
   std::string model = "radial-tangential";  // one of calibrated_models(), or "auto": chosen by held-out views
@@ -35,6 +43,13 @@ struct CalibrationRequest {
   std::function<void(const CameraResult& camera, const Quality& quality, const std::string& suffix,
                      manifest::Document& document)>
       report;
+  // Pictures that are no file of their own (a mean of several): of images for which it answers.
+  std::function<std::optional<io::GreyImage>(const manifest::Document& document, std::size_t image)> picture{};
+  // Corners of images that have no file, because no camera took them: a projector's views. `seen`: the same board in
+  // the same shot. The camera of such an image states its size.
+  std::function<Detection(const manifest::Document& document, std::size_t image, const std::string& board,
+                          const std::vector<SeenBoard>& seen)>
+      look_up{};
   std::filesystem::path corners_csv;                             // empty: the table's rows stand in the manifest
   std::function<void(const std::filesystem::path&)> note_input;  // called for every picture read
 };
@@ -49,8 +64,8 @@ void enter_pictures(const std::vector<std::string>& paths, const std::string& mo
 void enter_rig(const std::vector<std::string>& cameras, const std::vector<std::string>& paths, const std::string& model,
                manifest::Document& document);
 
-// Everything that can be refused without looking at a picture.
-void check_calibration(const manifest::Document& document);
+// Everything that can be refused without looking at a picture. `projector`: images without a file are its views.
+void check_calibration(const manifest::Document& document, bool projector = false);
 
 // Exit::quality where a gate failed (each said on stderr in one sentence); Error(data) where no picture shows its
 // board.

@@ -15,7 +15,9 @@
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/board.h"
+#include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
+#include "manifest/sections/projection.h"
 
 namespace gonio::camera {
 namespace {
@@ -46,6 +48,13 @@ std::string camera_id_of(const manifest::Document& document, std::size_t index) 
               "say which of the cameras took the image");
 }
 
+// Under a pattern no corner is where it seems to be.
+bool shows_board(const manifest::Document& document, const manifest::ImageEntry& image) {
+  if (image.projection.empty() || !image.board.empty() || !image.boards.empty()) return true;
+  const manifest::Projection& shown = document.projections.at(image.projection);
+  return image.shows && shown.frames.at(static_cast<std::size_t>(*image.shows)).show == "white";
+}
+
 // The first of the cameras that one is tied to, directly or through others, by images of one shot.
 std::map<std::string, std::string> leaders(const manifest::Document& document) {
   std::map<std::string, std::string> leader, first_of_shot;
@@ -54,6 +63,7 @@ std::map<std::string, std::string> leaders(const manifest::Document& document) {
     return camera;
   };
   for (std::size_t i = 0; i < document.images.size(); ++i) {
+    if (!shows_board(document, document.images[i])) continue;
     const std::string camera = camera_id_of(document, i);
     leader.emplace(camera, camera);
     if (document.images[i].shot.empty()) continue;
@@ -83,9 +93,14 @@ void enter_sightings(const manifest::Document& document, std::size_t index, Sess
   }
 }
 
-void look(Picture& picture, const std::vector<Board>& boards, DetectionOptions options) {
+void look(Picture& picture, const std::vector<Board>& boards, const CalibrationRequest& request,
+          const manifest::Document& document) {
+  if (picture.path.empty()) return;
+  DetectionOptions options = request.detection;
   options.parts = options.parts && picture.by_itself;
-  const io::GreyImage image = io::read_grey(picture.path);
+  std::optional<io::GreyImage> made;
+  if (request.picture) made = request.picture(document, picture.entry);
+  const io::GreyImage image = made ? std::move(*made) : io::read_grey(picture.path);
   picture.width_px = image.width;
   picture.height_px = image.height;
   for (Sighting& sighting : picture.sightings) {
@@ -93,7 +108,8 @@ void look(Picture& picture, const std::vector<Board>& boards, DetectionOptions o
   }
 }
 
-void settle_layout(Session& session, std::size_t index, const DetectionOptions& options) {
+void settle_layout(Session& session, std::size_t index, const CalibrationRequest& request,
+                   const manifest::Document& document) {
   Board& board = session.boards[index];
   if (!board.layout_matters() || board.legacy) return;
   std::array<int, 2> votes{};
@@ -112,7 +128,21 @@ void settle_layout(Session& session, std::size_t index, const DetectionOptions& 
         picture.sightings, [&](const Sighting& s) { return s.board == index && s.detection.legacy != *board.legacy; });
     if (other) others.push_back(&picture);
   }
-  parallel_for(0, others.size(), [&](std::size_t i) { look(*others[i], session.boards, options); });
+  parallel_for(0, others.size(), [&](std::size_t i) { look(*others[i], session.boards, request, document); });
+}
+
+void look_up(Session& session, Picture& picture, const CalibrationRequest& request,
+             const manifest::Document& document) {
+  const manifest::Camera& camera = document.cameras.at(session.cameras[picture.camera]);
+  picture.width_px = camera.width_px, picture.height_px = camera.height_px;
+  for (Sighting& own : picture.sightings) {
+    std::vector<SeenBoard> seen;
+    for (const Picture& p : session.pictures)
+      for (const Sighting& s : p.sightings)
+        if (!p.path.empty() && p.shot == picture.shot && s.board == own.board && !s.detection.corners.empty())
+          seen.push_back({p.entry, p.camera, s.detection});
+    own.detection = request.look_up(document, picture.entry, session.board_ids[own.board], seen);
+  }
 }
 
 // A board of another size than stated would be a part of itself in every picture.
@@ -227,7 +257,7 @@ void check_found(const manifest::Document& document, const Session& session) {
     const Picture* first = nullptr;
     for (const Picture& picture : session.pictures) {
       for (const Sighting& s : picture.sightings) {
-        if (s.board != b) continue;
+        if (s.board != b || picture.path.empty()) continue;
         if (first == nullptr) first = &picture;
         detections.push_back(s.detection);
       }
@@ -235,7 +265,7 @@ void check_found(const manifest::Document& document, const Session& session) {
     const auto shows = [](std::size_t corners) {
       return [corners](const Detection& d) { return d.corners.size() >= corners; };
     };
-    if (std::ranges::any_of(detections, shows(enough_corners))) continue;
+    if (first == nullptr || std::ranges::any_of(detections, shows(enough_corners))) continue;
     const io::Image image = io::read_picture(first->path);
     if (detect_board(flipped(image), session.boards[b], {}).corners.size() >= enough_corners) {
       throw mirrored(manifest::place(document, image_pointer(first->entry)), document.images[first->entry].id);
@@ -246,13 +276,28 @@ void check_found(const manifest::Document& document, const Session& session) {
   }
 }
 
+void check_looked_up(const manifest::Document& document, const Session& session) {
+  const Picture* first = nullptr;
+  for (const Picture& picture : session.pictures) {
+    if (!picture.path.empty()) continue;
+    if (first == nullptr) first = &picture;
+    for (const Sighting& s : picture.sightings)
+      if (s.detection.corners.size() >= enough_corners) return;
+  }
+  if (first == nullptr) return;
+  throw Error(Exit::data, manifest::place(document, image_pointer(first->entry)),
+              document.images[first->entry].id +
+                  " has no corners, nor has any other view of it: " + first->sightings.front().detection.problem,
+              "light the boards by the projector, expose so that white is not saturated, and focus it");
+}
+
 }  // namespace
 
 std::string image_pointer(std::size_t index) {
   return "/images/" + std::to_string(index);
 }
 
-std::vector<Session> sessions_of(const manifest::Document& document) {
+std::vector<Session> sessions_of(const manifest::Document& document, bool projector) {
   if (document.images.empty()) {
     throw Error(Exit::data, manifest::place(document, "/images"), "empty", "name photographs of the board");
   }
@@ -266,7 +311,8 @@ std::vector<Session> sessions_of(const manifest::Document& document) {
   }
   for (std::size_t i = 0; i < document.images.size(); ++i) {
     const manifest::ImageEntry& image = document.images[i];
-    if (image.file.empty()) {
+    if (!shows_board(document, image)) continue;
+    if (image.file.empty() && !projector) {
       throw Error(Exit::data, manifest::place(document, image_pointer(i) + "/file"), "missing", "name the photograph");
     }
     const std::string camera = camera_id_of(document, i);
@@ -275,7 +321,7 @@ std::vector<Session> sessions_of(const manifest::Document& document) {
                   "camera " + camera + " has another image of shot " + image.shot, "give every moment its own name");
     }
     Session& session = list[session_of.at(leader.at(camera))];
-    Picture picture{i, manifest::picture_path(document, i), 0, 0, 0, 0, {}};
+    Picture picture{i, image.file.empty() ? "" : manifest::picture_path(document, i), 0, 0, 0, 0, {}};
     picture.camera = entered(session.cameras, camera);
     picture.shot =
         image.shot.empty() ? document.images.size() + i : shots.emplace(image.shot, shots.size()).first->second;
@@ -283,26 +329,32 @@ std::vector<Session> sessions_of(const manifest::Document& document) {
     picture.by_itself = image.shot.empty() && !image.base_from_tool && image.joints_rad.empty();
     session.pictures.push_back(std::move(picture));
   }
+  if (list.empty())
+    throw Error(Exit::data, manifest::place(document, "/images"), "show no board without a pattern on it",
+                "name the board in those that do, or calibrate the projector as well (--projector)");
   return list;
 }
 
-void look_at_all(Session& session, const DetectionOptions& options) {
+void look_at_all(Session& session, const CalibrationRequest& request, const manifest::Document& document) {
   {
     Progress progress("corners", session.pictures.size());
     parallel_for(0, session.pictures.size(), [&](std::size_t i) {
-      look(session.pictures[i], session.boards, options);
+      look(session.pictures[i], session.boards, request, document);
       progress.advance();
     });
   }
   for (std::size_t b = 0; b < session.boards.size(); ++b) {
-    settle_layout(session, b, options);
+    settle_layout(session, b, request, document);
     if (session.boards[b].kind == BoardKind::checkerboard) drop_parts_of_what_is_never_whole(session, b);
   }
+  for (Picture& picture : session.pictures)
+    if (picture.path.empty()) look_up(session, picture, request, document);
 }
 
 void check_pictures(const manifest::Document& document, const Session& session) {
   check_sizes(document, session);
   check_found(document, session);
+  check_looked_up(document, session);
   check_mirrored(document, session);
   check_duplicates(document, session);
 }

@@ -14,8 +14,8 @@ struct Sighting {  // a board that a picture is said to show
   std::size_t view = 0;  // place among the calibration's views
 };
 struct Picture {
-  std::size_t entry = 0;  // place in document.images
-  std::filesystem::path path;
+  std::size_t entry = 0;       // place in document.images
+  std::filesystem::path path;  // empty: nobody took it, and its corners are looked up
   int width_px = 0, height_px = 0;
   std::size_t camera = 0, shot = 0;
   std::vector<Sighting> sightings;
@@ -30,11 +30,13 @@ struct Session {
 std::string image_pointer(std::size_t index);
 
 // Cameras that share shots stand in one session; Error(data) for what the manifest leaves open.
-std::vector<Session> sessions_of(const manifest::Document& document);
+// Pictures of a pattern that is shown (`projection`) count where it is white, or where they name a board. `projector`:
+// images without a file are views of one.
+std::vector<Session> sessions_of(const manifest::Document& document, bool projector);
 
 // Searches all pictures; the layout of ChArUco boards is the one that the majority of all markers fit. Parts of plain
 // boards count where another picture of the session shows the whole.
-void look_at_all(Session& session, const DetectionOptions& options);
+void look_at_all(Session& session, const CalibrationRequest& request, const manifest::Document& document);
 
 // Error(data) for pictures of other sizes, the same picture twice, mirrored pictures, a board that no picture shows.
 void check_pictures(const manifest::Document& document, const Session& session);

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "camera/bundle_adjustment.h"
+#include "camera/carried_corners.h"
 #include "stats/intervals.h"
 
 namespace gonio::camera {
@@ -20,7 +21,7 @@ constexpr double set_aside_sigmas = 6;
 constexpr double suspicious = 2.5, hopeless = 6;  // noise of a view over the median of all
 constexpr std::size_t few_views = 6;              // too few to call one of them the odd one out
 constexpr int weighing_rounds = 4;
-constexpr double largest_precision = 9;  // and its inverse: no view outweighs another by more than 81
+constexpr double largest_precision = 9;  // and its inverse: no view outweighs another of its camera by more than 81
 
 bool spans_a_plane(const View& view, const Board& board) {  // corners on one line allow no pose
   std::set<int> columns, rows;
@@ -45,8 +46,9 @@ double rms(const std::vector<Vec2>& residual) {
 }
 
 // Residuals in units of a corner of precision 1.
-std::vector<Vec2> whitened(const View& view, const CalibrationSetup& setup, const Adjustment& state, std::size_t i) {
-  std::vector<Vec2> result = residuals(view, setup, state, i);
+std::vector<Vec2> whitened(const std::vector<View>& views, const CalibrationSetup& setup, const Adjustment& state,
+                           std::size_t i) {
+  std::vector<Vec2> result = misses(views, setup, state, i);
   for (std::size_t k = 0; k < result.size(); ++k) result[k] = result[k] * std::sqrt(state.precision[i][k]);
   return result;
 }
@@ -56,7 +58,7 @@ double usual_noise(const std::vector<View>& views, const CalibrationSetup& setup
   std::vector<Vec2> all;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (state.view_weights[i] == 0) continue;
-    for (const Vec2 r : whitened(views[i], setup, state, i)) all.push_back(r * std::sqrt(state.view_weights[i]));
+    for (const Vec2 r : whitened(views, setup, state, i)) all.push_back(r * std::sqrt(state.view_weights[i]));
   }
   return robust_noise(all);
 }
@@ -66,9 +68,9 @@ double usual_noise(const std::vector<View>& views, const CalibrationSetup& setup
 void set_precisions(const std::vector<View>& views, const CalibrationSetup& setup, Adjustment& state,
                     Calibration& result) {
   std::vector<std::vector<double>> variance(views.size());
-  std::vector<double> all;
+  std::vector<double> usual_variance(state.lenses.size(), 0.0), logarithms;
   for (std::size_t c = 0; c < state.lenses.size(); ++c) {
-    std::vector<double> known, excess;
+    std::vector<double> known, excess, own;
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (views[i].camera == c && state.view_weights[i] > 0 && views[i].noise_px > 0)
         known.push_back(views[i].noise_px);
@@ -77,25 +79,29 @@ void set_precisions(const std::vector<View>& views, const CalibrationSetup& setu
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (views[i].camera != c || state.view_weights[i] == 0) continue;
       const double noise = views[i].noise_px > 0 ? views[i].noise_px : usual;
-      for (const Corner& corner : views[i].corners) {
-        const double sigma = corner.sigma_px > 0 ? corner.sigma_px : noise;
-        variance[i].push_back(sigma * sigma);
-      }
-      const double scatter = robust_noise(residuals(views[i], setup, state, i));
+      const Carriers carriers(views, i);
+      for (std::size_t k = 0; k < views[i].corners.size(); ++k)
+        variance[i].push_back(carriers.variance_px2(k).value_or(noise * noise));
+      const double scatter = robust_noise(misses(views, setup, state, i));
       excess.push_back(scatter * scatter - stats::median(variance[i]));
     }
     const double common = std::max(0.0, stats::median(excess));
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (views[i].camera != c) continue;
-      for (double& v : variance[i]) all.push_back(v = std::max(common + v, 1e-12));
+      for (double& v : variance[i]) own.push_back(v = std::max(common + v, 1e-12));
     }
+    if (own.empty()) continue;
+    usual_variance[c] = stats::median(own);
+    logarithms.push_back(std::log(usual_variance[c]));
   }
-  const double reference = stats::median(all);
+  const double reference = std::exp(stats::mean(logarithms));
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (variance[i].empty()) continue;
     result.views[i].sigma_px = std::sqrt(stats::median(variance[i]));
     for (std::size_t k = 0; k < variance[i].size(); ++k) {
-      state.precision[i][k] = std::clamp(reference / variance[i][k], 1 / largest_precision, largest_precision);
+      const double usual = usual_variance[views[i].camera];
+      state.precision[i][k] =
+          reference / usual * std::clamp(usual / variance[i][k], 1 / largest_precision, largest_precision);
     }
   }
 }
@@ -109,7 +115,7 @@ bool weigh_views(const std::vector<View>& views, const CalibrationSetup& setup, 
     std::vector<double> scatter(views.size()), used;
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (views[i].camera != c || state.view_weights[i] == 0) continue;
-      scatter[i] = robust_noise(whitened(views[i], setup, state, i));
+      scatter[i] = robust_noise(whitened(views, setup, state, i));
       used.push_back(scatter[i]);
     }
     if (used.size() < few_views) continue;
@@ -129,18 +135,20 @@ bool weigh_views(const std::vector<View>& views, const CalibrationSetup& setup, 
   return changed;
 }
 
-void summarise_view(const View& view, const CalibrationSetup& setup, const Adjustment& state, std::size_t i,
-                    double limit, Calibration& result) {
+void summarise_view(const std::vector<View>& views, const CalibrationSetup& setup, const Adjustment& state,
+                    std::size_t i, double limit, Calibration& result) {
+  const View& view = views[i];
   CalibratedView& own = result.views[i];
   own.placement = state.placement_of[i];
   own.camera_from_board = state.pose(view, i);
   own.weight = state.view_weights[i];
   if (view.corners.size() < least_corners) return;
   own.residuals = residuals(view, setup, state, i);
+  const std::vector<Vec2> counted = whitened(views, setup, state, i);
   std::vector<Vec2> kept;
   for (std::size_t k = 0; k < own.residuals.size(); ++k) {
     const Vec2 r = own.residuals[k];
-    const double size = std::sqrt((own.weight > 0 ? own.weight : 1) * state.precision[i][k]) * norm(r);
+    const double size = std::sqrt(own.weight > 0 ? own.weight : 1) * norm(counted[k]);
     own.corner_weights.push_back(size > state.loss_px ? state.loss_px / size : 1);
     if (own.weight == 0 || size <= limit) kept.push_back(r);
   }
@@ -165,7 +173,7 @@ void summarise(const std::vector<View>& views, const CalibrationSetup& setup, co
   for (std::size_t p = 0; p < result.placements.size(); ++p) {
     result.placements[p].rig_from_board = state.placements[p];
   }
-  for (std::size_t i = 0; i < views.size(); ++i) summarise_view(views[i], setup, state, i, limit, result);
+  for (std::size_t i = 0; i < views.size(); ++i) summarise_view(views, setup, state, i, limit, result);
   double sum = 0;
   int corners = 0;
   for (CalibratedCamera& camera : result.cameras) {

@@ -64,8 +64,8 @@ SagEffects sag_effects(const std::vector<View>& views, const CalibrationSetup& s
   }
   const Matrix cross = s(free, held);
   SagEffects effects;
-  effects.usual =
-      linear::solve_ldlt(s(free, free), cross) * Eigen::Map<const Eigen::VectorXd>(size.data(), cross.cols()).asDiagonal();
+  effects.usual = linear::solve_ldlt(s(free, free), cross) *
+                  Eigen::Map<const Eigen::VectorXd>(size.data(), cross.cols()).asDiagonal();
   const Eigen::VectorXd scale = n.a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Matrix scaled = scale.asDiagonal() * s * scale.asDiagonal();
   const Eigen::VectorXd change = scale.asDiagonal() * linear::solve_ldlt(scaled, scale.asDiagonal() * g);

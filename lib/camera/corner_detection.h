@@ -6,6 +6,7 @@
 // local.
 #pragma once
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,22 @@ struct DetectionOptions {
   bool parts = false;
 };
 
+// A corner that no picture shows: a projector's pixel that was looked up at where a camera sees the corner. Errors of
+// the camera's corner move it, too: carried_corners.h.
+struct LookedUp {
+  struct At {
+    std::size_t camera = 0;         // of the same calibration, in the same shot
+    std::array<double, 4> slope{};  // d pixel / d the camera's pixel, row-major
+  };
+  std::vector<At> at;
+  std::array<double, 3> own{};  // xx, xy, yy: covariance at given camera's pixels, px^2
+};
+
 struct Corner {
   int id = 0;
   Vec2 pixel;
   double sigma_px = 0;  // of one coordinate, as the picture's noise around this corner lets expect; 0: not known
+  std::shared_ptr<const LookedUp> looked_up{};
 };
 
 struct Detection {

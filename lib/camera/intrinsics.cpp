@@ -126,7 +126,8 @@ void store(const Intrinsics& intrinsics, manifest::Camera& camera) {
   }
 }
 
-void enter_pinhole(manifest::Document& document, const std::string& name, int width_px, int height_px, double focal_px) {
+void enter_pinhole(manifest::Document& document, const std::string& name, int width_px, int height_px,
+                   double focal_px) {
   manifest::Camera& camera = document.cameras[name];
   camera.width_px = width_px;
   camera.height_px = height_px;

@@ -42,6 +42,7 @@ GONIO_LDLT(12, 1);
 GONIO_LDLT(12, 12);
 #undef GONIO_LDLT
 template Eigen::MatrixXd inverse(const Eigen::MatrixXd&);
+template Eigen::Matrix2d inverse(const Eigen::Matrix2d&);
 template Eigen::Matrix3d inverse(const Eigen::Matrix3d&);
 template Eigen::Matrix<double, 6, 6> inverse(const Eigen::Matrix<double, 6, 6>&);
 template Eigen::Matrix<double, 8, 8> inverse(const Eigen::Matrix<double, 8, 8>&);

@@ -7,10 +7,10 @@
 #include <map>
 
 #include "base/parallel.h"
-#include "geom/mat3_inverse.h"
 #include "photograph/noise_variance.h"
 #include "scan/bent_phase.h"
 #include "scan/frame_noise.h"
+#include "scan/shift_fit.h"
 
 namespace gonio::scan {
 namespace {
@@ -34,17 +34,6 @@ struct ShiftSums {
   std::vector<std::uint8_t> spoiled;
   std::vector<float> with_cos_2{}, with_sin_2{};  // of twice the shifts, where these tell the projector's exponent
 };
-
-// A + C cos + S sin fitted to readings at given shifts: (A, C, S) = inverse * (sum, with cos, with sin).
-Mat3 inverse_of(const std::vector<double>& shifts) {
-  Mat3 m{{}};
-  for (const double s : shifts) {
-    const double row[3] = {1, std::cos(s), std::sin(s)};
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) m(i, j) += row[i] * row[j];
-  }
-  return inverse(m);  // three shifts that differ: sequence_of()
-}
 
 struct Phase {
   double theta = 0, sigma = 0, mean = 0, amplitude = 0, amplitude_sigma = 0;
@@ -149,7 +138,7 @@ class CosineDecoder {
     const auto s = std::ranges::find_if(all, [](const ShiftSums& own) { return !own.with_cos_2.empty(); });
     if (s == all.end()) return;
     if (codes_.gamma_sigma == 0 && in_equal_steps(s->shifts_rad)) {
-      const Mat3 solve = inverse_of(s->shifts_rad);
+      const Mat3 solve = shift_fit(s->shifts_rad);
       std::vector<float> phase(s->of_all.size()), amplitude(phase.size());
       for (std::size_t i = 0; i < phase.size(); ++i) {
         const Phase p = phase_of(solve, s->of_all[i], s->with_cos[i], s->with_sin[i], codes_.noise);
@@ -175,7 +164,7 @@ class CosineDecoder {
     bent_.clear();
     const ProjectorGamma gamma{codes_.gamma, codes_.gamma_sigma};
     for (const ShiftSums& s : all) {
-      inverses.push_back(inverse_of(s.shifts_rad));
+      inverses.push_back(shift_fit(s.shifts_rad));
       if (gamma.bends()) bent_.emplace_back(gamma, s.shifts_rad, inverses.back());
     }
     parallel_for(0, (pixels + pixels_at_once - 1) / pixels_at_once, [&](std::size_t n) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "geom/mat3_inverse.h"
+#include "scan/shift_fit.h"
 
 namespace gonio::scan {
 namespace {
@@ -49,13 +49,7 @@ ToldPlace::ToldPlace(const Sequence& sequence, Axis axis) : size_(sequence.size(
     set.shifts_rad.push_back(s.shift_rad), set.times.push_back(static_cast<double>(f) / last - 0.5);
   }
   for (auto& [periods, set] : found) {
-    Mat3 normal{{}};
-    for (const double shift : set.shifts_rad) {
-      const double row[3] = {1, std::cos(shift), std::sin(shift)};
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) normal(i, j) += row[i] * row[j];
-    }
-    set.solve = inverse(normal);
+    set.solve = shift_fit(set.shifts_rad);
     sets_.push_back(std::move(set));
   }
 }

@@ -44,7 +44,7 @@ const World worlds[] = {
      "structured-light.subsurface",
      "-",
      0,
-     {.shape = Shape::balls, .rendered = 64, .scattering_per_m = 2000}},
+     {.shape = Shape::balls, .rendered = 512, .scattering_per_m = 3000}},
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "acquisition/desk/true_laboratory.h"
 #include "acquisition/plan/asked_steps.h"
 #include "acquisition/plan/parse_pattern.h"
+#include "acquisition/plan/shown_frames.h"
 #include "acquisition/run/frame_record.h"
 #include "acquisition/run/instrument_lock.h"
 #include "acquisition/run/runner.h"
@@ -111,6 +112,8 @@ void start_fresh(manifest::Document& d) {
   for (const auto& [name, lamp] : d.laboratory.entry.front().lamps)
     std::erase_if(d.lights,
                   [&](const auto& e) { return is_light_at_step(e.first, lamp.light.empty() ? name : lamp.light); });
+  for (const auto& [name, screen] : d.laboratory.entry.front().screens)
+    std::erase_if(d.lights, [&](const auto& e) { return is_light_at_step(e.first, name); });
 }
 
 }  // namespace
@@ -118,7 +121,12 @@ void start_fresh(manifest::Document& d) {
 const manifest::Plan& plan(cli::Invocation& call, const Laboratory& laboratory) {
   const std::vector<manifest::Plan> before = call.document.plans;
   if (call.flag("fresh")) start_fresh(call.document);
-  const Asked asked = asked_of(call);
+  Asked asked = asked_of(call);
+  if (call.given("show")) {
+    const ShownProjection shown = shown_projection(call.text("show"), "--show", call.document);
+    asked.steps = with_frames(asked.steps, shown, call.given("board-every"), call.document);
+    asked.words += "; " + shown.screen + " shows " + shown.projection;
+  }
   Progress progress("planning", asked.steps.size());
   manifest::Plan made =
       make_plan(call.document, laboratory, asked.steps, asked.words, plan_options_of(call), &progress);

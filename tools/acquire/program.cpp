@@ -1,6 +1,7 @@
 // acquire: plans views of an instrument, moves it, lights, photographs, and knows of every frame what it is
 // (lib/acquisition).
 #include "acquisition/desk/specimen_laboratory.h"
+#include "acquisition/plan/shown_frames.h"
 #include "acquisition/run/instrument.h"
 #include "base/progress.h"
 #include "cli/board_options.h"
@@ -29,6 +30,10 @@ void check(cli::Invocation& call) {
   acquisition::believed_laboratory(call.document);
   check_drawings(call);
   if (plans(call)) scene_of(call);
+  if (call.given("show")) {
+    if (!plans(call)) throw Error(Exit::usage, "--show", "needs a plan that is made now", "say which views: --plan");
+    acquisition::shown_projection(call.text("show"), "--show", call.document);
+  }
   if (call.flag("go") && call.out.empty())
     throw Error(Exit::usage, "--go", "has no folder for its frames", "give --out DIR");
   check_options_of(call);
@@ -81,7 +86,7 @@ const cli::Program& gonio_program() {
       .takes_seed = true,
       .takes_resume = true,
       .sections_read = {"files", "laboratory", "plans", "cameras", "lights", "objects", "surfaces", "mechanisms",
-                        "explanations", "images", "boards", "mountings"},
+                        "explanations", "images", "boards", "mountings", "projections"},
       .sections_written = {"files", "laboratory", "plans", "runs", "images", "robots", "boards"},
       .files = {{"frames/IMAGE.png", "raw frames, the sensor's own numbers, 8 or 16 bit"},
                 {"journal.jsonl", "what was intended and what came of it, a line each; what --resume goes by"}},
@@ -91,7 +96,8 @@ const cli::Program& gonio_program() {
                      "Kuffner & LaValle, RRT-Connect, ICRA 2000.",
                      "Universal Robots, Real-Time Data Exchange (RTDE) guide.", "AIA, GigE Vision 1.2.",
                      "EMVA, GenICam standard features naming convention 2.7."},
-      .see_also = {"calib-charuco(1)", "handeye(1)", "develop(1)", "render(1)", "explain(1)", "gonio-manifest(5)"},
+      .see_also = {"structured-light(1)", "calib-charuco(1)", "handeye(1)", "develop(1)", "render(1)", "explain(1)",
+                   "gonio-manifest(5)"},
       .check = check,
       .run = run};
   return program;

@@ -1,11 +1,14 @@
 // From the command line to a request.
 #include "tools/calib-charuco/options.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/quantity.h"
 #include "cli/board_options.h"
 #include "manifest/document.h"
 #include "manifest/sections/camera.h"
+#include "scan/projector_views.h"
 #include "tools/calib-charuco/page.h"
 
 namespace gonio::tools::calib_charuco {
@@ -65,6 +68,41 @@ void enter_cameras(cli::Invocation& call, const std::string& path) {
 
 }  // namespace
 
+namespace {
+
+scan::ProjectorRequest projector_of(const cli::Invocation& call) {
+  const auto all = names_in(call.document, "projections");
+  const std::string at = call.document.name + "#/projections";
+  if (all.empty())
+    throw Error(Exit::data, at, "has none", "structured-light --pattern writes what the projector shows");
+  if (!call.given("projection") && all.size() > 1)
+    throw Error(Exit::usage, "--projection", "is missing, and there are " + std::to_string(all.size()),
+                "say which the projector showed: --projection " + all.front());
+  const std::string name = call.given("projection") ? call.text("projection") : all.front();
+  if (std::ranges::find(all, name) == all.end())
+    throw Error(Exit::data, at, "has no " + name + " among " + std::to_string(all.size()),
+                "--projection " + all.front());
+  const std::string model = call.text("model") == "auto" ? "radial-tangential" : call.text("model");
+  return {call.text("projector"), name, model};
+}
+
+void enter_projector(cli::Invocation& call) {
+  const scan::ProjectorRequest request = projector_of(call);
+  if (request.projector.empty()) throw Error(Exit::usage, "--projector", "has an empty name", "name it");
+  if (call.given("IMAGE")) {
+    call.document.allow_outside = true;
+    std::vector<std::string> cameras{"camera"};
+    if (call.given("rig")) cameras = rig_of(call);
+    for (const std::string& name : cameras)
+      if (const auto [entry, fresh] = call.document.cameras.try_emplace(name); fresh)
+        entry->second.model = request.model;
+    scan::enter_board_sequences(call.texts("IMAGE"), request, cameras, call.text("response"), call.document);
+  }
+  scan::enter_projector_views(request, call.document);
+}
+
+}  // namespace
+
 CalibrationRequest request_of(cli::Invocation& call) {
   CalibrationRequest request;
   request.model = call.text("model");
@@ -87,6 +125,7 @@ CalibrationRequest request_of(cli::Invocation& call) {
     };
   }
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
+  if (call.given("projector")) scan::look_up_corners(projector_of(call), request, request.note_input);
   return request;
 }
 
@@ -101,6 +140,7 @@ void enter_command_line(cli::Invocation& call) {
   }
   if (cli::describes_board(call)) cli::enter_described_board(call);
   if (call.given("cameras")) enter_cameras(call, call.text("cameras"));
+  if (call.given("projector")) return enter_projector(call);
   // What the user names may lie anywhere.
   if (call.given("IMAGE") || call.given("dictionary-file")) call.document.allow_outside = true;
   if (!call.given("IMAGE")) {
@@ -122,6 +162,21 @@ std::vector<cli::Option> calibration_options() {
        .type = Type::text,
        .help = "Cameras held together, by words that the pictures' names contain; the rest of a name is the shot.",
        .metavar = "NAME,NAME"},
+      {.name = "projector",
+       .type = Type::text,
+       .help = "Also calibrate the projector that lit the boards, under this name, as a camera of their rig.",
+       .metavar = "NAME"},
+      {.name = "projection",
+       .type = Type::text,
+       .help = "What it showed at every view, of several in the manifest.",
+       .metavar = "NAME",
+       .needs = {"projector"}},
+      {.name = "response",
+       .type = Type::choice,
+       .help = "What the codes of photographs under a projection mean.",
+       .preset = "linear",
+       .choices = {"linear", "srgb"},
+       .needs = {"projector"}},
       {.name = "model",
        .type = Type::choice,
        .help = "Lens model; a camera of the manifest keeps its own unless this is given. auto: by held-out views.",

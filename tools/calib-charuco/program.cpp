@@ -23,7 +23,7 @@ void check(cli::Invocation& call) {
     return;
   }
   enter_command_line(call);
-  camera::check_calibration(call.document);
+  camera::check_calibration(call.document, call.given("projector"));
 }
 
 Exit run(cli::Invocation& call) {
@@ -66,7 +66,8 @@ const cli::Program& gonio_program() {
       .sentence = "calibrate a camera from photographs of a checkerboard or ChArUco board",
       .synopsis = {"--checkerboard CxR --square LENGTH [OPTION]... IMAGE...",
                    "--charuco CxR --square LENGTH --marker LENGTH --dictionary NAME [OPTION]... IMAGE...",
-                   "[-i FILE] [OPTION]...", "--draw FILE --charuco CxR --square LENGTH ..."},
+                   "[-i FILE] [OPTION]...", "--projector NAME -i shown.json [OPTION]... [VIEW/IMAGE]...",
+                   "--draw FILE --charuco CxR --square LENGTH ..."},
       .options = options(),
       .operands = {{.name = "IMAGE",
                     .type = Type::input_file,
@@ -74,7 +75,7 @@ const cli::Program& gonio_program() {
                     .repeat = true}},
       .standalone = {"draw"},
       .takes_out = true,
-      .sections_read = {"files", "boards", "cameras", "images", "mechanisms", "plans", "runs"},
+      .sections_read = {"files", "boards", "cameras", "images", "mechanisms", "plans", "projections", "runs"},
       .sections_written = {"files", "boards", "cameras", "rigs", "images", "tables", "plans"},
       .files = {{"corners.csv", "found corners: image, corner, board and pixel coordinates, sigma"},
                 {"calibration.html",
@@ -92,8 +93,9 @@ const cli::Program& gonio_program() {
            "S. Garrido-Jurado et al., Automatic generation and detection of highly reliable fiducial markers, Pattern "
            "Recognition 47(6), 2014.",
            "D. Kogan, mrcal: camera calibrations and more, 2021, on the uncertainty of projection.",
+           "D. Moreno, G. Taubin, Simple, accurate, and robust projector-camera calibration, 3DIMPVT 2012.",
            "T. Collins, A. Bartoli, Infinitesimal plane-based pose estimation, IJCV 109(3), 2014."},
-      .see_also = {"explain(1)", "render(1)", "gonio-manifest(5)", "gonio-conventions(7)"},
+      .see_also = {"structured-light(1)", "explain(1)", "render(1)", "gonio-manifest(5)", "gonio-conventions(7)"},
       .check = check,
       .run = run};
   return program;

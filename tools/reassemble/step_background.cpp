@@ -9,6 +9,7 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "manifest/sections/placement.h"
+#include "mesh/pixel_neighbours.h"
 #include "tools/reassemble/work.h"
 
 namespace gonio::tools::reassemble {
@@ -51,14 +52,27 @@ void press_one(Work& work, const std::string& object) {
          .pairs = {static_cast<double>(contact.pairs_before), static_cast<double>(contact.pairs_after)}});
 }
 
+// A scan that says which pixel saw each point (structured-light) needs no faces of its own.
+io::TriangleMesh read_background(const std::string& path) {
+  io::TriangleMesh read = io::read_ply(path, {.properties = {"pixel_x", "pixel_y"}});
+  if (read.triangles.empty() && !read.properties[0].empty() && !read.properties[1].empty()) {
+    std::vector<Vec2> pixels;
+    for (std::size_t i = 0; i < read.positions_m.size(); ++i)
+      pixels.push_back({double{read.properties[0][i]}, double{read.properties[1][i]}});
+    read = mesh::joined_neighbours(read.positions_m, pixels);
+  }
+  read.properties.clear();
+  if (read.triangles.empty())
+    throw Error(Exit::data, path, "has no faces", "a cloud of points is no background: mesh it first");
+  return read;
+}
+
 }  // namespace
 
 void take_background(Work& work) {
   if (work.asked.background.empty()) return;
   work.call.note_input(work.asked.background);
-  work.background = io::read_ply(work.asked.background);
-  if (work.background.triangles.empty())
-    throw Error(Exit::data, work.asked.background, "has no faces", "a cloud of points is no background: mesh it first");
+  work.background = read_background(work.asked.background);
   const bool said = manifest::has_entry(work.call.document, "surfaces", work.asked.background_surface);
   const std::string surface = said                                ? work.asked.background_surface
                               : work.asked.label_surfaces.empty() ? std::string()

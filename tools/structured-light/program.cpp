@@ -48,6 +48,11 @@ scan::ScanRequest request_of(cli::Invocation& call) {
   request.least_difference = call.number("least-difference");
   request.least_share = call.number("least-share"), request.least_sigmas = call.number("least-sigmas");
   request.indirect = !call.flag("keep-indirect"), request.codes = call.flag("codes");
+  if (call.given("shape")) request.shape = call.text("shape");
+  if (call.given("radius")) request.radius_m = call.number("radius");
+  if ((request.shape == "sphere") != (request.radius_m > 0))
+    throw Error(Exit::usage, "--radius", "belongs to --shape sphere",
+                "give both, or neither: --shape sphere --radius 25mm");
   if (call.given("html")) request.page = call.text("html");
   request.output_path = [&call](const std::string& name) { return call.output_path(name); };
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
@@ -131,6 +136,18 @@ std::vector<cli::Option> options() {
        .lower = 0,
        .upper = 100},
       {.name = "keep-indirect", .type = Type::flag, .help = "Keep pixels that indirect light may have changed."},
+      {.name = "shape",
+       .type = Type::choice,
+       .help = "What all points lie on, where that is known: explain(1) asks of four clouds and more why they do not.",
+       .choices = {"plane", "sphere"}},
+      {.name = "radius",
+       .type = Type::quantity,
+       .help = "Of the sphere, calibrated.",
+       .metavar = "LENGTH",
+       .unit = "m",
+       .lower = 1e-6,
+       .upper = 1e3,
+       .needs = {"shape"}},
       {.name = "html", .type = Type::output_file, .help = "Write a report page here."},
       {.name = "codes", .type = Type::flag, .help = "Write VIEW-CAMERA-codes.exr, too."}};
   all.insert(all.end(), more.begin(), more.end());

@@ -10,10 +10,12 @@
 namespace gonio::acquisition {
 
 std::span<const SpecimenLaboratory> specimen_laboratories() {
-  static const std::array<SpecimenLaboratory, 5> all{
+  static const std::array<SpecimenLaboratory, 6> all{
       {{"desk", "a UR5 that holds a camera over a board", specimen_desk},
        {"arc", "an IRB 1600 that holds a camera over a flat sample and a white tile, and a light arc of 11 lamps",
         specimen_arc},
+       {"scanner", "a camera and a projector over a turntable on which a board leans, or a plate lies",
+        specimen_scanner},
        {"stage",
         "the studio with an empty table and a drive that deforms the object \"sheet\" of a truth (nrsfm-make --object)",
         specimen_stage},

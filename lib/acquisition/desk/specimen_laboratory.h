@@ -32,6 +32,7 @@ void give_housing(manifest::LaboratoryRobot& robot, const char* name, std::vecto
 
 manifest::Document specimen_desk(const std::filesystem::path& out);
 manifest::Document specimen_arc(const std::filesystem::path& out);
+manifest::Document specimen_scanner(const std::filesystem::path& out);
 manifest::Document specimen_stage(const std::filesystem::path& out);
 manifest::Document specimen_studio(const std::filesystem::path& out);
 manifest::Document specimen_turntable(const std::filesystem::path& out);

@@ -188,6 +188,8 @@ TrueState::TrueState(const manifest::Document& believed, const manifest::Documen
     std::erase_if(document.lights, [&](const auto& e) { return is_light_at_step(e.first, light_of(name, lamp)); });
     lamp_number.emplace(name, static_cast<int>(lamp_number.size()));
   }
+  for (const auto& [name, screen] : lab.screens)  // what frames of earlier runs were lit by
+    std::erase_if(document.lights, [&](const auto& e) { return is_light_at_step(e.first, name); });
   for (const auto& [name, table] : lab.turntables)
     tables[name] = std::make_unique<desk::TrueTurntable>(
         clock, table.speed_rad_per_s.value_or(usual_table_speed_rad_per_s),
@@ -241,9 +243,10 @@ void TrueState::show(const std::string& name, const std::string& path) {
     return;
   }
   const auto light = document.lights.find(name);
-  if (light == document.lights.end() || light->second.model != "screen")
+  if (light == document.lights.end() || !is_screen(light->second))
     throw Error(Exit::data, manifest::place(document, "/laboratory/screens/" + name),
-                "is no light of the scene: it shows nothing but black", "enter it in lights, of model screen");
+                "is no light of the scene: it shows nothing but black",
+                "enter it in lights, of model screen or projector");
   const io::RasterHeader head = io::read_raster_header(read_file(path), path);
   if (head.width != static_cast<std::uint64_t>(screen.width_px) ||
       head.height != static_cast<std::uint64_t>(screen.height_px))

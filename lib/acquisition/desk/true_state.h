@@ -27,7 +27,8 @@ struct TrueState {
   // the simulated camera's registers hold them.
   RawFrame expose(const std::string& camera, const Shot& shot, const PixelFormat* format = nullptr);
   PixelFormat format_of(const std::string& camera) const;
-  // What a screen shows from now on; empty: black. It is the scene's light of model "screen" with the screen's name.
+  // What a screen shows from now on; empty: black. It is the scene's light of model "screen" or "projector" with the
+  // screen's name.
   // Error(data) where there is none, and for pictures that are not of the screen's size.
   void show(const std::string& screen, const std::string& picture_path);
   const manifest::Laboratory& section() const { return document.laboratory.entry.front(); }

@@ -59,6 +59,9 @@ bool is_drive(const manifest::LaboratoryTurntable& table);
 // drive. And how far what it deforms has gone through its shapes (scene/deformed.h), which takes one turn.
 Rigid<frame::World, frame::World> turntable_motion(const manifest::LaboratoryTurntable& table, double angle_rad);
 std::map<std::string, double> deformations(const manifest::LaboratoryTurntable& table, double angle_rad);
+// Does it show the picture that a screen of its name shows?
+bool is_screen(const manifest::Light& light);
+
 // A standing lamp without a place of its own stands where its light does.
 Vec3 lamp_position(const manifest::Document& document, const Laboratory& laboratory, const std::string& lamp,
                    const State& state);

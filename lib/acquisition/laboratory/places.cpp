@@ -93,6 +93,10 @@ Rigid<frame::World, frame::Camera> world_from_camera(const manifest::Document& d
   return *part.world_from_camera;
 }
 
+bool is_screen(const manifest::Light& light) {
+  return light.model == "screen" || light.model == "projector";
+}
+
 bool is_drive(const manifest::LaboratoryTurntable& table) {
   return table.carries.empty() && !table.deforms.empty();
 }

@@ -119,7 +119,7 @@ std::string light_there(manifest::Document& d, const Laboratory& laboratory, con
 std::string light_of_screen(manifest::Document& d, const std::string& screen, const std::string& picture,
                             const std::string& step) {
   const auto light = d.lights.find(screen);
-  if (picture.empty() || light == d.lights.end() || light->second.model != "screen") return "";
+  if (picture.empty() || light == d.lights.end() || !is_screen(light->second)) return "";
   manifest::Light there = light->second;
   there.file = picture;
   const std::string id = light_at_step(screen, step);
@@ -302,7 +302,8 @@ std::int64_t enter_frames(manifest::Document& d, const Laboratory& laboratory, c
       image.exposure_s = r.exposure_s;
       image.time_s = r.time_s;
       image.temperature_K = r.temperature_K;
-      image.group = r.group;
+      image.group = step.group.empty() ? r.group : step.group;
+      image.projection = step.projection, image.shows = step.shows;
       image.response = "linear";  // a sensor's own numbers
       if (d.cameras.contains(r.camera)) image.camera = r.camera;
       state_mosaic(d, lab, r.camera);

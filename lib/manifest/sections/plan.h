@@ -24,6 +24,9 @@ struct PlanStep {
   std::vector<double> light_m{};     // asked: where the held lamp is, world
   std::map<std::string, double> turntable_rad{};
   std::map<std::string, std::string> screens{};  // what each shows: pattern id or file id
+  std::string projection{};                      // name in projections, of which a screen shows a frame
+  std::optional<std::int64_t> shows{};           // place in its frames, from 0
+  std::string group{};                           // view that its picture belongs to; empty: one of its own
   std::string robot{};                           // whose joints follow: the one that holds the camera
   std::vector<double> joints_rad{};
   std::map<std::string, std::vector<double>> other_arms{};                   // their joints, by robot
