@@ -41,6 +41,8 @@ Codes decode(const DecodeRequest& r) {
   Codes codes;
   codes.width = r.width, codes.height = r.height;
   codes.refusal.assign(pixels, Refusal::none);
+  constexpr double least_sigma = 1e-6;  // zero says that nothing is known
+  if (r.gamma > 0) codes.gamma = r.gamma, codes.gamma_sigma = std::max(least_sigma, r.gamma_sigma);
   if (!r.mask.empty())
     for (std::size_t i = 0; i < pixels; ++i)
       if (r.mask[i] == 0) codes.refusal[i] = Refusal::masked;

@@ -80,6 +80,8 @@ struct DecodeRequest {
   std::vector<std::uint8_t> mask{};                    // pixels that count, or empty
   // Of a single reading; nothing: found from the frames (frame_noise.h).
   std::optional<manifest::Noise> noise{};
+  // projector.gamma where it is known, with its standard deviation; 0: found where shifts tell it.
+  double gamma = 0, gamma_sigma = 0;
   double least_reflected = 0;   // light that white adds: less is dark, whatever the noise
   double least_difference = 0;  // between a bit and its inverse: less is an edge, whatever the noise
   double least_share = 0.05;    // of what white adds, for the same

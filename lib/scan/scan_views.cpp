@@ -12,6 +12,7 @@
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/image.h"
+#include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/projection.h"
 #include "photograph/linear_picture.h"
 #include "photograph/mask.h"
@@ -160,6 +161,12 @@ Codes codes_of(const Document& document, const std::string& projection, const Fr
     decoding.mask = photograph::read_mask_of(io::Image(decoding.width, decoding.height, {"Y"}), mask,
                                              place_of(document, frames[0], "/mask"));
   decoding.noise = noise_of_frames(document, frames);
+  if (const auto use = document.mechanisms.find("projector.gamma"); use != document.mechanisms.end()) {
+    const auto gamma = use->second.parameters.find("gamma");
+    const auto sigma = use->second.sigma.find("gamma");
+    if (gamma != use->second.parameters.end() && gamma->second.given()) decoding.gamma = gamma->second.scalar();
+    if (sigma != use->second.sigma.end() && !sigma->second.empty()) decoding.gamma_sigma = sigma->second[0];
+  }
   return decode(decoding);
 }
 

@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "scan/scan_document.h"
+#include "tools/structured-light/options.h"
 #include "tools/structured-light/pattern.h"
 
 namespace gonio::tools::structured_light {
@@ -83,75 +84,6 @@ Exit run(cli::Invocation& call) {
              "not as stated; calibrate them again, or see where it is (--codes)",
              std::sqrt(made.epipolar_chi_square)));
   return Exit::quality;
-}
-
-std::vector<cli::Option> options() {
-  std::vector<cli::Option> all = pattern_options();
-  const std::vector<cli::Option> more{
-      {.name = "name",
-       .type = Type::text,
-       .help = "Of the projection in the manifest; left out, measuring takes the only one.",
-       .metavar = "NAME",
-       .preset = "projection"},
-      {.name = "camera",
-       .type = Type::text,
-       .help = "Which looks on; the first one's pixels are those of the points.",
-       .metavar = "NAME",
-       .repeat = true},
-      {.name = "projector",
-       .type = Type::text,
-       .help =
-           "The camera of the rig that is the projector. Left out: two cameras measure, and the projector only marks.",
-       .metavar = "NAME"},
-      {.name = "response",
-       .type = Type::choice,
-       .help = "What the codes of PICTURE mean.",
-       .preset = "linear",
-       .choices = {"linear", "srgb"}},
-      {.name = "least-light",
-       .type = Type::number,
-       .help =
-           "Pixels that the projector's white lights by less, as a share of a full picture, are dark, whatever their "
-           "noise.",
-       .preset = "0",
-       .lower = 0,
-       .upper = 1e6},
-      {.name = "least-difference",
-       .type = Type::number,
-       .help = "A bit and its inverse that differ by less, as a share of a full picture, are the border of a stripe, "
-               "whatever their noise.",
-       .preset = "0",
-       .lower = 0,
-       .upper = 1e6},
-      {.name = "least-share",
-       .type = Type::number,
-       .help = "The same, as a share of what white adds there.",
-       .preset = "0.05",
-       .lower = 0,
-       .upper = 0.9},
-      {.name = "least-sigmas",
-       .type = Type::number,
-       .help = "The same, in standard deviations of the difference.",
-       .preset = "2",
-       .lower = 0,
-       .upper = 100},
-      {.name = "keep-indirect", .type = Type::flag, .help = "Keep pixels that indirect light may have changed."},
-      {.name = "shape",
-       .type = Type::choice,
-       .help = "What all points lie on, where that is known: explain(1) asks of four clouds and more why they do not.",
-       .choices = {"plane", "sphere"}},
-      {.name = "radius",
-       .type = Type::quantity,
-       .help = "Of the sphere, calibrated.",
-       .metavar = "LENGTH",
-       .unit = "m",
-       .lower = 1e-6,
-       .upper = 1e3,
-       .needs = {"shape"}},
-      {.name = "html", .type = Type::output_file, .help = "Write a report page here."},
-      {.name = "codes", .type = Type::flag, .help = "Write VIEW-CAMERA-codes.exr, too."}};
-  all.insert(all.end(), more.begin(), more.end());
-  return all;
 }
 
 }  // namespace
