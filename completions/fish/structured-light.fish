@@ -14,6 +14,8 @@ complete -c structured-light -l least-difference -x -d 'A bit and its inverse th
 complete -c structured-light -l least-share -x -d 'The same, as a share of what white adds there.'
 complete -c structured-light -l least-sigmas -x -d 'The same, in standard deviations of the difference.'
 complete -c structured-light -l keep-indirect -d 'Keep pixels that indirect light may have changed.'
+complete -c structured-light -l shape -x -a 'plane sphere' -d 'What all points lie on, where that is known: explain(1) asks of four clouds and more why they do not.'
+complete -c structured-light -l radius -x -d 'Of the sphere, calibrated.'
 complete -c structured-light -l html -r -d 'Write a report page here.'
 complete -c structured-light -l codes -d 'Write VIEW-CAMERA-codes.exr, too.'
 complete -c structured-light -l input -s i -r -d 'Manifest to read; - is standard input.'

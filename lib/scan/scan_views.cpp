@@ -14,10 +14,15 @@
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/projection.h"
+#include "mechanism/mechanism.h"
 #include "photograph/linear_picture.h"
 #include "photograph/mask.h"
 #include "photograph/response.h"
 #include "photograph/saturation.h"
+
+namespace gonio::mechanism {
+const Mechanism& projector_gamma();
+}
 
 namespace gonio::scan {
 
@@ -161,7 +166,7 @@ Codes codes_of(const Document& document, const std::string& projection, const Fr
     decoding.mask = photograph::read_mask_of(io::Image(decoding.width, decoding.height, {"Y"}), mask,
                                              place_of(document, frames[0], "/mask"));
   decoding.noise = noise_of_frames(document, frames);
-  if (const auto use = document.mechanisms.find("projector.gamma"); use != document.mechanisms.end()) {
+  if (const auto use = document.mechanisms.find(mechanism::projector_gamma().id); use != document.mechanisms.end()) {
     const auto gamma = use->second.parameters.find("gamma");
     const auto sigma = use->second.sigma.find("gamma");
     if (gamma != use->second.parameters.end() && gamma->second.given()) decoding.gamma = gamma->second.scalar();

@@ -40,8 +40,9 @@ scene::Scene scene_of(const RenderedWorld& w, const Pinhole& camera, std::shared
   SceneBuilder builder;
   const std::size_t surface =
       w.scattering_per_m > 0
-          ? builder.surface("directional-dipole", {{"sigma_s_per_m", std::vector<double>(3, w.scattering_per_m)},
-                                                   {"sigma_a_per_m", std::vector<double>(3, 2e-3 * w.scattering_per_m)}})
+          ? builder.surface("directional-dipole",
+                            {{"sigma_s_per_m", std::vector<double>(3, w.scattering_per_m)},
+                             {"sigma_a_per_m", std::vector<double>(3, 2e-3 * w.scattering_per_m)}})
           : builder.diffuse(w.albedo);
   for (const Board& b : w.boards) {
     const Vec3 n = cross(b.x, b.y);
