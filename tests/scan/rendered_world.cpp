@@ -38,12 +38,10 @@ std::optional<double> meets(const std::pair<Vec3, double>& ball, Vec3 from, Vec3
 
 scene::Scene scene_of(const RenderedWorld& w, const Pinhole& camera, std::shared_ptr<const io::Image> picture) {
   SceneBuilder builder;
+  const std::vector<double> scattered(3, w.scattering_per_m), absorbed(3, 2e-3 * w.scattering_per_m);
+  const manifest::Parameters solid{{"sigma_s_per_m", scattered}, {"sigma_a_per_m", absorbed}};
   const std::size_t surface =
-      w.scattering_per_m > 0
-          ? builder.surface("directional-dipole",
-                            {{"sigma_s_per_m", std::vector<double>(3, w.scattering_per_m)},
-                             {"sigma_a_per_m", std::vector<double>(3, 2e-3 * w.scattering_per_m)}})
-          : builder.diffuse(w.albedo);
+      w.scattering_per_m > 0 ? builder.surface("directional-dipole", solid) : builder.diffuse(w.albedo);
   for (const Board& b : w.boards) {
     const Vec3 n = cross(b.x, b.y);
     const Mat3 turn{{b.x.x, b.y.x, n.x, b.x.y, b.y.y, n.y, b.x.z, b.y.z, n.z}};
