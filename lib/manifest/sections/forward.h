@@ -51,6 +51,7 @@ struct LightPosition;
 struct Link;
 struct Marker;
 struct Placement;
+struct MeasuredMesh;
 struct MechanismUse;
 struct Mesh;
 struct Mounting;
