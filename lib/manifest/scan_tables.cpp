@@ -1,8 +1,7 @@
-// The field tables of structured light: what is shown, the points that come out, and what their meshes are worth.
+// The field tables of structured light: what is shown, and the points that come out.
 #include "manifest/field_makers.h"
 #include "manifest/section_tables.h"
 #include "manifest/sections/cloud.h"
-#include "manifest/sections/mesh.h"
 #include "manifest/sections/projection.h"
 
 namespace gonio::manifest {
@@ -47,30 +46,8 @@ const std::vector<Field<Cloud>>& cloud_fields() {
   return table;
 }
 
-const std::vector<Field<MeasuredMesh>>& measured_mesh_fields() {
-  using M = MeasuredMesh;
-  static const std::vector<Field<M>> table{
-      field("clouds", &M::clouds, "", "names of those that it was made of").needed(),
-      field("chain", &M::chain, "", "how it was made").one_of({"gonio", "thesis"}),
-      field("sigma_m", &M::sigma_m, "m", "median of the vertices' standard deviations").range(0, infinite),
-      field("rms_m", &M::rms_m, "m", "root mean square of the points' distances from it, along its normals")
-          .range(0, infinite),
-      field("median_m", &M::median_m, "m", "their median").range(0, infinite),
-      field("p95_m", &M::p95_m, "m", "what 95 % of them do not exceed").range(0, infinite),
-      field("whitened", &M::whitened, "", "their root mean square over what the points' own covariances say")
-          .range(0, infinite),
-      field("noise_ratio", &M::noise_ratio, "", "what neighbouring points scatter by, over what they state")
-          .range(0, infinite),
-      field("points", &M::points, "", "of the clouds").range(0, infinite),
-      field("bare", &M::bare, "", "points that have no surface beside them").range(0, infinite),
-      field("components", &M::components, "", "of the mesh").range(0, infinite),
-      field("dropped", &M::dropped, "", "components that were too small").range(0, infinite)};
-  return table;
-}
-
 GONIO_RECORD(ProjectedFrame, projected_frame_fields);
 GONIO_RECORD(Projection, projection_fields);
 GONIO_RECORD(Cloud, cloud_fields);
-GONIO_RECORD(MeasuredMesh, measured_mesh_fields);
 
 }  // namespace gonio::manifest

@@ -36,7 +36,6 @@ GONIO_TABLE(Environment, environment_fields);
 GONIO_TABLE(ProjectedFrame, projected_frame_fields);
 GONIO_TABLE(Projection, projection_fields);
 GONIO_TABLE(Cloud, cloud_fields);
-GONIO_TABLE(MeasuredMesh, measured_mesh_fields);
 GONIO_TABLE(Rendering, rendering_fields);
 GONIO_TABLE(Comparison, comparison_fields);
 GONIO_TABLE(SeenBoard, seen_board_fields);

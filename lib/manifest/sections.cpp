@@ -213,7 +213,6 @@ const std::vector<Field<Mesh>>& mesh_fields() {
           "shapes", &Mesh::shapes, "",
           "of a thing that deforms: file ids of PLY meshes with the vertices of `file` at other places, one after the "
           "other; an image's `shapes` says how far it is through them, straight lines between; left out: rigid"),
-      field("measured", &Mesh::measured, "", "of what cloud-mesh made: how well it is known"),
       field("normals", &Mesh::normals, "", "smooth (the file's, else averaged by area and angle) or flat")
           .one_of({"smooth", "flat"})};
   return table;

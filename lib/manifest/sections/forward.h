@@ -51,7 +51,6 @@ struct LightPosition;
 struct Link;
 struct Marker;
 struct Placement;
-struct MeasuredMesh;
 struct MechanismUse;
 struct Mesh;
 struct Mounting;

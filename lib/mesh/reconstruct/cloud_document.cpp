@@ -78,40 +78,27 @@ void write_mesh(const std::filesystem::path& path, const Reconstruction& made) {
   io::write_ply(path, mesh, names);
 }
 
-manifest::MeasuredMesh entry_of(const Reconstruction& made, const CloudMeshRequest& request,
-                                const std::vector<std::string>& names) {
-  manifest::MeasuredMesh entry;
-  entry.clouds = names;
-  entry.chain = request.wish.chain == Chain::gonio ? "gonio" : "thesis";
+CloudMeshFigures figures_of(const Reconstruction& made, const CloudMeshRequest& request,
+                            const std::vector<std::string>& names) {
   const std::vector<double> sigmas(made.sigma_m.begin(), made.sigma_m.end());
-  entry.sigma_m = stats::median(sigmas);
-  entry.noise_ratio = made.noise_ratio;
-  const PointDeviation& d = made.deviation;
-  if (d.points > 0)
-    entry.rms_m = d.rms_m, entry.median_m = d.median_m, entry.p95_m = d.p95_m, entry.whitened = d.whitened;
-  entry.points = static_cast<std::int64_t>(d.points + d.bare), entry.bare = static_cast<std::int64_t>(d.bare);
-  entry.components = static_cast<std::int64_t>(made.components.size());
-  entry.dropped = static_cast<std::int64_t>(made.dropped_components);
-  return entry;
+  return {names, request.name, request.wish.chain, stats::median(sigmas), made.deviation.points + made.deviation.bare};
 }
 
-void log_mesh(const std::string& name, const Reconstruction& made, const manifest::MeasuredMesh& entry) {
-  log(LogLevel::info,
-      format("%zu views, %lld points %.3g mm apart, which scatter by %.3g times what they state", entry.clouds.size(),
-             static_cast<long long>(entry.points), 1e3 * made.spacing_m, made.noise_ratio));
+void log_mesh(const Reconstruction& made, const CloudMeshFigures& figures) {
+  log(LogLevel::info, format("%zu views, %zu points %.3g mm apart, which scatter by %.3g times what they state",
+                             figures.clouds.size(), figures.points, 1e3 * made.spacing_m, made.noise_ratio));
   std::string areas;
   for (const MeshComponent& c : made.components) areas += format("%s%.3g", areas.empty() ? "" : " + ", 1e4 * c.area_m2);
   log(LogLevel::info,
       format("mesh %s: %zu vertices in %zu components of %s cm2; %zu smaller ones dropped; of Poisson's %zu vertices "
              "%zu cut where points are sparse, %zu where a view saw through, %zu where a rim turned off",
-             name.c_str(), made.mesh.positions_m.size(), made.components.size(), areas.c_str(), made.dropped_components,
-             made.poisson_vertices, made.sparse, made.seen_through, made.contradicting));
-  if (entry.rms_m)
-    log(LogLevel::info,
-        format("points lie off it by %.3g mm rms, %.3g mm half of them, %.3g mm 95 %%: %.3g times what they state; "
-               "%lld have no surface; its own standard deviation is %.3g mm",
-               1e3 * *entry.rms_m, 1e3 * *entry.median_m, 1e3 * *entry.p95_m, *entry.whitened,
-               static_cast<long long>(entry.bare), 1e3 * *entry.sigma_m));
+             figures.name.c_str(), made.mesh.positions_m.size(), made.components.size(), areas.c_str(),
+             made.dropped_components, made.poisson_vertices, made.sparse, made.seen_through, made.contradicting));
+  const PointDeviation& d = made.deviation;
+  log(LogLevel::info,
+      format("points lie off it by %.3g mm rms, %.3g mm half of them, %.3g mm 95 %%: %.3g times what they state; %zu "
+             "have no surface; its own standard deviation is %.3g mm",
+             1e3 * d.rms_m, 1e3 * d.median_m, 1e3 * d.p95_m, d.whitened, d.bare, 1e3 * figures.sigma_m));
 }
 
 }  // namespace
@@ -132,9 +119,9 @@ CloudMeshSummary cloud_mesh_document(Document& document, const CloudMeshRequest&
   CloudMeshSummary summary{!made.mesh.triangles.empty(), made.deviation.whitened, made.deviation.rms_m,
                            made.noise_ratio};
   if (!summary.surface) return summary;
-  const manifest::MeasuredMesh entry = entry_of(made, request, names);
-  log_mesh(request.name, made, entry);
-  const std::string page = request.page.empty() ? std::string() : cloud_page(points, made, entry, request.name);
+  const CloudMeshFigures figures = figures_of(made, request, names);
+  log_mesh(made, figures);
+  const std::string page = request.page.empty() ? std::string() : cloud_page(points, made, figures);
   const auto path = request.output_path(file_stem(request.name) + ".ply");
   write_mesh(path, made);
   if (!request.page.empty()) write_file(request.page, page);
@@ -142,7 +129,6 @@ CloudMeshSummary cloud_mesh_document(Document& document, const CloudMeshRequest&
   mesh = {};
   mesh.file = manifest::add_file(document, path, "mesh-" + request.name);
   mesh.normals = "smooth";
-  mesh.measured = entry;
   return summary;
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "manifest/sections/mesh.h"
 #include "mesh/clean.h"
 #include "report/mesh_view.h"
 #include "report/number_text.h"
@@ -67,13 +66,13 @@ std::vector<report::Figure> views_of(const MeasuredPoints& points, const Reconst
                   "The mean over the points about each vertex; red where they lie outside, blue inside.")};
 }
 
-report::TableText figures_of(const Reconstruction& made, const manifest::MeasuredMesh& entry) {
+report::TableText figures_of(const Reconstruction& made, const CloudMeshFigures& figures) {
   report::TableText table{
       .caption = "", .columns = {{"Figure", "", false}, {"Value"}, {"Unit", "", false}}, .rows = {}};
   const auto row = [&](const char* name, std::string value, const char* unit = "") {
     table.rows.push_back({name, std::move(value), unit});
   };
-  row("points", std::to_string(entry.points));
+  row("points", std::to_string(figures.points));
   row("usual distance of a point from its sixth neighbour", millimetres(made.spacing_m), "mm");
   row("what neighbouring points scatter by, over what they state", report::number_text(made.noise_ratio, 3));
   row("points off the mesh, root mean square", millimetres(made.deviation.rms_m), "mm");
@@ -91,22 +90,21 @@ report::TableText figures_of(const Reconstruction& made, const manifest::Measure
 
 }  // namespace
 
-std::string cloud_page(const MeasuredPoints& points, const Reconstruction& made, const manifest::MeasuredMesh& entry,
-                       const std::string& name) {
+std::string cloud_page(const MeasuredPoints& points, const Reconstruction& made, const CloudMeshFigures& figures) {
   std::string clouds;
-  for (const std::string& one : entry.clouds) clouds += (clouds.empty() ? "" : ", ") + one;
-  report::Page page("Mesh " + name,
+  for (const std::string& one : figures.clouds) clouds += (clouds.empty() ? "" : ", ") + one;
+  report::Page page("Mesh " + figures.name,
                     format("%zu vertices in %zu component%s, half of them known to ", made.mesh.positions_m.size(),
                            made.components.size(), made.components.size() == 1 ? "" : "s") +
-                        millimetres(*entry.sigma_m) + " mm or better.",
-                    "From " + clouds + (entry.chain == "gonio" ? "." : ", by the thesis's chain."));
+                        millimetres(figures.sigma_m) + " mm or better.",
+                    "From " + clouds + (figures.chain == Chain::gonio ? "." : ", by the thesis's chain."));
   page.section("Mesh");
-  page.key_numbers({{"standard deviation", millimetres(*entry.sigma_m), "mm", "median of the vertices"},
+  page.key_numbers({{"standard deviation", millimetres(figures.sigma_m), "mm", "median of the vertices"},
                     {"points off the mesh", millimetres(made.deviation.rms_m), "mm", "root mean square"},
                     {"over what they state", report::number_text(made.deviation.whitened, 3), "", "1: as stated",
                      made.deviation.whitened > 2 ? report::Tone::bad : report::Tone::neutral}});
   page.figures(views_of(points, made), 560);
-  page.table(figures_of(made, entry));
+  page.table(figures_of(made, figures));
   page.section("Components");
   report::TableText parts{
       .caption = "", .columns = {{"Component"}, {"Vertices"}, {"Triangles"}, {"Area", "cm2"}}, .rows = {}};
