@@ -7,8 +7,9 @@
 //   lengths of 10 throughout are not the same as 1. The screening weighs all points alike (point weight 4).
 // - Depths below the smallest one (5 by default) are ignored silently, unless it is lowered as well.
 // - The density at vertices, by which Kazhdan's SurfaceTrimmer cuts, is not handed out.
-// - It writes "Vertex pair not in list" to standard error where it leaves a triangle out at a border of two depths, a
-//   dozen in a million; the mesh has a hole there. Standard error is turned away meanwhile.
+// - It writes "Vertex pair not in list" to standard output where it leaves a triangle out at a border of two depths, a
+//   dozen in a million; the mesh has a hole there. Standard output, where the
+//   manifest goes, is turned away meanwhile.
 // - reconstruct() makes a search tree that nothing asks: performReconstruction() goes straight to work. libpcl_surface
 //   brings VTK along, for a hull that nobody here asks for: only programs that come here load it.
 #include "mesh/reconstruct/screened_poisson.h"
@@ -25,22 +26,22 @@
 namespace gonio::mesh {
 namespace {
 
-class NoStandardError {
+class NoStandardOutput {
  public:
-  NoStandardError() : kept_(::dup(STDERR_FILENO)) {
-    std::fflush(stderr);
+  NoStandardOutput() : kept_(::dup(STDOUT_FILENO)) {
+    std::fflush(stdout);
     const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-    if (kept_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+    if (kept_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO);
     if (nowhere >= 0) ::close(nowhere);
   }
-  ~NoStandardError() {
-    std::fflush(stderr);
+  ~NoStandardOutput() {
+    std::fflush(stdout);
     if (kept_ < 0) return;
-    ::dup2(kept_, STDERR_FILENO);
+    ::dup2(kept_, STDOUT_FILENO);
     ::close(kept_);
   }
-  NoStandardError(const NoStandardError&) = delete;
-  NoStandardError& operator=(const NoStandardError&) = delete;
+  NoStandardOutput(const NoStandardOutput&) = delete;
+  NoStandardOutput& operator=(const NoStandardOutput&) = delete;
 
  private:
   int kept_;
@@ -79,7 +80,7 @@ io::TriangleMesh screened_poisson(const std::vector<Vec3>& positions_m, const st
   pcl::PointCloud<pcl::PointNormal> vertices;
   std::vector<pcl::Vertices> polygons;
   {
-    const NoStandardError quiet;
+    const NoStandardOutput quiet;
     poisson.performReconstruction(vertices, polygons);
   }
   for (const pcl::PointNormal& v : vertices) mesh.positions_m.push_back(middle + Vec3{v.x, v.y, v.z} * extent);
