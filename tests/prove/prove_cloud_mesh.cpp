@@ -144,7 +144,6 @@ Judged judge(const World& world, const mesh::Reconstruction& made) {
     bool beside = false;
     for (int k = 0; k < 3; ++k) beside = beside || (best.at.weights[k] > 0 && rims[nearest][t[k]] != 0);
     if (beside) continue;
-    if (getenv("DUMP")) std::fprintf(stderr, "E %g %g %zu\n", made.sigma_m[v], best.distance_m, nearest);
     squares += best.distance_m * best.distance_m, stated += double(made.sigma_m[v]) * made.sigma_m[v], ++j.vertices;
   }
   j.rms_m = std::sqrt(squares / j.vertices), j.stated_m = std::sqrt(stated / j.vertices);
@@ -166,7 +165,6 @@ void prove(const World& world, std::uint64_t seed) {
   mesh::MeasuredPoints points;
   for (const SeenFrom& view : world.views) tests::see(tree, truth, view, seed, points);
   for (const mesh::Chain chain : {mesh::Chain::gonio, mesh::Chain::thesis}) {
-    if (getenv("ONLY") && chain == mesh::Chain::thesis) continue;
     const mesh::Reconstruction made = mesh::reconstruct(points, {.chain = chain});
     const Judged j = judge(world, made);
     const bool ours = chain == mesh::Chain::gonio;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t plane_points = 24;
 constexpr std::array<std::size_t, 9> windows{11, 16, 22, 30, 42, 58, 80, 112, 156};  // points of a fit
-constexpr double agreement = 2;    // standard deviations within which windows agree
+constexpr double agreement = 1.6;  // standard deviations within which windows agree
 constexpr double surplus = 3;      // standard deviations by which chi-square may exceed its expectation
 constexpr double seen_from = 0.1;  // least cosine between the normal and the way to a point's camera
 

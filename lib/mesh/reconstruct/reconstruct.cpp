@@ -108,9 +108,10 @@ void fit_vertices(io::TriangleMesh& mesh, const PointSurface& surface, Chain cha
     if (chain == Chain::gonio && doubtful[v] == 0) {
       mesh.positions_m[v] = fit.point, mesh.normals[v] = fit.normal;
       mesh.properties[0][v] = static_cast<float>(fit.sigma_m);
+    } else if (doubtful[v] != 0) {  // it stays where it is, known no better than one point about it
+      mesh.properties[0][v] = static_cast<float>(fit.good ? fit.point_sigma_m : surface.spacing_m());
     } else {  // it stays where it is, and is known to be off by as much
-      const double known = fit.good ? fit.sigma_m : surface.spacing_m();
-      mesh.properties[0][v] = static_cast<float>(std::hypot(known, off));
+      mesh.properties[0][v] = static_cast<float>(std::hypot(fit.sigma_m, off));
     }
   }
   if (chain == Chain::gonio) mark_turned_rims(mesh, doubtful, fates);

@@ -7,9 +7,8 @@
 //   lengths of 10 throughout are not the same as 1. The screening weighs all points alike (point weight 4).
 // - Depths below the smallest one (5 by default) are ignored silently, unless it is lowered as well.
 // - The density at vertices, by which Kazhdan's SurfaceTrimmer cuts, is not handed out.
-// - It writes "Vertex pair not in list" to standard output where it leaves a triangle out at a border of two depths, a
-//   dozen in a million; the mesh has a hole there. Standard output, where the
-//   manifest goes, is turned away meanwhile.
+// - It prints "Vertex pair not in list" to standard output, where the manifest goes, for each polygon that it leaves
+//   out between two depths, a dozen in a million: the mesh has a hole there. Standard output is turned away meanwhile.
 // - reconstruct() makes a search tree that nothing asks: performReconstruction() goes straight to work. libpcl_surface
 //   brings VTK along, for a hull that nobody here asks for: only programs that come here load it.
 #include "mesh/reconstruct/screened_poisson.h"
