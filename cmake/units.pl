@@ -42,7 +42,7 @@ sub tokens_of {
   }
   my $heavy = $text =~ /^[ \t]*#[ \t]*include[ \t]*<(?:Eigen|opencv2|CLI)\//m;
   # Half a minute and a gigabyte each: whoever shares a unit with one waits for it.
-  my $alone = $text =~ m{^[ \t]*#[ \t]*include[ \t]*<(?:CGAL/|OpenMesh/|CImg\.h)}m;
+  my $alone = $text =~ m{^[ \t]*#[ \t]*include[ \t]*<(?:CGAL/|OpenMesh/|pcl/|CImg\.h)}m;
   return { tokens => \@tokens, includes => \@includes, macros => \@macros, lines => $count, heavy => $heavy, alone => $alone };
 }
 

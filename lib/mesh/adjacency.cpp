@@ -36,4 +36,13 @@ std::vector<Corners> neighbours_of_faces(const std::vector<Corners>& triangles, 
   return behind;
 }
 
+std::vector<char> rim_vertices(const std::vector<Corners>& triangles, std::size_t vertices) {
+  std::vector<char> rim(vertices, 0);
+  const std::vector<Corners> behind = neighbours_of_faces(triangles, vertices);
+  for (std::size_t t = 0; t < behind.size(); ++t)
+    for (std::size_t c = 0; c < 3; ++c)
+      if (behind[t][c] == nobody) rim[triangles[t][c]] = rim[triangles[t][(c + 1) % 3]] = 1;
+  return rim;
+}
+
 }  // namespace gonio::mesh

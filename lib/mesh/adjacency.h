@@ -24,4 +24,7 @@ VertexFaces faces_of_vertices(const std::vector<Corners>& triangles, std::size_t
 // or where more than one claims it.
 std::vector<Corners> neighbours_of_faces(const std::vector<Corners>& triangles, std::size_t vertices);
 
+// Of every vertex, whether it ends an edge behind which there is nobody: 1 or 0.
+std::vector<char> rim_vertices(const std::vector<Corners>& triangles, std::size_t vertices);
+
 }  // namespace gonio::mesh

@@ -1,0 +1,94 @@
+// PCL 1.13's copy of Kazhdan's code. What bites:
+// - Threads: sums run over threads in any order, and two threads give other last digits than one. One is asked for.
+// - Its tree counts nodes and takes memory in statics: no two reconstructions at once, in whatever thread.
+// - Positions are floats: points are taken about their middle, in units of their extent, and put back in double.
+// - The cube is 1.1 times the longest side of the bounding box, and 2^depth cells wide: stray points coarsen all.
+// - "Confidence" (lengths of normals) weighs the normal field and the density from which the tree takes its depth:
+//   lengths of 10 throughout are not the same as 1. The screening weighs all points alike (point weight 4).
+// - Depths below the smallest one (5 by default) are ignored silently, unless it is lowered as well.
+// - The density at vertices, by which Kazhdan's SurfaceTrimmer cuts, is not handed out.
+// - It prints "Vertex pair not in list" to standard output, where the manifest goes, for each polygon that it leaves
+//   out between two depths, a dozen in a million: the mesh has a hole there. Standard output is turned away meanwhile.
+// - reconstruct() makes a search tree that nothing asks: performReconstruction() goes straight to work. libpcl_surface
+//   brings VTK along, for a hull that nobody here asks for: only programs that come here load it.
+#include "mesh/reconstruct/screened_poisson.h"
+
+#include <fcntl.h>
+#include <pcl/point_types.h>
+#include <pcl/surface/poisson.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+namespace gonio::mesh {
+namespace {
+
+class NoStandardOutput {
+ public:
+  NoStandardOutput() : kept_(::dup(STDOUT_FILENO)) {
+    std::fflush(stdout);
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (kept_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO);
+    if (nowhere >= 0) ::close(nowhere);
+  }
+  ~NoStandardOutput() {
+    std::fflush(stdout);
+    if (kept_ < 0) return;
+    ::dup2(kept_, STDOUT_FILENO);
+    ::close(kept_);
+  }
+  NoStandardOutput(const NoStandardOutput&) = delete;
+  NoStandardOutput& operator=(const NoStandardOutput&) = delete;
+
+ private:
+  int kept_;
+};
+
+}  // namespace
+
+io::TriangleMesh screened_poisson(const std::vector<Vec3>& positions_m, const std::vector<Vec3>& normals, int depth,
+                                  bool by_length) {
+  io::TriangleMesh mesh;
+  if (positions_m.empty()) return mesh;
+  Vec3 low = positions_m[0], high = low;
+  for (const Vec3 p : positions_m) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const Vec3 middle = 0.5 * (low + high);
+  const double extent = max_component(high - low);
+  if (!(extent > 0)) return mesh;
+  const auto cloud = std::make_shared<pcl::PointCloud<pcl::PointNormal>>();
+  cloud->reserve(positions_m.size());
+  for (std::size_t i = 0; i < positions_m.size(); ++i) {
+    const Vec3 p = (positions_m[i] - middle) / extent, n = normals[i];
+    pcl::PointNormal one;
+    one.x = static_cast<float>(p.x), one.y = static_cast<float>(p.y), one.z = static_cast<float>(p.z);
+    one.normal_x = static_cast<float>(n.x), one.normal_y = static_cast<float>(n.y);
+    one.normal_z = static_cast<float>(n.z);
+    cloud->push_back(one);
+  }
+  pcl::Poisson<pcl::PointNormal> poisson;
+  poisson.setDepth(depth);
+  poisson.setMinDepth(std::min(5, depth));
+  poisson.setThreads(1);
+  poisson.setConfidence(by_length);
+  poisson.setInputCloud(cloud);
+  pcl::PointCloud<pcl::PointNormal> vertices;
+  std::vector<pcl::Vertices> polygons;
+  {
+    const NoStandardOutput quiet;
+    poisson.performReconstruction(vertices, polygons);
+  }
+  for (const pcl::PointNormal& v : vertices) mesh.positions_m.push_back(middle + Vec3{v.x, v.y, v.z} * extent);
+  for (const pcl::Vertices& polygon : polygons)
+    for (std::size_t k = 2; k < polygon.vertices.size(); ++k)
+      mesh.triangles.push_back({static_cast<std::uint32_t>(polygon.vertices[0]),
+                                static_cast<std::uint32_t>(polygon.vertices[k - 1]),
+                                static_cast<std::uint32_t>(polygon.vertices[k])});
+  return mesh;
+}
+
+}  // namespace gonio::mesh
