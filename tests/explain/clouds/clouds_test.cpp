@@ -56,11 +56,10 @@ void expect_covered(const Answer& a, const std::string& name, double truth, doub
 }
 
 TEST(Clouds, OfARigThatLeavesNothingOutShowNothing) {
-  for (const Shape shape : {Shape::planes, Shape::balls})
-    for (const std::uint64_t seed : {3, 4}) {
-      const Answer a = explained({.shape = shape, .seed = seed});
-      EXPECT_THAT(a.named, testing::IsEmpty()) << a.e.sentence;
-    }
+  for (const Shape shape : {Shape::planes, Shape::balls}) {
+    const Answer a = explained({.shape = shape, .seed = 3});
+    EXPECT_THAT(a.named, testing::IsEmpty()) << a.e.sentence;
+  }
 }
 
 TEST(Clouds, TellTheProjectorsGamma) {
