@@ -101,10 +101,11 @@ std::string range_in_words(const LocatedCondition& c) {
   if (c.curve.centre.empty()) return "";
   const bool from_start = c.lower <= c.curve.centre.front(), to_end = c.upper >= c.curve.centre.back();
   if (from_start && to_end) return "";
-  if (from_start) return "below " + quantity(c.upper, c.unit);
-  if (to_end) return "above " + quantity(c.lower, c.unit);
+  const auto end = [](double value, const Shown& shown) { return plain_number(value * shown.factor); };
+  if (from_start) return "below " + joined(end(c.upper, shown_in(c.unit, c.upper)), shown_in(c.unit, c.upper));
+  if (to_end) return "above " + joined(end(c.lower, shown_in(c.unit, c.lower)), shown_in(c.unit, c.lower));
   const Shown shown = shown_in(c.unit, std::max(std::abs(c.lower), std::abs(c.upper)));
-  return "between " + printed(c.lower * shown.factor, 2) + " and " + joined(printed(c.upper * shown.factor, 2), shown);
+  return "between " + end(c.lower, shown) + " and " + joined(end(c.upper, shown), shown);
 }
 
 std::string place_in_words(const Problem& problem, const LocatedCondition& c) {

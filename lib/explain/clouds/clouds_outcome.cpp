@@ -18,7 +18,7 @@ namespace gonio::explain {
 namespace {
 
 using Part = CloudRole::Part;
-constexpr std::size_t most_drawn = 3, cells = 24;
+constexpr std::size_t most_drawn = 3, cells = 12;
 
 // Root mean square of what a named mechanism does to the rows.
 double effect_of(const Problem& problem, const Explanation& e, const Candidate& candidate) {

@@ -12,7 +12,7 @@ const Mechanism& projector_lens() {
           "as lens.radial and lens.tangential, of the projector as a camera that looks backwards: "
           "(x', y') = (x, y) (1 + k1 r^2 + k2 r^4) + decentring p1, p2",
       .source = "Moreno & Taubin 2012, section 4; Brown 1971, equation 9",
-      .stage = "lens",
+      .stage = "light",
       .target = Target::camera,
       .domains = {"clouds"},
       .parameters =
