@@ -58,8 +58,10 @@ class CloudMesh : public testing::Test {
     return R"("cameras": {"c": {"width_px": 90, "height_px": 90, "fx_px": 360, "fy_px": 360, "cx_px": 45, "cy_px": 45}},
  "files": {"a": {"path": "0.ply"}, "b": {"path": "1.ply"}},
  "images": [
-  {"id": "i0", "camera": "c", "group": "left", "world_from_camera": {"rotation": [1,0,0,0], "translation_m": [-0.25,0,0.4]}},
-  {"id": "i1", "camera": "c", "group": "right", "world_from_camera": {"rotation": [1,0,0,0], "translation_m": [0.25,0,0.4]}}],
+  {"id": "i0", "camera": "c", "group": "left",
+   "world_from_camera": {"rotation": [1,0,0,0], "translation_m": [-0.25,0,0.4]}},
+  {"id": "i1", "camera": "c", "group": "right",
+   "world_from_camera": {"rotation": [1,0,0,0], "translation_m": [0.25,0,0.4]}}],
  "clouds": {"left": {"file": "a", "cameras": ["c"]}, "right": {"file": "b", "cameras": ["c"]}})";
   }
   void write(const char* name, const std::string& sections) {
@@ -91,12 +93,12 @@ TEST_F(CloudMesh, TwoViewsBecomeOneMeshThatStatesItsError) {
   const Ended made = mesh({"--html", "page.html"});
   ASSERT_EQ(made.status, 0) << made.err;
   const manifest::Document d = manifest::parse_document(made.out, "mesh.json", folder_.path());
-  const io::TriangleMesh mesh = io::read_ply(manifest::resolve(d, d.meshes.at("mesh").file, "/meshes/mesh"),
-                                             {.properties = {"sigma", "deviation"}});
-  ASSERT_GT(mesh.triangles.size(), 1000U);
+  const io::TriangleMesh found = io::read_ply(manifest::resolve(d, d.meshes.at("mesh").file, "/meshes/mesh"),
+                                              {.properties = {"sigma", "deviation"}});
+  ASSERT_GT(found.triangles.size(), 1000U);
   double squares = 0, stated = 0;
-  for (std::size_t v = 0; v < mesh.positions_m.size(); ++v) {
-    const double off = norm(mesh.positions_m[v]) - 0.05, sigma = double{mesh.properties[0][v]};
+  for (std::size_t v = 0; v < found.positions_m.size(); ++v) {
+    const double off = norm(found.positions_m[v]) - 0.05, sigma = double{found.properties[0][v]};
     squares += off * off, stated += sigma * sigma;
   }
   EXPECT_NEAR(std::sqrt(squares / stated), 1, 0.3);
@@ -175,7 +177,7 @@ TEST_F(CloudMesh, CloudsThatAreNoneAreRefused) {
   };
   constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinite = std::numeric_limits<float>::infinity();
   expect_refused(with([](io::TriangleMesh& m) { m.positions_m.clear(), m.properties.assign(7, {}); }), 65,
-                 "has no points");
+                 "has no vertices");
   expect_refused(with([](io::TriangleMesh& m) {
                    m.positions_m.resize(57);
                    for (auto& column : m.properties) column.resize(57);
