@@ -8,7 +8,8 @@
 // - Depths below the smallest one (5 by default) are ignored silently, unless it is lowered as well.
 // - The density at vertices, by which Kazhdan's SurfaceTrimmer cuts, is not handed out.
 // - It prints "Vertex pair not in list" to standard output, where the manifest goes, for each polygon that it leaves
-//   out between two depths, a dozen in a million: the mesh has a hole there. Standard output is turned away meanwhile.
+//   out between two depths, a dozen in a million: the mesh has a hole there. On standard error it remarks on residuals
+//   that are small. Both are turned away meanwhile.
 // - reconstruct() makes a search tree that nothing asks: performReconstruction() goes straight to work. libpcl_surface
 //   brings VTK along, for a hull that nobody here asks for: only programs that come here load it.
 #include "mesh/reconstruct/screened_poisson.h"
@@ -25,25 +26,26 @@
 namespace gonio::mesh {
 namespace {
 
-class NoStandardOutput {
+class Mute {
  public:
-  NoStandardOutput() : kept_(::dup(STDOUT_FILENO)) {
-    std::fflush(stdout);
+  Mute(std::FILE* file, int descriptor) : file_(file), descriptor_(descriptor), kept_(::dup(descriptor)) {
+    std::fflush(file_);
     const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-    if (kept_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO);
+    if (kept_ >= 0 && nowhere >= 0) ::dup2(nowhere, descriptor_);
     if (nowhere >= 0) ::close(nowhere);
   }
-  ~NoStandardOutput() {
-    std::fflush(stdout);
+  ~Mute() {
+    std::fflush(file_);
     if (kept_ < 0) return;
-    ::dup2(kept_, STDOUT_FILENO);
+    ::dup2(kept_, descriptor_);
     ::close(kept_);
   }
-  NoStandardOutput(const NoStandardOutput&) = delete;
-  NoStandardOutput& operator=(const NoStandardOutput&) = delete;
+  Mute(const Mute&) = delete;
+  Mute& operator=(const Mute&) = delete;
 
  private:
-  int kept_;
+  std::FILE* file_;
+  int descriptor_, kept_;
 };
 
 }  // namespace
@@ -79,7 +81,7 @@ io::TriangleMesh screened_poisson(const std::vector<Vec3>& positions_m, const st
   pcl::PointCloud<pcl::PointNormal> vertices;
   std::vector<pcl::Vertices> polygons;
   {
-    const NoStandardOutput quiet;
+    const Mute out(stdout, STDOUT_FILENO), err(stderr, STDERR_FILENO);
     poisson.performReconstruction(vertices, polygons);
   }
   for (const pcl::PointNormal& v : vertices) mesh.positions_m.push_back(middle + Vec3{v.x, v.y, v.z} * extent);
