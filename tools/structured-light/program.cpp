@@ -126,7 +126,8 @@ const cli::Program& gonio_program() {
            "Optics 23, 1984.",
            "Gupta & Nayar, Micro phase shifting, CVPR 2012.",
            "Hartley & Sturm, Triangulation, Computer Vision and Image Understanding 68, 1997."},
-      .see_also = {"calib-charuco(1)", "acquire(1)", "vdi2634(1)", "cloud-mesh(1)", "gonio-conventions(7)", "gonio-manifest(5)"},
+      .see_also = {"calib-charuco(1)", "acquire(1)", "vdi2634(1)", "cloud-mesh(1)", "gonio-conventions(7)",
+                   "gonio-manifest(5)"},
       .check = check,
       .run = run};
   return program;
