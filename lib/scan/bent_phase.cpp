@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geom/vector.h"
+#include "scan/mechanisms/projector_gamma.h"
 
 namespace gonio::scan {
 namespace {
@@ -22,7 +23,7 @@ std::vector<double> errors_of_phase(double gamma, std::span<const double> shifts
     const double theta = 2 * pi * static_cast<double>(k) / places;
     Vec3 sums;
     for (const double s : shifts) {
-      const double v = std::pow(std::max(0.0, 0.5 + 0.5 * std::cos(theta - s)), gamma);
+      const double v = equation::projector_gamma(std::max(0.0, 0.5 + 0.5 * std::cos(theta - s)), std::array{gamma});
       sums += Vec3{v, v * std::cos(s), v * std::sin(s)};
     }
     const Vec3 fit = solve * sums;

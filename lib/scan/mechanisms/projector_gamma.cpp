@@ -17,7 +17,7 @@ const Mechanism& projector_gamma() {
       .typical = "exponents 1.8 to 2.4 where nothing was set; 0.02 left after a correction",
       .equation =
           "light = shown^gamma, 0 <= shown <= 1; the phase that N equal shifts give is off by about "
-          "-(b(N+1) - b(N-1)) / b(1) sin(N theta), b the bent cosine's harmonics",
+          "(b(N+1) - b(N-1)) / b(1) sin(N theta), b the bent cosine's harmonics",
       .source =
           "Guo, He & Chen 2004 (gamma in fringe projection); Pan, Kemao, Huang & Asundi 2009 (harmonics and shifts)",
       .stage = "light",
