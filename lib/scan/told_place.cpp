@@ -56,7 +56,7 @@ ToldPlace::ToldPlace(const Sequence& sequence, Axis axis) : size_(sequence.size(
 
 double ToldPlace::operator()(double place, const Bend& bend) const {
   if (bend.gamma == 1 && bend.moves_px == 0) return place;
-  double sum = 0, weights = 0;
+  std::vector<double> turns;
   for (const Set& set : sets_) {
     const double rad_per_px = 2 * pi * set.periods / size_, theta = rad_per_px * (place + 0.5);
     const Harmonics amplitudes = harmonics_of(bend, 0.5 * rad_per_px);
@@ -67,11 +67,25 @@ double ToldPlace::operator()(double place, const Bend& bend) const {
       sums += Vec3{read, read * std::cos(shift), read * std::sin(shift)};
     }
     const Vec3 fit = set.solve * sums;
-    const double off = std::remainder(std::atan2(fit.z, fit.y) - theta, 2 * pi) / rad_per_px,
-                 weight = rad_per_px * rad_per_px * static_cast<double>(set.shifts_rad.size());
-    sum += weight * off, weights += weight;
+    turns.push_back(std::remainder(std::atan2(fit.z, fit.y) - theta, 2 * pi));
   }
-  return weights > 0 ? place + sum / weights : place;
+  return place + mean_of_turns(turns);
+}
+
+std::vector<double> ToldPlace::periods() const {
+  std::vector<double> all;
+  for (const Set& set : sets_) all.push_back(set.periods);
+  return all;
+}
+
+double ToldPlace::mean_of_turns(std::span<const double> turns_rad) const {
+  double sum = 0, weights = 0;
+  for (std::size_t s = 0; s < sets_.size(); ++s) {
+    const double rad_per_px = 2 * pi * sets_[s].periods / size_,
+                 weight = rad_per_px * rad_per_px * static_cast<double>(sets_[s].shifts_rad.size());
+    sum += weight * turns_rad[s] / rad_per_px, weights += weight;
+  }
+  return weights > 0 ? sum / weights : 0;
 }
 
 double ToldPlace::finest_phase(double place) const {

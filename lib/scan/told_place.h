@@ -1,6 +1,7 @@
 // What least squares over the shifts of cosines (decode.h) make of readings that are no cosines: of a projector whose
 // light is a power of what it is told (projector.gamma), of a thing that moves meanwhile (structured-light.motion).
 #pragma once
+#include <span>
 #include <vector>
 
 #include "geom/vector.h"
@@ -28,6 +29,9 @@ class ToldPlace {
   // The mean of what all numbers of periods say, weighed as by noise, of a pixel that `place` lights in the middle of
   // the sequence. `place` itself where gamma is 1 and nothing moves.
   double operator()(double place, const Bend& bend) const;
+  // Numbers of periods, ascending; and the mean, in pixels, of what turns their phases by so many radians.
+  std::vector<double> periods() const;
+  double mean_of_turns(std::span<const double> turns_rad) const;
   // 2 pi periods (place + 1/2) / size of the most periods, not wrapped.
   double finest_phase(double place) const;
 

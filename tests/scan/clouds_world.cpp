@@ -8,6 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "io/ply.h"
 #include "scan/cloud_file.h"
 #include "scan/decode.h"
 #include "scan/rendered_world.h"
@@ -65,10 +66,20 @@ class World {
     return scan::decode(request);
   }
 
+  RenderedWorld grooves() const {
+    RenderedWorld r = groove(opening(), groove_turn(), vertex());
+    r.projector = view_.projector, r.distance_m = view_.distance;
+    return r;
+  }
+
  private:
+  double opening() const { return (cloud_ % 2 == 0 ? 80 : 100) * pi / 180; }
+  double groove_turn() const { return 0.2 * std::sin(2.1 * static_cast<double>(cloud_)); }
+  Vec3 vertex() const { return {0.02 * std::sin(2.9 * static_cast<double>(cloud_)), 0, view_.distance}; }
+
   RenderedWorld rendered_world() const {
-    RenderedWorld r = tests::rendered(view_);
-    r.gamma = w_.gamma, r.gain = w_.gain, r.read = w_.read, r.seed = w_.seed * 131 + cloud_;
+    RenderedWorld r = w_.shape == CloudsWorld::Shape::grooves ? grooves() : tests::rendered(view_);
+    r.albedo = w_.albedo, r.gamma = w_.gamma, r.gain = w_.gain, r.read = w_.read, r.seed = w_.seed * 131 + cloud_;
     r.spp = static_cast<int>(w_.rendered), r.scattering_per_m = w_.scattering_per_m;
     return r;
   }
@@ -98,6 +109,31 @@ class World {
     return at;
   }
 
+  double printed(const Point& at) const {
+    if (w_.print_m == 0) return 1;
+    const double slope = std::sqrt(1 + view_.tilt * view_.tilt);
+    return (std::lround(at[0] * slope / w_.print_m) + std::lround(at[1] / w_.print_m)) % 2 == 0 ? 1 : 0.2;
+  }
+
+  void blur(std::vector<double>& lights) const {
+    if (w_.blur_px == 0) return;
+    const int width = view_.left.width, height = view_.left.height, reach = static_cast<int>(5 * w_.blur_px) + 1;
+    for (const bool upwards : {false, true}) {
+      const std::vector<double> from = lights;
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+          double sum = 0, weights = 0;
+          for (int k = -reach; k <= reach; ++k) {
+            const int i = upwards ? x : x + k, j = upwards ? y + k : y;
+            if (i < 0 || j < 0 || i >= width || j >= height) continue;
+            const double weight = std::exp(-0.5 * k * k / (w_.blur_px * w_.blur_px));
+            sum += weight * from[static_cast<std::size_t>(j * width + i)], weights += weight;
+          }
+          lights[static_cast<std::size_t>(y * width + x)] = sum / weights;
+        }
+    }
+  }
+
   scan::CameraFrame seen(const scan::Sequence& sequence, std::size_t frame) const {
     ScanWorld now = view_;
     const double sign = cloud_ % 2 == 0 ? 1 : -1.5;
@@ -108,8 +144,7 @@ class World {
     std::vector<double> shown;
     for (int u = 0; u < size; ++u)
       shown.push_back(std::pow(scan::light_at(sequence, frame, rows ? 0 : u, rows ? u : 0), w_.gamma));
-    std::mt19937_64 random(w_.seed * 7919 + cloud_ * 104729 + frame);
-    scan::CameraFrame f;
+    std::vector<double> lights;
     const int places = w_.depth_m > 0 ? depths : 1;
     for (int i = 0; i < now.left.width * now.left.height; ++i) {
       double light = 0;
@@ -125,10 +160,16 @@ class World {
           if (!(at > 0 && at < size - 1 && other > 0 && other < (rows ? sequence.width_px : sequence.height_px) - 1))
             continue;
           const auto u = static_cast<std::size_t>(at);
-          light += (shown[u] * (1 - (at - double(u))) + shown[u + 1] * (at - double(u))) / (across * places);
+          light +=
+              printed(exit) * (shown[u] * (1 - (at - double(u))) + shown[u + 1] * (at - double(u))) / (across * places);
         }
       }
-      double v = 0.03 + 0.7 * light;
+      lights.push_back(0.03 + 0.7 * light);
+    }
+    blur(lights);
+    std::mt19937_64 random(w_.seed * 7919 + cloud_ * 104729 + frame);
+    scan::CameraFrame f;
+    for (double v : lights) {
       v = static_cast<double>(std::poisson_distribution<long>(v * w_.gain)(random)) / w_.gain +
           std::normal_distribution<double>(0, w_.read)(random);
       f.light.push_back(static_cast<float>(v));
@@ -176,6 +217,17 @@ std::string frames_text(const scan::Sequence& sequence) {
   return "[" + text + "]";
 }
 
+void write_mesh(const std::filesystem::path& path, const RenderedWorld& world) {
+  io::TriangleMesh mesh;
+  for (const Board& b : world.boards) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions_m.size());
+    const Vec3 x = b.x * b.half_x_m, y = b.y * b.half_y_m;
+    for (const Vec3& corner : {x + y, y - x, -x - y, x - y}) mesh.positions_m.push_back(b.middle_m + corner);
+    mesh.triangles.push_back({first, first + 1, first + 2}), mesh.triangles.push_back({first, first + 2, first + 3});
+  }
+  io::write_ply(path, mesh);
+}
+
 }  // namespace
 
 manifest::Document measured_clouds(const CloudsWorld& w, const std::filesystem::path& folder) {
@@ -184,18 +236,24 @@ manifest::Document measured_clouds(const CloudsWorld& w, const std::filesystem::
   const scan::Sequence sequence =
       w.gray ? scan::gray_sequence(480, 360, columns) : scan::cosine_sequence(480, 360, columns, periods, 3);
   make_folder(folder);
-  std::vector<std::string> clouds(w.clouds), images(w.clouds), files(w.clouds);
+  std::vector<std::string> clouds(w.clouds), images(w.clouds), files(w.clouds), meshes(w.clouds);
   parallel_for(0, w.clouds, [&](std::size_t c) {
     const World world(w, c);
     const scan::Cloud cloud =
         scan::points_of_projector(world.codes(sequence), station_of(world.view().left), station_of(world.calibrated()));
     scan::write_cloud(folder / format("c%zu.ply", c), cloud, {});
+    if (w.shape == CloudsWorld::Shape::grooves) write_mesh(folder / format("m%zu.ply", c), world.grooves());
     files[c] = format("\"f%zu\": {\"path\": \"c%zu.ply\"}", c, c);
+    meshes[c] = format("\"m%zu\": {\"file\": \"m%zu\"}", c, c);
+    if (w.shape == CloudsWorld::Shape::grooves) files[c] += format(", \"m%zu\": {\"path\": \"m%zu.ply\"}", c, c);
+    const std::string groove = format("\"model\": \"mesh\", \"mesh\": \"m%zu\"", c);
     clouds[c] = format(
         "\"c%zu\": {\"file\": \"f%zu\", \"cameras\": [\"camera\", \"projector\"], \"projection\": \"p\", "
         "\"shape\": {%s}}",
         c, c,
-        w.shape == CloudsWorld::Shape::planes ? "\"model\": \"plane\"" : "\"model\": \"sphere\", \"radius_m\": 0.1");
+        w.shape == CloudsWorld::Shape::planes    ? "\"model\": \"plane\""
+        : w.shape == CloudsWorld::Shape::grooves ? groove.c_str()
+                                                 : "\"model\": \"sphere\", \"radius_m\": 0.1");
     images[c] = format(
         "{\"id\": \"i%zu\", \"camera\": \"camera\", \"projection\": \"p\", \"shows\": 0, \"group\": "
         "\"c%zu\", \"time_s\": %.17g}",
@@ -213,7 +271,9 @@ manifest::Document measured_clouds(const CloudsWorld& w, const std::filesystem::
       member_text("camera", first.view().left) + ", " + member_text("projector", first.calibrated()) +
       "]}}, \"projections\": {\"p\": {" +
       format("\"width_px\": %d, \"height_px\": %d, \"frames\": ", sequence.width_px, sequence.height_px) +
-      frames_text(sequence) + "}}, \"clouds\": {" + joined(clouds) + "}, \"images\": [" + joined(images) + "]}";
+      frames_text(sequence) + "}}, " +
+      (w.shape == CloudsWorld::Shape::grooves ? "\"meshes\": {" + joined(meshes) + "}, " : "") + "\"clouds\": {" +
+      joined(clouds) + "}, \"images\": [" + joined(images) + "]}";
   write_file(folder / "clouds.json", text);
   return manifest::read_document(folder / "clouds.json");
 }

@@ -1,5 +1,6 @@
 // A camera and a projector about planes and balls, by rays in closed form that share nothing with the library but the
 // sequence's pictures, the decoder and the file: what a user would hand to explain, with physics that the rig left out.
+// Grooves are rendered.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -10,7 +11,7 @@
 namespace gonio::tests {
 
 struct CloudsWorld {
-  enum class Shape { planes, balls } shape = Shape::planes;
+  enum class Shape { planes, balls, grooves } shape = Shape::planes;
   std::size_t clouds = 6;
   double gamma = 1;             // of the projector
   double moves_m = 0;           // of each thing, from the first frame to the last, away from the rig; signs alternate
@@ -21,6 +22,9 @@ struct CloudsWorld {
   double depth_m = 0;           // light comes back from exponential depths of this mean, index 1.5
   double rendered = 0;          // > 0: by lib/render (rendered_world.h), so many samples a pixel
   double scattering_per_m = 0;  // rendered: of a translucent solid (see there)
+  double print_m = 0;           // side of the squares that are printed on planes, a fifth as bright as the ground
+  double blur_px = 0;           // Gaussian standard deviation of the camera's picture
+  double albedo = 0.6;          // rendered
   bool gray = false;            // else cosines of 1, 8 and 40 periods at three shifts
   double read = 0.002, gain = 8000;
   std::uint64_t seed = 1;

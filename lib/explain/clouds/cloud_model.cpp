@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geom/rigid.h"
+#include "scan/mechanisms/structured_light_edge.h"
 #include "scan/mechanisms/structured_light_subsurface.h"
 
 namespace gonio::explain {
@@ -28,7 +29,7 @@ std::optional<Vec2> seen_by(const scan::Station& station, Vec3 point) {
 struct CloudModel::State {
   std::vector<scan::Station> stations;
   std::vector<double> shape;
-  double gamma = 1, depth_m = 0, along_m = 0;
+  double gamma = 1, depth_m = 0, along_m = 0, albedo = 0, spread_px2 = 0;
   bool first_as_stated = true;
 };
 
@@ -45,6 +46,20 @@ CloudModel::CloudModel(const CloudsInput& input)
       }
   }
   if (rows > columns) telling_ = scan::Axis::row;
+  light_themselves();
+}
+
+void CloudModel::light_themselves() {
+  indirect_.resize(input_.views.size());
+  if (!input_.projector) return;
+  const std::vector<double> x = told_[0].periods(), y = told_[1].periods();
+  for (std::size_t v = 0; v < rows_.size(); ++v) {
+    if (!input_.views[v].shape.may_light_itself()) continue;
+    std::vector<IndirectLight::Point> points;
+    for (const CloudRow& row : rows_[v])
+      points.push_back({row.origin + row.depth_m * row.direction, row.normal, row.expected});
+    indirect_[v] = IndirectLight(input_.views[v].shape, points, input_.stations[1], x, y);
+  }
 }
 
 std::optional<CloudRow> CloudModel::row_of(const CloudView& view, std::size_t point) const {
@@ -73,26 +88,28 @@ std::optional<CloudRow> CloudModel::row_of(const CloudView& view, std::size_t po
   const Vec3 n = met->normal;
   row.sigma_m = std::sqrt(std::max(least_variance, c[0] * n.x * n.x + c[3] * n.y * n.y + c[5] * n.z * n.z +
                                                        2 * (c[1] * n.x * n.y + c[2] * n.x * n.z + c[4] * n.y * n.z)));
-  row.covers_px = covered(view, row);
+  row.across = across(view, row), row.normal = n;
+  if (!view.bright.empty() && view.bright[point][12] > 0) {
+    const equation::Neighbours& b = view.bright[point];
+    row.bright = &b, row.slope = Vec2{b[13] - b[11], b[17] - b[7]} * (0.5 / b[12]);
+  }
   row.incidence_rad = std::acos(std::min(1.0, other)), row.depth_m = met->distance_m;
   return row;
 }
 
 // By where the rays of the pixel's neighbours go.
-Vec2 CloudModel::covered(const CloudView& view, const CloudRow& row) const {
+std::array<Vec2, 2> CloudModel::across(const CloudView& view, const CloudRow& row) const {
   const scan::Station& first = input_.stations[0];
   const std::vector<double> unmoved(view.shape.freedoms().size(), 0.0);
-  Vec2 most;
-  for (const Vec2 beside : {Vec2{1, 0}, Vec2{0, 1}}) {
-    const camera::Ray ray = first.lens.ray(row.pixel + beside);
+  std::array<Vec2, 2> found;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const camera::Ray ray = first.lens.ray(row.pixel + (side == 0 ? Vec2{1, 0} : Vec2{0, 1}));
     const Vec3 origin = first.rig_from_camera * ray.origin_m, direction = first.rig_from_camera.rotate(ray.direction);
     const auto met = view.shape.met(origin, direction, unmoved);
     const auto seen = met ? seen_by(input_.stations[1], origin + met->distance_m * direction) : std::nullopt;
-    if (!seen) continue;
-    const Vec2 across = *seen - row.expected;
-    most = {std::max(most.x, std::abs(across.x)), std::max(most.y, std::abs(across.y))};
+    if (seen) found[side] = *seen - row.expected;
   }
-  return most;
+  return found;
 }
 
 CloudModel::State CloudModel::state_of(std::span<const CloudRole> roles, std::span<const double> values,
@@ -125,6 +142,8 @@ CloudModel::State CloudModel::state_of(std::span<const CloudRole> roles, std::sp
         break;
       case Part::gamma: s.gamma = v; break;
       case Part::depth: s.depth_m = v; break;
+      case Part::albedo: s.albedo = v; break;
+      case Part::spread: s.spread_px2 = v; break;
     }
   }
   for (std::size_t d = 0; d < 2; ++d)
@@ -137,7 +156,29 @@ CloudModel::State CloudModel::state_of(std::span<const CloudRole> roles, std::sp
   return s;
 }
 
-std::optional<Vec2> CloudModel::pixel_told(const State& s, const CloudRow& row, const CloudView& view) const {
+// Radians per pixel of the first camera.
+Vec2 CloudModel::phase_slope(const CloudRow& row, std::size_t axis, double periods) const {
+  const double each = 2 * pi * periods / input_.sequence.size(axis == 0 ? scan::Axis::column : scan::Axis::row);
+  return axis == 0 ? Vec2{row.across[0].x, row.across[1].x} * each : Vec2{row.across[0].y, row.across[1].y} * each;
+}
+
+// What other walls and a blur add, in pixels of the axis.
+double CloudModel::turned_px(const State& s, std::size_t row, std::size_t view, std::size_t axis) const {
+  const CloudRow& r = rows_[view][row];
+  const bool walls = s.albedo != 0 && indirect_[view].any(), blur = s.spread_px2 != 0 && r.bright != nullptr;
+  if (!walls && !blur) return 0;
+  std::vector<double> turns = told_[axis].periods();
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    const Vec2 slope = phase_slope(r, axis, turns[k]);
+    turns[k] = walls ? indirect_[view].turn(row, axis, k, s.albedo) : 0;
+    if (blur) turns[k] += equation::structured_light_edge(*r.bright, slope, s.spread_px2);
+  }
+  return told_[axis].mean_of_turns(turns);
+}
+
+std::optional<Vec2> CloudModel::pixel_told(const State& s, std::size_t number, std::size_t v) const {
+  const CloudView& view = input_.views[v];
+  const CloudRow& row = rows_[v][number];
   Vec3 origin = row.origin, direction = row.direction;
   if (!s.first_as_stated) {
     const camera::Ray ray = s.stations[0].lens.ray(row.pixel);
@@ -150,13 +191,18 @@ std::optional<Vec2> CloudModel::pixel_told(const State& s, const CloudRow& row, 
   if (s.depth_m != 0)
     at += equation::structured_light_subsurface(met->normal, -direction, direction_to(s.stations[1], at), s.depth_m);
   std::optional<Vec2> pixel = seen_by(s.stations[1], at);
-  if (!pixel || !input_.projector || (s.gamma == 1 && s.along_m == 0)) return pixel;
+  if (!pixel || !input_.projector) return pixel;
+  if (s.gamma == 1 && s.along_m == 0 && s.albedo == 0 && s.spread_px2 == 0) return pixel;
   // A surface that goes by `along_m` along the camera's axis meets the ray farther by n . axis / n . ray of it.
   const Vec3 axis = s.stations[0].rig_from_camera.rotate({0, 0, 1});
   const double farther = s.along_m * dot(met->normal, axis) / dot(met->normal, direction);
   const Vec2 moves = row.along * (row.px_per_metre * farther);
-  pixel->x = told_[0](pixel->x, {s.gamma, moves.x, row.covers_px.x});
-  pixel->y = told_[1](pixel->y, {s.gamma, moves.y, row.covers_px.y});
+  const auto covers = [&row](double Vec2::*of) {
+    return std::max(std::abs(row.across[0].*of), std::abs(row.across[1].*of));
+  };
+  pixel->x = told_[0](pixel->x, {s.gamma, moves.x, covers(&Vec2::x)});
+  pixel->y = told_[1](pixel->y, {s.gamma, moves.y, covers(&Vec2::y)});
+  pixel->x += turned_px(s, number, v, 0), pixel->y += turned_px(s, number, v, 1);
   return pixel;
 }
 
@@ -165,7 +211,7 @@ void CloudModel::predict(std::span<const CloudRole> roles, std::span<const doubl
   const State state = state_of(roles, values, view);
   const std::vector<CloudRow>& rows = rows_[view];
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto pixel = pixel_told(state, rows[i], input_.views[view]);
+    const auto pixel = pixel_told(state, i, view);
     prediction[i] = pixel ? rows[i].metre_per_px * dot(*pixel - rows[i].expected, rows[i].along) : 0;
   }
 }

@@ -6,13 +6,27 @@
 #include <vector>
 
 #include "explain/clouds/clouds_problem.h"
+#include "explain/clouds/indirect_light.h"
 #include "scan/told_place.h"
 
 namespace gonio::explain {
 
 // What a parameter moves. `device`: 0 the first camera, 1 the second device.
 struct CloudRole {
-  enum class Part { shape, pose, drift, lens, focal, principal, thermal, gamma, depth, along } part = Part::shape;
+  enum class Part {
+    shape,
+    pose,
+    drift,
+    lens,
+    focal,
+    principal,
+    thermal,
+    gamma,
+    depth,
+    along,
+    albedo,
+    spread
+  } part = Part::shape;
   std::size_t index = 0;  // shape, pose, drift: of its numbers; lens: term; principal: x or y; thermal: focal, x, y
   std::size_t device = 1;
   std::size_t view = static_cast<std::size_t>(-1);  // shape, along
@@ -21,15 +35,18 @@ struct CloudRole {
 
 // A point, and what of the stated rig the prediction is linear about.
 struct CloudRow {
-  Vec2 pixel;               // of the first camera
-  Vec3 origin, direction;   // its ray as stated, rig frame
-  Vec2 told;                // pixel of the second device
-  Vec2 along;               // unit: where that goes as the point goes along the ray
-  Vec2 expected;            // told by the shape where it was fitted
-  double metre_per_px = 0;  // off the shape, per pixel along `along`
-  double sigma_m = 0;       // along the normal, as the cloud states
-  double px_per_metre = 0;  // of `along`, by the point's way along the ray
-  Vec2 covers_px;           // of the second device, along its x and y, by a pixel of the first
+  Vec2 pixel;                                    // of the first camera
+  Vec3 origin, direction;                        // its ray as stated, rig frame
+  Vec2 told;                                     // pixel of the second device
+  Vec2 along;                                    // unit: where that goes as the point goes along the ray
+  Vec2 expected;                                 // told by the shape where it was fitted
+  double metre_per_px = 0;                       // off the shape, per pixel along `along`
+  double sigma_m = 0;                            // along the normal, as the cloud states
+  double px_per_metre = 0;                       // of `along`, by the point's way along the ray
+  std::array<Vec2, 2> across;                    // of the second device, by a pixel of the first along its x and its y
+  Vec3 normal;                                   // of the shape there, towards the first camera
+  const equation::Neighbours* bright = nullptr;  // none: not known
+  Vec2 slope;                                    // of the logarithm of brightness, per pixel of the first camera
   double incidence_rad = 0, depth_m = 0;
   std::size_t point = 0;
 };
@@ -40,6 +57,7 @@ class CloudModel {
   const CloudsInput& input() const { return input_; }
   const std::vector<CloudRow>& rows(std::size_t view) const { return rows_[view]; }
   const scan::ToldPlace& told_place(scan::Axis axis) const { return told_[static_cast<std::size_t>(axis)]; }
+  const IndirectLight& indirect(std::size_t view) const { return indirect_[view]; }
   // Which axis' pixel says most of where the points lie.
   scan::Axis telling() const { return telling_; }
 
@@ -50,13 +68,17 @@ class CloudModel {
  private:
   struct State;
   State state_of(std::span<const CloudRole> roles, std::span<const double> values, std::size_t view) const;
-  Vec2 covered(const CloudView& view, const CloudRow& row) const;
+  std::array<Vec2, 2> across(const CloudView& view, const CloudRow& row) const;
+  void light_themselves();
   std::optional<CloudRow> row_of(const CloudView& view, std::size_t point) const;
-  std::optional<Vec2> pixel_told(const State& state, const CloudRow& row, const CloudView& view) const;
+  std::optional<Vec2> pixel_told(const State& state, std::size_t row, std::size_t view) const;
+  double turned_px(const State& state, std::size_t row, std::size_t view, std::size_t axis) const;
+  Vec2 phase_slope(const CloudRow& row, std::size_t axis, double periods) const;
 
   const CloudsInput& input_;
   std::array<scan::ToldPlace, 2> told_;
   std::vector<std::vector<CloudRow>> rows_;
+  std::vector<IndirectLight> indirect_;  // view by view
   scan::Axis telling_ = scan::Axis::column;
 };
 

@@ -42,6 +42,7 @@ class CloudShape {
   };
   std::span<const Freedom> freedoms() const;
 
+  bool may_light_itself() const { return kind_ == Kind::mesh; }
   struct Met {
     double distance_m = 0;
     Vec3 normal;  // unit, against the ray

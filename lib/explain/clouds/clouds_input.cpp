@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <unordered_map>
 
 #include "base/error.h"
 #include "explain/clouds/clouds_problem.h"
@@ -46,6 +47,31 @@ std::optional<double> mean_of(const std::vector<const manifest::ImageEntry*>& im
   }
   return images.empty() ? std::nullopt : std::optional(sum / static_cast<double>(images.size()));
 }
+
+// What white adds about a point; the points of a camera beside a projector stand at whole pixels. All zero where a
+// neighbour has no point.
+class Brightness {
+ public:
+  explicit Brightness(std::span<const scan::ScanPoint> points) {
+    for (const scan::ScanPoint& p : points) found_[key(std::lround(p.pixel.x), std::lround(p.pixel.y))] = p.reflected;
+  }
+  equation::Neighbours about(Vec2 pixel) const {
+    equation::Neighbours all{};
+    const long x = std::lround(pixel.x), y = std::lround(pixel.y);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const auto it = found_.find(key(x + static_cast<long>(k % 5) - 2, y + static_cast<long>(k / 5) - 2));
+      if (it == found_.end()) return {};
+      all[k] = it->second;
+    }
+    return all;
+  }
+
+ private:
+  static std::uint64_t key(long x, long y) {
+    return static_cast<std::uint64_t>(x) << 32 | (static_cast<std::uint64_t>(y) & 0xffffffffu);
+  }
+  std::unordered_map<std::uint64_t, float> found_;
+};
 
 // As many of each tile of the picture, evenly through its points: a part is enough, and a corner counts like the
 // middle.
@@ -97,9 +123,13 @@ class CloudReader {
     std::vector<scan::ScanPoint> all = scan::read_cloud(path, world_from_rig);
     std::vector<Vec3> places;
     for (const scan::ScanPoint& p : all) places.push_back(p.position_m);
-    CloudView view{name, shape_of(*cloud.shape, places, inverse(world_from_rig), at), {}, {}};
+    CloudView view{name, shape_of(*cloud.shape, places, inverse(world_from_rig), at), {}, {}, {}};
+    const Brightness brightness(all);
     drop_far(view.shape, all, at);
+    const bool known = input_.projector && keep_surrounded(brightness, all);
     choose_points(std::move(all), view);
+    if (known)
+      for (const scan::ScanPoint& p : view.points) view.bright.push_back(brightness.about(p.pixel));
     temperatures_.push_back(mean_of(images, &manifest::ImageEntry::temperature_K));
     times_.push_back(mean_of(images, &manifest::ImageEntry::time_s));
     input_.views.push_back(std::move(view));
@@ -144,6 +174,16 @@ class CloudReader {
     Rigid<frame::World, frame::Object> pose;
     if (shape.world_from_object) pose = *shape.world_from_object;
     return CloudShape::of_mesh(mesh, rig_from_world * pose);
+  }
+
+  // Where most points have all their neighbours, those that have: what is seen beside a hole is a mixture. Else false.
+  static bool keep_surrounded(const Brightness& brightness, std::vector<scan::ScanPoint>& all) {
+    std::vector<scan::ScanPoint> surrounded;
+    for (const scan::ScanPoint& p : all)
+      if (brightness.about(p.pixel)[12] > 0) surrounded.push_back(p);
+    if (2 * surrounded.size() < all.size()) return false;
+    all = std::move(surrounded);
+    return true;
   }
 
   static void drop_far(const CloudShape& shape, std::vector<scan::ScanPoint>& all, const std::string& at) {

@@ -45,6 +45,10 @@ CloudRole role_of(const mechanism::Parameter& p, std::size_t device) {
     role.part = Part::depth;
   else if (name == "along_m")
     role.part = Part::along;
+  else if (name == "albedo")
+    role.part = Part::albedo;
+  else if (name == "spread_px2")
+    role.part = Part::spread;
   else
     role.part = Part::lens, role.index = camera::distortion_index(name, "explain");
   return role;
@@ -161,6 +165,11 @@ class CloudDeclaration {
     switch (role.part) {
       case Part::drift:
       case Part::thermal: return varies(role.by_time ? &CloudView::later_s : &CloudView::warmer_K);
+      case Part::spread: return std::ranges::any_of(input_.views, [](const CloudView& v) { return !v.bright.empty(); });
+      case Part::albedo:
+        for (std::size_t v = 0; v < input_.views.size(); ++v)
+          if (model_.indirect(v).any()) return true;
+        return false;
       case Part::gamma:
       case Part::along: return input_.projector && cosines;  // codes of two cameras are bent alike
       case Part::lens: {

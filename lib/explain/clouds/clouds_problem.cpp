@@ -13,6 +13,7 @@
 namespace gonio::explain {
 namespace {
 
+constexpr double never = 2;         // a share: by what is left of a usual change over the noise alone
 constexpr double estimable = 0.02;  // share of a parameter's signature that free and earlier parameters must leave
 
 class CloudsProblem final : public Problem {
@@ -101,27 +102,38 @@ class CloudsProblem final : public Problem {
         radius{"camera.image-radius", "half width", "lens", {}, {}, "m"},
         x{"camera.image-x", "half width", "pose", {}, {}, "m"}, y{"camera.image-y", "half width", "pose", {}, {}, "m"},
         incidence{"surface.incidence-angle", "rad", "surface", {}, {}, "m"},
-        depth{"scene.depth", "m", "pose", {}, {}, "m"}, later{"camera.time", "s", "pose", {}, {}, "m"},
+        depth{"scene.depth", "m", "pose", {}, {}, "m"}, slope{"camera.brightness-slope", "1/px", "lens", {}, {}, "m"},
+        openness{"surface.openness", "1", "transport", {}, {}, "m"}, later{"camera.time", "s", "pose", {}, {}, "m"},
         warmer{"camera.temperature", "K", "pose", {}, {}, "m"};
     const auto place = [](const camera::CameraModel& lens, Vec2 pixel) {
       return (pixel - lens.principal_point_px()) * (2.0 / lens.width_px());
     };
     const scan::ToldPlace& told = model_.told_place(model_.telling());
     for (std::size_t v = 0; v < input_.views.size(); ++v)
-      for (const CloudRow& row : model_.rows(v)) {
+      for (std::size_t i = 0; i < model_.rows(v).size(); ++i) {
+        const CloudRow& row = model_.rows(v)[i];
         const Vec2 a = place(first, row.pixel), b = place(second, row.expected);
         const double u = model_.telling() == scan::Axis::column ? row.expected.x : row.expected.y;
         phase.values.push_back(told.finest_phase(u) - 2 * pi * std::floor(told.finest_phase(u) / (2 * pi)));
         second_radius.values.push_back(std::hypot(b.x, b.y)), radius.values.push_back(std::hypot(a.x, a.y));
         x.values.push_back(a.x), y.values.push_back(a.y);
         incidence.values.push_back(row.incidence_rad), depth.values.push_back(row.depth_m);
+        slope.values.push_back(slope_along_told(row)), openness.values.push_back(1 - model_.indirect(v).hidden(i));
         later.values.push_back(input_.views[v].later_s), warmer.values.push_back(input_.views[v].warmer_K);
       }
-    for (Condition* c : {&phase, &second_radius, &radius, &x, &y, &incidence, &depth, &later, &warmer}) {
+    for (Condition* c :
+         {&phase, &second_radius, &radius, &x, &y, &incidence, &depth, &slope, &openness, &later, &warmer}) {
       const auto [low, high] = std::ranges::minmax_element(c->values);
       if (*low < *high && (c != &phase || (input_.projector && told.any())))
         observations_.conditions.push_back(std::move(*c));
     }
+  }
+
+  // The change of log brightness along the way by which the pixel told is another; it has a sign.
+  static double slope_along_told(const CloudRow& row) {
+    const Vec2 way{dot(row.across[0], row.along), dot(row.across[1], row.along)};
+    const double length = std::hypot(way.x, way.y);
+    return length > 0 ? dot(row.slope, way) / length : 0;
   }
 
   Estimable::Column column_of(std::size_t parameter, const std::vector<double>& values) const {
@@ -134,6 +146,15 @@ class CloudsProblem final : public Problem {
     return column;
   }
 
+  // A shape along which its own points slide: a groove along its edge, a turned part about its axis.
+  void hold_what_slides(const std::vector<Estimable::Column>& columns) {
+    std::vector<double> usual;
+    for (const std::size_t p : base_) usual.push_back(parameters_[p].size);
+    std::vector<std::size_t> kept;
+    for (const std::size_t k : Estimable({}).kept(columns, never, usual)) kept.push_back(base_[k]);
+    base_ = std::move(kept);
+  }
+
   void keep_estimable() {
     std::vector<double> values;
     for (const Parameter& p : parameters_) values.push_back(p.neutral);
@@ -142,6 +163,7 @@ class CloudsProblem final : public Problem {
       for (const std::size_t p : parameters) columns.push_back(column_of(p, values));
       return columns;
     };
+    hold_what_slides(columns_of(base_));
     const Estimable beside(columns_of(base_));
     for (Candidate c : declared_.candidates) {
       std::vector<std::size_t> kept;

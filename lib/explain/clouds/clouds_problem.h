@@ -22,6 +22,7 @@
 #include "explain/clouds/cloud_shape.h"
 #include "explain/engine.h"
 #include "manifest/sections/forward.h"
+#include "scan/mechanisms/structured_light_edge.h"
 #include "scan/sequence.h"
 #include "scan/triangulate.h"
 
@@ -30,9 +31,10 @@ namespace gonio::explain {
 struct CloudView {
   std::string name;
   CloudShape shape;
-  std::vector<scan::ScanPoint> points;  // those that are asked
-  std::vector<std::uint32_t> tile;      // of each, from 0
-  double later_s = 0, warmer_K = 0;     // than the mean of all views; 0 where nothing is stated
+  std::vector<scan::ScanPoint> points;       // those that are asked
+  std::vector<std::uint32_t> tile;           // of each, from 0
+  std::vector<equation::Neighbours> bright;  // of each, what white adds about its pixel; empty: not known
+  double later_s = 0, warmer_K = 0;          // than the mean of all views; 0 where nothing is stated
 };
 
 // Clouds by one pair of devices and one projection.

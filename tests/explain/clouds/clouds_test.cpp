@@ -13,8 +13,8 @@
 #include "manifest/sections/cloud.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/rig.h"
-#include "scan/told_place.h"
 #include "scan/clouds_world.h"
+#include "scan/told_place.h"
 
 namespace gonio::tests {
 namespace {
@@ -102,6 +102,13 @@ TEST(Clouds, TellThatThingsMovedMeanwhile) {
   EXPECT_THAT(a.named, testing::ElementsAre("structured-light.motion")) << a.e.sentence;
   expect_covered(a, "c0/along_m", 2e-3, 0.1);
   expect_covered(a, "c1/along_m", -3e-3, 0.1);
+}
+
+TEST(Clouds, TellThatTheCameraBlursPrint) {
+  const Answer a = explained({.shape = Shape::planes, .print_m = 0.02, .blur_px = 1, .seed = 11});
+  EXPECT_THAT(a.named, testing::ElementsAre("structured-light.edge")) << a.e.sentence;
+  // A pixel's own square counts along x, and not along y, where the world takes it as a line.
+  expect_covered(a, "structured-light.edge.spread_px2", 1 + 1.0 / 12, 0.03);
 }
 
 // A principal point that drifts does nearly the same.
